@@ -20,6 +20,7 @@ from uuid import uuid4
 
 import httpx
 from nicegui import Client, app, core, events, ui
+from nicegui.app.app import State
 from nicegui.element import Element
 from nicegui.nicegui import _on_handshake
 
@@ -138,6 +139,7 @@ class Desk:
         core.loop = self._loop
         transport = httpx.ASGITransport(lab_application(self.lab, host="127.0.0.1", token=None))
         app.on_exception(self.failures.append)
+        app._state = State.STARTED  # timers of pages end where it is not
         self._browser = httpx.AsyncClient(transport=transport, base_url="http://127.0.0.1", follow_redirects=True)
 
     def end(self) -> None:

@@ -1,0 +1,487 @@
+"""Queues of runs and studies: their folders, their processes, their cards, and how long they take."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import re
+import sys
+from dataclasses import replace
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import pytest
+from nicegui import ui
+
+from skisnow.errors import ParameterError
+from skisnow.parallel.kept_rows import KeptRows
+from skisnow.web import runs as runs_module
+from skisnow.web import studies as studies_module
+from skisnow.web.run_estimate import duration_words, estimated_s, simulated_s, slowness
+from skisnow.web.runs import Job, Runs, new_name
+from skisnow.web.studies import Studies, StudyJob
+from skisnow.web.study_asked import CARVE, Range, StudyAsked
+from skisnow.web.study_estimate import estimate_words, learned, unit_s
+
+from ..finished import finished
+
+if TYPE_CHECKING:
+    from .desk import Desk
+
+TURN = {"ski": "carver", "load_N": 800.0, "H_V_N_per_mm3": 0.2, "S_f_N_per_mm2": 0.5, "unloading_ratio": 10.0}
+TURNS = StudyAsked(CARVE, {"edge_angle_deg": Range(10.0, 70.0, 2)}, TURN, unit_s=0.03)
+SUMMARY = {"outcome": "left_course", "run_length_m": 46.04, "simulated_s": 5.126, "remedy": "Take less."}
+TABLE = "edge_angle_deg,outcome,study\n10,equilibrium,a\n70,not_converged,a\n75,not_converged,a\n"
+
+
+def acts(monkeypatch: pytest.MonkeyPatch, script: str) -> None:
+    """Let the command be this script, whose arguments are what it is asked."""
+    monkeypatch.setattr(runs_module, "COMMAND", (sys.executable, "-I", "-S", "-c", f"import sys, time, os\n{script}"))
+    monkeypatch.setattr(runs_module, "_PAUSE_S", 0.001)
+
+
+def says(*lines: str) -> str:
+    return "".join(f"print({line!r}, file=sys.stderr, flush=True)\n" for line in lines)
+
+
+def state(runs: Runs, name: str) -> Job:
+    return next(job for job in runs.jobs() if job.name == name)
+
+
+async def worked(runs: Runs, over: Any, during: Any = None) -> None:
+    """Work through the queue until something holds; ``during`` is called meanwhile, until it gives something."""
+    work = asyncio.ensure_future(runs.work())
+    end = asyncio.get_running_loop().time() + 60.0
+    while not over():
+        assert not work.done() and asyncio.get_running_loop().time() < end
+        if during is not None and during():
+            during = None
+        await asyncio.sleep(0.002)
+    runs.end()
+    await work
+
+
+def is_over(runs: Runs) -> bool:
+    return all(job.state not in ("waiting", "running") for job in runs.jobs())
+
+
+def work_through(runs: Runs, during: Any = None) -> None:
+    finished(worked(runs, lambda: is_over(runs), during))
+
+
+def ended(queue: Runs, job: Job, last: str = "so", *, took_s: float = 3.0, cancelled: bool = False) -> Job:
+    return finished(queue._ended_as(job, last, took_s, cancelled=cancelled))
+
+
+def test_the_name_of_a_folder_says_when_and_what_for() -> None:
+    names = {new_name("a/b ä.c-1", datetime(2026, 1, 2, 3, 4, 5, tzinfo=UTC)) for _ in range(3)}
+    assert len(names) == 3
+    assert all(re.fullmatch(r"2026-01-02-030405-a-b---c-1-[0-9a-f]{4}", name) for name in names)
+
+
+def test_a_run_is_on_the_disk_as_it_was_asked(tmp_path: Path) -> None:
+    runs = Runs(tmp_path)
+    files = {"ski.file": ("ski/a.toml", b"text")}
+    job = runs.ask("carved-46m", {"run.duration_s": "1"}, files=files, given="ski: a ü", language="de")
+    place = tmp_path / job.name / "ski" / "a.toml"
+    assert place.read_bytes() == b"text"
+    kept = (tmp_path / job.name / "job.json").read_text(encoding="utf-8")
+    assert json.loads(kept) == {
+        "name": job.name, "scenario": "carved-46m", "changes": {"run.duration_s": "1", "ski.file": str(place)},
+        "asked_at": job.asked_at, "state": "waiting", "said": "", "given": "ski: a ü", "took_s": 0.0, "language": "de",
+    }  # fmt: skip
+    assert "ü" in kept and '\n "name": ' in kept
+    assert datetime.fromisoformat(job.asked_at).tzinfo == UTC
+    assert runs.jobs() == [job]
+    assert Runs(tmp_path / "none").jobs() == []
+
+
+def test_jobs_that_are_damaged_are_left_out(tmp_path: Path) -> None:
+    runs = Runs(tmp_path)
+    older, newer = (Job(name, "a", {}, when) for name, when in (("b", "2025"), ("a", "2026")))
+    runs._keep(older)
+    runs._keep(newer)
+    for name, text in (("c", "{"), ("d", '{"unknown": 1}')):
+        (tmp_path / name).mkdir()
+        (tmp_path / name / "job.json").write_text(text, encoding="utf-8")
+    assert runs.jobs() == [newer, older]
+
+
+def test_the_queue_goes_on_with_the_oldest_and_tells_how_it_stands(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    acts(
+        monkeypatch,
+        "open(sys.argv[-1] + '/asked', 'a').write(repr(sys.argv[1:]) + os.environ['SKISNOW_PROGRESS_LINES'] + "
+        "str(time.monotonic_ns()))\nprint('no word', flush=True)\n" + says("first", "  x" + "y" * 700 + "  "),
+    )
+    runs = Runs(tmp_path)
+    first, second = runs.ask("a", {"b.c": "1"}, language="de"), runs.ask("d", {})
+    runs._keep(replace(first, state="running"))  # the server ended meanwhile
+    done = Job("e", "e", {}, "2026", state="done")
+    runs._keep(done)
+    work_through(runs)
+    words = [(tmp_path / job.name / "asked").read_text(encoding="utf-8") for job in (first, second)]
+    told = ["simulate", "a", "--set", "b.c=1", "--language", "de", "--out", str(tmp_path / first.name)]
+    assert words[0].startswith(f"{told!r}1")
+    assert int(words[0].rpartition("]1")[2]) < int(words[1].rpartition("]1")[2])
+    for job in (first, second):
+        assert state(runs, job.name) == replace(job, state="failed", said="y" * 600)
+    assert state(runs, "e") == done
+    assert (runs._process, runs._running, runs._cancelling, runs.progress) == (None, "", "", "")
+
+
+def test_what_a_run_says_is_its_progress_until_it_is_cancelled(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    acts(
+        monkeypatch,
+        "import signal\nsignal.signal(signal.SIGTERM, lambda *_: ("
+        "print('late', file=sys.stderr, flush=True), os._exit(3)))\n" + says(" 1 s of 5 s ") + "time.sleep(60)\n",
+    )
+    runs, seen = Runs(tmp_path), list[str]()
+    job = runs.ask("a", {})
+
+    def during() -> bool:
+        seen.append(runs.progress)
+        if runs.progress != "1 s of 5 s":
+            return False
+        assert state(runs, job.name).state == "running"
+        runs.cancel(job.name)
+        seen.append(runs.progress)
+        return True
+
+    work_through(runs, during)
+    assert set(seen) <= {"", "starting", "1 s of 5 s", "being cancelled; what was computed is written"}
+    assert seen[-1] == "being cancelled; what was computed is written"
+    assert state(runs, job.name) == replace(job, state="cancelled", said="Nothing was computed yet.")
+    with pytest.raises(ParameterError, match="this run is over already; there is nothing to cancel"):
+        runs.cancel(job.name)
+
+
+def test_a_run_that_is_cancelled_before_its_process_stands_is_ended(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    acts(monkeypatch, "time.sleep(60)\n")
+    runs = Runs(tmp_path)
+    job = runs.ask("a", {})
+    begin = asyncio.create_subprocess_exec
+
+    async def late(*what: Any, **further: Any) -> Any:
+        runs.cancel(job.name)
+        assert runs.progress == "being cancelled; what was computed is written"
+        return await begin(*what, **further)
+
+    monkeypatch.setattr(asyncio, "create_subprocess_exec", late)
+    work_through(runs)
+    assert state(runs, job.name).state == "cancelled"
+
+
+def test_a_server_that_ends_kills_the_run_and_leaves_it_running(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    acts(monkeypatch, says("begun") + "time.sleep(60)\n")
+    runs = Runs(tmp_path)
+    job = runs.ask("a", {})
+    finished(worked(runs, lambda: runs.progress == "begun"))
+    assert state(runs, job.name).state == "running"
+    runs.end()  # twice does no harm
+
+
+def test_one_that_waits_is_cancelled_and_no_other(tmp_path: Path) -> None:
+    runs = Runs(tmp_path)
+    first, second = runs.ask("a", {}), runs.ask("b", {})
+    runs.cancel(second.name)
+    assert runs.jobs() == [replace(second, state="cancelled", said="It had not begun."), first]
+    for name in (second.name, "none"):
+        with pytest.raises(ParameterError, match="nothing to cancel"):
+            runs.cancel(name)
+
+
+@pytest.mark.parametrize(
+    ("summary", "cancelled", "over", "said", "took"),
+    [
+        (None, False, "failed", "so", 0.0),
+        (None, True, "cancelled", "Nothing was computed yet.", 0.0),
+        ({}, False, "done", "left course: 46.0 m in 5.13 s. Take less.", 3.0),
+        ({}, True, "done", "left course: 46.0 m in 5.13 s. Take less.", 3.0),
+        ({"remedy": ""}, False, "done", "left course: 46.0 m in 5.13 s.", 3.0),
+        (
+            {"outcome": "interrupted"},
+            True,
+            "cancelled",
+            "interrupted: 46.0 m in 5.13 s. What was computed until then is kept.",
+            0.0,
+        ),
+    ],
+)
+def test_how_a_run_ended_follows_from_its_summary(
+    tmp_path: Path, summary: Any, cancelled: bool, over: str, said: str, took: float
+) -> None:
+    runs = Runs(tmp_path)
+    job = runs.ask("a", {})
+    if summary is not None:
+        (tmp_path / job.name / "summary.json").write_text(json.dumps(SUMMARY | summary), encoding="utf-8")
+    found = ended(runs, job, cancelled=cancelled)
+    assert (found.state, found.said, found.took_s) == (over, said, took)
+
+
+@pytest.mark.parametrize(
+    ("scheduler", "cores", "workers", "elsewhere"),
+    [
+        (None, 1, 1, ""), (None, 2, 1, ""), (None, 4, 3, ""), ("processes", 4, 3, ""), ("threads", 4, 3, ""),
+        ("tcp://a:1", 4, 0, "tcp://a:1"),
+    ],
+)  # fmt: skip
+def test_a_core_stays_free_for_the_pages(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, scheduler: str | None, cores: int, workers: int, elsewhere: str
+) -> None:
+    monkeypatch.setattr(studies_module, "available_cores", lambda: cores)
+    studies = Studies(tmp_path, scheduler)
+    assert (studies.workers, studies.elsewhere, studies.folder) == (workers, elsewhere, tmp_path / "studies")
+    folder, by = tmp_path / "studies" / "n", [] if scheduler is None else ["--scheduler", scheduler]
+    here = ["--workers", str(workers)] if workers else []
+    job = StudyJob("n", CARVE, {}, "2026", language="de")
+    shown = ["--language", "de", "--figure", str(folder / "map.svg")]
+    assert studies._command(job) == ["study", str(folder / "study.toml"), *by, *here, *shown]
+    assert studies._command(replace(job, scenario="a")) == ["study", str(folder / "study.toml"), *by, *here]
+
+
+def test_a_study_is_on_the_disk_when_it_is_in_the_queue(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(studies_module, "available_cores", lambda: 5)
+    studies = Studies(tmp_path)
+    job = studies.ask_for(replace(TURNS, beside={"ski/a.toml": b"b"}, named=("ski: a",), method="m"), "de")
+    assert [path.name for path in studies.folder.iterdir()] == [job.name]
+    assert {str(path.relative_to(studies.folder / job.name)) for path in studies.folder.rglob("*.*")} == {
+        "job.json", "study.toml", "ski/a.toml",
+    }  # fmt: skip
+    assert studies.jobs() == [job]
+    fixed = {"load_N": "800", "H_V_N_per_mm3": "0.2", "S_f_N_per_mm2": "0.5", "unloading_ratio": "10"}
+    assert job == StudyJob(
+        job.name, CARVE, fixed, job.asked_at, given="Edge angle ϑ (°): 10 to 70, 2 values; ski: a", points=2, workers=4,
+        method="m", unit_s=0.03, language="de",
+    )  # fmt: skip
+    assert (studies.folder / job.name).stat().st_mode & 0o777 == 0o755
+
+
+def test_a_study_of_too_many_points_is_refused_before_it_takes_memory(tmp_path: Path) -> None:
+    studies = Studies(tmp_path)
+    for n in (10**9, 10_001):
+        asked = replace(TURNS, varied={"edge_angle_deg": Range(10.0, 70.0, n)})
+        with pytest.raises(ParameterError, match=f"^the study has {n} points; the lab takes at most 10000"):
+            studies.ask_for(asked)
+    assert studies.jobs() == []
+
+
+def test_a_study_that_was_cancelled_or_failed_goes_on(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    studies = Studies(tmp_path)
+    first, second = studies.ask_for(TURNS), studies.ask_for(TURNS)
+    monkeypatch.setattr(studies_module, "available_cores", lambda: 9)
+    for before in ("cancelled", "failed"):
+        studies._keep(replace(first, state=before, said="so", took_s=3.0))
+        studies.go_on(first.name)
+        assert studies.jobs() == [second, replace(first, workers=8, took_s=3.0)]
+    for name, now in ((first.name, "waiting"), (first.name, "running"), (first.name, "done"), ("none", "failed")):
+        studies._keep(replace(first, state=now))  # type: ignore[arg-type]
+        with pytest.raises(ParameterError, match="nothing to go on with"):
+            studies.go_on(name)
+
+
+def test_only_the_files_of_a_study_are_given(tmp_path: Path) -> None:
+    studies = Studies(tmp_path)
+    name = studies.ask_for(TURNS).name
+    assert studies.file(name, "study.toml") == studies.folder / name / "study.toml"
+    (studies.folder / "other").mkdir()
+    (studies.folder / "other" / "study.toml").touch()
+    for where, file in (("other", "study.toml"), (name, "job.json"), (name, "map.svg")):
+        told = f"^there is no '{file}' of a study '{where}' here. Choose one from the list$"
+        with pytest.raises(ParameterError, match=told):
+            studies.file(where, file)
+    (studies.folder / name / "map.svg").write_bytes(b"map")
+    folder = studies.folder / name
+    files = dict(studies.files_of(folder))
+    assert files == {"study/study.toml": (folder / "study.toml").read_bytes(), "study/map.svg": b"map"}
+
+
+def test_the_outcomes_of_a_study_are_counted(tmp_path: Path) -> None:
+    studies = Studies(tmp_path)
+    job = replace(studies.ask_for(TURNS), took_s=2.0)
+    (studies.folder / job.name / "table.csv").write_text(TABLE, encoding="utf-8")
+    words = "3 points: not converged 2; equilibrium 1."
+    assert ended(studies, job) == replace(job, state="done", took_s=5.0, said=words)
+    assert ended(studies, job, "is being written by another run").state == "done"
+    study, table = studies.table(job.name)
+    assert (study.varied, table.varied, len(table.rows)) == (("edge_angle_deg",), ("edge_angle_deg",), 3)
+    (studies.folder / job.name / "table.csv").write_text("a\n", encoding="utf-8")
+    assert "is no table of a study" in ended(studies, job).said
+
+
+@pytest.mark.parametrize("cancelled", [False, True])
+def test_what_a_study_has_finished_is_kept_and_told(tmp_path: Path, cancelled: bool) -> None:
+    studies = Studies(tmp_path)
+    job = studies.ask_for(TURNS)
+    folder = studies.folder / job.name
+    said = f"skisnow: {folder / 'study.toml'}: {folder}/ski is none."
+    over, lead = ("cancelled", "") if cancelled else ("failed", "ski is none. ")
+    found = ended(studies, job, said, cancelled=cancelled)
+    assert (found.state, found.took_s) == (over, 3.0)
+    assert found.said == f"{lead}0 of 2 points are finished and kept."
+    kept = KeptRows.opened(folder / "table.csv.partial", "a")
+    kept.add([(0, '{"a": 1}')]) if hasattr(kept, "add") else None
+    kept.close()
+    assert ended(studies, job, said, cancelled=cancelled).said == f"{lead}1 of 2 points are finished and kept."
+    (folder / "table.csv.partial").write_bytes(b"none of rows" * 100)
+    assert ended(studies, job, said, cancelled=cancelled).said == f"{lead}0 of 2 points are finished and kept."
+
+
+def test_a_study_that_another_process_still_writes_is_begun_again(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(studies_module, "_AGAIN_S", 0.0)
+    studies = Studies(tmp_path)
+    job = studies.ask_for(TURNS)
+    said = "table.csv.partial is being written by another run"
+    assert ended(studies, job, said) == replace(job, state="waiting", took_s=3.0)
+    assert ended(studies, job, said, cancelled=True).state == "cancelled"
+
+
+def test_of_what_a_study_says_its_points_are_shown(tmp_path: Path) -> None:
+    studies = Studies(tmp_path)
+    studies.progress = "starting"
+    assert studies._told("12 of 13 points, 3 s") == "12 of 13 points, 3 s"
+    for line in ("a warning", "so: 12 of 13 points", "x of 13 points"):
+        assert studies._told(line) == "starting"
+
+
+def run(folder: Path, name: str, took: float, wall: float, simulated: float, method: str = "fast") -> Job:
+    """A run that is done."""
+    (folder / name).mkdir()
+    summary = {"wall_s": wall, "simulated_s": simulated, "scenario": {"solver": {"method": method}}}
+    (folder / name / "summary.json").write_text(json.dumps(summary), encoding="utf-8")
+    return Job(name, "a", {}, "2026", state="done", took_s=took)
+
+
+def test_how_long_a_run_takes_is_learned_from_the_last_five(tmp_path: Path) -> None:
+    """12 s of computing for 5 s with the method; 3.2 s around each."""
+    values = {"run.duration_s": 10.0, "solver.method": "fast"}
+    assert estimated_s(tmp_path, [], values) == 18.0
+    assert estimated_s(tmp_path, [], {}) is None
+    told = [
+        run(tmp_path, "a", 5.0, 4.0, 2.0),
+        run(tmp_path, "b", 10.0, 8.0, 3.0),
+        run(tmp_path, "c", 6.0, 2.0, 1.0, "default"),
+        run(tmp_path, "d", 6.0, 2.0, 1.0, "default"),
+        run(tmp_path, "e", 7.0, 2.0, 1.0, "default"),
+        run(tmp_path, "f", 99.0, 2.0, 1.0),
+    ]
+    none = run(tmp_path, "g", 0.0, 50.0, 1.0)
+    (tmp_path / "h").mkdir()
+    damaged = []
+    for number, text in enumerate(("{", "{}", '{"scenario": 1}', json.dumps({"scenario": {"solver": {"method": 1}}}))):
+        damaged.append(replace(none, name=f"h{number}", took_s=1.0))
+        (tmp_path / f"h{number}").mkdir()
+        (tmp_path / f"h{number}" / "summary.json").write_text(text, encoding="utf-8")
+    jobs = [none, *damaged, replace(none, name="nowhere", took_s=1.0), *told]
+    assert slowness(tmp_path, jobs, "fast") == pytest.approx(12.0 / 5.0)
+    assert slowness(tmp_path, jobs, "default") == pytest.approx(2.0)
+    assert slowness(tmp_path, jobs, "accurate") == 1.0
+    assert estimated_s(tmp_path, jobs, values) == pytest.approx(24.0 + (1 + 2 + 4 + 4 + 5) / 5)
+
+
+@pytest.mark.parametrize(
+    ("duration", "length", "speed", "ends"),
+    [
+        (5.0, None, 7.0, 5.0), (5.0, 14.0, 7.0, 2.0), (1.0, 14.0, 7.0, 1.0), (None, 14.0, 7.0, 2.0),
+        (None, 14.0, 0.0, None), (None, None, 7.0, None), (0.0, 0.0, 7.0, None), ("5", "14", "7", 2.0),
+        (float("inf"), 14.0, 7.0, 2.0), (float("nan"), None, None, None), (-3.0, None, None, None),
+        (1e308, None, None, None), (5.0, 14.0, None, 5.0),
+    ],
+)  # fmt: skip
+def test_a_run_ends_after_its_time_or_its_way(duration: Any, length: Any, speed: Any, ends: float | None) -> None:
+    values = {"run.duration_s": duration, "run.length_m": length, "start.speed_m_per_s": speed}
+    assert simulated_s(values) == ends
+    assert unit_s("a", values) == (ends or 0.0)
+
+
+@pytest.mark.parametrize(
+    ("seconds", "words"),
+    [
+        (0.0, "5 s"), (7.0, "5 s"), (8.0, "10 s"), (42.0, "40 s"), (89.9, "90 s"), (90.0, "2 min"), (600.0, "10 min"),
+        (7100.0, "118 min"), (7139.0, "119 min"), (7200.0, "2 h"), (20_000.0, "6 h"),
+    ],
+)  # fmt: skip
+def test_a_duration_is_said_as_exact_as_it_is_known(seconds: float, words: str) -> None:
+    assert duration_words(seconds) == words
+
+
+def study_done(**what: Any) -> StudyJob:
+    usual: dict[str, Any] = {"state": "done", "took_s": 18.0, "points": 10, "workers": 2, "unit_s": 0.5}
+    return StudyJob("a", CARVE, {}, "2026", **(usual | what))
+
+
+def test_of_studies_the_last_five_of_a_kind_tell_how_long_they_take() -> None:
+    assert learned([study_done()], "") == 4.0  # 10 s on two cores for 5 s
+    assert learned([study_done(method="fast")], "fast") == 4.0
+    assert learned([study_done(method="fast")], "") is None
+    every = [study_done(took_s=8.0), study_done(state="failed"), study_done(workers=0), study_done(unit_s=0.0)]
+    assert learned(every, "") is None
+    assert learned([*every, *[study_done()] * 5, study_done(took_s=999.0)], "") == 4.0
+    assert learned([*[study_done()] * 4, study_done(took_s=28.0)], "") == pytest.approx((4 * 20 + 40) / 25)
+    assert learned([study_done(points=0)], "") is None
+
+
+def test_how_long_a_study_takes_in_words(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(studies_module, "available_cores", lambda: 3)
+    here, there = Studies(tmp_path), Studies(tmp_path, "tcp://a:1")
+    assert unit_s(CARVE, {"run.duration_s": 5.0}) == 0.03
+    jobs = [run(tmp_path, "before", 6.0, 6.0, 2.0, "")]
+
+    def words(studies: Studies, unit: float, method: str = "") -> str:
+        return estimate_words(studies, tmp_path, jobs, points=20, method=method, unit=unit)
+
+    assert words(here, 0.0) == "20 points."
+    assert words(here, 5.0) == "20 points. Will take about 60 s."  # 50 s and 8 s; runs tell nothing of a turn
+    assert words(here, 5.0, "fast") == "20 points. Will take about 60 s."
+    assert words(there, 4.0) == "20 points, about 80 s of one core, shared by the workers of tcp://a:1."
+    here._keep(study_done())
+    assert words(here, 2.0) == "20 points. Will take about 90 s."  # 4 times 40 s, and 8 s
+    jobs[:] = [run(tmp_path, "of fast", 6.0, 6.0, 2.0, "fast")]
+    assert words(here, 2.0, "fast") == "20 points. Will take about 70 s."  # 3 times 40 s, and 8 s
+
+
+def test_the_list_has_a_card_for_each_job_the_newest_first(desk: Desk) -> None:
+    studies = Studies(desk.lab.runs)
+    first = studies.ask_for(TURNS)
+    page = desk.open("/study")
+    assert "[quiet] Nothing was studied yet." not in page.outline()
+    (timer,) = (each for each in page.client.elements.values() if isinstance(each, ui.timer))
+    assert timer.interval == 1.0
+    (card,) = (each for each in page.of() if "card" in each.classes)
+    second = studies.ask_for(TURNS)
+    (desk.lab.runs / "studies" / "cd").mkdir()
+
+    def anew() -> list[str]:
+        assert timer.callback is not None
+        desk.do(timer.callback, page.client)
+        return [line.removeprefix("h3 ") for line in page.outline() if line.startswith("h3 2")]
+
+    assert anew() == [second.name, first.name]
+    assert card in list(page.of())
+    third = studies.ask_for(TURNS)
+    fourth = studies.ask_for(TURNS)
+    assert anew() == [fourth.name, third.name, second.name, first.name]
+    (desk.lab.runs / "studies" / second.name / "job.json").unlink()
+    assert anew() == [fourth.name, third.name, first.name]
+    for each in (first, third, fourth):
+        (desk.lab.runs / "studies" / each.name / "job.json").unlink()
+    assert anew() == []
+    assert page.outline()[-2:] == ["h2 Queue and history", "[quiet] Nothing was studied yet."]
+
+
+def test_what_the_queue_refuses_is_told(desk: Desk) -> None:
+    studies = Studies(desk.lab.runs)
+    job = studies.ask_for(TURNS)
+    page = desk.open("/study")
+    studies._keep(replace(job, state="done", said="so"))
+    page.press(f"Cancel {job.name}")
+    page.told("this run is over already; there is nothing to cancel")
+    assert page.shows(" · done").endswith(" · done · so")
