@@ -281,13 +281,15 @@ def test_a_chart_tells_its_extent_and_its_names(desk: Desk, monkeypatch: pytest.
         ],
     }
     shortened: list[object] = []
+    own = [*lines[::-1], ChartLine([0.0], [0.0])]
 
     def short(values: Sequence[float | None]) -> list[float | None]:
-        shortened.append(values)
+        if any(values is known for line in own for known in (line.x, line.y)):  # a page before may still be drawn
+            shortened.append(values)
         return list(values)
 
     monkeypatch.setattr("skisnow.web.line_chart._short", short)
-    desk.do(lambda: chart.show([*lines[::-1], ChartLine([0.0], [0.0])]))
+    desk.do(lambda: chart.show(own))
     again = chart.props["panel"]["lines"]
     assert shortened == [[0.0], [0.0]]  # what was there is not rounded again
     assert [each["y"] for each in again] == [[7.1235], [None], [3.0, None, -1.25], [0.0]]
