@@ -5,17 +5,19 @@ from __future__ import annotations
 import asyncio
 import json
 import re
+import signal
 import sys
+import time
 from dataclasses import replace
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import pytest
-from nicegui import ui
 
 from skisnow.errors import ParameterError
 from skisnow.parallel.kept_rows import KeptRows
+from skisnow.web import job_list
 from skisnow.web import runs as runs_module
 from skisnow.web import studies as studies_module
 from skisnow.web.run_estimate import duration_words, estimated_s, simulated_s, slowness
@@ -179,12 +181,28 @@ def test_a_run_that_is_cancelled_before_its_process_stands_is_ended(
 def test_a_server_that_ends_kills_the_run_and_leaves_it_running(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    acts(monkeypatch, says("begun") + "time.sleep(60)\n")
-    runs = Runs(tmp_path)
+    acts(monkeypatch, says("begun") + "time.sleep(20)\n")
+    runs, seen = Runs(tmp_path), list[Any]()
     job = runs.ask("a", {})
-    finished(worked(runs, lambda: runs.progress == "begun"))
+
+    def begun() -> bool:
+        seen[:] = [runs._process]
+        return runs.progress == "begun"
+
+    finished(worked(runs, begun))
+    assert seen[0].returncode == -signal.SIGKILL
     assert state(runs, job.name).state == "running"
     runs.end()  # twice does no harm
+
+
+def test_a_run_that_is_done_tells_how_long_it_took(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    summary = json.dumps(SUMMARY)
+    acts(monkeypatch, f"open(sys.argv[-1] + '/summary.json', 'w').write({summary!r})\n")
+    runs, before = Runs(tmp_path), time.monotonic()
+    job = runs.ask("a", {})
+    work_through(runs)
+    assert state(runs, job.name).state == "done"
+    assert 0.0 < state(runs, job.name).took_s <= time.monotonic() - before
 
 
 def test_one_that_waits_is_cancelled_and_no_other(tmp_path: Path) -> None:
@@ -326,7 +344,7 @@ def test_what_a_study_has_finished_is_kept_and_told(tmp_path: Path, cancelled: b
     assert (found.state, found.took_s) == (over, 3.0)
     assert found.said == f"{lead}0 of 2 points are finished and kept."
     kept = KeptRows.opened(folder / "table.csv.partial", "a")
-    kept.add([(0, '{"a": 1}')]) if hasattr(kept, "add") else None
+    kept.add([(0, '{"a": 1}')])
     kept.close()
     assert ended(studies, job, said, cancelled=cancelled).said == f"{lead}1 of 2 points are finished and kept."
     (folder / "table.csv.partial").write_bytes(b"none of rows" * 100)
@@ -392,7 +410,7 @@ def test_how_long_a_run_takes_is_learned_from_the_last_five(tmp_path: Path) -> N
     [
         (5.0, None, 7.0, 5.0), (5.0, 14.0, 7.0, 2.0), (1.0, 14.0, 7.0, 1.0), (None, 14.0, 7.0, 2.0),
         (None, 14.0, 0.0, None), (None, None, 7.0, None), (0.0, 0.0, 7.0, None), ("5", "14", "7", 2.0),
-        (float("inf"), 14.0, 7.0, 2.0), (float("nan"), None, None, None), (-3.0, None, None, None),
+        (float("inf"), 14.0, 7.0, 2.0), (float("nan"), None, None, None), (-0.5, None, None, None),
         (1e308, None, None, None), (5.0, 14.0, None, 5.0),
     ],
 )  # fmt: skip
@@ -448,20 +466,21 @@ def test_how_long_a_study_takes_in_words(tmp_path: Path, monkeypatch: pytest.Mon
     assert words(here, 2.0, "fast") == "20 points. Will take about 70 s."  # 3 times 40 s, and 8 s
 
 
-def test_the_list_has_a_card_for_each_job_the_newest_first(desk: Desk) -> None:
+def test_the_list_has_a_card_for_each_job_the_newest_first(desk: Desk, monkeypatch: pytest.MonkeyPatch) -> None:
+    timers = list[Any]()
+    monkeypatch.setattr(f"{job_list.__name__}.ui.timer", lambda *what: timers.append(what))
     studies = Studies(desk.lab.runs)
     first = studies.ask_for(TURNS)
     page = desk.open("/study")
     assert "[quiet] Nothing was studied yet." not in page.outline()
-    (timer,) = (each for each in page.client.elements.values() if isinstance(each, ui.timer))
-    assert timer.interval == 1.0
+    ((interval, show),) = timers
+    assert interval == 1.0
     (card,) = (each for each in page.of() if "card" in each.classes)
     second = studies.ask_for(TURNS)
     (desk.lab.runs / "studies" / "cd").mkdir()
 
     def anew() -> list[str]:
-        assert timer.callback is not None
-        desk.do(timer.callback, page.client)
+        desk.do(show, page.client)
         return [line.removeprefix("h3 ") for line in page.outline() if line.startswith("h3 2")]
 
     assert anew() == [second.name, first.name]
@@ -477,7 +496,8 @@ def test_the_list_has_a_card_for_each_job_the_newest_first(desk: Desk) -> None:
     assert page.outline()[-2:] == ["h2 Queue and history", "[quiet] Nothing was studied yet."]
 
 
-def test_what_the_queue_refuses_is_told(desk: Desk) -> None:
+def test_what_the_queue_refuses_is_told(desk: Desk, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(f"{job_list.__name__}.ui.timer", lambda *_: None)
     studies = Studies(desk.lab.runs)
     job = studies.ask_for(TURNS)
     page = desk.open("/study")

@@ -891,4 +891,5 @@ def test_values_stand_in_the_file_as_the_command_reads_them() -> None:
     assert what.fixed_words() == {}
     assert what.varied_words() == "Friction μ_0: 0.1 to 1, 3 values, logarithmic"
     assert Range(2.0, 5.0, 3).middle == 3.5
+    assert (what.method, what.unit_s, what.named, what.beside) == ("", 0.0, (), {})
     assert what.files() == {"study.toml": what.text().encode()}
