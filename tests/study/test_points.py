@@ -12,6 +12,7 @@ from typing import Any
 
 import pytest
 
+from skisnow.errors import ParameterError
 from skisnow.study import Study, read_study
 from skisnow.study.points import GridPoints, ListedPoints, Points, SampledPoints
 from skisnow.study.rows import StoredRows
@@ -93,3 +94,16 @@ def test_rows_and_points_are_equal_to_sequences_alone() -> None:
 
     assert One(1) == [{"a": 0}]
     assert One(1) != 3
+
+
+@pytest.mark.parametrize(
+    ("grid", "points"),
+    [
+        ("edge_angle_deg = { from = 10, to = 60, n = 1_000_000_000_000 }", 1_000_000_000_000),
+        ("edge_angle_deg = { from = 10, to = 60, n = 1001 }\nload_N = { from = 400, to = 800, n = 1000 }", 1_001_000),
+        ("edge_angle_deg = [10, 20]\nload_N = { from = 400, to = 800, n = 500_001 }", 1_000_002),
+    ],
+)
+def test_more_points_than_anybody_waits_for_take_no_memory(grid: str, points: int, tmp_path: Path) -> None:
+    with pytest.raises(ParameterError, match=f"the study has {points} points; at most 1000000 are allowed"):
+        study_of(f"{HEAD}[grid]\n{grid}\n", tmp_path)

@@ -57,7 +57,7 @@ def test_a_range_as_it_is_typed() -> None:
         (axis("70", "10"), "it goes from 70 to 10; the first end must be the smaller one"),
         (axis("10", "10"), "it goes from 10 to 10"),
         (axis("0", "70", log=True), "it must begin above 0; it begins at 0"),
-        (axis("10", "70", "1"), "the number of values is '1'; it must be 2 or more"),
+        (axis("10", "70", "1"), "the number of values is '1'; it must be from 2 to 10000"),
         (axis("10", "70", "2.5"), "the number of values is '2.5'"),
         (axis("0", "3", key=TURNS), "Turns is 0; allowed is whole numbers from 1 to 50"),
     ],

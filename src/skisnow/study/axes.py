@@ -121,9 +121,8 @@ class Axis:
 
 def grid_points(axes: list[Axis], fixed: Point) -> GridPoints:
     """Every combination; the last axis varies fastest."""
-    points = GridPoints(fixed, {axis.key.name: axis.on_grid() for axis in axes})
-    require_count(len(points))
-    return points
+    require_count(math.prod(len(axis.values) or axis.n or 1 for axis in axes))  # before the values take memory
+    return GridPoints(fixed, {axis.key.name: axis.on_grid() for axis in axes})
 
 
 def hypercube_points(axes: list[Axis], fixed: Point, n: int, seed: int) -> SampledPoints:

@@ -18,6 +18,7 @@ AROUND_S: Final = 8.0
 """Start, files and report of a run, where none has told it yet (modelling assumption)."""
 LOOKED_AT: Final = 5
 _NEVER_S: Final = 1e9
+"""Thirty years: whatever is typed of such an end, no time is told for it."""
 
 
 def estimated_s(folder: Path, jobs: list[Job], values: Mapping[str, Any]) -> float | None:

@@ -12,7 +12,6 @@ import re
 import shutil
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime
-from math import prod
 from pathlib import Path
 from tempfile import mkdtemp
 from typing import TYPE_CHECKING, Final
@@ -96,7 +95,6 @@ class Studies(Runs):
         """
         from ..study import read_study
 
-        most_points_refused(prod(each.n for each in asked.varied.values()))  # before its values take memory
         now = datetime.now(UTC)
         name = new_name(asked.of, now)
         self.folder.mkdir(parents=True, exist_ok=True)
@@ -106,6 +104,7 @@ class Studies(Runs):
                 write_file(made / file, content)
             try:
                 points = len(read_study(made / STUDY).points)
+                most_points_refused(points)
             except ParameterError as error:
                 raise ParameterError(_without(made, str(error))) from error
             made.chmod(0o755)

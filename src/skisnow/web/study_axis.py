@@ -12,7 +12,7 @@ from .fields import choice, field
 from .language import said
 from .layout import sentence
 from .scenario_fields import called, with_point
-from .study_asked import Range
+from .study_asked import MOST_POINTS, Range
 from .typed import typed_number
 from .worded import named
 
@@ -27,8 +27,6 @@ TO: Final = "To"
 VALUES: Final = "Number of values"
 LOG: Final = "Even in the logarithm"
 _USUAL: Final = "10"
-_MOST_VALUES: Final = 1e9
-"""Whoever types more is told this many, which no study has."""
 _BEGINS: Final = {
     "edge_angle_deg": (10.0, 70.0),
     "load_N": (400.0, 1200.0),
@@ -165,8 +163,8 @@ class AxisFields:
         if not self.name:
             return 1
         text = with_point(str(self._n.value or "").strip())
-        if not text.isdecimal() or float(text) < 2:
+        if not text.isdecimal() or not 2 <= float(text) <= MOST_POINTS:
             raise ParameterError(
-                f"{called(self._keys[self.name])}: the number of values is {text!r}; it must be 2 or more"
+                f"{called(self._keys[self.name])}: the number of values is {text!r}; it must be from 2 to {MOST_POINTS}"
             )
-        return int(min(float(text), _MOST_VALUES))
+        return int(text)
