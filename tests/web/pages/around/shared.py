@@ -1,0 +1,40 @@
+"""What the tests of this room share."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+from skisnow.web.guard import STATUS
+
+if TYPE_CHECKING:
+    from starlette.types import Receive, Scope, Send
+
+
+def raising(error: Exception) -> Callable[..., object]:
+    def work(*_: object) -> object:
+        raise error
+
+    return work
+
+
+async def greeting(scope: Scope, receive: Receive, send: Send) -> None:
+    """Answers with the size of the body; with a policy and a status of its own where the path asks for them."""
+    if scope["type"] == "lifespan":
+        await send({"type": "lifespan.startup.complete"})
+        return
+    if scope["type"] == "websocket":
+        await send({"type": "websocket.accept"})
+        return
+    size, more = 0, True
+    while more:
+        message = await receive()
+        size, more = size + len(message.get("body", b"")), message.get("more_body", False)
+        if message["type"] == "http.disconnect":
+            await send({"type": "disconnected"})
+            return
+    headers = [(b"content-security-policy", b"own")] if scope["path"] == "/own" else []
+    if scope["path"] == "/status":
+        scope[STATUS] = 404
+    await send({"type": "http.response.start", "status": 200, "headers": headers})
+    await send({"type": "http.response.body", "body": str(size).encode()})

@@ -1,0 +1,256 @@
+"""The guard before the pages, and errors."""
+
+from __future__ import annotations
+
+import hashlib
+import hmac
+import logging
+import socket
+from collections.abc import Iterator
+from logging.handlers import RotatingFileHandler
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, cast
+
+import pytest
+from starlette.datastructures import Headers
+from starlette.requests import Request
+
+from skisnow.errors import FieldDataError, OutputError, ParameterError, StoreError
+from skisnow.web import error_pages
+from skisnow.web.analyses import Analyses
+from skisnow.web.error_pages import _failed, _notified, error_sentence, log_to, plain_page, reported
+from skisnow.web.guard import CONTENT_POLICY, COOKIE, Access, Guard
+
+from .shared import greeting
+
+if TYPE_CHECKING:
+    from starlette.types import Message
+
+    from ..desk import Desk
+
+HOST = "127.0.0.1:8765"
+
+
+class Asked:
+    """What the guard sends to a request."""
+
+    def __init__(self, desk: Desk, *, token: str | None = None, body_bytes: int = 100, host: str = "127.0.0.1") -> None:
+        self._desk = desk
+        self.guard = Guard(greeting, Access(host, token, body_bytes))
+        self.received = 0
+
+    def send(self, kind: str, path: str = "/", method: str = "GET", *body: bytes, **headers: str) -> list[Message]:
+        given = {"host": HOST, **{name.replace("_", "-"): value for name, value in headers.items()}}
+        raw = [(name.encode(), value.encode()) for name, value in given.items()]
+        scope = {"type": kind, "method": method, "path": path, "headers": raw, "query_string": b"", "client": ("a", 1)}
+        waiting: Iterator[Message] = iter(
+            [{"type": "http.request", "body": each, "more_body": True} for each in body]
+            + [{"type": "http.request", "body": b"", "more_body": False}]
+        )
+        sent: list[Message] = []
+
+        async def receive() -> Message:
+            self.received += 1
+            return next(waiting)
+
+        async def send(message: Message) -> None:
+            sent.append(message)
+
+        self._desk.wait(cast(Any, self.guard(scope, receive, send)))
+        return sent
+
+    def status(self, path: str = "/", method: str = "GET", *body: bytes, **headers: str) -> tuple[int, str]:
+        start, *rest = self.send("http", path, method, *body, **headers)
+        return start["status"], b"".join(each["body"] for each in rest).decode()
+
+
+OWN = {"origin": f"http://{HOST}"}
+FOREIGN = (403, "Asked for by another site: refused.")
+TOO_MUCH = (413, "This is more than the lab takes in at once.")
+
+
+@pytest.mark.parametrize(
+    ("method", "headers", "answer"),
+    [
+        ("GET", {}, (200, "0")),
+        ("HEAD", {}, (200, "0")),
+        ("OPTIONS", {}, (200, "0")),
+        ("GET", OWN, (200, "0")),
+        ("POST", OWN, (200, "0")),
+        ("POST", {}, FOREIGN),
+        ("PUT", {}, FOREIGN),
+        ("GET", {"origin": "http://127.0.0.1"}, FOREIGN),
+        ("POST", {"origin": "http://127.0.0.1"}, FOREIGN),
+        ("GET", {"host": "evil.example"}, (421, "This address is not one of the lab's.")),
+        ("GET", {"host": "LOCALHOST:8765"}, (200, "0")),
+        ("GET", {"host": "[::1]:8765"}, (200, "0")),
+        ("GET", {"host": "["}, (400, "The Host or the Origin of this request is no address.")),
+        ("GET", {"content_length": "100"}, (200, "0")),
+        ("GET", {"content_length": "101"}, TOO_MUCH),
+        ("GET", {"content_length": "1e1"}, TOO_MUCH),
+    ],
+)
+def test_who_is_answered(desk: Desk, method: str, headers: dict[str, str], answer: tuple[int, str]) -> None:
+    assert Asked(desk).status("/", method, **headers) == answer
+
+
+def test_a_body_without_its_size_is_cut_off_beyond_the_limit(desk: Desk) -> None:
+    lab = Asked(desk)
+    assert lab.status("/", "POST", b"x" * 60, b"x" * 40, **OWN) == (200, "100")
+    assert lab.send("http", "/", "POST", b"x" * 60, b"x" * 41, **OWN) == [{"type": "disconnected"}]
+
+
+def test_every_answer_has_the_headers_and_a_stricter_policy_stays(desk: Desk) -> None:
+    lab = Asked(desk)
+    expected = {
+        "content-security-policy": CONTENT_POLICY,
+        "x-content-type-options": "nosniff",
+        "x-frame-options": "DENY",
+        "referrer-policy": "same-origin",
+        "cross-origin-opener-policy": "same-origin",
+        "cross-origin-resource-policy": "same-origin",
+    }
+    for headers in ({}, {"host": "evil.example"}):
+        start = lab.send("http", **headers)[0]
+        found = {name.decode(): value.decode() for name, value in start["headers"]}
+        assert {name: found[name] for name in expected} == expected
+    assert dict(lab.send("http", "/own")[0]["headers"])[b"content-security-policy"] == b"own"
+    assert lab.status("/status")[0] == 404
+    assert CONTENT_POLICY.split("; ")[0] == "default-src 'none'"
+
+
+def test_a_socket_of_another_site_is_closed(desk: Desk) -> None:
+    lab = Asked(desk)
+    assert lab.send("websocket", **OWN) == [{"type": "websocket.accept"}]
+    assert lab.received == 0
+    for headers in ({}, {"origin": "http://evil.example"}):
+        assert lab.send("websocket", **headers) == [{"type": "websocket.close", "code": 1008}]
+    assert lab.received == 2
+    assert Asked(desk, token="snow").send("websocket", **OWN) == [{"type": "websocket.close", "code": 1008}]
+    assert lab.send("lifespan", host="evil.example") == [{"type": "lifespan.startup.complete"}]
+
+
+def test_the_token_is_asked_for_until_the_cookie_is_there(desk: Desk) -> None:
+    lab, cookie = Asked(desk, token="snow"), hmac.new(b"snow", b"skisnow lab", hashlib.sha256).hexdigest()
+    for path, method in (("/", "GET"), ("/token", "GET"), ("/", "POST")):
+        status, text = lab.status(path, method, **OWN)
+        assert (status, "The lab asks for the token that it was started with." in text) == (401, True)
+    assert lab.status(cookie=f"{COOKIE}={cookie}") == (200, "0")
+    assert lab.send("websocket", cookie=f"a=b; {COOKIE}={cookie}", **OWN) == [{"type": "websocket.accept"}]
+    assert lab.status(cookie=f"{COOKIE}=wrong")[0] == 401
+    start = lab.send("http", "/token", "POST", b"token=snow", **OWN)[0]
+    assert start["status"] == 303
+    assert dict(start["headers"])[b"set-cookie"].startswith(f"{COOKIE}={cookie};".encode())
+    lab.guard.tries.wait_s = lambda address: 7.2 if address == "a" else 0.0  # type: ignore[method-assign]
+    assert lab.send("http", "/token", "POST", b"token=snow", **OWN)[0]["status"] == 429
+
+
+def test_what_lets_in() -> None:
+    alone, shared = Access("127.0.0.1", None, 1), Access("0.0.0.0", "snow", 1)
+    assert alone.is_let_in(Headers({}))
+    assert not alone.is_token("")
+    assert (shared.is_token("snow"), shared.is_token("Snow"), shared.is_token("")) == (True, False, False)
+    for cookie in ("", f"{COOKIE}=ü", "other=1", f"{COOKIE}=", "\x00=;;", "a/b=1"):
+        assert shared.is_let_in(Headers(raw=[(b"cookie", cookie.encode("latin-1"))])) is False
+    assert shared.is_let_in(Headers({"cookie": f"{COOKIE}={shared.cookie}"}))
+
+
+@pytest.mark.parametrize("other", ["a/b=1", "user[theme]=dark", '{"a": 1}', "é=é", "=", ";"])
+def test_a_cookie_of_another_program_on_the_machine_keeps_nobody_out(other: str) -> None:
+    access = Access("127.0.0.1", "snow", 1)
+    for cookies in (f"{other}; {COOKIE}={access.cookie}", f"{COOKIE}={access.cookie}; {other}"):
+        assert access.is_let_in(Headers(raw=[(b"cookie", cookies.encode("latin-1"))]))
+
+
+def test_names_of_this_machine_are_known_where_others_may_come(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(socket, "gethostname", lambda: "Hut")
+    alone, shared = Access("127.0.0.1", None, 1), Access("Lab.Example", "snow", 1)
+    names = ("hut", "HUT.local:80", "lab.example:8765", "192.168.1.7", "[fe80::1]:80", "localhost", "127.0.0.1", "::1")
+    assert [shared.knows(name) for name in names[:7]] == [True] * 7
+    assert [alone.knows(name) for name in names[:7]] == [False] * 5 + [True] * 2
+    assert not shared.knows("evil.example")
+    assert not shared.knows("")
+    assert shared.cookie != Access("Lab.Example", "ice", 1).cookie
+
+
+@pytest.fixture
+def log(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
+    """A log file of its own."""
+    made = logging.getLogger("skisnow.test-of-what-is-guarded")
+    monkeypatch.setattr(error_pages, "LOG", made)
+    log_to(tmp_path / "new" / "lab.log")
+    yield tmp_path / "new" / "lab.log"
+    for handler in made.handlers[:]:
+        handler.close()
+        made.removeHandler(handler)
+
+
+def test_the_log_keeps_its_last_two_files(log: Path) -> None:
+    (handler,) = (each for each in error_pages.LOG.handlers if isinstance(each, RotatingFileHandler))
+    assert (handler.maxBytes, handler.backupCount, handler.encoding) == (2_000_000, 1, "utf-8")
+    assert (error_pages.LOG.level, error_pages.LOG.propagate) == (logging.INFO, False)
+    reference = reported(ValueError("ü"))
+    assert len(reference) == 8
+    line, *trace = log.read_text(encoding="utf-8").splitlines()
+    assert line.endswith(f" ERROR reference {reference}")
+    assert trace == ["ValueError: ü"]
+    log_to(log)  # the folder is there
+
+
+def test_an_error_is_said_in_the_corner_of_its_page(desk: Desk) -> None:
+    page = desk.open("/replay")
+    desk.do(lambda: _notified(StoreError("The disk is full.")), page.client)
+    page.told("notify ")
+    told = page.scripts[-1]
+    for part in ("'message': 'The disk is full.'", "'type': 'negative'", "'multiLine': True", "'timeout': 0"):
+        assert part in told
+    assert "'closeBtn': 'Close'" in told
+
+
+@pytest.mark.parametrize(
+    ("error", "status", "told"),
+    [
+        (StoreError("it is not there"), 404, "it is not there"),
+        (ParameterError("it cannot be"), 404, "it cannot be"),
+        (OutputError("it is full"), 500, "it is full"),
+        (ValueError("secret"), 500, "Something went wrong that should not. What was shown as stored is stored. Refer"),
+    ],
+)
+def test_a_page_that_cannot_be_shown_says_why(
+    desk: Desk, monkeypatch: pytest.MonkeyPatch, error: Exception, status: int, told: str
+) -> None:
+    def known(*_: object) -> None:
+        raise error
+
+    monkeypatch.setattr(Analyses, "known", known)
+    answer = desk.get("/analysis/kept/ffff")
+    assert answer.status_code == status
+    assert told in answer.text and "This page cannot be shown" in answer.text
+    assert "secret" not in answer.text
+    assert desk.failures == [error]
+    desk.failures.clear()
+
+
+def test_there_is_no_page_at_a_wrong_address(desk: Desk) -> None:
+    for path in ("/nowhere", "/export/kept"):
+        answer = desk.get(path)
+        assert answer.status_code == 404
+        assert "<h1>No such page</h1><p>The lab has no page at this address.</p>" in answer.text
+        assert '<a href="/">To the campaigns</a>' in answer.text
+        assert "<title>No such page · skisnow</title>" in answer.text
+    assert '<html lang="de">' in desk.get("/nowhere", "de").text
+    assert "<h1>No such page</h1>" not in desk.get("/nowhere", "de").text
+
+
+def test_an_answer_that_failed_says_what_it_may(desk: Desk, log: Path) -> None:
+    request = Request({"type": "http", "headers": []})
+    said = desk.wait(_failed(request, StoreError("it is <full>")))
+    assert said.status_code == 500
+    assert "<h1>This cannot be shown</h1><p>it is &lt;full&gt;</p>" in bytes(said.body).decode()
+    other = desk.wait(_failed(request, ValueError("secret")))
+    text = bytes(other.body).decode()
+    assert other.status_code == 500
+    assert "<h1>This cannot be shown</h1><p>Something went wrong. Reference: " in text
+    assert "secret" not in text and "secret" in log.read_text(encoding="utf-8")
+    assert plain_page("a", "b", 418, request).status_code == 418
+    assert error_sentence(FieldDataError(["it is so"])) == "The campaign cannot be used as it is: it is so"

@@ -1,0 +1,161 @@
+"""What the tests of this room share."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from nicegui import ui
+
+from skisnow.field.store import Journals, NewEntry
+from skisnow.report.curves import SeriesCurve
+from skisnow.web.edit_session import EditSession, QuickResults
+
+if TYPE_CHECKING:
+    from skisnow.field.store import JournalEntry
+
+    from ..desk import Desk, Sheet
+
+TOML = """name = "Desk"
+observers = ["Ada", "Bo", "Cy"]
+load_steps_N = [20, 40.5, 60]
+gauge_resolution_mm = 0.01
+[[tool]]
+name = "ski piece"
+shape = "ski"
+length_mm = 200
+width_mm = 62
+[[tool]]
+name = "disc"
+shape = "disc"
+diameter_mm = 40
+[[plate]]
+name = "plate"
+length_mm = 100
+[[plate]]
+name = "blade"
+length_mm = 50
+"""
+PENETRATION, SHEAR, DENSITY, DROP_CONE = "penetration.csv", "shear.csv", "density.csv", "drop_cone.csv"
+SERIES = {"site": "A", "spot": "", "tool": "ski piece", "edge_angle_deg": "30"}
+SHEARED = {"site": "A", "plate": "plate", "spot": "", "turning_angle_deg": "", "edge_angle_deg": "90"}
+SHEARED |= {"depth_mm": "6", "lever_arm_mm": "250", "moment_Nm": "30"}
+
+
+def begun(desk: Desk, text: str = TOML) -> str:
+    return Journals(desk.lab.store).begin(text)
+
+
+def write(desk: Desk, id_: str, entry: NewEntry) -> JournalEntry:
+    journals = Journals(desk.lab.store)
+    return journals.append(id_, entry, seen=journals.entries(id_)[-1].sequence)
+
+
+def add(desk: Desk, id_: str, file: str, name: str, **cells: str) -> JournalEntry:
+    """A row that somebody entered."""
+    position = len(EditSession(desk.lab, id_).test(file, name).history)
+    who = cells.pop("who", "Ada")
+    return write(desk, id_, NewEntry(action="add", file=file, test=name, cells=cells, position=position, who=who))
+
+
+def add_series(desk: Desk, id_: str, name: str, *readings: tuple[str, str], **further: str) -> None:
+    for load, depth in readings:
+        cells = {"experiment": name, **SERIES, "load_N": load, "depth_mm": depth} | further
+        add(desk, id_, PENETRATION, name, **cells)
+
+
+def add_shear(desk: Desk, id_: str, name: str, **further: str) -> None:
+    add(desk, id_, SHEAR, name, **({"experiment": name} | SHEARED | further))
+
+
+def stored(desk: Desk, id_: str, file: str, name: str) -> list[dict[str, str]]:
+    """The rows of a test as they are now."""
+    return [row.cells for row in EditSession(desk.lab, id_).test(file, name).rows]
+
+
+def depths(desk: Desk, id_: str, name: str = "1") -> list[tuple[str, str]]:
+    return [(row["load_N"], row["depth_mm"]) for row in stored(desk, id_, PENETRATION, name)]
+
+
+def history(desk: Desk, id_: str) -> list[JournalEntry]:
+    return list(Journals(desk.lab.store).entries(id_))[1:]
+
+
+def series_page(desk: Desk, id_: str, name: str = "1", language: str = "en") -> Sheet:
+    return desk.open(f"/enter/{id_}?table=penetration.csv&test={name}", language)
+
+
+def begun_series(desk: Desk, id_: str) -> Sheet:
+    """A page on a series that has no reading yet."""
+    return desk.open(f"/enter/{id_}?table=penetration.csv&test=1&site=A&tool=ski%20piece&edge_angle_deg=30")
+
+
+def enter(page: Sheet, name: str, text: str, number: int | None = None) -> None:
+    """Type into a field and press Enter."""
+    made = page.field(name)
+    page.desk.do(lambda: made.set_value(text), page.client)
+    args: dict[str, object] = {"once": f"{name} {text}", "text": text.strip()}
+    page.fire(made, "keydown.enter", args if number is None else {"number": number, "once": f"question {number}"})
+
+
+def leave(page: Sheet, name: str, text: str | None = None) -> None:
+    """Leave a field, in which a text may have been typed."""
+    made = page.field(name)
+    if text is not None:
+        page.desk.do(lambda: made.set_value(text), page.client)
+    page.fire(made, "blur", None)
+
+
+def status(page: Sheet) -> str:
+    return next((line for line in page.outline() if line.startswith("[status")), "")
+
+
+def between(page: Sheet, first: str, last: str = "") -> list[str]:
+    """Lines from the one to before the other, or one that begins so, or to the end."""
+    outline = page.outline()
+    rest = outline[outline.index(first) :]
+    return rest[: next(at for at, line in enumerate(rest) if line.startswith(last))] if last else rest
+
+
+def reading_row(page: Sheet, name: str) -> Any:
+    """What holds a field of a reading and the word beside it."""
+    return page.field(name).parent_slot.parent
+
+
+def details(page: Sheet, words: str) -> Any:
+    return next(
+        each
+        for each in page.tagged("details")
+        if any(isinstance(label, ui.label) and label.text == words for label in each.descendants())
+    )
+
+
+def is_open(page: Sheet, words: str) -> bool:
+    return "open" in details(page, words).props
+
+
+def selected(page: Sheet) -> list[Any]:
+    """Fields whose text was marked, so that it is typed over."""
+    told = [each for each in [*page.at_first, *page.scripts] if '"select"' in each]
+    return [page.client.elements.get(int(each.split("(")[1].split(",")[0])) for each in told]
+
+
+HEAD = [
+    "h1 Desk",
+    "link Penetration -> /enter/{id}?table=penetration.csv",
+    "link Shear -> /enter/{id}?table=shear.csv",
+    "link Density -> /enter/{id}?table=density.csv",
+    "link Drop cone -> /enter/{id}?table=drop_cone.csv",
+    "link Analysis -> /analysis/entry/{id}",
+    "link Campaign -> /describe?entry={id}",
+    "field Operator = 'Ada'",
+]
+
+
+def head(id_: str) -> list[str]:
+    return [line.format(id=id_) for line in HEAD]
+
+
+def found(**curves: SeriesCurve) -> QuickResults:
+    row = {"H_V_N_per_mm3": 0.25, "H_V_interval_N_per_mm3": None, "n_unloading": 0}
+    flags = {"penetration.csv/a": {"too_few_loads": "few", "poor_fit": "the depth_mm is odd"}}
+    return QuickResults(penetration=dict.fromkeys(curves, row), shear={}, curves=curves, flags=flags)

@@ -1,0 +1,252 @@
+"""Readings that come once more: after waiting, and from a browser that kept them."""
+
+from __future__ import annotations
+
+import json
+from typing import TYPE_CHECKING
+
+import pytest
+from nicegui import ui
+
+from .shared import (
+    PENETRATION,
+    SERIES,
+    add_series,
+    begun,
+    begun_series,
+    between,
+    depths,
+    history,
+    is_open,
+    reading_row,
+    series_page,
+    status,
+    stored,
+)
+
+if TYPE_CHECKING:
+    from ..desk import Desk, Sheet
+
+
+def waited(page: Sheet, load: str, text: str) -> None:
+    page.fill(f"Depth after waiting under {load} N (mm)", text)
+
+
+def test_depths_after_waiting_are_stored_beside_the_first_ones(desk: Desk) -> None:
+    id_ = begun(desk)
+    add_series(desk, id_, "1", ("20", "1.5"), ("40.5", "2.15"), ("60", "2.6"))
+    page = series_page(desk, id_)
+    assert not is_open(page, "Depths read once more after waiting")
+    waited(page, "40.5", "2,2")
+    waited(page, "60", "2.7")
+    page.press("Store what was read after waiting")
+    assert status(page) == "[status good] Stored after waiting: 2.2 mm under 40.5 N, 2.7 mm under 60 N."
+    rows = stored(desk, id_, PENETRATION, "1")
+    assert [row.get("depth_after_mm", "") for row in rows] == ["", "2.2", "2.7"]
+    assert [row["depth_mm"] for row in rows] == ["1.5", "2.15", "2.6"]
+    assert is_open(page, "Depths read once more after waiting")
+    assert between(
+        page, "field Depth after waiting under 40.5 N (mm) = '2.2' numeric optional", "button Store what was read after"
+        " waiting"
+    ) == [
+        "field Depth after waiting under 40.5 N (mm) = '2.2' numeric optional",
+        "[stored] stored",
+        "[load] 60 N",
+        "field Depth after waiting under 60 N (mm) = '2.7' numeric optional",
+        "[stored] stored",
+    ]  # fmt: skip
+    assert reading_row(page, "Depth after waiting under 40.5 N (mm)").props["data-stored"] == "2.2"
+    assert "data-stored" not in reading_row(page, "Depth after waiting under 20 N (mm)").props
+    assert "button Undo: read once more after waiting: 2.7 mm" in page.outline()
+    page.shows("Under one load the depth grew")
+    page.press("Store what was read after waiting")
+    assert status(page) == "[status good] Nothing is different."
+    page.press("Next series")
+    assert "h2 New series" in page.outline()
+
+
+def test_a_second_depth_that_becomes_another_one_asks_for_a_reason(desk: Desk) -> None:
+    id_ = begun(desk)
+    add_series(
+        desk,
+        id_,
+        "1",
+        (
+            "20",
+            "1.5",
+        ),
+        ("60", "2.6"),
+        depth_after_mm="2.7",
+    )
+    page = series_page(desk, id_)
+    waited(page, "20", "2.8")
+    waited(page, "60", "")
+    form = page.field("Depth after waiting under 20 N (mm)").parent_slot.parent.parent_slot.parent
+    page.fire(form, "keydown.enter", {"number": 1, "once": "a"})
+    assert page.scripts[-1] == "lab.answered(1, true)"
+    words = "after waiting under 20 N: 2.7 mm becomes 2.8 mm; after waiting under 60 N: 2.7 mm becomes nothing."
+    assert between(page, words, "button[main then] Next series") == [
+        words,
+        "field Why = 'typing error'",
+        "button[main] Correct it",
+        "button Leave it as it was",
+    ]
+    page.fill("Why", "")
+    page.press("Correct it")
+    assert status(page) == "[status bad] A correction needs a reason."
+    page.fill("Why", "slip")
+    button = next(each for each in page.of(ui.button) if each.text == "Correct it")
+    page.fire(button, "click", {"number": 2})
+    assert page.scripts[-1] == "lab.answered(2, true)"
+    assert status(page) == "[status good] Corrected; the first reading is kept."
+    assert [row["depth_after_mm"] for row in stored(desk, id_, PENETRATION, "1")] == ["2.8", ""]
+    assert [entry.why for entry in history(desk, id_)[2:]] == ["slip", "slip"]
+    assert not any("field Why" in line for line in page.outline())
+
+
+def test_a_second_depth_is_left_as_it_was(desk: Desk) -> None:
+    id_ = begun(desk)
+    add_series(desk, id_, "1", ("20", "1.5"), depth_after_mm="1.7")
+    page = series_page(desk, id_)
+    waited(page, "20", "1.8")
+    page.press("Store what was read after waiting")
+    page.press("Leave it as it was")
+    assert "field Why" not in " ".join(page.outline())
+    assert "field Depth after waiting under 20 N (mm) = '1.8' numeric optional" in page.outline()
+    assert len(history(desk, id_)) == 1
+
+
+def test_new_and_other_second_depths_at_once(desk: Desk) -> None:
+    id_ = begun(desk)
+    add_series(desk, id_, "1", ("20", "1.5"), depth_after_mm="1.7")
+    add_series(desk, id_, "1", ("60", "2.6"))
+    page = series_page(desk, id_)
+    waited(page, "20", "1.8")
+    waited(page, "60", "2.9")
+    page.press("Store what was read after waiting")
+    assert status(page) == "[status good] Stored after waiting: 2.9 mm under 60 N."
+    assert "after waiting under 20 N: 1.7 mm becomes 1.8 mm." in page.outline()
+    assert [row.get("depth_after_mm", "") for row in stored(desk, id_, PENETRATION, "1")] == ["1.7", "2.9"]
+
+
+def test_a_second_depth_without_a_first_one_and_what_is_no_depth_are_refused(desk: Desk) -> None:
+    id_ = begun(desk)
+    add_series(desk, id_, "1", ("20", "1.5"), ("40.5", "2.15"))
+    page = series_page(desk, id_)
+    waited(page, "20", "1.7")
+    waited(page, "40.5", "x")
+    waited(page, "60", "2.7")
+    button = next(each for each in page.of(ui.button) if each.text == "Store what was read after waiting")
+    page.fire(button, "click", {"number": 1})
+    faults = [
+        "Depth after waiting (mm) is a number of 0 or more; 'x' stands there",
+        "the first depth under 60 N comes before it",
+    ]
+    assert status(page) == f"[status bad] Not stored: {'; '.join(faults)}."
+    assert page.scripts[-1] == "lab.answered(1, false)"
+    assert f"field Depth after waiting under 60 N (mm) = '2.7' numeric optional ! {faults[1]}" in page.outline()
+    assert "field Depth after waiting under 20 N (mm) = '1.7' numeric optional" in page.outline()
+    assert len(history(desk, id_)) == 2
+
+
+def test_a_second_depth_after_somebody_elses_entry_is_not_stored(desk: Desk) -> None:
+    id_ = begun(desk)
+    add_series(desk, id_, "1", ("20", "1.5"))
+    page = series_page(desk, id_)
+    waited(page, "20", "1.7")
+    add_series(desk, id_, "1", ("60", "2.6"))
+    button = next(each for each in page.of(ui.button) if each.text == "Store what was read after waiting")
+    page.fire(button, "click", {"number": 1})
+    assert page.scripts[-1] == "lab.answered(1, false)"
+    assert status(page).startswith("[status bad] Nothing was stored")
+    assert "depth_after_mm" not in stored(desk, id_, PENETRATION, "1")[0]
+
+
+def record(**further: object) -> dict[str, object]:
+    cells = {"experiment": "1", **SERIES, "load_N": "20", "depth_mm": "1,5", "branch": ""}
+    return {"once": "a", "who": "Bo", "cells": cells} | further
+
+
+def resent(page: Sheet, records: object) -> list[list[str]]:
+    """What the browser is answered."""
+    page.fire(page.client.layout, "resent", records)
+    (told,) = (each for each in page.scripts if each.startswith("lab.resent("))
+    page.scripts.remove(told)
+    answers: list[list[str]] = json.loads(told.removeprefix("lab.resent(").removesuffix(")"))
+    return answers
+
+
+def test_readings_that_the_browser_kept_are_stored_once(desk: Desk) -> None:
+    id_ = begun(desk)
+    page = begun_series(desk, id_)
+    assert resent(page, [record()]) == [["a", ""]]
+    assert resent(page, [record()]) == [["a", ""]]
+    (entry,) = history(desk, id_)
+    assert (entry.who, entry.once, entry.position, entry.test) == ("Bo", "a", 0, "1")
+    assert entry.cells == {"experiment": "1", **SERIES, "load_N": "20", "depth_mm": "1.5"}
+    assert "field Depth under 20 N (mm) = '1.5' numeric" in page.outline()
+    back = record(once="b", who="x" * 201)
+    back["cells"] = {**record()["cells"], "branch": "unloading"}  # type: ignore[dict-item]
+    assert resent(page, [back]) == [["b", ""]]
+    entry = history(desk, id_)[-1]
+    assert (entry.cells["branch"], len(entry.who), entry.position) == ("unloading", 200, 1)
+
+
+def test_a_kept_reading_of_another_series_changes_nothing_that_is_shown(desk: Desk) -> None:
+    id_ = begun(desk)
+    page = desk.open(f"/enter/{id_}")
+    page.fill("Site", "typed")
+    assert resent(page, [record()]) == [["a", ""]]
+    assert page.field("Site").value == "typed"
+    shear = desk.open(f"/enter/{id_}?table=shear.csv")
+    again = record(once="b", cells={**record()["cells"], "load_N": "60", "depth_mm": "3"})  # type: ignore[dict-item]
+    assert resent(shear, [again]) == [["b", ""]]
+    assert depths(desk, id_) == [("20", "1.5"), ("60", "3")]
+
+
+@pytest.mark.parametrize(
+    ("changed", "why"),
+    [
+        ({"tool": "lost"}, "the campaign has no tool 'lost'"),
+        ({"load_N": "60.0"}, "a reading of 2.6 mm is there already"),
+        ({"site": "B"}, "that series is at the site A"),
+        ({"depth_mm": "x"}, "depth_mm is a number of 0 or more; 'x' stands there"),
+    ],
+)
+def test_a_kept_reading_that_cannot_be_stored_is_said_in_full(desk: Desk, changed: dict[str, str], why: str) -> None:
+    id_ = begun(desk)
+    add_series(desk, id_, "1", ("60", "2.6"))
+    cells = {"experiment": "1", **SERIES, "load_N": "20", "depth_mm": "1.5"} | changed
+    found = resent(series_page(desk, id_), [record(cells=cells)])
+    words = f"{cells['depth_mm']} mm under {cells['load_N']} N in series 1"
+    assert found == [["a", f"Not stored: {words}: {why}."]]
+    assert len(history(desk, id_)) == 1
+
+
+@pytest.mark.parametrize(
+    ("said", "once", "words"),
+    [
+        ("nothing", "", "a reading"),
+        ({"once": "a"}, "a", "a reading"),
+        ({"once": "a", "cells": []}, "a", "a reading"),
+        (record(once=""), "", "1,5 mm under 20 N in series 1"),
+        (record(once=7), "", "1,5 mm under 20 N in series 1"),
+        (record(once="x" * 201), "", "1,5 mm under 20 N in series 1"),
+    ],
+)
+def test_what_is_no_kept_reading_is_refused(desk: Desk, said: object, once: str, words: str) -> None:
+    id_ = begun(desk)
+    assert resent(begun_series(desk, id_), [said]) == [[once, f"Not stored: {words}: this is no reading."]]
+    assert history(desk, id_) == []
+
+
+def test_what_is_no_list_of_readings_is_answered_with_nothing(desk: Desk) -> None:
+    id_ = begun(desk)
+    page = begun_series(desk, id_)
+    assert resent(page, {"once": "a"}) == []
+    assert resent(page, [record(once="x" * 200)]) == [["x" * 200, ""]]
+
+
+def test_only_so_many_readings_are_taken_at_once(desk: Desk) -> None:
+    page = begun_series(desk, begun(desk))
+    assert len(resent(page, [0] * 10_001)) == 10_000

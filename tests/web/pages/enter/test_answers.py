@@ -1,0 +1,278 @@
+"""What stands beside the form, what the browser is answered, and a campaign as a page sees it."""
+
+from __future__ import annotations
+
+import threading
+from functools import partial
+from types import SimpleNamespace
+from typing import TYPE_CHECKING, Any
+
+import pytest
+from nicegui import ui
+
+from skisnow.errors import StoreError
+from skisnow.field.store import NewEntry
+from skisnow.report.curves import SeriesCurve
+from skisnow.web import answering
+from skisnow.web.answering import PageRequest
+from skisnow.web.edit_session import EditSession, QuickResults
+from skisnow.web.entry.beside import Beside
+from skisnow.web.line_chart import BEHIND
+
+from .shared import (
+    DENSITY,
+    DROP_CONE,
+    PENETRATION,
+    SHEAR,
+    add,
+    add_series,
+    add_shear,
+    begun,
+    between,
+    found,
+    history,
+    write,
+)
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from ..desk import Desk, Sheet
+
+
+def curve(name: str, *, law: bool = True) -> SeriesCurve:
+    at = float(len(name))
+    return SeriesCurve(name, (at, at + 1), (10 * at, 10 * at + 1), (0.0, at) if law else (), (0.0, at) if law else ())
+
+
+def beside(page: Sheet, answer: Callable[[str], QuickResults]) -> Beside:
+    """What follows the readings, on a page of its own."""
+    view: Any = SimpleNamespace(file=PENETRATION, session=SimpleNamespace(quick_results=answer))
+
+    def made() -> Beside:
+        with page.content:
+            return Beside(view)
+
+    return page.desk.do(made, page.client)
+
+
+def test_a_series_stands_before_all_others_of_its_site(desk: Desk) -> None:
+    page = desk.open("/")
+    made = beside(page, lambda _: found(a=curve("a"), bb=curve("bb"), ccc=curve("ccc", law=False)))
+    desk.do(lambda: made.follow("a", "A"), page.client)
+    assert page.shows("H_V = ") == "[value] H_V = 0.250 N/mm³, interval not known"
+    lines = [{key: line[key] for key in ("x", "y", "style", "points")} for line in page.charts()["Load (N)"]["lines"]]
+    assert lines == [
+        {"x": [2, 3, 3, 4], "y": [20, 21, 30, 31], "style": BEHIND, "points": True},
+        {"x": [0, 2, None, None], "y": [0, 2, None, None], "style": BEHIND, "points": False},
+        {"x": [1, 2], "y": [10, 11], "style": 0, "points": True},
+        {"x": [0, 1, None], "y": [0, 1, None], "style": 0, "points": False},
+    ]
+    assert between(page, "[quiet] Test a")[:4] == [
+        "[quiet] Test a",
+        "[value] H_V = 0.250 N/mm³, interval not known",
+        "few",
+        "the Depth (mm) is odd",
+    ]
+    assert [each.tag for each in page.of() if getattr(each, "text", "") == "few"] == ["div"]
+    desk.do(lambda: made.follow("a", "A", in_progress=True), page.client)
+    page.until(lambda: "few" not in page.outline())
+    assert "the Depth (mm) is odd" in page.outline()
+    desk.do(lambda: made.follow("z", "A"), page.client)  # has no row and no curve
+    page.until(lambda: "[quiet] Test a" not in page.outline())
+    assert not any("H_V" in line for line in page.outline())
+    assert [line["style"] for line in page.charts()["Load (N)"]["lines"]] == [BEHIND, BEHIND]
+
+
+def test_only_the_last_of_several_tests_is_shown(desk: Desk) -> None:
+    page = desk.open("/")
+    asked: list[str] = []
+    shown: list[str] = []
+    goes_on = threading.Event()
+
+    def answer(site: str) -> QuickResults:
+        asked.append(site)
+        assert goes_on.wait(60)
+        shown.extend(line for line in page.outline() if line.startswith("[quiet] Test "))
+        return found(**{site: curve(site)})
+
+    made = beside(page, answer)
+    for site in ("a", "bb", "ccc"):
+        desk.do(partial(made.follow, site, site), page.client)
+        page.until(lambda: asked)
+    goes_on.set()
+    page.shows("[quiet] Test ccc")
+    assert asked == ["a", "ccc"]
+    assert shown == []
+    desk.do(lambda: made.follow("a", "a"), page.client)
+    page.shows("[quiet] Test a")
+
+
+def test_nothing_is_shown_when_the_lab_is_being_closed(desk: Desk, monkeypatch: pytest.MonkeyPatch) -> None:
+    page = desk.open("/")
+    asked: list[str] = []
+
+    async def nothing(_act: object, site: str) -> None:
+        asked.append(site)
+
+    monkeypatch.setattr("skisnow.web.entry.beside.run.io_bound", nothing)
+    made = beside(page, lambda _: found())
+    desk.do(lambda: made.follow("a", "A"), page.client)
+    page.until(lambda: asked and not made._working)
+    assert not any("Test" in line or "H_V" in line for line in page.outline())
+
+
+def test_what_follows_a_series_stands_beside_it_and_of_other_tests_above(desk: Desk) -> None:
+    id_ = begun(desk)
+    for table, classes in ((PENETRATION, ["beside"]), (SHEAR, ["beside", "above"])):
+        page = desk.open(f"/enter/{id_}?table={table}")
+        (section,) = (each for each in page.tagged("section") if "beside" in each.classes)
+        assert section.classes == classes
+
+
+def test_what_cannot_be_computed_is_said_and_the_next_one_is_shown(desk: Desk) -> None:
+    page = desk.open("/")
+
+    def answer(site: str) -> QuickResults:
+        if site == "lost":
+            raise StoreError("The store is away.")
+        return found(a=curve("a"))
+
+    made = beside(page, answer)
+    desk.do(lambda: made.follow("a", "lost"), page.client)
+    assert page.shows("The store") == "[value] The store is away."
+    desk.do(lambda: made.follow("a", "A"), page.client)
+    page.shows("[quiet] Test a")
+
+
+def answered(desk: Desk, act: Callable[[], bool | None], *said: object) -> tuple[list[str], list[PageRequest]]:
+    """What a page tells the browser after each of these, and what stands as asked after it."""
+    page = desk.open("/")
+    page.scripts.clear()
+    after = []
+
+    def done() -> None:
+        handler = answering.answering(act)
+        for each in said:
+            handler(SimpleNamespace(args=each))  # type: ignore[arg-type]
+            after.append(answering.asked())
+
+    desk.do(done, page.client)
+    return page.scripts, after
+
+
+@pytest.mark.parametrize(("result", "word"), [(None, "true"), (True, "true"), (False, "false")])
+def test_a_question_is_done_once_and_answered_each_time(desk: Desk, result: bool | None, word: str) -> None:
+    done: list[PageRequest] = []
+
+    def act() -> bool | None:
+        done.append(answering.asked())
+        return result
+
+    asked = {"number": 3, "once": "a", "text": "1.5"}
+    scripts, after = answered(desk, act, asked, asked, asked | {"number": 4})
+    assert scripts == [f"lab.answered(3, {word})"] * 2 + [f"lab.answered(4, {word})"]
+    assert done == [PageRequest(3, "a", "1.5"), PageRequest(4, "a", "1.5")]
+    assert after == [PageRequest()] * 3
+
+
+@pytest.mark.parametrize(
+    ("said", "taken", "told"),
+    [
+        (None, PageRequest(), []),
+        ([3], PageRequest(), []),
+        ({"number": "3", "once": 7, "text": 1.5}, PageRequest(), []),
+        ({"once": 'a"b'}, PageRequest(once='a"b'), ['lab.told("a\\"b")']),
+        ({"once": "x" * 200}, PageRequest(once="x" * 200), [f'lab.told("{"x" * 200}")']),
+        ({"once": "x" * 201, "text": ""}, PageRequest(text=""), []),
+        ({"number": 0}, PageRequest(number=0), ["lab.answered(0, true)"]),
+    ],
+)
+def test_what_the_browser_says_is_taken_as_far_as_it_is_expected(
+    desk: Desk, said: object, taken: PageRequest, told: list[str]
+) -> None:
+    done: list[PageRequest] = []
+    assert answered(desk, lambda: done.append(answering.asked()), said)[0] == told
+    assert done == [taken]
+
+
+def test_an_act_that_fails_is_answered_with_no(desk: Desk) -> None:
+    page = desk.open("/")
+
+    def act() -> None:
+        raise ZeroDivisionError
+
+    def done() -> None:
+        answering.answering(act)(SimpleNamespace(args={"number": 3}))  # type: ignore[arg-type]
+
+    page.scripts.clear()
+    with pytest.raises(ZeroDivisionError):
+        desk.do(done, page.client)
+    desk.do(done, page.client)  # is answered, and not done again
+    assert page.scripts == ["lab.answered(3, false)"] * 2
+
+
+def test_buttons_and_forms_ask_in_the_browser(desk: Desk) -> None:
+    page = desk.open("/")
+
+    def made() -> list[Any]:
+        with page.content:
+            plain, sending = answering.form(), answering.form("a b", sends=lambda: None)
+            menu = ui.select(["a", "b"], value="a")
+            return [plain, sending, answering.row_button("Row", lambda: None), menu, answering.redrawn_by(menu)]
+
+    plain, sending, row, menu, group = desk.do(made, page.client)
+    by_event = [
+        {each.type: each.js_handler for each in one._event_listeners.values() if each.js_handler}
+        for one in (plain, sending, row, menu)
+    ]
+    assert by_event[:3] == [
+        {"keydown.enter": answering.ONWARD},
+        {"keydown.enter": answering.ENTER},
+        {"click": answering.ASK_FOR_ROW},
+    ]
+    assert answering.DRAW_ANEW in by_event[3].values()
+    assert (plain.classes, sending.classes) == (["fields"], ["a", "b"])
+    assert (row.classes, row.text) == (["act", "adds"], "Row")
+    assert (group.tag, group.classes) == ("fieldset", ["redrawn"])
+    page.fire(menu, "update:modelValue", {"value": 1, "label": "b"})
+    assert page.scripts[-1] == "lab.drawn()"
+    desk.do(lambda: answering.go_on('/a"b'), page.client)
+    assert page.scripts[-1] == 'lab.leave("/a\\"b")'
+
+
+def test_a_session_hears_what_others_wrote_when_it_looks_again(desk: Desk) -> None:
+    id_ = begun(desk)
+    session = EditSession(desk.lab, id_)
+    add_series(desk, id_, "1", ("20", "1.5"), ("60", "2.6"))
+    assert session.campaign.tests == {}
+    for _ in range(2):
+        session.refresh()
+        assert [entry.cells["load_N"] for entry in session.test(PENETRATION, "1").history] == ["20", "60"]
+    add_series(desk, id_, "1", ("40.5", "2.1"))
+    session.refresh()
+    assert len(session.test(PENETRATION, "1").history) == 3
+    entry = NewEntry(action="undo", file=PENETRATION, test="1", about=history(desk, id_)[2].sequence)
+    written = session.write_down(entry, seen=history(desk, id_)[2].sequence)
+    assert written == history(desk, id_)[3]
+    assert len(session.test(PENETRATION, "1").rows) == 2
+
+
+def test_a_session_computes_a_site_by_itself(desk: Desk) -> None:
+    id_ = begun(desk)
+    add_series(desk, id_, "1", ("20", "1.5"), ("40.5", "2.15"), ("60", "2.6"))
+    add_series(desk, id_, "2", ("20", "1.5"), site="B")
+    add_shear(desk, id_, "s")
+    add(desk, id_, DENSITY, "d", sample="d", site="A", snow_density_kg_per_m3="350")
+    gone = add(desk, id_, DENSITY, "e", sample="e", site="A", snow_density_kg_per_m3="350")
+    write(desk, id_, NewEntry(action="undo", file=DENSITY, test="e", about=gone.sequence))
+    session = EditSession(desk.lab, id_)
+    assert [test.name for test in session.tests_of_site("A")] == ["1", "s", "d"]
+    results = session.quick_results("A")
+    assert (list(results.penetration), list(results.shear), list(results.curves)) == (["1"], ["s"], ["1"])
+    assert list(session.quick_results("B").curves) == ["2"]
+    assert "too_few_loads" in session.quick_results("B").flags["penetration.csv/2"]
+    for repeat, site in (("1", "A"), ("2", "B")):
+        add(desk, id_, DROP_CONE, "c", test="c", site=site, repeat=repeat, drop_cone_depth_mm="12")
+    session.refresh()
+    assert [test.name for test in session.tests_of_site("B")] == ["2"]  # a test is where its first row is

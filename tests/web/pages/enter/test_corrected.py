@@ -1,0 +1,373 @@
+"""A series that is being entered: what its readings say, corrections, undo, cancel, history, the next one."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import pytest
+from nicegui import ui
+
+from skisnow.field.store import NewEntry, ReplayedTest
+from skisnow.report.number_formatting import significant
+from skisnow.web.edit_session import EditSession
+from skisnow.web.entry.table_view import TableView
+from skisnow.web.local_time import minute_words
+from skisnow.web.words import hardness_words
+
+from .shared import (
+    PENETRATION,
+    add_series,
+    begun,
+    begun_series,
+    between,
+    depths,
+    enter,
+    history,
+    leave,
+    selected,
+    series_page,
+    status,
+    write,
+)
+
+if TYPE_CHECKING:
+    from ..desk import Desk, Sheet
+
+
+def test_the_hardness_follows_the_readings(desk: Desk) -> None:
+    """A wedge at ϑ = 30°: V = 200 mm · e²/(2 tan ϑ), and H_V = F/V where all readings give the same."""
+    id_ = begun(desk)
+    page = begun_series(desk, id_)
+    enter(page, "Depth under 20 N (mm)", str(2.6 * math.sqrt(20 / 60)))
+    enter(page, "Depth under 40.5 N (mm)", str(2.6 * math.sqrt(40.5 / 60)))
+    enter(page, "Depth under 60 N (mm)", "2.6")
+    by_hand = 60.0 / (200.0 * 2.6**2 / (2.0 * math.tan(math.radians(30.0))))
+    row = EditSession(desk.lab, id_).quick_results("A").penetration["1"]
+    assert hardness_words(row).startswith(f"{significant(by_hand)} N/mm³, [")
+    page.shows(f"[value] H_V = {hardness_words(row)}")
+    assert "[quiet] Test 1" in page.outline()
+    (value,) = (each for each in page.of(ui.label) if "value" in each.classes)
+    assert value.props["role"] == "status"
+    panel = page.charts()["Load (N)"]
+    assert (panel["x"], panel["from_zero"]) == ("Depth (mm)", "xy")
+    assert [(line["style"], line["points"]) for line in panel["lines"]] == [(0, True), (0, False)]
+    assert panel["lines"][0]["y"] == [20, 40.5, 60]
+
+
+def test_too_few_loads_are_said_when_the_series_is_left(desk: Desk) -> None:
+    id_ = begun(desk)
+    page = begun_series(desk, id_)
+    enter(page, "Depth under 20 N (mm)", "1.5")
+    enter(page, "Depth under 40.5 N (mm)", "2.15")
+    page.shows("H_V = ")
+    few = "The series has fewer than 3 load steps."
+    assert not any(few in line for line in page.outline())
+    page.press("Next series")
+    page.shows(few)
+    assert "h2 New series" in page.outline()
+    assert page.focused() is page.field("Edge angle (°)")
+    add_series(desk, id_, "2", ("20", "1.5"))
+    page = series_page(desk, id_)  # another one was begun since
+    page.shows(few)
+    enter(page, "Depth under 60 N (mm)", "2.6")
+    page.until(lambda: not any(few in line for line in page.outline()))
+
+
+def test_a_reading_of_the_series_that_is_not_the_last_one_is_followed_to_its_end(desk: Desk) -> None:
+    id_ = begun(desk)
+    add_series(desk, id_, "1", ("20", "1.5"))
+    add_series(desk, id_, "2", ("20", "1.5"))
+    page = series_page(desk, id_)
+    enter(page, "Depth under 40.5 N (mm)", "2.15")
+    page.shows("H_V = ")
+    page.shows("The series has fewer than 3 load steps.")
+
+
+def asked_to_correct(desk: Desk, id_: str) -> Sheet:
+    add_series(desk, id_, "1", ("20", "1.5"), ("40.5", "22.5"))
+    page = series_page(desk, id_)
+    enter(page, "Depth under 40.5 N (mm)", "2,25", number=1)
+    return page
+
+
+def test_another_depth_asks_for_a_reason(desk: Desk) -> None:
+    id_ = begun(desk)
+    page = asked_to_correct(desk, id_)
+    assert between(page, "40.5 N: 22.5 mm becomes 2.25 mm.", "button[main then] Next series") == [
+        "40.5 N: 22.5 mm becomes 2.25 mm.",
+        "field Why = 'typing error'",
+        "button[main] Correct it",
+        "button Leave it as it was",
+    ]
+    why = page.field("Why")
+    assert page.focused() is why
+    assert selected(page)[-1] is why
+    assert "wide" in why.classes
+    assert page.scripts[-1] == "lab.answered(1, true)"
+    page.fill("Why", "misread")
+    leave(page, "Depth under 40.5 N (mm)")  # one question is enough
+    assert page.field("Why") is why
+    page.press("Correct it")
+    assert status(page) == "[status good] Corrected; the first reading is kept."
+    assert depths(desk, id_) == [("20", "1.5"), ("40.5", "2.25")]
+    entry = history(desk, id_)[-1]
+    assert (entry.action, entry.about, entry.why, entry.who) == (
+        "correct",
+        history(desk, id_)[1].sequence,
+        "misread",
+        "Ada",
+    )
+    assert entry.cells == {"depth_mm": "2.25"}
+    assert between(page, "field Depth under 40.5 N (mm) = '2.25' numeric")[1] == "[stored] corrected from 22.5"
+    assert page.field("Depth under 20 N (mm)").value == "1.5"
+    assert not any("field Why" in line for line in page.outline())
+    assert "button Undo: corrected Depth (mm) 2.25 (misread)" in page.outline()
+
+
+def test_a_correction_without_a_reason_is_refused(desk: Desk) -> None:
+    id_ = begun(desk)
+    page = asked_to_correct(desk, id_)
+    page.fill("Why", "  ")
+    form = page.field("Why").parent_slot.parent
+    page.fire(form, "keydown.enter", {"number": 2, "once": "b"})
+    assert status(page) == "[status bad] A correction needs a reason."
+    assert page.scripts[-1] == "lab.answered(2, false)"
+    assert "field Why = '  '" in page.outline()
+    assert len(history(desk, id_)) == 2
+    page.fill("Why", " slip ")
+    page.fire(form, "keydown.enter", {"number": 3, "once": "c"})
+    assert page.scripts[-1] == "lab.answered(3, true)"
+    assert history(desk, id_)[-1].why == "slip"
+
+
+@pytest.mark.parametrize("by_key", [True, False])
+def test_a_depth_is_left_as_it_was(desk: Desk, by_key: bool) -> None:
+    id_ = begun(desk)
+    page = asked_to_correct(desk, id_)
+    if by_key:
+        page.fire(page.field("Why"), "keydown.esc", {})
+    else:
+        page.press("Leave it as it was")
+    assert "field Depth under 40.5 N (mm) = '22.5' numeric" in page.outline()
+    assert not any("field Why" in line for line in page.outline())
+    assert page.focused() is page.field("Depth under 60 N (mm)")
+    enter(page, "Depth under 40.5 N (mm)", "2,25")  # is asked again
+    assert "field Why = 'typing error'" in page.outline()
+
+
+def test_a_depth_that_is_left_with_another_number_asks_without_taking_the_focus(desk: Desk) -> None:
+    id_ = begun(desk)
+    add_series(desk, id_, "1", ("20", "1.5"), ("40.5", "22.5"))
+    page = series_page(desk, id_)
+    leave(page, "Depth under 40.5 N (mm)", "2.25")
+    assert "field Why = 'typing error'" in page.outline()
+    assert page.focused() is page.field("Depth under 60 N (mm)")
+    assert selected(page) == []
+    why = page.field("Why")
+    leave(page, "Depth under 40.5 N (mm)", "2.26")  # another number is another question
+    assert "40.5 N: 22.5 mm becomes 2.26 mm." in page.outline()
+    assert page.field("Why") is not why
+    leave(page, "Depth under 20 N (mm)", "2.26")
+    assert "20 N: 1.5 mm becomes 2.26 mm." in page.outline()
+
+
+def test_what_is_no_depth_is_no_correction(desk: Desk) -> None:
+    id_ = begun(desk)
+    add_series(desk, id_, "1", ("20", "1.5"))
+    page = series_page(desk, id_)
+    name = "Depth under 20 N (mm)"
+    enter(page, name, "", number=1)
+    fault = "Depth (mm) is a number of 0 or more; it is blank"
+    assert status(page) == f"[status bad] Not corrected: {fault}."
+    assert f"field {name} = '' numeric ! {fault}" in page.outline()
+    assert page.scripts[-1] == "lab.answered(1, false)"
+    page.fill("Operator", "Bo")
+    enter(page, "Depth under 60 N (mm)", "3")
+    leave(page, name)
+    assert status(page) == "[status good] Stored: 3 mm under 60 N."
+    assert history(desk, id_)[-1].who == "Bo"
+
+
+def test_a_correction_after_somebody_elses_is_refused(desk: Desk) -> None:
+    id_ = begun(desk)
+    page = asked_to_correct(desk, id_)
+    first = history(desk, id_)[0].sequence
+    cells = {"depth_mm": "1.6"}
+    write(desk, id_, NewEntry(action="correct", file=PENETRATION, test="1", about=first, cells=cells, why="slip"))
+    page.press("Correct it")
+    assert status(page).startswith("[status bad] Nothing was stored: somebody wrote about Penetration, 1 meanwhile")
+    assert depths(desk, id_) == [("20", "1.6"), ("40.5", "22.5")]
+    assert "field Why = 'typing error'" in page.outline()
+    page.press("Leave it as it was")
+    assert "field Depth under 20 N (mm) = '1.6' numeric" in page.outline()
+    enter(page, "Depth under 40.5 N (mm)", "2.25")
+    page.press("Correct it")
+    assert depths(desk, id_) == [("20", "1.6"), ("40.5", "2.25")]
+
+
+def test_a_series_is_cancelled_with_a_reason(desk: Desk) -> None:
+    id_ = begun(desk)
+    add_series(desk, id_, "1", ("20", "1.5"))
+    page = series_page(desk, id_)
+    page.press("Cancel this test")
+    assert between(page, "Cancel 1? Its readings are kept but not included.", "button[main then] Next series") == [
+        "Cancel 1? Its readings are kept but not included.",
+        "field Why = ''",
+        "button[main] Cancel the test",
+        "button Leave it as it was",
+    ]
+    assert page.focused() is page.field("Why")
+    assert selected(page) == []
+    page.press("Leave it as it was")
+    assert page.focused().text == "Cancel this test"
+    assert not any("field Why" in line for line in page.outline())
+    page.press("Cancel this test")
+    page.press("Cancel the test")
+    assert status(page) == "[status bad] A test is cancelled with a reason."
+    page.fill("Why", " the tool  slipped ")
+    button = next(each for each in page.of(ui.button) if each.text == "Cancel the test")
+    page.fire(button, "click", {"number": 1})
+    assert page.scripts[-1] == "lab.answered(1, true)"
+    assert status(page) == "[status good] 1 is cancelled; its readings are kept."
+    entry = history(desk, id_)[-1]
+    assert (entry.action, entry.why, entry.who, entry.test) == ("cancel", "the tool slipped", "Ada", "1")
+    page.shows("[quiet] Test 1")
+    assert between(page, "h2 Series 1", "[quiet] Test 1") == [
+        "h2 Series 1",
+        "[quiet] A · ski piece · 30°",
+        "[bad] Cancelled: the tool slipped",
+        "[load] 20 N",
+        "field Depth under 20 N (mm) = '1.5' numeric readonly",
+        "[stored] stored",
+        "[load] 40.5 N",
+        "field Depth under 40.5 N (mm) = '' numeric readonly",
+        "[load] 60 N",
+        "field Depth under 60 N (mm) = '' numeric readonly",
+        "button[main then] Next series",
+        "Discs taken off one by one",
+        "[load] 40.5 N",
+        "field Depth back under 40.5 N (mm) = '' numeric readonly",
+        "[load] 20 N",
+        "field Depth back under 20 N (mm) = '' numeric readonly",
+        "Depths read once more after waiting",
+        "[load] 20 N",
+        "field Depth after waiting under 20 N (mm) = '' numeric optional readonly",
+        "[load] 40.5 N",
+        "field Depth after waiting under 40.5 N (mm) = '' numeric optional readonly",
+        "[load] 60 N",
+        "field Depth after waiting under 60 N (mm) = '' numeric optional readonly",
+    ]
+    assert page.focused().text == "Next series"
+    assert "A load that is not in the disc set" not in page.outline()
+    assert between(page, "button Undo: cancelled (the tool slipped)", "h3 Series so far") == [
+        "button Undo: cancelled (the tool slipped)",
+        "History of 1",
+        f"{minute_words(history(desk, id_)[0].at)} · Ada · entered 1.5 mm under 20 N",
+        f"{minute_words(entry.at)} · Ada · cancelled (the tool slipped)",
+    ]
+
+
+def test_a_test_that_somebody_wrote_about_is_not_cancelled(desk: Desk) -> None:
+    id_ = begun(desk)
+    add_series(desk, id_, "1", ("20", "1.5"))
+    page = series_page(desk, id_)
+    page.press("Cancel this test")
+    add_series(desk, id_, "1", ("60", "3"))
+    page.fill("Why", "slip")
+    button = next(each for each in page.of(ui.button) if each.text == "Cancel the test")
+    page.fire(button, "click", {"number": 1})
+    assert page.scripts[-1] == "lab.answered(1, false)"
+    assert status(page).startswith("[status bad] Nothing was stored")
+    assert EditSession(desk.lab, id_).test(PENETRATION, "1").cancelled == ""
+
+
+def test_the_last_entry_is_undone_and_stays_in_the_history(desk: Desk) -> None:
+    id_ = begun(desk)
+    add_series(desk, id_, "1", ("20", "1.5"))
+    add_series(desk, id_, "1", ("60", "3"), who="")
+    page = series_page(desk, id_)
+    page.press("Undo: entered 3 mm under 60 N")
+    assert status(page) == "[status good] Undone."
+    first, second, undo = history(desk, id_)
+    assert (undo.action, undo.about, undo.who) == ("undo", second.sequence, "Ada")
+    assert "field Depth under 60 N (mm) = '' numeric" in page.outline()
+    assert between(page, "button Undo: entered 1.5 mm under 20 N", "A load that is not in the disc set") == [
+        "button Undo: entered 1.5 mm under 20 N",
+        "button Cancel this test",
+        "History of 1",
+        f"{minute_words(first.at)} · Ada · entered 1.5 mm under 20 N",
+        f"{minute_words(second.at)} · entered 3 mm under 60 N (undone)",
+        f"{minute_words(undo.at)} · Ada · undid the entry before",
+    ]
+    assert page.focused() is page.field("Depth under 40.5 N (mm)")
+    page.press("Undo: entered 1.5 mm under 20 N")
+    assert depths(desk, id_) == []
+    assert between(page, "h2 Series 1")[1] == "[quiet] A · ski piece · 30°"
+    assert "button Cancel this test" not in page.outline()
+    assert not any("button Undo" in line for line in page.outline())
+    assert any("&site=A" in each for each in page.scripts)
+
+
+def test_nothing_is_undone_where_nothing_was_entered(desk: Desk) -> None:
+    id_ = begun(desk)
+    page = desk.open(f"/enter/{id_}")
+    label = next(each for each in page.of(ui.label) if "status" in each.classes)
+    view = TableView(EditSession(desk.lab, id_), PENETRATION, page.field("Operator"), label)
+    assert not desk.do(lambda: view.undo(ReplayedTest(PENETRATION, "1")), page.client)
+    assert status(page) == "[status bad] There is nothing to undo."
+    assert history(desk, id_) == []
+
+
+def test_what_somebody_else_undid_is_not_undone_again(desk: Desk) -> None:
+    id_ = begun(desk)
+    add_series(desk, id_, "1", ("20", "1.5"))
+    page = series_page(desk, id_)
+    sequence = history(desk, id_)[0].sequence
+    write(desk, id_, NewEntry(action="undo", file=PENETRATION, test="1", about=sequence))
+    button = next(each for each in page.of(ui.button) if each.text.startswith("Undo"))
+    page.fire(button, "click", {})
+    assert status(page).startswith("[status bad] Nothing was stored")
+    page.press("Next series")
+    assert "h2 New series" in page.outline()
+
+
+def test_a_series_is_left_when_all_that_was_typed_is_stored(desk: Desk) -> None:
+    id_ = begun(desk)
+    page = begun_series(desk, id_)
+    page.fill("Depth under 20 N (mm)", "x")
+    page.fill("Depth back under 40.5 N (mm)", "2.5")
+    button = next(each for each in page.of(ui.button) if each.text == "Next series")
+    page.fire(button, "click", {"number": 1})
+    assert status(page) == (
+        "[status bad] Not stored yet: 20 N, 40.5 N on the way back. Put it right or empty the field, then go on."
+    )
+    assert page.scripts[-1] == "lab.answered(1, false)"
+    assert page.focused() is page.field("Depth under 20 N (mm)")
+    assert selected(page) == [page.field("Depth under 20 N (mm)")]
+    page.fill("Depth under 20 N (mm)", "")
+    page.fill("Depth back under 40.5 N (mm)", "")
+    page.fill("Depth after waiting under 40.5 N (mm)", "2.2")
+    page.fill("Depth after waiting under 60 N (mm)", "2.7")
+    page.fire(button, "click", {"number": 2})
+    assert status(page) == (
+        "[status bad] Not stored yet: 40.5 N after waiting, 60 N after waiting. Store it or empty the field, then go"
+        " on."
+    )
+    assert page.scripts[-1] == "lab.answered(2, false)"
+    assert page.focused() is page.field("Depth after waiting under 40.5 N (mm)")
+    page.fill("Depth after waiting under 40.5 N (mm)", "")
+    page.fill("Depth after waiting under 60 N (mm)", " ")
+    page.fire(button, "click", {"number": 3})
+    assert page.scripts[-1] == "lab.answered(3, true)"
+    assert "field Name of the test = '1'" in page.outline()
+
+
+def test_what_was_typed_in_one_series_does_not_go_into_the_next(desk: Desk) -> None:
+    id_ = begun(desk)
+    page = begun_series(desk, id_)
+    enter(page, "Depth under 20 N (mm)", "1.5")
+    page.press("Next series")
+    page.press("Begin the series")
+    assert between(page, "h2 Series 2")[1] == "[quiet] A · ski piece · 30°"
+    assert page.field("Depth under 20 N (mm)").value == ""

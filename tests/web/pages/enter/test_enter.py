@@ -1,0 +1,502 @@
+"""Entering tests: the page and its frame, the head of a series, its address, its readings."""
+
+from __future__ import annotations
+
+import json
+from typing import TYPE_CHECKING
+
+import pytest
+from nicegui import ui
+
+from skisnow.field.store import NewEntry
+from skisnow.web.entry.series import LEFT, TOLD
+from skisnow.web.local_time import minute_words
+
+from .shared import (
+    PENETRATION,
+    SERIES,
+    TOML,
+    add_series,
+    begun,
+    begun_series,
+    between,
+    depths,
+    enter,
+    head,
+    history,
+    is_open,
+    leave,
+    reading_row,
+    selected,
+    series_page,
+    status,
+    write,
+)
+
+if TYPE_CHECKING:
+    from ..desk import Desk
+
+CHART = "chart Load against depth of this series and the others of its site, load in N: "
+
+
+def test_a_page_of_a_campaign_asks_for_its_first_series(desk: Desk) -> None:
+    id_ = begun(desk)
+    page = desk.open(f"/enter/{id_}")
+    assert page.outline() == [
+        *head(id_),
+        "h2 New series",
+        "field Name of the test = '1'",
+        "field Site = ''",
+        "field Tool = 'disc'",
+        "field Edge angle (°) = '' numeric",
+        "field Measurement point, if sheared there = '' optional",
+        "button[main] Begin the series",
+        CHART + "nothing yet",
+    ]
+    assert page.focused() is page.field("Site")
+    assert selected(page) == [page.field("Site")]
+    assert any(f'replaceState({{}}, "", "/enter/{id_}?table=penetration.csv")' in each for each in page.at_first)
+    assert page.at_first.count("lab.answered(0, true)") == 1
+    assert [each.text for each in page.tagged("nicegui-link") if "aria-current" in each.props] == [
+        "Campaigns",
+        "Penetration",
+    ]
+    assert [each.props.get("aria-label") for each in page.content.descendants() if "aria-label" in each.props] == [
+        "Kind of test",
+        "Entry",
+        "Results of the readings",
+        "Changes, and what was entered",
+    ]
+    assert page.field("Operator").options == {"Ada": "Ada", "Bo": "Bo", "Cy": "Cy"}
+
+
+def test_who_writes_is_told_to_the_browser(desk: Desk) -> None:
+    id_ = begun(desk)
+    page = desk.open(f"/enter/{id_}")
+    place = next(each for each in page.tagged("div") if "who" in each.classes)
+    assert place.props["data-who"] == "Ada"
+    page.fill("Operator", "Bo")
+    assert place.props["data-who"] == "Bo"
+    (said,) = (each for each in page.of(ui.label) if "status" in each.classes)
+    assert (said.props["role"], said.props["aria-live"]) == ("status", "polite")
+
+
+def test_without_observers_anybody_may_say_a_name(desk: Desk) -> None:
+    id_ = begun(desk, 'place = "x"\n')
+    page = desk.open(f"/enter/{id_}?table=density.csv")
+    assert page.outline()[0] == "h1 Campaign"
+    assert "field Operator = ''" in page.outline()
+    page.fill("Operator", "Di")
+    page.fill("Site", "A")
+    page.fill("Density (kg/m³)", "300")
+    page.press("Store")
+    assert [entry.who for entry in history(desk, id_)] == ["Di"]
+
+
+def test_an_address_with_another_table_is_refused(desk: Desk) -> None:
+    answer = desk.get(f"/enter/{begun(desk)}?table=campaign.toml")
+    assert answer.status_code == 404
+    assert "this address names no table of a campaign" in answer.text
+    desk.failures.clear()
+
+
+def test_a_series_begins_with_its_head_and_asks_for_a_depth_under_each_load(desk: Desk) -> None:
+    id_ = begun(desk)
+    page = desk.open(f"/enter/{id_}")
+    page.fill("Site", " A ")
+    page.fill("Tool", "ski piece")
+    page.fill("Edge angle (°)", "30,5")
+    page.fill("Measurement point, if sheared there", "p")
+    page.press("Begin the series")
+    assert page.outline() == [
+        *head(id_),
+        "[status good] Series 1: enter the depth under each load.",
+        "h2 Series 1",
+        "[quiet] A · ski piece · 30.5°",
+        "[load] 20 N",
+        "field Depth under 20 N (mm) = '' numeric",
+        "[load] 40.5 N",
+        "field Depth under 40.5 N (mm) = '' numeric",
+        "[load] 60 N",
+        "field Depth under 60 N (mm) = '' numeric",
+        "button[main then] Next series",
+        "Discs taken off one by one",
+        "[load] 40.5 N",
+        "field Depth back under 40.5 N (mm) = '' numeric",
+        "[load] 20 N",
+        "field Depth back under 20 N (mm) = '' numeric",
+        "Depths read once more after waiting",
+        "[load] 20 N",
+        "field Depth after waiting under 20 N (mm) = '' numeric optional",
+        "[load] 40.5 N",
+        "field Depth after waiting under 40.5 N (mm) = '' numeric optional",
+        "[load] 60 N",
+        "field Depth after waiting under 60 N (mm) = '' numeric optional",
+        "button Store what was read after waiting",
+        CHART + "nothing yet",
+        "A load that is not in the disc set",
+        "field Further load (N) = '' numeric",
+        "field Its depth (mm) = '' numeric",
+        "button Store it",
+    ]
+    assert page.focused() is page.field("Depth under 20 N (mm)")
+    address = f"/enter/{id_}?table=penetration.csv&test=1&site=A&spot=p&tool=ski%20piece&edge_angle_deg=30.5"
+    assert any(f'"{address}"' in each for each in page.scripts)
+    assert history(desk, id_) == []
+    rows = [each.props for each in page.tagged("div") if "reading" in each.classes and "data-load" in each.props]
+    assert [(each["data-load"], each["data-branch"]) for each in rows] == [
+        ("20", ""),
+        ("40.5", ""),
+        ("60", ""),
+        ("40.5", "unloading"),
+        ("20", "unloading"),
+    ]
+    heads = [json.loads(each.props["data-head"]) for each in page.tagged("div") if "data-head" in each.props]
+    assert heads == [{"experiment": "1", "site": "A", "spot": "p", "tool": "ski piece", "edge_angle_deg": "30.5"}] * 2
+    assert not any("open" in each.props for each in page.tagged("details"))
+    first = page.field("Depth under 20 N (mm)")._event_listeners.values()
+    assert {each.type: each.js_handler for each in first if each.js_handler in (TOLD, LEFT)} == {
+        "keydown.enter": TOLD,
+        "blur": LEFT,
+    }
+
+
+def test_enter_in_the_head_begins_the_series_too(desk: Desk) -> None:
+    page = desk.open(f"/enter/{begun(desk)}")
+    page.fill("Site", "A")
+    page.fill("Edge angle (°)", "30")
+    form = page.field("Site").parent_slot.parent
+    page.fire(form, "keydown.enter", {"number": 1, "once": "a"})
+    page.shows("h2 Series 1")
+    assert page.scripts[-1] == "lab.answered(1, true)"
+
+
+def test_what_no_series_can_begin_with_is_said_at_its_fields(desk: Desk) -> None:
+    id_ = begun(desk)
+    page = desk.open(f"/enter/{id_}")
+    page.fill("Edge angle (°)", "95")
+    button = next(each for each in page.of(ui.button) if each.text == "Begin the series")
+    page.fire(button, "click", {"number": 1})
+    faults = ["site is blank; give it a name", "Edge angle (°) is a number from 0 to below 90; '95' stands there"]
+    assert status(page) == f"[status bad] Not begun: {'; '.join(faults)}."
+    assert between(page, "field Site = '' ! " + faults[0])[2] == f"field Edge angle (°) = '95' numeric ! {faults[1]}"
+    assert page.scripts[-1] == "lab.answered(1, false)"
+    page.fill("Site", "A")
+    page.fill("Edge angle (°)", "45")
+    page.press("Begin the series")
+    assert status(page) == "[status good] Series 1: enter the depth under each load."
+
+
+def test_a_series_has_a_name_of_its_own(desk: Desk) -> None:
+    id_ = begun(desk)
+    add_series(desk, id_, "1", ("20", "1.5"))
+    page = desk.open(f"/enter/{id_}")
+    page.fill("Name of the test", "1")
+    page.press("Begin the series")
+    fault = "there is a test 1 already; give this one another name"
+    assert status(page) == f"[status bad] Not begun: {fault}."
+    assert f"field Name of the test = '1' ! {fault}" in page.outline()
+
+
+def test_the_next_series_has_what_it_shares_with_the_last_one(desk: Desk) -> None:
+    id_ = begun(desk)
+    add_series(desk, id_, "7", ("20", "1.5"))
+    add_series(desk, id_, "a", ("20", "1.5"), site="B", edge_angle_deg="45")
+    page = desk.open(f"/enter/{id_}")
+    assert between(page, "h2 New series", CHART) == [
+        "h2 New series",
+        "field Name of the test = '8'",
+        "field Site = 'B'",
+        "field Tool = 'ski piece'",
+        "field Edge angle (°) = '45' numeric",
+        "field Measurement point, if sheared there = '' optional",
+        "button[main] Begin the series",
+    ]
+    assert page.focused() is page.field("Edge angle (°)")
+    assert selected(page) == [page.field("Edge angle (°)")]
+    assert between(page, "h3 Series so far") == [
+        "h3 Series so far",
+        f"link[small] a -> /enter/{id_}?table=penetration.csv&test=a",
+        f"link[small] 7 -> /enter/{id_}?table=penetration.csv&test=7",
+    ]
+
+
+def test_a_tool_that_the_campaign_has_no_more_is_not_proposed(desk: Desk) -> None:
+    id_ = begun(desk)
+    add_series(desk, id_, "1", ("20", "1.5"), tool="lost")
+    assert desk.open(f"/enter/{id_}").field("Tool").value == "disc"
+    other = begun(desk, 'name = "Bare"')
+    bare = desk.open(f"/enter/{other}")
+    assert (bare.field("Tool").value, bare.field("Tool").options) == (None, {})
+
+
+@pytest.mark.parametrize(
+    "further",
+    [
+        "site=A&tool=ski%20piece&edge_angle_deg=95",
+        "site=A&tool=lost&edge_angle_deg=30",
+        "site=%20A&tool=disc&edge_angle_deg=0",
+        "tool=disc&edge_angle_deg=0",
+    ],
+)
+def test_an_address_that_tells_of_no_head_of_a_series_asks_for_one(desk: Desk, further: str) -> None:
+    page = desk.open(f"/enter/{begun(desk)}?table=penetration.csv&test=1&{further}")
+    assert "h2 New series" in page.outline()
+
+
+def test_a_series_is_there_again_by_its_address(desk: Desk) -> None:
+    id_ = begun(desk)
+    page = begun_series(desk, id_)
+    assert between(page, "h2 Series 1")[:3] == ["h2 Series 1", "[quiet] A · ski piece · 30°", "[load] 20 N"]
+    assert page.focused() is page.field("Depth under 20 N (mm)")
+    add_series(desk, id_, "1", ("20", "1.5"))
+    page = begun_series(desk, id_)
+    assert "field Depth under 20 N (mm) = '1.5' numeric" in page.outline()
+    assert page.focused() is page.field("Depth under 40.5 N (mm)")
+    address = f"/enter/{id_}?table=penetration.csv&test=1"
+    assert [each for each in page.at_first if "replaceState" in each] == [
+        f'history.replaceState({{}}, "", "{address}");'
+    ]
+    (link,) = (each for each in page.tagged("nicegui-link") if each.text == "1")
+    assert link.props["aria-current"] == "page"
+
+
+def test_an_address_with_a_test_of_another_table_begins_a_test(desk: Desk) -> None:
+    id_ = begun(desk)
+    add_series(desk, id_, "1", ("20", "1.5"))
+    page = desk.open(f"/enter/{id_}?table=shear.csv&test=1&site=A&tool=disc&edge_angle_deg=0")
+    assert "h2 New test" in page.outline()
+    assert "h3 Series so far" not in page.outline()
+    assert "h2 New series" in series_page(desk, id_, "2").outline()
+
+
+def test_the_last_forty_series_have_links(desk: Desk) -> None:
+    id_ = begun(desk)
+    for number in range(41):
+        add_series(desk, id_, f"n{number}", ("20", "1.5"))
+    write(desk, id_, NewEntry(action="cancel", file=PENETRATION, test="n40", why="slip"))
+    lines = between(desk.open(f"/enter/{id_}"), "h3 Series so far")
+    assert len(lines) == 41
+    assert lines[1].startswith("link[small] n40 (cancelled) -> ")
+    assert lines[-1].startswith("link[small] n1 -> ")
+
+
+def test_a_reading_is_stored_as_it_is_typed(desk: Desk) -> None:
+    id_ = begun(desk)
+    page = begun_series(desk, id_)
+    enter(page, "Depth under 40.5 N (mm)", " 2,15 ")
+    assert status(page) == "[status good] Stored: 2.15 mm under 40.5 N."
+    assert page.scripts[-1] == 'lab.told("Depth under 40.5 N (mm)  2,15 ")'
+    (entry,) = history(desk, id_)
+    assert (entry.action, entry.file, entry.test, entry.position) == ("add", PENETRATION, "1", 0)
+    assert (entry.who, entry.once) == ("Ada", "Depth under 40.5 N (mm)  2,15 ")
+    assert entry.cells == {"experiment": "1", **SERIES, "load_N": "40.5", "depth_mm": "2.15"}
+    assert between(page, "field Depth under 40.5 N (mm) = '2.15' numeric")[1] == "[stored] stored"
+    assert reading_row(page, "Depth under 40.5 N (mm)").props["data-stored"] == "2.15"
+    assert between(page, "button Undo: entered 2.15 mm under 40.5 N", "A load that is not in the disc set") == [
+        "button Undo: entered 2.15 mm under 40.5 N",
+        "button Cancel this test",
+        "History of 1",
+        f"{minute_words(entry.at)} · Ada · entered 2.15 mm under 40.5 N",
+    ]
+    leave(page, "Depth under 20 N (mm)", "1.5")
+    assert depths(desk, id_) == [("20", "1.5"), ("40.5", "2.15")]
+    assert [each.position for each in history(desk, id_)] == [0, 1]
+
+
+def test_a_series_in_german_has_commas(desk: Desk) -> None:
+    id_ = begun(desk)
+    add_series(desk, id_, "1", ("20", "1.5"))
+    page = series_page(desk, id_, language="de")
+    fields = [each for each in page.of(ui.input) if each.props.get("inputmode") == "decimal"]
+    assert fields[0].value == "1,5"
+    assert reading_row(page, fields[0].props["aria-label"]).props["data-stored"] == "1.5"
+    enter(page, fields[1].props["aria-label"], "2.15")
+    assert fields[1].value == "2,15"
+    assert depths(desk, id_) == [("20", "1.5"), ("40.5", "2.15")]
+    leave(page, fields[1].props["aria-label"])  # is no correction
+    assert len(history(desk, id_)) == 2
+    assert not any(each.props.get("label") == "Warum" for each in page.of(ui.input))
+
+
+def test_what_is_no_depth_is_refused_at_its_field_and_said_once(desk: Desk) -> None:
+    id_ = begun(desk)
+    page = begun_series(desk, id_)
+    name = "Depth under 20 N (mm)"
+    enter(page, name, "1.5.2")
+    fault = "Depth (mm) is a number of 0 or more; '1.5.2' stands there"
+    assert status(page) == f"[status bad] Not stored: {fault}."
+    assert f"field {name} = '1.5.2' numeric ! {fault}" in page.outline()
+    assert "refused" in reading_row(page, name).classes
+    assert f"lab.refusedLast({page.field(name).id})" in page.scripts
+    enter(page, "Depth under 60 N (mm)", "3")
+    leave(page, name)  # it was said at Enter
+    assert status(page) == "[status good] Stored: 3 mm under 60 N."
+    enter(page, name, "1.5.2")  # at another Enter it is said again
+    assert status(page) == f"[status bad] Not stored: {fault}."
+    leave(page, name, "x")
+    assert status(page) == "[status bad] Not stored: Depth (mm) is a number of 0 or more; 'x' stands there."
+    leave(page, name, "")
+    assert "refused" not in reading_row(page, name).classes
+    leave(page, name, "x")  # another time
+    assert "refused" in reading_row(page, name).classes
+    enter(page, name, "1.5")
+    assert "refused" not in reading_row(page, name).classes
+    assert depths(desk, id_) == [("20", "1.5"), ("60", "3")]
+    assert all(each.error is None for each in page.of(ui.input))
+
+
+def test_what_is_refused_stays_as_it_was_typed(desk: Desk) -> None:
+    page = begun_series(desk, begun(desk))
+    enter(page, "Depth under 20 N (mm)", " x ")
+    assert page.field("Depth under 20 N (mm)").value == " x "
+
+
+def test_a_refusal_is_answered_where_the_browser_waits(desk: Desk) -> None:
+    page = begun_series(desk, begun(desk))
+    enter(page, "Depth under 20 N (mm)", "x", number=1)
+    assert page.scripts[-1] == "lab.answered(1, false)"
+    enter(page, "Depth under 20 N (mm)", "1", number=2)
+    assert page.scripts[-1] == "lab.answered(2, true)"
+    enter(page, "Depth under 20 N (mm)", "1", number=3)
+    assert page.scripts[-1] == "lab.answered(3, true)"
+
+
+def test_a_text_that_was_lost_on_its_way_is_taken_from_what_is_sent_again(desk: Desk) -> None:
+    id_ = begun(desk)
+    page = begun_series(desk, id_)
+    made = page.field("Depth under 20 N (mm)")
+    page.fire(made, "blur", {"once": "a", "text": "1.5"})
+    page.fire(made, "blur", {"once": "a", "text": "1.5"})
+    assert depths(desk, id_) == [("20", "1.5")]
+    assert made.value == "1.5"
+    assert page.scripts.count('lab.told("a")') == 2
+
+
+def test_a_reading_that_was_sent_before_is_stored_once(desk: Desk) -> None:
+    """The page was loaded anew meanwhile, and the first answer did not come."""
+    id_ = begun(desk)
+    for _ in range(2):
+        page = begun_series(desk, id_)
+        page.fire(page.field("Depth under 20 N (mm)"), "blur", {"once": "a", "text": "1.5"})
+    assert len(history(desk, id_)) == 1
+
+
+def test_somebody_else_on_the_same_series_is_told_and_shown(desk: Desk) -> None:
+    id_ = begun(desk)
+    page = begun_series(desk, id_)
+    page.fill("Depth under 60 N (mm)", "3")  # typed, and not stored
+    page.fill("Depth back under 20 N (mm)", "2.9")
+    page.fill("Depth after waiting under 20 N (mm)", "1.7")
+    add_series(desk, id_, "1", ("20", "1.4"), who="Bo")
+    enter(page, "Depth under 40.5 N (mm)", "2.1")
+    (entry,) = history(desk, id_)
+    assert status(page) == (
+        f"[status bad] Nothing was stored: Bo wrote about Penetration, 1 meanwhile ({entry.at}). "
+        "Look at it as it is now, then enter again what is still missing."
+    )
+    shown = {line.split(" = ")[0]: line.split(" = ")[1] for line in page.outline() if line.startswith("field Depth")}
+    assert shown["field Depth under 20 N (mm)"] == "'1.4' numeric"
+    assert shown["field Depth under 40.5 N (mm)"] == "'2.1' numeric"
+    assert shown["field Depth under 60 N (mm)"] == "'3' numeric"
+    assert shown["field Depth back under 20 N (mm)"] == "'2.9' numeric"
+    assert shown["field Depth after waiting under 20 N (mm)"] == "'1.7' numeric optional"
+    assert is_open(page, "Discs taken off one by one")
+    assert is_open(page, "Depths read once more after waiting")
+    assert not is_open(page, "A load that is not in the disc set")
+    leave(page, "Depth under 40.5 N (mm)")
+    assert depths(desk, id_) == [("20", "1.4"), ("40.5", "2.1")]
+
+
+def test_somebody_elses_reading_under_the_same_load_stays(desk: Desk) -> None:
+    id_ = begun(desk)
+    page = begun_series(desk, id_)
+    add_series(desk, id_, "1", ("20", "1.4"), who="Bo")
+    enter(page, "Depth under 20 N (mm)", "1.5")
+    assert status(page).startswith("[status bad] Nothing was stored: Bo wrote about Penetration, 1 meanwhile")
+    assert page.field("Depth under 20 N (mm)").value == "1.4"
+    assert depths(desk, id_) == [("20", "1.4")]
+    enter(page, "Depth under 20 N (mm)", "1.5")
+    assert "20 N: 1.4 mm becomes 1.5 mm." in page.outline()
+
+
+def test_a_load_beyond_the_discs_stands_where_it_belongs(desk: Desk) -> None:
+    id_ = begun(desk)
+    page = begun_series(desk, id_)
+    enter(page, "Depth under 20 N (mm)", "1.5")
+    page.fill("Further load (N)", "50,0")
+    page.fill("Its depth (mm)", "2.4")
+    page.fill("Depth under 60 N (mm)", "3")
+    page.press("Store it")
+    assert status(page) == "[status good] Stored: 2.4 mm under 50.0 N."
+    assert depths(desk, id_) == [("20", "1.5"), ("50.0", "2.4")]
+    assert [line for line in page.outline() if line.startswith("field Depth under")] == [
+        "field Depth under 20 N (mm) = '1.5' numeric",
+        "field Depth under 40.5 N (mm) = '' numeric",
+        "field Depth under 50.0 N (mm) = '2.4' numeric",
+        "field Depth under 60 N (mm) = '3' numeric",
+    ]
+    assert page.focused() is page.field("Depth under 40.5 N (mm)")
+    assert "field Further load (N) = '' numeric" in page.outline()
+
+
+def test_a_load_that_has_a_reading_is_refused_as_a_further_one(desk: Desk) -> None:
+    id_ = begun(desk)
+    page = begun_series(desk, id_)
+    enter(page, "Depth under 20 N (mm)", "1.5")
+    page.fill("Further load (N)", "20.0")
+    page.fill("Its depth (mm)", "2.4")
+    form = page.field("Its depth (mm)").parent_slot.parent
+    page.fire(form, "keydown.enter", {"number": 4, "once": "b"})
+    fault = "there is a reading under 20.0 N already; correct it in its own field"
+    assert status(page) == f"[status bad] Not stored: {fault}."
+    assert f"field Further load (N) = '20.0' numeric ! {fault}" in page.outline()
+    assert page.scripts[-1] == "lab.answered(4, false)"
+    page.fill("Further load (N)", "")
+    page.press("Store it")
+    assert status(page) == "[status bad] Not stored: Load (N) is a number above 0; it is blank."
+    page.fill("Further load (N)", "80")
+    page.fill("Its depth (mm)", "-1")
+    page.press("Store it")
+    assert status(page) == "[status bad] Not stored: Depth (mm) is a number of 0 or more; '-1' stands there."
+    assert len(history(desk, id_)) == 1
+
+
+def test_discs_that_are_taken_off_come_after_the_loading(desk: Desk) -> None:
+    id_ = begun(desk)
+    page = begun_series(desk, id_)
+    name = "Depth back under 40.5 N (mm)"
+    enter(page, name, "2.5")
+    fault = "the depths under rising loads come first"
+    assert status(page) == f"[status bad] Not stored: {fault}."
+    assert f"field {name} = '2.5' numeric ! {fault}" in page.outline()
+    enter(page, name, "")
+    for load, depth in (("20", "1.5"), ("40.5", "2.15"), ("60", "2.6")):
+        enter(page, f"Depth under {load} N (mm)", depth)
+    enter(page, name, "2.5")
+    assert status(page) == "[status good] Stored: 2.5 mm under 40.5 N on the way back."
+    assert "button Undo: entered 2.5 mm under 40.5 N on the way back" in page.outline()
+    assert history(desk, id_)[-1].cells["branch"] == "unloading"
+    assert "branch" not in history(desk, id_)[0].cells
+    page = series_page(desk, id_)
+    assert is_open(page, "Discs taken off one by one")
+    assert f"field {name} = '2.5' numeric" in page.outline()
+    assert "field Depth under 40.5 N (mm) = '2.15' numeric" in page.outline()
+    assert page.focused() is page.field("Depth back under 20 N (mm)")
+    page.shows("k_u/H_V = ")
+    enter(page, name, "2.4")
+    assert "40.5 N on the way back: 2.5 mm becomes 2.4 mm." in page.outline()
+
+
+def test_a_whole_loading_puts_the_focus_on_the_next_series(desk: Desk) -> None:
+    id_ = begun(desk)
+    add_series(desk, id_, "1", ("20", "1.5"), ("40.5", "2.15"), ("60", "2.6"))
+    page = series_page(desk, id_)
+    assert page.focused().text == "Next series"
+    assert not is_open(page, "Discs taken off one by one")
+
+
+def test_a_campaign_with_one_load_has_no_way_back(desk: Desk) -> None:
+    id_ = begun(desk, TOML.replace("[20, 40.5, 60]", "[20]"))
+    page = begun_series(desk, id_)
+    assert "Discs taken off one by one" not in page.outline()

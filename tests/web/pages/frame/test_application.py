@@ -1,0 +1,425 @@
+"""The application around the pages: its own files, the token, requests that never end."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+from collections.abc import AsyncIterator, Callable
+from contextlib import asynccontextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import pytest
+import uvicorn
+from nicegui import app as pages_app
+from nicegui import core
+from uvicorn.server import ServerState
+
+import skisnow.web
+from skisnow.language import languages
+from skisnow.web.application import _chosen
+from skisnow.web.patience import RECONNECT_S, use_heartbeat
+from skisnow.web.slow_requests import PatientToAPoint
+from skisnow.web.token_page import Tries, answer_to_token, token_page, too_many_tries
+
+from ...finished import finished
+
+if TYPE_CHECKING:
+    from starlette.responses import Response
+    from starlette.types import Message, Receive, Scope, Send
+
+    from ..desk import Desk
+
+HERE = Path(skisnow.web.__file__).parent
+
+
+@pytest.mark.parametrize(
+    ("path", "kind"),
+    [("/lab.css", "text/css"), ("/lab.js", "text/javascript"), ("/kept.js", "text/javascript")],
+)
+def test_own_files_are_asked_for_again(desk: Desk, path: str, kind: str) -> None:
+    answer = desk.get(path)
+    assert answer.status_code == 200
+    assert answer.headers["content-type"].startswith(kind)
+    assert answer.headers["cache-control"] == "no-cache"
+    assert answer.content == (HERE / path[1:]).read_bytes()
+
+
+@pytest.mark.parametrize("path", ["/docs", "/redoc", "/openapi.json", "/nowhere"])
+def test_there_are_no_other_pages(desk: Desk, path: str) -> None:
+    answer = desk.get(path, "de")
+    assert answer.status_code == 404
+    assert "Keine solche Seite" in answer.text
+
+
+@pytest.mark.parametrize("path", ["/import", "/skis/add"])
+def test_a_form_without_a_file_is_refused(desk: Desk, path: str) -> None:
+    answer = desk.post(path, data={"name": ""})
+    assert answer.status_code == 400
+    assert "This was not taken in" in answer.text
+
+
+def test_the_framework_is_set_up_for_pages_that_last(desk: Desk) -> None:
+    config = pages_app.config
+    assert config.title == "skisnow"
+    assert config.language == "en-US"
+    assert (config.tailwind, config.show_welcome_message, config.reconnect_timeout) == (False, False, RECONNECT_S)
+    assert config.socket_io_js_transports == ["websocket"]
+    assert config.quasar_config["loadingBar"] == {"skipHijack": True}
+    assert use_heartbeat in pages_app._startup_handlers
+    assert all(hasattr(each, "__wrapped__") for each in core.sio.handlers["/"].values())
+    guard: Any = vars(desk._browser._transport)["app"]
+    access = guard.access
+    assert (access.host, access.token, access.body_bytes) == ("127.0.0.1", None, desk.lab.limits.upload_bytes)
+    files = [each for each in logging.getLogger("skisnow.web").handlers if isinstance(each, logging.FileHandler)]
+    assert str(desk.lab.runs / "lab.log") in [each.baseFilename for each in files]
+
+
+def test_a_language_is_chosen_at_an_address(desk: Desk) -> None:
+    answer = desk.get("/language/xx?back=%2Flab.css")
+    assert [each.headers["location"] for each in answer.history] == ["/lab.css"]
+    assert answer.headers["content-type"].startswith("text/css")
+
+
+@pytest.mark.parametrize(
+    ("back", "place"),
+    [
+        ("/skis?ski=a", "/skis?ski=a"),
+        ("//evil.example", "/"),
+        ("/\\evil.example", "/"),
+        ("https://evil.example", "/"),
+        ("", "/"),
+    ],
+)
+def test_a_language_is_kept_and_leads_back_to_a_page_of_the_lab(back: str, place: str) -> None:
+    answer = _chosen("de", back)
+    assert (answer.status_code, answer.headers["location"]) == (303, place)
+    parts = answer.headers["set-cookie"].split("; ")
+    assert parts[0] == "skisnow-language=de"
+    assert sorted(parts[1:]) == ["HttpOnly", "Max-Age=31536000", "Path=/", "SameSite=lax"]
+    assert all(code in _chosen(code).headers["set-cookie"] for code in languages())
+    assert "set-cookie" not in _chosen("xx").headers
+
+
+def scope_of(language: str = "en", scheme: str = "http") -> Scope:
+    headers = [(b"accept-language", language.encode())]
+    return {"type": "http", "method": "POST", "path": "/token", "headers": headers, "scheme": scheme}
+
+
+def answered(*messages: Message, scope: Scope | None = None, token: str = "snow in may") -> Response:
+    """What the page of the token answers to a body."""
+    waiting = list(messages)
+
+    async def receive() -> Message:
+        return waiting.pop(0)
+
+    return finished(
+        answer_to_token(scope or scope_of(), receive, lambda text: text == token, ("the-cookie", "its-value"))
+    )
+
+
+def body(text: bytes, *, more: bool = False) -> Message:
+    return {"type": "http.request", "body": text, "more_body": more}
+
+
+@pytest.fixture
+def waits(monkeypatch: pytest.MonkeyPatch) -> list[float]:
+    """For how long a wrong token is held, without waiting."""
+    heard: list[float] = []
+
+    async def slept(seconds: float) -> None:
+        heard.append(seconds)
+
+    monkeypatch.setattr("skisnow.web.token_page.asyncio.sleep", slept)
+    return heard
+
+
+def test_the_right_token_is_let_in_at_once(waits: list[float]) -> None:
+    answer = answered(body(b"token=snow", more=True), body(b"+in+may"))
+    assert (answer.status_code, answer.headers["location"], waits) == (303, "/", [])
+    parts = answer.headers["set-cookie"].split("; ")
+    assert parts[0] == "the-cookie=its-value"
+    assert sorted(parts[1:]) == ["HttpOnly", "Path=/", "SameSite=strict"]
+    assert answered(body(b"token=snow+in+may&token=x")).status_code == 303  # the first one counts
+    secure = answered(body(b"token=snow+in+may"), scope=scope_of(scheme="https"))
+    assert "; Secure" in secure.headers["set-cookie"]
+
+
+@pytest.mark.parametrize("text", [b"token=snow", b"", b"other=snow+in+may", b"token=\xff"])
+def test_a_wrong_token_is_held_a_while(waits: list[float], text: bytes) -> None:
+    answer = answered(body(text))
+    assert (answer.status_code, waits) == (403, [0.5])
+    assert '<p role="status">This is not the token.</p>' in text_of(answer)
+    assert "set-cookie" not in answer.headers
+
+
+def text_of(answer: Response) -> str:
+    return bytes(answer.body).decode()
+
+
+@pytest.mark.parametrize(("size", "status"), [(2000, 403), (2001, 413)])
+def test_a_body_that_is_too_long_for_a_token_is_not_read_on(waits: list[float], size: int, status: int) -> None:
+    answer = answered(body(b"x" * 1000, more=True), body(b"x" * (size - 1000)))
+    assert answer.status_code == status
+    assert ("This is too long for a token." in text_of(answer)) is (status == 413)
+    assert len(waits) == (1 if status == 403 else 0)
+
+
+def test_who_leaves_gets_nothing(waits: list[float]) -> None:
+    answer = answered(body(b"token=snow+in+may", more=True), {"type": "http.disconnect"})
+    assert (answer.status_code, text_of(answer), waits) == (400, "", [])
+
+
+def test_the_form_of_the_token_in_both_languages() -> None:
+    answer = token_page(scope_of(), 401)
+    page = text_of(answer)
+    assert (answer.status_code, answer.headers["cache-control"]) == (401, "no-store")
+    assert page.startswith('<!doctype html><html lang="en"><meta charset="utf-8"><title>Token · skisnow</title>')
+    assert '<p role="status">The lab asks for the token that it was started with.</p>' in page
+    assert '<form method="post" action="/token">\n<label for="token">Token</label>' in page
+    assert "<button>Open the lab</button>" in page
+    german = text_of(token_page(scope_of("de"), 403, "This is not the token."))
+    assert '<html lang="de"><meta charset="utf-8"><title>Wort · skisnow</title>' in german
+    assert '<p role="status">Das ist nicht das Wort.</p>' in german
+
+
+@pytest.mark.parametrize(("wait_s", "seconds"), [(0.1, 1), (30.0, 30), (59.2, 60)])
+def test_too_many_tries_are_told_how_long_to_wait(wait_s: float, seconds: int) -> None:
+    answer = too_many_tries(scope_of(), wait_s)
+    assert (answer.status_code, answer.headers["retry-after"]) == (429, str(seconds))
+    assert f"Those were 10 tries in a minute. Wait {seconds} seconds, then try again." in text_of(answer)
+    german = text_of(too_many_tries(scope_of("de"), wait_s))
+    assert f"Das waren 10 Versuche in einer Minute. Warte {seconds} Sekunden, dann noch einmal." in german
+
+
+def test_tries_are_forgotten_after_a_minute_each() -> None:
+    clock = [0.0]
+    tries = Tries(lambda: clock[0])
+    for second in range(10):
+        clock[0] = float(second)
+        assert tries.wait_s("a") == 0.0
+    assert [tries.wait_s("a"), tries.wait_s("a")] == [51.0, 51.0]
+    clock[0] = 59.5
+    assert tries.wait_s("a") == 0.5
+    clock[0] = 60.0
+    assert (tries.wait_s("a"), tries.wait_s("a")) == (0.0, 1.0)  # the first one is a minute old
+    clock[0] = 130.0
+    assert [tries.wait_s("a") for _ in range(11)] == [0.0] * 10 + [60.0]
+    assert Tries().wait_s("a") == 0.0
+
+
+def test_networks_have_tries_of_their_own() -> None:
+    tries = Tries(lambda: 0.0)
+    assert [tries.wait_s(f"2001:db8::{i:x}:1") for i in range(10)] == [0.0] * 10
+    assert tries.wait_s("2001:db8:0:0:ffff:ffff:ffff:ffff") == 60.0
+    assert tries.wait_s("2001:db8:0:1::") == 0.0
+    assert [tries.wait_s("no address") for _ in range(11)] == [0.0] * 10 + [60.0]
+    assert tries.wait_s("another") == 0.0
+
+
+def test_ten_thousand_addresses_are_known_the_latest_ones() -> None:
+    tries = Tries(lambda: 0.0)
+    for _ in range(10):
+        tries.wait_s("first")
+        tries.wait_s("second")
+    for number in range(9_998):
+        tries.wait_s(f"other {number}")
+    assert tries.wait_s("first") == 60.0  # known, and now the latest
+    tries.wait_s("one more")  # the second one is forgotten for it
+    assert tries.wait_s("first") == 60.0
+    assert tries.wait_s("second") == 0.0
+
+
+class Wire(asyncio.Transport):
+    """A connection that hears what a server does with it."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.closed = False
+        self.written = b""
+        self.protocol: asyncio.BaseProtocol | None = None
+
+    def write(self, data: Any) -> None:
+        self.written += bytes(data)
+
+    def close(self) -> None:
+        self.closed = True
+
+    def is_closing(self) -> bool:
+        return self.closed
+
+    def set_protocol(self, protocol: asyncio.BaseProtocol) -> None:
+        self.protocol = protocol
+
+    def get_protocol(self) -> asyncio.BaseProtocol:
+        assert self.protocol is not None
+        return self.protocol
+
+    def pause_reading(self) -> None:
+        """As if it did."""
+
+    def resume_reading(self) -> None:
+        """As if it did."""
+
+
+class Timer:
+    """What was to happen later."""
+
+    def __init__(self, seconds: float) -> None:
+        self.seconds = seconds
+        self.is_waiting = True
+
+    def cancel(self) -> None:
+        self.is_waiting = False
+
+
+async def hi(_: Scope, receive: Receive, send: Send) -> None:
+    while (await receive()).get("more_body"):
+        pass
+    await send({"type": "http.response.start", "status": 200, "headers": [(b"content-length", b"2")]})
+    await send({"type": "http.response.body", "body": b"hi"})
+
+
+class Patience:
+    """The server's side of a connection, and for how long it waits with it."""
+
+    def __init__(self) -> None:
+        self.wire = Wire()
+        self.state = ServerState()
+        self.timers: list[Timer] = []
+        loop = asyncio.get_running_loop()
+        later = loop.call_later
+
+        def call_later(seconds: float, act: Callable[..., Any], *given: Any, **named: Any) -> Any:
+            if act != self.wire.close:
+                return later(seconds, act, *given, **named)
+            self.timers.append(Timer(seconds))
+            return self.timers[-1]
+
+        vars(loop)["call_later"] = call_later
+        config = uvicorn.Config(hi, ws="none", lifespan="off", log_level="critical")
+        config.load()
+        self.protocol = PatientToAPoint(config, self.state, {})
+        self.wire.set_protocol(self.protocol)
+        self.protocol.connection_made(self.wire)
+
+    @property
+    def waits(self) -> list[float]:
+        return [each.seconds for each in self.timers if each.is_waiting]
+
+    async def hears(self, data: bytes) -> list[float]:
+        """For how long it waits on what comes."""
+        self.protocol.data_received(data)
+        return self.waits
+
+    async def answers(self, count: int) -> None:
+        """Wait until so many answers are there."""
+        while self.wire.written.count(b"hi") < count:
+            await asyncio.sleep(0)
+
+
+@asynccontextmanager
+async def patience() -> AsyncIterator[Patience]:
+    made = Patience()
+    yield made
+    made.protocol.connection_lost(None)
+    assert made.waits == []
+    assert made.state.connections == set()
+
+
+GET = b"GET / HTTP/1.1\r\nHost: x\r\n\r\n"
+POST = b"POST / HTTP/1.1\r\nHost: x\r\nContent-Length: 9\r\n\r\n"
+
+
+def test_a_head_has_twenty_seconds_from_its_connection_or_the_answer_before() -> None:
+    async def talk() -> None:
+        async with patience() as server:
+            assert server.waits == [20.0]
+            assert await server.hears(GET[:5]) == [20.0]
+            assert len(server.timers) == 1  # not from the beginning: that would have no end
+            assert await server.hears(GET[5:]) == []
+            await server.answers(1)
+            assert server.waits == [20.0]
+            assert await server.hears(GET + GET[:5]) == []
+            await server.answers(2)
+            assert server.waits == [20.0]
+            assert len(server.timers) == 3
+
+    finished(talk())
+
+
+def test_each_piece_of_a_body_has_two_minutes() -> None:
+    async def talk() -> None:
+        async with patience() as server:
+            assert await server.hears(POST) == [120.0]
+            before = len(server.timers)
+            assert await server.hears(b"1234") == [120.0]
+            assert len(server.timers) == before + 1
+            assert await server.hears(b"56789") == []
+            await server.answers(1)
+            assert server.waits == [20.0]
+
+    finished(talk())
+
+
+def test_a_head_without_an_end_is_cut_off_and_each_request_is_counted_by_itself() -> None:
+    async def talk() -> None:
+        async with patience() as server:
+            for number in (1, 2):
+                start = b"GET / HTTP/1.1\r\nHost: x\r\nA: "
+                await server.hears(start)
+                await server.hears(b"a" * (65_536 - len(start)))
+                assert not server.wire.closed
+                assert await server.hears(b"\r\n\r\n") == []
+                await server.answers(number)
+            await server.hears(b"GET / HTTP/1.1\r\nA: ")
+            await server.hears(b"a" * (65_536 - 19))
+            assert not server.wire.closed
+            await server.hears(b"a")
+            assert server.wire.closed
+
+    finished(talk())
+
+
+def test_a_connection_that_ends_with_its_answer_is_not_waited_for() -> None:
+    async def talk() -> None:
+        async with patience() as server:
+            await server.hears(GET.replace(b"Host: x", b"Connection: close"))
+            await server.answers(1)
+            assert server.wire.closed
+            assert server.waits == []
+
+    finished(talk())
+
+
+def test_a_web_socket_may_be_silent() -> None:
+    class Socket(asyncio.Protocol):
+        def __init__(self, **_: object) -> None:
+            super().__init__()
+
+    async def talk() -> None:
+        async with patience() as server:
+            vars(server.protocol)["ws_protocol_class"] = Socket
+            upgrade = b"Connection: Upgrade\r\nUpgrade: websocket"
+            assert await server.hears(GET.replace(b"Host: x", upgrade)) == []
+            assert isinstance(server.wire.get_protocol(), Socket)
+            assert not server.wire.closed
+
+    finished(talk())
+
+
+def test_a_timer_that_ends_closes_the_connection() -> None:
+    class Hasty(PatientToAPoint):
+        head_s = 0.0
+
+    async def talk() -> bool:
+        wire = Wire()
+        config = uvicorn.Config(hi, ws="none", lifespan="off", log_level="critical")
+        config.load()
+        Hasty(config, ServerState(), {}).connection_made(wire)
+        while not wire.closed:
+            await asyncio.sleep(0)
+        return True
+
+    assert finished(talk())
+    assert (PatientToAPoint.head_s, PatientToAPoint.body_s) == (20.0, 120.0)

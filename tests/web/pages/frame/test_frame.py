@@ -1,0 +1,248 @@
+"""The frame of a page, its fields and its charts."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Sequence
+from html import unescape
+from typing import TYPE_CHECKING, Any
+
+import pytest
+from nicegui import ui
+
+from skisnow.web.fields import FIRST, button, choice, field, link, said_options
+from skisnow.web.layout import SAID_BY_SCRIPT, heading, sentence
+from skisnow.web.line_chart import STYLES, ChartLine, LineChart
+from skisnow.web.worded import TypedField, Words, html_words, named
+
+from .shared import made
+
+if TYPE_CHECKING:
+    from ..desk import Desk, Sheet
+
+CONNECTING = "Connecting to the lab. The fields open as soon as it answers."
+
+
+def around(page: Sheet) -> list[str]:
+    """What stands before and behind the content."""
+    elements = list(page.of())
+    within = {each.id for each in page.content.descendants(include_self=True)}
+    lines = []
+    for each in elements:
+        if each.id not in within and getattr(each, "text", "") is not None:
+            kept = {key: each.props[key] for key in ("href", "aria-current", "aria-label", "role") if key in each.props}
+            text = getattr(each, "_text", "") or ""
+            if kept or text:
+                lines.append(f"{each.tag} {text} {kept}".replace("nicegui-link", "link"))
+    return lines
+
+
+def pages(*names: str, here: str) -> list[str]:
+    """The links to pages in the head."""
+    places = ("/", "/skis", "/carve", "/simulate", "/study", "/replay")
+    current = {here: ", 'aria-current': 'page'"}
+    return [f"link {name} {{'href': '{to}'{current.get(to, '')}}}" for name, to in zip(names, places, strict=True)]
+
+
+def test_the_head_leads_to_every_page_and_to_the_other_language(desk: Desk) -> None:
+    page = desk.open("/skis?ski=slalom&added=")
+    assert around(page) == [
+        "a  {'href': '#content'}",
+        "div Skip to the content {}",
+        "div skisnow {}",
+        "nav  {'aria-label': 'Pages'}",
+        *pages("Campaigns", "Skis", "Carve", "Simulate", "Study", "Replay", here="/skis"),
+        "link DE {'href': '/language/de?back=%2Fskis%3Fski%3Dslalom%26added%3D', 'aria-label': 'Deutsch'}",
+        f"div {CONNECTING} {{'role': 'status'}}",
+        "div  {'role': 'status'}",
+    ]
+    (other,) = (each for each in page.of(ui.link) if each.text == "DE")
+    assert (other.props["hreflang"], other.props["lang"], other.props["title"]) == ("de", "de", "Deutsch")
+    classes = {each.text: each.classes for each in page.of(ui.label)}
+    assert (classes["skisnow"], classes[CONNECTING], classes[""]) == (["lab-name"], ["connection"], ["unused"])
+
+
+def test_the_head_in_german(desk: Desk) -> None:
+    page = desk.open("/carve", "de")
+    found = around(page)
+    assert found[1:4] == ["div Zum Inhalt {}", "div skisnow {}", "nav  {'aria-label': 'Seiten'}"]
+    assert found[4:10] == pages("Kampagnen", "Ski", "Carven", "Simulieren", "Studie", "Replay", here="/carve")
+    assert found[10] == "link EN {'href': '/language/en?back=%2Fcarve', 'aria-label': 'English'}"
+
+
+def test_the_content_is_closed_until_the_browser_is_connected(desk: Desk) -> None:
+    page = desk.open("/skis")
+    (fields,) = page.tagged("fieldset")
+    assert fields.classes == ["lab"]
+    assert fields.props["disabled"] is True and fields.props["role"] == "none"
+    assert fields.parent_slot.parent is page.content
+    assert page.outline()[0] == "h1 Skis"
+    assert page.at_first[0] == "lab.connected()"  # before all else
+    page.told("lab.connected()")  # and whenever a connection is made
+    assert "lab.answered(0, true)" not in page.at_first
+
+
+def scripts(page: Sheet) -> list[str]:
+    """The lab's own lines in the head of a page."""
+    return [line for line in page.html.splitlines() if re.search(r'="/(lab|kept)\.', line)]
+
+
+@pytest.mark.parametrize(("path", "ahead"), [("/describe", True), ("/skis", False)])
+def test_scripts_know_what_the_page_keeps(desk: Desk, path: str, *, ahead: bool) -> None:
+    page = desk.open(path)
+    style, kept, script = scripts(page)
+    assert style.strip() == '<link rel="stylesheet" href="/lab.css">'
+    assert kept == f'<script src="/kept.js"{" data-keeps" if ahead else ""}></script>'
+    assert script.startswith('<script src="/lab.js" data-language="en" data-words="')
+    assert script.endswith(f'"{" data-ahead" if ahead else ""}></script>')
+    assert ("lab.answered(0, true)" in page.at_first) is ahead
+    words = unescape(script.split('data-words="')[1].split('"')[0])
+    assert all(f'"{key}": "{text}"' in words for key, text in SAID_BY_SCRIPT.items())
+
+
+def test_the_title_of_the_window_and_the_scripts_speak_the_language_of_the_page(desk: Desk) -> None:
+    assert "<title>Skis · skisnow</title>" in desk.open("/skis").html
+    page = desk.open("/skis", "de")
+    assert "<title>Ski · skisnow</title>" in page.html
+    assert 'data-language="de"' in page.html
+    assert '"refused": "nicht gespeichert"' in unescape(page.html)
+
+
+def test_headings_and_sentences(desk: Desk) -> None:
+    page = desk.open("/carve")
+
+    def write() -> None:
+        with page.content:
+            heading("First")
+            heading("Second", 4)
+            sentence("Third", "bad")
+            sentence("Fourth")
+
+    desk.do(write, page.client)
+    assert page.outline()[-4:] == ["h2 First", "h4 Second", "[bad] Third", "Fourth"]
+    plain = made(desk, lambda: sentence("Skis", "quiet"), "de")
+    assert (plain.text, plain._text, plain.classes) == ("Skis", "Ski", ["sentence", "quiet"])
+
+
+def test_a_field_has_its_name_above_it_in_the_language_of_the_page(desk: Desk) -> None:
+    plain = made(desk, lambda: field("Width (mm)", "7"), "de")
+    assert isinstance(plain, TypedField)
+    assert (plain.value, plain.props["label"], plain.classes) == ("7", "Breite (mm)", ["field"])
+    assert "stack-label" in plain.props and plain.props["autocomplete"] == "off"
+    assert "inputmode" not in plain.props and "data-optional" not in plain.props
+    every = made(desk, lambda: field("Width (mm)", numeric=True, wide=True, optional=True))
+    assert (every.value, every.props["label"], every.classes) == ("", "Width (mm)", ["field", "wide"])
+    assert every.props["inputmode"] == "decimal" and "data-optional" in every.props
+    assert "label" not in made(desk, TypedField).props
+
+
+def test_what_is_wrong_with_a_field_is_said_in_the_language_of_the_page(desk: Desk) -> None:
+    typed = made(desk, lambda: field("Width (mm)"), "de")
+    desk.do(lambda: setattr(typed, "error", "a number is needed here"))
+    assert typed.error == "a number is needed here"
+    assert (typed.props["error"], typed.props["error-message"]) == (True, "hier fehlt eine Zahl")
+    desk.do(lambda: setattr(typed, "error", None))
+    assert (typed.error, typed.props["error"], typed.props["error-message"]) == (None, None, None)
+
+
+def test_a_choice_shows_words_for_values(desk: Desk) -> None:
+    one = made(desk, lambda: choice("Compared with", ["nothing", "mine"], "mine"), "de")
+    assert (one.value, one.props["label"], one.classes) == ("mine", "Verglichen mit", ["field"])
+    assert one.options == {"nothing": "nichts", "mine": "mine"}
+    assert made(desk, lambda: choice("Ski", {"a": "nothing"}, None), "de").options == {"a": "nichts"}
+    assert said_options({"a": "b"}) == {"a": "b"}
+
+
+def test_a_button_that_acts_once_tells_presses_apart(desk: Desk) -> None:
+    pressed: list[str] = []
+
+    def listeners(element: Any) -> list[tuple[str, str | None]]:
+        return [(each.type, each.js_handler) for each in element._event_listeners.values()]
+
+    page = desk.open("/carve", "de")
+    often = desk.do(lambda: button("Add this ski", lambda: pressed.append("often")), page.client)
+    once = desk.do(lambda: button("Once", lambda: pressed.append("once"), "main", once=True), page.client)
+    assert (often.text, often.classes, once.classes) == ("Diesen Ski hinzufügen", ["act"], ["act", "main"])
+    assert "no-caps" in often.props and "color" not in often.props
+    assert listeners(often) == [("click", None)]
+    assert listeners(once) == [("click", FIRST)]
+    page.fire(often, "click", {})
+    page.fire(once, "click", {})
+    assert pressed == ["often", "once"]
+
+
+def test_a_link_is_as_large_as_a_button(desk: Desk) -> None:
+    plain = made(desk, lambda: link("Carve both side by side", "/carve", "main"), "de")
+    assert plain.text == "Beide nebeneinander carven"
+    assert plain.props["href"] == "/carve"
+    assert plain.classes == ["nicegui-link", "act", "main"]
+    assert made(desk, lambda: link("x", "/carve")).classes == ["nicegui-link", "act"]
+
+
+def test_words_stay_as_they_were_said_and_are_shown_in_german(desk: Desk) -> None:
+    words = made(desk, lambda: Words("Skis"), "de")
+    assert (words.text, words._text) == ("Skis", "Ski")
+    desk.do(lambda: words.set_text("Depth (mm)"))
+    assert (words.text, words._text) == ("Depth (mm)", "Tiefe (mm)")
+    called = made(desk, lambda: named(ui.element("nav"), "Pages"), "de")
+    assert called.props["aria-label"] == "Seiten"
+
+
+def test_html_of_reports_is_translated_but_for_names(desk: Desk) -> None:
+    html = "<p>Depth (mm)</p><p>Skis</p>"
+    assert made(desk, lambda: html_words(html, {"Skis"}), "de").content == "<p>Tiefe (mm)</p><p>Skis</p>"
+    assert made(desk, lambda: html_words(html), "de").content == "<p>Tiefe (mm)</p><p>Ski</p>"
+    assert made(desk, lambda: html_words(html)).content == html
+    assert made(desk, lambda: html_words(html)).props["sanitize"] is False  # charts of reports stay whole
+
+
+def test_a_chart_tells_its_extent_and_its_names(desk: Desk, monkeypatch: pytest.MonkeyPatch) -> None:
+    chart = made(desk, lambda: LineChart("Depth (mm)", "Load (N)", "Load over depth", height=77, ends=("tail", "tip")))
+    empty = {
+        "x": "Depth (mm)", "y": "Load (N)", "ends": ["tail", "tip"], "mark": ".",
+        "label": "Load over depth: nothing yet", "range": None, "from_zero": "", "lines": [],
+    }  # fmt: skip
+    assert chart.props["panel"] == empty
+    assert (chart.props["height"], chart.props["styles"]) == (77, STYLES)
+    lines = [
+        ChartLine([0.0, 1.0, 2.0], [3.0, None, -1.25], 1, name="a"),
+        ChartLine([5.0], [math.inf], 3, points=True),
+        ChartLine([5.0], [7.123456789], name="b"),
+    ]
+    desk.do(lambda: chart.show(lines, range_=(0.0, 9.0), from_zero="xy"))
+    assert chart.props["panel"] == empty | {
+        "label": "Load over depth: −1.25 to 7.12 (a, b)",
+        "range": (0.0, 9.0),
+        "from_zero": "xy",
+        "lines": [
+            {"x": [0.0, 1.0, 2.0], "y": [3.0, None, -1.25], "style": 1, "points": False, "name": "a"},
+            {"x": [5.0], "y": [None], "style": 3, "points": True, "name": ""},
+            {"x": [5.0], "y": [7.1235], "style": 0, "points": False, "name": "b"},
+        ],
+    }
+    shortened: list[object] = []
+    own = [*lines[::-1], ChartLine([0.0], [0.0])]
+
+    def short(values: Sequence[float | None]) -> list[float | None]:
+        if any(values is known for line in own for known in (line.x, line.y)):  # a page before may still be drawn
+            shortened.append(values)
+        return list(values)
+
+    monkeypatch.setattr("skisnow.web.line_chart._short", short)
+    desk.do(lambda: chart.show(own))
+    again = chart.props["panel"]["lines"]
+    assert shortened == [[0.0], [0.0]]  # what was there is not rounded again
+    assert [each["y"] for each in again] == [[7.1235], [None], [3.0, None, -1.25], [0.0]]
+    assert (chart.props["panel"]["range"], chart.props["panel"]["from_zero"]) == (None, "")
+
+
+def test_a_chart_in_german(desk: Desk) -> None:
+    chart = made(desk, lambda: LineChart("Depth (mm)", "Load (N)", "EI (N m²) along the ski"), "de")
+    panel = chart.props["panel"]
+    assert (panel["x"], panel["y"], panel["mark"], panel["ends"]) == ("Tiefe (mm)", "Last (N)", ",", ["", ""])
+    desk.do(lambda: chart.show([ChartLine([0.0, 1.0], [0.5, 2.25], name="nothing")]))
+    panel = chart.props["panel"]
+    assert panel["label"] == "EI (N m²) entlang des Skis: 0,500 bis 2,25 (nichts)"
+    assert panel["lines"][0]["name"] == "nichts"
+    assert [each["read"] for each in STYLES] == [True, True, True, False]

@@ -1,0 +1,42 @@
+"""Fixtures of this room."""
+
+from __future__ import annotations
+
+import json
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+from skisnow.report.run_file import write_run_file
+from skisnow.scenario import scenario_values
+from skisnow.scenario.values import in_sections
+from skisnow.simulate.run_summary import summary_dict
+from skisnow.web.replay import addresses, uploads
+
+from ....report.runs import circle_run
+
+if TYPE_CHECKING:
+    pass
+
+
+@pytest.fixture(scope="module")
+def run_files(tmp_path_factory: pytest.TempPathFactory) -> dict[str, bytes]:
+    """Of a turn, as the command leaves them."""
+    place, run = tmp_path_factory.mktemp("run") / "run.nc", circle_run(count=11)
+    write_run_file(run, in_sections(scenario_values(run.scenario)), place)
+    summary = json.dumps(summary_dict(run), allow_nan=False)
+    return {"run.nc": place.read_bytes(), "summary.json": summary.encode()}
+
+
+@pytest.fixture
+def here(monkeypatch: pytest.MonkeyPatch) -> list[Any]:
+    """What was sent is read in this process; gives the limits that it was to be read with."""
+    bounds: list[Any] = []
+
+    def done(most: Any, work: Any, *what: Any) -> Any:
+        bounds.append(most)
+        return work(*what)
+
+    monkeypatch.setattr(uploads, "confined", done)
+    monkeypatch.setattr(addresses, "confined", done)
+    return bounds

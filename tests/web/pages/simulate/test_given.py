@@ -1,0 +1,223 @@
+"""*Simulate*: the ski, course and snow that go with a run, and the cards of the queue."""
+
+from __future__ import annotations
+
+import json
+import math
+import threading
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+from skisnow.field.store import Journals, NewEntry
+from skisnow.snow import snow_from_results
+from skisnow.web import snow_choice
+from skisnow.web.lab_skis import LabSkis
+from skisnow.web.pages.simulate import _Card
+from skisnow.web.runs import Job, Runs
+from skisnow.web.snow_of_campaign import campaign_snow
+
+from .shared import CAMPAIGN, ENDS, HARDNESS, NUMBERS, STEERS, STRESS, asked, campaign, jobs, refused
+
+if TYPE_CHECKING:
+    from ..desk import Desk
+
+SHEAR = "experiment,site,plate,edge_angle_deg,depth_mm,lever_arm_mm,moment_Nm\n" + "".join(
+    f"{name},{site},blade,90,5,250,{moment}\n"
+    for name, site, moment in (("a", "A", 20), ("b", "A", 21), ("c", "B", 30))
+)
+
+
+def test_a_ski_of_the_catalogue_is_named_and_a_saved_one_is_a_file(desk: Desk) -> None:
+    LabSkis(desk.lab.runs).save_texts("mine", LabSkis(desk.lab.runs).texts("slalom")[0], "")
+    page = desk.open("/simulate")
+    page.fill("Ski", "slalom")
+    job = asked(desk, page)
+    assert (job["changes"], job["given"]) == ({"ski.name": "slalom"}, "ski: slalom")
+    page.fill("Ski", "mine")
+    job = asked(desk, page)
+    assert (job["changes"], job["given"]) == ({"ski.file": LabSkis(desk.lab.runs).word("mine")}, "ski: mine")
+
+
+def test_a_skier_goes_through_the_course_that_is_chosen(desk: Desk) -> None:
+    page = desk.open("/simulate")
+    page.fill("Course", "slalom-20-gates")
+    job = asked(desk, page)
+    assert (job["changes"], job["given"]) == ({"course.name": "slalom-20-gates"}, "course: slalom-20-gates")
+    page.fill("Scenario", "skier-10deg")
+    page.shows(STEERS)
+    page.fill("Ski", "slalom")
+    job = asked(desk, page)
+    assert job["changes"] == {"ski.name": "slalom", "course.name": "slalom-20-gates", "skier.steers": "gates"}
+    assert job["given"] == "ski: slalom; course: slalom-20-gates"
+    page.fill("Scenario", "slalom-20-gates")
+    page.shows(f"field {STEERS} = 'gates'")
+    page.fill(STEERS, "turns")
+    assert asked(desk, page)["changes"]["skier.steers"] == "turns"
+
+
+def test_a_published_snow_takes_the_place_of_both_numbers(desk: Desk) -> None:
+    page = desk.open("/simulate")
+    page.fill(HARDNESS, "0.3")
+    page.fill("Snow", "published-glacier")
+    words = "H_V = 90.0 N/mm³, interval not known; S_f = 0.300 N/mm², interval not known"
+    page.shows(f"[snow] Snow: {words}")
+    assert not [line for line in page.outline() if HARDNESS in line or STRESS in line or "field Site" in line]
+    job = asked(desk, page)
+    assert (job["changes"], job["given"]) == ({"snow.published": "glacier"}, f"snow: glacier, {words}")
+    assert desk.open("/simulate").shows("carved-46m · ") == f"[quiet] carved-46m · snow: glacier, {words} · waiting"
+    page.fill("Snow", NUMBERS)
+    page.shows(f"field {HARDNESS} = '0.3'")
+    assert asked(desk, page)["changes"] == {"snow.H_V_N_per_mm3": "0.3", "snow.S_f_N_per_mm2": "0.5"}
+
+
+def test_the_snow_of_a_campaign_is_kept_with_the_run(desk: Desk, tmp_path: Path) -> None:
+    """At B the wedge went in 1.7 mm under 60 N: H_V = 2 F tan 30° / (200 mm e²)."""
+    id_ = campaign(desk, tmp_path / "kept")
+    page = desk.open("/simulate")
+    page.fill("Snow", f"kept-{id_}")
+    assert page.shows("[snow] Snow: ") == "[snow] Snow: H_V = 0.0680 N/mm³, [0.0201, 0.230]"
+    assert not [line for line in page.outline() if HARDNESS in line]
+    assert page.field("Site").options == {"": "all sites", "A": "A", "B": "B"}
+    job = asked(desk, page)
+    stress = "S_f = 0.500 N/mm², interval not known"  # that of the page
+    assert job["given"] == f"snow: Desk ({id_}), H_V = 0.0680 N/mm³, [0.0201, 0.230]; {stress}"
+    kept = str(desk.lab.runs / job["name"] / "snow.json")
+    assert job["changes"] == {"snow.S_f_N_per_mm2": "0.5", "snow.results": kept}
+    by_hand = 2 * 60 * math.tan(math.radians(30)) / (200 * 1.7**2)
+    assert snow_from_results(kept, site="B").snow_hardness == pytest.approx(by_hand * 1e9, rel=1e-9)
+    page.fill("Site", "B")
+    page.shows("[snow] Snow: H_V = 0.120 N/mm³, interval not known")
+    job = asked(desk, page)
+    assert job["changes"]["snow.site"] == "B"
+    assert job["given"] == f"snow: Desk ({id_}), B, H_V = 0.120 N/mm³, interval not known; {stress}"
+    line = desk.open("/simulate").shows(", B, ")
+    assert line == f"[quiet] carved-46m · {STRESS}: 0.5 · {job['given']} · waiting"
+    page.fill("Snow", NUMBERS)
+    page.until(lambda: not any("field Site" in line for line in page.outline()))
+    assert asked(desk, page)["changes"] == {}
+
+
+def test_a_campaign_with_shear_tests_gives_the_stress(desk: Desk, tmp_path: Path) -> None:
+    id_ = campaign(desk, tmp_path / "kept", shear=SHEAR)
+    page = desk.open("/simulate")
+    page.fill("Snow", f"kept-{id_}")
+    page.shows("[snow] Snow: H_V = 0.0680 N/mm³, [0.0201, 0.230]; S_f = 0.189 N/mm², [0.106, 0.338]")
+    assert not [line for line in page.outline() if HARDNESS in line or STRESS in line]
+    assert list(asked(desk, page)["changes"]) == ["snow.results"]
+
+
+def test_a_campaign_that_is_being_entered_gives_its_snow_too(desk: Desk) -> None:
+    journals = Journals(desk.lab.store)
+    id_ = journals.begin(CAMPAIGN)
+    unnamed = journals.begin(CAMPAIGN.partition("\n")[2])
+    for position, (load, depth) in enumerate((("20", "1.5"), ("40", "2.1"), ("60", "2.6"))):
+        cells = {"site": "A", "tool": "ski piece", "edge_angle_deg": "30", "load_N": load, "depth_mm": depth}
+        entry = NewEntry(
+            action="add", file="penetration.csv", test="1", position=position, cells={"experiment": "1", **cells}
+        )
+        journals.append(id_, entry, seen=journals.entries(id_)[-1].sequence)
+    page = desk.open("/simulate")
+    options = page.field("Snow").options
+    assert {key: options[key] for key in options if key.startswith("entry-")} == {
+        f"entry-{id_}": "Desk", f"entry-{unnamed}": unnamed,
+    }  # fmt: skip
+    page.fill("Snow", f"entry-{id_}")
+    page.shows("[snow] Snow: H_V = 0.0512 N/mm³, interval not known")
+    assert not [line for line in page.outline() if line.startswith("field Site")]
+    assert asked(desk, page)["given"].startswith("snow: Desk, H_V = 0.0512 N/mm³, interval not known; ")
+
+
+def test_a_campaign_that_is_analysed_is_waited_for(desk: Desk, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    id_, released, analysed = campaign(desk, tmp_path / "kept"), threading.Event(), list[Any]()
+
+    def late(*what: Any) -> Any:
+        assert released.wait(60)
+        analysed.append(campaign_snow(*what))
+        return analysed[0]
+
+    monkeypatch.setattr(snow_choice, "campaign_snow", late)
+    page = desk.open("/simulate")
+    page.fill("Snow", f"kept-{id_}")
+    page.shows("[snow] The campaign is being analysed …")
+    assert refused(page) == "[status bad] Not begun: the campaign is being analysed; wait a moment"
+    page.fill("Snow", "published-glacier")
+    told = page.shows("[snow] Snow: H_V = 90.0 N/mm³")
+    page.fill("Ski", "slalom")
+    released.set()
+    page.until(lambda: analysed)
+    job = asked(desk, page)
+    assert job["changes"] == {"ski.name": "slalom", "snow.published": "glacier"}
+    assert job["given"] == f"ski: slalom; {told[7].lower()}{told[8:]}".replace("snow: ", "snow: glacier, ")
+    assert page.shows("[snow] ") == told
+
+
+def test_a_campaign_that_gives_no_snow_says_why(desk: Desk, tmp_path: Path) -> None:
+    (tmp_path / "kept").mkdir()
+    (tmp_path / "kept" / "campaign.toml").write_text(CAMPAIGN, encoding="utf-8")
+    id_ = desk.lab.store.add(tmp_path / "kept").id
+    page = desk.open("/simulate")
+    page.fill("Snow", f"kept-{id_}")
+    told = page.shows("[snow] this campaign gives no snow yet. ").removeprefix("[snow] ")
+    assert refused(page) == f"[status bad] Not begun: {told}"
+    assert jobs(desk) == []
+
+
+def test_a_run_that_waits_can_be_cancelled(desk: Desk) -> None:
+    name = asked(desk, desk.open("/simulate"))["name"]
+    page = desk.open("/simulate")
+    assert page.outline()[-4:] == [
+        "h2 Queue and history", f"h3 {name}", "[quiet] carved-46m · waiting", "button Cancel",
+    ]  # fmt: skip
+    assert [each.tag for each in page.of() if "card" in each.classes] == ["section"]
+    page.press(f"Cancel {name}")
+    assert page.outline()[-2:] == [f"h3 {name}", "[quiet] carved-46m · cancelled · It had not begun."]
+
+
+@pytest.mark.parametrize(
+    ("state", "lines"),
+    [
+        ("waiting", ["button Cancel"]),
+        ("running", ["[quiet progress] 1.2 s of 5 s", "button Cancel"]),
+        ("failed", []),
+    ],
+)
+def test_a_card_shows_how_its_run_stands(desk: Desk, state: Any, lines: list[str]) -> None:
+    page, runs, pressed = desk.open("/replay"), Runs(desk.lab.runs), list[object]()
+    job = Job("mine", "carved-46m", {"run.duration_s": "2", "ski.file": "/a/b"}, "2026", state, "so", "ski: b")
+    before = len(page.outline())
+
+    def shown() -> None:
+        with page.content:
+            _Card(runs, job, lambda *what: pressed.append(what)).show(job)
+
+    runs.progress = "1.2 s of 5 s"
+    desk.do(shown, page.client)
+    assert page.outline()[before:] == ["h3 mine", f"[quiet] carved-46m · {ENDS}: 2 · ski: b · {state} · so", *lines]
+    if lines:
+        page.press("Cancel mine")
+        assert pressed == [(runs.cancel, "mine")]
+
+
+def test_a_run_that_says_nothing_yet_has_no_line_of_progress(desk: Desk) -> None:
+    page, runs = desk.open("/replay"), Runs(desk.lab.runs)
+
+    def shown() -> None:
+        with page.content:
+            _Card(runs, job, lambda *_: None).show(job)
+
+    job = Job("mine", "carved-46m", {}, "2026", "running")
+    desk.do(shown, page.client)
+    assert page.outline()[-2:] == ["[quiet] carved-46m · running", "button Cancel"]
+
+
+def test_a_run_with_a_file_of_its_course_can_be_watched(desk: Desk) -> None:
+    (desk.lab.runs / "a run").mkdir()
+    job = {"name": "a run", "scenario": "carved-46m", "changes": {}, "asked_at": "2026", "state": "done", "said": "so"}
+    (desk.lab.runs / "a run" / "job.json").write_text(json.dumps(job), encoding="utf-8")
+    assert desk.open("/simulate").outline()[-1] == "[quiet] carved-46m · done · so"
+    (desk.lab.runs / "a run" / "run.nc").touch()
+    page = desk.open("/simulate")
+    assert page.outline()[-1] == "link[main] Watch -> /replay/show?run=a%20run"
+    assert [each.props["aria-label"] for each in page.of() if each.props.get("aria-label") == "Watch a run"]

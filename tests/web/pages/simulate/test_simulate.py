@@ -1,0 +1,379 @@
+"""*Simulate*: its inputs, what they ask for, what is refused."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import pytest
+
+from skisnow.course import course_names
+from skisnow.errors import ParameterError
+from skisnow.inputs import Quantity
+from skisnow.scenario import scenario_names
+from skisnow.scenario.keys import SCENARIO_KEYS
+from skisnow.ski import ski_names
+from skisnow.snow import published_names
+from skisnow.web.lab_skis import LabSkis
+from skisnow.web.scenario_fields import ScenarioField, called, in_labels, range_words
+
+from .shared import (
+    ENDS,
+    GIVEN,
+    HARDNESS,
+    MASS,
+    NUMBERS,
+    SPEED,
+    STANCE,
+    STEERS,
+    STRESS,
+    WAY,
+    asked,
+    campaign,
+    jobs,
+    refused,
+)
+
+if TYPE_CHECKING:
+    from ..desk import Desk, Sheet
+
+BASIC_OF_A_SLEDGE = [
+    "field Snow hardness H_V (N/mm³) = '0.2' numeric",
+    "[quiet range] Allowed: above 0.",
+    "field Failure shear stress S_f (N/mm²) = '0.5' numeric",
+    "[quiet range] Allowed: above 0.",
+    "field Unloading ratio k_u/H_V = '10' numeric",
+    "[quiet range] Allowed: from 1 to 1000.",
+    "field Slope angle α (°) = '10' numeric",
+    "[quiet range] Inclination of the plane. Allowed: from 0 to 75.",
+    "field Edge angle ϑ (°) = '30' numeric",
+    "[quiet range] Angle of both skis' bases to the sledge; positive: left edges down, a turn to the left. "
+    "Allowed: from -85 to 85.",
+    "field Mass of the sledge m (kg) = '80' numeric",
+    "[quiet range] Mass without the skis. Allowed: above 0 to 1000.",
+    "field Speed at the start v (m/s) = '7' numeric",
+    "[quiet range] Speed along the skis. Allowed: from 0 to 100.",
+    "field Heading at the start (°) = '-30' numeric",
+    "[quiet range] Heading of the skis from the fall line, positive left. Allowed: from -180 to 180.",
+    "field Friction μ_0 = '0.01' numeric",
+    "[quiet range] μ_0 of the glide friction μ = μ_0 + μ_1 v. Allowed: from 0 to 1.",
+    "field Drag area C_d A (m²) = '0.42' numeric",
+    "[quiet range] Allowed: from 0 to 10.",
+    "field Ends after (s) = '5' numeric",
+    "[quiet range] Simulated time. Allowed: above 0 to 3600.",
+    "field Ends after a way of (m) = '' numeric",
+    "[quiet range] Length of the path of the boots' middle after which the run is done. Allowed: above 0 to 100000.",
+]
+EXPERT_OF_A_SLEDGE = {
+    "Slope": ["Gravity g (m/s²)"],
+    "Snow": [
+        "Law of penetration", "Pushing the groove brakes", "Shear displacement u_y (mm)",
+        "Damping of the snow c (N s/mm³)", "Delayed share H_V/H_2", "Retardation time c_2/H_2 (ms)",
+    ],
+    "Friction": ["Friction that grows with speed μ_1 (s/m)", "Friction acts on"],
+    "Air drag": ["Density of the air ρ (kg/m³)", "Height of the centre of pressure (m)"],
+    "Sledge": [
+        "Moments of inertia I (kg m²)", "Height of the centre of mass (m)", "Centre of mass ahead of the boots (m)",
+        "Stance width (m)",
+    ],
+    "Ski": ["Stiffness factor", "Clamp length (m)", "Footprint stiffness (N/mm²)", "Damping ratio of the ski"],
+    "Start": ["Start, down the fall line x (m)", "Start, across it y (m)"],
+    "End and output": ["Time between outputs (ms)"],
+    "Shear": [
+        "Law of shear", "Relative decrease with the edge angle (1/rad)", "Density of the snow ρ (kg/m³)",
+        "Dynamic shear strength (N/mm²)", "Friction across the ski", "Least shear plane (°)", "Residual ratio",
+        "Slip weakening length (mm)",
+    ],
+    "Solver": [
+        "Method", "Time step (ms)", "Tolerance (mm)", "Fixed time step", "Elements of a ski",
+        "Distance of the snow lines (mm)", "Tolerance of the groove", "Spacing of delayed depths (mm)",
+        "Cells of the snow (mm)",
+    ],
+    "Course": [
+        "Discipline", "Latitude of the origin (°)", "Longitude of the origin (°)", "Direction of the fall line (°)",
+    ],
+}  # fmt: skip
+
+
+def names_by_heading(page: Sheet) -> dict[str, list[str]]:
+    """Of the fields below each small heading."""
+    found: dict[str, list[str]] = {}
+    for line in page.outline():
+        if line.startswith("h3 "):
+            found[line[3:]] = []
+        elif line.startswith("field ") and found:
+            found[list(found)[-1]].append(line[6:].partition(" = ")[0])
+    return found
+
+
+def test_a_first_run_is_asked_about_the_little_that_differs_from_run_to_run(desk: Desk) -> None:
+    page = desk.open("/simulate")
+    lines = page.outline()
+    assert lines[:29] == [
+        "h1 Simulate",
+        "field Scenario = 'carved-46m'",
+        f"field Course = '{GIVEN}'",
+        f"field Ski = '{GIVEN}'",
+        f"field Snow = '{NUMBERS}'",
+        *BASIC_OF_A_SLEDGE,
+    ]
+    assert lines[29:32] == ["button[main] Simulate", "[quiet] Will take about 15 s.", "Expert inputs"]  # 5 s and 8 s
+    assert lines[-7:] == [
+        "[quiet range] Compass direction of x, for a course in degrees; such a course needs it in a scenario. "
+        "Allowed: from -360 to 360.",
+        "Add a course",
+        "[quiet] CSV with the columns gate, x_m, y_m, side (left or right, where the pole is passed), in m down the "
+        "fall line and to the left; or GPX with a waypoint for each gate, which needs the compass direction of x under "
+        "Expert inputs. What was typed above is lost.",
+        "Course",
+        "Add the course",
+        "h2 Queue and history",
+        "[quiet] Nothing was simulated yet.",
+    ]
+    assert "<title>Simulate · skisnow</title>" in page.html
+    assert [each.text for each in page.of() if each.props.get("aria-current") == "page"] == ["Simulate"]
+
+
+def test_all_else_stands_under_expert_inputs(desk: Desk) -> None:
+    page = desk.open("/simulate")
+    assert names_by_heading(page) == EXPERT_OF_A_SLEDGE
+    for name in (MASS, "Law of shear", "Fixed time step"):
+        assert page.field(name).props["aria-label"] == name
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        "c of p = H_V ε + c dε/dt, snow that answers to how fast it is pressed; 0: none. Allowed: from 0 to 10.",
+        "μ_1 of it, with the speed v. Allowed: from -0.1 to 0.1.",
+        "Place of the boots' middle down the slope; on a profile its horizontal distance. Allowed: any finite number.",
+        "Length of ski that boot and binding keep straight. Allowed: 0 or more.",
+        "Whether the snow is plastic (history-dependent), or elastic.",
+        "Whether pushing the groove brakes the ski.",
+        "Between the middles of the skis; at least a ski's maximum width. Allowed: above 0 to 3.",
+    ],
+)
+def test_below_a_field_stands_what_it_means_and_what_is_allowed(desk: Desk, line: str) -> None:
+    assert f"[quiet range] {line}" in desk.open("/simulate").outline()
+
+
+@pytest.mark.parametrize(
+    ("meaning", "words"),
+    [
+        ("an angle", "An angle."),
+        ("c of p", "c of p."),
+        ("aϑ of it", "aϑ of it."),
+        ("ϑ of it", "ϑ of it."),
+        ('angle of it; left out: none; "x" is one', "Angle of it."),
+        ("angle of it; file_name is one; so", "Angle of it; so."),
+        ("turns, said again", ""),
+        ("left out: none", ""),
+    ],
+)
+def test_what_an_input_means_is_a_sentence_without_words_of_files(meaning: str, words: str) -> None:
+    assert range_words(Quantity("skier.turns", meaning, label="turns", kind="switch")) == words
+    number = range_words(Quantity("skier.turns", meaning, label="turns", lowest=0.0))
+    assert number == f"{words} Allowed: 0 or more.".strip()
+
+
+def test_the_longer_of_two_names_is_found_in_a_message() -> None:
+    keys = Quantity("a.way", "so", label="way"), Quantity("a.way_m", "so", label="long way")
+    for both in (keys, keys[::-1]):
+        assert in_labels("a.way_m is 3; a.way is 2", *both) == "Long way (m) is 3; Way is 2"
+
+
+def test_a_field_that_is_checked_says_itself_what_is_wrong(desk: Desk) -> None:
+    page, key = desk.open("/replay"), SCENARIO_KEYS["sledge.mass_kg"]
+
+    def made() -> ScenarioField:
+        with page.content:
+            return ScenarioField(key, 80.0, "-5")
+
+    field = desk.do(made, page.client)
+    told = f"{MASS} is -5; allowed is above 0 to 1000 kg"
+    with pytest.raises(ParameterError, match=r"^sledge\.mass_kg is -5; "):
+        desk.do(field.check, page.client)
+    assert page.shows(f"field {MASS}") == f"field {MASS} = '-5' numeric ! {told}"
+    page.fill(MASS, "90,5")
+    assert desk.do(field.check, page.client) == 90.5
+    assert page.shows(f"field {MASS}") == f"field {MASS} = '90,5' numeric"
+    assert (field.before, field.is_changed, field.text) == ("80", True, "90.5")
+
+
+def test_a_skier_sets_the_edge_angle_itself_and_has_inputs_of_its_own(desk: Desk) -> None:
+    page = desk.open("/simulate")
+    page.fill("Scenario", "slalom-20-gates")
+    page.shows(STEERS)
+    lines = [line for line in page.outline() if not line.startswith("[quiet range]")]
+    of_skier = ["'gates'", "'2' numeric", "'4.5' numeric", "'0.8' numeric"]
+    named = ["Steers by", "Time of a turn (s)", "Turns", "Clearance from the pole (m)"]
+    assert lines[5:9] == [f"field {name} = {value}" for name, value in zip(named, of_skier, strict=True)]
+    assert [line[6:].partition(" = ")[0] for line in lines[9:19]] == [
+        HARDNESS, STRESS, "Unloading ratio k_u/H_V", "Slope angle α (°)", MASS, SPEED, "Heading at the start (°)",
+        "Friction μ_0", "Drag area C_d A (m²)", ENDS,
+    ]  # fmt: skip
+    found = names_by_heading(page)
+    of_skier = found.pop("Skier")
+    assert found == EXPERT_OF_A_SLEDGE
+    first = [called(SCENARIO_KEYS[f"skier.{name}"]) for name in ("first_turn_s", "first_to_left", "sight_s")]
+    every = sum(name.startswith("skier.") for name in SCENARIO_KEYS)
+    assert (of_skier[:3], len(of_skier)) == (first, every - 4)
+    assert page.shows("[quiet] Will take") == "[quiet] Will take about 70 s."  # 60 s and 8 s
+
+
+def test_the_menus_name_what_there_is(desk: Desk, tmp_path: Path) -> None:
+    LabSkis(desk.lab.runs).save_texts("mine", LabSkis(desk.lab.runs).texts("slalom")[0], "")
+    id_ = campaign(desk, tmp_path / "kept")
+    page = desk.open("/simulate")
+    assert list(page.field("Scenario").options) == list(scenario_names())
+    assert list(page.field("Course").options) == [GIVEN, *course_names()]
+    assert list(page.field("Ski").options) == [GIVEN, *ski_names(), "mine"]
+    assert page.field("Snow").options == {
+        NUMBERS: NUMBERS,
+        **{f"published-{name}": f"published: {name}" for name in published_names()},
+        f"kept-{id_}": f"Desk ({id_})",
+    }
+
+
+def test_nothing_typed_asks_for_the_scenario_as_it_is(desk: Desk) -> None:
+    page = desk.open("/simulate", "de")
+    page.press("Simulieren")
+    page.until(lambda: jobs(desk))
+    (job,) = jobs(desk)
+    told = [job[key] for key in ("scenario", "changes", "given", "state", "language")]
+    assert told == ["carved-46m", {}, "", "waiting", "de"]
+
+
+def test_what_is_typed_is_asked_for_with_a_point(desk: Desk) -> None:
+    page = desk.open("/simulate")
+    page.fill(MASS, " 80,5 ")
+    page.fill("Fixed time step", True)
+    page.fill("Pushing the groove brakes", False)
+    page.fill("Law of shear", "by-angle")
+    page.fill("Moments of inertia I (kg m²)", "[6, 8, 11]")
+    assert asked(desk, page)["changes"] == {
+        "sledge.mass_kg": "80.5",
+        "snow.compaction_resistance": "false",
+        "sledge.inertia_kg_m2": "[6, 8, 11]",
+        "shear.law": "by-angle",
+        "solver.fixed": "true",
+    }
+
+
+@pytest.mark.parametrize(
+    ("name", "typed"), [(HARDNESS, {"snow.H_V_N_per_mm3": "0.3"}), (STRESS, {"snow.S_f_N_per_mm2": "0.3"})]
+)
+def test_a_number_of_the_snow_goes_with_the_other_one_beside_it(desk: Desk, name: str, typed: dict[str, str]) -> None:
+    page = desk.open("/simulate")
+    page.fill(name, "0.3")
+    assert asked(desk, page)["changes"] == {"snow.H_V_N_per_mm3": "0.2", "snow.S_f_N_per_mm2": "0.5"} | typed
+
+
+@pytest.mark.parametrize(
+    ("name", "typed", "told"),
+    [
+        (STANCE, "-5", "Stance width (m) is -5; allowed is above 0 to 3 m"),
+        (MASS, "abc", "Mass of the sledge m (kg) is 'abc'; it must be a number"),
+        (SPEED, "", "Speed at the start v (m/s) is empty; the scenario has 7"),
+        ("Moments of inertia I (kg m²)", "[1,2]", "Moments of inertia I (kg m²) is [1, 2]; it must be [a, b, c]"),
+    ],
+)
+def test_what_cannot_be_is_refused_at_the_button_and_at_its_field(desk: Desk, name: str, typed: str, told: str) -> None:
+    page = desk.open("/simulate")
+    at_first = page.field(name).value
+    page.fill(name, typed)
+    assert refused(page) == f"[status bad] Not begun: {told}"
+    assert page.shows(f"field {name} = ").endswith(f" ! {told}")
+    assert page.scripts[-1] == f"lab.goTo({page.field(name).id})"
+    assert jobs(desk) == []
+    page.fill(name, at_first)
+    asked(desk, page)
+    assert "!" not in page.shows(f"field {name} = ")
+    assert not [line for line in page.outline() if line.startswith("[status bad]")]
+
+
+def test_what_only_the_whole_scenario_tells_is_refused_at_its_field(desk: Desk) -> None:
+    """A menu, whose sentence below it says so until it is chosen anew; the other field that is named has no fault."""
+    page = desk.open("/simulate")
+    page.fill("Law of shear", "by-density")
+    told = 'carved-46m: Law of shear = "by-density" needs the density: give Density of the snow ρ (kg/m³)'
+    assert refused(page) == f"[status bad] Not begun: {told}"
+    assert [line for line in page.outline() if " ! " in line or line.startswith("[quiet range bad]")] == [
+        f"[quiet range bad] {told}"
+    ]
+    assert page.scripts[-1] == f"lab.goTo({page.field('Law of shear').id})"
+    page.fill("Law of shear", "constant")
+    asked(desk, page)
+    below = page.outline()[page.outline().index("field Law of shear = 'constant'") + 1]
+    words = "Law of the shear strength: S_f, S_f (1 - k ϑ), S_f of a density, or cutting with its thrust."
+    assert below == f"[quiet range] {words}"
+
+
+def test_what_no_field_has_is_refused_at_the_button(desk: Desk) -> None:
+    """A ski is wider than a stance of 1 cm."""
+    page = desk.open("/simulate")
+    page.fill(STANCE, "0.01")
+    assert refused(page).startswith(
+        "[status bad] Not begun: carved-46m: the stance width is 0.01 m; the ski giant-slalom"
+    )
+    assert " ! " not in "".join(page.outline())
+    assert not any("goTo" in each for each in page.scripts)
+
+
+def test_another_scenario_keeps_what_was_typed_and_only_that(desk: Desk) -> None:
+    page = desk.open("/simulate")
+    assert "open" not in page.tagged("details")[0].props
+    page.fill(MASS, "90")
+    page.fill("Scenario", "giant-slalom-67m")
+    page.shows(f"field {MASS} = '90'")
+    assert "open" not in page.tagged("details")[0].props
+    job = asked(desk, page)
+    assert (job["scenario"], job["changes"]) == ("giant-slalom-67m", {"sledge.mass_kg": "90"})
+    page.fill(STANCE, "0.6")
+    page.fill("Scenario", "carver-42m")
+    page.shows(f"field {STANCE} = '0.6'")
+    assert "open" in page.tagged("details")[0].props
+    assert asked(desk, page)["changes"] == {"sledge.mass_kg": "90", "sledge.stance_width_m": "0.6"}
+
+
+@pytest.mark.parametrize(
+    ("typed", "told"),
+    [
+        ({ENDS: "12,5"}, "20 s"),
+        ({WAY: "7"}, "10 s"),  # a second at 7 m/s, and 8 s
+        ({WAY: "7", SPEED: "0"}, "15 s"),
+        ({WAY: "x"}, "15 s"),
+        ({ENDS: "1000"}, "17 min"),
+        ({ENDS: "x"}, None),
+        ({ENDS: ""}, None),
+        ({ENDS: "", WAY: "14"}, "10 s"),
+    ],
+)
+def test_how_long_it_takes_follows_what_is_typed(desk: Desk, typed: dict[str, str], told: str | None) -> None:
+    page = desk.open("/simulate")
+    for name, value in typed.items():
+        page.fill(name, value)
+    found = [line for line in page.outline() if "Will take" in line]
+    assert found == ([] if told is None else [f"[quiet] Will take about {told}."])
+
+
+def test_how_long_it_takes_follows_the_last_run_with_the_method(desk: Desk) -> None:
+    """A run of 2 s took 6 s, 4 s of it to compute: 2 s for each of a run of 5 s, and 2 s around it."""
+    place = desk.lab.runs / "before"
+    place.mkdir()
+    job = {
+        "name": "before",
+        "scenario": "carved-46m",
+        "changes": {},
+        "asked_at": "2026",
+        "state": "done",
+        "took_s": 6.0,
+    }
+    (place / "job.json").write_text(json.dumps(job), encoding="utf-8")
+    summary = {"wall_s": 4.0, "simulated_s": 2.0, "scenario": {"solver": {"method": "fast"}}}
+    (place / "summary.json").write_text(json.dumps(summary), encoding="utf-8")
+    page = desk.open("/simulate")
+    page.shows("[quiet] Will take about 5 s.")  # as long as it goes on, where nothing is known of the method
+    page.fill("Method", "fast")
+    page.shows("[quiet] Will take about 10 s.")

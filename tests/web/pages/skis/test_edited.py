@@ -1,0 +1,355 @@
+"""*Skis*: a ski is edited, saved, downloaded, and begun again."""
+
+from __future__ import annotations
+
+import asyncio
+import threading
+import tomllib
+from ast import literal_eval
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import pytest
+from nicegui import ui
+
+from skisnow.errors import ParameterError
+from skisnow.ski import read_ski, ski_names
+from skisnow.ski.editing import SkiEdit, edit_stations, edited_ski
+from skisnow.web.lab_skis import LabSkis, check_ski_texts, ski_of_texts
+from skisnow.web.ski_asked import SkiAsked
+
+from .shared import CARVER, HEAVY, SLALOM, TEXT, cells_of, opened, saved_place, source_words
+
+if TYPE_CHECKING:
+    from ..desk import Desk, Sheet
+
+
+def between(lines: list[str], first: str, last: str) -> list[str]:
+    """Lines from the one that begins so to the one that begins so."""
+    start = next(i for i, line in enumerate(lines) if line.startswith(first))
+    stop = next(i for i, line in enumerate(lines[start:], start) if line.startswith(last))
+    return lines[start : stop + 1]
+
+
+def test_a_factor_makes_an_edited_ski(desk: Desk, confined_words: list[tuple[object, ...]]) -> None:
+    page = opened(desk)
+    page.fill("EI ×", "1,5")
+    page.shows("100 to 690 (carver, carver, edited)")
+    assert page.field("Compared with").value == "the edited ski"
+    lines = page.outline()
+    place = lines.index("EI at the boot")
+    assert lines[place : place + 3] == ["EI at the boot", "460 N m²", "690 N m²"]
+    told = f"[quiet] carver, edited: edited in the lab (EI × 1,5) from: {source_words(CARVER)}"
+    assert told in lines
+    edited = edited_ski(CARVER, SkiEdit(edit_stations(CARVER), {"EI_N_m2": 1.5}), name="carver", source="x")
+    assert between(lines, "Position (m)", "field GJ (N m²) at -0.825") == cells_of(edited)
+    page.fill("Mass ×", "2")
+    page.shows("4.49 kg")
+    page.shows("edited in the lab (EI × 1,5; Mass × 2) from: Atomic")
+    page.fill("EI ×", "1")
+    page.shows("100 to 460 (carver, carver, edited)")
+    page.shows("edited in the lab (Mass × 2) from: Atomic")
+    page.fill("Mass ×", "1")
+    page.shows("100 to 460 (carver, carver)")
+    assert confined_words == []  # what was read before is not read again apart
+
+
+def test_values_at_positions_are_drawn_and_taken_back(desk: Desk) -> None:
+    page = opened(desk)
+    page.fill("Width (mm) at 0.000 m", " 70 ")
+    page.shows("127 – 70.0 – 111 mm")
+    assert page.field("Width (mm) at 0.000 m").value == "70"
+    page.shows("edited in the lab (Width (mm) 70 at 0.000 m) from: Atomic")
+    page.fill("GJ (N m²) at -0.268 m", "200")
+    page.shows("(Width (mm) 70 at 0.000 m; GJ (N m²) 200 at -0.268 m) from")
+    lines = page.outline()
+    assert "field GJ (N m²) at -0.268 m = '200' numeric" in lines
+    assert "field GJ (N m²) at 0.000 m = '195' numeric" in lines  # a neighbour stays
+    page.fill("Width (mm) at 0.000 m", " ")
+    page.shows("(GJ (N m²) 200 at -0.268 m) from")
+    page.shows("field Width (mm) at 0.000 m = '74' numeric")
+    page.fill("GJ (N m²) at -0.268 m", "")
+    page.shows("65.0 to 195 (carver, carver)")
+
+
+def test_an_emptied_cell_shows_what_it_was(desk: Desk) -> None:
+    page = opened(desk)
+    page.fill("EI (N m²) at 0.000 m", "500")
+    page.shows("100 to 500 (carver, carver, edited)")
+    page.fill("EI (N m²) at 0.000 m", "")
+    page.shows("field EI (N m²) at 0.000 m = '460' numeric")
+    page.shows("100 to 460 (carver, carver)")
+
+
+def test_what_is_just_being_typed_stays(desk: Desk) -> None:
+    page = opened(desk)
+    half = page.field("EI (N m²) at 0.000 m")
+    desk.do(lambda: half.set_value("50"), page.client)  # its end was not typed yet
+    page.fill("EI ×", "2")
+    page.shows("100 to 920 (carver, carver, edited)")
+    assert "field EI (N m²) at 0.000 m = '50' numeric" in page.outline()
+    assert "field EI (N m²) at -0.825 m = '200' numeric" in page.outline()
+
+
+@pytest.mark.parametrize(
+    ("field", "text", "why"),
+    [
+        ("GJ (N m²) at 0.000 m", "1x", "GJ (N m²) at 0.000 m: '1x' is no number. Correct it"),
+        ("GJ (N m²) at -0.268 m", "-3", "station -0.268 m: GJ_N_m2 is -3.0; allowed is"),
+        ("EI ×", "", "the factor of EI: '' is no number. Correct it"),
+        ("Width ×", "1000", "the factor of width_mm is 1000; allowed is 0.01 to 100. Correct it"),
+    ],
+)
+def test_what_cannot_be_is_said_and_neither_saved_nor_given(desk: Desk, field: str, text: str, why: str) -> None:
+    page = opened(desk)
+    page.fill(field, text)
+    assert page.shows(f"[status bad] {why}")
+    page.fill("New name", "never")
+    page.press("Save in the lab")
+    page.shows(f"[status bad] Not saved: {why}")
+    page.press("Download the file")
+    page.until(lambda: sum(f"[status bad] {why}" in line for line in page.outline()) == 2)
+    assert LabSkis(desk.lab.runs).saved() == []
+    assert not any(each.startswith("download") for each in page.scripts)
+    page.fill(field, "1" if "×" in field else "195")
+    page.until(lambda: sum(why in line for line in page.outline()) == 1)
+    status = [each for each in page.of(ui.label) if "status" in each.classes]
+    assert [("bad" in each.classes, bool(each.text)) for each in status] == [(False, False)] * 2 + [(True, True)]
+    page.until(lambda: "carver, carver" in page.charts()["GJ (N m²)"]["label"])
+
+
+def test_what_a_reader_warns_of_is_shown(desk: Desk) -> None:
+    LabSkis(desk.lab.runs).save_texts("heavy", HEAVY, "")
+    page = opened(desk, "/skis?ski=heavy", "heavy")
+    assert page.shows("mass_kg is 20").startswith("[status good] ski.toml: mass_kg is 20")
+    assert page.shows("mass_kg is 20").count("mass_kg is 20") == 1
+    page.fill("Compared with", "the edited ski")
+    page.until(lambda: any(line.count("mass_kg is 20") == 2 for line in page.outline()))
+    page.fill("Ski", "carver")
+    page.fill("Compared with", "nothing")
+    page.until(lambda: not any("mass_kg is 20;" in line for line in page.outline() if line.startswith("[status")))
+
+
+def skis_of(page: Sheet) -> Any:
+    """What draws a page."""
+    return next(each.__self__ for each in page.field("Ski")._change_handlers if hasattr(each, "__self__"))
+
+
+@pytest.mark.parametrize("fails", [False, True])
+def test_an_answer_to_an_older_question_is_dropped(desk: Desk, monkeypatch: pytest.MonkeyPatch, *, fails: bool) -> None:
+    page = opened(desk)
+    asked, answered = threading.Event(), threading.Event()
+    drawn = skis_of(page)
+    find = drawn._found
+
+    def held(words: list[str], what: SkiAsked) -> object:
+        if words == ["carver"]:
+            asked.set()
+            assert answered.wait(60)
+            if fails:
+                raise ParameterError("too late")
+        return find(words, what)
+
+    monkeypatch.setattr(drawn, "_found", held)
+
+    async def begun() -> asyncio.Task[None]:
+        with page.client:
+            return asyncio.create_task(drawn.draw())
+
+    async def ended(task: asyncio.Task[None]) -> None:
+        await task
+
+    older = desk.wait(begun())
+    assert asked.wait(60)
+    page.fill("Ski", "slalom")
+    page.shows("60.0 to 175 (slalom)")
+    answered.set()
+    desk.wait(ended(older))
+    lines = page.outline()
+    assert "chart GJ (N m²) along the ski: 60.0 to 175 (slalom)" in lines
+    assert "carver" not in lines
+    assert not any("too late" in line for line in lines)
+
+
+def test_an_edited_ski_is_saved_and_compared(desk: Desk) -> None:
+    page = opened(desk)
+    page.fill("EI ×", "1.5")
+    page.shows("(carver, carver, edited)")
+    page.fill("New name", "  my   own ")
+    page.press("Save in the lab")
+    page.shows("[status good] Saved: my own. Carve and Simulate have it too.")
+    page.shows("100 to 690 (carver, my own)")
+    assert page.outline()[-1] == "link[main] Carve both side by side -> /carve?ski=carver&other=my%20own"
+    assert page.field("Compared with").value == "my own"
+    names = [*ski_names(), "my own"]
+    assert list(page.field("Ski").options) == names
+    assert list(page.field("Compared with").options) == ["nothing", "the edited ski", *names]
+    ski = read_ski(saved_place(desk, "my own"))
+    assert ski.name == "my own"
+    assert ski.bending_stiffness == pytest.approx(1.5 * CARVER.bending_stiffness)
+    assert saved_place(desk, "my own").with_name("ski.csv").is_file()
+    page.press("Save in the lab")
+    page.shows("[status bad] Not saved: there is a ski my own already, and none is overwritten; give this one another")
+    page.fill("New name", "second")
+    page.press("Save in the lab")
+    page.shows("[status good] Saved: second.")
+    page.until(lambda: page.outline()[-1] == "link[main] Carve both side by side -> /carve?ski=carver&other=second")
+    assert sum("Carve both" in line for line in page.outline()) == 1
+
+
+def test_a_ski_without_changes_is_saved_as_its_file_is_written(desk: Desk) -> None:
+    page = opened(desk)
+    page.fill("New name", "same")
+    page.press("Save in the lab")
+    page.shows("[status good] Saved: same.")
+    assert saved_place(desk, "same").read_text(encoding="utf-8") == TEXT.replace('name = "carver"', 'name = "same"')
+    assert not saved_place(desk, "same").with_name("ski.csv").exists()
+
+
+@pytest.mark.parametrize("name", ["", "carver", "nothing", "The edited ski"])
+def test_a_name_that_cannot_be_is_refused_with_the_reason(desk: Desk, name: str) -> None:
+    why = {
+        "": "a ski's name has 1 to 40 letters, digits, blanks, - and _; give it another one",
+        "carver": "there is a ski carver already, and none is overwritten; give this one another name",
+    }.get(name, f"{name} stands for something else in the lists of skis; give this one another name")
+    page = opened(desk)
+    page.fill("New name", name)
+    page.press("Save in the lab")
+    page.shows(f"[status bad] Not saved: {why}")
+    page.fill("Name of the ski", name)
+    page.press("Add this ski")
+    page.until(lambda: page.outline().count(f"[status bad] Not saved: {why}") == 2)
+    assert LabSkis(desk.lab.runs).saved() == []
+
+
+def downloads(page: Sheet) -> dict[str, str]:
+    """What the page gave the browser, by the name of the file."""
+    return {each["filename"]: each["src"].decode() for each in page_downloads(page)}
+
+
+def page_downloads(page: Sheet) -> list[dict[str, Any]]:
+    return [literal_eval(each.removeprefix("download ")) for each in page.scripts if each.startswith("download ")]
+
+
+def test_the_file_is_downloaded_as_it_is_written(desk: Desk) -> None:
+    page = opened(desk)
+    page.press("Download the file")
+    page.told("download")
+    assert downloads(page) == {"ski.toml": TEXT}
+
+
+def test_an_edited_ski_is_downloaded_with_its_table(desk: Desk, tmp_path: Path) -> None:
+    page = opened(desk)
+    page.fill("GJ ×", "2")
+    page.shows("(carver, carver, edited)")
+    page.press("Download the file")
+    page.until(lambda: len(downloads(page)) == 2)
+    for name, text in downloads(page).items():
+        (tmp_path / name).write_text(text, encoding="utf-8")
+    ski = read_ski(tmp_path / "ski.toml")
+    assert ski.name == "carver, edited"
+    assert ski.torsional_stiffness == pytest.approx(2 * CARVER.torsional_stiffness)
+    assert ski.width == pytest.approx(CARVER.width)
+
+
+def test_a_text_is_drawn_when_it_is_asked_for(desk: Desk, confined_words: list[tuple[object, ...]]) -> None:
+    page = opened(desk)
+    page.fill("EI ×", "2")
+    page.fill("Width (mm) at 0.000 m", "80")
+    page.shows("127 – 80.0 – 111 mm")
+    longer = TEXT.replace("length_mm = 1755", "length_mm = 1800").replace('name = "carver"', 'name = "longer"')
+    page.fill("File of the edited ski", longer)
+    why = "the file below was changed since it was drawn; press Draw the file first"
+    page.fill("New name", "early")
+    page.press("Save in the lab")
+    page.shows(f"[status bad] Not saved: {why}")
+    page.press("Download the file")
+    page.shows(f"[status bad] {why}")
+    assert LabSkis(desk.lab.runs).saved() == []
+    assert downloads(page) == {}
+    page.press("Draw the file")
+    page.shows("100 to 460 (carver, longer)")
+    assert confined_words == [(check_ski_texts, longer, "")]
+    lines = page.outline()
+    assert lines[lines.index("Length") : lines.index("Running length")] == ["Length", "1.755 m", "1.800 m"]
+    assert "field EI × = '1' numeric" in lines
+    ski, _ = ski_of_texts(longer, "")
+    assert between(lines, "Position (m)", "field GJ (N m²) at -0.8") == between(
+        cells_of(ski), "Position (m)", "field GJ (N m²) at -0.8"
+    )
+    page.press("Download the file")
+    page.told("download")
+    assert downloads(page) == {"ski.toml": longer}
+    page.press("Save in the lab")
+    page.shows("[status good] Saved: early.")
+    kept = tomllib.loads(saved_place(desk, "early").read_text(encoding="utf-8"))
+    assert (kept["name"], kept["length_mm"]) == ("early", 1800)
+    page.fill("File of the edited ski", longer.replace("mass_kg = 2.246", "mass_kg = -1"))
+    page.press("Draw the file")
+    page.shows("[status bad] ski.toml: mass_kg is -1")
+    assert len(confined_words) == 2
+
+
+def test_a_table_that_was_changed_is_drawn_too(desk: Desk) -> None:
+    skis = LabSkis(desk.lab.runs)
+    skis.save_ski("mine", replace(CARVER, name="mine"))
+    page = opened(desk, "/skis?ski=mine", "mine")
+    _, table = skis.texts("mine")
+    assert page.field("Table of the edited ski").value == table
+    page.fill("Table of the edited ski", "station_m\n")
+    page.press("Download the file")
+    page.shows("[status bad] the file below was changed since it was drawn")
+    page.press("Draw the file")
+    page.shows("[status bad] ski.csv")
+    page.fill("Table of the edited ski", table)
+    page.press("Draw the file")
+    page.shows("(mine, mine)")
+    page.press("Download the file")
+    page.until(lambda: len(downloads(page)) == 2)
+    assert downloads(page) == {"ski.toml": skis.texts("mine")[0], "ski.csv": table}
+    page.fill("New name", "again")
+    page.press("Save in the lab")
+    page.shows("Saved: again.")
+    assert skis.texts("again")[1] == table
+
+
+def test_it_is_begun_again_from_the_ski_above(desk: Desk) -> None:
+    page = opened(desk)
+    page.fill("EI ×", "2")
+    page.fill("Width (mm) at 0.000 m", "80")
+    page.shows("127 – 80.0 – 111 mm")
+    page.fill("Ski", "slalom")
+    page.shows("(slalom, carver, edited)")
+    page.press("Begin again from the ski above")
+    page.shows("(slalom, slalom)")
+    page.shows("field Width (mm) at 0.000 m = '68' numeric")
+    lines = page.outline()
+    assert "[quiet] Begun from slalom. Nothing is saved until you give it a name of its own." in lines
+    assert "field EI × = '1' numeric" in lines
+    assert between(lines, "Position (m)", "field GJ (N m²) at -0.749") == cells_of(SLALOM)
+    assert page.field("File of the edited ski").value == LabSkis(desk.lab.runs).texts("slalom")[0]
+    page.press("Download the file")
+    page.told("download")
+
+
+def test_it_is_begun_again_without_a_table_left_over(desk: Desk) -> None:
+    LabSkis(desk.lab.runs).save_ski("mine", replace(CARVER, name="mine"))
+    page = opened(desk, "/skis?ski=mine", "mine")
+    page.fill("Ski", "carver")
+    page.press("Begin again from the ski above")
+    page.shows("(carver, carver)")
+    assert page.field("Table of the edited ski").value == ""
+
+
+def test_cells_are_written_as_in_the_language_of_the_page(desk: Desk) -> None:
+    page = desk.open("/skis", "de")
+    page.shows("65,0 bis 195 (carver)")
+    assert page.field("Breite (mm) bei 0,537 m").value == "99,33"
+    page.fill("EI ×", "1,5")
+    page.shows("100 bis 690 (carver, carver, bearbeitet)")
+    page.shows("field EI (N m²) bei 0,268 m = '529,7' numeric")
+    page.fill("Neuer Name", "meiner")
+    page.press("Im Labor speichern")
+    page.shows("Saved: meiner.")
+    assert list(page.field("Verglichen mit").options.values())[:2] == ["nichts", "der bearbeitete Ski"]

@@ -1,0 +1,457 @@
+"""A measured ski that comes in, and the skis of the lab."""
+
+from __future__ import annotations
+
+import io
+import json
+import threading
+import tomllib
+import warnings
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pytest
+
+from skisnow.errors import OutputError, ParameterError, RangeWarning, SkisnowError
+from skisnow.ski import read_ski, ski_names
+from skisnow.ski.editing import SkiEdit, edit_stations, edited_ski
+from skisnow.web import measured_ski
+from skisnow.web.confined import OF_A_SKI
+from skisnow.web.lab_skis import LabSkis, _without, check_ski_texts, ski_of_texts, texts_of_ski
+from skisnow.web.measured_ski import SkiTexts, add_ski, measured_text, read_ski_files, ski_of_uploads
+from skisnow.web.pages import skis as skis_page
+from skisnow.web.settings import Limits
+from skisnow.web.ski_asked import CELLS, FACTORS, SkiAsked, ski_found
+
+from .shared import CARVER, HEAVY, TEXT, files, opened, saved_place
+
+if TYPE_CHECKING:
+    from skisnow.ski import Ski
+
+    from ..desk import Desk, Sheet
+
+TYPED = {
+    "length_mm": "1593", "running_length_mm": "1396", "sidecut_length_mm": "1458", "tip_width_mm": "116",
+    "waist_width_mm": "68", "tail_width_mm": "101", "mass_kg": "2,231", "camber_mm": "7",
+    "EI_N_m2": "100 250; 440, 260,5 100", "GJ_N_m2": "60 140 175 140 60",
+}  # fmt: skip
+TABLE = "station_m;width_mm;EI_N_m2\n0,845;25;100\n0,729;116;100\n0;68;440\n-0,729;101;100\n-0,749;101;100\n"
+WITH_TABLE = """name = "my slalom"
+running_length_mm = 1396
+sidecut_length_mm = 1458
+mass_kg = 2.231
+GJ_N_m2 = [60, 140, 175, 140, 60]
+table = "rows.csv"
+"""
+DESIGN = {
+    "board": {
+        "name": "Board", "nose length": "15 cm", "effective edge length": "130 cm", "tail length": "10 cm",
+        "sidecut radius": "13 m", "waist width": "9.3 cm", "taper": "0 cm", "stance setback": "0 cm",
+        "nose width": "12 cm",
+        "edge shape": {"type": "Basic Arc"},
+    }
+}  # fmt: skip
+
+
+def type_ski(page: Sheet, name: str, typed: Mapping[str, str]) -> None:
+    page.fill("Name of the ski", name)
+    for key, text in typed.items():
+        page.fill(measured_ski.MEASURED[key], text)
+
+
+def test_three_widths_become_a_ski_of_the_lab(desk: Desk, confined_words: list[tuple[object, ...]]) -> None:
+    page = opened(desk)
+    type_ski(page, "  my  ski ", {**TYPED, "camber_mm": ""})
+    page.press("Add this ski")
+    page.told("/skis?ski=my%20ski&added=1")
+    text = saved_place(desk, "my ski").read_text(encoding="utf-8")
+    assert text.splitlines() == [
+        'name = "my ski"',
+        'source = "measured, entered in the lab"',
+        "length_mm = 1593.0",
+        "running_length_mm = 1396.0",
+        "sidecut_length_mm = 1458.0",
+        "tip_width_mm = 116.0",
+        "waist_width_mm = 68.0",
+        "tail_width_mm = 101.0",
+        "mass_kg = 2.231",
+        "EI_N_m2 = [100.0, 250.0, 440.0, 260.5, 100.0]",
+        "GJ_N_m2 = [60.0, 140.0, 175.0, 140.0, 60.0]",
+    ]
+    assert confined_words == [(check_ski_texts, text, "")]
+    assert not any("Not saved" in line for line in page.outline())
+
+
+def test_a_field_that_is_missing_is_marked_until_it_is_typed(desk: Desk) -> None:
+    page = opened(desk)
+    type_ski(page, "mine", {**TYPED, "mass_kg": ""})
+    page.press("Add this ski")
+    page.shows("[status bad] Not saved: Mass of one ski (kg)")
+    assert "field Mass of one ski (kg) = '' numeric ! a number is needed here" in page.outline()
+    assert sum("!" in line for line in page.outline() if line.startswith("field") and "File" not in line) == 1
+    page.told(f'runMethod({page.field("Mass of one ski (kg)").id}, "select"')
+    page.fill("Mass of one ski (kg)", "2")
+    page.fill("Width at the tip (mm)", "1x")
+    page.press("Add this ski")
+    page.shows("field Width at the tip (mm) = '1x' numeric ! a number is needed here")
+    page.shows("[status bad] Not saved: Width at the tip (mm)")
+    assert "field Mass of one ski (kg) = '2' numeric" in page.outline()
+    page.fill("Width at the tip (mm)", "40")
+    page.press("Add this ski")
+    page.shows("[status bad] Not saved: ski.toml: waist_width_mm")
+    assert not any("needed here" in line for line in page.outline())
+    page.fill("Width at the tip (mm)", "116")
+    page.press("Add this ski")
+    page.told("/skis?ski=mine&added=1")
+    assert not any("Not saved" in line for line in page.outline())
+
+
+def test_an_empty_list_is_no_number_and_an_empty_camber_is_none() -> None:
+    with pytest.raises(ParameterError, match=r"^GJ \(N m²\) from tip to tail: '' is no number"):
+        measured_text("mine", {**TYPED, "GJ_N_m2": " "})
+    with pytest.raises(ParameterError, match=r"^Mass of one ski \(kg\): '' is no number"):
+        measured_text("mine", {**TYPED, "mass_kg": " "})
+    assert "camber" not in measured_text("mine", {**TYPED, "camber_mm": " "})
+    assert "camber_mm = 7.0\n" in measured_text('Mö"', TYPED)
+    assert measured_text('Mö"', TYPED).startswith('name = "Mö\\""\n')
+
+
+def test_files_are_taken_in_from_the_form(desk: Desk, confined_words: list[tuple[object, ...]]) -> None:
+    answer = desk.post("/skis/add", files=files(mine_toml=WITH_TABLE, rows_csv=TABLE), data={"name": ""})
+    assert (answer.status_code, answer.headers["location"]) == (303, "/skis?ski=my%20slalom&added=1")
+    ((work, _, names, further),) = confined_words
+    assert (work, names) == (read_ski_files, ["mine.toml", "rows.csv"])
+    assert further == dict.fromkeys(("mass_kg", "camber_mm", "EI_N_m2", "GJ_N_m2"), "")
+    assert read_ski(saved_place(desk, "my slalom")).name == "my slalom"
+    answer = desk.post("/skis/add", files=files(mine_toml=TEXT), data={"name": " Ski  A/1 "})
+    assert answer.status_code == 400
+    answer = desk.post("/skis/add", files=files(mine_toml=TEXT), data={"name": " Ski  Ä "})
+    assert answer.headers["location"] == "/skis?ski=Ski%20%C3%84&added=1"
+    assert LabSkis(desk.lab.runs).saved() == ["my slalom", "Ski Ä"]
+
+
+def test_a_design_is_taken_in_with_what_was_typed_beside_it(desk: Desk) -> None:
+    typed = {key: TYPED[key] for key in ("mass_kg", "camber_mm", "EI_N_m2", "GJ_N_m2")}
+    answer = desk.post("/skis/add", files=files(design_JSON=json.dumps(DESIGN)), data={**typed, "name": "board 1"})
+    assert answer.headers["location"] == "/skis?ski=board%201&added=1"
+    ski = read_ski(saved_place(desk, "board 1"))
+    assert ski.mass == pytest.approx(2.231)
+    assert float(ski.bending_stiffness.max()) == pytest.approx(440.0, rel=1e-3)
+    assert float(ski.torsional_stiffness.max()) == pytest.approx(175.0, rel=1e-3)
+    middle = abs(ski.station).argmin()
+    assert float(ski.width[middle]) == pytest.approx(0.093, abs=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("form", "why"),
+    [
+        (
+            {"files": [("files", ("", b"")), ("other", ("a.toml", b"x"))]},
+            "no file was chosen; choose the .toml file of a ski, or a design of MonkeyCAM",
+        ),
+        ({"data": {"files": "text"}}, "no file was chosen; choose the .toml file of a ski, or a design of MonkeyCAM"),
+        ({"files": files(a_toml="a", b_csv="b", c_csv="c", d_csv="d")}, "at most 3 files at once are taken in."),
+        (
+            {"files": files(ski_toml=TEXT)},
+            "there is a ski carver already, and none is overwritten; give this one another name",
+        ),
+        ({"files": files(ski_txt="x")}, "choose one ski"),
+    ],
+)
+def test_what_cannot_be_taken_in_is_said_on_a_page(desk: Desk, form: dict[str, Any], why: str) -> None:
+    answer = desk.post("/skis/add", **form)
+    assert answer.status_code == 400
+    assert "<h1>This was not taken in</h1>" in answer.text
+    if why != "choose one ski":
+        assert f"<p>Nothing was stored: {why}</p>" in answer.text
+    assert LabSkis(desk.lab.runs).saved() == []
+
+
+def test_three_files_are_not_too_many(desk: Desk) -> None:
+    answer = desk.post("/skis/add", files=files(mine_toml=WITH_TABLE, rows_csv=TABLE, other_csv=TABLE))
+    assert answer.status_code == 303
+
+
+def test_a_refusal_is_said_in_the_language_of_the_request(desk: Desk) -> None:
+    assert '<html lang="de">' in desk.post("/skis/add", "de").text
+    too_many = desk.post("/skis/add", "de", files=files(a_toml="a", b_csv="b", c_csv="c", d_csv="d"))
+    assert '<html lang="de">' in too_many.text
+
+
+def folder_of(folder: Path, texts: Mapping[str, str]) -> list[str]:
+    for name, text in texts.items():
+        (folder / name).write_text(text, encoding="utf-8")
+    return sorted(texts)
+
+
+def test_a_file_alone_stays_as_it_is_written(tmp_path: Path) -> None:
+    names = folder_of(tmp_path, {"mine.TOML": "\ufeff" + TEXT})
+    assert read_ski_files(str(tmp_path), names, {}) == SkiTexts("carver", TEXT, "", "")
+
+
+def test_a_file_with_its_table_is_written_anew(tmp_path: Path) -> None:
+    names = folder_of(tmp_path, {"mine.toml": WITH_TABLE, "rows.csv": TABLE})
+    found = read_ski_files(str(tmp_path), names, {})
+    assert found.table.startswith("station_m,")
+    assert tomllib.loads(found.text)["table"] == "ski.csv"
+    assert texts_of_ski(read_ski(tmp_path / "mine.toml")) == (found.text, found.table)
+
+
+def test_what_is_warned_of_an_upload_is_kept(tmp_path: Path) -> None:
+    names = folder_of(tmp_path, {"mine.toml": HEAVY})
+    found = read_ski_files(str(tmp_path), names, {})
+    assert found.warned.startswith("mine.toml: mass_kg is 20")
+
+
+@pytest.mark.parametrize(
+    ("texts", "why"),
+    [
+        ({}, "choose one ski: its .toml file with the table that it names, or the ski-def.json of MonkeyCAM"),
+        ({"a.json": "{}", "b.json": "{}"}, "choose one ski: "),
+        ({"a.toml": TEXT, "b.toml": TEXT}, "choose one ski: "),
+        ({"a.toml": TEXT, "b.toml": TEXT, "c.json": "{}"}, "choose one ski: "),
+        ({"b.csv": TABLE, "a.csv": TABLE}, "a table alone tells neither length nor mass of a ski; "),
+        ({"a.toml": 'shape = "b.json"'}, "a.toml: shape is 'b.json'; choose that file, too, and name it without a fol"),
+        (
+            {"a.toml": 'table = "b.csv"'},
+            "a.toml: table is 'b.csv'; choose that file, too, and name it without a folder",
+        ),
+        ({"a.toml": TEXT.replace("mass_kg = 2.246", "mass_kg = -1")}, "a.toml: mass_kg is -1"),
+        ({"a.json": json.dumps(DESIGN)}, "Mass of one ski (kg): '' is no number. Correct it"),
+    ],
+)
+def test_what_is_no_ski_is_refused(tmp_path: Path, texts: dict[str, str], why: str) -> None:
+    with pytest.raises(ParameterError) as refused:
+        read_ski_files(str(tmp_path), folder_of(tmp_path, texts), {})
+    assert str(refused.value).startswith(why)
+    if "b.csv" in texts:
+        assert "(table = 'a.csv')" in str(refused.value)
+
+
+def test_a_design_beside_a_file_that_names_it(tmp_path: Path) -> None:
+    text = 'name = "b"\nshape = "a.json"\nmass_kg = 3\nEI_N_m2 = [400]\nGJ_N_m2 = [200]\n'
+    names = folder_of(tmp_path, {"a.json": json.dumps(DESIGN), "a.toml": text})
+    assert read_ski_files(str(tmp_path), names, {}).name == "b"
+
+
+def test_uploads_are_named_without_their_folders(confined_words: list[tuple[object, ...]]) -> None:
+    uploads = [("Skis\\of mine/mine.toml", io.BytesIO(WITH_TABLE.encode())), ("rows.csv", io.BytesIO(TABLE.encode()))]
+    found = ski_of_uploads(uploads, {"mass_kg": "1"}, Limits())
+    assert found.name == "my slalom"
+    ((_, folder, names, further),) = confined_words
+    assert (names, further) == (["mine.toml", "rows.csv"], {"mass_kg": "1"})
+    assert not Path(str(folder)).exists()
+    with pytest.raises(ParameterError, match="more than 1 files at once"):
+        ski_of_uploads(uploads, {}, Limits(files=1))
+
+
+def test_a_ski_is_added_under_a_name_or_its_own(tmp_path: Path) -> None:
+    skis = LabSkis(tmp_path)
+    texts = SkiTexts("its own", TEXT, "", "")
+    assert add_ski(skis, "", texts) == "its own"
+    assert add_ski(skis, " an  other ", texts) == "an other"
+    assert skis.saved() == ["an other", "its own"]
+
+
+def test_skis_are_listed_without_regard_to_capitals_after_the_catalogue(tmp_path: Path) -> None:
+    skis = LabSkis(tmp_path)
+    for name in ("b", "A", "c"):
+        skis.save_texts(name, TEXT, "")
+    (tmp_path / "skis" / "empty").mkdir()
+    (tmp_path / "skis" / "carver").mkdir()
+    (tmp_path / "skis" / "carver" / "ski.toml").write_text(TEXT, encoding="utf-8")
+    assert skis.saved() == ["A", "b", "c", "carver"]
+    assert skis.names() == [*ski_names(), "A", "b", "c"]
+    assert skis.word("A") == str(tmp_path.absolute() / "skis" / "A" / "ski.toml")
+    with pytest.raises(ParameterError, match=r"^the lab has no ski named 'd'\. Choose one from the list$"):
+        skis.texts("d")
+
+
+@pytest.mark.parametrize("name", ["a", "Ä", "9", "a b-c_d", "x" * 40, "con1", "com", "nothing else", "kž"])
+def test_names_that_a_ski_may_have(tmp_path: Path, name: str) -> None:
+    LabSkis(tmp_path).require_new(name)
+
+
+@pytest.mark.parametrize("name", ["_a", "a-", "x" * 41, "con", "LPT9", "a.b", "雪"])
+def test_names_that_a_ski_may_not_have(tmp_path: Path, name: str) -> None:
+    with pytest.raises(ParameterError, match=r"^a ski's name has 1 to 40 letters"):
+        LabSkis(tmp_path).require_new(name)
+
+
+def test_a_ski_that_was_saved_may_be_read_by_others_of_the_machine(tmp_path: Path) -> None:
+    skis = LabSkis(tmp_path / "deep" / "runs")
+    skis.save_ski("mine", replace(CARVER, name="mine"))
+    folder = tmp_path / "deep" / "runs" / "skis"
+    assert (folder / "mine").stat().st_mode & 0o777 == 0o755
+    assert sorted(each.name for each in (folder / "mine").iterdir()) == ["ski.csv", "ski.toml"]
+    assert [each.name for each in folder.iterdir()] == ["mine"]
+
+
+def test_what_cannot_be_written_is_an_error_of_ours(tmp_path: Path) -> None:
+    (tmp_path / "file").touch()
+    with pytest.raises(OutputError, match="file"):
+        LabSkis(tmp_path / "file").save_texts("mine", TEXT, "")
+
+
+def test_who_is_slower_is_told_and_leaves_nothing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    skis = LabSkis(tmp_path)
+    skis.save_texts("one", TEXT, "")
+    monkeypatch.setattr(LabSkis, "require_new", lambda *_: None)
+    with pytest.raises(OutputError, match=r"^the ski one cannot be saved: .+\. Try another name$"):
+        skis.save_texts("one", TEXT, "")
+    assert [each.name for each in (tmp_path / "skis").iterdir()] == ["one"]
+
+
+def test_a_text_is_saved_under_its_new_name(tmp_path: Path) -> None:
+    skis = LabSkis(tmp_path)
+    skis.save_texts("Ä 1", TEXT, "")
+    assert skis.texts("Ä 1") == (TEXT.replace('name = "carver"', 'name = "Ä 1"'), "")
+    bare = TEXT.replace('name = "carver"\n', "")
+    skis.save_texts("two", bare, "")
+    assert skis.texts("two")[0] == f'name = "two"\n{bare}'
+    twice = "x = 1\nname = \\1\n"
+    with pytest.raises(SkisnowError):
+        skis.save_texts("four", twice, "")
+    within = TEXT.replace('source = """', 'source = """\\\nname = inside\n')
+    skis.save_texts("three", within, "")
+    assert skis.texts("three")[0] == within.replace('name = "carver"', 'name = "three"')
+    inside = TEXT.replace('name = "carver"\n', "").replace('source = """', 'source = """\\\nname = inside\n')
+    with pytest.raises(ParameterError, match=r'of its own: name = "four"$'):
+        skis.save_texts("four", f'{inside}name = "carver"\n', "")
+    assert skis.saved() == ["three", "two", "Ä 1"]
+
+
+def test_a_text_is_read_with_its_table_and_its_warnings() -> None:
+    named = WITH_TABLE.replace("rows.csv", "ski.csv")
+    ski, warned = ski_of_texts(named, TABLE)
+    assert (ski.name, warned) == ("my slalom", "")
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", RangeWarning)  # whatever the process does with them
+        _, warned = ski_of_texts(HEAVY, "")
+    assert warned.startswith("ski.toml: mass_kg is 20")
+    twice = HEAVY.replace("camber_mm = 6", "camber_mm = 40")
+    words = ski_of_texts(twice, "")[1]
+    assert " ski.toml: " in words and words.count("ski.toml: ") == 2
+    with pytest.raises(ParameterError, match=r"^ski\.toml: length_mm is 'x'"):
+        ski_of_texts(TEXT.replace("length_mm = 1755", 'length_mm = "x"'), "")
+    with pytest.raises(ParameterError, match=r"^ski\.toml is no TOML"):
+        ski_of_texts("[", "")
+    with pytest.raises(ParameterError, match=r"^ski\.csv"):
+        ski_of_texts(named, "x\n")
+
+
+def test_two_texts_at_once_are_warned_of_each_by_itself(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Warnings are a setting of the whole process: a thread that came second would take it away from the first."""
+    begun, entered = threading.Event(), threading.Event()
+    found: list[str] = []
+    read = read_ski
+
+    def held(place: Path) -> Ski:
+        if begun.is_set():
+            entered.set()
+        begun.set()
+        if not found:
+            entered.wait(0.1)  # for nothing where one waits for the other
+        return read(place)
+
+    monkeypatch.setattr("skisnow.web.lab_skis.read_ski", held)
+    threads = [threading.Thread(target=lambda: found.append(ski_of_texts(HEAVY, "")[1])) for _ in range(2)]
+    for each in threads:
+        each.start()
+    for each in threads:
+        each.join()
+    assert [words.count("mass_kg is 20") for words in found] == [1, 1]
+
+
+@pytest.mark.parametrize(
+    ("line", "why"),
+    [
+        (
+            'shape = "ski.csv"',
+            "ski.toml: a shape of another program cannot be read here. Use read_ski or the command line",
+        ),
+        (
+            'table = "other.csv"',
+            'ski.toml: the table of a ski of the lab is in the field below it: write table = "ski.csv"',
+        ),
+    ],
+)
+def test_a_text_that_names_another_file_is_refused(line: str, why: str) -> None:
+    with pytest.raises(ParameterError) as refused:
+        ski_of_texts(f"{TEXT}\n{line}\n", "")
+    assert str(refused.value) == why
+
+
+def test_a_folder_that_is_gone_is_not_named(tmp_path: Path) -> None:
+    (tmp_path / "real").mkdir()
+    (tmp_path / "link").symlink_to(tmp_path / "real")
+    told = f"{tmp_path}/link/ski.toml and {tmp_path}/real/ski.csv in {tmp_path}"
+    assert _without(f"{tmp_path}/link", told) == f"ski.toml and ski.csv in {tmp_path}"
+
+
+def test_a_ski_that_was_read_is_checked_alone() -> None:
+    check_ski_texts(TEXT, "")
+    with pytest.raises(ParameterError, match="mass_kg"):
+        check_ski_texts(TEXT.replace("2.246", "-1"), "")
+
+
+ONES = dict.fromkeys(FACTORS, "1")
+
+
+@pytest.mark.parametrize(
+    ("factors", "cells", "is_file"),
+    [
+        ({}, {}, True),
+        (ONES, {}, True),
+        (ONES | {"width_mm": "1,0"}, {}, True),
+        (ONES | {"width_mm": "1.1"}, {}, False),
+        (ONES, {("width_mm", 4): "70"}, False),
+    ],
+)
+def test_whether_only_the_file_says_what_the_ski_is(
+    factors: dict[str, str], cells: dict[tuple[str, int], str], *, is_file: bool
+) -> None:
+    asked = SkiAsked(TEXT, factors=factors, cells=cells)
+    assert asked.is_file is is_file
+    found = ski_found(asked)
+    assert found.ski.name == ("carver" if is_file else "carver, edited")
+    assert (found.ski.source == CARVER.source) is is_file
+    assert ski_found(asked, name="mine").ski.name == "mine"
+
+
+def test_an_edit_is_what_the_library_makes_of_it() -> None:
+    stations = edit_stations(CARVER)
+    factors = {key: str(1.0 + 0.1 * i) for i, key in enumerate(FACTORS)}
+    cells = {("width_mm", 3): "85,5", ("base_height_mm", 2): "−2", ("EI_N_m2", 4): "500", ("GJ_N_m2", 8): "70"}
+    found = ski_found(SkiAsked(HEAVY, "", factors, cells))
+    assert found.warned.startswith("ski.toml: mass_kg is 20")
+    assert found.station == tuple(stations)
+    values = {column: np.full(9, np.nan) for column in CELLS}
+    values["width_mm"][3], values["base_height_mm"][2] = 0.0855, -0.002
+    values["EI_N_m2"][4], values["GJ_N_m2"][8] = 500.0, 70.0
+    edit = SkiEdit(stations, {key: float(text) for key, text in factors.items()}, values)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        heavy, _ = ski_of_texts(HEAVY, "")
+    edited = edited_ski(heavy, edit, name="x", source="x")
+    for attribute in ("width", "base_height", "bending_stiffness", "torsional_stiffness", "mass_per_length"):
+        assert getattr(found.ski, attribute) == pytest.approx(getattr(edited, attribute))
+    said = (
+        "Width × 1.1; Base height × 1.2; EI × 1.3; GJ × 1.4; Mass × 1.5; Width (mm) 85,5 at 0.268 m; "
+        "Base height (mm) −2 at 0.537 m; EI (N m²) 500 at 0.000 m; GJ (N m²) 70 at -0.825 m"
+    )
+    assert found.ski.source == f"edited in the lab ({said}) from: {heavy.source}"
+    assert {place: found.cells[place] for place in cells} == cells  # as typed
+    shown = {(column, i) for column in CELLS for i in range(9)}
+    assert set(found.cells) == shown
+    assert found.cells["width_mm", 4] == f"{float(np.interp(0.0, -edited.station, edited.width)) * 1000:.4g}"
+
+
+def test_the_page_reads_a_text_in_its_own_process_before_its_own(monkeypatch: pytest.MonkeyPatch) -> None:
+    heard: list[tuple[object, ...]] = []
+    monkeypatch.setattr(skis_page, "confined", lambda *words: heard.append(words))
+    skis_page._checked_apart("text", "table")
+    assert heard == [(OF_A_SKI, check_ski_texts, "text", "table")]

@@ -1,0 +1,222 @@
+"""*Skis*: what stands on the page, and two skis compared."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import pytest
+from nicegui import ui
+
+from skisnow.ski import ski_names
+from skisnow.web.fields import FIRST
+from skisnow.web.lab_skis import LabSkis
+
+from .shared import CARVER, SLALOM, TEXT, cells_of, opened, source_words
+
+if TYPE_CHECKING:
+    from ..desk import Desk
+
+CARVER_FACTS = [
+    "Length", "1.755 m",
+    "Running length", "1.540 m",
+    "Sidecut, tip – waist – tail", "127 – 74.0 – 111 mm",
+    "Sidecut radius", "14.4 m",  # 805²/(2 (119 - 74)/2), in mm
+    "EI at the boot", "460 N m²",
+    "GJ at the boot", "195 N m²",
+    "Mass", "2.25 kg",
+]  # fmt: skip
+SLALOM_FACTS = ["1.593 m", "1.396 m", "116 – 68.0 – 101 mm", "13.1 m", "440 N m²", "175 N m²", "2.23 kg"]
+
+
+def test_what_stands_on_the_page(desk: Desk) -> None:
+    page = opened(desk)
+    lines = page.outline()
+    assert lines[: lines.index("carver")] == [
+        "h1 Skis",
+        "Add a measured ski",
+        "h3 From its files",
+        "[quiet] The .toml file of a ski and the table that it names; or the ski-def.json of MonkeyCAM, which knows "
+        "neither mass nor stiffness: type those beside it.",
+        "Files of the ski",
+        "Another name for it",
+        "With a file of MonkeyCAM",
+        "Mass of one ski (kg)",
+        "Camber (mm)",
+        "EI (N m²) from tip to tail",
+        "GJ (N m²) from tip to tail",
+        "Add the files",
+        "h3 From three widths",
+        "[quiet] Widths at the widest places in front and behind and at the waist between them; stiffnesses evenly "
+        "spaced over the running length, with blanks between, or one for all of it.",
+        "field Name of the ski = ''",
+        "field Length (mm) = '' numeric",
+        "field Running length (mm) = '' numeric",
+        "field Sidecut length (mm) = '' numeric",
+        "field Width at the tip (mm) = '' numeric",
+        "field Width at the waist (mm) = '' numeric",
+        "field Width at the tail (mm) = '' numeric",
+        "field Mass of one ski (kg) = '' numeric",
+        "field Camber (mm) = '' numeric optional",
+        "field EI (N m²) from tip to tail = ''",
+        "field GJ (N m²) from tip to tail = ''",
+        "button[main] Add this ski",
+        "field Ski = 'carver'",
+        "field Compared with = 'nothing'",
+    ]
+    assert lines[lines.index("carver") :] == [
+        "carver",
+        *CARVER_FACTS,
+        f"[quiet] carver: {source_words(CARVER)}",
+        "chart Edge (mm) along the ski: −63.5 to 63.5 (carver)",
+        "chart Base (mm) along the ski: −6.00 to 44.0 (carver)",
+        "chart EI (N m²) along the ski: 100 to 460 (carver)",
+        "chart GJ (N m²) along the ski: 65.0 to 195 (carver)",
+        "h2 Edit a ski",
+        "[quiet] Begun from carver. Nothing is saved until you give it a name of its own.",
+        "h3 Whole curves",
+        "field Sidecut depth × = '1' numeric",
+        "field Width × = '1' numeric",
+        "field Base height × = '1' numeric",
+        "field EI × = '1' numeric",
+        "field GJ × = '1' numeric",
+        "field Mass × = '1' numeric",
+        "h3 At positions along the ski",
+        "[quiet] What is typed here holds; between its neighbours the curve goes through it smoothly.",
+        *cells_of(CARVER),
+        "The file of the ski",
+        "[quiet] With units in its keys. Draw the file takes it as it is written here; factors and values at positions "
+        "start again from it.",
+        f"field File of the edited ski = {TEXT!r}",
+        "Its table, where it has one",
+        "field Table of the edited ski = ''",
+        "button[main] Draw the file",
+        "button Begin again from the ski above",
+        "h3 Save it",
+        "field New name = ''",
+        "button[main] Save in the lab",
+        "button Download the file",
+    ]
+    assert page.field("Ski").options == {name: name for name in ski_names()}
+    assert list(page.field("Compared with").options) == ["nothing", "the edited ski", *ski_names()]
+
+
+def test_what_a_browser_gets_of_the_form_of_files(desk: Desk) -> None:
+    page = opened(desk)
+    (form,) = (each for each in page.of() if each.tag == "form")
+    assert form.props["method"] == "post"
+    assert form.props["action"] == "/skis/add"
+    assert form.props["enctype"] == "multipart/form-data"
+    inputs = {each.props["name"]: each for each in page.of() if each.tag == "input"}
+    labels = [each.props["for"] for each in page.of() if each.tag == "label"]
+    assert list(inputs) == ["files", "name", "mass_kg", "camber_mm", "EI_N_m2", "GJ_N_m2"]
+    assert [each.props["id"] for each in inputs.values()] == labels == [f"ski-{name}" for name in inputs]
+    files = inputs.pop("files")
+    assert files.props["type"] == "file" and files.props["accept"] == ".toml,.csv,.json"
+    assert files.props["multiple"] and files.props["required"]
+    assert files.classes == []
+    assert all(each.classes == ["act", "plain"] for each in inputs.values())
+    numeric = [name for name, each in inputs.items() if each.props.get("inputmode") == "decimal"]
+    assert numeric == ["mass_kg", "camber_mm"]
+    (button,) = (each for each in page.of() if each.tag == "button")
+    assert button.props["type"] == "submit" and button.classes == ["act"]
+
+
+def test_parts_of_the_page_have_names_and_roles(desk: Desk) -> None:
+    page = opened(desk)
+    sections = [each.props["aria-label"] for each in page.of() if each.tag == "section"]
+    assert sections == ["Drawing", "Editor"]
+    heads = [each.props["scope"] for each in page.of() if each.tag == "th"]
+    assert heads == ["col"] + ["row"] * 7 + ["col"] * 5 + ["row"] * 9
+    status = [each for each in page.of(ui.label) if "status" in each.classes]
+    assert [each.props["role"] for each in status] == ["status"] * 3
+    folded = [each for each in page.of() if each.tag == "details"]
+    assert len(folded) == len([each for each in page.of() if each.tag == "summary"]) == 4
+
+
+def test_what_saves_does_it_once_where_it_is_pressed_twice(desk: Desk) -> None:
+    page = opened(desk)
+    handlers = {
+        each.text: [one.js_handler for one in each._event_listeners.values() if one.type == "click"]
+        for each in page.of(ui.button)
+    }
+    assert handlers == {
+        "Add this ski": [FIRST],
+        "Draw the file": [None],
+        "Begin again from the ski above": [None],
+        "Save in the lab": [FIRST],
+        "Download the file": [None],
+    }
+
+
+def sent(values: Any) -> Any:
+    """As near as a chart needs it."""
+    return pytest.approx(list(values), rel=2e-4, abs=1e-3)
+
+
+def test_what_the_charts_show(desk: Desk) -> None:
+    page = opened(desk)
+    page.fill("Compared with", "slalom")
+    page.shows("100 to 460 (carver, slalom)")
+    charts = page.charts()
+    titles = {"Edge (mm)": "width", "Base (mm)": "base_height", "EI (N m²)": "bending_stiffness"}
+    titles |= {"GJ (N m²)": "torsional_stiffness"}
+    assert list(charts) == list(titles)
+    for title, attribute in titles.items():
+        panel = charts[title]
+        assert (panel["x"], panel["ends"], panel["range"]) == ("Position (m), boot = 0", ["tail", "tip"], None)
+        assert panel["from_zero"] == ("y" if title[:2] in ("EI", "GJ") else "")
+        signs = (1, -1) if title == "Edge (mm)" else (1,)
+        factor = {"width": 500.0, "base_height": 1000.0}.get(attribute, 1.0)
+        wanted = [(ski, style, sign) for style, ski in enumerate((CARVER, SLALOM)) for sign in signs]
+        assert len(panel["lines"]) == len(wanted)
+        for line, (ski, style, sign) in zip(panel["lines"], wanted, strict=True):
+            table = sign * factor * getattr(ski, attribute)
+            assert line["style"] == style
+            assert line["name"] == (ski.name if sign > 0 else "")
+            assert not line["points"]
+            assert line["x"] == sent([*ski.station[:-1:2], ski.station[-1]])
+            assert line["y"] == sent([*table[:-1:2], table[-1]])
+
+
+def test_two_skis_stand_beside_each_other(desk: Desk) -> None:
+    page = opened(desk, "/skis?ski=slalom", "slalom")
+    assert page.field("Ski").value == "slalom"
+    assert "[quiet] Begun from slalom. Nothing is saved until you give it a name of its own." in page.outline()
+    page.fill("Compared with", "carver")
+    page.shows("(slalom, carver)")
+    lines = page.outline()
+    facts = lines[lines.index("slalom") : next(i for i, line in enumerate(lines) if line.startswith("chart"))]
+    rows = zip(CARVER_FACTS[::2], SLALOM_FACTS, CARVER_FACTS[1::2], strict=True)
+    sources = [f"[quiet] {ski.name}: {source_words(ski)}" for ski in (SLALOM, CARVER)]
+    assert facts == ["slalom", "carver", *(each for row in rows for each in row), *sources]
+    colours = [each.style["color"] for each in page.of() if each.tag in ("td", "th") and "color" in each.style]
+    assert colours == ["#0b4f8a", "#b3450b"] * 8
+    page.fill("Compared with", "nothing")
+    page.shows("100 to 440 (slalom)")
+    assert "carver" not in page.outline()
+    page.fill("Ski", "carver")
+    page.shows("100 to 460 (carver)")
+
+
+def test_a_ski_that_there_is_not_opens_the_first_one(desk: Desk) -> None:
+    page = opened(desk, "/skis?ski=none&added=1")
+    assert page.field("Ski").value == "carver"
+    assert not any("is added" in line for line in page.outline())
+
+
+@pytest.mark.parametrize("added", ["", "&added=1"])
+def test_a_ski_that_came_in_is_told(desk: Desk, added: str) -> None:
+    LabSkis(desk.lab.runs).save_texts("mine", TEXT, "")
+    page = opened(desk, f"/skis?ski=mine{added}", "mine")
+    told = "[good] The ski mine is added. Carve and Simulate have it too; below it can be changed."
+    assert (told in page.outline()) is bool(added)
+    assert "Begun from mine." in page.shows("Begun from")
+    if added:
+        (said,) = (each for each in page.of(ui.label) if "is added" in each.text)
+        assert said.props["role"] == "status"
+        assert page.outline().index(told) == page.outline().index("field Ski = 'mine'") - 1
+
+
+def test_a_ski_of_the_catalogue_was_not_added(desk: Desk) -> None:
+    page = opened(desk, "/skis?ski=slalom&added=1", "slalom")
+    assert not any("is added" in line for line in page.outline())

@@ -1,0 +1,306 @@
+"""*Study*: where an input begins, how long it takes, what goes with the study."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+from skisnow.estimate import analyse, results_dict
+from skisnow.estimate.results_text import results_json
+from skisnow.field import read_campaign
+from skisnow.inputs import Quantity
+from skisnow.scenario.keys import SCENARIO_KEYS
+from skisnow.ski import read_ski
+from skisnow.web.lab_skis import LabSkis
+from skisnow.web.studies import Studies
+from skisnow.web.study_asked import CARVE, study_keys
+from skisnow.web.study_axis import begins
+
+from .shared import (
+    BUTTON,
+    ENDS,
+    FIRST,
+    FROM,
+    FROM_2,
+    HARDNESS,
+    OF,
+    RATIO,
+    SECOND,
+    SPEED,
+    STRESS,
+    TO,
+    TO_2,
+    VALUES,
+    WAY,
+    asked,
+    estimate,
+    refused,
+    scenario,
+)
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from ..desk import Desk
+
+CAMPAIGN = """name = "Desk"
+[[tool]]
+name = "ski piece"
+shape = "ski"
+length_mm = 200
+width_mm = 62
+[[plate]]
+name = "blade"
+length_mm = 100
+"""
+PENETRATION = "experiment,site,tool,edge_angle_deg,load_N,depth_mm\n" + "".join(
+    f"{name},{site},ski piece,30,{load},{depth}\n"
+    for name, site, depths in (("1", "A", (1.5, 2.1, 2.6)), ("2", "B", (1.0, 1.4, 1.7)))
+    for load, depth in zip((20, 40, 60), depths, strict=True)
+)
+
+
+def campaign(desk: Desk, folder: Path) -> str:
+    """The id of a kept campaign with two sites and no shear test."""
+    folder.mkdir()
+    (folder / "campaign.toml").write_text(CAMPAIGN, encoding="utf-8")
+    (folder / "penetration.csv").write_text(PENETRATION, encoding="utf-8")
+    return desk.lab.store.add(folder).id
+
+
+@pytest.mark.parametrize(
+    ("key", "ends"),
+    [
+        (Quantity("a.mass_kg", ""), (60.0, 120.0)),
+        (Quantity("w", "", default=2.0), (1.0, 4.0)),
+        (Quantity("w", "", default=2.0, lowest=1.5, highest=3.0), (1.5, 3.0)),
+        (Quantity("w", "", default=0.0, usual=(1.0, 2.0)), (1.0, 2.0)),
+        (Quantity("w", "", default=1.0, usual=(1.0, 3.0)), (0.5, 2.0)),
+        (Quantity("w", "", usual=(1.0, 2.0)), (1.0, 2.0)),
+        (Quantity("w", "", default=True, kind="switch"), None),
+        (Quantity("n", "", default=5, kind="whole number"), (3.0, 10.0)),
+        (Quantity("n", "", default=5, highest=7.5, kind="whole number"), (3.0, 7.0)),
+        (Quantity("n", "", default=1, lowest=1.0, highest=1.0), None),
+        (Quantity("w", "", default=1e308), None),
+    ],
+)
+def test_an_input_begins_around_what_it_usually_is(key: Quantity, ends: tuple[float, float] | None) -> None:
+    assert begins(key) == ends
+
+
+@pytest.mark.parametrize(
+    ("name", "ends"),
+    [
+        ("edge_angle_deg", ("10", "70")),
+        ("load_N", ("400", "1200")),
+        ("H_V_N_per_mm3", ("0.1", "10")),
+        ("S_f_N_per_mm2", ("0.05", "0.5")),
+        ("unloading_ratio", ("1", "50")),
+        ("moment_Nm", ("-50", "50")),
+    ],
+)
+def test_what_varies_of_a_turn_has_ends_to_begin_with(desk: Desk, name: str, ends: tuple[str, str]) -> None:
+    page = desk.open("/study")
+    page.fill(SECOND, name)
+    assert (page.field(FROM_2).value, page.field(TO_2).value) == ends
+    assert begins(study_keys(CARVE)[name]) == tuple(map(float, ends))
+
+
+@pytest.mark.parametrize(
+    ("name", "ends"),
+    [
+        ("start.speed_m_per_s", (6.0, 12.0)),
+        ("slope.angle_deg", (5.0, 20.0)),
+        ("friction.mu_0", (0.02, 0.1)),
+        ("drag.drag_area_m2", (0.3, 0.8)),
+        ("sledge.mass_kg", (60.0, 120.0)),
+    ],
+)
+def test_what_varies_of_a_run_has_ends_to_begin_with(name: str, ends: tuple[float, float]) -> None:
+    assert begins(SCENARIO_KEYS[name]) == ends
+
+
+@pytest.mark.parametrize(
+    ("typed", "told"),
+    [
+        ({VALUES: "14"}, "14 points. Will take about 45 s."),  # 43 s
+        ({WAY: "18"}, "7 points. Will take about 15 s."),  # 2 s at 9 m/s, the middle
+        ({WAY: "18", ENDS: ""}, "7 points. Will take about 15 s."),
+        ({WAY: "90"}, "7 points. Will take about 25 s."),
+        ({TO: "30", WAY: "18"}, "7 points. Will take about 10 s."),  # 1 s
+        ({FIRST: "sledge.mass_kg", WAY: "14"}, "7 points. Will take about 15 s."),  # 2 s at 7 m/s
+        ({FIRST: "run.duration_s", FROM: "10", TO: "30"}, "7 points. Will take about 80 s."),
+        ({SECOND: "run.duration_s", FROM_2: "10", TO_2: "30"}, "70 points. Will take about 12 min."),
+        ({ENDS: "1,5"}, "7 points. Will take about 15 s."),
+        ({ENDS: "x"}, "7 points."),
+        ({ENDS: ""}, "7 points."),
+        ({ENDS: "inf"}, "7 points."),
+        ({ENDS: "nan"}, "7 points."),
+        ({FROM: ""}, "7 points."),
+        ({VALUES: "x"}, ""),
+        ({VALUES: "1" * 400}, ""),
+    ],
+)
+def test_how_long_it_takes_follows_what_is_typed(desk: Desk, typed: dict[str, Any], told: str) -> None:
+    page = scenario(desk)
+    for name, value in typed.items():
+        page.fill(name, value)
+    assert estimate(page) == told
+
+
+def test_how_long_it_takes_is_learned_from_studies_with_the_method(desk: Desk) -> None:
+    """4 points of 5 s on two cores in 28 s, 8 of them around: 2 s for each second."""
+    page = scenario(desk)
+    page.fill("Method", "fast")
+    page.fill(VALUES, "4")
+    asked(desk, page)
+    place = next(desk.lab.runs.glob("studies/*/job.json"))
+    job = json.loads(place.read_text(encoding="utf-8"))
+    assert (job["method"], job["unit_s"]) == ("fast", 5.0)
+    place.write_text(json.dumps(job | {"state": "done", "took_s": 28.0}), encoding="utf-8")
+    page.fill(VALUES, "10")
+    assert estimate(page) == "10 points. Will take about 60 s."  # 58 s
+    page.fill("Method", "default")
+    assert estimate(page) == "10 points. Will take about 35 s."  # 33 s
+
+
+def test_how_long_it_takes_is_learned_from_runs_where_no_study_tells_it(desk: Desk) -> None:
+    place = desk.lab.runs / "before"
+    place.mkdir()
+    job = {"name": "before", "scenario": "a", "changes": {}, "asked_at": "2026", "state": "done", "took_s": 6.0}
+    (place / "job.json").write_text(json.dumps(job), encoding="utf-8")
+    summary = {"wall_s": 6.0, "simulated_s": 2.0, "scenario": {"solver": {"method": "default"}}}
+    (place / "summary.json").write_text(json.dumps(summary), encoding="utf-8")
+    assert estimate(scenario(desk)) == "7 points. Will take about 60 s."  # 7 * 5 * 3 / 2 + 8
+
+
+def test_workers_elsewhere_are_told(desk: Desk, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(Studies, "elsewhere", "tcp://host:1")
+    page = scenario(desk)
+    lines = page.outline()
+    assert lines[lines.index(BUTTON) + 1 :][:2] == [
+        "[quiet] 7 points, about 35 s of one core, shared by the workers of tcp://host:1.",
+        "[quiet] The workers of tcp://host:1 compute.",
+    ]
+
+
+def test_of_a_scenario_only_what_is_changed_is_fixed(desk: Desk) -> None:
+    page = scenario(desk)
+    job, text = asked(desk, page)
+    assert text == {
+        "out": "table.csv",
+        "scenario": "carved-46m",
+        "fixed": {},
+        "grid": {"start.speed_m_per_s": {"from": 6.0, "to": 12.0, "n": 7}},
+    }
+    assert [job[key] for key in ("changes", "given", "method", "unit_s", "points")] == [
+        {}, f"{SPEED}: 6 to 12, 7 values", "default", 5.0, 7,
+    ]  # fmt: skip
+    page.fill("Mass of the sledge m (kg)", "90,5")
+    page.fill("Moments of inertia I (kg m²)", "[6, 8, 11]")
+    page.fill("Fixed time step", True)
+    page.fill("Law of shear", "by-angle")
+    job, text = asked(desk, page)
+    assert text["fixed"] == {
+        "sledge.mass_kg": 90.5, "sledge.inertia_kg_m2": [6.0, 8.0, 11.0], "shear.law": "by-angle", "solver.fixed": True,
+    }  # fmt: skip
+    assert job["changes"] == {"sledge.mass_kg": "90.5"}
+
+
+@pytest.mark.parametrize(
+    ("typed", "fixed"),
+    [
+        ({HARDNESS: "0.3"}, {"snow.H_V_N_per_mm3": 0.3, "snow.S_f_N_per_mm2": 0.5}),
+        ({STRESS: "0.3"}, {"snow.H_V_N_per_mm3": 0.2, "snow.S_f_N_per_mm2": 0.3}),
+        ({FIRST: "snow.H_V_N_per_mm3"}, {"snow.S_f_N_per_mm2": 0.5}),
+        ({SECOND: "snow.S_f_N_per_mm2"}, {"snow.H_V_N_per_mm3": 0.2}),
+        ({RATIO: "11"}, {"snow.unloading_ratio": 11.0}),
+    ],
+)
+def test_of_the_two_numbers_of_the_snow_both_or_none_are_given(
+    desk: Desk, typed: dict[str, str], fixed: dict[str, float]
+) -> None:
+    page = scenario(desk)
+    for name, value in typed.items():
+        page.fill(name, value)
+    assert asked(desk, page)[1]["fixed"] == fixed
+
+
+def test_a_value_that_a_scenario_cannot_have_is_refused(desk: Desk) -> None:
+    page = scenario(desk)
+    page.fill("Stance width (m)", "-5")
+    told = "Stance width (m) is -5; allowed is above 0 to 3 m"
+    assert refused(desk, page) == told
+    assert page.shows("field Stance width (m)").endswith(f" ! {told}")
+
+
+def test_a_ski_goes_with_the_study(desk: Desk) -> None:
+    skis = LabSkis(desk.lab.runs)
+    skis.save_texts("mine", skis.texts("slalom")[0], "")
+    page = desk.open("/study")
+    page.fill("Ski", "mine")
+    job, text = asked(desk, page)
+    folder = desk.lab.runs / "studies" / job["name"]
+    assert text["fixed"]["ski"] == "ski/ski.toml"
+    assert (folder / "ski" / "ski.toml").read_text(encoding="utf-8") == skis.texts("mine")[0]
+    assert [place.name for place in (folder / "ski").iterdir()] == ["ski.toml"]
+    assert job["given"].endswith("; ski: mine")
+    assert "ski" not in job["changes"]
+    page.fill(OF, "carved-46m")
+    page.fill("Ski", "mine")
+    assert asked(desk, page)[1]["fixed"] == {"ski.file": "ski/ski.toml"}
+    page.fill("Ski", "slalom")
+    job, text = asked(desk, page)
+    assert (text["fixed"], job["changes"]) == ({"ski.name": "slalom"}, {})
+    assert job["given"] == f"{SPEED}: 6 to 12, 7 values; ski: slalom"
+
+
+def test_the_table_of_a_ski_goes_with_the_study(desk: Desk) -> None:
+    skis = LabSkis(desk.lab.runs)
+    skis.save_texts("mine", skis.texts("slalom")[0], "")
+    ski = read_ski(skis.word("mine"))
+    skis.save_ski("tabled", replace(ski, name="tabled"))
+    page = desk.open("/study")
+    page.fill("Ski", "tabled")
+    job, _ = asked(desk, page)
+    folder = desk.lab.runs / "studies" / job["name"] / "ski"
+    assert (folder / "ski.csv").read_text(encoding="utf-8") == skis.texts("tabled")[1] != ""
+
+
+def test_a_published_snow_takes_the_place_of_both_numbers(desk: Desk) -> None:
+    page = desk.open("/study")
+    page.fill("Snow", "published-glacier")
+    page.until(lambda: not [line for line in page.outline() if line.startswith((f"field {HARDNESS}", "field Fail"))])
+    job, text = asked(desk, page)
+    assert text["fixed"] == {"ski": "carver", "load_N": 800.0, "unloading_ratio": 10.0, "published": "glacier"}
+    assert job["given"].endswith("; ski: carver; snow: glacier")
+    page = scenario(desk)
+    page.fill("Snow", "published-glacier")
+    page.until(lambda: not [line for line in page.outline() if line.startswith((f"field {HARDNESS}", "field Fail"))])
+    assert asked(desk, page)[1]["fixed"] == {"snow.published": "glacier"}
+
+
+@pytest.mark.parametrize(("of", "lead"), [(CARVE, ""), ("carved-46m", "snow.")])
+def test_the_snow_of_a_campaign_goes_with_the_study(desk: Desk, tmp_path: Path, of: str, lead: str) -> None:
+    id_ = campaign(desk, tmp_path / "kept")
+    page = scenario(desk, of)
+    page.fill(STRESS, "0.4")
+    page.fill("Snow", f"kept-{id_}")
+    page.shows("[snow] Snow: H_V = ")
+    page.until(lambda: not [line for line in page.outline() if line.startswith(f"field {HARDNESS}")])
+    assert [line for line in page.outline() if line.startswith(f"field {STRESS}")]
+    job, text = asked(desk, page)
+    snow = {name: value for name, value in text["fixed"].items() if "S_f" in name or "results" in name}
+    assert snow == {f"{lead}S_f_N_per_mm2": 0.4, f"{lead}results": "results.json"}
+    assert job["given"].endswith(f"; snow: Desk ({id_})")
+    kept = desk.lab.runs / "studies" / job["name"] / "results.json"
+    library = json.loads(results_json(results_dict(analyse(read_campaign(tmp_path / "kept")))))
+    assert json.loads(kept.read_text(encoding="utf-8"))["penetration"] == library["penetration"]
+    page.fill("Site", "B")
+    page.shows("[snow] Snow: H_V = 0.1")
+    job, text = asked(desk, page)
+    assert text["fixed"][f"{lead}site"] == "B"
+    assert job["given"].endswith(f"; snow: Desk ({id_}), B")

@@ -1,0 +1,316 @@
+"""*Study*: the queue's cards, the table and map of what was found, its files."""
+
+from __future__ import annotations
+
+import io
+import json
+import zipfile
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+from skisnow.report.number_formatting import significant
+from skisnow.web.pages import study as study_page
+from skisnow.web.studies import Studies, StudyJob
+from skisnow.web.study_asked import CARVE, Range, StudyAsked
+
+from .shared import ANGLE, HARDNESS, LOAD, RATIO, SPEED, STRESS, TURN, asked
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from ..desk import Desk
+
+OF_CARVES = {
+    "turn_radius_boot_m": "Carved radius (m)",
+    "side_force_N": "Side force (N)",
+    "side_force_limit_N": "Shear capacity of the snow (N)",
+    "contact_length_m": "Contact length (m)",
+    "greatest_edge_depth_mm": "Greatest depth of the edge (mm)",
+}
+OF_RUNS = {
+    "run_length_m": "Length of the run (m)",
+    "simulated_s": "Simulated time (s)",
+    "end_speed_m_per_s": "Speed at the end (m/s)",
+    "turn_radius_median_m": "Median turn radius (m)",
+    "greatest_edge_depth_mm": "Greatest depth of the edge (mm)",
+    "lost_friction_J": "Energy lost to friction (J)",
+}
+
+
+def finished(desk: Desk, what: StudyAsked, rows: Sequence[Mapping[str, object]], **job: object) -> str:
+    """The name of a study that is done, with this table."""
+    made = Studies(desk.lab.runs).ask_for(what)
+    folder = desk.lab.runs / "studies" / made.name
+    results = OF_CARVES if what.of == CARVE else OF_RUNS
+    columns = [*what.varied, *results, "outcome", "reason", "study"]
+    lines = [",".join(str(row.get(name, "")) for name in columns) for row in rows]
+    (folder / "table.csv").write_text("\n".join([",".join(columns), *lines, ""]), encoding="utf-8")
+    kept = json.loads((folder / "job.json").read_text(encoding="utf-8")) | {"state": "done"} | job
+    (folder / "job.json").write_text(json.dumps(kept), encoding="utf-8")
+    return made.name
+
+
+@pytest.mark.parametrize(
+    ("state", "further", "lines"),
+    [
+        ("waiting", {}, ["button Cancel"]),
+        ("running", {}, ["[quiet progress] 3 of 13 points", "button Cancel"]),
+        ("cancelled", {}, ["button Go on"]),
+        ("failed", {"said": "so"}, ["button Go on"]),
+        ("done", {"said": "13 points: equilibrium 13."}, ["link[main] Table and figure -> /study/a%20study"]),
+        ("done", {"scenario": "carved-46m"}, ["link[main] Table and figure -> /study/a%20study"]),
+    ],
+)
+def test_a_card_shows_how_its_study_stands(desk: Desk, state: Any, further: Any, lines: list[str]) -> None:
+    page, studies, pressed = desk.open("/replay"), Studies(desk.lab.runs), list[object]()
+    told = {"name": "a study", "scenario": CARVE, "changes": {}, "asked_at": "2026", "given": f"{LOAD}: 4 to 5"}
+    job = StudyJob(**told | {"state": state} | further)
+    before = len(page.outline())
+
+    def shown() -> None:
+        with page.content:
+            study_page._Card(studies, job, lambda *what: pressed.append(what)).show(job)
+
+    studies.progress = "3 of 13 points"
+    desk.do(shown, page.client)
+    words = [further.get("scenario", "carved turns"), f"{LOAD}: 4 to 5", state, *([job.said] if job.said else [])]
+    assert page.outline()[before:] == ["h3 a study", f"[quiet] {' · '.join(words)}", *lines]
+    if lines[-1] == "button Cancel":
+        page.press("Cancel a study")
+        assert pressed == [(studies.cancel, "a study")]
+    elif lines[-1] == "button Go on":
+        page.press("Go on with a study")
+        assert pressed == [(studies.go_on, "a study")]
+    else:
+        assert any(each.props.get("aria-label") == "Table and figure of a study" for each in page.of())
+
+
+def test_a_study_that_says_nothing_yet_has_no_line_of_progress(desk: Desk) -> None:
+    page, studies = desk.open("/replay"), Studies(desk.lab.runs)
+    job = StudyJob("a", CARVE, {}, "2026", "running")
+
+    def shown() -> None:
+        with page.content:
+            study_page._Card(studies, job, lambda *_: None).show(job)
+
+    desk.do(shown, page.client)
+    assert page.outline()[-2:] == ["[quiet] carved turns · running", "button Cancel"]
+
+
+def test_a_study_that_waits_is_cancelled_and_goes_on(desk: Desk) -> None:
+    page = desk.open("/study")
+    name = asked(desk, page)[0]["name"]
+    page = desk.open("/study")
+    given = f"{ANGLE}: 10 to 70, 13 values; ski: carver"
+    assert page.outline()[-4:] == [
+        "h2 Queue and history", f"h3 {name}", f"[quiet] carved turns · {given} · waiting", "button Cancel",
+    ]  # fmt: skip
+    page.press(f"Cancel {name}")
+    assert page.outline()[-2:] == [
+        f"[quiet] carved turns · {given} · cancelled · It had not begun.", "button Go on",
+    ]  # fmt: skip
+    page.press(f"Go on with {name}")
+    assert page.outline()[-2:] == [f"[quiet] carved turns · {given} · waiting", "button Cancel"]
+
+
+def test_the_queue_begins_and_ends_with_the_server(desk: Desk, monkeypatch: pytest.MonkeyPatch) -> None:
+    begun, ends, made = list[Any](), list[Any](), list[Any]()
+    monkeypatch.setattr(f"{study_page.__name__}.app.on_startup", begun.append)
+    monkeypatch.setattr(f"{study_page.__name__}.app.on_shutdown", ends.append)
+    monkeypatch.setattr(f"{study_page.__name__}.ui.page", lambda path: lambda shown: made.append((path, shown)))
+    monkeypatch.setattr(f"{study_page.__name__}.background_tasks.create", lambda work, name: made.append((work, name)))
+    study_page.add_page(desk.lab)
+    ((path, _),) = made
+    assert path == "/study"
+    begun[0]()
+    work, name = made[1]
+    assert (work.__name__, name) == ("work", "studies")
+    work.close()
+    assert ends[0].__name__ == "end"
+    assert isinstance(ends[0].__self__, Studies)
+
+
+def test_a_table_of_turns_over_one_input(desk: Desk) -> None:
+    what = StudyAsked(CARVE, {"edge_angle_deg": Range(10.0, 70.0, 3)}, TURN, named=("ski: carver",))
+    rows = [
+        {"edge_angle_deg": 70.0, "turn_radius_boot_m": 5.0474, "side_force_N": 2197.98, "outcome": "slips"},
+        {"edge_angle_deg": 10.0, "turn_radius_boot_m": 13.0018, "side_force_N": 141.06, "outcome": "equilibrium"},
+        {"edge_angle_deg": 40.0, "outcome": "error", "reason": "the ski is none"},
+        {"edge_angle_deg": 50.0, "outcome": "not_converged", "reason": "so"},
+    ]
+    name = finished(desk, what, rows)
+    page = desk.open(f"/study/{name}")
+    heads = [ANGLE, *OF_CARVES.values(), "Outcome"]
+    assert page.outline() == [
+        "h1 Study",
+        f"[quiet] {ANGLE}: 10 to 70, 3 values; ski: carver",
+        f"[quiet] {LOAD}: 800; {HARDNESS}: 0.2; {STRESS}: 0.5; {RATIO}: 10",
+        f"link[main] Download everything -> /study/files/{name}/study.zip",
+        f"link Download the table -> /study/files/{name}/table.csv",
+        "field Result = 'turn_radius_boot_m'",
+        f"chart Chart of Carved radius (m) over {ANGLE}: 5.05 to 13.0",
+        "h2 Table",
+        *heads,
+        *("70.0", "5.05", "2198", "–", "–", "–", "slips"),
+        *("10.0", "13.0", "141", "–", "–", "–", "equilibrium"),
+        *("40.0", "–", "–", "–", "–", "–", "error: the ski is none"),
+        *("50.0", "–", "–", "–", "–", "–", "not converged"),
+    ]
+    chart = page.charts()["Carved radius (m)"]
+    assert chart["x"] == ANGLE
+    (line,) = chart["lines"]
+    assert (line["x"], line["y"]) == ([10.0, 40.0, 50.0, 70.0], [13.002, None, None, 5.047])
+    assert (line["style"], line["name"], line["points"]) == (0, "", False)
+    assert page.field("Result").options == OF_CARVES
+    page.fill("Result", "side_force_N")
+    assert list(page.charts()) == ["Side force (N)"]
+    assert page.charts()["Side force (N)"]["lines"][0]["y"] == [141.1, None, None, 2198.0]
+    assert [each.text for each in page.of() if each.props.get("aria-current") == "page"] == ["Study"]
+    place = next(each for each in page.of() if "table" in each.classes)
+    assert {key: place.props[key] for key in ("tabindex", "role", "aria-label")} == {
+        "tabindex": "0", "role": "region", "aria-label": "Table",
+    }  # fmt: skip
+    assert [each.props["scope"] for each in page.tagged("th")] == ["col"] * 7
+    assert ["n" in each.classes for each in page.tagged("td")] == [*[True] * 6, False] * 4
+
+
+def test_of_two_inputs_the_one_with_more_values_is_along_the_axis(desk: Desk) -> None:
+    """Of five loads the first, the middle and the last are named, over the others."""
+    varied = {"load_N": Range(400.0, 800.0, 5), "edge_angle_deg": Range(10.0, 60.0, 6)}
+    fixed = {name: value for name, value in TURN.items() if name != "load_N"}
+    rows = [
+        {"load_N": load, "edge_angle_deg": angle, "turn_radius_boot_m": load / angle, "outcome": "equilibrium"}
+        for load in (400.0, 500.0, 600.0, 700.0, 800.123)
+        for angle in (60.0, 50.0, 40.0, 30.0, 20.0, 10.0)
+    ]
+    page = desk.open(f"/study/{finished(desk, StudyAsked(CARVE, varied, fixed), rows)}")
+    lines = page.charts()["Carved radius (m)"]["lines"]
+    assert page.charts()["Carved radius (m)"]["x"] == ANGLE
+    assert [(line["style"], line["name"]) for line in lines] == [
+        (3, ""), (3, ""), (0, f"{LOAD}: 400"), (1, f"{LOAD}: 600"), (2, f"{LOAD}: 800.1"),
+    ]  # fmt: skip
+    angles = [10.0, 20.0, 30.0, 40.0, 50.0, 60.0]
+    for line, load in zip(lines, (500.0, 700.0, 400.0, 600.0, 800.123), strict=True):
+        assert line["x"] == angles
+        assert line["y"] == pytest.approx([load / angle for angle in angles], abs=0.01)
+    assert page.tagged("th")[0].slots["default"].children[0].text == LOAD
+
+
+@pytest.mark.parametrize("first", ["load_N", "elements"])
+def test_of_two_inputs_with_as_many_values_the_first_is_along_the_axis(desk: Desk, first: str) -> None:
+    both = {"load_N": Range(400.0, 800.0, 2), "elements": Range(40.0, 80.0, 2)}
+    varied = {name: both[name] for name in (first, *both)}
+    fixed = {name: value for name, value in TURN.items() if name != "load_N"} | {"edge_angle_deg": 45.0}
+    rows = [
+        {"load_N": load, "elements": elements, "turn_radius_boot_m": 3.0, "outcome": "equilibrium"}
+        for load in (400.0, 800.0)
+        for elements in (40, 80)
+    ]
+    page = desk.open(f"/study/{finished(desk, StudyAsked(CARVE, varied, fixed), rows)}")
+    chart = page.charts()["Carved radius (m)"]
+    assert chart["x"] == {"load_N": LOAD, "elements": "Elements"}[first]
+    other = {"load_N": ["Elements: 40", "Elements: 80"], "elements": [f"{LOAD}: 400", f"{LOAD}: 800"]}[first]
+    assert [(line["style"], line["name"]) for line in chart["lines"]] == list(enumerate(other))
+
+
+def test_a_table_of_runs(desk: Desk) -> None:
+    what = StudyAsked("carved-46m", {"start.speed_m_per_s": Range(6.0, 9.0, 2)}, {"sledge.mass_kg": 90.0})
+    result = {"run_length_m": 30.0, "simulated_s": 5.0, "end_speed_m_per_s": 6.5, "turn_radius_median_m": 12.0}
+    rows = [{"start.speed_m_per_s": speed, **result, "outcome": "left_course"} for speed in (6.0, 9.0)]
+    page = desk.open(f"/study/{finished(desk, what, rows)}")
+    lines = page.outline()
+    assert lines[1:3] == [f"[quiet] {SPEED}: 6 to 9, 2 values", "[quiet] Mass of the sledge m (kg): 90"]
+    assert lines[5:8] == [
+        "field Result = 'run_length_m'", f"chart Chart of Length of the run (m) over {SPEED}: 30.0 to 30.0", "h2 Table",
+    ]  # fmt: skip
+    assert lines[8:16] == [SPEED, *OF_RUNS.values(), "Outcome"]
+    assert lines[16:24] == ["6.00", "30.0", "5.00", "6.50", "12.0", "–", "–", "left course"]
+    assert page.field("Result").options == OF_RUNS
+
+
+@pytest.mark.parametrize("count", [200, 201])
+def test_a_long_table_is_shown_in_part(desk: Desk, count: int) -> None:
+    rows = [{"edge_angle_deg": 10.0 + n, "outcome": "equilibrium"} for n in range(count)]
+    what = StudyAsked(CARVE, {"edge_angle_deg": Range(10.0, 70.0, 2)}, TURN)
+    page = desk.open(f"/study/{finished(desk, what, rows)}")
+    assert len(page.tagged("tr")) == 201
+    more = ["[note] The first 200 of 201 rows; the file has all of them and all columns."]
+    assert [line for line in page.outline() if line.startswith("[note]")] == (more if count == 201 else [])
+    assert (page.outline()[-8:-1] if count == 201 else page.outline()[-7:])[0] == significant(209.0)
+
+
+@pytest.mark.parametrize(
+    ("language", "of_map", "said"),
+    [
+        ("en", "en", []),
+        ("de", "de", []),
+        ("en", "de", []),
+        ("de", "en", ["[quiet] Figures and the report are in English."]),
+    ],
+)
+def test_the_map_stands_above_the_table(desk: Desk, language: str, of_map: str, said: list[str]) -> None:
+    what = StudyAsked(CARVE, {"edge_angle_deg": Range(10.0, 70.0, 2)}, TURN)
+    name = finished(desk, what, [{"edge_angle_deg": 10.0, "outcome": "equilibrium"}], language=of_map)
+    assert desk.open(f"/study/{name}").tagged("img") == []
+    (desk.lab.runs / "studies" / name / "map.svg").write_text("<svg/>", encoding="utf-8")
+    page = desk.open(f"/study/{name}", language)
+    (image,) = page.tagged("img")
+    assert image.props["src"] == f"/study/files/{name}/map.svg"
+    if language == "en":
+        assert image.props["alt"] == "Turn radius over the inputs that vary, as skisnow study draws it"
+        (figure,) = page.tagged("figure")
+        assert dict(figure.props) == {"tabindex": "0", "role": "region", "aria-label": "Map"}
+    assert [line for line in page.outline() if "English" in line] == said
+
+
+def test_the_files_of_a_study(desk: Desk) -> None:
+    what = StudyAsked(CARVE, {"edge_angle_deg": Range(10.0, 70.0, 2)}, TURN)
+    name = finished(desk, what, [{"edge_angle_deg": 10.0, "outcome": "equilibrium"}])
+    folder = desk.lab.runs / "studies" / name
+    (folder / "map.svg").write_text("<svg/>", encoding="utf-8")
+    for file, kind in {"study.toml": "application/toml", "table.csv": "text/csv", "map.svg": "image/svg+xml"}.items():
+        answer = desk.get(f"/study/files/{name}/{file}")
+        assert (answer.status_code, answer.content) == (200, (folder / file).read_bytes())
+        assert answer.headers["content-type"].partition(";")[0] == kind
+        assert answer.headers["content-security-policy"] == "default-src 'none'; style-src 'unsafe-inline'; sandbox"
+    answer = desk.get(f"/study/files/{name}/study.zip")
+    assert answer.headers["content-disposition"] == 'attachment; filename="study.zip"'
+    assert answer.headers["content-type"] == "application/zip"
+    with zipfile.ZipFile(io.BytesIO(answer.content)) as packed:
+        assert {each: packed.read(each) for each in packed.namelist()} == {
+            f"study/{file}": (folder / file).read_bytes() for file in ("study.toml", "table.csv", "map.svg")
+        }
+
+
+@pytest.mark.parametrize("file", ["job.json", "study.zip", "map.svg"])
+def test_a_file_that_is_not_there_is_told(desk: Desk, file: str) -> None:
+    name = Studies(desk.lab.runs).ask_for(StudyAsked(CARVE, {"edge_angle_deg": Range(1.0, 7.0, 2)}, TURN)).name
+    answer = desk.get(f"/study/files/{name}/{file}")
+    assert answer.status_code == 404
+    missing = "table.csv" if file == "study.zip" else file
+    assert "<h1>This cannot be shown</h1>" in answer.text
+    assert f"there is no &#x27;{missing}&#x27; of a study &#x27;{name}&#x27; here. Choose one" in answer.text
+
+
+def test_a_study_without_a_table_has_no_page_yet(desk: Desk) -> None:
+    name = Studies(desk.lab.runs).ask_for(StudyAsked(CARVE, {"edge_angle_deg": Range(1.0, 7.0, 2)}, TURN)).name
+    told = f"there is no 'table.csv' of a study '{name}' here. Choose one from the list"
+    assert desk.get(f"/study/{name}").status_code == 404
+    assert [str(error) for error in desk.failures] == [told]
+    desk.failures.clear()
+
+
+def test_values_stand_in_the_file_as_the_command_reads_them() -> None:
+    fixed = {"shear.law": 'a "b" ü', "solver.fixed": True, "sledge.inertia_kg_m2": (6.0, 8.0), "ski.name": "x"}
+    what = StudyAsked("carved-46m", {"friction.mu_0": Range(0.1, 1.0, 3, log=True)}, fixed)
+    assert what.text() == (
+        'out = "table.csv"\nscenario = "carved-46m"\n\n[fixed]\n"shear.law" = "a \\"b\\" ü"\n"solver.fixed" = true\n'
+        '"sledge.inertia_kg_m2" = [6.0, 8.0]\n"ski.name" = "x"\n\n[grid]\n'
+        '"friction.mu_0" = { from = 0.1, to = 1.0, n = 3, log = true }\n'
+    )
+    assert what.fixed_words() == {}
+    assert what.varied_words() == "Friction μ_0: 0.1 to 1, 3 values, logarithmic"
+    assert Range(2.0, 5.0, 3).middle == 3.5
+    assert (what.method, what.unit_s, what.named, what.beside) == ("", 0.0, (), {})
+    assert what.files() == {"study.toml": what.text().encode()}
