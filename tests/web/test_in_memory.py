@@ -30,18 +30,13 @@ from skisnow.web.uploaded import add_uploaded
 
 from ..field.recordings import plain_snow
 from ..given.test_workbook import packed
+from .campaign_texts import DESK
 from .finished import finished
 
 if TYPE_CHECKING:
     from skisnow.web.worker import Worker
 
-TOML = """name = "Desk"
-[[tool]]
-name = "ski piece"
-shape = "ski"
-length_mm = 200
-width_mm = 62
-"""
+TOML = DESK
 ROWS = [("20", "1.5"), ("40", "2.1"), ("60", "2.6")]
 PENETRATION = "experiment,site,tool,edge_angle_deg,load_N,depth_mm\n" + "".join(
     f"{name},A,ski piece,30,{load},{depth}\n" for name in ("1", "2") for load, depth in ROWS

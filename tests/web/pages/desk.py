@@ -11,7 +11,7 @@ import re
 import shutil
 import threading
 import time
-from collections.abc import Callable, Coroutine, Iterator
+from collections.abc import Callable, Coroutine, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -19,6 +19,7 @@ from typing import Any, TypeVar
 from uuid import uuid4
 
 import httpx
+import pytest
 from nicegui import Client, app, core, events, ui
 from nicegui.app.app import State
 from nicegui.element import Element
@@ -55,6 +56,16 @@ class Sheet:
     def outline(self) -> list[str]:
         """A line for each heading, sentence, field, button, link and chart below the head of the page."""
         return list(filter(None, map(_line, _seen(self.content, None))))
+
+    def between(self, first: str, last: str = "") -> list[str]:
+        """Lines of the outline from the one to before the other, or one that begins so, or to the end."""
+        outline = self.outline()
+        rest = outline[outline.index(first) :]
+        return rest[: next(at for at, line in enumerate(rest) if line.startswith(last))] if last else rest
+
+    def status(self) -> str:
+        """The line that says what came of the last act; nothing where nothing is said."""
+        return next((line for line in self.outline() if line.startswith("[status")), "")
 
     @property
     def content(self) -> Element:
@@ -142,6 +153,13 @@ class Desk:
         app._state = State.STARTED  # timers of pages end where it is not
         self._browser = httpx.AsyncClient(transport=transport, base_url="http://127.0.0.1", follow_redirects=True)
 
+    def kept(self, folder: Path, files: Mapping[str, str]) -> str:
+        """Import a campaign of these texts; gives its id."""
+        folder.mkdir()
+        for name, text in files.items():
+            (folder / name).write_text(text, encoding="utf-8")
+        return self.lab.store.add(folder).id
+
     def end(self) -> None:
         self._loop.call_soon_threadsafe(self._loop.stop)
         self._thread.join()
@@ -211,6 +229,19 @@ def _listen(sheet: Sheet) -> None:
         send(kind, data, target_id)
 
     vars(sheet.client.outbox)["enqueue_message"] = heard
+
+
+def in_this_process(monkeypatch: pytest.MonkeyPatch, *modules: str) -> list[tuple[Any, ...]]:
+    """What these modules of `skisnow.web` would do in another process is done here; gives limits, work, rest."""
+    heard: list[tuple[Any, ...]] = []
+
+    def done(bounds: Any, work: Any, *what: Any) -> Any:
+        heard.append((bounds, work, *what))
+        return work(*what)
+
+    for name in modules:
+        monkeypatch.setattr(f"skisnow.web.{name}.confined", done)
+    return heard
 
 
 @contextmanager

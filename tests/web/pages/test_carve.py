@@ -21,6 +21,8 @@ from skisnow.snow import published_names
 from skisnow.web.lab_skis import LabSkis
 from skisnow.web.pages import carve
 
+from ..campaign_texts import HARD, SHEARED, SOFT, pressed, sheared
+
 if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
@@ -49,22 +51,7 @@ CHARTS = {
 }
 _SOFT = (0.04, 0.05, 0.06, 0.08, 0.1, 0.12, 0.15, 0.2, 0.25, 0.3, 0.4, 0.5, 0.6, 0.8, 1, 1.2, 1.5, 2)
 _HARD = (2.5, 3, 4, 5, 6, 8, 10, 12, 15, 20, 25, 30, 40, 50, 60, 90)
-CAMPAIGN = """name = "Desk"
-[[tool]]
-name = "ski piece"
-shape = "ski"
-length_mm = 200
-width_mm = 62
-[[plate]]
-name = "blade"
-length_mm = 100
-"""
-PENETRATION = "experiment,site,tool,edge_angle_deg,load_N,depth_mm\n" + "".join(
-    f"{name},{site},ski piece,30,{load},{depth}\n"
-    for name, site, depths in (("1", "A", (1.5, 2.1, 2.6)), ("2", "B", (1.0, 1.4, 1.7)))
-    for load, depth in zip((20, 40, 60), depths, strict=True)
-)
-SHEAR = "experiment,site,plate,edge_angle_deg,depth_mm,lever_arm_mm,moment_Nm\na,A,blade,90,5,250,20\n"
+SHEAR = sheared({"a": ("A", 20)})
 
 
 @cache
@@ -120,12 +107,8 @@ def said_instead(monkeypatch: pytest.MonkeyPatch, *found: Any) -> None:
 
 def campaign(desk: Desk, folder: Path, *, shear: str = "") -> str:
     """A kept campaign with two sites: how the menu calls it."""
-    folder.mkdir()
-    (folder / "campaign.toml").write_text(CAMPAIGN, encoding="utf-8")
-    (folder / "penetration.csv").write_text(PENETRATION, encoding="utf-8")
-    if shear:
-        (folder / "shear.csv").write_text(shear, encoding="utf-8")
-    return f"kept-{desk.lab.store.add(folder).id}"
+    files = {"campaign.toml": SHEARED, "penetration.csv": pressed({"1": ("A", SOFT), "2": ("B", HARD)})}
+    return f"kept-{desk.kept(folder, files | ({'shear.csv': shear} if shear else {}))}"
 
 
 def test_a_turn_is_there_with_the_page(desk: Desk) -> None:
@@ -363,9 +346,7 @@ def test_the_snow_of_a_campaign_gives_what_was_measured(
 
 
 def test_a_campaign_that_gives_no_snow_says_why_and_leaves_the_answer(desk: Desk, tmp_path: Path) -> None:
-    (tmp_path / "kept").mkdir()
-    (tmp_path / "kept" / "campaign.toml").write_text(CAMPAIGN, encoding="utf-8")
-    key = f"kept-{desk.lab.store.add(tmp_path / 'kept').id}"
+    key = f"kept-{desk.kept(tmp_path / 'kept', {'campaign.toml': SHEARED})}"
     page = desk.open("/carve")
     page.shows("carver: equilibrium.")
     page.fill("Snow", key)

@@ -46,10 +46,7 @@ FILES = {"campaign.toml": TOML, "penetration.csv": PENETRATION, "shear.csv": SHE
 
 
 def kept(desk: Desk, folder: Path, files: dict[str, str] = FILES) -> str:
-    folder.mkdir()
-    for name, text in files.items():
-        (folder / name).write_text(text, encoding="utf-8")
-    return desk.lab.store.add(folder).id
+    return desk.kept(folder, files)
 
 
 @pytest.fixture
@@ -63,17 +60,6 @@ def opened(desk: Desk, id_: str, test: str = "1", table: str = "penetration.csv"
 
 def history(desk: Desk, id_: str) -> list[JournalEntry]:
     return list(Journals(desk.lab.store).corrections(id_))
-
-
-def status(page: Sheet) -> str:
-    return next((line for line in page.outline() if line.startswith("[status")), "")
-
-
-def between(page: Sheet, first: str, last: str = "") -> list[str]:
-    """Lines from the one to before the other, or one that begins so, or to the end."""
-    outline = page.outline()
-    rest = outline[outline.index(first) :]
-    return rest[: next(at for at, line in enumerate(rest) if line.startswith(last))] if last else rest
 
 
 def press(page: Sheet, text: str, number: int) -> str:
@@ -163,7 +149,7 @@ def test_a_test_stands_there_cell_by_cell(desk: Desk, id_: str, tmp_path: Path) 
     page = opened(desk, id_)
     row = analyse(read_campaign(tmp_path / "drawer")).results["penetration"]["experiments"][0]
     page.shows(f"[value] H_V = {hardness_words(row)}")
-    assert between(page, "h1 From a drawer", f"[value] H_V = {hardness_words(row)}") == [
+    assert page.between("h1 From a drawer", f"[value] H_V = {hardness_words(row)}") == [
         *head(id_),
         "field Operator = 'Ada'",
         "h2 Test 1",
@@ -196,7 +182,7 @@ def test_a_test_stands_there_cell_by_cell(desk: Desk, id_: str, tmp_path: Path) 
 
 def test_a_test_of_one_row_has_no_numbers_of_rows(desk: Desk, id_: str) -> None:
     page = opened(desk, id_, table="shear.csv")
-    assert between(page, "h2 Test 1", "button[main] Correct") == [
+    assert page.between("h2 Test 1", "button[main] Correct") == [
         "h2 Test 1",
         "field Site = 'A'",
         "field Plate = 'plate'",
@@ -212,7 +198,7 @@ def test_a_test_of_one_row_has_no_numbers_of_rows(desk: Desk, id_: str) -> None:
 def test_what_differs_between_the_rows_of_a_test_stands_in_each(desk: Desk, tmp_path: Path) -> None:
     id_ = kept(desk, tmp_path / "mixed", FILES | {"penetration.csv": MIXED})
     page = opened(desk, id_, "4")
-    assert between(page, "h2 Test 4", "button[main] Correct") == [
+    assert page.between("h2 Test 4", "button[main] Correct") == [
         "h2 Test 4",
         "field Site = 'B'",
         "field Measurement point = 'p'",
@@ -230,14 +216,14 @@ def test_what_differs_between_the_rows_of_a_test_stands_in_each(desk: Desk, tmp_
 
 def test_a_test_that_its_file_cancels_says_so(desk: Desk, id_: str) -> None:
     page = opened(desk, id_, "2")
-    assert between(page, "h2 Test 2")[1] == "[bad] Cancelled: too wet"
+    assert page.between("h2 Test 2")[1] == "[bad] Cancelled: too wet"
     assert "button Cancel this test" not in page.outline()
 
 
 def test_a_test_without_a_site_can_be_looked_at(desk: Desk, tmp_path: Path) -> None:
     files = {"campaign.toml": TOML, "density.csv": "sample,snow_density_kg_per_m3\n1,350\n"}
     page = opened(desk, kept(desk, tmp_path / "siteless", files), table="density.csv")
-    assert between(page, "h2 Test 1", "button") == ["h2 Test 1", "field Density (kg/m³) = '350' numeric"]
+    assert page.between("h2 Test 1", "button") == ["h2 Test 1", "field Density (kg/m³) = '350' numeric"]
     page.shows("[value] The campaign cannot be used as it is: ")
 
 
@@ -276,7 +262,7 @@ def test_a_cell_is_corrected_with_a_reason(desk: Desk, id_: str, tmp_path: Path)
     page.fire(asking_form(page, "Depth (mm), row 3"), "keydown.enter", {"number": 1, "once": "a"})
     assert page.scripts[-1] == "lab.answered(1, true)"
     words = "Depth (mm): 2,1 becomes 2.15."
-    assert between(page, words)[:5] == [
+    assert page.between(words)[:5] == [
         words,
         "field Why = 'typing error'",
         "button[main] Correct it",
@@ -286,10 +272,10 @@ def test_a_cell_is_corrected_with_a_reason(desk: Desk, id_: str, tmp_path: Path)
     assert page.focused() is page.field("Why")
     page.fill("Why", " ")
     assert press(page, "Correct it", 2) == "lab.answered(2, false)"
-    assert status(page) == "[status bad] A correction needs a reason."
+    assert page.status() == "[status bad] A correction needs a reason."
     page.fill("Why", "misheard")
     assert press(page, "Correct it", 3) == "lab.answered(3, true)"
-    assert status(page) == "[status good] Corrected; the first reading is kept."
+    assert page.status() == "[status good] Corrected; the first reading is kept."
     first, entry = history(desk, id_)
     assert (first.action, first.why, first.cells["3/depth_mm"]) == ("add", "as the file has it", "2,1")
     assert (entry.action, entry.about, entry.why, entry.who) == ("correct", first.sequence, "misheard", "Ada")
@@ -297,7 +283,7 @@ def test_a_cell_is_corrected_with_a_reason(desk: Desk, id_: str, tmp_path: Path)
     assert page.field("Depth (mm), row 3").value == "2.15"
     assert page.field("Depth (mm), row 2").value == "1,5"
     line = "button Undo: corrected Depth (mm) in row 3 to 2.15 (misheard)"
-    assert between(page, line) == [
+    assert page.between(line) == [
         line,
         "button Cancel this test",
         "History of 1",
@@ -309,7 +295,7 @@ def test_a_cell_is_corrected_with_a_reason(desk: Desk, id_: str, tmp_path: Path)
     row = analyse(read_campaign(tmp_path / "out")).results["penetration"]["experiments"][0]
     page.shows(f"[value] H_V = {hardness_words(row)}")
     page.press(line.removeprefix("button "))
-    assert status(page) == "[status good] Undone."
+    assert page.status() == "[status good] Undone."
     assert page.field("Depth (mm), row 3").value == "2,1"
 
 
@@ -343,7 +329,7 @@ def test_a_question_that_is_left_shows_the_cells_as_they_are(desk: Desk, id_: st
     assert page.field("Site").value == "A"
     assert not any("field Why" in line for line in page.outline())
     assert press(page, "Correct", 1) == "lab.answered(1, true)"
-    assert status(page) == "[status good] Nothing is different."
+    assert page.status() == "[status good] Nothing is different."
     assert history(desk, id_) == []
 
 
@@ -354,7 +340,7 @@ def test_what_no_cell_can_hold_is_refused(desk: Desk, id_: str) -> None:
     page.fill("Depth (mm), row 4", "2.7")
     assert press(page, "Correct", 1) == "lab.answered(1, false)"
     faults = ["site is blank; give it a name", "Depth (mm) is a number of 0 or more; 'two' stands there"]
-    assert status(page) == f"[status bad] Not corrected: {'; '.join(faults)}."
+    assert page.status() == f"[status bad] Not corrected: {'; '.join(faults)}."
     assert f"field Depth (mm), row 3 = 'two' numeric ! {faults[1]}" in page.outline()
     assert not any("field Why" in line for line in page.outline())
     page.fill("Site", "A")
@@ -369,7 +355,7 @@ def test_a_correction_after_somebody_elses_is_refused(desk: Desk, id_: str) -> N
     page.press("Correct")
     correct(desk, id_, "1", {"2/depth_mm": "1.6"})
     assert press(page, "Correct it", 1) == "lab.answered(1, false)"
-    assert status(page).startswith("[status bad] Nothing was stored: Bo wrote about Penetration, 1 meanwhile (")
+    assert page.status().startswith("[status bad] Nothing was stored: Bo wrote about Penetration, 1 meanwhile (")
     assert len(history(desk, id_)) == 2
 
 
@@ -378,11 +364,11 @@ def test_a_test_is_cancelled_and_stays_in_its_file(desk: Desk, id_: str) -> None
     page.press("Cancel this test")
     page.fill("Why", "the tool slipped")
     page.press("Cancel the test")
-    assert between(page, "h2 Test 1")[1] == "[bad] Cancelled: the tool slipped"
+    assert page.between("h2 Test 1")[1] == "[bad] Cancelled: the tool slipped"
     assert history(desk, id_)[-1].action == "cancel"
     assert "button Undo: cancelled (the tool slipped)" in page.outline()
     page.press("Undo: cancelled (the tool slipped)")
-    assert between(page, "h2 Test 1")[1] == "field Site = 'A'"
+    assert page.between("h2 Test 1")[1] == "field Site = 'A'"
 
 
 # A kept campaign as a page sees it

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import pytest
 
@@ -14,9 +14,6 @@ from skisnow.web.pages import analysis as page_module
 from skisnow.web.worker import Worker
 
 from .shared import Drawing, points
-
-if TYPE_CHECKING:
-    pass
 
 
 @pytest.fixture

@@ -9,35 +9,16 @@ from typing import TYPE_CHECKING, Any
 
 from skisnow.web.analysing import choosable_flags
 
+from ...campaign_texts import HARD, SHEARED, SOFT, pressed, sheared
+
 if TYPE_CHECKING:
     from ..desk import Desk, Sheet
 
-TOML = """name = "Desk"
-[[tool]]
-name = "ski piece"
-shape = "ski"
-length_mm = 200
-width_mm = 62
-[[plate]]
-name = "blade"
-length_mm = 100
-"""
-SERIES = {
-    "1": ("A", "", (1.5, 2.1, 2.6)),
-    "2": ("A", "", (1.5, 2.1, 2.6)),
-    "3": ("B", "", (1.0, 1.4, 1.7)),
-    "4": ("B", "", (1.0, 1.4)),  # fewer than three loads
-    "5": ("A", "slipped", (1.5, 2.1, 2.6)),
-}
-PENETRATION = "experiment,site,tool,edge_angle_deg,load_N,depth_mm,status\n" + "".join(
-    f"{name},{site},ski piece,30,{20 * number},{depth},{status}\n"
-    for name, (site, status, depths) in SERIES.items()
-    for number, depth in enumerate(depths, start=1)
-)
-SHEAR = "experiment,site,plate,edge_angle_deg,depth_mm,lever_arm_mm,moment_Nm\n" + "".join(
-    f"{name},{site},blade,90,5,250,{moment}\n"
-    for name, site, moment in (("a", "A", 20), ("1", "A", 21), ("c", "B", 30))
-)
+TOML = SHEARED
+PENETRATION = pressed(
+    {"1": ("A", SOFT), "2": ("A", SOFT), "3": ("B", HARD), "4": ("B", HARD[:2]), "5": ("A", SOFT)}, {"5": "slipped"}
+)  # 4 has fewer than three loads
+SHEAR = sheared({"a": ("A", 20), "1": ("A", 21), "c": ("B", 30)})
 FILES = {"campaign.toml": TOML, "penetration.csv": PENETRATION, "shear.csv": SHEAR}
 FLAGS = choosable_flags()
 COUNTED = "5 penetration experiments, 3 used; 3 shear experiments, 3 used."
@@ -62,12 +43,8 @@ def points(analysis: Any) -> int:
 
 def kept(desk: Desk, folder: Path, files: dict[str, str] | None = None) -> str:
     """The id of a kept campaign that no other test has: what was analysed stays in memory."""
-    folder.mkdir()
-    for name, text in (files or FILES).items():
-        (folder / name).write_text(text, encoding="utf-8")
-    with (folder / "campaign.toml").open("a", encoding="utf-8") as file:
-        file.write(f"# {folder}\n")
-    return desk.lab.store.add(folder).id
+    texts = files or FILES
+    return desk.kept(folder, texts | {"campaign.toml": f"{texts['campaign.toml']}# {folder}\n"})
 
 
 def status(page: Sheet) -> str:

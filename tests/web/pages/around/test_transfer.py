@@ -18,18 +18,14 @@ from skisnow.web.settings import Limits
 from skisnow.web.unpacking import Unpacking, campaign_folder, files_below, shown, write_zip
 from skisnow.web.uploaded import UNDESCRIBED, add_uploaded
 
+from ...campaign_texts import DESK
+from ..desk import in_this_process
 from .shared import raising
 
 if TYPE_CHECKING:
     from ..desk import Desk
 
-TOML = """name = "Desk"
-[[tool]]
-name = "ski piece"
-shape = "ski"
-length_mm = 200
-width_mm = 62
-"""
+TOML = DESK
 PENETRATION = "experiment,site,tool,edge_angle_deg,load_N,depth_mm\n1,A,ski piece,30,20,1.5\n1,A,ski piece,30,40,2.1\n"
 FILES = {"campaign.toml": TOML.encode(), "penetration.csv": PENETRATION.encode()}
 REFUSED = "<h1>This was not taken in</h1><p>Nothing was stored: "
@@ -52,15 +48,8 @@ def unpacked(content: bytes) -> dict[str, bytes]:
 
 @pytest.fixture
 def here(monkeypatch: pytest.MonkeyPatch) -> list[Any]:
-    """What was sent is read in this process; gives the limits that it was to be read with."""
-    bounds: list[Any] = []
-
-    def done(most: Any, work: Any, *what: Any) -> Any:
-        bounds.append(most)
-        return work(*what)
-
-    monkeypatch.setattr(transfer, "confined", done)
-    return bounds
+    """What was sent is read in this process; gives limits, work and what it is given."""
+    return in_this_process(monkeypatch, "transfer")
 
 
 @pytest.mark.parametrize(
@@ -77,7 +66,7 @@ def test_a_campaign_is_taken_in_as_it_is(desk: Desk, here: list[Any], sent: list
     (stored,) = desk.lab.store.list()
     assert (answer.status_code, answer.headers["location"]) == (303, f"/?added={stored.id}")
     assert stored.name == "Desk"
-    assert [each.seconds for each in here] == [120.0]
+    assert [bounds.seconds for bounds, *_ in here] == [120.0]
     exported = desk.get(f"/export/kept/{stored.id}.zip")
     assert exported.headers["content-type"] == "application/zip"
     assert exported.headers["content-disposition"] == f'attachment; filename="campaign-{stored.id}.zip"'

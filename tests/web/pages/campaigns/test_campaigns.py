@@ -27,10 +27,7 @@ IMPORT = [
 
 
 def kept(desk: Desk, folder: Path, text: str = TOML) -> str:
-    folder.mkdir()
-    (folder / "campaign.toml").write_text(text, encoding="utf-8")
-    (folder / "density.csv").write_text("sample,site,snow_density_kg_per_m3\n1,A,350\n", encoding="utf-8")
-    return desk.lab.store.add(folder).id
+    return desk.kept(folder, {"campaign.toml": text, "density.csv": "sample,site,snow_density_kg_per_m3\n1,A,350\n"})
 
 
 def last_at(desk: Desk, id_: str) -> str:

@@ -105,17 +105,6 @@ def leave(page: Sheet, name: str, text: str | None = None) -> None:
     page.fire(made, "blur", None)
 
 
-def status(page: Sheet) -> str:
-    return next((line for line in page.outline() if line.startswith("[status")), "")
-
-
-def between(page: Sheet, first: str, last: str = "") -> list[str]:
-    """Lines from the one to before the other, or one that begins so, or to the end."""
-    outline = page.outline()
-    rest = outline[outline.index(first) :]
-    return rest[: next(at for at, line in enumerate(rest) if line.startswith(last))] if last else rest
-
-
 def reading_row(page: Sheet, name: str) -> Any:
     """What holds a field of a reading and the word beside it."""
     return page.field(name).parent_slot.parent

@@ -14,13 +14,11 @@ from .shared import (
     add_series,
     begun,
     begun_series,
-    between,
     depths,
     history,
     is_open,
     reading_row,
     series_page,
-    status,
     stored,
 )
 
@@ -40,13 +38,13 @@ def test_depths_after_waiting_are_stored_beside_the_first_ones(desk: Desk) -> No
     waited(page, "40.5", "2,2")
     waited(page, "60", "2.7")
     page.press("Store what was read after waiting")
-    assert status(page) == "[status good] Stored after waiting: 2.2 mm under 40.5 N, 2.7 mm under 60 N."
+    assert page.status() == "[status good] Stored after waiting: 2.2 mm under 40.5 N, 2.7 mm under 60 N."
     rows = stored(desk, id_, PENETRATION, "1")
     assert [row.get("depth_after_mm", "") for row in rows] == ["", "2.2", "2.7"]
     assert [row["depth_mm"] for row in rows] == ["1.5", "2.15", "2.6"]
     assert is_open(page, "Depths read once more after waiting")
-    assert between(
-        page, "field Depth after waiting under 40.5 N (mm) = '2.2' numeric optional", "button Store what was read after"
+    assert page.between(
+        "field Depth after waiting under 40.5 N (mm) = '2.2' numeric optional", "button Store what was read after"
         " waiting"
     ) == [
         "field Depth after waiting under 40.5 N (mm) = '2.2' numeric optional",
@@ -60,7 +58,7 @@ def test_depths_after_waiting_are_stored_beside_the_first_ones(desk: Desk) -> No
     assert "button Undo: read once more after waiting: 2.7 mm" in page.outline()
     page.shows("Under one load the depth grew")
     page.press("Store what was read after waiting")
-    assert status(page) == "[status good] Nothing is different."
+    assert page.status() == "[status good] Nothing is different."
     page.press("Next series")
     assert "h2 New series" in page.outline()
 
@@ -85,7 +83,7 @@ def test_a_second_depth_that_becomes_another_one_asks_for_a_reason(desk: Desk) -
     page.fire(form, "keydown.enter", {"number": 1, "once": "a"})
     assert page.scripts[-1] == "lab.answered(1, true)"
     words = "after waiting under 20 N: 2.7 mm becomes 2.8 mm; after waiting under 60 N: 2.7 mm becomes nothing."
-    assert between(page, words, "button[main then] Next series") == [
+    assert page.between(words, "button[main then] Next series") == [
         words,
         "field Why = 'typing error'",
         "button[main] Correct it",
@@ -93,12 +91,12 @@ def test_a_second_depth_that_becomes_another_one_asks_for_a_reason(desk: Desk) -
     ]
     page.fill("Why", "")
     page.press("Correct it")
-    assert status(page) == "[status bad] A correction needs a reason."
+    assert page.status() == "[status bad] A correction needs a reason."
     page.fill("Why", "slip")
     button = next(each for each in page.of(ui.button) if each.text == "Correct it")
     page.fire(button, "click", {"number": 2})
     assert page.scripts[-1] == "lab.answered(2, true)"
-    assert status(page) == "[status good] Corrected; the first reading is kept."
+    assert page.status() == "[status good] Corrected; the first reading is kept."
     assert [row["depth_after_mm"] for row in stored(desk, id_, PENETRATION, "1")] == ["2.8", ""]
     assert [entry.why for entry in history(desk, id_)[2:]] == ["slip", "slip"]
     assert not any("field Why" in line for line in page.outline())
@@ -124,7 +122,7 @@ def test_new_and_other_second_depths_at_once(desk: Desk) -> None:
     waited(page, "20", "1.8")
     waited(page, "60", "2.9")
     page.press("Store what was read after waiting")
-    assert status(page) == "[status good] Stored after waiting: 2.9 mm under 60 N."
+    assert page.status() == "[status good] Stored after waiting: 2.9 mm under 60 N."
     assert "after waiting under 20 N: 1.7 mm becomes 1.8 mm." in page.outline()
     assert [row.get("depth_after_mm", "") for row in stored(desk, id_, PENETRATION, "1")] == ["1.7", "2.9"]
 
@@ -142,7 +140,7 @@ def test_a_second_depth_without_a_first_one_and_what_is_no_depth_are_refused(des
         "Depth after waiting (mm) is a number of 0 or more; 'x' stands there",
         "the first depth under 60 N comes before it",
     ]
-    assert status(page) == f"[status bad] Not stored: {'; '.join(faults)}."
+    assert page.status() == f"[status bad] Not stored: {'; '.join(faults)}."
     assert page.scripts[-1] == "lab.answered(1, false)"
     assert f"field Depth after waiting under 60 N (mm) = '2.7' numeric optional ! {faults[1]}" in page.outline()
     assert "field Depth after waiting under 20 N (mm) = '1.7' numeric optional" in page.outline()
@@ -158,7 +156,7 @@ def test_a_second_depth_after_somebody_elses_entry_is_not_stored(desk: Desk) -> 
     button = next(each for each in page.of(ui.button) if each.text == "Store what was read after waiting")
     page.fire(button, "click", {"number": 1})
     assert page.scripts[-1] == "lab.answered(1, false)"
-    assert status(page).startswith("[status bad] Nothing was stored")
+    assert page.status().startswith("[status bad] Nothing was stored")
     assert "depth_after_mm" not in stored(desk, id_, PENETRATION, "1")[0]
 
 

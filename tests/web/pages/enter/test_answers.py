@@ -28,7 +28,6 @@ from .shared import (
     add_series,
     add_shear,
     begun,
-    between,
     found,
     history,
     write,
@@ -68,7 +67,7 @@ def test_a_series_stands_before_all_others_of_its_site(desk: Desk) -> None:
         {"x": [1, 2], "y": [10, 11], "style": 0, "points": True},
         {"x": [0, 1, None], "y": [0, 1, None], "style": 0, "points": False},
     ]
-    assert between(page, "[quiet] Test a")[:4] == [
+    assert page.between("[quiet] Test a")[:4] == [
         "[quiet] Test a",
         "[value] H_V = 0.250 N/mm³, interval not known",
         "few",

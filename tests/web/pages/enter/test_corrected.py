@@ -20,14 +20,12 @@ from .shared import (
     add_series,
     begun,
     begun_series,
-    between,
     depths,
     enter,
     history,
     leave,
     selected,
     series_page,
-    status,
     write,
 )
 
@@ -94,7 +92,7 @@ def asked_to_correct(desk: Desk, id_: str) -> Sheet:
 def test_another_depth_asks_for_a_reason(desk: Desk) -> None:
     id_ = begun(desk)
     page = asked_to_correct(desk, id_)
-    assert between(page, "40.5 N: 22.5 mm becomes 2.25 mm.", "button[main then] Next series") == [
+    assert page.between("40.5 N: 22.5 mm becomes 2.25 mm.", "button[main then] Next series") == [
         "40.5 N: 22.5 mm becomes 2.25 mm.",
         "field Why = 'typing error'",
         "button[main] Correct it",
@@ -109,7 +107,7 @@ def test_another_depth_asks_for_a_reason(desk: Desk) -> None:
     leave(page, "Depth under 40.5 N (mm)")  # one question is enough
     assert page.field("Why") is why
     page.press("Correct it")
-    assert status(page) == "[status good] Corrected; the first reading is kept."
+    assert page.status() == "[status good] Corrected; the first reading is kept."
     assert depths(desk, id_) == [("20", "1.5"), ("40.5", "2.25")]
     entry = history(desk, id_)[-1]
     assert (entry.action, entry.about, entry.why, entry.who) == (
@@ -119,7 +117,7 @@ def test_another_depth_asks_for_a_reason(desk: Desk) -> None:
         "Ada",
     )
     assert entry.cells == {"depth_mm": "2.25"}
-    assert between(page, "field Depth under 40.5 N (mm) = '2.25' numeric")[1] == "[stored] corrected from 22.5"
+    assert page.between("field Depth under 40.5 N (mm) = '2.25' numeric")[1] == "[stored] corrected from 22.5"
     assert page.field("Depth under 20 N (mm)").value == "1.5"
     assert not any("field Why" in line for line in page.outline())
     assert "button Undo: corrected Depth (mm) 2.25 (misread)" in page.outline()
@@ -131,7 +129,7 @@ def test_a_correction_without_a_reason_is_refused(desk: Desk) -> None:
     page.fill("Why", "  ")
     form = page.field("Why").parent_slot.parent
     page.fire(form, "keydown.enter", {"number": 2, "once": "b"})
-    assert status(page) == "[status bad] A correction needs a reason."
+    assert page.status() == "[status bad] A correction needs a reason."
     assert page.scripts[-1] == "lab.answered(2, false)"
     assert "field Why = '  '" in page.outline()
     assert len(history(desk, id_)) == 2
@@ -179,13 +177,13 @@ def test_what_is_no_depth_is_no_correction(desk: Desk) -> None:
     name = "Depth under 20 N (mm)"
     enter(page, name, "", number=1)
     fault = "Depth (mm) is a number of 0 or more; it is blank"
-    assert status(page) == f"[status bad] Not corrected: {fault}."
+    assert page.status() == f"[status bad] Not corrected: {fault}."
     assert f"field {name} = '' numeric ! {fault}" in page.outline()
     assert page.scripts[-1] == "lab.answered(1, false)"
     page.fill("Operator", "Bo")
     enter(page, "Depth under 60 N (mm)", "3")
     leave(page, name)
-    assert status(page) == "[status good] Stored: 3 mm under 60 N."
+    assert page.status() == "[status good] Stored: 3 mm under 60 N."
     assert history(desk, id_)[-1].who == "Bo"
 
 
@@ -196,7 +194,7 @@ def test_a_correction_after_somebody_elses_is_refused(desk: Desk) -> None:
     cells = {"depth_mm": "1.6"}
     write(desk, id_, NewEntry(action="correct", file=PENETRATION, test="1", about=first, cells=cells, why="slip"))
     page.press("Correct it")
-    assert status(page).startswith("[status bad] Nothing was stored: somebody wrote about Penetration, 1 meanwhile")
+    assert page.status().startswith("[status bad] Nothing was stored: somebody wrote about Penetration, 1 meanwhile")
     assert depths(desk, id_) == [("20", "1.6"), ("40.5", "22.5")]
     assert "field Why = 'typing error'" in page.outline()
     page.press("Leave it as it was")
@@ -211,7 +209,7 @@ def test_a_series_is_cancelled_with_a_reason(desk: Desk) -> None:
     add_series(desk, id_, "1", ("20", "1.5"))
     page = series_page(desk, id_)
     page.press("Cancel this test")
-    assert between(page, "Cancel 1? Its readings are kept but not included.", "button[main then] Next series") == [
+    assert page.between("Cancel 1? Its readings are kept but not included.", "button[main then] Next series") == [
         "Cancel 1? Its readings are kept but not included.",
         "field Why = ''",
         "button[main] Cancel the test",
@@ -224,16 +222,16 @@ def test_a_series_is_cancelled_with_a_reason(desk: Desk) -> None:
     assert not any("field Why" in line for line in page.outline())
     page.press("Cancel this test")
     page.press("Cancel the test")
-    assert status(page) == "[status bad] A test is cancelled with a reason."
+    assert page.status() == "[status bad] A test is cancelled with a reason."
     page.fill("Why", " the tool  slipped ")
     button = next(each for each in page.of(ui.button) if each.text == "Cancel the test")
     page.fire(button, "click", {"number": 1})
     assert page.scripts[-1] == "lab.answered(1, true)"
-    assert status(page) == "[status good] 1 is cancelled; its readings are kept."
+    assert page.status() == "[status good] 1 is cancelled; its readings are kept."
     entry = history(desk, id_)[-1]
     assert (entry.action, entry.why, entry.who, entry.test) == ("cancel", "the tool slipped", "Ada", "1")
     page.shows("[quiet] Test 1")
-    assert between(page, "h2 Series 1", "[quiet] Test 1") == [
+    assert page.between("h2 Series 1", "[quiet] Test 1") == [
         "h2 Series 1",
         "[quiet] A · ski piece · 30°",
         "[bad] Cancelled: the tool slipped",
@@ -260,7 +258,7 @@ def test_a_series_is_cancelled_with_a_reason(desk: Desk) -> None:
     ]
     assert page.focused().text == "Next series"
     assert "A load that is not in the disc set" not in page.outline()
-    assert between(page, "button Undo: cancelled (the tool slipped)", "h3 Series so far") == [
+    assert page.between("button Undo: cancelled (the tool slipped)", "h3 Series so far") == [
         "button Undo: cancelled (the tool slipped)",
         "History of 1",
         f"{minute_words(history(desk, id_)[0].at)} · Ada · entered 1.5 mm under 20 N",
@@ -278,7 +276,7 @@ def test_a_test_that_somebody_wrote_about_is_not_cancelled(desk: Desk) -> None:
     button = next(each for each in page.of(ui.button) if each.text == "Cancel the test")
     page.fire(button, "click", {"number": 1})
     assert page.scripts[-1] == "lab.answered(1, false)"
-    assert status(page).startswith("[status bad] Nothing was stored")
+    assert page.status().startswith("[status bad] Nothing was stored")
     assert EditSession(desk.lab, id_).test(PENETRATION, "1").cancelled == ""
 
 
@@ -288,11 +286,11 @@ def test_the_last_entry_is_undone_and_stays_in_the_history(desk: Desk) -> None:
     add_series(desk, id_, "1", ("60", "3"), who="")
     page = series_page(desk, id_)
     page.press("Undo: entered 3 mm under 60 N")
-    assert status(page) == "[status good] Undone."
+    assert page.status() == "[status good] Undone."
     first, second, undo = history(desk, id_)
     assert (undo.action, undo.about, undo.who) == ("undo", second.sequence, "Ada")
     assert "field Depth under 60 N (mm) = '' numeric" in page.outline()
-    assert between(page, "button Undo: entered 1.5 mm under 20 N", "A load that is not in the disc set") == [
+    assert page.between("button Undo: entered 1.5 mm under 20 N", "A load that is not in the disc set") == [
         "button Undo: entered 1.5 mm under 20 N",
         "button Cancel this test",
         "History of 1",
@@ -303,7 +301,7 @@ def test_the_last_entry_is_undone_and_stays_in_the_history(desk: Desk) -> None:
     assert page.focused() is page.field("Depth under 40.5 N (mm)")
     page.press("Undo: entered 1.5 mm under 20 N")
     assert depths(desk, id_) == []
-    assert between(page, "h2 Series 1")[1] == "[quiet] A · ski piece · 30°"
+    assert page.between("h2 Series 1")[1] == "[quiet] A · ski piece · 30°"
     assert "button Cancel this test" not in page.outline()
     assert not any("button Undo" in line for line in page.outline())
     assert any("&site=A" in each for each in page.scripts)
@@ -315,7 +313,7 @@ def test_nothing_is_undone_where_nothing_was_entered(desk: Desk) -> None:
     label = next(each for each in page.of(ui.label) if "status" in each.classes)
     view = TableView(EditSession(desk.lab, id_), PENETRATION, page.field("Operator"), label)
     assert not desk.do(lambda: view.undo(ReplayedTest(PENETRATION, "1")), page.client)
-    assert status(page) == "[status bad] There is nothing to undo."
+    assert page.status() == "[status bad] There is nothing to undo."
     assert history(desk, id_) == []
 
 
@@ -327,7 +325,7 @@ def test_what_somebody_else_undid_is_not_undone_again(desk: Desk) -> None:
     write(desk, id_, NewEntry(action="undo", file=PENETRATION, test="1", about=sequence))
     button = next(each for each in page.of(ui.button) if each.text.startswith("Undo"))
     page.fire(button, "click", {})
-    assert status(page).startswith("[status bad] Nothing was stored")
+    assert page.status().startswith("[status bad] Nothing was stored")
     page.press("Next series")
     assert "h2 New series" in page.outline()
 
@@ -339,7 +337,7 @@ def test_a_series_is_left_when_all_that_was_typed_is_stored(desk: Desk) -> None:
     page.fill("Depth back under 40.5 N (mm)", "2.5")
     button = next(each for each in page.of(ui.button) if each.text == "Next series")
     page.fire(button, "click", {"number": 1})
-    assert status(page) == (
+    assert page.status() == (
         "[status bad] Not stored yet: 20 N, 40.5 N on the way back. Put it right or empty the field, then go on."
     )
     assert page.scripts[-1] == "lab.answered(1, false)"
@@ -350,7 +348,7 @@ def test_a_series_is_left_when_all_that_was_typed_is_stored(desk: Desk) -> None:
     page.fill("Depth after waiting under 40.5 N (mm)", "2.2")
     page.fill("Depth after waiting under 60 N (mm)", "2.7")
     page.fire(button, "click", {"number": 2})
-    assert status(page) == (
+    assert page.status() == (
         "[status bad] Not stored yet: 40.5 N after waiting, 60 N after waiting. Store it or empty the field, then go"
         " on."
     )
@@ -369,5 +367,5 @@ def test_what_was_typed_in_one_series_does_not_go_into_the_next(desk: Desk) -> N
     enter(page, "Depth under 20 N (mm)", "1.5")
     page.press("Next series")
     page.press("Begin the series")
-    assert between(page, "h2 Series 2")[1] == "[quiet] A · ski piece · 30°"
+    assert page.between("h2 Series 2")[1] == "[quiet] A · ski piece · 30°"
     assert page.field("Depth under 20 N (mm)").value == ""

@@ -19,7 +19,6 @@ from .shared import (
     add_series,
     begun,
     begun_series,
-    between,
     depths,
     enter,
     head,
@@ -29,7 +28,6 @@ from .shared import (
     reading_row,
     selected,
     series_page,
-    status,
     write,
 )
 
@@ -178,13 +176,13 @@ def test_what_no_series_can_begin_with_is_said_at_its_fields(desk: Desk) -> None
     button = next(each for each in page.of(ui.button) if each.text == "Begin the series")
     page.fire(button, "click", {"number": 1})
     faults = ["site is blank; give it a name", "Edge angle (°) is a number from 0 to below 90; '95' stands there"]
-    assert status(page) == f"[status bad] Not begun: {'; '.join(faults)}."
-    assert between(page, "field Site = '' ! " + faults[0])[2] == f"field Edge angle (°) = '95' numeric ! {faults[1]}"
+    assert page.status() == f"[status bad] Not begun: {'; '.join(faults)}."
+    assert page.between("field Site = '' ! " + faults[0])[2] == f"field Edge angle (°) = '95' numeric ! {faults[1]}"
     assert page.scripts[-1] == "lab.answered(1, false)"
     page.fill("Site", "A")
     page.fill("Edge angle (°)", "45")
     page.press("Begin the series")
-    assert status(page) == "[status good] Series 1: enter the depth under each load."
+    assert page.status() == "[status good] Series 1: enter the depth under each load."
 
 
 def test_a_series_has_a_name_of_its_own(desk: Desk) -> None:
@@ -194,7 +192,7 @@ def test_a_series_has_a_name_of_its_own(desk: Desk) -> None:
     page.fill("Name of the test", "1")
     page.press("Begin the series")
     fault = "there is a test 1 already; give this one another name"
-    assert status(page) == f"[status bad] Not begun: {fault}."
+    assert page.status() == f"[status bad] Not begun: {fault}."
     assert f"field Name of the test = '1' ! {fault}" in page.outline()
 
 
@@ -203,7 +201,7 @@ def test_the_next_series_has_what_it_shares_with_the_last_one(desk: Desk) -> Non
     add_series(desk, id_, "7", ("20", "1.5"))
     add_series(desk, id_, "a", ("20", "1.5"), site="B", edge_angle_deg="45")
     page = desk.open(f"/enter/{id_}")
-    assert between(page, "h2 New series", CHART) == [
+    assert page.between("h2 New series", CHART) == [
         "h2 New series",
         "field Name of the test = '8'",
         "field Site = 'B'",
@@ -214,7 +212,7 @@ def test_the_next_series_has_what_it_shares_with_the_last_one(desk: Desk) -> Non
     ]
     assert page.focused() is page.field("Edge angle (°)")
     assert selected(page) == [page.field("Edge angle (°)")]
-    assert between(page, "h3 Series so far") == [
+    assert page.between("h3 Series so far") == [
         "h3 Series so far",
         f"link[small] a -> /enter/{id_}?table=penetration.csv&test=a",
         f"link[small] 7 -> /enter/{id_}?table=penetration.csv&test=7",
@@ -247,7 +245,7 @@ def test_an_address_that_tells_of_no_head_of_a_series_asks_for_one(desk: Desk, f
 def test_a_series_is_there_again_by_its_address(desk: Desk) -> None:
     id_ = begun(desk)
     page = begun_series(desk, id_)
-    assert between(page, "h2 Series 1")[:3] == ["h2 Series 1", "[quiet] A · ski piece · 30°", "[load] 20 N"]
+    assert page.between("h2 Series 1")[:3] == ["h2 Series 1", "[quiet] A · ski piece · 30°", "[load] 20 N"]
     assert page.focused() is page.field("Depth under 20 N (mm)")
     add_series(desk, id_, "1", ("20", "1.5"))
     page = begun_series(desk, id_)
@@ -275,7 +273,7 @@ def test_the_last_forty_series_have_links(desk: Desk) -> None:
     for number in range(41):
         add_series(desk, id_, f"n{number}", ("20", "1.5"))
     write(desk, id_, NewEntry(action="cancel", file=PENETRATION, test="n40", why="slip"))
-    lines = between(desk.open(f"/enter/{id_}"), "h3 Series so far")
+    lines = desk.open(f"/enter/{id_}").between("h3 Series so far")
     assert len(lines) == 41
     assert lines[1].startswith("link[small] n40 (cancelled) -> ")
     assert lines[-1].startswith("link[small] n1 -> ")
@@ -285,15 +283,15 @@ def test_a_reading_is_stored_as_it_is_typed(desk: Desk) -> None:
     id_ = begun(desk)
     page = begun_series(desk, id_)
     enter(page, "Depth under 40.5 N (mm)", " 2,15 ")
-    assert status(page) == "[status good] Stored: 2.15 mm under 40.5 N."
+    assert page.status() == "[status good] Stored: 2.15 mm under 40.5 N."
     assert page.scripts[-1] == 'lab.told("Depth under 40.5 N (mm)  2,15 ")'
     (entry,) = history(desk, id_)
     assert (entry.action, entry.file, entry.test, entry.position) == ("add", PENETRATION, "1", 0)
     assert (entry.who, entry.once) == ("Ada", "Depth under 40.5 N (mm)  2,15 ")
     assert entry.cells == {"experiment": "1", **SERIES, "load_N": "40.5", "depth_mm": "2.15"}
-    assert between(page, "field Depth under 40.5 N (mm) = '2.15' numeric")[1] == "[stored] stored"
+    assert page.between("field Depth under 40.5 N (mm) = '2.15' numeric")[1] == "[stored] stored"
     assert reading_row(page, "Depth under 40.5 N (mm)").props["data-stored"] == "2.15"
-    assert between(page, "button Undo: entered 2.15 mm under 40.5 N", "A load that is not in the disc set") == [
+    assert page.between("button Undo: entered 2.15 mm under 40.5 N", "A load that is not in the disc set") == [
         "button Undo: entered 2.15 mm under 40.5 N",
         "button Cancel this test",
         "History of 1",
@@ -325,17 +323,17 @@ def test_what_is_no_depth_is_refused_at_its_field_and_said_once(desk: Desk) -> N
     name = "Depth under 20 N (mm)"
     enter(page, name, "1.5.2")
     fault = "Depth (mm) is a number of 0 or more; '1.5.2' stands there"
-    assert status(page) == f"[status bad] Not stored: {fault}."
+    assert page.status() == f"[status bad] Not stored: {fault}."
     assert f"field {name} = '1.5.2' numeric ! {fault}" in page.outline()
     assert "refused" in reading_row(page, name).classes
     assert f"lab.refusedLast({page.field(name).id})" in page.scripts
     enter(page, "Depth under 60 N (mm)", "3")
     leave(page, name)  # it was said at Enter
-    assert status(page) == "[status good] Stored: 3 mm under 60 N."
+    assert page.status() == "[status good] Stored: 3 mm under 60 N."
     enter(page, name, "1.5.2")  # at another Enter it is said again
-    assert status(page) == f"[status bad] Not stored: {fault}."
+    assert page.status() == f"[status bad] Not stored: {fault}."
     leave(page, name, "x")
-    assert status(page) == "[status bad] Not stored: Depth (mm) is a number of 0 or more; 'x' stands there."
+    assert page.status() == "[status bad] Not stored: Depth (mm) is a number of 0 or more; 'x' stands there."
     leave(page, name, "")
     assert "refused" not in reading_row(page, name).classes
     leave(page, name, "x")  # another time
@@ -391,7 +389,7 @@ def test_somebody_else_on_the_same_series_is_told_and_shown(desk: Desk) -> None:
     add_series(desk, id_, "1", ("20", "1.4"), who="Bo")
     enter(page, "Depth under 40.5 N (mm)", "2.1")
     (entry,) = history(desk, id_)
-    assert status(page) == (
+    assert page.status() == (
         f"[status bad] Nothing was stored: Bo wrote about Penetration, 1 meanwhile ({entry.at}). "
         "Look at it as it is now, then enter again what is still missing."
     )
@@ -413,7 +411,7 @@ def test_somebody_elses_reading_under_the_same_load_stays(desk: Desk) -> None:
     page = begun_series(desk, id_)
     add_series(desk, id_, "1", ("20", "1.4"), who="Bo")
     enter(page, "Depth under 20 N (mm)", "1.5")
-    assert status(page).startswith("[status bad] Nothing was stored: Bo wrote about Penetration, 1 meanwhile")
+    assert page.status().startswith("[status bad] Nothing was stored: Bo wrote about Penetration, 1 meanwhile")
     assert page.field("Depth under 20 N (mm)").value == "1.4"
     assert depths(desk, id_) == [("20", "1.4")]
     enter(page, "Depth under 20 N (mm)", "1.5")
@@ -428,7 +426,7 @@ def test_a_load_beyond_the_discs_stands_where_it_belongs(desk: Desk) -> None:
     page.fill("Its depth (mm)", "2.4")
     page.fill("Depth under 60 N (mm)", "3")
     page.press("Store it")
-    assert status(page) == "[status good] Stored: 2.4 mm under 50.0 N."
+    assert page.status() == "[status good] Stored: 2.4 mm under 50.0 N."
     assert depths(desk, id_) == [("20", "1.5"), ("50.0", "2.4")]
     assert [line for line in page.outline() if line.startswith("field Depth under")] == [
         "field Depth under 20 N (mm) = '1.5' numeric",
@@ -449,16 +447,16 @@ def test_a_load_that_has_a_reading_is_refused_as_a_further_one(desk: Desk) -> No
     form = page.field("Its depth (mm)").parent_slot.parent
     page.fire(form, "keydown.enter", {"number": 4, "once": "b"})
     fault = "there is a reading under 20.0 N already; correct it in its own field"
-    assert status(page) == f"[status bad] Not stored: {fault}."
+    assert page.status() == f"[status bad] Not stored: {fault}."
     assert f"field Further load (N) = '20.0' numeric ! {fault}" in page.outline()
     assert page.scripts[-1] == "lab.answered(4, false)"
     page.fill("Further load (N)", "")
     page.press("Store it")
-    assert status(page) == "[status bad] Not stored: Load (N) is a number above 0; it is blank."
+    assert page.status() == "[status bad] Not stored: Load (N) is a number above 0; it is blank."
     page.fill("Further load (N)", "80")
     page.fill("Its depth (mm)", "-1")
     page.press("Store it")
-    assert status(page) == "[status bad] Not stored: Depth (mm) is a number of 0 or more; '-1' stands there."
+    assert page.status() == "[status bad] Not stored: Depth (mm) is a number of 0 or more; '-1' stands there."
     assert len(history(desk, id_)) == 1
 
 
@@ -468,13 +466,13 @@ def test_discs_that_are_taken_off_come_after_the_loading(desk: Desk) -> None:
     name = "Depth back under 40.5 N (mm)"
     enter(page, name, "2.5")
     fault = "the depths under rising loads come first"
-    assert status(page) == f"[status bad] Not stored: {fault}."
+    assert page.status() == f"[status bad] Not stored: {fault}."
     assert f"field {name} = '2.5' numeric ! {fault}" in page.outline()
     enter(page, name, "")
     for load, depth in (("20", "1.5"), ("40.5", "2.15"), ("60", "2.6")):
         enter(page, f"Depth under {load} N (mm)", depth)
     enter(page, name, "2.5")
-    assert status(page) == "[status good] Stored: 2.5 mm under 40.5 N on the way back."
+    assert page.status() == "[status good] Stored: 2.5 mm under 40.5 N on the way back."
     assert "button Undo: entered 2.5 mm under 40.5 N on the way back" in page.outline()
     assert history(desk, id_)[-1].cells["branch"] == "unloading"
     assert "branch" not in history(desk, id_)[0].cells

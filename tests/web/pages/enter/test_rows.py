@@ -8,7 +8,7 @@ from nicegui import ui
 
 from skisnow.web.local_time import minute_words
 
-from .shared import DENSITY, DROP_CONE, SHEAR, SHEARED, add, add_shear, begun, between, head, history, status, stored
+from .shared import DENSITY, DROP_CONE, SHEAR, SHEARED, add, add_shear, begun, head, history, stored
 
 if TYPE_CHECKING:
     from ..desk import Desk, Sheet
@@ -56,7 +56,7 @@ def test_a_shear_test_is_asked_for_and_stored(desk: Desk) -> None:
     assert page.focused() is page.field("Site")
     assert [each.text for each in page.tagged("nicegui-link") if "aria-current" in each.props][1:] == ["Shear"]
     store(page, site="A", plate="plate", angle="90", depth="6", arm="250", moment="30,0")
-    assert status(page) == "[status good] Stored: test 1."
+    assert page.status() == "[status good] Stored: test 1."
     (entry,) = history(desk, id_)
     assert (entry.file, entry.test, entry.position, entry.who) == (SHEAR, "1", 0, "Ada")
     assert entry.cells == {"experiment": "1", **SHEARED, "moment_Nm": "30.0"}
@@ -64,7 +64,7 @@ def test_a_shear_test_is_asked_for_and_stored(desk: Desk) -> None:
     assert page.shows("S_f = ").startswith("[value] S_f = 0.200 N/mm²")
     assert "[quiet] Test 1" in page.outline()
     assert page.charts() == {}
-    assert between(page, "h2 New test", "[quiet] Test 1") == [
+    assert page.between("h2 New test", "[quiet] Test 1") == [
         "h2 New test",
         "field Name of the test = '2'",
         "field Site = 'A'",
@@ -78,7 +78,7 @@ def test_a_shear_test_is_asked_for_and_stored(desk: Desk) -> None:
         "button[main] Store",
     ]
     assert page.focused() is page.field("Depth (mm)")
-    assert between(page, "h3 So far") == [
+    assert page.between("h3 So far") == [
         "h3 So far",
         "Name of the test 1 · Site A · Plate plate · Edge angle (°) 90 · Depth (mm) 6 · Lever arm (mm) 250 · "
         "Moment (N m) 30.0",
@@ -94,8 +94,8 @@ def test_enter_stores_a_test_of_one_row_too(desk: Desk) -> None:
     page.fill("Site", "A")
     form = page.field("Site").parent_slot.parent
     page.fire(form, "keydown.enter", {"number": 1, "once": "a"})
-    assert status(page).startswith("[status bad] Not stored: Density (kg/m³) is a number above 0")
-    assert status(page).endswith("; it is blank.")
+    assert page.status().startswith("[status bad] Not stored: Density (kg/m³) is a number above 0")
+    assert page.status().endswith("; it is blank.")
     assert page.scripts[-1] == "lab.answered(1, false)"
     assert page.shows("field Density").startswith(
         "field Density (kg/m³) = '' numeric ! Density (kg/m³) is a number above 0"
@@ -104,7 +104,7 @@ def test_enter_stores_a_test_of_one_row_too(desk: Desk) -> None:
     page.fire(form, "keydown.enter", {"number": 2, "once": "b"})
     assert page.scripts[-1] == "lab.answered(2, true)"
     assert stored(desk, id_, DENSITY, "1") == [{"sample": "1", "site": "A", "snow_density_kg_per_m3": "350"}]
-    assert between(page, "h3 So far")[1] == "Name of the sample 1 · Site A · Density (kg/m³) 350"
+    assert page.between("h3 So far")[1] == "Name of the sample 1 · Site A · Density (kg/m³) 350"
 
 
 def test_a_test_that_was_sent_before_is_stored_once_and_answered_as_then(desk: Desk) -> None:
@@ -117,7 +117,7 @@ def test_a_test_that_was_sent_before_is_stored_once_and_answered_as_then(desk: D
         button = next(each for each in page.of(ui.button) if each.text == "Store")
         page.fire(button, "click", {"number": 1, "once": "a"})
         assert page.scripts[-1] == "lab.answered(1, true)"
-        assert status(page) == "[status good] Stored: test s."
+        assert page.status() == "[status good] Stored: test s."
     assert len(history(desk, id_)) == 1
 
 
@@ -131,7 +131,7 @@ def test_a_name_that_is_taken_is_refused(desk: Desk) -> None:
     button = next(each for each in page.of(ui.button) if each.text == "Store")
     page.fire(button, "click", {"number": 1, "once": "a"})
     fault = "there is a test 1 already; give this one another name"
-    assert status(page) == f"[status bad] Not stored: {fault}."
+    assert page.status() == f"[status bad] Not stored: {fault}."
     assert f"field Name of the test = '1' ! {fault}" in page.outline()
     assert page.scripts[-1] == "lab.answered(1, false)"
     assert len(history(desk, id_)) == 1
@@ -145,7 +145,7 @@ def test_a_test_that_somebody_else_entered_meanwhile_is_not_stored(desk: Desk) -
         page.fill(NAMES[name], text)
     button = next(each for each in page.of(ui.button) if each.text == "Store")
     page.fire(button, "click", {"number": 1, "once": "a"})
-    assert status(page).startswith("[status bad] Nothing was stored: Ada wrote about Shear, 1 meanwhile")
+    assert page.status().startswith("[status bad] Nothing was stored: Ada wrote about Shear, 1 meanwhile")
     assert page.scripts[-1] == "lab.answered(1, false)"
     assert page.field("Moment (N m)").value == "30"
 
@@ -155,7 +155,7 @@ def test_the_next_repeat_of_a_cone_is_asked_for(desk: Desk) -> None:
     page = desk.open(f"/enter/{id_}?table=drop_cone.csv")
     store(page, name="c", site="A", cone="12")
     assert stored(desk, id_, DROP_CONE, "c") == [{"test": "c", "site": "A", "repeat": "1", "drop_cone_depth_mm": "12"}]
-    assert between(page, "h2 New test", "button[main] Store") == [
+    assert page.between("h2 New test", "button[main] Store") == [
         "h2 New test",
         "field Name of the test = 'c'",
         "field Site = 'A'",
@@ -164,12 +164,12 @@ def test_the_next_repeat_of_a_cone_is_asked_for(desk: Desk) -> None:
     ]
     store(page, cone="13")
     assert [entry.position for entry in history(desk, id_)] == [0, 1]
-    assert between(page, "h3 So far")[1::2] == [
+    assert page.between("h3 So far")[1::2] == [
         "Name of the test c · Site A · Repeat 2 · Drop-cone depth (mm) 13",
         "Name of the test c · Site A · Repeat 1 · Drop-cone depth (mm) 12",
     ]
     store(page, repeat="2", cone="14")
-    assert status(page) == "[status bad] Not stored: test c has a repeat 2 already."
+    assert page.status() == "[status bad] Not stored: test c has a repeat 2 already."
 
 
 def test_the_next_turning_angle_is_asked_for(desk: Desk) -> None:
@@ -177,7 +177,7 @@ def test_the_next_turning_angle_is_asked_for(desk: Desk) -> None:
     id_ = begun(desk)
     page = desk.open(f"/enter/{id_}?table=shear.csv")
     store(page, site="A", plate="plate", turning="0", angle="90", depth="6", arm="250", moment="5")
-    assert between(page, "h2 New test", "button[main] Store") == [
+    assert page.between("h2 New test", "button[main] Store") == [
         "h2 New test",
         "field Name of the test = '1'",
         "field Site = 'A'",
@@ -196,13 +196,13 @@ def test_the_next_turning_angle_is_asked_for(desk: Desk) -> None:
     assert line.startswith("[value] S_f = 0.200 N/mm²") and "; u_y = " in line
     assert [row["turning_angle_deg"] for row in stored(desk, id_, SHEAR, "1")] == ["0", "1", "2", "3"]
     store(page, turning="4", depth="7", moment="30")
-    assert status(page) == "[status bad] Not stored: the rows of test 1 have one Depth (mm)."
+    assert page.status() == "[status bad] Not stored: the rows of test 1 have one Depth (mm)."
 
 
 def test_a_campaign_without_a_plate_says_where_to_name_one(desk: Desk) -> None:
     id_ = begun(desk, 'name = "Bare"\n')
     page = desk.open(f"/enter/{id_}?table=shear.csv")
-    assert between(page, "field Site = ''")[1:3] == [
+    assert page.between("field Site = ''")[1:3] == [
         "[bad] This campaign has no plate yet: name one under Campaign.",
         "field Plate = None",
     ]
@@ -213,7 +213,7 @@ def test_a_test_of_one_row_is_corrected_with_a_reason(desk: Desk) -> None:
     id_ = begun(desk)
     add_shear(desk, id_, "1")
     page = desk.open(f"/enter/{id_}?table=shear.csv&test=1")
-    assert between(page, "h2 Correct a test", "button New test") == [
+    assert page.between("h2 Correct a test", "button New test") == [
         "h2 Correct a test",
         "field Name of the test = '1' readonly",
         "field Site = 'A'",
@@ -228,7 +228,7 @@ def test_a_test_of_one_row_is_corrected_with_a_reason(desk: Desk) -> None:
     ]
     page.shows("S_f = 0.200 N/mm²")
     entry = history(desk, id_)[0]
-    assert between(page, "button Undo: entered Edge angle (°) 90, Depth (mm) 6, Lever arm (mm) 250, Moment (N m) 30")[
+    assert page.between("button Undo: entered Edge angle (°) 90, Depth (mm) 6, Lever arm (mm) 250, Moment (N m) 30")[
         :5
     ] == [
         "button Undo: entered Edge angle (°) 90, Depth (mm) 6, Lever arm (mm) 250, Moment (N m) 30",
@@ -239,7 +239,7 @@ def test_a_test_of_one_row_is_corrected_with_a_reason(desk: Desk) -> None:
         "h3 So far",
     ]
     page.press("Correct")
-    assert status(page) == "[status good] Nothing is different."
+    assert page.status() == "[status good] Nothing is different."
     page.fill("Moment (N m)", "x")
     form = page.field("Site").parent_slot.parent
     page.fire(form, "keydown.enter", {"number": 1})
@@ -248,7 +248,7 @@ def test_a_test_of_one_row_is_corrected_with_a_reason(desk: Desk) -> None:
     page.fill("Measurement point", "p")
     page.press("Correct")
     words = "Measurement point: nothing becomes p; Moment (N m): 30 becomes 36."
-    assert between(page, words, "button New test") == [
+    assert page.between(words, "button New test") == [
         words,
         "field Why = 'typing error'",
         "button[main] Correct it",
@@ -263,7 +263,7 @@ def test_a_test_of_one_row_is_corrected_with_a_reason(desk: Desk) -> None:
     button = next(each for each in page.of(ui.button) if each.text == "Correct it")
     page.fire(button, "click", {"number": 9})
     assert page.scripts[-1] == "lab.answered(9, false)"
-    assert status(page) == "[status bad] A correction needs a reason."
+    assert page.status() == "[status bad] A correction needs a reason."
     page.fill("Why", "misread")
     page.fire(button, "click", {"number": 3})
     assert page.scripts[-1] == "lab.answered(3, true)"
@@ -282,7 +282,7 @@ def test_a_new_test_that_was_begun_is_there_again_after_another_one_was_looked_a
     page = desk.open(f"/enter/{id_}?table=shear.csv")
     page.fill("Depth (mm)", "7")
     page.press("Correct 1")
-    assert between(page, "h2 Correct a test")[1] == "field Name of the test = '1' readonly"
+    assert page.between("h2 Correct a test")[1] == "field Name of the test = '1' readonly"
     page.shows("[quiet] Test 1")
     page.press("Correct 2")
     page.press("New test")
@@ -317,7 +317,7 @@ def test_a_cancelled_test_of_one_row_says_so(desk: Desk) -> None:
     page.press("Cancel this test")
     page.fill("Why", "slip")
     page.press("Cancel the test")
-    assert between(page, "h2 Correct a test")[1] == "[bad] Cancelled: slip"
+    assert page.between("h2 Correct a test")[1] == "[bad] Cancelled: slip"
     assert page.shows("Name of the test 1 · ").endswith("Moment (N m) 30 · cancelled: slip")
     page.press("Undo: cancelled (slip)")
     page.press("Undo: entered Edge angle (°) 90, Depth (mm) 6, Lever arm (mm) 250, Moment (N m) 30")
@@ -329,7 +329,7 @@ def test_the_last_thirty_tests_stand_so_far(desk: Desk) -> None:
     id_ = begun(desk)
     for number in range(31):
         add(desk, id_, DENSITY, f"n{number}", sample=f"n{number}", site="A", snow_density_kg_per_m3="350")
-    lines = between(desk.open(f"/enter/{id_}?table=density.csv"), "h3 So far")[1::2]
+    lines = desk.open(f"/enter/{id_}?table=density.csv").between("h3 So far")[1::2]
     assert [lines[0], lines[-1], len(lines)] == [
         "Name of the sample n30 · Site A · Density (kg/m³) 350",
         "Name of the sample n1 · Site A · Density (kg/m³) 350",

@@ -11,7 +11,7 @@ import time
 from dataclasses import replace
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import pytest
 
@@ -25,9 +25,6 @@ from skisnow.web.study_asked import CARVE, Range
 
 from ...finished import finished
 from .shared import TURNS
-
-if TYPE_CHECKING:
-    pass
 
 SUMMARY = {"outcome": "left_course", "run_length_m": 46.04, "simulated_s": 5.126, "remedy": "Take less."}
 TABLE = "edge_angle_deg,outcome,study\n10,equilibrium,a\n70,not_converged,a\n75,not_converged,a\n"

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import pytest
 
@@ -11,12 +11,9 @@ from skisnow.report.run_file import write_run_file
 from skisnow.scenario import scenario_values
 from skisnow.scenario.values import in_sections
 from skisnow.simulate.run_summary import summary_dict
-from skisnow.web.replay import addresses, uploads
 
 from ....report.runs import circle_run
-
-if TYPE_CHECKING:
-    pass
+from ..desk import in_this_process
 
 
 @pytest.fixture(scope="module")
@@ -30,13 +27,5 @@ def run_files(tmp_path_factory: pytest.TempPathFactory) -> dict[str, bytes]:
 
 @pytest.fixture
 def here(monkeypatch: pytest.MonkeyPatch) -> list[Any]:
-    """What was sent is read in this process; gives the limits that it was to be read with."""
-    bounds: list[Any] = []
-
-    def done(most: Any, work: Any, *what: Any) -> Any:
-        bounds.append(most)
-        return work(*what)
-
-    monkeypatch.setattr(uploads, "confined", done)
-    monkeypatch.setattr(addresses, "confined", done)
-    return bounds
+    """What was sent is read in this process; gives limits, work and what it is given."""
+    return in_this_process(monkeypatch, "replay.uploads", "replay.addresses")

@@ -9,7 +9,8 @@ import pytest
 
 from skisnow.web.replay.tracks import TrackFolders
 
-from .shared import TRACK, gpx, keep, keep_track
+from ...replay.test_tracks import gpx
+from .shared import TRACK, keep, keep_track
 
 if TYPE_CHECKING:
     from ..desk import Desk, Sheet
@@ -174,7 +175,7 @@ def test_a_track_is_taken_in_with_what_was_typed(desk: Desk, here: list[Any]) ->
     turned = taken("a.gpx", gpx([(0, 0), (1, 1)]), azimuth="−90", start="")
     assert turned == {"called": "a.gpx", "fall_line_azimuth_deg": -90.0, "starts_at_s": 0.0}
     assert taken(f"{'a' * 250}.csv")["called"] == "a" * 200
-    assert [each.seconds for each in here] == [120.0] * 4
+    assert [bounds.seconds for bounds, *_ in here] == [120.0] * 4
 
 
 @pytest.mark.usefixtures("here")

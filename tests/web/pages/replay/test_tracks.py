@@ -27,7 +27,8 @@ from skisnow.web.replay.addresses import RunFolders, program_file, show_address,
 from skisnow.web.replay.tracks import Placing, TrackFolders, points_of_track, track_on_slope
 
 from ....report.runs import circle_run
-from .shared import TRACK, gpx, keep, keep_track
+from ...replay.test_tracks import gpx
+from .shared import TRACK, keep, keep_track
 
 if TYPE_CHECKING:
     from ..desk import Desk
@@ -178,7 +179,7 @@ def test_a_run_is_fetched_with_its_track_and_in_the_readers_language(
     )
     beside = replay_of_file(desk.lab.runs / "mine", title="mine", track=track)
     assert desk.get(f"/replay/data/mine?track={name}").content == replay_bytes(beside)
-    assert [each.seconds for each in here] == [120.0]
+    assert [bounds.seconds for bounds, *_ in here] == [120.0]
     refused = desk.get("/replay/data/mine?track=x")
     assert (refused.status_code, refused.text) == (404, "there is no track 'x' here. Choose one from the list")
     refused = desk.get("/replay/data/x")

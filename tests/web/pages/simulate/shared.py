@@ -6,6 +6,8 @@ import json
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from ...campaign_texts import HARD, SHEARED, SOFT, pressed
+
 if TYPE_CHECKING:
     from ..desk import Desk, Sheet
 
@@ -14,21 +16,7 @@ NUMBERS = "the numbers below"
 HARDNESS, STRESS = "Snow hardness H_V (N/mm³)", "Failure shear stress S_f (N/mm²)"
 ENDS, WAY, SPEED = "Ends after (s)", "Ends after a way of (m)", "Speed at the start v (m/s)"
 STEERS, MASS, STANCE = "Steers by", "Mass of the sledge m (kg)", "Stance width (m)"
-CAMPAIGN = """name = "Desk"
-[[tool]]
-name = "ski piece"
-shape = "ski"
-length_mm = 200
-width_mm = 62
-[[plate]]
-name = "blade"
-length_mm = 100
-"""
-PENETRATION = "experiment,site,tool,edge_angle_deg,load_N,depth_mm\n" + "".join(
-    f"{name},{site},ski piece,30,{load},{depth}\n"
-    for name, site, depths in (("1", "A", (1.5, 2.1, 2.6)), ("2", "A", (1.5, 2.1, 2.6)), ("3", "B", (1.0, 1.4, 1.7)))
-    for load, depth in zip((20, 40, 60), depths, strict=True)
-)
+PENETRATION = pressed({"1": ("A", SOFT), "2": ("A", SOFT), "3": ("B", HARD)})
 
 
 def jobs(desk: Desk) -> list[dict[str, Any]]:
@@ -55,9 +43,5 @@ def refused(page: Sheet) -> str:
 
 def campaign(desk: Desk, folder: Path, *, shear: str = "") -> str:
     """The id of a kept campaign with two sites."""
-    folder.mkdir()
-    (folder / "campaign.toml").write_text(CAMPAIGN, encoding="utf-8")
-    (folder / "penetration.csv").write_text(PENETRATION, encoding="utf-8")
-    if shear:
-        (folder / "shear.csv").write_text(shear, encoding="utf-8")
-    return desk.lab.store.add(folder).id
+    files = {"campaign.toml": SHEARED, "penetration.csv": PENETRATION} | ({"shear.csv": shear} if shear else {})
+    return desk.kept(folder, files)

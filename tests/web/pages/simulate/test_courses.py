@@ -14,6 +14,7 @@ from skisnow.errors import OutputError, ParameterError
 from skisnow.web import lab_courses
 from skisnow.web.lab_courses import LabCourses, gates_of
 
+from ..desk import in_this_process
 from .shared import GIVEN, asked
 
 if TYPE_CHECKING:
@@ -25,7 +26,7 @@ COURSE = b"gate,x_m,y_m,side\n1,12,1.5,left\n2,22,-1.5,right\n3,32,1.5,left\n"
 @pytest.fixture
 def here(monkeypatch: pytest.MonkeyPatch) -> None:
     """Courses are read in this process."""
-    monkeypatch.setattr(lab_courses, "confined", lambda _bounds, work, *what: work(*what))
+    in_this_process(monkeypatch, "lab_courses")
 
 
 def test_a_course_is_sent_by_a_form_that_needs_no_script(desk: Desk) -> None:

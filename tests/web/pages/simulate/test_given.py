@@ -18,15 +18,13 @@ from skisnow.web.pages.simulate import _Card
 from skisnow.web.runs import Job, Runs
 from skisnow.web.snow_of_campaign import campaign_snow
 
-from .shared import CAMPAIGN, ENDS, HARDNESS, NUMBERS, STEERS, STRESS, asked, campaign, jobs, refused
+from ...campaign_texts import SHEARED, sheared
+from .shared import ENDS, HARDNESS, NUMBERS, STEERS, STRESS, asked, campaign, jobs, refused
 
 if TYPE_CHECKING:
     from ..desk import Desk
 
-SHEAR = "experiment,site,plate,edge_angle_deg,depth_mm,lever_arm_mm,moment_Nm\n" + "".join(
-    f"{name},{site},blade,90,5,250,{moment}\n"
-    for name, site, moment in (("a", "A", 20), ("b", "A", 21), ("c", "B", 30))
-)
+SHEAR = sheared({"a": ("A", 20), "b": ("A", 21), "c": ("B", 30)})
 
 
 def test_a_ski_of_the_catalogue_is_named_and_a_saved_one_is_a_file(desk: Desk) -> None:
@@ -110,8 +108,8 @@ def test_a_campaign_with_shear_tests_gives_the_stress(desk: Desk, tmp_path: Path
 
 def test_a_campaign_that_is_being_entered_gives_its_snow_too(desk: Desk) -> None:
     journals = Journals(desk.lab.store)
-    id_ = journals.begin(CAMPAIGN)
-    unnamed = journals.begin(CAMPAIGN.partition("\n")[2])
+    id_ = journals.begin(SHEARED)
+    unnamed = journals.begin(SHEARED.partition("\n")[2])
     for position, (load, depth) in enumerate((("20", "1.5"), ("40", "2.1"), ("60", "2.6"))):
         cells = {"site": "A", "tool": "ski piece", "edge_angle_deg": "30", "load_N": load, "depth_mm": depth}
         entry = NewEntry(
@@ -154,9 +152,7 @@ def test_a_campaign_that_is_analysed_is_waited_for(desk: Desk, tmp_path: Path, m
 
 
 def test_a_campaign_that_gives_no_snow_says_why(desk: Desk, tmp_path: Path) -> None:
-    (tmp_path / "kept").mkdir()
-    (tmp_path / "kept" / "campaign.toml").write_text(CAMPAIGN, encoding="utf-8")
-    id_ = desk.lab.store.add(tmp_path / "kept").id
+    id_ = desk.kept(tmp_path / "kept", {"campaign.toml": SHEARED})
     page = desk.open("/simulate")
     page.fill("Snow", f"kept-{id_}")
     told = page.shows("[snow] this campaign gives no snow yet. ").removeprefix("[snow] ")

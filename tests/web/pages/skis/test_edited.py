@@ -16,6 +16,7 @@ from nicegui import ui
 from skisnow.errors import ParameterError
 from skisnow.ski import read_ski, ski_names
 from skisnow.ski.editing import SkiEdit, edit_stations, edited_ski
+from skisnow.web.confined import OF_A_SKI
 from skisnow.web.lab_skis import LabSkis, check_ski_texts, ski_of_texts
 from skisnow.web.ski_asked import SkiAsked
 
@@ -270,7 +271,7 @@ def test_a_text_is_drawn_when_it_is_asked_for(desk: Desk, confined_words: list[t
     assert downloads(page) == {}
     page.press("Draw the file")
     page.shows("100 to 460 (carver, longer)")
-    assert confined_words == [(check_ski_texts, longer, "")]
+    assert confined_words == [(OF_A_SKI, check_ski_texts, longer, "")]
     lines = page.outline()
     assert lines[lines.index("Length") : lines.index("Running length")] == ["Length", "1.755 m", "1.800 m"]
     assert "field EI × = '1' numeric" in lines

@@ -26,34 +26,13 @@ from skisnow.web.pages import skis as skis_page
 from skisnow.web.settings import Limits
 from skisnow.web.ski_asked import CELLS, FACTORS, SkiAsked, ski_found
 
+from ...test_measured_ski import DESIGN, TABLE, TYPED, WITH_TABLE
 from .shared import CARVER, HEAVY, TEXT, files, opened, saved_place
 
 if TYPE_CHECKING:
     from skisnow.ski import Ski
 
     from ..desk import Desk, Sheet
-
-TYPED = {
-    "length_mm": "1593", "running_length_mm": "1396", "sidecut_length_mm": "1458", "tip_width_mm": "116",
-    "waist_width_mm": "68", "tail_width_mm": "101", "mass_kg": "2,231", "camber_mm": "7",
-    "EI_N_m2": "100 250; 440, 260,5 100", "GJ_N_m2": "60 140 175 140 60",
-}  # fmt: skip
-TABLE = "station_m;width_mm;EI_N_m2\n0,845;25;100\n0,729;116;100\n0;68;440\n-0,729;101;100\n-0,749;101;100\n"
-WITH_TABLE = """name = "my slalom"
-running_length_mm = 1396
-sidecut_length_mm = 1458
-mass_kg = 2.231
-GJ_N_m2 = [60, 140, 175, 140, 60]
-table = "rows.csv"
-"""
-DESIGN = {
-    "board": {
-        "name": "Board", "nose length": "15 cm", "effective edge length": "130 cm", "tail length": "10 cm",
-        "sidecut radius": "13 m", "waist width": "9.3 cm", "taper": "0 cm", "stance setback": "0 cm",
-        "nose width": "12 cm",
-        "edge shape": {"type": "Basic Arc"},
-    }
-}  # fmt: skip
 
 
 def type_ski(page: Sheet, name: str, typed: Mapping[str, str]) -> None:
@@ -81,7 +60,7 @@ def test_three_widths_become_a_ski_of_the_lab(desk: Desk, confined_words: list[t
         "EI_N_m2 = [100.0, 250.0, 440.0, 260.5, 100.0]",
         "GJ_N_m2 = [60.0, 140.0, 175.0, 140.0, 60.0]",
     ]
-    assert confined_words == [(check_ski_texts, text, "")]
+    assert confined_words == [(OF_A_SKI, check_ski_texts, text, "")]
     assert not any("Not saved" in line for line in page.outline())
 
 
@@ -122,7 +101,8 @@ def test_an_empty_list_is_no_number_and_an_empty_camber_is_none() -> None:
 def test_files_are_taken_in_from_the_form(desk: Desk, confined_words: list[tuple[object, ...]]) -> None:
     answer = desk.post("/skis/add", files=files(mine_toml=WITH_TABLE, rows_csv=TABLE), data={"name": ""})
     assert (answer.status_code, answer.headers["location"]) == (303, "/skis?ski=my%20slalom&added=1")
-    ((work, _, names, further),) = confined_words
+    ((bounds, work, _, names, further),) = confined_words
+    assert bounds is OF_A_SKI
     assert (work, names) == (read_ski_files, ["mine.toml", "rows.csv"])
     assert further == dict.fromkeys(("mass_kg", "camber_mm", "EI_N_m2", "GJ_N_m2"), "")
     assert read_ski(saved_place(desk, "my slalom")).name == "my slalom"
@@ -241,7 +221,8 @@ def test_uploads_are_named_without_their_folders(confined_words: list[tuple[obje
     uploads = [("Skis\\of mine/mine.toml", io.BytesIO(WITH_TABLE.encode())), ("rows.csv", io.BytesIO(TABLE.encode()))]
     found = ski_of_uploads(uploads, {"mass_kg": "1"}, Limits())
     assert found.name == "my slalom"
-    ((_, folder, names, further),) = confined_words
+    ((bounds, _, folder, names, further),) = confined_words
+    assert bounds is OF_A_SKI
     assert (names, further) == (["mine.toml", "rows.csv"], {"mass_kg": "1"})
     assert not Path(str(folder)).exists()
     with pytest.raises(ParameterError, match="more than 1 files at once"):
@@ -272,7 +253,9 @@ def test_skis_are_listed_without_regard_to_capitals_after_the_catalogue(tmp_path
 
 @pytest.mark.parametrize("name", ["a", "Ä", "9", "a b-c_d", "x" * 40, "con1", "com", "nothing else", "kž"])
 def test_names_that_a_ski_may_have(tmp_path: Path, name: str) -> None:
-    LabSkis(tmp_path).require_new(name)
+    skis = LabSkis(tmp_path)
+    skis.save_ski(name, replace(CARVER, name=name))
+    assert skis.saved() == [name]
 
 
 @pytest.mark.parametrize("name", ["_a", "a-", "x" * 41, "con", "LPT9", "a.b", "雪"])

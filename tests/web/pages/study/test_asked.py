@@ -19,6 +19,7 @@ from skisnow.web.studies import Studies
 from skisnow.web.study_asked import CARVE, study_keys
 from skisnow.web.study_axis import begins
 
+from ...campaign_texts import HARD, SHEARED, SOFT, pressed
 from .shared import (
     BUTTON,
     ENDS,
@@ -46,29 +47,11 @@ if TYPE_CHECKING:
 
     from ..desk import Desk
 
-CAMPAIGN = """name = "Desk"
-[[tool]]
-name = "ski piece"
-shape = "ski"
-length_mm = 200
-width_mm = 62
-[[plate]]
-name = "blade"
-length_mm = 100
-"""
-PENETRATION = "experiment,site,tool,edge_angle_deg,load_N,depth_mm\n" + "".join(
-    f"{name},{site},ski piece,30,{load},{depth}\n"
-    for name, site, depths in (("1", "A", (1.5, 2.1, 2.6)), ("2", "B", (1.0, 1.4, 1.7)))
-    for load, depth in zip((20, 40, 60), depths, strict=True)
-)
-
 
 def campaign(desk: Desk, folder: Path) -> str:
     """The id of a kept campaign with two sites and no shear test."""
-    folder.mkdir()
-    (folder / "campaign.toml").write_text(CAMPAIGN, encoding="utf-8")
-    (folder / "penetration.csv").write_text(PENETRATION, encoding="utf-8")
-    return desk.lab.store.add(folder).id
+    rows = pressed({"1": ("A", SOFT), "2": ("B", HARD)})
+    return desk.kept(folder, {"campaign.toml": SHEARED, "penetration.csv": rows})
 
 
 @pytest.mark.parametrize(
