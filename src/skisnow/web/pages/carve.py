@@ -13,7 +13,7 @@ from ...errors import ParameterError, SkisnowError
 from ...report.number_formatting import significant
 from ...report.write import RESULTS
 from ..fields import choice, link
-from ..lab_skis import LabSkis
+from ..lab_skis import NOTHING, LabSkis
 from ..language import said
 from ..layout import framed
 from ..line_chart import STYLES, ChartLine, LineChart
@@ -69,7 +69,6 @@ HEADLINE: Final = "turn_radius_boot_m"
 """The number that a carve is for; the others stand below."""
 OF_SNOW: Final = ("H_V_N_per_mm3", "S_f_N_per_mm2")
 NUMBERS: Final = "the sliders"
-NOTHING: Final = "nothing"
 FACTS: Final = {
     "forebody_load_N": ("Load on the forebody", "N"),
     "afterbody_load_N": ("Load on the afterbody", "N"),
