@@ -64,7 +64,8 @@ def test_what_is_known_of_time_and_gate_is_foreseen() -> None:
     assert known.worth(far)[0] > known.worth(beside)[0] + 5.0
     assert known.worth(far)[0] > known.worth(np.array([[0.3, 0.9]]))[0] + 5.0
     assert known.worth(near, caution=4.0)[0] - known.worth(near)[0] == pytest.approx(3.0 * known.through(near)[0])
-    assert known.worth(near, curiosity=0.1)[0] < known.worth(near)[0]  # nothing is gained there but by surprise
+    slower = np.array([[0.9, 0.9]])  # where nothing is gained but by surprise
+    assert known.worth(slower, curiosity=0.1)[0] < 10.0 * known.worth(slower)[0] < 0.0
     after = known.believing(far[0])
     assert after.worth(far)[0] < known.worth(far)[0]
 

@@ -20,7 +20,7 @@ from uuid import uuid4
 
 import httpx
 import pytest
-from nicegui import Client, app, core, events, ui
+from nicegui import Client, app, background_tasks, core, events, ui
 from nicegui.app.app import State
 from nicegui.element import Element
 from nicegui.nicegui import _on_handshake
@@ -118,6 +118,14 @@ class Sheet:
         """Wait until the browser is told to do this."""
         self.until(lambda: any(script in each for each in self.scripts))
 
+    def leave(self) -> None:
+        """Close the page, as when the browser goes elsewhere."""
+        self.desk.do(self.client.delete)
+
+    def works(self, name: str) -> bool:
+        """Whether work of this name is still done behind the page."""
+        return any(task.get_name() == name for task in background_tasks.running_tasks)
+
     def focused(self) -> Any:
         """The element that the page has put the focus on last."""
         told = " ".join([*self.at_first, *self.scripts])
@@ -174,6 +182,14 @@ class Desk:
         for each in self.lab.runs.iterdir() if self.lab.runs.is_dir() else ():
             if each.is_dir():
                 shutil.rmtree(each)
+
+    def fails(self) -> Exception:
+        """Wait until a handler fails; gives what it raised, which then is no failure of the test."""
+        end = time.monotonic() + PATIENCE_S
+        while not self.failures:
+            assert time.monotonic() < end
+            time.sleep(0.005)
+        return self.failures.pop()
 
     def do(self, act: Callable[[], Answer], client: Client | None = None) -> Answer:
         """Do something where the pages live."""

@@ -6,6 +6,7 @@ import json
 import threading
 from functools import cache
 from typing import TYPE_CHECKING, Any
+from unittest.mock import Mock
 
 import pytest
 
@@ -393,6 +394,27 @@ def test_while_an_answer_is_late_it_is_said_and_only_the_last_question_waits(
     released.set()
     page.shows("[status] carver: equilibrium.")
     page.shows(radius(answer(angle=49.0)))
+
+
+def test_an_answer_to_a_page_that_was_left_is_dropped(desk: Desk, monkeypatch: pytest.MonkeyPatch) -> None:
+    released, asked = held(monkeypatch)
+    page = desk.open("/carve")
+    page.until(lambda: asked)
+    page.leave()
+    released.set()
+    page.until(lambda: not page.works("carve"))
+    assert page.client.elements == {}
+
+
+def test_what_goes_wrong_behind_a_page_is_told_on_it(desk: Desk, monkeypatch: pytest.MonkeyPatch) -> None:
+    page = desk.open("/carve")
+    page.shows("[status] carver: equilibrium.")
+    failure = ZeroDivisionError("division by zero")
+    monkeypatch.setattr(carve._Solver, "answers", Mock(side_effect=failure))
+    move(page, ANGLE, "49")
+    assert desk.fails() is failure
+    page.told("notify ")
+    assert "Reference: " in page.scripts[-1]
 
 
 def test_an_answer_that_is_in_time_does_not_flicker(desk: Desk, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -58,7 +58,7 @@ class Beside:
         self._wanted = (name, site, MISSING_YET if in_progress else frozenset())
         if not self._working:
             self._working = True
-            background_tasks.create(self._work(), name="beside")
+            background_tasks.create(self._work(), name="beside", context=self._name.client)
 
     async def _work(self) -> None:
         try:
@@ -69,6 +69,8 @@ class Beside:
                 except (FieldDataError, StoreError) as error:
                     self._value.set_text(error_sentence(error))
                     continue
+                if self._marks.is_deleted:  # the page was left meanwhile
+                    return
                 # another may have been wanted while this one was waited for
                 if self._wanted is None and found is not None:  # type: ignore[redundant-expr]
                     self._show(name, found, unsaid)

@@ -185,7 +185,7 @@ class _Carve:
         self._waiting = True
         if not self._working:
             self._working = True
-            background_tasks.create(self._work(), name="carve")
+            background_tasks.create(self._work(), name="carve", context=self._status.client)
 
     async def _work(self) -> None:
         try:
@@ -202,7 +202,7 @@ class _Carve:
                 found = await answers
                 if isinstance(found, str):
                     self._status.set_text(found)
-                elif found is not None:
+                elif found is not None and not self._status.is_deleted:  # the page may have been left meanwhile
                     self._show(found)
         finally:
             self._working = False

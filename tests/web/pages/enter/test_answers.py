@@ -6,6 +6,7 @@ import threading
 from functools import partial
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
+from unittest.mock import Mock
 
 import pytest
 from nicegui import ui
@@ -105,6 +106,32 @@ def test_only_the_last_of_several_tests_is_shown(desk: Desk) -> None:
     assert shown == []
     desk.do(lambda: made.follow("a", "a"), page.client)
     page.shows("[quiet] Test a")
+
+
+def test_an_answer_to_a_page_that_was_left_is_dropped(desk: Desk) -> None:
+    page = desk.open("/")
+    goes_on = threading.Event()
+
+    def answer(site: str) -> QuickResults:
+        assert goes_on.wait(60)
+        return found(**{site: curve(site)})
+
+    made = beside(page, answer)
+    desk.do(lambda: made.follow("a", "a"), page.client)
+    page.leave()
+    goes_on.set()
+    page.until(lambda: not page.works("beside"))
+    assert page.client.elements == {}
+
+
+def test_what_goes_wrong_behind_a_page_is_told_on_it(desk: Desk) -> None:
+    page = desk.open("/")
+    failure = ZeroDivisionError("division by zero")
+    made = beside(page, Mock(side_effect=failure))
+    desk.do(lambda: made.follow("a", "a"), page.client)
+    assert desk.fails() is failure
+    page.told("notify ")
+    assert "Reference: " in page.scripts[-1]
 
 
 def test_nothing_is_shown_when_the_lab_is_being_closed(desk: Desk, monkeypatch: pytest.MonkeyPatch) -> None:
