@@ -9,8 +9,6 @@ import time
 
 import pytest
 
-pytest.importorskip("nicegui", reason="the web lab is not installed")
-
 from skisnow.errors import FieldDataError, ParameterError
 from skisnow.web.confined import BOUNDS, Bounds, confined
 

@@ -28,6 +28,8 @@ OFFSETS: Final[tuple[Offset, ...]] = get_args(Offset)
 """What may be unknown: the place of the first point, the direction (turned about the vertical there), the time."""
 PLACES: Final = 2048
 """Equal steps of the measured track over which squares are summed: the sum stands for an integral over its length."""
+ROUGHLY: Final = 8
+"""Each beginning is followed with every so many places first, which takes so much less time, and then with all."""
 LEAST_SHARE: Final = 0.5
 """Of the places, or of the shorter time, that must stay in the comparison: a fit may not slide a track out of sight."""
 HEADINGS: Final = 8
@@ -43,6 +45,8 @@ _ROUNDS: Final = 100
 _SETTLED: Final = 1e-10
 _GOOD_ENOUGH: Final = 1e-5
 """Steps (in parts of the length) that go on below this only pass single places over the ends to and fro."""
+_TO_AND_FRO: Final = 10
+"""They do where one is as long as one of so many before it."""
 _TIMES: Final = 401
 
 
@@ -116,7 +120,9 @@ def fitted_motion(simulated: Polyline, measured: Polyline, *, start: bool, headi
     if heading:
         angles = np.linspace(0.0, 2.0 * math.pi, HEADINGS, endpoint=False) + begins[-1].turned
         begins += [_overlay(simulated, measured, start=start, heading=True, turned=float(each)) for each in angles[1:]]
-    settled = [_settled(path, places, begin, start=start, heading=heading) for begin in begins]
+    settled = begins
+    for some in (places[::ROUGHLY], places):
+        settled = [_settled(path, some, each, start=start, heading=heading) for each in settled]
     answers = [each for each in settled if math.isfinite(each.rms)]
     if not answers:
         raise FitError(
@@ -175,7 +181,7 @@ def _overlay(
 
 def _settled(path: Path, places: FloatArray, motion: Motion, *, start: bool, heading: bool) -> Motion:
     """The answer from one beginning; its mean square is over the share of places, and infinite without an answer."""
-    size = math.inf
+    sizes = [math.inf]
     for _ in range(_ROUNDS):
         local, found = _seen(path, places, motion)
         inside = ~found.beyond
@@ -186,10 +192,11 @@ def _settled(path: Path, places: FloatArray, motion: Motion, *, start: bool, hea
         moved = step[: places.shape[1]] if start else np.zeros(places.shape[1])
         turned = float(step[-1]) / path.length if heading else 0.0
         motion = Motion(motion.moved + moved, motion.turned + turned, undetermined)
-        size = float(np.linalg.norm(step)) / path.length
-        if size < _SETTLED:
+        sizes.append(float(np.linalg.norm(step)) / path.length)
+        no_shorter = sizes[-1] >= min(sizes[:-_TO_AND_FRO], default=math.inf)
+        if sizes[-1] < _SETTLED or (sizes[-1] < _GOOD_ENOUGH and no_shorter):
             break
-    if size > _GOOD_ENOUGH:
+    if sizes[-1] > _GOOD_ENOUGH:
         return motion
     found = _seen(path, places, motion)[1]
     inside = ~found.beyond
