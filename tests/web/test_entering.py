@@ -33,6 +33,7 @@ def hardness_beside(page: Page, served: Served) -> str:
     return words
 
 
+@pytest.mark.slow
 def test_undo_and_a_second_look(page: Page, served: Served) -> None:
     create(page, served)
     enter_series(page, "1")
@@ -181,6 +182,7 @@ def test_a_moment_for_each_turning_angle(page: Page, served: Served) -> None:
     page.get_by_text("Not stored: the rows of test 1 have one Depth (mm).").wait_for()
 
 
+@pytest.mark.slow
 def test_what_is_no_number_is_not_stored(page: Page, served: Served) -> None:
     create(page, served)
     fill(page, {"Site": "A", "Edge angle (°)": "95"})

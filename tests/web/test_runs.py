@@ -110,6 +110,7 @@ def test_the_snow_of_a_campaign_comes_with_its_uncertainty(page: Page, served: S
     page.wait_for_function("window.skisnowReplay")  # its ski is found, though the run was not with one of the catalogue
 
 
+@pytest.mark.slow
 def test_a_campaign_without_experiments_gives_no_snow_and_says_so(page: Page, served: Served) -> None:
     with Store.open(served.store) as store:
         Journals(store).begin('name = "empty"\n')

@@ -84,6 +84,7 @@ def test_factors_and_values_at_stations_are_drawn_and_saved(page: Page, served: 
     assert len({words.split("carved radius")[1] for words in told.all_inner_texts()}) == 2
 
 
+@pytest.mark.slow
 def test_what_cannot_be_is_said_and_nothing_is_saved(page: Page, served: Served) -> None:
     page.goto(f"{served.address}skis")
     page.get_by_label("EI (N m²) at 0.000 m", exact=True).wait_for()

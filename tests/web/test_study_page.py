@@ -44,6 +44,7 @@ def unpacked(page: Page, folder: Path) -> Path:
     return folder / "study"
 
 
+@pytest.mark.slow
 def test_what_cannot_be_studied_is_said_before_anything_begins(page: Page, served: Served) -> None:
     page.goto(f"{served.address}study")
     page.get_by_text("13 points. Will take about").wait_for()
