@@ -95,7 +95,11 @@ class Course(Shown):
     longitude_deg: Annotated[
         float | None,
         Quantity(
-            "course.longitude_deg", "longitude of it", label="longitude of the origin", lowest=-180.0, highest=180.0
+            "course.longitude_deg",
+            "longitude (WGS84) of x = y = 0, for a course in degrees",
+            label="longitude of the origin",
+            lowest=-180.0,
+            highest=180.0,
         ),
     ] = None
     fall_line_azimuth_deg: Annotated[

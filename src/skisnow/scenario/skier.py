@@ -373,7 +373,7 @@ class Skier:
         float,
         Quantity(
             "skier.foresight_step_s",
-            "step of that",
+            "time between the moments of its plan that it looks at",
             label="step of the foresight",
             lowest=0.001,
             highest=0.1,

@@ -8,6 +8,7 @@ from weakref import WeakKeyDictionary
 from nicegui import Client, ui
 
 from ..language import ENGLISH, catalogue, languages
+from ..language.catalogue import DECIMAL
 
 if TYPE_CHECKING:
     from collections.abc import Set
@@ -58,6 +59,16 @@ def said(text: str, client: Client | None = None) -> str:
     """A text in the language of the page, its numbers as there."""
     words = catalogue(language_of(client))
     return words.with_numbers(words.translated(text))
+
+
+def decimal_mark(client: Client | None = None) -> str:
+    """Of numbers in the language of the page."""
+    return said(DECIMAL, client)[1]
+
+
+def number_said(number: str, client: Client | None = None) -> str:
+    """A stored number with the decimal mark of the page's language; the page's script takes both marks for one."""
+    return number.replace(".", decimal_mark(client))
 
 
 def said_as_written(text: str, names: Set[str]) -> str:

@@ -11,9 +11,8 @@ from typing import TYPE_CHECKING, Any, Final, Literal
 
 from nicegui.element import Element
 
-from ..language.catalogue import DECIMAL
 from ..report.number_formatting import significant
-from .language import said
+from .language import decimal_mark, said
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -62,7 +61,7 @@ class LineChart(Element, component="line_chart.js"):
 
     def __init__(self, x: str, y: str, words: str, *, height: int = 240, ends: tuple[str, str] = ("", "")) -> None:
         super().__init__()
-        self._titles = {"x": said(x), "y": said(y), "ends": [said(each) for each in ends], "mark": said(DECIMAL)[1]}
+        self._titles = {"x": said(x), "y": said(y), "ends": [said(each) for each in ends], "mark": decimal_mark()}
         self._words = words
         self._drawn: list[tuple[ChartLine, dict[str, Any]]] = []
         self._props["height"] = height

@@ -9,10 +9,9 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 from nicegui import ui
 
 from ...field.reading.table_forms import BRANCH, UNLOADING
-from ...language.catalogue import DECIMAL
 from ..answering import answering, asked, asking_button, form
 from ..fields import choice, field
-from ..language import said
+from ..language import number_said
 from ..layout import heading, sentence
 from ..names import entering
 from ..worded import Words, named
@@ -24,8 +23,6 @@ from .waiting import AfterWaiting
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
-
-    from nicegui import Client
 
     from ...field.store import ReplayedRow, ReplayedTest
     from .beside import Beside
@@ -235,7 +232,7 @@ class SeriesForm:
             made.props["data-load"] = step.load
             made.props["data-branch"] = step.branch
             Words(f"{step.load} N").classes("load")
-            depth = field(label("depth_mm"), _shown(row.cells["depth_mm"]) if row else typed, numeric=True)
+            depth = field(label("depth_mm"), number_said(row.cells["depth_mm"]) if row else typed, numeric=True)
             named(depth, step.asked)
             depth.props("readonly" if test.cancelled else "")
             stored = Words("stored" if row else "").classes("stored")
@@ -291,7 +288,7 @@ class SeriesForm:
             made.stored.set_text("stored")
             made.row.props["data-stored"] = cell
             made.row.classes(remove="refused")
-            made.depth.set_value(_shown(cell, made.depth.client))
+            made.depth.set_value(number_said(cell, made.depth.client))
         elif self._readings.get(step) is made:  # the series was not drawn anew meanwhile
             made.row.classes("refused")
             made.depth.client.run_javascript(f"lab.refusedLast({made.depth.id})")
@@ -330,7 +327,7 @@ class SeriesForm:
             self._view.say(f"Not corrected: {'; '.join(faults([depth]))}.", "bad")
             return False
         if cells["depth_mm"] == row.cells["depth_mm"]:  # the same number, with a comma
-            depth.set_value(_shown(cells["depth_mm"], depth.client))
+            depth.set_value(number_said(cells["depth_mm"], depth.client))
             return True
 
         def correct(why: str) -> bool:
@@ -348,8 +345,3 @@ class SeriesForm:
             self._ask, words, act, usual=USUAL_REASON, leave=lambda: self.show(test.name, self._head), focus=focus
         )
         return True
-
-
-def _shown(number: str, client: Client | None = None) -> str:
-    """A stored number with the decimal sign of the page's language; the page's script takes both signs for one."""
-    return number.replace(".", said(DECIMAL, client)[1])

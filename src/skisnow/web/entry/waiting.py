@@ -8,6 +8,7 @@ from nicegui import ui
 
 from ..answering import asking_button, form
 from ..fields import field
+from ..language import number_said
 from ..worded import Words, named
 from ..words import label
 from .changes import USUAL_REASON, WAITED, ask_reason
@@ -51,7 +52,9 @@ class AfterWaiting:
                 Words("Depths read once more after waiting")
             with form("readings", sends=lambda: self._store(ask)):
                 for load, text in stored.items():
-                    self._fields[load] = self._field(load, text, unstored.get(load, text), closed=bool(test.cancelled))
+                    self._fields[load] = self._field(
+                        load, text, unstored.get(load, number_said(text)), closed=bool(test.cancelled)
+                    )
                 if not test.cancelled:
                     asking_button("Store what was read after waiting", lambda: self._store(ask))
 

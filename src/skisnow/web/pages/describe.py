@@ -8,7 +8,7 @@ from nicegui import ui
 
 from ...errors import ParameterError, SkisnowError
 from ...field.reading.tool_shapes import SHAPES
-from ...field.store import Journals, NewEntry
+from ...field.store import Journals, NewEntry, OvertakenError
 from ...field.store.description import Description, description_text
 from ...field.store.journal_entry import DESCRIPTION
 from ...given import toml_values
@@ -57,7 +57,7 @@ def add_page(lab: Lab) -> None:
                 try:
                     id_ = _stored(lab, session, described.text(), asked().once)
                 except SkisnowError as error:
-                    status.set_text(f"Not stored: {error}")
+                    status.set_text(str(error) if isinstance(error, OvertakenError) else f"Not stored: {error}")
                     status.classes(add="bad")
                     status.run_method("scrollIntoView")
                     return False

@@ -281,7 +281,7 @@ def test_the_description_that_somebody_else_wrote_meanwhile_is_not_written_over(
     theirs.press("Store and enter tests")
     mine.fill("Place", "mine")
     mine.press("Store and enter tests")
-    mine.shows("[status bad] Not stored: Nothing was stored: somebody wrote about campaign.toml meanwhile")
+    mine.shows("[status bad] Nothing was stored: somebody wrote about campaign.toml meanwhile")
     assert stored_description(desk)["place"] == "theirs"
 
 

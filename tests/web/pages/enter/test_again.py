@@ -63,6 +63,19 @@ def test_depths_after_waiting_are_stored_beside_the_first_ones(desk: Desk) -> No
     assert "h2 New series" in page.outline()
 
 
+def test_a_depth_after_waiting_stands_with_the_decimal_mark_of_the_page(desk: Desk) -> None:
+    id_ = begun(desk)
+    add_series(desk, id_, "1", ("20", "1.5"))
+    page = series_page(desk, id_, language="de")
+    name = "Tiefe nach dem Warten unter 20 N (mm)"
+    page.fill(name, "1,75")
+    page.press("Nach dem Warten Abgelesenes speichern")
+    page.shows("Stored after waiting: ")
+    assert page.field(name).value == "1,75"
+    page.press("Nach dem Warten Abgelesenes speichern")
+    page.shows("Nothing is different.")
+
+
 def test_a_second_depth_that_becomes_another_one_asks_for_a_reason(desk: Desk) -> None:
     id_ = begun(desk)
     add_series(
