@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from skisnow.errors import FitError
-from skisnow.track.alignment import fitted_motion, fitted_time
+from skisnow.track.alignment import Motion, _settled, fitted_motion, fitted_time
 from skisnow.track.nearest_place import Path
 from skisnow.track.polyline import Polyline, polyline
 
@@ -151,6 +151,12 @@ def test_arcs_of_one_circle_have_a_rival() -> None:
     assert motion.rival is not None
     assert abs(math.remainder(motion.rival.turned - motion.turned, math.tau)) > math.radians(5.0)
     assert 0.99 * motion.rms < motion.rival.rms < 2.0 * motion.rms
+
+
+def test_an_answer_among_few_places_is_none_among_all_that_lie_beyond() -> None:
+    path, places = Path(np.array([[0.0, 0.0], [1.0, 0.0]])), np.column_stack([np.linspace(0.0, 10.0, 21), np.zeros(21)])
+    among_few = Motion(np.zeros(2), 0.0, rms=0.1)
+    assert _settled(path, places, among_few, start=True, heading=False).rms == math.inf
 
 
 @pytest.mark.parametrize("later", [-40.0, -0.37, 0.0, 2.2])

@@ -186,7 +186,7 @@ def _settled(path: Path, places: FloatArray, motion: Motion, *, start: bool, hea
         local, found = _seen(path, places, motion)
         inside = ~found.beyond
         if inside.mean() < LEAST_SHARE:
-            return motion
+            return replace(motion, rms=math.inf)  # a beginning may be an answer among fewer places
         matrix, rest = _equations(path, local, found, inside, motion, start=start, heading=heading)
         step, undetermined = _least_norm(matrix, rest)
         moved = step[: places.shape[1]] if start else np.zeros(places.shape[1])
