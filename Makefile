@@ -45,7 +45,7 @@ LOCKED ?= yes
 # the extras that tests need; what only those need who work on it stands in [dependency-groups]
 TESTED := web$(comma)pandas$(comma)xarray$(comma)racing
 # a change of the compiled core builds it anew; without a C++ compiler it is built with the one of Zig's wheel
-CORE := CMakeLists.txt $(wildcard build_backend/*.py src/core/*)
+CORE := CMakeLists.txt $(wildcard build_backend/*.py src/core/*/*)
 COMPILER := $(shell command -v c++ || command -v g++ || command -v clang++)
 PIP := -m pip --disable-pip-version-check install --quiet
 locked = { $(BIN)/python $(PIP) --no-compile --require-hashes --requirement requirements/$(1).txt \
@@ -100,7 +100,7 @@ lint: $(VENV)/.skisnow-dev
 	$(BIN)/ruff format --check
 	$(BIN)/mypy
 	$(BIN)/lint-imports --no-cache
-	$(BIN)/clang-format --dry-run --Werror src/core/*
+	$(BIN)/clang-format --dry-run --Werror src/core/*/*
 
 # What clang-tidy says of the core; .clang-tidy tells what it looks for and what fails.
 TIDY := build/tidy
@@ -108,7 +108,7 @@ tidy: $(VENV)/.skisnow-dev $(TOOLS)/.tools
 	PATH="$(abspath $(BIN)):$$PATH" cmake -S . -B $(TIDY) -G Ninja -DPython_EXECUTABLE=$(abspath $(BIN))/python \
 		-DCMAKE_BUILD_TYPE=Release -DCMAKE_EXPORT_COMPILE_COMMANDS=ON
 	$(TOOLS)/bin/python $(TOOLS)/bin/run-clang-tidy.py -quiet -p $(TIDY) -clang-tidy-binary $(abspath $(TOOLS))/bin/clang-tidy \
-		'src/core/(?!kernels).*\.cpp$$'
+		'src/core/(?!contact/kernels).*\.cpp$$'
 
 # The core built with sanitizers, and the tests of its own run under them: SANITIZE=thread finds races.
 SANITIZE ?= address,undefined
@@ -121,7 +121,7 @@ sanitize: $(VENV)/.skisnow-dev
 		-DSKISNOW_SANITIZE=$(SANITIZE) -DCMAKE_BUILD_TYPE=Release
 	PATH="$(abspath $(BIN)):$$PATH" cmake --build $(SANITIZED)
 	rm -rf $(SANITIZED)/package && mkdir -p $(SANITIZED)/package && cp -r src/skisnow $(SANITIZED)/package
-	cp $(SANITIZED)/_core*.so $(SANITIZED)/libskisnow_contact* src/core/skisnow_contact.h $(SANITIZED)/package/skisnow/compiled
+	cp $(SANITIZED)/_core*.so $(SANITIZED)/libskisnow_contact* src/core/bindings/skisnow_contact.h $(SANITIZED)/package/skisnow/compiled
 # -S: the checkout's own core is not to be found; a program in C would have to be linked with the runtimes
 	LD_PRELOAD="$(PRELOAD)" ASAN_OPTIONS=detect_leaks=0 UBSAN_OPTIONS=print_stacktrace=1 \
 		PYTHONPATH=$(SANITIZED)/package:$$($(BIN)/python -c 'import sysconfig; print(sysconfig.get_path("purelib"))') \

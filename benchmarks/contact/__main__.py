@@ -50,33 +50,33 @@ class Literal:
 
 
 LITERALS = [
-    Literal("MARGIN", "lines.cpp", "0.12", ("0.06", "0.24")),
-    Literal("EDGE_ASIDE", "lines.cpp", "0.04", ("0.02", "0.08")),
-    Literal("MOST_UNEVEN", "lines.cpp", "0.25", ("0.12", "0.5")),
-    Literal("MOST_TURN", "lines.cpp", "0.3", ("0.15", "0.6")),
-    Literal("MOST_OFF", "lines.cpp", "2e-4", ("1e-4", "4e-4")),
-    Literal("FURTHER", "lines.cpp", "0.03", ("0.01", "0.1")),
-    Literal("SPARE", "learn.cpp", "0.01", ("0.005", "0.05")),
-    Literal("KNOTS", "groove.hpp", "16", ("12", "32")),
-    Literal("ALIKE", "groove.cpp", r"1.0 + 1e-4", ("1.0 + 1e-6", "1.0 + 1e-3")),
-    Literal("SLIPPING", "march.cpp", "0.999", ("0.99", "0.9999")),
-    Literal("EXACT", "archive.cpp", "1e-14", ("1e-15", "1e-12")),
-    Literal("AT_BORDER", "archive.cpp", "1e-9", ("1e-10", "1e-8")),
-    Literal("PARTS", "archive.cpp", "4", ("2", "8")),
-    Literal("TANGENT_STEP", "contact.cpp", "1e-8", ("1e-9", "1e-7")),
-    Literal("LEVEL", "contact.cpp", "1e-6", ("1e-7", "1e-5")),
-    Literal("NONE", "delayed.hpp", "1e-10", ("1e-12", "1e-8")),
-    Literal("RATE_STEP", "rate.cpp", "1e-4", ("1e-5", "1e-3")),
-    Literal("MOST_PLACES", "march.cpp", "24", ("12", "48")),
-    Literal("SLOW", "dynamics.cpp", "0.15", ("0.08", "0.3")),
-    Literal("UNSEEN", "dynamics.cpp", "0.3", ("0.15", "0.6")),
-    Literal("LEAST_ERROR", "dynamics.cpp", "0.1", ("0.05", "0.2")),
-    Literal("SAME_REACH", "dynamics.cpp", "0.1", ("0.05", "0.2")),
-    Literal("FARTHEST", "dynamics.cpp", "1.0", ("0.5", "2.0")),
-    Literal("SAFETY", "dynamics.cpp", "0.85", ("0.75", "0.95")),
-    Literal("UP", "dynamics.cpp", "1.35", ("1.2", "1.5")),
-    Literal("DOWN", "dynamics.cpp", "0.93", ("0.85", "0.99")),
-    Literal("MILNE", "dynamics.cpp", "0.35", ("0.25", "0.5")),
+    Literal("MARGIN", "snow/lines.cpp", "0.12", ("0.06", "0.24")),
+    Literal("EDGE_ASIDE", "snow/lines.cpp", "0.04", ("0.02", "0.08")),
+    Literal("MOST_UNEVEN", "snow/lines.cpp", "0.25", ("0.12", "0.5")),
+    Literal("MOST_TURN", "snow/lines.cpp", "0.3", ("0.15", "0.6")),
+    Literal("MOST_OFF", "snow/lines.cpp", "2e-4", ("1e-4", "4e-4")),
+    Literal("FURTHER", "snow/lines.cpp", "0.03", ("0.01", "0.1")),
+    Literal("SPARE", "contact/learn.cpp", "0.01", ("0.005", "0.05")),
+    Literal("KNOTS", "carve/groove.hpp", "16", ("12", "32")),
+    Literal("ALIKE", "carve/groove.cpp", r"1.0 + 1e-4", ("1.0 + 1e-6", "1.0 + 1e-3")),
+    Literal("SLIPPING", "contact/march.cpp", "0.999", ("0.99", "0.9999")),
+    Literal("EXACT", "snow/archive.cpp", "1e-14", ("1e-15", "1e-12")),
+    Literal("AT_BORDER", "snow/archive.cpp", "1e-9", ("1e-10", "1e-8")),
+    Literal("PARTS", "snow/archive.cpp", "4", ("2", "8")),
+    Literal("TANGENT_STEP", "contact/contact.cpp", "1e-8", ("1e-9", "1e-7")),
+    Literal("LEVEL", "contact/contact.cpp", "1e-6", ("1e-7", "1e-5")),
+    Literal("NONE", "snow/delayed.hpp", "1e-10", ("1e-12", "1e-8")),
+    Literal("RATE_STEP", "contact/rate.cpp", "1e-4", ("1e-5", "1e-3")),
+    Literal("MOST_PLACES", "contact/march.cpp", "24", ("12", "48")),
+    Literal("SLOW", "dynamics/dynamics.cpp", "0.15", ("0.08", "0.3")),
+    Literal("UNSEEN", "dynamics/dynamics.cpp", "0.3", ("0.15", "0.6")),
+    Literal("LEAST_ERROR", "dynamics/dynamics.cpp", "0.1", ("0.05", "0.2")),
+    Literal("SAME_REACH", "dynamics/dynamics.cpp", "0.1", ("0.05", "0.2")),
+    Literal("FARTHEST", "dynamics/dynamics.cpp", "1.0", ("0.5", "2.0")),
+    Literal("SAFETY", "dynamics/dynamics.cpp", "0.85", ("0.75", "0.95")),
+    Literal("UP", "dynamics/dynamics.cpp", "1.35", ("1.2", "1.5")),
+    Literal("DOWN", "dynamics/dynamics.cpp", "0.93", ("0.85", "0.99")),
+    Literal("MILNE", "dynamics/dynamics.cpp", "0.35", ("0.25", "0.5")),
 ]
 
 
@@ -149,7 +149,7 @@ def main() -> None:
         for literal in chosen:
             for value in literal.values:
                 found, moved = _other(_built(Path(folder), literal, value))
-                if literal.file != "dynamics.cpp":
+                if literal.file != "dynamics/dynamics.cpp":
                     print(row(literal.name, literal.before, value, found, base), flush=True)
                 cells = [moved[name].moved(end) for name, end in ends.items()]
                 rows.append(f"| `{literal.name}` | {literal.before} | {value} | {' | '.join(cells)} |")

@@ -7,7 +7,8 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 PAGES = [(ROOT / "docs" / "methods" / f"{name}.md").read_text("utf-8") for name in ("carved-turn", "carve-laws")]
-SOURCES = [*sorted((ROOT / "src" / "core").glob("carve_*.cpp")), ROOT / "src" / "core" / "hypoplastic.hpp"]
+CORE = ROOT / "src" / "core"
+SOURCES = [*sorted((CORE / "carve").glob("*.cpp")), CORE / "snow" / "hypoplastic.hpp"]
 
 
 def test_marks() -> None:

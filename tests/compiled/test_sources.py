@@ -21,7 +21,7 @@ SOURCES = Path(skisnow.compiled.__file__).parents[2] / "core"
 def test_an_edited_source_is_refused(tmp_path: Path) -> None:
     copied = Path(shutil.copytree(SOURCES, tmp_path / "core"))
     require_current(core.SOURCE_HASH, copied)
-    edited = copied / "pressure_kernels.hpp"
+    edited = copied / "contact" / "pressure_kernels.hpp"
     edited.write_text(edited.read_text(encoding="utf-8").replace("0.5 * width", "1.5 * width", 1), encoding="utf-8")
     with pytest.raises(ImportError, match=r"older than its sources in .*core: build it with"):
         require_current(core.SOURCE_HASH, copied)

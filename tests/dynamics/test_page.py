@@ -9,7 +9,14 @@ ROOT = Path(__file__).resolve().parents[2]
 PAGE = (ROOT / "docs" / "methods" / "dynamics.md").read_text("utf-8")
 PLAIN = re.sub(r"\$.*?\$", "", re.sub(r"\$\$.*?\$\$", "", PAGE, flags=re.DOTALL), flags=re.DOTALL)
 CORE = ROOT / "src" / "core"
-FILES = ("boots.cpp", "dynamics.cpp", "moving_boots.cpp", "statics.cpp", "along.cpp", "tangent_kernels.hpp")
+FILES = (
+    "dynamics/boots.cpp",
+    "dynamics/dynamics.cpp",
+    "dynamics/moving_boots.cpp",
+    "dynamics/statics.cpp",
+    "beam/along.cpp",
+    "contact/tangent_kernels.hpp",
+)
 SOURCES = "\n".join((CORE / name).read_text("utf-8") for name in FILES)
 
 

@@ -18,7 +18,7 @@ except ImportError as error:
 
 def require_current(built_from: str, sources: Path) -> None:
     """Refuse a core that was built from other sources than those that lie here."""
-    if any(sources.glob("*.cpp")) and fingerprint(sources) != built_from:
+    if any(sources.rglob("*.cpp")) and fingerprint(sources) != built_from:
         raise ImportError(f"the compiled core of skisnow is older than its sources in {sources}: {REMEDY}")
 
 

@@ -39,7 +39,7 @@ def c_header() -> Path:
     FileNotFoundError
         The package was put together without it.
     """
-    return _first(_FOLDER / HEADER, compiled.SOURCES / HEADER)
+    return _first(_FOLDER / HEADER, compiled.SOURCES / "bindings" / HEADER)
 
 
 _FOLDER: Final = Path(compiled.__file__).parent

@@ -1,4 +1,4 @@
-"""Ferguson's bicubic patches over evenly spaced places, as the compiled core has them (src/core/surface.cpp)."""
+"""Ferguson's bicubic patches over evenly spaced places, as the compiled core has them (src/core/snow/surface.cpp)."""
 
 from __future__ import annotations
 

@@ -1,0 +1,16 @@
+// What the snow does along a ski, brought from the lines to the nodes of its beam.
+#pragma once
+
+#include <vector>
+
+#include "contact/sections.hpp"
+
+namespace skisnow {
+
+struct Along {
+  std::vector<double> depth, force, shear;  // of the deeper edge (m); per length of ski (N/m)
+};
+
+Along along_nodes(const Runner& runner, const Sections& sections);
+
+}  // namespace skisnow

@@ -1,0 +1,171 @@
+// The steady carve in Python: plain arrays in and out. skisnow.simulate.equilibrium gives it names and documentation.
+#include <nanobind/nanobind.h>
+#include <nanobind/stl/optional.h>
+
+#include <algorithm>
+#include <chrono>
+#include <stdexcept>
+
+#include "bindings/arrays.hpp"
+#include "carve/carve.hpp"
+#include "carve/strip.hpp"
+#include "linear_algebra/banded.hpp"
+
+namespace skisnow {
+namespace {
+
+// Of each station (rows): place, weight, width, base height, first unknown, shapes of deflection (6) and twist (6).
+void set_stations(CarvedSki& ski, const Array& rows) {
+  constexpr int DEFLECTION = 5, TWIST = 11, COLUMNS = 17;
+  constexpr int BENDS[4] = {0, 1, 3, 4}, TURNS[2] = {2, 5};
+  for (std::size_t i = 0; i < rows.shape(0); i++) {
+    const double* row = rows.data() + COLUMNS * i;
+    CarveStation station{row[0], row[1], 0.5 * row[2], row[3], {}, {}, int(row[4])};
+    for (int a = 0; a < 4; a++) station.deflection[a] = row[DEFLECTION + BENDS[a]];
+    for (int a = 0; a < 2; a++) station.twist[a] = row[TWIST + TURNS[a]];
+    ski.stations.push_back(station);
+    ski.greatest_width = std::max(ski.greatest_width, row[2]);
+  }
+}
+
+CarvedSki carved_ski(const Array& stations, int front, const Array& stiffness, double waist, double running_length,
+                     const Array& bent_by_width, const Array& bent_by_height) {
+  CarvedSki out;
+  set_stations(out, stations);
+  const int free = int(stiffness.shape(0));
+  out.front = front;
+  out.size = free + CarvedSki::HELD;
+  out.stiffness.assign(std::size_t(CARVE_BAND * (out.size + BAND_HALF)), 0.0);
+  for (int i = 0; i < free; i++) {
+    const double* from = stiffness.data() + CARVE_BAND * i;
+    std::copy_n(from, CARVE_BAND, out.stiffness.data() + CARVE_BAND * (i < front ? i : i + CarvedSki::HELD));
+  }
+  for (int i = front; i < front + CarvedSki::HELD; i++) out.stiffness[std::size_t(CARVE_BAND * i + BAND_HALF)] = 1.0;
+  out.waist = waist;
+  out.running_length = running_length;
+  out.bent_by_width = out.spread(bent_by_width.data());
+  out.bent_by_height = out.spread(bent_by_height.data());
+  return out;
+}
+
+// While a search takes long Python's signals are answered; the lock is held for that alone.
+std::function<void()> answering_signals() {
+  using Clock = std::chrono::steady_clock;
+  return [last = Clock::now()]() mutable {
+    if (Clock::now() - last < std::chrono::milliseconds(50)) return;
+    last = Clock::now();
+    nb::gil_scoped_acquire held;
+    if (PyErr_CheckSignals() != 0) throw nb::python_error();
+  };
+}
+
+// One number back for each point.
+template <class... Points>
+CarveLaws::Values asked(const nb::object& law, const Points&... points) {
+  nb::gil_scoped_acquire held;
+  const std::size_t wanted = std::max({points.size()...});
+  const auto found = nb::cast<Array>(law(array(points, {points.size()})...));
+  if (found.size() != wanted) throw std::invalid_argument("a law must give one value for each point");
+  return CarveLaws::Values(found.data(), found.data() + wanted);
+}
+
+// Laws in Python, or none: `pressure` and `residual` of arrays, `strength` over one that all have in common.
+void set_laws(CarveLaws& out, const nb::object& pressure, const nb::object& residual, const Array& bends,
+              const nb::object& strength) {
+  using Values = CarveLaws::Values;
+  if (!pressure.is_none()) {
+    out.pressure = [pressure](const Values& depth, const Values& deepest, const Values& angle) {
+      return asked(pressure, depth, deepest, angle);
+    };
+    out.residual = [residual](const Values& deepest) { return asked(residual, deepest); };
+  }
+  out.bends.assign(bends.data(), bends.data() + bends.size());
+  if (strength.is_none()) return;
+  out.strength = [strength](const Values& depth, const Values& angle) { return asked(strength, depth, angle); };
+}
+
+nb::tuple find(const CarvedSki& ski, CarveConditions conditions, const std::optional<Array>& offset,
+               const std::optional<nb::tuple>& near, const CarveLaws* laws) {
+  conditions.laws = laws;
+  CarveSolution found, from;
+  if (near) {
+    from.state.u = ski.spread(nb::cast<Array>((*near)[0]).data());
+    std::copy_n(nb::cast<Array>((*near)[1]).data(), CARVE_BORDER, from.state.border.begin());
+    const auto depth = nb::cast<Array>((*near)[2]);
+    from.depth.assign(depth.data(), depth.data() + depth.size());
+  }
+  std::vector<double> beside;
+  if (offset) beside.assign(offset->data(), offset->data() + offset->size());
+  {
+    nb::gil_scoped_release free;
+    found = find_carve(ski, conditions, std::move(beside), near ? &from : nullptr, answering_signals());
+  }
+  std::vector<double> u = ski.gathered(found.state.u);
+  const std::size_t size = u.size(), stations = ski.stations.size();
+  const auto& border = found.state.border;
+  return nb::make_tuple(found.converged, found.iterations, array(std::move(u), {size}),
+                        nb::make_tuple(border[0], border[1], border[2]), array(std::move(found.depth), {stations}),
+                        array(std::move(found.force), {stations}));
+}
+
+// Behind the rows of a banded matrix, or of a right side, the zeros that loops over it need.
+Column with_room(const Array& rows, std::size_t width) {
+  Column out((rows.shape(0) + BAND_HALF) * width, 0.0);
+  std::copy_n(rows.data(), rows.size(), out.data());
+  return out;
+}
+
+Result banded_factors(const Array& matrix) {
+  Column band = with_room(matrix, BAND_WIDTH);
+  factor_band(band.data(), int(matrix.shape(0)));
+  return array({band.data(), band.data() + matrix.size()}, {matrix.shape(0), std::size_t(BAND_WIDTH)});
+}
+
+// Of one right side, or of `BAND_TILE`; all rows before `from` are zero.
+Result banded_solution(const Array& factors, const Array& right, int from) {
+  const Column band = with_room(factors, BAND_WIDTH);
+  Column x = with_room(right, right.shape(1));
+  const BandBlock block{0, from, int(right.shape(0))};
+  (right.shape(1) == 1 ? solve_band : solve_band_tile)(band.data(), x.data(), block);
+  return array({x.data(), x.data() + right.size()}, {right.shape(0), right.shape(1)});
+}
+
+Result strip_sums(const Array& intervals) {
+  StripSums sums;
+  for (std::size_t i = 0; i < intervals.shape(0); i++) {
+    const double* a = intervals.data() + 8 * i;
+    sums.add_interval(a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7]);
+  }
+  std::vector<double> out = {sums.force, sums.moment};
+  out.insert(out.end(), sums.by_depth, sums.by_depth + 3);
+  out.insert(out.end(), sums.by_groove, sums.by_groove + 3);
+  return array(std::move(out), {8});
+}
+
+}  // namespace
+
+void bind_carve(nb::module_& m) {
+  nb::class_<CarvedSki>(m, "CarvedSki");
+  m.def("carved_ski", &carved_ski);
+  nb::class_<CarveConditions>(m, "CarveConditions")
+      .def("__init__", [](CarveConditions* at, double edge_angle, double hardness, double excess, double load,
+                          double moment, double side_force, bool side_force_bending, bool twists, double bevel,
+                          double bevel_width, double pitch_of_force, double pitch_of_shear, bool by_reaction) {
+        new (at) CarveConditions{edge_angle,     hardness,           excess,     load,  moment,
+                                 side_force,     side_force_bending, twists,     bevel, bevel_width,
+                                 pitch_of_force, pitch_of_shear,     by_reaction};
+      });
+  nb::class_<CarveLaws>(m, "CarveLaws")
+      .def(
+          "__init__",
+          [](CarveLaws* at, const nb::object& pressure, const nb::object& residual, const Array& bends,
+             const nb::object& strength) { set_laws(*new (at) CarveLaws, pressure, residual, bends, strength); },
+          nb::arg("pressure").none(), nb::arg("residual").none(), nb::arg("bends"), nb::arg("strength").none());
+  m.def("find_carve", &find, nb::arg("ski"), nb::arg("conditions"), nb::arg("offset").none(), nb::arg("near").none(),
+        nb::arg("laws").none());
+  m.def("banded_factors", &banded_factors);
+  m.def("banded_solution", &banded_solution);
+  m.def("strip_sums", &strip_sums);
+}
+
+}  // namespace skisnow

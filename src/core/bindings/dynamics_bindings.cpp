@@ -1,0 +1,193 @@
+// The dynamics in Python: plain arrays in and out. The package skisnow.dynamics gives it names, checks and
+// documentation.
+#include <nanobind/nanobind.h>
+#include <nanobind/stl/vector.h>
+
+#include <algorithm>
+
+#include "bindings/arrays.hpp"
+#include "dynamics/dynamics.hpp"
+
+namespace skisnow {
+namespace {
+
+std::vector<double> copied(const Array& a) { return {a.data(), a.data() + a.size()}; }
+
+FlexibleSki flexible_ski(const Array& boot, const Array& axes, const Array& unknown, const Array& mass,
+                         const Array& stiffness, const Array& coupling, double damping) {
+  FlexibleSki out;
+  std::copy_n(boot.data(), 3, out.boot.begin());
+  for (int c = 0; c < 3; c++) std::copy_n(axes.data() + 3 * c, 3, out.axes[c].begin());
+  for (std::size_t i = 0; i < unknown.size(); i++) out.unknown.push_back(int(unknown.data()[i]));
+  out.mass = copied(mass);
+  out.stiffness = copied(stiffness);
+  out.coupling = copied(coupling);
+  out.damping = damping;
+  out.prepare();
+  return out;
+}
+
+// The unknowns of all skis, one after the other, without the empty places between them.
+std::vector<double> of_beams(const Layout& layout, const Numbers& numbers) {
+  std::vector<double> out;
+  for (int k = 0; k < layout.beams(); k++) {
+    const double* from = numbers.data() + layout.first(k);
+    out.insert(out.end(), from, from + layout.size(k));
+  }
+  return out;
+}
+
+Body body(const Array& inertia, double mass, const Array& first_moment, std::vector<FlexibleSki> skis,
+          const Array& gravity, double drag, double drag_height) {
+  Body out;
+  std::copy_n(inertia.data(), 36, &out.inertia[0][0]);
+  out.mass = mass;
+  std::copy_n(first_moment.data(), 3, out.first_moment.begin());
+  out.skis = std::move(skis);
+  std::copy_n(gravity.data(), 3, out.gravity.begin());
+  out.drag = drag;
+  out.drag_height = drag_height;
+  return out;
+}
+
+// Of each boot, start, place (4, 3), turn (3, 3) and axes (3, 3): (skis, 31).
+void move_boots(Dynamics& self, const Array& motions) {
+  constexpr std::size_t ROW = 31;
+  std::vector<BootMotion> out(motions.size() / ROW);
+  for (std::size_t k = 0; k < out.size(); k++) {
+    const double* row = motions.data() + ROW * k;
+    out[k].start = row[0];
+    for (std::size_t i = 0; i < 4; i++) std::copy_n(row + 1 + 3 * i, 3, out[k].place[i].begin());
+    for (std::size_t i = 0; i < 3; i++) std::copy_n(row + 13 + 3 * i, 3, out[k].turn[i].begin());
+    std::copy_n(row + 22, 9, &out[k].axes[0][0]);
+  }
+  self.move_boots(std::move(out));
+}
+
+void set_push(Dynamics& self, const Array& force, const Array& at) {
+  self.set_push({force.data()[0], force.data()[1], force.data()[2]}, {at.data()[0], at.data()[1], at.data()[2]});
+}
+
+// What each ski does to its boot, (skis, 6), in its axes.
+Result boot_wrench(const Dynamics& self) {
+  std::vector<double> all;
+  for (int k = 0; k < self.layout().beams(); k++)
+    for (int part = 0; part < 2; part++)
+      all.insert(all.end(), self.boot_wrench(k)[part].begin(), self.boot_wrench(k)[part].end());
+  return array(std::move(all), {std::size_t(self.layout().beams()), BODY});
+}
+
+// Of the boots against the body: place, rows of the axes, velocity and angular velocity, (skis, 18).
+Result boots(const Dynamics& self) {
+  std::vector<double> all;
+  for (int k = 0; k < self.layout().beams(); k++) {
+    const FlexibleSki& ski = self.stage(k);
+    for (const Vector3* each : {&ski.boot, &ski.axes[0], &ski.axes[1], &ski.axes[2], &ski.velocity, &ski.turning})
+      all.insert(all.end(), each->begin(), each->end());
+  }
+  return array(std::move(all), {std::size_t(self.layout().beams()), 18});
+}
+
+void set_pose(Dynamics& self, const Array& position, const Array& rotation) {
+  std::copy_n(position.data(), 3, self.state.position.begin());
+  std::copy_n(rotation.data(), 9, &self.state.rotation[0][0]);
+}
+
+Result bend_of(const Dynamics& self) {
+  std::vector<double> all = of_beams(self.layout(), self.state.bend);
+  const std::size_t n = all.size();
+  return array(std::move(all), {n});
+}
+
+Result along_of(const Dynamics& self, int k) {
+  const Along& a = self.along(k);
+  std::vector<double> all(a.depth);
+  all.insert(all.end(), a.force.begin(), a.force.end());
+  all.insert(all.end(), a.shear.begin(), a.shear.end());
+  const std::size_t n = a.depth.size();
+  return array(std::move(all), {3, n});
+}
+
+nb::tuple energies_of(const Dynamics& self) {
+  const Energies e = self.total_energies();
+  return nb::make_tuple(e.kinetic, e.potential, e.elastic);
+}
+
+nb::tuple work_of(const Dynamics& self) {
+  const Work& w = self.work();
+  return nb::make_tuple(w.shear, w.friction, w.normal, w.drag, w.damping, w.snow_damping, w.boots, w.push);
+}
+
+nb::tuple counts_of(const Dynamics& self) {
+  const Counts& c = self.counts();
+  return nb::make_tuple(c.steps, c.rejected, c.looks, c.factored, c.iterations);
+}
+
+void bind_body(nb::module_& m) {
+  nb::class_<FlexibleSki>(m, "FlexibleSki");
+  m.def("flexible_ski", &flexible_ski);
+  nb::class_<Body>(m, "Body");
+  m.def("body", &body);
+  nb::class_<StepRule>(m, "StepRule")
+      .def(nb::init<>())
+      .def_rw("first", &StepRule::first)
+      .def_rw("fixed", &StepRule::fixed)
+      .def_rw("tolerance", &StepRule::tolerance)
+      .def_rw("shortest", &StepRule::shortest)
+      .def_rw("longest", &StepRule::longest)
+      .def_rw("closeness", &StepRule::closeness)
+      .def_rw("keep", &StepRule::keep);
+}
+
+void bind_motion(nb::class_<Dynamics>& bound) {
+  bound
+      .def("set_velocity",
+           [](Dynamics& self, const Array& rate) { std::copy_n(rate.data(), 6, self.state.rate.begin()); })
+      .def_prop_ro(
+          "position",
+          [](const Dynamics& self) { return array({self.state.position.begin(), self.state.position.end()}, {3}); },
+          nb::rv_policy::automatic)
+      .def_prop_ro(
+          "rotation",
+          [](const Dynamics& self) {
+            return array({&self.state.rotation[0][0], &self.state.rotation[0][0] + 9}, {3, 3});
+          },
+          nb::rv_policy::automatic)
+      .def_prop_ro(
+          "velocity",
+          [](const Dynamics& self) { return array({self.state.rate.begin(), self.state.rate.begin() + BODY}, {BODY}); },
+          nb::rv_policy::automatic);
+}
+
+}  // namespace
+
+void bind_dynamics(nb::module_& m) {
+  bind_body(m);
+  nb::class_<Dynamics> bound(m, "Dynamics");
+  bound.def(nb::init<Body, SnowContact&, const StepRule&>(), nb::keep_alive<1, 3>())
+      .def_rw("time", &Dynamics::time)
+      .def("set_pose", &set_pose)
+      .def("set_skis", [](Dynamics& self, const Array& inertia) { self.set_skis(copied(inertia)); })
+      .def("move_boots", &move_boots)
+      .def("hold_body", &Dynamics::hold_body)
+      .def("set_push", &set_push)
+      .def_prop_ro("boot_wrench", &boot_wrench, nb::rv_policy::automatic)
+      .def_prop_ro("boots", &boots, nb::rv_policy::automatic)
+      .def("settle", &Dynamics::settle, nb::call_guard<nb::gil_scoped_release>())
+      .def("begin", &Dynamics::begin, nb::call_guard<nb::gil_scoped_release>())
+      .def(
+          "advance", [](Dynamics& self, double until, long most) { return int(self.advance(until, most)); },
+          nb::call_guard<nb::gil_scoped_release>())
+      .def_prop_ro("bend", &bend_of, nb::rv_policy::automatic)
+      .def("along", &along_of)
+      .def_prop_ro("snow_energy", &Dynamics::snow_energy)
+      .def_prop_ro("held_energy", &Dynamics::held_energy)
+      .def_prop_ro("touches", &Dynamics::touches)
+      .def_prop_ro("next_step", &Dynamics::next_step)
+      .def_prop_ro("energies", &energies_of)
+      .def_prop_ro("work", &work_of)
+      .def_prop_ro("counts", &counts_of);
+  bind_motion(bound);
+}
+
+}  // namespace skisnow

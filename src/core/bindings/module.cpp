@@ -1,0 +1,333 @@
+// The core in Python: plain arrays in and out. The package skisnow.contact gives it names, checks and documentation.
+#include <nanobind/nanobind.h>
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/shared_ptr.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "bindings/arrays.hpp"
+#include "contact/contact.hpp"
+
+namespace nb = nanobind;
+
+namespace skisnow {
+namespace {
+
+Grid grid(double x0, double dx, double y0, double dy, const Array& values, bool goes_on) {
+  const int nx = int(values.shape(0)), ny = int(values.shape(1));
+  return Grid(x0, dx, nx, y0, dy, ny, {values.data(), values.data() + values.size()}, goes_on);
+}
+
+Runner runner(const Array& position, const Array& half_width, const Array& base_height, const Array& node) {
+  const auto numbers = [](const Array& given) {
+    return std::vector<double>(given.data(), given.data() + given.size());
+  };
+  return Runner::of(numbers(position), numbers(half_width), numbers(base_height), numbers(node));
+}
+
+using Beams = std::optional<std::vector<Array>>;
+
+std::vector<double> beam_of(const Beams& beams, int k) {
+  if (!beams) return {};
+  const Array& rows = (*beams)[std::size_t(k)];
+  return {rows.data(), rows.data() + rows.size()};
+}
+
+Situation situation(int runners, const Array& position, const Array& rotation, const Array* velocity, double dt,
+                    const Beams& beams, const Beams& rates) {
+  Situation out;
+  out.dt = dt;
+  for (int k = 0; k < runners; k++) {
+    Pose pose;
+    std::copy_n(position.data() + 3 * k, 3, pose.position.begin());
+    std::copy_n(rotation.data() + 9 * k, 9, &pose.rotation[0][0]);
+    pose.beam = beam_of(beams, k);
+    out.poses.push_back(std::move(pose));
+    Motion motion;
+    if (velocity != nullptr) {
+      std::copy_n(velocity->data() + 6 * k, 3, motion.velocity.begin());
+      std::copy_n(velocity->data() + 6 * k + 3, 3, motion.turning.begin());
+    }
+    motion.beam = beam_of(rates, k);
+    out.motions.push_back(std::move(motion));
+  }
+  return out;
+}
+
+struct PythonLaws {
+  nb::object friction, shear;  // μ of speeds (m/s); strength and thrust (Pa) of depths (m) and edge angles (rad)
+  double fade_speed;
+
+  void operator()(int, Sections& s) const {
+    nb::gil_scoped_acquire held;
+    const auto n = std::size_t(s.count());
+    std::vector<double> speed(n), angle(n), depth(n);
+    for (std::size_t i = 0; i < n; i++) {
+      const bool touches = s.touches(int(i));
+      speed[i] = touches ? std::fabs(s[SLIDING][i]) : 0.0;
+      angle[i] = touches ? std::asin(std::min(std::fabs(s[EDGE_SINE][i]), 1.0)) : 0.0;
+      depth[i] = touches ? s[DEEPEST][i] : 0.0;
+    }
+    if (!friction.is_none()) {
+      const auto mu = nb::cast<Array>(friction(array(speed, {n})));
+      if (mu.size() != n) throw std::invalid_argument("a friction law must give one value for each speed");
+      for (std::size_t i = 0; i < n; i++) {
+        const double fade = fade_speed * fade_speed, square = s[SLIDING][i] * s[SLIDING][i] + fade;
+        s[FRICTION][i] = mu.data()[i] * s[SLIDING][i] / std::sqrt(square);
+        s[FRICTION_SLOPE][i] = mu.data()[i] * fade / (square * std::sqrt(square));
+      }
+    }
+    if (!shear.is_none()) {
+      const auto found = nb::cast<Array>(shear(array(depth, {n}), array(angle, {n})));
+      if (found.ndim() != 2 || found.shape(0) != 2 || found.shape(1) != n)
+        throw std::invalid_argument("a shear law must give strength and thrust for each section");
+      for (std::size_t i = 0; i < n; i++) {
+        s[EDGE_STRENGTH][i] = s[STRENGTH_LEFT][i] * found.data()[i];
+        s[EDGE_THRUST][i] = s[STRENGTH_LEFT][i] * found.data()[n + i];
+      }
+    }
+  }
+};
+
+// A law of a point in Python: `residual`, `bear` and `lost` of arrays, as in `PenetrationLaw`.
+PenetrationLaw python_penetration(const nb::object& law, const Array& bends, bool along_base_normal) {
+  const auto asked = [law](const char* name, std::size_t rows, const auto&... points) {
+    nb::gil_scoped_acquire held;
+    const auto found = nb::cast<Array>(law.attr(name)(array(points, {points.size()})...));
+    const std::size_t wanted = rows * std::max({points.size()...});
+    if (found.size() != wanted) throw std::invalid_argument("a penetration law must give one value for each point");
+    return Values(found.data(), found.data() + wanted);
+  };
+  PenetrationLaw out;
+  out.residual = [asked](const Values& deepest) { return asked("residual", 1, deepest); };
+  out.bear = [asked](const Values& depth, const Values& deepest, const Values& angle) {
+    return asked("bear", 2, depth, deepest, angle);
+  };
+  out.lost = [asked](const Values& deepest) { return asked("lost", 1, deepest); };
+  out.along_base_normal = along_base_normal;
+  out.bends.assign(bends.data(), bends.data() + bends.size());
+  return out;
+}
+
+nb::dict sections_of(const SnowContact& contact, int k) {
+  const Sections& s = contact.sections(k);
+  std::vector<int> rows;
+  for (int i = 0; i < s.count(); i++)
+    if (s[SHARE][i] > 0.0) rows.push_back(i);
+  const std::pair<const char*, SectionField> fields[] = {{"position_along_ski", STATION},
+                                                         {"length", SHARE},
+                                                         {"depth", DEEPEST},
+                                                         {"edge_sine", EDGE_SINE},
+                                                         {"edge_place", EDGE_PLACE},
+                                                         {"normal_force", FORCE},
+                                                         {"shear", SHEAR},
+                                                         {"push", PUSH},
+                                                         {"sliding", SLIDING},
+                                                         {"friction", FRICTION},
+                                                         {"friction_load", FRICTION_LOAD},
+                                                         {"strength", EDGE_STRENGTH},
+                                                         {"shear_used", SHEAR_USED}};
+  nb::dict out;
+  for (const auto& [name, field] : fields) {
+    std::vector<double> values;
+    for (int i : rows) values.push_back(s[field][i]);
+    out[name] = array(std::move(values), {rows.size()});
+  }
+  return out;
+}
+
+// Grooves as rows: strip, line, place in space (3), depth; of the archive first, then those under the runners.
+Result tracks_of(const Snow& snow, const SnowContact& contact) {
+  std::vector<double> rows;
+  const auto add = [&](int strip, std::int64_t number, const Vector3& origin, const Vector3& lateral, int count,
+                       const double* place, const double* depth) {
+    for (int j = 0; j < count; j++) {
+      rows.insert(rows.end(), {double(strip), double(number)});
+      for (int a = 0; a < 3; a++) rows.push_back(origin[std::size_t(a)] + place[j] * lateral[std::size_t(a)]);
+      rows.push_back(depth[j]);
+    }
+  };
+  for (const Track& t : snow.archive.tracks()) add(t.strip, t.number, t.origin, t.lateral, t.count, t.place, t.depth);
+  for (int k = 0; k < contact.runners(); k++) {
+    const GrooveLines& lines = contact.lines(k);
+    for (std::int64_t n = lines.first; n < lines.end; n++) {
+      const int slot = lines.slot(n);
+      const Ground ground = lines.ground(slot);
+      if (!ground.empty())
+        add(contact.strip(k), n, lines.origin(slot), lines.lateral(slot), ground.count, ground.place, ground.depth);
+    }
+  }
+  return array(rows, {rows.size() / 6, 6});
+}
+
+nb::tuple force(SnowContact& self, const Array& position, const Array& rotation, const Array& velocity, double dt,
+                const Beams& beams, const Beams& rates) {
+  const Situation at = situation(self.runners(), position, rotation, &velocity, dt, beams, rates);
+  std::vector<Reaction> found;
+  {
+    nb::gil_scoped_release free;
+    found = self.force(at);
+  }
+  std::vector<double> wrench;
+  nb::list loads;
+  for (const Reaction& each : found) {
+    wrench.insert(wrench.end(), each.force, each.force + 3);
+    wrench.insert(wrench.end(), each.moment, each.moment + 3);
+    if (beams) loads.append(array(each.beam, {each.beam.size() / 3, 3}));
+  }
+  return nb::make_tuple(array(wrench, {found.size(), 6}), loads);
+}
+
+void bind_laws(nb::module_& m) {
+  nb::class_<FrictionLaw>(m, "FrictionLaw")
+      .def(nb::init<>())
+      .def_rw("constant", &FrictionLaw::constant)
+      .def_rw("linear", &FrictionLaw::linear)
+      .def_rw("square", &FrictionLaw::square)
+      .def_rw("film", &FrictionLaw::film)
+      .def_rw("film_speed", &FrictionLaw::film_speed)
+      .def_rw("fade_speed", &FrictionLaw::fade_speed);
+
+  nb::class_<ShearLaw>(m, "ShearLaw")
+      .def(nb::init<>())
+      .def_rw("decrease", &ShearLaw::decrease)
+      .def_rw("cuts", &ShearLaw::cuts)
+      .def_rw("friction_angle", &ShearLaw::friction_angle)
+      .def_rw("least_plane", &ShearLaw::least_plane)
+      .def_rw("residual_ratio", &ShearLaw::residual_ratio)
+      .def_rw("weakening", &ShearLaw::weakening);
+
+  nb::class_<RateLaw>(m, "RateLaw")
+      .def(nb::init<>())
+      .def_rw("damping", &RateLaw::damping)
+      .def_rw("delayed_share", &RateLaw::delayed_share)
+      .def_rw("retardation", &RateLaw::retardation)
+      .def_rw("spacing", &RateLaw::spacing);
+}
+
+void bind_snow(nb::module_& m) {
+  nb::class_<Grid>(m, "Grid").def(nb::init<double>()).def("at", [](const Grid& g, double x, double y) {
+    const Grid::Value found = g.at(x, y);
+    return nb::make_tuple(found.value, found.slope_x, found.slope_y);
+  });
+  m.def("grid", &grid);
+  nb::class_<Runner>(m, "Runner");
+  m.def("runner", &runner);
+
+  nb::class_<Snow>(m, "Snow")
+      .def(nb::init<>())
+      .def_rw("surface", &Snow::surface)
+      .def_rw("hardness", &Snow::hardness)
+      .def_rw("strength", &Snow::strength)
+      .def_rw("strength_share", &Snow::strength_share)
+      .def_rw("unloading_ratio", &Snow::unloading_ratio)
+      .def_rw("shear_displacement", &Snow::shear_displacement)
+      .def_rw("edge_blend_sine", &Snow::edge_blend_sine)
+      .def_rw("compaction_resistance", &Snow::compaction_resistance)
+      .def_rw("friction", &Snow::friction)
+      .def_rw("friction_on_base", &Snow::friction_on_base)
+      .def_rw("shear", &Snow::shear)
+      .def_rw("rate", &Snow::rate)
+      .def_rw("knot_area", &Snow::knot_area)
+      .def_rw("part_along", &Snow::part_along)
+      .def_rw("part_across", &Snow::part_across);
+}
+
+void make_contact(SnowContact* at, std::shared_ptr<Snow> snow, std::vector<Runner> runners, double spacing,
+                  const std::optional<std::string>& set) {
+  const Kernels* chosen = set ? kernels_named(set->c_str()) : &kernels();
+  if (set && chosen == nullptr)
+    throw std::invalid_argument("this processor or library lacks the instruction set " + *set);
+  new (at) SnowContact(std::move(snow), std::move(runners), spacing, *chosen);
+}
+
+void update(SnowContact& self, const Array& position, const Array& rotation, double dt, const Beams& beams) {
+  const Situation to = situation(self.runners(), position, rotation, nullptr, dt, beams, {});
+  nb::gil_scoped_release free;
+  self.update(to);
+}
+
+nb::tuple tangent(SnowContact& self, const Array& position, const Array& rotation, const Array& velocity, double dt,
+                  const Beams& beams, const Beams& rates) {
+  const Situation at = situation(self.runners(), position, rotation, &velocity, dt, beams, rates);
+  std::vector<double> stiffness, damping;
+  {
+    nb::gil_scoped_release free;
+    self.tangent(at, stiffness, damping);
+  }
+  const auto count = std::size_t(self.runners());
+  return nb::make_tuple(array(stiffness, {count, 6, 6}), array(damping, {count, 6, 6}));
+}
+
+void set_laws(SnowContact& self, nb::object friction, nb::object shear, double fade_speed) {
+  self.laws = PythonLaws{std::move(friction), std::move(shear), fade_speed};
+}
+
+void set_penetration(SnowContact& self, const nb::object& law, const Array& bends, bool along_base_normal) {
+  self.set_penetration(python_penetration(law, bends, along_base_normal));
+}
+
+void bind_contact(nb::module_& m) {
+  nb::class_<SnowContact::State>(m, "State");
+  m.def("check_bytes",
+        [](const nb::bytes& given) { check_bytes(static_cast<const unsigned char*>(given.data()), given.size()); });
+  nb::class_<SnowContact>(m, "Contact")
+      .def("__init__", &make_contact, nb::arg("snow"), nb::arg("runners"), nb::arg("spacing"),
+           nb::arg("instruction_set").none() = nb::none())
+      .def_prop_ro("instruction_set", [](const SnowContact& self) { return self.kernels().name; })
+      .def("force", &force, nb::arg("position"), nb::arg("rotation"), nb::arg("velocity"), nb::arg("dt"),
+           nb::arg("beams").none(), nb::arg("rates").none())
+      .def("update", &update, nb::arg("position"), nb::arg("rotation"), nb::arg("dt"), nb::arg("beams").none())
+      .def("tangent", &tangent, nb::arg("position"), nb::arg("rotation"), nb::arg("velocity"), nb::arg("dt"),
+           nb::arg("beams").none(), nb::arg("rates").none())
+      .def("sections", &sections_of)
+      .def("tracks", [](const SnowContact& self, const Snow& snow) { return tracks_of(snow, self); })
+      .def("groove_energy", &SnowContact::groove_energy)
+      .def("elastic_energy", &SnowContact::elastic_energy)
+      .def("delayed_energy", &SnowContact::delayed_energy)
+      .def("state", &SnowContact::state)
+      .def("restore", &SnowContact::restore)
+      .def("bytes_of",
+           [](const SnowContact& self, const SnowContact::State& state) {
+             const Bytes found = bytes_of(self, state);
+             return nb::bytes(found.data(), found.size());
+           })
+      .def("take_bytes",
+           [](SnowContact& self, const nb::bytes& given) {
+             take_bytes(self, static_cast<const unsigned char*>(given.data()), given.size());
+           })
+      .def("set_laws", &set_laws, nb::arg("friction").none(), nb::arg("shear").none(), nb::arg("fade_speed"))
+      .def("set_penetration", &set_penetration, nb::arg("law"), nb::arg("bends"), nb::arg("along_base_normal"));
+}
+
+}  // namespace
+}  // namespace skisnow
+
+namespace skisnow {
+void bind_carve(nb::module_& m);
+void bind_data(nb::module_& m);
+void bind_dynamics(nb::module_& m);
+}  // namespace skisnow
+
+NB_MODULE(_core, m) {
+  nb::set_leak_warnings(false);  // a script's contact with a law of its own lives as long as the interpreter
+  using namespace skisnow;
+  m.attr("SOURCE_HASH") = SKISNOW_SOURCE_HASH;
+  m.def("instruction_sets", [] {
+    nb::list names;
+    for (const char* name : {"baseline", "avx2", "avx512"})
+      if (kernels_named(name) != nullptr) names.append(name);
+    return names;
+  });
+
+  bind_laws(m);
+  bind_snow(m);
+  bind_contact(m);
+  bind_carve(m);
+  bind_dynamics(m);
+  bind_data(m);
+}

@@ -1,0 +1,112 @@
+// The equations of a carving ski, linearised: a band for the beam, bordered by the unknowns of boot and links.
+#pragma once
+
+#include <algorithm>
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "carve/groove.hpp"
+#include "linear_algebra/banded.hpp"
+
+namespace skisnow {
+
+constexpr int BENDS[4] = {0, 1, 3, 4}, TURNS[2] = {2, 5};  // an element's unknowns of deflection and of twist
+
+// What binds depth and twist of one linked station to beam and boot.
+struct CarveLinkRow {
+  int first;                          // unknown of its element
+  double place;                       // along the ski (m)
+  double deflection[4], by_twist[2];  // of its depth
+  double twist[2];                    // of its twist
+};
+
+struct CarveEquations {
+  explicit CarveEquations(const CarvedSki& ski);
+
+  Column matrix, residual;  // of the beam: banded rows
+  Column rows;              // of the border, `BAND_TILE` to each unknown of the beam, the last one zero
+  Column columns;           // of border and links, in tiles: `BAND_TILE` of them to each unknown of the beam
+  double corner[CARVE_BORDER][CARVE_BORDER], border_residual[CARVE_BORDER];
+  std::vector<double> link_corner;   // rows 0 and 1 of each link column
+  std::vector<CarveLinkRow> links;   // each with two columns
+  std::vector<int> link_from;        // first unknown of the beam that a link acts on
+  std::vector<double> depth, force;  // at the stations
+
+  int used() const { return CARVE_BORDER + 2 * int(links.size()); }
+  // Where a tile begins, and where in it a column: its numbers lie `BAND_TILE` apart.
+  std::size_t tile(int number) const { return std::size_t(number) * BAND_TILE * residual.size(); }
+  double deepest() const { return *std::max_element(depth.begin(), depth.end()); }  // of the depths
+  double* column(int k) { return columns.data() + tile(k / BAND_TILE) + k % BAND_TILE; }
+};
+
+constexpr int tiles_for(int columns) { return (columns + BAND_TILE - 1) / BAND_TILE; }
+
+// The groove, and what is used while the equations are put together.
+struct CarveGroove {
+  explicit CarveGroove(std::size_t stations) : links(stations) {}
+
+  bool along_path = false;
+  GrooveAlongEdge edge;
+  GrooveAlongPath path;
+  CarveLinks links;
+  CarvePressure pressure;
+};
+
+// Put together at a state.
+void assemble(const CarvedSki& ski, const CarveConditions& conditions, CarveGroove& groove, const CarveState& at,
+              CarveEquations& out);
+
+// The linearised equations, factored: the beam first, then what is left of border and links.
+class CarveFactors {
+ public:
+  // Takes matrix, rows and columns out of the system.
+  void factor(const CarvedSki& ski, CarveEquations& system);
+  // Newton's correction for the residuals of `system`; false where it is not finite.
+  bool correct(const CarvedSki& ski, const CarveEquations& system, CarveState& step);
+
+ private:
+  int used_ = 0, tiles_ = 0;  // unknowns of border and links; their tiles
+  std::size_t room_ = 0;      // rows of a tile
+  Column band_, rows_;
+  Column influence_;              // tiles: the beam's answer to each of them
+  std::vector<BandBlock> block_;  // of each tile
+  std::vector<CarveLinkRow> links_;
+  std::vector<double> schur_, border_;
+  std::vector<int> order_;
+
+  double* influence(int tile, int row) {
+    return influence_.data() + BAND_TILE * (std::size_t(tile) * room_ + std::size_t(row));
+  }
+  void solve_tiles(const CarvedSki& ski, const CarveEquations& system);
+  void add_border(const CarveEquations& system);
+  void add_links();
+  void solve_border(const CarveEquations& system, const double* u);
+};
+
+// Newton's method from `state`, which it moves to the equilibrium; `at` then holds the equations there.
+class CarveNewton {
+ public:
+  CarveNewton(const CarvedSki& ski, std::function<void()> asked);
+
+  CarveState state;
+  CarveEquations at;
+  int iterations = 0;
+
+  // False where it finds none: the state is then somewhere on the way.
+  bool solve(const CarveConditions& conditions, CarveGroove& groove);
+
+ private:
+  const CarvedSki& ski_;
+  std::function<void()> asked_;
+  CarveEquations spare_;
+  CarveState step_, trial_, trial_step_;
+  CarveFactors factors_;
+
+  // Move by `step_`, shorter where the correction that follows would not fall; its length, or none.
+  std::optional<double> damped_step(const CarveConditions& conditions, CarveGroove& groove, double length,
+                                    double& damping);
+  double length_of(const CarveConditions& conditions, const CarveState& step) const;
+};
+
+}  // namespace skisnow

@@ -1,0 +1,105 @@
+#include "carve/groove.hpp"
+
+namespace skisnow {
+
+namespace {
+
+constexpr double FAR_ABOVE = -1e3;  // depth (m) that stands for snow never touched
+
+}  // namespace
+
+void CarveLinks::clear() {
+  for (int each : station) number_[std::size_t(each)] = -1;
+  station.clear();
+  pulls.clear();
+}
+
+void CarveLinks::pull(int source, double xi, double square, double force, double moment) {
+  int& number = number_[std::size_t(source)];
+  if (number < 0) {
+    number = int(station.size());
+    station.push_back(source);
+    pulls.emplace_back();
+  }
+  CarvePull& to = pulls[std::size_t(number)];
+  to.force_by_depth += force;
+  to.moment_by_depth += moment;
+  to.force_by_twist -= xi * square * force;
+  to.moment_by_twist -= xi * square * moment;
+}
+
+void GrooveAlongEdge::clear() {
+  depth_.assign(place.size(), FAR_ABOVE);
+  source_.assign(place.size(), 0);
+}
+
+// [across]
+void GrooveAlongEdge::across(const CarveSection& section, int, CarvePressure& pressure, StripSums& sums,
+                             CarveLinks& links) const {
+  const double square = 1.0 + section.tangent * section.tangent;
+  for (std::size_t k = 0; k + 1 < place.size(); k++) {
+    const double start = place[k], spacing = place[k + 1] - start;
+    const double length = std::min(place[k + 1], section.reach) - start;
+    if (length <= 0.0) return;
+    const double depth0 = section.base_depth(start), depth1 = section.base_depth(start + length);
+    if (depth0 <= 0.0 && depth1 <= 0.0) continue;
+    const double groove0 = depth_[k], groove1 = groove0 + length / spacing * (depth_[k + 1] - groove0);
+    std::fill_n(sums.by_groove, 3, 0.0);
+    pressure.add({start, length, depth0, depth1, groove0, groove1, section.sine}, sums);
+    const double* by = sums.by_groove;
+    if (by[0] == 0.0) continue;
+    // the groove is a straight line between two places: each has its share
+    const double far = (by[1] - start * by[0]) / spacing, far_moment = (by[2] - start * by[1]) / spacing;
+    links.pull(source_[k], start, square, by[0] - far, by[1] - far_moment);
+    links.pull(source_[k + 1], place[k + 1], square, far, far_moment);
+  }
+}
+
+// Deepen the groove where this station lies deeper.
+void GrooveAlongEdge::pass(const CarveSection& section, int station) {
+  for (std::size_t k = 0; k < place.size(); k++) {
+    const double depth = section.base_depth(place[k]);
+    if (depth < depth_[k]) continue;
+    depth_[k] = depth;
+    source_[k] = station;
+  }
+}
+
+void GrooveAlongPath::across(const CarveSection& section, int station, CarvePressure& pressure, StripSums& sums,
+                             CarveLinks& links) const {
+  const double aside = offset[std::size_t(station)], level = section.corner - aside * tangent;
+  const double bevel_end = section.strip * section.cosine;
+  double low = 0.0;
+  for (std::size_t k = 0; k <= steps_.size(); k++) {
+    double high = section.reach;
+    if (k < steps_.size()) high = std::min(high, std::max(low, steps_[k].left + aside));
+    const double deeper = k > 0 ? steps_[k - 1].depth - level : FAR_ABOVE;
+    std::fill_n(sums.by_groove, 3, 0.0);
+    const auto add = [&](double start, double end) {
+      if (!(end > start)) return;
+      const double depth0 = section.base_depth(start), depth1 = section.base_depth(end);
+      pressure.add({start, end - start, depth0, depth1, depth0 + deeper, depth1 + deeper, section.sine}, sums);
+    };
+    add(low, std::min(high, bevel_end));
+    add(std::max(low, bevel_end), high);
+    if (sums.by_groove[0] != 0.0) links.pull(steps_[k - 1].source, 0.0, 0.0, sums.by_groove[0], sums.by_groove[1]);
+    low = std::max(low, high);
+  }
+}
+
+// Put this station's base into the outline: it covers the steps to its right that are less deep.
+void GrooveAlongPath::pass(const CarveSection& section, int station) {
+  const double left = -offset[std::size_t(station)], level = section.corner + left * tangent;
+  bool covered = false;
+  const auto covers = [&](const Step& step) {
+    const bool deeper = step.depth > level;
+    covered = covered || (deeper && step.left <= left);
+    return !deeper && step.left >= left;
+  };
+  std::erase_if(steps_, covers);
+  if (covered) return;
+  const auto behind = [](double value, const Step& step) { return value < step.left; };
+  steps_.insert(std::upper_bound(steps_.begin(), steps_.end(), left, behind), {left, level, station});
+}
+
+}  // namespace skisnow

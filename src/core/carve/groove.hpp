@@ -1,0 +1,84 @@
+// The groove that the stations of a carving ski find and leave, and which station ahead left it where.
+#pragma once
+
+#include <algorithm>
+#include <vector>
+
+#include "carve/carve.hpp"
+#include "carve/strip.hpp"
+
+namespace skisnow {
+
+// One section of the ski in the snow. ξ: distance from the edge in the snow surface (m).
+struct CarveSection {
+  double half;                   // half its width
+  double sine, cosine, tangent;  // of its own edge angle, twist included
+  double corner;                 // depth that the edge would have without a bevel
+  double depth;                  // of the edge
+  double reach;                  // of the base across
+  double strip, rise;            // width of the bevelled strip; its rise against the base, per length
+
+  // Depth ε of the base: a straight line, but for the bevelled strip along the edge.
+  double base_depth(double xi) const {
+    const double bevel = strip > 0.0 ? std::max(0.0, strip - xi / cosine) * rise : 0.0;
+    return corner - xi * tangent - bevel;
+  }
+};
+
+// How the force on a section and ∫p ξ grow with depth and twist of a station ahead, by the groove that it cut.
+struct CarvePull {
+  double force_by_depth = 0.0, moment_by_depth = 0.0, force_by_twist = 0.0, moment_by_twist = 0.0;
+};
+
+// The stations whose groove carries a station behind them: depth and twist of each are unknowns of their own.
+class CarveLinks {
+ public:
+  explicit CarveLinks(std::size_t stations) : number_(stations, -1) {}
+
+  std::vector<int> station;      // of each link
+  std::vector<CarvePull> pulls;  // of each link on the section at hand
+
+  void clear();
+  void next_section() { std::fill(pulls.begin(), pulls.end(), CarvePull{}); }
+  // What a deeper groove at ξ does; `square`: 1 + tan² of the section's edge angle, 0 where ξ does not count.
+  void pull(int source, double xi, double square, double force, double moment);
+
+ private:
+  std::vector<int> number_;  // of each station's link, or -1
+};
+
+// The groove under the edge of the stations that follow: its depth at some places ξ, each of one station.
+struct GrooveAlongEdge {
+  std::vector<double> place;  // rising from 0
+
+  void clear();
+  void across(const CarveSection& section, int station, CarvePressure& pressure, StripSums& sums,
+              CarveLinks& links) const;
+  void pass(const CarveSection& section, int station);
+
+ private:
+  std::vector<double> depth_;
+  std::vector<int> source_;
+};
+
+// The groove along a path, beside which the edge of each station lies by its offset (m, towards the inside): steps from
+// left to right, each as deep as one station's base reaches, as the depth that this base would have at the path. The
+// bases are taken parallel to each other there.
+struct GrooveAlongPath {
+  std::vector<double> offset;  // of each station
+  double tangent = 0.0;        // of the boot's edge angle
+
+  void clear() { steps_.clear(); }
+  void across(const CarveSection& section, int station, CarvePressure& pressure, StripSums& sums,
+              CarveLinks& links) const;
+  void pass(const CarveSection& section, int station);
+
+ private:
+  struct Step {
+    double left, depth;
+    int source;
+  };
+  std::vector<Step> steps_;
+};
+
+}  // namespace skisnow

@@ -1,0 +1,341 @@
+#include "contact/contact.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace skisnow {
+
+namespace {
+
+// Loads of the sections on the nodes of a beam, by Hermite's shapes.
+void load_beam(const Runner& runner, const Sections& s, std::vector<double>& beam) {
+  beam.assign(std::size_t(3 * runner.nodes()), 0.0);
+  for (int i = 0; i < s.count(); i++) {
+    if (!s.touches(i)) continue;
+    const double z = s[IN_ELEMENT][i], h = s[ELEMENT_LENGTH][i], y = 1.0 - z, force = s[BEAM_FORCE][i];
+    double* node = beam.data() + 3 * int(s[ELEMENT][i]);
+    node[0] += y * y * (1.0 + 2.0 * z) * force;
+    node[1] += h * z * y * y * force;
+    node[2] += y * s[BEAM_MOMENT][i];
+    node[3] += z * z * (3.0 - 2.0 * z) * force;
+    node[4] += -h * z * z * y * force;
+    node[5] += z * s[BEAM_MOMENT][i];
+  }
+}
+
+// [strengthen] Strength and thrust of the sections by the edge's angle.
+void strengthen(const ShearLaw& law, Sections& s) {
+  for (int i = 0; i < s.count(); i++) {
+    if (!s.touches(i)) continue;
+    const double angle = std::asin(std::min(std::fabs(s[EDGE_SINE][i]), 1.0)), strength = s[EDGE_STRENGTH][i];
+    if (law.cuts) {
+      const double cotangent = 1.0 / std::tan(std::max(0.5 * (angle - law.friction_angle), law.least_plane));
+      s[EDGE_STRENGTH][i] = 2.0 * cotangent * strength;
+      s[EDGE_THRUST][i] = (cotangent * cotangent - 1.0) * strength;
+    } else {
+      s[EDGE_STRENGTH][i] = (1.0 - law.decrease * angle) * strength;
+    }
+  }
+}
+
+// The same situation with one runner moved, or its motion changed, by a small step of one of its six freedoms.
+Situation displaced(const Situation& at, int k, int freedom, double step, bool of_motion) {
+  Situation out = at;
+  const auto which = std::size_t(freedom % 3);
+  if (of_motion) {
+    Motion& motion = out.motions[std::size_t(k)];
+    (freedom < 3 ? motion.velocity : motion.turning)[which] += step;
+    return out;
+  }
+  Pose& pose = out.poses[std::size_t(k)];
+  if (freedom < 3) {
+    pose.position[which] += step;
+    return out;
+  }
+  const std::size_t a = (which + 1) % 3, b = (which + 2) % 3;
+  for (int c = 0; c < 3; c++) {
+    const double first = pose.rotation[a][c], second = pose.rotation[b][c];
+    pose.rotation[a][c] = std::cos(step) * first - std::sin(step) * second;
+    pose.rotation[b][c] = std::sin(step) * first + std::cos(step) * second;
+  }
+  return out;
+}
+
+constexpr double LEVEL = 1e-6;         // sine of the roll of a base that is level
+constexpr double TANGENT_STEP = 1e-8;  // m, rad
+constexpr double POSE_STEP = 1e-7;     // m, rad
+constexpr double MOTION_STEP = 1e-4;   // m/s, rad/s
+
+}  // namespace
+
+SnowContact::SnowContact(std::shared_ptr<Snow> snow, std::vector<Runner> runners, double spacing,
+                         const Kernels& kernels)
+    : snow_(std::move(snow)), runners_(std::move(runners)), kernels_(&kernels) {
+  for (const Runner& each : runners_) {
+    state_.lines.emplace_back(each, spacing);
+    state_.strips.push_back(snow_->archive.new_strip());
+  }
+  trial_ = state_.lines;
+  before_.resize(runners_.size());
+  sections_.resize(runners_.size());
+  if (snow_->rate.acts()) rated_.resize(runners_.size());
+  state_.time = snow_->archive.time;
+  wrenches_.resize(runners_.size());
+}
+
+void SnowContact::set_penetration(PenetrationLaw law) {
+  bearing_ = std::make_shared<Bearing>(std::move(law));
+  for (GrooveLines& each : state_.lines)
+    each.lost = [bearing = bearing_](const Ground& ground) { return bearing->lost(ground); };
+}
+
+const Wrench& SnowContact::evaluate(int k, const GrooveLines& lines, const Pose& pose, const Motion& motion,
+                                    Sections& s) {
+  kernels_->find_sections(runner(k), pose, *snow_, lines, lines.first, s);
+  kernels_->press(*snow_, lines, s);
+  if (bearing_) bearing_->press(lines, s);
+  if (!rated_.empty()) rated_[std::size_t(k)].press(*snow_, lines, pose, motion, dt_, s);
+  kernels_->slide(motion, pose, *snow_, s);
+  if (snow_->shear.by_angle()) strengthen(snow_->shear, s);
+  if (laws) laws(k, s);
+  Wrench& wrench = wrenches_[std::size_t(k)];
+  kernels_->push(motion, pose, *snow_, s, wrench);
+  return wrench;
+}
+
+Reaction SnowContact::reaction(int k, const GrooveLines& lines, const Pose& pose, const Motion& motion) {
+  Sections& s = sections_[std::size_t(k)];
+  const Wrench& wrench = evaluate(k, lines, pose, motion, s);
+  Reaction out;
+  for (int a = 0; a < 3; a++)
+    for (int b = 0; b < 3; b++) {
+      out.force[a] += pose.rotation[a][b] * wrench.force[b];
+      out.moment[a] += pose.rotation[a][b] * wrench.moment[b];
+    }
+  if (!pose.beam.empty()) load_beam(runner(k), s, out.beam);
+  return out;
+}
+
+const Wrench& SnowContact::look(int k, const Pose& pose, const Motion& motion) {
+  Sections& s = sections_[std::size_t(k)];
+  const Wrench& wrench = evaluate(k, lines(k), pose, motion, s);
+  load_beam(runner(k), s, wrenches_[std::size_t(k)].beam);
+  return wrench;
+}
+
+void SnowContact::differ(int k, double sense) {
+  if (bearing_)
+    bearing_->differ(*snow_, lines(k), sections(k), TANGENT_STEP, sense, differences_);
+  else if (!rated_.empty())
+    rated_[std::size_t(k)].differ(*snow_, lines(k), sections(k), TANGENT_STEP, sense, differences_);
+  else
+    kernels_->differ(*snow_, lines(k), sections(k), TANGENT_STEP, sense, differences_);
+}
+
+void SnowContact::find_tangent(int k, const Pose& pose, double stiffness, double damping, RunnerTangent& out) {
+  const Sections& s = sections(k);
+  out.clear(runner(k).nodes());
+  differences_.resize(s.count());
+  const double lean = pose.rotation[2][1], sense = lean < 0.0 ? -1.0 : 1.0;  // in the mirror the other way
+  differ(k, sense);
+  if (std::fabs(lean) < LEVEL) {  // a level base has two tangents: between them
+    const std::vector<double> one = differences_.values;
+    differ(k, -sense);
+    for (std::size_t i = 0; i < one.size(); i++) differences_.values[i] = 0.5 * (one[i] + differences_.values[i]);
+  }
+  const bool bends = runner(k).nodes() > 2;
+  kernels_->add_stiffness(s, differences_, stiffness, bends, out);
+  out.add_turning(wrenches_[std::size_t(k)], stiffness);
+  if (!(damping > 0.0)) return;
+  kernels_->add_friction_damping(s, damping, bends, out);
+  if (!(snow_->rate.damping > 0.0)) return;
+  rated_[std::size_t(k)].differ_rates(*snow_, lines(k), s, sense, differences_);
+  kernels_->add_stiffness(s, differences_, damping, bends, out);
+}
+
+// The lines at the end of a step, before its end is remembered: those that stand, or where that changes them a copy.
+GrooveLines& SnowContact::history(int k, const Situation& at) {
+  GrooveLines& standing = state_.lines[std::size_t(k)];
+  const Pose& pose = at.poses[std::size_t(k)];
+  const bool marches = !state_.accepted.empty() && parts(k, at) > 1;
+  const bool reaches = standing.count() > 0 && standing.station(standing.end - 1, pose) > runner(k).tip &&
+                       standing.station(standing.first, pose) < runner(k).tail;
+  if (!marches && reaches) return standing;
+  GrooveLines& trial = trial_[std::size_t(k)];
+  trial = standing;
+  trial.drop_left(runner(k), pose, nullptr, 0);
+  prepare(k, trial, pose);
+  march(k, trial, at);
+  return trial;
+}
+
+std::vector<Reaction> SnowContact::force(const Situation& at) {
+  std::vector<Reaction> out;
+  dt_ = at.dt;
+  for (int k = 0; k < runners(); k++)
+    out.push_back(reaction(k, history(k, at), at.poses[std::size_t(k)], at.motions[std::size_t(k)]));
+  return out;
+}
+
+void SnowContact::begin(const Situation& foreseen) {
+  take_back();
+  dt_ = foreseen.dt;
+  for (int k = 0; k < runners(); k++) {
+    GrooveLines& lines = state_.lines[std::size_t(k)];
+    Before& before = before_[std::size_t(k)];
+    before.first = lines.first, before.end = lines.end;
+    before.lines.clear();
+    prepare(k, lines, foreseen.poses[std::size_t(k)]);
+  }
+  for (int k = 0; k < runners(); k++) march_where_needed(k, foreseen);
+  begun_ = true;
+}
+
+void SnowContact::take_back() {
+  for (std::size_t k = 0; begun_ && k < before_.size(); k++) {
+    GrooveLines& lines = state_.lines[k];
+    lines.first = before_[k].first, lines.end = before_[k].end;
+    for (const GrooveLines::Line& line : before_[k].lines) lines.put_back(line);
+  }
+  begun_ = false;
+}
+
+void SnowContact::accept(const Situation& at) {
+  begun_ = false;
+  pass_time(at.dt);
+  for (int k = 0; k < runners(); k++) settle_history(k, at.poses[std::size_t(k)]);
+  stand(at.poses);
+}
+
+void SnowContact::pass_time(double dt) {
+  dt_ = dt;
+  state_.time += dt;
+  snow_->archive.time = std::max(snow_->archive.time, state_.time);
+}
+
+void SnowContact::update(const Situation& to) {
+  pass_time(to.dt);
+  for (int k = 0; k < runners(); k++) {
+    GrooveLines& lines = state_.lines[std::size_t(k)];
+    lines.drop_left(runner(k), to.poses[std::size_t(k)], &snow_->archive, state_.strips[std::size_t(k)]);
+    prepare(k, lines, to.poses[std::size_t(k)]);
+  }
+  for (int k = 0; k < runners(); k++) {
+    GrooveLines& lines = state_.lines[std::size_t(k)];
+    const Pose& pose = to.poses[std::size_t(k)];
+    march(k, lines, to);
+    kernels_->find_sections(runner(k), pose, *snow_, lines, lines.first, sections_[std::size_t(k)]);
+    settle_history(k, pose);
+  }
+  stand(to.poses);
+}
+
+void SnowContact::stand(const std::vector<Pose>& poses) {
+  for (int k = 0; k < runners(); k++) prepare(k, state_.lines[std::size_t(k)], poses[std::size_t(k)]);
+  state_.accepted = poses;
+}
+
+void SnowContact::tangent(const Situation& at, std::vector<double>& stiffness, std::vector<double>& damping) {
+  const auto size = std::size_t(36 * runners());
+  dt_ = at.dt;
+  stiffness.assign(size, 0.0);
+  damping.assign(size, 0.0);
+  for (int k = 0; k < runners(); k++)
+    for (int freedom = 0; freedom < 12; freedom++) {
+      const bool of_motion = freedom >= 6;
+      const double step = of_motion ? MOTION_STEP : POSE_STEP;
+      Reaction side[2];
+      for (int way = 0; way < 2; way++) {
+        const Situation moved = displaced(at, k, freedom % 6, way == 0 ? step : -step, of_motion);
+        side[way] = reaction(k, history(k, moved), moved.poses[std::size_t(k)], moved.motions[std::size_t(k)]);
+      }
+      std::vector<double>& out = of_motion ? damping : stiffness;
+      for (int a = 0; a < 3; a++) {
+        const auto row = std::size_t(36 * k + 6 * a + freedom % 6);
+        out[row] = -(side[0].force[a] - side[1].force[a]) / (2.0 * step);
+        out[row + 18] = -(side[0].moment[a] - side[1].moment[a]) / (2.0 * step);
+      }
+    }
+}
+
+ContactPower SnowContact::power(int k, const Pose& pose, const Motion& motion) const {
+  const Sections& s = sections(k);
+  const Wrench& wrench = wrenches_[std::size_t(k)];
+  double v[3], o[3], all = 0.0;
+  for (std::size_t a = 0; a < 3; a++) {
+    v[a] = o[a] = 0.0;
+    for (std::size_t b = 0; b < 3; b++) {
+      v[a] += pose.rotation[b][a] * motion.velocity[b];
+      o[a] += pose.rotation[b][a] * motion.turning[b];
+    }
+    all += wrench.force[a] * v[a] + wrench.moment[a] * o[a];
+  }
+  for (std::size_t i = 0; i < motion.beam.size(); i++) all += wrench.beam[i] * motion.beam[i];
+  ContactPower out{0.0, 0.0, 0.0, 0.0};
+  for (int i = 0; i < s.count(); i++) {
+    if (!s.touches(i)) continue;
+    const double z = s[IN_ELEMENT][i], h = s[ELEMENT_LENGTH][i], y = 1.0 - z, reach = s[EDGE_REACH][i];
+    const double* rate = motion.beam.data() + 3 * int(s[ELEMENT][i]);
+    double lifting = 0.0, twisting = 0.0;
+    if (!motion.beam.empty()) {
+      lifting = y * y * (1.0 + 2.0 * z) * rate[0] + h * z * y * y * rate[1] + z * z * (3.0 - 2.0 * z) * rate[3] -
+                h * z * z * y * rate[4];
+      twisting = reach * (y * rate[2] + z * rate[5]);
+    }
+    const double at[3] = {s[STATION][i], s[EDGE_LEFT][i], s[EDGE_UP][i]};
+    const double velocity[3] = {v[0] + o[1] * at[2] - o[2] * at[1],
+                                v[1] + o[2] * at[0] - o[0] * at[2] - s[TWIST_SINE][i] * twisting,
+                                v[2] + o[0] * at[1] - o[1] * at[0] + lifting - s[TWIST_COSINE][i] * twisting};
+    const double across = velocity[0] * s[ACROSS_0][i] + velocity[1] * s[ACROSS_1][i] + velocity[2] * s[ACROSS_2][i];
+    out.shear += s[SHEAR][i] * across;
+    if (!rated_.empty()) out.damping += s[RATE_POWER][i];
+    out.friction -= s[FRICTION][i] * s[FRICTION_LOAD][i] * s[SLIDING][i];
+  }
+  out.normal = all - out.shear - out.friction;
+  return out;
+}
+
+bool SnowContact::touches(int k) const {
+  const Sections& s = sections(k);
+  for (int i = 0; i < s.count(); i++)
+    if (s.touches(i)) return true;
+  return false;
+}
+
+double SnowContact::groove_energy() const {
+  double total = snow_->archive.energy();
+  for (const GrooveLines& each : state_.lines) total += each.groove_energy();
+  return total;
+}
+
+double SnowContact::held_energy() const {
+  double total = 0.0;
+  for (const Sections& s : sections_)
+    for (int i = 0; i < s.count(); i++) {
+      if (!s.touches(i)) continue;
+      const double used = std::clamp(s[SHEAR_USED][i], -1.0, 1.0);
+      total += 0.5 * snow_->shear_displacement * s[SHEAR][i] * used;
+    }
+  return total;
+}
+
+double SnowContact::elastic_energy() const {
+  double total = 0.0;
+  for (const Sections& s : sections_)
+    for (int i = 0; i < s.count(); i++) total += s[SNOW_ENERGY][i];
+  return total;
+}
+
+SnowContact::State SnowContact::state() const {
+  State out = state_;
+  out.tracks = snow_->archive.mark();
+  return out;
+}
+
+void SnowContact::restore(const State& state) {
+  snow_->archive.forget_since(state.tracks);
+  state_ = state;
+}
+
+}  // namespace skisnow

@@ -1,0 +1,186 @@
+// What acts along and across the edge, and the sums on the runner.
+#pragma once
+
+#include "contact/pressure_kernels.hpp"
+
+namespace skisnow::SKISNOW_LANES {
+
+// Motion of the boot in the ski's axes.
+struct BootMotion {
+  double v[3], o[3];
+
+  BootMotion(const Motion& motion, const Pose& pose) {
+    for (int a = 0; a < 3; a++) {
+      v[a] = o[a] = 0.0;
+      for (int b = 0; b < 3; b++) {
+        v[a] += pose.rotation[b][a] * motion.velocity[std::size_t(b)];
+        o[a] += pose.rotation[b][a] * motion.turning[std::size_t(b)];
+      }
+    }
+  }
+};
+
+// Force (N) of a section below which its centre of pressure is lost in rounding: it then lies at the edge.
+constexpr double LEAST_FORCE = 1e-6;
+
+// The centre of pressure of a section: where it lies, and how far across the base from the ski's middle.
+template <class V>
+struct Centre {
+  Vector<V> at;
+  V arm;
+
+  Centre(const Cut<V>& c, V force, V moment) {
+    const MaskOf<V> presses = force > LEAST_FORCE;
+    const V off = select(presses, moment, V{}) / select(presses, force, all<V>(1.0));
+    at = {c.station + off * (c.left.x - c.fall * c.normal.x), c.edge_left + off * (c.left.y - c.fall * c.normal.y),
+          c.edge_up + off * (c.left.z - c.fall * c.normal.z)};
+    arm = c.reach + off * c.widening;
+  }
+};
+
+// Rates of the beam at a section: of its deflection and of its twist.
+inline void beam_rates(const Motion& motion, const Sections& s, int i, double& deflection, double& twist) {
+  deflection = twist = 0.0;
+  if (motion.beam.empty()) return;
+  typedef LaneTypes<2>::Value Pair;
+  const double z = s[IN_ELEMENT][i];
+  const double* rate = motion.beam.data() + 3 * int(s[ELEMENT][i]);
+  const Shapes<Pair> shape(all<Pair>(z), all<Pair>(s[ELEMENT_LENGTH][i]));
+  deflection = shape.front[0] * rate[0] + shape.front_slope[0] * rate[1] + shape.rear[0] * rate[3] +
+               shape.rear_slope[0] * rate[4];
+  twist = (1.0 - z) * rate[2] + z * rate[5];
+}
+
+// [slide] Speed along the edge at the centre of pressure, and the law's μ.
+template <class V>
+void slide(const Motion& motion, const Pose& pose, const Snow& snow, Sections& s) {
+  const BootMotion m(motion, pose);
+  const FrictionLaw& law = snow.friction;
+  const double fade = law.fade_speed * law.fade_speed;
+  for (int i = 0; i < s.count(); i++) beam_rates(motion, s, i, s[BEAM_FORCE][i], s[BEAM_MOMENT][i]);
+  for (int i = 0; i < s.count(); i += WIDTH<V>) {
+    const Cut<V> c = Cut<V>::stored(s, i);
+    const Centre<V> centre(c, load<V>(s[FORCE] + i), load<V>(s[MOMENT] + i));
+    const V deflecting = load<V>(s[BEAM_FORCE] + i), turning = load<V>(s[BEAM_MOMENT] + i) * centre.arm;
+    const Vector<V> velocity{m.v[0] + m.o[1] * centre.at.z - m.o[2] * centre.at.y,
+                             m.v[1] + m.o[2] * centre.at.x - m.o[0] * centre.at.z - c.sp * turning,
+                             m.v[2] + m.o[0] * centre.at.y - m.o[1] * centre.at.x + deflecting - c.cp * turning};
+    const V sliding = dot(velocity, c.along), speed = absolute(sliding);
+    const V film = 1.0 / (1.0 + speed / law.film_speed), size = 1.0 / root(sliding * sliding + fade);
+    const V mu = law.constant + speed * (law.linear + law.square * speed) + law.film * film;
+    const V growth = law.linear + 2.0 * law.square * speed - law.film / law.film_speed * film * film;
+    store(s[SLIDING] + i, sliding);
+    store(s[FRICTION] + i, mu * sliding * size);
+    store(s[FRICTION_SLOPE] + i, (growth * speed + mu * fade * size * size) * size);
+  }
+}
+
+// What acts on a section: the snow's force and its moment about the edge, μ with its sign, shear strength, thrust and
+// the share of the displacement in use.
+template <class V>
+struct Acting {
+  V share, force, moment, friction, strength, thrust, used;
+};
+
+// The forces of one section.
+template <class V>
+struct Pushed {
+  static constexpr int PARTS = 8;
+  V shear, along, load;
+  V parts[PARTS];  // force and moment about the boot in the ski's axes; force and moment on the beam
+
+  Pushed(const Cut<V>& c, const Acting<V>& by, const Snow& snow) {
+    const V none{};
+    const double compaction = snow.compaction_resistance ? 1.0 : 0.0;
+    const MaskOf<V> wet = (by.share > 0.0) & (c.deepest > 0.0);
+    const Centre<V> centre(c, by.force, by.moment);
+    const V by_twist = c.twist_slope * by.moment / (1.0 - c.sine * c.sine) * c.size;
+    const V resistance = (by.force * c.climb + by_twist) * compaction;
+    const V used = within(by.used, -1.0, 1.0), area = c.deepest * by.share;
+    shear = select(wet, by.strength * area * used, none);
+    const V thrust = select(wet, by.thrust * area * absolute(used), none);
+    const Vector<V>& n = c.normal;
+    // what friction acts on: of the pressure, and of what acts at the edge
+    V pressing = by.force, aside = none;
+    if (snow.friction_on_base) {
+      const V upright = n.y * c.sp + n.z * c.cp;
+      pressing = by.force * upright;
+      aside = maximum(thrust * upright + shear * (c.across.y * c.sp + c.across.z * c.cp), -pressing);
+    }
+    load = pressing + aside;
+    const V at_centre = select(wet, resistance - by.friction * pressing, none);
+    const V at_edge = select(wet, -by.friction * aside, none);
+    along = at_centre + at_edge;
+    const Vector<V> a{by.force * n.x + at_centre * c.along.x, by.force * n.y + at_centre * c.along.y,
+                      by.force * n.z + at_centre * c.along.z};
+    const Vector<V> z{shear * c.across.x + thrust * n.x + at_edge * c.along.x,
+                      shear * c.across.y + thrust * n.y + at_edge * c.along.y,
+                      shear * c.across.z + thrust * n.z + at_edge * c.along.z};
+    const Vector<V> moment = cross(centre.at, a), edge_moment = cross({c.station, c.edge_left, c.edge_up}, z);
+    const V turning = -centre.arm * (c.sp * a.y + c.cp * a.z) - c.reach * (c.sp * z.y + c.cp * z.z);
+    const V all_parts[PARTS] = {
+        a.x + z.x, a.y + z.y, a.z + z.z, moment.x + edge_moment.x, moment.y + edge_moment.y, moment.z + edge_moment.z,
+        a.z + z.z, turning};
+    for (int k = 0; k < PARTS; k++) parts[k] = select(wet, all_parts[k], none);
+  }
+};
+
+// A section's base before it is cut, moved by a small way to the left, off the snow, or turned in twist.
+template <class V>
+Cut<V> displaced(const Cut<V>& base, int change, double way) {
+  Cut<V> c = base;
+  if (change == SectionDifferences::LEFT) c.aside = all<V>(way);
+  if (change == SectionDifferences::OFF) c.height += way;
+  if (change == SectionDifferences::TWIST) c.sp += way * base.cp, c.cp -= way * base.sp;
+  return c;
+}
+
+// [push] All forces of the sections, summed to the wrench on the boot and the loads of the beam.
+template <class V>
+void push(const Motion&, const Pose&, const Snow& snow, Sections& s, Wrench& out) {
+  Sum sums[6];
+  for (int i = 0; i < s.count(); i += WIDTH<V>) {
+    const Acting<V> by{load<V>(s[SHARE] + i),     load<V>(s[FORCE] + i),         load<V>(s[MOMENT] + i),
+                       load<V>(s[FRICTION] + i),  load<V>(s[EDGE_STRENGTH] + i), load<V>(s[EDGE_THRUST] + i),
+                       load<V>(s[SHEAR_USED] + i)};
+    const Pushed<V> pushed(Cut<V>::stored(s, i), by, snow);
+    for (int k = 0; k < Pushed<V>::PARTS; k++) store(s[SectionField(FORCE_0 + k)] + i, pushed.parts[k]);
+    for (int k = 0; k < 6; k++) sums[k].add(i % BLOCK, pushed.parts[k]);
+    store(s[SHEAR] + i, pushed.shear);
+    store(s[PUSH] + i, pushed.along);
+    store(s[FRICTION_LOAD] + i, pushed.load);
+  }
+  for (int a = 0; a < 3; a++) out.force[a] = sums[a].total(), out.moment[a] = sums[a + 3].total();
+}
+
+// [local_tangent] How the forces of each section change as the base there is moved to the left, off the snow, and
+// twisted: minus the derivatives by differences of one step, the laws' values held. `sense`: of the steps to the left
+// and of the twist.
+template <class V>
+void differ(const Snow& snow, const GrooveLines& lines, const Sections& s, double step, double sense,
+            SectionDifferences& out) {
+  for_lanes<V>(s, lines, [&](int i, int j) {
+    const Cut<V> base(s, i);
+    Acting<V> by;
+    by.share = load<V>(s[SHARE] + i), by.friction = load<V>(s[FRICTION] + i);
+    by.strength = load<V>(s[EDGE_STRENGTH] + i), by.thrust = load<V>(s[EDGE_THRUST] + i);
+    const bool dry = !any((by.share > 0.0) & (load<V>(s[DEEPEST] + i) > 0.0));
+    for (int change = 0; change < SectionDifferences::CHANGES; change++) {
+      const double way = change == SectionDifferences::OFF ? step : sense * step;
+      Cut<V> c = displaced(base, change, way);
+      V parts[Pushed<V>::PARTS] = {};
+      if (!dry) {
+        c.cut(snow);
+        const Pressed<V> answer(snow, lines, j, c);
+        by.force = by.share * answer.force, by.moment = by.share * answer.moment,
+        by.used = shear_used(snow, lines, j, c);
+        const Pushed<V> pushed(c, by, snow);
+        for (int k = 0; k < Pushed<V>::PARTS; k++)
+          parts[k] = (load<V>(s[SectionField(FORCE_0 + k)] + i) - pushed.parts[k]) / way;
+      }
+      for (int k = 0; k < Pushed<V>::PARTS; k++) store(out.column(change, k) + i, parts[k]);
+    }
+  });
+}
+
+}  // namespace skisnow::SKISNOW_LANES

@@ -1,0 +1,23 @@
+// One instruction set's kernels. SKISNOW_LANES names their namespace, SKISNOW_WIDTH is the number of lanes.
+#include "contact/kernels.hpp"
+
+namespace skisnow::SKISNOW_LANES {
+
+#define SKISNOW_TEXT(x) #x
+#define SKISNOW_NAME(x) SKISNOW_TEXT(x)
+
+using Width = Lanes<SKISNOW_WIDTH>;
+
+extern const Kernels SET{
+    SKISNOW_NAME(SKISNOW_LANES),
+    SKISNOW_WIDTH,
+    find_sections<Width>,
+    press<Width>,
+    slide<Width>,
+    push<Width>,
+    differ<Width>,
+    add_stiffness,
+    add_friction_damping,
+    {eliminate, substitute_forwards, substitute_backwards, add_band, add_coupling, add_coupled, carry}};
+
+}  // namespace skisnow::SKISNOW_LANES

@@ -1,0 +1,122 @@
+// What the lines under one runner learn of older tracks: as far across as the ski comes, when it comes there.
+#include <algorithm>
+#include <cmath>
+
+#include "contact/contact.hpp"
+
+namespace skisnow {
+
+namespace {
+
+constexpr double SPARE = 0.01;  // (m) beside a ski: no look of a step lies that far from the pose foreseen for it
+
+double dot(const Vector3& a, const Vector3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+// How far a ski reaches across from its straight axis (m), however it is rolled.
+double room_of(const Runner& runner, const Pose& pose) {
+  double bent = 0.0;
+  for (std::size_t i = 0; i < pose.beam.size(); i += 3) bent = std::max(bent, std::fabs(pose.beam[i]));
+  return runner.reach + bent + SPARE;
+}
+
+// The two ends of the groove in a line that stands.
+struct GrooveEnds {
+  std::int64_t number;
+  Vector3 ends[2];
+};
+
+std::vector<GrooveEnds> ends_of(const GrooveLines& lines) {
+  std::vector<GrooveEnds> out;
+  for (std::int64_t n = lines.first; n < lines.end; n++) {
+    const int slot = lines.slot(n), knots = lines.knots[std::size_t(slot)];
+    if (knots < 2) continue;
+    const Vector3 origin = lines.origin(slot), lateral = lines.lateral(slot);
+    GrooveEnds each{n, {origin, origin}};
+    for (int a = 0; a < 3; a++) {
+      each.ends[0][std::size_t(a)] += lines.place[std::size_t(lines.tile(slot, 0))] * lateral[std::size_t(a)];
+      each.ends[1][std::size_t(a)] += lines.place[std::size_t(lines.tile(slot, knots - 1))] * lateral[std::size_t(a)];
+    }
+    out.push_back(each);
+  }
+  return out;
+}
+
+// Whether a line, between two places across it, may cross the groove between two others.
+bool may_cross(const GrooveEnds& before, const GrooveEnds& after, const Vector3& origin, const Vector3& lateral,
+               const Vector3& ahead, double from, double to) {
+  double along[2] = {1e300, -1e300}, across[2] = {1e300, -1e300};
+  for (const GrooveEnds* each : {&before, &after})
+    for (const Vector3& end : each->ends) {
+      const Vector3 there{end[0] - origin[0], end[1] - origin[1], end[2] - origin[2]};
+      const double x = dot(there, ahead), y = dot(there, lateral);
+      along[0] = std::min(along[0], x), along[1] = std::max(along[1], x);
+      across[0] = std::min(across[0], y), across[1] = std::max(across[1], y);
+    }
+  return along[0] <= THIN && along[1] >= -THIN && across[0] <= to && across[1] >= from;
+}
+
+}  // namespace
+
+// The grooves in which other runners stand.
+class SnowContact::Standing {
+ public:
+  Standing(const SnowContact& contact, int k) {
+    now_ = contact.snow_->archive.time;
+    for (int other = 0; other < contact.runners(); other++)
+      if (other != k) runners_.push_back({&contact.lines(other), ends_of(contact.lines(other))});
+  }
+
+  void recall(const Vector3& origin, const Vector3& lateral, const Vector3& ahead, double from, double to,
+              Ground& ground, DelayedRecall* delayed) const {
+    for (const auto& [lines, ends] : runners_)
+      for (std::size_t i = 1; i < ends.size(); i++) {
+        const GrooveEnds &before = ends[i - 1], &after = ends[i];
+        if (after.number == before.number + 1 && may_cross(before, after, origin, lateral, ahead, from, to))
+          press_between(lines->track(before.number, 0, now_), lines->track(after.number, 0, now_), origin, lateral,
+                        from, to, now_, ground, delayed);
+      }
+  }
+
+ private:
+  struct Other {
+    const GrooveLines* lines;
+    std::vector<GrooveEnds> ends;
+  };
+  std::vector<Other> runners_;
+  double now_;
+};
+
+// Lay the lines that a runner will meet, and look for the tracks that it comes to.
+void SnowContact::prepare(int k, GrooveLines& lines, const Pose& pose) {
+  lines.lay_ahead(runner(k), pose, *snow_);
+  const double room = room_of(runner(k), pose);
+  std::optional<Standing> standing;
+  for (std::int64_t n = lines.first; n < lines.end; n++) {
+    double from[2], to[2];
+    const int slot = lines.slot(n), stretches = lines.unknown(slot, pose, room, from, to);
+    if (stretches == 0) continue;
+    if (!standing) standing.emplace(*this, k);
+    for (int i = 0; i < stretches; i++) learn(lines, slot, from[i], to[i], *standing);
+  }
+}
+
+// What older tracks have pressed there enters a line's ground; the energy that they took is not this runner's.
+void SnowContact::learn(GrooveLines& lines, int slot, double from, double to, const Standing& standing) const {
+  auto& v = lines.values;
+  const Vector3 ahead{v[AHEAD_X][slot], v[AHEAD_Y][slot], v[AHEAD_Z][slot]};
+  const Vector3 origin = lines.origin(slot), lateral = lines.lateral(slot);
+  const bool known = v[KNOWN_FROM][slot] < v[KNOWN_TO][slot];
+  v[KNOWN_FROM][slot] = known ? std::min(from, v[KNOWN_FROM][slot]) : from;
+  v[KNOWN_TO][slot] = known ? std::max(to, v[KNOWN_TO][slot]) : to;
+  Ground older;
+  DelayedRecall recalled{snow_->rate.retardation, {snow_->rate.spacing}};
+  DelayedRecall* delayed = snow_->rate.is_delayed() ? &recalled : nullptr;
+  snow_->archive.recall(origin, lateral, from, to, older, delayed);
+  standing.recall(origin, lateral, ahead, from, to, older, delayed);
+  if (delayed != nullptr) lines.delayed[std::size_t(slot)].take_over(recalled.ground);
+  if (older.empty()) return;
+  older.simplify(0.0, KNOTS);
+  lines.press_older(slot, older);
+}
+
+}  // namespace skisnow

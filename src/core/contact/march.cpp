@@ -1,0 +1,202 @@
+// What the snow remembers of a runner that passes: line by line, along the way between two poses.
+#include <algorithm>
+#include <cmath>
+
+#include "contact/contact.hpp"
+
+namespace skisnow {
+
+namespace {
+
+constexpr double MOST_PARTS = 1e4;  // of a way
+constexpr double SLIPPING = 0.999;  // share of the displacement from which on an edge slips
+
+// What a section presses into its line: the base where it is wet, and the way of its edge since it was marked last.
+// Both are straight and meet at the edge, so that one of them is the deeper wherever both are.
+struct Pressing {
+  double place[5], depth[5];
+  int count = 0;
+
+  // Numbers across are from the edge: the base from a to b, the way from the edge to `w`; depths are `fall` and
+  // `way_fall` times them deeper than the edge. A nearly level base may be wet beside its edge alone.
+  void fill(double a, double b, double fall, double w, double way_fall) {
+    if (a > 0.0 || b < 0.0) return add(a, fall * a), add(b, fall * b);
+    const bool way_is_deeper = w > 0.0 && way_fall > fall;
+    if (a < 0.0) add(a, fall * a);
+    if (a == 0.0 || way_is_deeper) add(0.0, 0.0);
+    if (way_is_deeper) {
+      add(w, way_fall * w);
+      if (b > w) add(w, fall * w), add(b, fall * b);
+    } else {
+      add(b, fall * b);
+      if (w > b) add(b, way_fall * b), add(w, way_fall * w);
+    }
+  }
+
+  // From numbers of the edge to those of the line; with `sense` -1 they counted to the right.
+  void put_at(double edge, double deep, double sense) {
+    for (int i = 0; i < count; i++) place[i] = edge + sense * place[i], depth[i] += deep;
+    if (sense < 0.0) std::reverse(place, place + count), std::reverse(depth, depth + count);
+  }
+
+ private:
+  void add(double at, double deeper) {
+    place[count] = at;
+    depth[count++] = deeper;
+  }
+};
+
+constexpr long MOST_PLACES = 24;  // of a delayed depth that are pressed into a ground, which keeps fewer knots
+
+// Press into a ground what of the depths is not delayed.
+bool press_undelayed(const Pressing& pressing, const DelayedGround& delayed, Ground& ground) {
+  if (delayed.empty()) return ground.press(pressing.place, pressing.depth, pressing.count);
+  std::vector<double> place, depth;
+  const double span = pressing.place[pressing.count - 1] - pressing.place[0];
+  const long every = 1 + long(span / delayed.spacing) / MOST_PLACES;
+  const double spacing = double(every) * delayed.spacing;  // places that are the same in the mirror image
+  const auto add = [&](double at, double deep) { place.push_back(at), depth.push_back(deep - delayed.depth_at(at)); };
+  for (int j = 0; j < pressing.count; j++) {
+    add(pressing.place[j], pressing.depth[j]);
+    if (j + 1 == pressing.count) break;
+    const double a = pressing.place[j], width = pressing.place[j + 1] - a;
+    const double growth = pressing.depth[j + 1] - pressing.depth[j];
+    for (long n = long(std::floor(a / spacing)) + 1; double(n) * spacing < a + width; n++)
+      add(double(n) * spacing, pressing.depth[j] + growth * (double(n) * spacing - a) / width);
+  }
+  return ground.press(place.data(), depth.data(), int(place.size()));
+}
+
+// Keep the base that touches a line: the way of its edge since it was marked last, and all that lies under it.
+void press_base(const Sections& s, int i, const Snow& snow, GrooveLines& lines, int slot) {
+  const double edge = s[EDGE_PLACE][i], depth = s[EDGE_DEPTH][i], fall = s[DEPTH_FALL][i];
+  const double from = s[WET_FROM][i], to = std::max(s[WET_TO][i], from);
+  const bool marked = lines.values[MARKED][slot] > 0.5;
+  const double way = marked ? lines.values[EDGE_MARKED][slot] - edge : 0.0, sense = way < 0.0 ? -1.0 : 1.0;
+  const double way_fall = std::fabs(way) > THIN ? (lines.values[DEPTH_MARKED][slot] - depth) / std::fabs(way) : 0.0;
+  Pressing pressing;
+  if (sense > 0.0)
+    pressing.fill(from, to, fall, way, way_fall);
+  else
+    pressing.fill(-to, -from, -fall, -way, way_fall);
+  pressing.put_at(edge, depth, sense);
+  Ground ground = lines.ground(slot);
+  if (!press_undelayed(pressing, lines.delayed[std::size_t(slot)], ground)) return;
+  ground.simplify(snow.knot_area * s[DEEPEST][i] * (to - from), KNOTS);
+  lines.keep(slot, ground);
+}
+
+// Keep where the edge holds: where it came through the surface, not farther off than its full displacement.
+void keep_anchor(const Sections& s, int i, const Snow& snow, GrooveLines& lines, int slot) {
+  auto& v = lines.values;
+  const double edge = s[EDGE_PLACE][i], depth = s[DEEPEST][i], reach = snow.shear_displacement;
+  double anchor = edge;
+  if (v[ANCHORED][slot] > 0.5)
+    anchor = v[ANCHOR][slot];
+  else if (v[ABOVE][slot] > 0.5)
+    anchor = edge - depth / (depth - v[DEPTH_ABOVE][slot]) * (edge - v[EDGE_ABOVE][slot]);
+  v[ANCHOR][slot] = std::clamp(anchor, edge - reach, edge + reach);
+  v[SLIPPED][slot] += std::fabs(v[ANCHOR][slot] - anchor);
+  v[ANCHORED][slot] = 1.0;
+}
+
+void remember_section(const Sections& s, int i, const Snow& snow, GrooveLines& lines, int slot) {
+  auto& v = lines.values;
+  if (!s.touches(i)) {
+    v[MARKED][slot] = 0.0;
+    if (!(s[SHARE][i] > 0.0)) return;
+    v[EDGE_ABOVE][slot] = s[EDGE_PLACE][i];
+    v[DEPTH_ABOVE][slot] = s[DEEPEST][i];
+    v[ANCHORED][slot] = 0.0;
+    v[ABOVE][slot] = 1.0;
+    return;
+  }
+  press_base(s, i, snow, lines, slot);
+  v[MARKED][slot] = 1.0;
+  v[EDGE_MARKED][slot] = s[EDGE_PLACE][i];
+  v[DEPTH_MARKED][slot] = s[EDGE_DEPTH][i];
+  keep_anchor(s, i, snow, lines, slot);
+  v[ABOVE][slot] = 0.0;
+}
+
+}  // namespace
+
+void SnowContact::remember(int k, GrooveLines& lines) const {
+  const Sections& s = sections(k);
+  for (std::int64_t n = lines.first; n < lines.end; n++) remember_section(s, s.index(n), *snow_, lines, lines.slot(n));
+}
+
+// Into how many parts the way from the accepted pose is divided; one where the runner was put there in no time.
+int SnowContact::parts(int k, const Situation& at) const {
+  if (!(at.dt > 0.0)) return 1;
+  const Pose& to = at.poses[std::size_t(k)];
+  const Pose& from = state_.accepted[std::size_t(k)];
+  double most = 1.0;
+  for (const double station : {runner(k).tip, runner(k).tail}) {
+    double along = 0.0, square = 0.0;
+    for (std::size_t a = 0; a < 3; a++) {
+      const double way = to.position[a] - from.position[a] + station * (to.rotation[a][0] - from.rotation[a][0]);
+      along += way * from.rotation[a][0], square += way * way;
+    }
+    const double across = std::sqrt(std::max(square - along * along, 0.0));
+    most = std::max({most, std::fabs(along) / snow_->part_along, across / snow_->part_across});
+  }
+  return int(std::ceil(std::min(most, MOST_PARTS) - 1e-9));
+}
+
+// The history of all lines along the way, up to but without its end.
+void SnowContact::march(int k, GrooveLines& lines, const Situation& to) {
+  if (state_.accepted.empty()) return;
+  const int parts = this->parts(k, to);
+  for (int part = 1; part < parts; part++) {
+    const Pose pose = between(state_.accepted[std::size_t(k)], to.poses[std::size_t(k)], double(part) / parts);
+    kernels_->find_sections(runner(k), pose, *snow_, lines, lines.first, sections_[std::size_t(k)]);
+    remember(k, lines);
+  }
+}
+
+// The lines whose history hangs on the way between two poses and not on its ends alone: ahead, where the snow was not
+// touched yet, where the edge slips, and where the base passes its deepest place.
+void SnowContact::find_needed(const GrooveLines& lines, double way) {
+  const auto& v = lines.values;
+  const auto marked = [&](std::int64_t n) {
+    return n >= lines.first && n < lines.end && v[MARKED][lines.slot(n)] > 0.5;
+  };
+  const auto depth = [&](std::int64_t n) { return v[DEPTH_MARKED][lines.slot(n)]; };
+  const auto over = std::int64_t(std::ceil(way / lines.spacing()));
+  needed_.clear();
+  bool ahead = true;
+  std::int64_t deepest = lines.end + over + 1;
+  for (std::int64_t n = lines.end - 1; n >= lines.first; n--) {
+    const int slot = lines.slot(n);
+    if (marked(n - over) && marked(n - over - 1) && marked(n - over + 1) && depth(n - over) >= depth(n - over - 1) &&
+        depth(n - over) >= depth(n - over + 1))
+      deepest = n - over;
+    ahead = ahead && !marked(n);
+    const double held = std::fabs(v[ANCHOR][slot] - v[EDGE_MARKED][slot]);
+    const bool slips = v[ANCHORED][slot] > 0.5 && held > SLIPPING * snow_->shear_displacement;
+    if (ahead || slips || std::llabs(n - deepest) <= over) needed_.push_back(n);
+  }
+}
+
+// [march] As `march`, for the lines that need it.
+void SnowContact::march_where_needed(int k, const Situation& to) {
+  GrooveLines& lines = state_.lines[std::size_t(k)];
+  if (state_.accepted.empty()) return;
+  const Pose &from = state_.accepted[std::size_t(k)], &end = to.poses[std::size_t(k)];
+  const int parts = this->parts(k, to);
+  if (parts < 2) return;
+  double square = 0.0;
+  for (std::size_t a = 0; a < 3; a++)
+    square += (end.position[a] - from.position[a]) * (end.position[a] - from.position[a]);
+  find_needed(lines, std::sqrt(square));
+  if (needed_.empty()) return;
+  for (const std::int64_t n : needed_) before_[std::size_t(k)].lines.push_back(lines.line(lines.slot(n)));
+  Sections& s = sections_[std::size_t(k)];
+  for (int part = 1; part < parts; part++) {
+    kernels_->find_sections(runner(k), between(from, end, double(part) / parts), *snow_, lines, needed_.back(), s);
+    for (const std::int64_t n : needed_) remember_section(s, s.index(n), *snow_, lines, lines.slot(n));
+  }
+}
+
+}  // namespace skisnow

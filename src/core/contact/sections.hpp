@@ -1,0 +1,112 @@
+// Where a base meets the lines: for each line the plane section of the ski that lies over it, and what the snow
+// answers.
+#pragma once
+
+#include "beam/runner.hpp"
+#include "linear_algebra/bordered.hpp"
+#include "snow/lines.hpp"
+#include "snow/snow.hpp"
+#include "support/columns.hpp"
+
+namespace skisnow {
+
+// Vectors are in the ski's axes (0 ahead, 1 left across the base, 2 off the base), from the boot. x counts across along
+// the line, to the left, from the edge that is deeper.
+// clang-format off: fields that belong together share a row
+enum SectionField {
+  // the line: its place from the boot, its directions ahead, out of the snow, and to the left
+  FROM_BOOT_0, FROM_BOOT_1, FROM_BOOT_2, LINE_AHEAD_0, LINE_AHEAD_1, LINE_AHEAD_2,
+  LINE_NORMAL_0, LINE_NORMAL_1, LINE_NORMAL_2, LINE_LEFT_0, LINE_LEFT_1, LINE_LEFT_2,
+  // where the edge crosses it along the ski: of the straight axis (m), what half width and height add; in the table
+  AXIS_CROSSING, TOWARD_EDGE, UPWARD, TABLE_PLACE,
+  // the section: position along the ski, share of the spacing (m), half width and its slope, height of the base and its
+  // slope, place in its beam element (from the front), that element's length
+  STATION, SHARE, HALF_WIDTH, FLARE, BASE_HEIGHT, BASE_RISE, IN_ELEMENT, ELEMENT_LENGTH, ELEMENT,
+  // deflection, slope and twist of the beam's nodes in front and behind; rates at the section
+  FRONT_DEFLECTION, FRONT_SLOPE, FRONT_TWIST, REAR_DEFLECTION, REAR_SLOPE, REAR_TWIST,
+  // sine and cosine of the twist, its slope; sine of the edge angle
+  TWIST_SINE, TWIST_COSINE, TWIST_SLOPE, EDGE_SINE,
+  // the edge that is deeper: depth of the deepest, and of this one, across from the ski's middle, to the left and
+  // upwards from the boot, across from the line's origin (m)
+  DEEPEST, EDGE_DEPTH, EDGE_REACH, EDGE_LEFT, EDGE_UP, EDGE_PLACE,
+  // in the surface: across the edge, along it, and one over that direction's length before it was made a unit
+  ACROSS_0, ACROSS_1, ACROSS_2, ALONG_0, ALONG_1, ALONG_2, ALONG_SIZE,
+  // fall of the depth to the left; its growth along the edge; width across the base over that along the line; where the
+  // wet base begins and ends
+  DEPTH_FALL, DEPTH_CLIMB, BASE_WIDENING, WET_FROM, WET_TO,
+  // the answer of the snow: force (N) and its moment about the edge; elastic energy of the snow (J)
+  FORCE, MOMENT, SNOW_ENERGY,
+  RATE_POWER,  // that c of snow that takes time takes (W)
+  // the edge: share of the strength that is left after slip, shear strength S_f and the thrust off the snow that comes
+  // with it (Pa), the share of the displacement to full strength in use
+  STRENGTH_LEFT, EDGE_STRENGTH, EDGE_THRUST, SHEAR_USED,
+  // velocity of the base at the centre of pressure along the edge (m/s); μ with its sign, and its growth with it; the
+  // load that friction acts on (N)
+  SLIDING, FRICTION, FRICTION_SLOPE, FRICTION_LOAD,
+  // shear across the edge, what acts along it (N); force and moment about the boot in the ski's axes; on the beam
+  SHEAR, PUSH, FORCE_0, FORCE_1, FORCE_2, MOMENT_0, MOMENT_1, MOMENT_2, BEAM_FORCE, BEAM_MOMENT,
+  SECTION_FIELDS
+};
+// clang-format on
+
+struct Sections {
+  Columns<SectionField, SECTION_FIELDS> values;
+  std::int64_t first_block = 0;  // of the lines
+  int blocks = 0;
+
+  double* operator[](SectionField field) { return values[field]; }
+  const double* operator[](SectionField field) const { return values[field]; }
+  int count() const { return blocks * BLOCK; }
+  std::int64_t line(int i) const { return first_block * BLOCK + i; }
+  int index(std::int64_t line) const { return int(line - first_block * BLOCK); }
+  bool touches(int i) const { return (*this)[SHARE][i] > 0.0 && (*this)[DEEPEST][i] > 0.0; }
+  void prepare(const GrooveLines& lines, std::int64_t first);  // for the lines from the first one
+};
+
+struct Wrench {
+  double force[3] = {}, moment[3] = {};  // in the ski's axes, about the boot
+  std::vector<double> beam;              // (nodes, 3): force, moment of the slope, moment of the twist
+};
+
+// How the eight answers of a section (force, moment about the boot, force and moment on the beam) change with three
+// local movements of the base: to the left across it, off it, and its twist. Minus the derivatives.
+struct SectionDifferences {
+  static constexpr int ANSWERS = 8;
+  enum Change { LEFT, OFF, TWIST, CHANGES };
+  std::vector<double> values;  // [change][answer][section]
+  int count = 0;
+
+  void resize(int sections) {
+    count = sections;
+    values.resize(std::size_t(ANSWERS * CHANGES) * std::size_t(sections));
+  }
+  double* column(int change, int answer) {
+    return values.data() + (std::size_t(change) * ANSWERS + std::size_t(answer)) * std::size_t(count);
+  }
+  const double* column(int change, int answer) const {
+    return const_cast<SectionDifferences*>(this)->column(change, answer);
+  }
+};
+
+struct RunnerTangent;
+
+// The parts of an evaluation, each over all lines of a runner.
+struct Kernels {
+  const char* name;  // of the instruction set
+  int lanes;
+  void (*find_sections)(const Runner&, const Pose&, const Snow&, const GrooveLines&, std::int64_t first, Sections&);
+  void (*press)(const Snow&, const GrooveLines&, Sections&);  // pressure, strength, share of the displacement in use
+  void (*slide)(const Motion&, const Pose&, const Snow&, Sections&);  // sliding speed along the edge and μ
+  void (*push)(const Motion&, const Pose&, const Snow&, Sections&, Wrench&);
+  // of sections that were looked at; a step (m, rad), and its sense to the left and of the twist
+  void (*differ)(const Snow&, const GrooveLines&, const Sections&, double step, double sense, SectionDifferences&);
+  // add to a tangent what the sections' derivatives give, and friction by its growth with the sliding speed
+  void (*add_stiffness)(const Sections&, const SectionDifferences&, double weight, bool bends, RunnerTangent&);
+  void (*add_friction_damping)(const Sections&, double weight, bool bends, RunnerTangent&);
+  BandKernels band;
+};
+
+const Kernels& kernels();                        // the widest that this processor has
+const Kernels* kernels_named(const char* name);  // null: not in this library, or not on this processor
+
+}  // namespace skisnow

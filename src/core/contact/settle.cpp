@@ -1,0 +1,82 @@
+// The end of a step that is taken: what it presses is counted, and lines follow the ski.
+#include <algorithm>
+#include <utility>
+
+#include "contact/contact.hpp"
+
+namespace skisnow {
+
+namespace {
+
+// Of pairs with rising first numbers; beyond the ends the last one.
+double interpolated(const std::vector<std::pair<double, double>>& table, double at) {
+  const auto after = std::lower_bound(table.begin(), table.end(), std::pair(at, -1e300));
+  if (after == table.begin()) return after->second;
+  const auto before = after - 1;
+  if (after == table.end() || !(after->first > before->first)) return before->second;
+  return before->second + (at - before->first) / (after->first - before->first) * (after->second - before->second);
+}
+
+}  // namespace
+
+// The end of a step, for which the sections stand, enters the history; lines that the ski has left are dropped.
+void SnowContact::settle_history(int k, const Pose& pose) {
+  GrooveLines& lines = state_.lines[std::size_t(k)];
+  if (snow_->rate.is_delayed()) state_.delayed_energy += advance_delayed(*snow_, sections(k), dt_, lines);
+  remember(k, lines);
+  count_energy(k, lines);
+  if (lines.is_uneven(pose, *snow_)) lay_anew(k, pose);
+  follow_snow(k, lines);
+  lines.drop_left(runner(k), pose, &snow_->archive, state_.strips[std::size_t(k)]);
+}
+
+// A line that tip or tail passes stands for the whole spacing: what the ski presses there first is pressed for good.
+void SnowContact::count_energy(int k, GrooveLines& lines) const {
+  const Sections& s = sections(k);
+  const double half = 0.5 * lines.spacing(), tail = runner(k).tail + half, tip = runner(k).tip - half;
+  for (std::int64_t n = lines.first; n < lines.end; n++) {
+    const int i = s.index(n);
+    if (!s.touches(i)) continue;
+    const bool is_whole = s[STATION][i] > tail && s[STATION][i] < tip;
+    lines.count_energy(lines.slot(n), is_whole ? s[SHARE][i] : lines.spacing());
+  }
+}
+
+// Where hardness or strength vary in place, each line has those of where its edge is now.
+void SnowContact::follow_snow(int k, GrooveLines& lines) const {
+  if (snow_->hardness.is_constant() && snow_->strength.is_constant()) return;
+  const Sections& s = sections(k);
+  for (std::int64_t n = lines.first; n < lines.end; n++) {
+    const int i = s.index(n);
+    if (s.touches(i)) lines.follow_snow(lines.slot(n), s[EDGE_PLACE][i], *snow_);
+  }
+}
+
+// Leave all lines to the archive and lay others, on which the edge is displaced and has slipped as it had at the same
+// station.
+void SnowContact::lay_anew(int k, const Pose& pose) {
+  GrooveLines& lines = state_.lines[std::size_t(k)];
+  Sections& s = sections_[std::size_t(k)];
+  std::vector<std::pair<double, double>> displaced, slipped;  // by station, rising
+  for (std::int64_t n = lines.first; n < lines.end; n++) {
+    const int i = s.index(n), slot = lines.slot(n);
+    if (!s.touches(i)) continue;
+    displaced.emplace_back(s[STATION][i], lines.values[ANCHOR][slot] - s[EDGE_PLACE][i]);
+    slipped.emplace_back(s[STATION][i], lines.values[SLIPPED][slot]);
+  }
+  std::sort(displaced.begin(), displaced.end());
+  std::sort(slipped.begin(), slipped.end());
+  lines.leave_all(snow_->archive, state_.strips[std::size_t(k)]);
+  state_.strips[std::size_t(k)] = snow_->archive.new_strip();
+  prepare(k, lines, pose);
+  kernels_->find_sections(runner(k), pose, *snow_, lines, lines.first, s);
+  remember(k, lines);
+  for (std::int64_t n = lines.first; n < lines.end && !displaced.empty(); n++) {
+    const int i = s.index(n), slot = lines.slot(n);
+    if (!s.touches(i)) continue;
+    lines.values[ANCHOR][slot] = s[EDGE_PLACE][i] + interpolated(displaced, s[STATION][i]);
+    lines.values[SLIPPED][slot] = interpolated(slipped, s[STATION][i]);
+  }
+}
+
+}  // namespace skisnow

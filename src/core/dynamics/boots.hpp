@@ -1,0 +1,60 @@
+// Boots that move against the body as they are told to, and what each ski does to its boot.
+//
+// Each ski is a body of its own, whose origin is its boot. Its velocities follow from those of the body that carries it
+// and from the boot's own motion, which is given over time; what is left over of its equations of motion is what it
+// does to its boot.
+#pragma once
+
+#include "contact/sections.hpp"
+#include "dynamics/body.hpp"
+
+namespace skisnow {
+
+// Motion of a boot against the body, in the body's frame: its place, and the rotation vector from its axes at the
+// beginning, in those axes, are cubics in the time since then.
+struct BootMotion {
+  double start = 0.0;      // (s)
+  Vector3 place[4] = {};   // coefficients, constant first (m, m/s, …)
+  Vector3 turn[3] = {};    // linear first (rad/s, …)
+  double axes[3][3] = {};  // at the beginning, rows ahead, left and up
+
+  void set(double time, FlexibleSki& stage) const;  // boot, axes and their rates
+};
+
+// From the rates of a body to those of a ski on it, in the ski's axes.
+void carry_rates(const FlexibleSki& stage, const Numbers& rates, double* out);
+
+class MovingSki {
+ public:
+  // `stage`: as it is clamped to its carrier; `inertia`: of the undeformed ski about its boot, in its own axes.
+  MovingSki(const FlexibleSki& stage, const double* inertia, const Body& carrier);
+
+  const Body& body() const { return body_; }
+  const Layout& layout() const { return layout_; }
+  const BodyState& state() const { return state_; }
+  const Numbers& residual() const { return residual_; }
+
+  // Be where the carrier takes it; its beam's numbers stand there from `first` on.
+  void follow(const FlexibleSki& stage, const BodyState& carrier, int first);
+  // What is left over of its equations of motion under the snow's wrench; by rates of the end, the start and the start
+  // before, with these weights (1/s).
+  void find_residual(const Wrench& snow, double newest, double now, double before);
+  void begin() { now_ = before_ = state_.rate; }
+  void accept();  // the next step starts where it is
+  // Power (W) of whoever moves the boot against its carrier.
+  double power(const FlexibleSki& stage) const;
+  // Adds the undeformed ski, as it stands on its carrier, to a body, or with -1 takes it out.
+  void add_to(Body& carrier, const FlexibleSki& stage, double sign) const;
+  // The beam's part of the mass matrix with the carrier, as it stands there.
+  void couple(FlexibleSki& stage) const;
+  void write(ByteWriter& out) const;
+  void read(ByteReader& in);
+
+ private:
+  Body body_;
+  Layout layout_;
+  BodyState state_;
+  Numbers now_, before_, difference_, residual_;
+};
+
+}  // namespace skisnow

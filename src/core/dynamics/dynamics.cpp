@@ -1,0 +1,388 @@
+#include "dynamics/dynamics.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace skisnow {
+
+namespace {
+
+constexpr int MOST_ITERATIONS = 12;
+constexpr double SLOW = 0.15;             // contraction from which on the matrix is made anew
+constexpr double UNSEEN = 0.3;            // contraction to reckon with before it was seen
+constexpr double LEAST_ERROR = 0.1;       // of the tolerance: what a step's own error is taken for at least
+constexpr double SAME_REACH = 0.1;        // by which β may differ from that of a matrix that is kept
+constexpr double LEAST_SHARE = 1.0 / 64;  // of a fixed step, into which it is divided where it is not solved
+constexpr double FARTHEST = 1.0;          // way (m), turn (rad), bend beyond which a step has diverged
+constexpr double SAFETY = 0.85, UP = 1.35, DOWN = 0.93;  // of the step's choice
+constexpr std::chrono::milliseconds LONGEST_STAY(50);    // within the core, before it pauses to hear an interrupt
+constexpr double ROUNDING = 1e-9;                        // of a step's length
+constexpr double MILNE = 0.35;  // error of BDF2 over its distance from the predictor, at equal steps 8/23
+
+}  // namespace
+
+Dynamics::Dynamics(Body body, SnowContact& contact, const StepRule& rule)
+    : body_(std::move(body)), contact_(&contact), rule_(rule), layout_(body_.layout()), step_(rule.first) {
+  body_.kernels = &contact.kernels().band;
+  state = next_ = BodyState(layout_);
+  rate_before_ = moved_ = increment_ = residual_ = difference_ = state.rate;
+  system_ = BorderedSystem(layout_, contact.kernels().band);
+  end_.poses.resize(body_.skis.size());
+  end_.motions.resize(body_.skis.size());
+}
+
+Dynamics::Formula Dynamics::formula(double h) const {
+  const double w = last_step_ > 0.0 ? h / last_step_ : 0.0;
+  const double newest = (1.0 + 2.0 * w) / (1.0 + w), before = w * w / (1.0 + w);
+  return {h, h / newest, before / newest, newest / h, (1.0 + w) / h, before / h, w};
+}
+
+// [predict] Rates at the end, extrapolated.
+void Dynamics::predict(const Formula& f) {
+  for (std::size_t i = 0; i < state.rate.size(); i++)
+    next_.rate[i] = state.rate[i] + f.ratio * (state.rate[i] - rate_before_[i]);
+  place(f);
+}
+
+// [place] Places at the end from the rates there: increments d = β v + (a₋/a₁) d₀, in the frame of the start.
+void Dynamics::place(const Formula& f) {
+  Numbers& d = increment_;
+  for (std::size_t i = 3; i < d.size(); i++) d[i] = f.reach * next_.rate[i] + f.keep * moved_[i];
+  const Vector3 velocity = rotated(d.data() + 3, next_.rate.data(), f.ratio > 0.0 ? 1.0 : 0.5);
+  for (std::size_t a = 0; a < 3; a++) d[a] = f.reach * velocity[a] + f.keep * moved_[a];
+  move(state, d, next_);
+}
+
+void Dynamics::fill_end() {
+  for (std::size_t k = 0; k < body_.skis.size(); k++) {
+    fill_pose(body_.skis[k], next_, layout_.first(int(k)), end_.poses[k]);
+    fill_motion(body_.skis[k], next_, layout_.first(int(k)), end_.motions[k]);
+  }
+}
+
+// Forces of the snow at the situation `end_`.
+void Dynamics::add_snow(Numbers& out) {
+  counts_.looks++;
+  for (std::size_t k = 0; k < body_.skis.size(); k++) {
+    const FlexibleSki& ski = body_.skis[k];
+    const Wrench& snow = contact_->look(int(k), end_.poses[k], end_.motions[k]);
+    Vector3 force{}, moment{};
+    for (std::size_t c = 0; c < 3; c++)
+      for (std::size_t a = 0; a < 3; a++) {
+        force[a] += ski.axes[c][a] * snow.force[c];
+        moment[a] += ski.axes[c][a] * snow.moment[c];
+      }
+    const Vector3& at = ski.boot;
+    const Vector3 lever{at[1] * force[2] - at[2] * force[1], at[2] * force[0] - at[0] * force[2],
+                        at[0] * force[1] - at[1] * force[0]};
+    for (std::size_t a = 0; a < 3; a++) out[a] += force[a], out[a + 3] += moment[a] + lever[a];
+    double* beam = out.data() + layout_.first(int(k));
+    for (std::size_t j = 0; j < ski.unknown.size(); j++)
+      for (int c = 0; c < 3 && ski.unknown[j] >= 0; c++) beam[ski.unknown[j] + c] += snow.beam[3 * j + std::size_t(c)];
+  }
+}
+
+// [residual] F(x, v) - K (u + c w) - M (a₁ v - (1 + ω) v₀ + a₋ v₋₁)/h at the end.
+void Dynamics::find_residual(const Formula& f) {
+  if (!motions_.empty()) return find_moving_residual(f.newest, f.now, f.before, residual_);
+  std::fill(residual_.begin(), residual_.end(), 0.0);
+  fill_end();
+  add_snow(residual_);
+  add_forces(body_, layout_, next_, residual_);
+  add_stiffness(body_, layout_, next_.bend, next_.rate, -1.0, residual_);
+  for (std::size_t i = 0; i < difference_.size(); i++)
+    difference_[i] = f.newest * next_.rate[i] - f.now * state.rate[i] + f.before * rate_before_[i];
+  add_mass(body_, layout_, difference_, -1.0, residual_);
+}
+
+// What the body does to a ski: the ski's way and rotation in its own axes by the body's.
+struct Carried {
+  double by[BODY][BORDER_ROW] = {};
+
+  explicit Carried(const FlexibleSki& ski) {
+    const Vector3& r = ski.boot;
+    for (int c = 0; c < 3; c++) {
+      const Vector3& e = ski.axes[c];
+      const Vector3 turning{r[1] * e[2] - r[2] * e[1], r[2] * e[0] - r[0] * e[2], r[0] * e[1] - r[1] * e[0]};
+      for (std::size_t a = 0; a < 3; a++) by[c][a] = by[c + 3][a + 3] = e[a], by[c][a + 3] = turning[a];
+    }
+  }
+};
+
+void Dynamics::add_contact_tangent(double stiffness, double damping) {
+  const auto carry = body_.kernels->carry;
+  for (std::size_t k = 0; k < body_.skis.size(); k++) {
+    const FlexibleSki& ski = body_.skis[k];
+    contact_->find_tangent(int(k), end_.poses[k], stiffness, damping, tangent_);
+    const Carried carried(ski);
+    for (int m = 0; m < BODY; m++) {
+      double half[BORDER_ROW] = {};
+      carry(tangent_.body[m], &carried.by[0][0], half);
+      for (int r = 0; r < BODY; r++)
+        for (int c = 0; c < BODY; c++) system_.corner[r][c] += carried.by[m][r] * half[c];
+    }
+    for (std::size_t j = 0; j < ski.unknown.size(); j++)
+      for (int c = 0; c < 3 && ski.unknown[j] >= 0; c++) {
+        const int row = ski.unknown[j] + c;
+        const auto node = 3 * j + std::size_t(c);
+        carry(tangent_.beam_by_body.data() + BORDER_ROW * node, &carried.by[0][0], system_.border(int(k), row));
+        carry(tangent_.body_by_beam.data() + BORDER_ROW * node, &carried.by[0][0], system_.border_column(int(k), row));
+        double* band = system_.band(int(k), row);
+        for (int m = 0; m < 2 * HALF_BAND + 1; m++) {
+          const int other = row + m - HALF_BAND;
+          if (other >= 0 && other < ski.size()) band[m] += tangent_.beam[BAND_ROW * node + std::size_t(m)];
+        }
+      }
+  }
+}
+
+// [matrix] W = M + β (β + c) K + β² K_snow + β D_snow.
+bool Dynamics::factor(double reach) {
+  counts_.factored++;
+  system_.clear();
+  for (int a = 0; a < BODY; a++)
+    for (int b = 0; b < BODY; b++) system_.corner[a][b] = body_.inertia[a][b];
+  for (std::size_t k = 0; k < body_.skis.size(); k++) {
+    const FlexibleSki& ski = body_.skis[k];
+    const double stiff = reach * (reach + ski.damping);
+    for (int i = 0; i < ski.size(); i++) {
+      for (int j = 0; j <= std::min(i, HALF_BAND); j++) {
+        const auto at = std::size_t((HALF_BAND + 1) * i + j);
+        const double value = ski.mass[at] + stiff * ski.stiffness[at];
+        system_.band(int(k), i)[HALF_BAND - j] += value;
+        if (j > 0) system_.band(int(k), i - j)[HALF_BAND + j] += value;
+      }
+      for (int a = 0; a < BODY; a++)
+        system_.border(int(k), i)[a] = system_.border_column(int(k), i)[a] = ski.coupling[std::size_t(BODY * i + a)];
+    }
+  }
+  add_contact_tangent(reach * reach, reach);
+  if (held_) hold_rows();
+  reach_ = reach;
+  return system_.factor();
+}
+
+// The body's unknowns stay as they are.
+void Dynamics::hold_rows() {
+  for (int a = 0; a < BODY; a++) {
+    for (int b = 0; b < BODY; b++) system_.corner[a][b] = a == b ? 1.0 : 0.0;
+    for (std::size_t k = 0; k < body_.skis.size(); k++)
+      for (int i = 0; i < body_.skis[k].size(); i++)
+        system_.border(int(k), i)[a] = system_.border_column(int(k), i)[a] = 0.0;
+  }
+}
+
+// How far rates move the boots, ends a metre off that turn with them, and the beams, in a time (m).
+double Dynamics::size_of(const Numbers& rates, double reach) const {
+  double most = 0.0, sum = 0.0;
+  for (double each : rates) sum += each;
+  if (!std::isfinite(sum)) return std::numeric_limits<double>::infinity();
+  for (std::size_t a = 0; a < BODY; a++) most = std::max(most, std::fabs(rates[a]));
+  for (int k = 0; k < layout_.beams(); k++)
+    for (int i = 0; i < layout_.size(k); i += 3)
+      most = std::max(most, std::fabs(rates[std::size_t(layout_.first(k) + i)]));
+  return most * reach;
+}
+
+// [newton] The rates at the step's end; whether they were found.
+bool Dynamics::solve_step(const Formula& f) {
+  const double displacement = 0.1 * contact_->shear_displacement();
+  double last = std::numeric_limits<double>::infinity();
+  bool renew = kept_ <= 0 || std::fabs(f.reach - reach_) > SAME_REACH * reach_;
+  for (int iteration = 0; iteration < MOST_ITERATIONS; iteration++) {
+    find_residual(f);
+    if (renew) {
+      if (!factor(f.reach)) return false;
+      kept_ = rule_.keep;
+      renew = false;
+    }
+    for (double& each : residual_) each *= f.reach;
+    system_.solve(residual_);
+    counts_.iterations++;
+    const double size = size_of(residual_, f.reach);
+    if (!(size < FARTHEST)) return false;
+    if (iteration > 0) {
+      contraction_ = std::min(size / last, 0.99);
+      renew = contraction_ > SLOW;
+    }
+    const double damping = iteration > 1 && size > 0.9 * last ? 0.5 : 1.0;
+    last = size;
+    for (std::size_t i = 0; i < residual_.size(); i++) next_.rate[i] += damping * residual_[i];
+    place(f);
+    const double contraction = iteration > 0 ? contraction_ : std::max(contraction_, UNSEEN);
+    // close to what the step's own error is, where that is below the tolerance
+    const double own = std::clamp(error(f), LEAST_ERROR * rule_.tolerance, rule_.tolerance);
+    if (contraction / (1.0 - contraction) * size < std::min(rule_.closeness * own, displacement)) {
+      kept_--;
+      return true;
+    }
+  }
+  return false;
+}
+
+// [error] Of place and rotation (m, rad), by Milne's device: distance from the explicit step of the same order.
+double Dynamics::error(const Formula& f) const {
+  const double now = f.h * (1.0 + 0.5 * f.ratio), before = -0.5 * f.h * f.ratio;
+  double foreseen[BODY], worst = 0.0;
+  for (std::size_t a = 0; a < BODY; a++) foreseen[a] = now * state.rate[a] + before * rate_before_[a];
+  const Vector3 way = rotated(foreseen + 3, foreseen, 0.5);
+  for (std::size_t a = 0; a < 3; a++) {
+    worst = std::max(worst, std::fabs(increment_[a] - way[a]));
+    worst = std::max(worst, std::fabs(increment_[a + 3] - foreseen[a + 3]));
+  }
+  return MILNE * worst;
+}
+
+// [powers] At the accepted end; energies by the trapezoidal rule.
+void Dynamics::add_work(double h) {
+  Work now;
+  for (std::size_t k = 0; k < body_.skis.size(); k++) {
+    const ContactPower snow = contact_->power(int(k), end_.poses[k], end_.motions[k]);
+    now.shear -= snow.shear;
+    now.friction -= snow.friction;
+    now.normal += snow.normal;
+    now.snow_damping += snow.damping;
+  }
+  now.drag = drag_power(body_, next_);
+  now.damping = damping_power(body_, layout_, next_);
+  now.push = push_power(body_, next_);
+  for (std::size_t k = 0; k < skis_.size() && !motions_.empty(); k++) now.boots += skis_[k].power(body_.skis[k]);
+  work_.shear += 0.5 * h * (power_.shear + now.shear);
+  work_.friction += 0.5 * h * (power_.friction + now.friction);
+  work_.normal += 0.5 * h * (power_.normal + now.normal);
+  work_.drag += 0.5 * h * (power_.drag + now.drag);
+  work_.damping += 0.5 * h * (power_.damping + now.damping);
+  work_.snow_damping += 0.5 * h * (power_.snow_damping + now.snow_damping);
+  work_.boots += 0.5 * h * (power_.boots + now.boots);
+  work_.push += 0.5 * h * (power_.push + now.push);
+  power_ = now;
+}
+
+void Dynamics::observe() {
+  along_.clear();
+  touches_ = false;
+  for (int k = 0; k < int(body_.skis.size()); k++) {
+    along_.push_back(along_nodes(contact_->runner(k), contact_->sections(k)));
+    touches_ = touches_ || contact_->touches(k);
+  }
+  snow_energy_ = contact_->elastic_energy();
+  held_energy_ = contact_->held_energy();
+}
+
+void Dynamics::accept(const Formula& f, bool observed) {
+  if (observed || !motions_.empty())
+    feel_boots(f.newest, f.now, f.before);
+  else
+    follow_skis();
+  add_work(f.h);
+  if (observed) observe();
+  fill_end();
+  contact_->accept(end_);
+  rate_before_ = state.rate;
+  std::swap(state, next_);
+  moved_ = increment_;
+  const Vector3 way = rotated(increment_.data() + 3, increment_.data(), -1.0);
+  for (std::size_t a = 0; a < 3; a++) moved_[a] = way[a];
+  last_step_ = f.h;
+  counts_.steps++;
+  for (MovingSki& each : skis_) each.accept();
+}
+
+bool Dynamics::is_sound(double h) const {
+  double total = 0.0, farthest = 0.0;
+  for (std::size_t a = 0; a < BODY; a++) farthest = std::max(farthest, std::fabs(h * next_.rate[a]));
+  for (double each : next_.bend) total += each, farthest = std::max(farthest, std::fabs(each));
+  for (double each : next_.rate) total += each;
+  return std::isfinite(total) && farthest <= FARTHEST;
+}
+
+double Dynamics::on_ladder(double h) const {
+  return rule_.longest * std::exp2(0.25 * std::floor(4.0 * std::log2(h / rule_.longest) + 1e-6));
+}
+
+void Dynamics::begin() {
+  place_boots(0.0);
+  next_ = state;
+  fill_end();
+  end_.dt = 0.0;
+  contact_->begin(end_);
+  residual_.assign(residual_.size(), 0.0);
+  add_snow(residual_);
+  feel_boots(0.0, 0.0, 0.0);
+  for (MovingSki& each : skis_) each.begin();
+  add_work(0.0);
+  observe();
+  contact_->accept(end_);
+  work_ = Work();
+  counts_ = Counts();
+  last_step_ = 0.0;
+  time = 0.0;
+  share_ = 1.0;
+  kept_ = 0;
+  step_ = rule_.fixed ? rule_.first : on_ladder(rule_.first);
+}
+
+// Take back the step that was tried.
+void Dynamics::reject() {
+  contact_->take_back();
+  counts_.rejected++;
+  kept_ = 0;
+}
+
+// After a fixed step: halved where it was not solved, and so on.
+Dynamics::Tried Dynamics::after_fixed(bool solved) {
+  if (solved) {
+    share_ = std::min(1.0, 2.0 * share_);
+    return Tried::TAKEN;
+  }
+  reject();
+  share_ *= 0.5;
+  return share_ < LEAST_SHARE ? Tried::GIVEN_UP : Tried::AGAIN;
+}
+
+// After a step h under error control: the next one's length.
+Dynamics::Tried Dynamics::after_controlled(const Formula& f, double h, bool solved) {
+  const double wanted = solved ? SAFETY * std::cbrt(rule_.tolerance / std::max(error(f), 1e-30)) : 0.5;
+  if (!solved || wanted < SAFETY) {
+    reject();
+    step_ = on_ladder(h * std::clamp(wanted, 0.1, 0.8));
+    return step_ < rule_.shortest ? Tried::GIVEN_UP : Tried::AGAIN;
+  }
+  if (h * wanted > UP * step_)
+    step_ = std::min(rule_.longest, on_ladder(step_ * 1.19));
+  else if (h * wanted < DOWN * step_)
+    step_ = on_ladder(h * wanted);
+  return Tried::TAKEN;
+}
+
+Advance Dynamics::advance(double until, long most) {
+  const auto entered = std::chrono::steady_clock::now();
+  for (long tries = 0; time < until; tries++) {
+    if (tries == most) return Advance::PAUSED;
+    if (tries > 0 && std::chrono::steady_clock::now() - entered > LONGEST_STAY) return Advance::PAUSED;
+    const double left = until - time;
+    // equal steps on the way that is left: the matrix serves them all
+    double h = left / std::max(1.0, std::ceil(left / step_ - ROUNDING));
+    if (std::fabs(h - last_step_) < ROUNDING * h) h = last_step_;
+    h *= share_;
+    const Formula f = formula(h);
+    place_boots(time + h);
+    predict(f);
+    fill_end();
+    end_.dt = h;
+    contact_->begin(end_);
+    const bool solved = solve_step(f) && is_sound(h);
+    const Tried tried = rule_.fixed ? after_fixed(solved) : after_controlled(f, h, solved);
+    if (tried == Tried::GIVEN_UP) return rule_.fixed ? Advance::NOT_FINITE : Advance::STEP_TOO_SMALL;
+    if (tried == Tried::AGAIN) continue;
+    const bool reached = h >= left * (1.0 - ROUNDING);
+    time = reached ? until : time + h;
+    accept(f, reached);
+  }
+  return Advance::REACHED;
+}
+
+}  // namespace skisnow

@@ -1,0 +1,60 @@
+// One instance of an FMU, by whichever of the two standards it is asked: what may be done when, and errors as words.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "fmi/fmu_model.hpp"
+
+namespace skisnow {
+
+// Both standards number them so.
+enum class FmuStatus { OK = 0, WARNING = 1, DISCARD = 2, ERROR = 3, FATAL = 4 };
+
+class FmuInstance {
+ public:
+  using Log = std::function<void(FmuStatus, const std::string&)>;
+
+  // From the folder of the FMU's resources; throws where its data are not those that `token` names.
+  FmuInstance(const std::string& resources, const std::string& token, Log log);
+
+  FmuStatus set_up(double start_time);
+  FmuStatus enter_initialization();
+  FmuStatus exit_initialization();
+  FmuStatus step(double from, double length);
+  FmuStatus terminate();
+  FmuStatus reset();
+  FmuStatus get(const unsigned* reference, std::size_t count, double* value) const;
+  FmuStatus set(const unsigned* reference, std::size_t count, const double* value);
+  double time() const { return model_->values[0]; }
+
+  enum class Stage { INSTANTIATED, INITIALIZING, STEPPING, TERMINATED, FAILED };
+  struct State {
+    std::unique_ptr<FmuModel> model;
+    Stage stage;
+    double start_time;
+  };
+  FmuStatus keep(State** state) const;  // into *state, where that is one already
+  FmuStatus take(const State* state);
+  // A state as bytes, and back into a new one, of any instance of the same FMU.
+  FmuStatus size(const State* state, std::size_t* size) const;
+  FmuStatus write(const State* state, unsigned char* to, std::size_t size) const;
+  FmuStatus read(const unsigned char* bytes, std::size_t size, State** state) const;
+  FmuStatus refuse(const std::string& what) const;  // an error, in words
+
+ private:
+  std::uint64_t token_;  // its digest
+  Fields data_;
+  std::unique_ptr<FmuModel> model_;
+  Stage stage_ = Stage::INSTANTIATED;
+  double start_time_ = 0.0;
+  Log log_;
+
+  template <class Work>
+  FmuStatus guarded(const Work& work) const noexcept;
+  void require(Stage stage, const char* what) const;
+  Bytes bytes(const State* state) const;
+};
+
+}  // namespace skisnow

@@ -1,0 +1,89 @@
+#include "linear_algebra/bordered.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace skisnow {
+
+Layout::Layout(const std::vector<int>& sizes) : size_(sizes) {
+  for (int size : sizes) {
+    first_.push_back(length_);
+    // whole rows, and one more: the last of them reaches HALF_BAND beyond its end
+    length_ += (size + BORDER_ROW - 1) / BORDER_ROW * BORDER_ROW + BORDER_ROW;
+  }
+}
+
+BeamColumns::BeamColumns(const std::vector<double>& rows)
+    : size_(int(rows.size()) / BODY), stride_((size_ + BORDER_ROW - 1) / BORDER_ROW * BORDER_ROW + BORDER_ROW) {
+  numbers_.assign(std::size_t(BODY * stride_), 0.0);
+  for (int i = 0; i < size_; i++)
+    for (int c = 0; c < BODY; c++) numbers_[std::size_t(c * stride_ + i)] = rows[std::size_t(BODY * i + c)];
+}
+
+BorderedSystem::BorderedSystem(const Layout& layout, const BandKernels& kernels) : layout_(layout), kernels_(&kernels) {
+  const auto rows = std::size_t(layout.length() + BORDER_ROW);
+  band_.resize(BAND_ROW * rows);
+  border_.resize(BORDER_ROW * rows);
+  column_.resize(BORDER_ROW * rows);
+  clear();
+}
+
+void BorderedSystem::clear() {
+  for (auto& row : corner) std::fill(std::begin(row), std::end(row), 0.0);
+  for (Column* each : {&band_, &border_, &column_}) std::fill(each->begin(), each->end(), 0.0);
+}
+
+BeamRows BorderedSystem::rows(int beam) const {
+  auto* self = const_cast<BorderedSystem*>(this);
+  return {layout_.size(beam), self->band(beam, 0), self->border(beam, 0), self->border_column(beam, 0)};
+}
+
+bool BorderedSystem::factor_corner() {
+  for (int i = 0; i < BODY; i++) order_[i] = i;
+  for (int i = 0; i < BODY; i++) {
+    int best = i;
+    for (int r = i + 1; r < BODY; r++)
+      if (std::fabs(corner[r][i]) > std::fabs(corner[best][i])) best = r;
+    if (!(std::fabs(corner[best][i]) > 0.0)) return false;
+    std::swap(order_[i], order_[best]);
+    for (int c = 0; c < BODY; c++) std::swap(corner[i][c], corner[best][c]);
+    for (int r = i + 1; r < BODY; r++) {
+      corner[r][i] /= corner[i][i];
+      for (int c = i + 1; c < BODY; c++) corner[r][c] -= corner[r][i] * corner[i][c];
+    }
+  }
+  return true;
+}
+
+bool BorderedSystem::factor() {
+  for (int beam = 0; beam < layout_.beams(); beam++)
+    if (!kernels_->eliminate(rows(beam), &corner[0][0])) return false;
+  return factor_corner();
+}
+
+void BorderedSystem::solve_corner(double* right) const {
+  double x[BODY];
+  for (int i = 0; i < BODY; i++) {
+    x[i] = right[order_[i]];
+    for (int c = 0; c < i; c++) x[i] -= corner[i][c] * x[c];
+  }
+  for (int i = BODY - 1; i >= 0; i--) {
+    for (int c = i + 1; c < BODY; c++) x[i] -= corner[i][c] * x[c];
+    x[i] /= corner[i][i];
+  }
+  std::copy_n(x, BODY, right);
+}
+
+void BorderedSystem::solve(Numbers& vector) const {
+  double right[BORDER_ROW] = {};
+  std::copy_n(vector.data(), BODY, right);
+  for (int beam = 0; beam < layout_.beams(); beam++)
+    kernels_->substitute_forwards(rows(beam), vector.data() + layout_.first(beam), right);
+  solve_corner(right);
+  std::copy_n(right, BODY, vector.data());
+  for (int beam = 0; beam < layout_.beams(); beam++)
+    kernels_->substitute_backwards(rows(beam), right, vector.data() + layout_.first(beam));
+}
+
+}  // namespace skisnow

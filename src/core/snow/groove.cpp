@@ -1,0 +1,196 @@
+#include "snow/groove.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace skisnow {
+
+namespace {
+
+constexpr double BEYOND = 1e300;  // where there is no further knot
+
+// A polyline read from left to right; outside its knots it has no depth.
+class Reader {
+ public:
+  Reader(const double* place, const double* depth, int count, int at)
+      : place_(place), depth_(depth), count_(count), at_(at) {}
+
+  int knot() const { return at_; }
+  double next() const { return at_ < count_ ? place_[at_] : BEYOND; }
+
+  // Depth at a place up to the next knot, there on its left side. Its mirror image has the same bits.
+  double before(double y) const {
+    if (at_ == 0 || at_ == count_) return 0.0;
+    const double a = place_[at_ - 1], b = place_[at_];
+    if (y == b) return depth_[at_];
+    return (depth_[at_ - 1] * (b - y) + depth_[at_] * (y - a)) / (b - a);
+  }
+
+  // Go past a place; the depth on its right side.
+  double pass(double y) {
+    if (!(next() <= y)) return before(y);
+    while (next() <= y) at_++;
+    return at_ < count_ ? depth_[at_ - 1] : 0.0;
+  }
+
+ private:
+  const double *place_, *depth_;
+  int count_, at_;
+};
+
+// Depths of the ground and of what is pressed into it, at one side of a place.
+struct Both {
+  double ground, pressed;
+
+  double over() const { return pressed - ground; }
+};
+
+// Writes the deeper of both from left to right.
+class Deeper {
+ public:
+  // `depth`: of the ground on the left of the place where it starts.
+  Deeper(Ground& out, double y, double depth) : out_(out), y_(y), depth_(depth) {}
+
+  bool changed() const { return changed_; }
+
+  // Up to a place where either has a knot; whether the ground and what is pressed have one at the place reached.
+  void advance(double y, const Both& from, const Both& to, bool knot, bool pressed_knot) {
+    const double over = from.over(), over_end = to.over();
+    const bool any = over > THIN || over_end > THIN, all = over >= -THIN && over_end >= -THIN;
+    const bool first = any && (all || over > 0.0), last = any && (all || over_end > 0.0);
+    turn(first ? from.pressed : from.ground, first, first ? pressed_knot : knot);
+    if (first != last) {
+      const double apart = over - over_end;
+      out_.append((y * over - y_ * over_end) / apart, (to.pressed * over - from.pressed * over_end) / apart);
+    }
+    changed_ = changed_ || (any && y - y_ > THIN);
+    is_pressed_ = last;
+    depth_ = last ? to.pressed : to.ground;
+    y_ = y;
+  }
+
+  // At the place reached: the depth on its right, whether that is of what is pressed, and whether it has a knot here.
+  void turn(double depth, bool is_pressed, bool knot) {
+    if (!knot && is_pressed == is_pressed_ && depth == depth_) return;
+    end();
+    out_.append(y_, depth);
+  }
+
+  void end() {
+    if (out_.count > 0) out_.append(y_, depth_);
+  }
+
+ private:
+  Ground& out_;
+  double y_, depth_;
+  bool is_pressed_ = false, changed_ = false;
+};
+
+double triangle(const Ground& ground, int i, int j, int k) {
+  const double* y = ground.place;
+  const double* g = ground.depth;
+  return 0.5 * std::fabs((y[j] - y[i]) * (g[k] - g[i]) - (y[k] - y[i]) * (g[j] - g[i]));
+}
+
+constexpr double ALIKE = 1.0 + 1e-4, TINY_AREA = 1e-24;  // (m²): of areas that are alike but for rounding
+
+}  // namespace
+
+Ground& Ground::operator=(const Ground& other) {
+  if (this == &other) return *this;
+  count = other.count;
+  std::copy_n(other.place, count, place);
+  std::copy_n(other.depth, count, depth);
+  return *this;
+}
+
+void Ground::append(double at, double deep) {
+  if (count > 0 && std::fabs(place[count - 1] - at) < THIN && std::fabs(depth[count - 1] - deep) < THIN) return;
+  if (count == ROOM) simplify(0.0, ROOM - 1);
+  place[count] = at;
+  depth[count] = deep;
+  count++;
+}
+
+bool Ground::press(double a, double depth_a, double b, double depth_b) {
+  const double at[2] = {a, b}, deep[2] = {depth_a, depth_b};
+  return press(at, deep, 2);
+}
+
+bool Ground::press(const double* at, const double* deep, int knots) {
+  const double from = at[0], to = at[knots - 1];
+  if (!(to - from > THIN)) return false;
+  Ground out;
+  int kept = 0;
+  for (; kept < count && place[kept] < from; kept++) out.place[kept] = place[kept], out.depth[kept] = depth[kept];
+  out.count = kept;
+  if (kept > 0 && kept == count) out.append(last(), 0.0);  // apart: what lies between has no depth
+  Reader ground(place, depth, count, kept), pressed(at, deep, knots, 0);
+  Deeper deeper(out, from, ground.before(from));
+  for (double y = from; y < to;) {
+    const bool knot = ground.next() == y, pressed_knot = pressed.next() == y;
+    const Both here{ground.pass(y), pressed.pass(y)};
+    y = std::min(ground.next(), pressed.next());
+    deeper.advance(y, here, {ground.before(y), pressed.before(y)}, knot, pressed_knot);
+  }
+  if (!deeper.changed()) return false;
+  const bool knot = ground.next() == to;
+  const double right = ground.pass(to);
+  const int rest = ground.knot();
+  if (rest == count) {
+    deeper.end();
+  } else {
+    deeper.turn(right, false, knot || rest == 0);
+    if (rest == 0) out.append(first(), 0.0);
+  }
+  for (int j = rest; j < count; j++) out.append(place[j], depth[j]);
+  *this = out;
+  return true;
+}
+
+// Two that are alike but for rounding go together, the outermost first: the mirror image is simplified as its original.
+void Ground::simplify(double area, int most) {
+  double size[ROOM];
+  const auto smallest = [&] {
+    double least = size[1];
+    for (int j = 2; j + 1 < count; j++) least = std::min(least, size[j]);
+    return least;
+  };
+  for (int j = 1; j + 1 < count; j++) size[j] = triangle(*this, j - 1, j, j + 1);
+  while (count > 2) {
+    const double least = smallest(), alike = least * ALIKE + TINY_AREA;
+    if (least > area && count <= most) break;
+    int first = 1, last = count - 2;
+    while (size[first] > alike) first++;
+    while (size[last] > alike) last--;
+    if (last - first < 2) {
+      drop(size[last] < size[first] ? last : first, size);
+    } else {
+      drop(last, size);
+      drop(first, size);
+    }
+  }
+}
+
+// Drop a knot; `size` are the triangles of the knots with their neighbours.
+void Ground::drop(int knot, double* size) {
+  for (int j = knot; j + 1 < count; j++) {
+    place[j] = place[j + 1];
+    depth[j] = depth[j + 1];
+    size[j] = size[j + 1];
+  }
+  count--;
+  if (knot > 1) size[knot - 1] = triangle(*this, knot - 2, knot - 1, knot);
+  if (knot + 1 < count) size[knot] = triangle(*this, knot - 1, knot, knot + 1);
+}
+
+double Ground::squared() const {
+  double total = 0.0;
+  for (int j = 0; j + 1 < count; j++) {
+    const double a = depth[j], b = depth[j + 1];
+    total += (place[j + 1] - place[j]) * (a * a + a * b + b * b) / 3.0;
+  }
+  return total;
+}
+
+}  // namespace skisnow
