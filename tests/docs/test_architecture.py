@@ -22,7 +22,7 @@ def test_every_file_is_there() -> None:
     named = re.findall(r"`([\w/*]+\.(?:py|cpp|hpp))`", PAGE)
     assert len(named) > 50
     source = {path.relative_to(ROOT / "src" / "skisnow").as_posix() for path in (ROOT / "src/skisnow").rglob("*.py")}
-    core = {path.name for path in (ROOT / "src" / "core").iterdir()}
+    core = {path.relative_to(ROOT / "src/core").as_posix() for path in (ROOT / "src/core").rglob("*.?pp")}
     missing = [
         name
         for name in named
