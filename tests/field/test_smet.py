@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from datetime import UTC, datetime
 from pathlib import Path
 
@@ -10,7 +11,11 @@ import numpy as np
 import pytest
 
 from skisnow.errors import FieldDataError
+from skisnow.field import Problem
 from skisnow.field.smet import read_smet
+from skisnow.interop.smet import write_smet
+
+CASES = Path(__file__).parents[2].parent / "shared" / "cases" / "weather"
 
 HEAD = """SMET 1.1 ASCII
 [HEADER]
@@ -35,6 +40,14 @@ ROWS = """2026-02-03T08:00  -4.0  80   3.5
 
 def moment(hour: int, minute: int = 0) -> float:
     return datetime(2026, 2, 3, hour, minute, tzinfo=UTC).timestamp()
+
+
+def refusal(path: Path) -> Problem:
+    with pytest.raises(FieldDataError) as refused:
+        read_smet(path)
+    (problem,) = refused.value.problems
+    assert isinstance(problem, Problem)
+    return problem
 
 
 @pytest.fixture
@@ -79,6 +92,10 @@ def test_interpolation_is_linear_and_leaves_gaps_open(path: Path) -> None:
         (HEAD + "2026-02-03T08:00 -4.0 dry 3\n", "row 14, column RH.*'dry'"),
         (HEAD + "yesterday -4.0 80 3\n", "row 14, column timestamp.*'yesterday'"),
         (HEAD + "2026-02-03T08:00 1 2 3\n2026-02-03T08:00 1 2 3\n", "row 15.*later time"),
+        (HEAD.replace("SMET 1.1", "SMET 2.0") + ROWS, "row 1.*'2.0'"),
+        (HEAD + "0001-01-01T00:00 1 2 3\n", "row 14, column timestamp"),
+        (HEAD + "9999-12-31T23:59-12:00 1 2 3\n", "row 14, column timestamp"),
+        (HEAD.replace("1 1 0.01 1", "1 1e300 1 1") + "2026-02-03T08:00 1e300 2 3\n", "column TA.*not finite"),
     ],
 )
 def test_what_does_not_fit_is_told_with_its_line(path: Path, text: str, words: str) -> None:
@@ -90,3 +107,51 @@ def test_what_does_not_fit_is_told_with_its_line(path: Path, text: str, words: s
 def test_a_missing_file_is_said(tmp_path: Path) -> None:
     with pytest.raises(FieldDataError, match=r"gone\.smet"):
         read_smet(tmp_path / "gone.smet")
+
+
+@pytest.mark.parametrize(
+    ("version", "kelvin"),
+    [("0.9", 273.15), ("0.95", 273.15), ("0.99", 273.15), ("1.0", 273.15), ("1.1", 477.4478), ("1.2", 477.4478)],
+)
+def test_the_version_decides_whether_the_offset_comes_first(path: Path, version: str, kelvin: float) -> None:
+    """32 °F: (32 + 459.67) × 5/9 = 273.15; with the multiplier first 32 × 5/9 + 459.67 = 477.4478."""
+    units = "units_offset = 0 459.67\nunits_multiplier = 1 0.555555555556"
+    head = f"SMET {version} ASCII\n[HEADER]\nstation_id = a\nnodata = -999\nfields = timestamp TA\n{units}\n[DATA]\n"
+    path.write_text(head + "2010-06-22T12:00 32.0\n2010-06-22T13:00 -999\n")
+    assert read_smet(path).fields["TA"] == pytest.approx([kelvin, math.nan], abs=1e-4, nan_ok=True)
+
+
+@pytest.mark.parametrize("mark", ["#", ";"])
+def test_remarks_begin_with_two_characters(path: Path, mark: str) -> None:
+    head = HEAD.replace("[DATA]", f"{mark} a line\ncomment = x {mark} nodata = 5\n[DATA] {mark} rows")
+    path.write_text(f"{head}{mark} another\n2026-02-03T08:00 -4.0 80 3.5 {mark} cleaned\n")
+    assert read_smet(path).fields["VW"].tolist() == [3.5]
+
+
+@pytest.mark.parametrize(("zone", "utc"), [("-14", 22), ("5.75", 2.25), ("14", -6), ("0", 8)])
+def test_zones_in_range_are_subtracted(path: Path, zone: str, utc: float) -> None:
+    path.write_text(HEAD.replace("tz               = 1", f"tz = {zone}") + ROWS)
+    series = read_smet(path)
+    assert series.time[0] == moment(0) + utc * 3600.0
+    again = read_smet(write_smet(series, path.with_name("again.smet")))
+    assert (again.time.tolist(), again.utc_offset) == (series.time.tolist(), float(zone))
+
+
+@pytest.mark.parametrize("zone", ["14.1", "-24", "24", "99999", "1e300", "nan", "UTC"])
+def test_zones_out_of_range_are_refused_with_their_line(path: Path, zone: str) -> None:
+    path.write_text(HEAD.replace("tz               = 1", f"tz = {zone}") + ROWS)
+    problem = refusal(path)
+    assert (problem.row, problem.column, problem.value) == (9, "tz", zone)
+
+
+def test_a_written_name_does_not_begin_a_remark(path: Path) -> None:
+    path.write_text(HEAD + ROWS)
+    named = replace(read_smet(path), station="No. #1; ridge")
+    assert read_smet(write_smet(named, path)).station.split() == ["No.", "1", "ridge"]
+
+
+@pytest.mark.skipif(not CASES.is_dir(), reason="../shared is not beside this folder")
+def test_shared_cases() -> None:
+    assert read_smet(CASES / "v10_fahrenheit.smet").fields["TA"] == pytest.approx([273.15, 283.15], abs=1e-6)
+    assert read_smet(CASES / "semicolon_comment.smet").fields["ISWR"].tolist() == [320.0, 340.0]
+    assert refusal(CASES / "tz-out-of-range.smet").row == 9

@@ -1,14 +1,16 @@
-"""Weather of a station from SMET, the ASCII format of MeteoIO and SNOWPACK (WSL Institute SLF), versions 1.0 to 1.2.
+"""Weather of a station from SMET, the ASCII format of MeteoIO and SNOWPACK (WSL Institute SLF), versions 0.9 to 1.2.
 
-A header says place, time zone, fields and units; then a row for each time. Values are SI: K, m/s, W/m², and 1 for the
-relative humidity. ``units_offset`` and ``units_multiplier`` are applied, ``nodata`` becomes NaN.
+A header with place, time zone, fields and units precedes a row for each time. Values are SI: K, m/s, W/m², and 1 for
+the relative humidity. ``units_offset`` and ``units_multiplier`` are applied, ``nodata`` becomes NaN. Since version 1.1
+the multiplier comes first (value × multiplier + offset); before, the offset did ((value + offset) × multiplier).
 """
 
 from __future__ import annotations
 
 import math
+import re
 from dataclasses import dataclass, field
-from datetime import UTC, datetime, timedelta, timezone
+from datetime import MAXYEAR, MINYEAR, UTC, datetime, timedelta, timezone
 from pathlib import Path
 from typing import TYPE_CHECKING, Final, NoReturn
 
@@ -28,6 +30,11 @@ FloatArray = npt.NDArray[np.float64]
 MOST_BYTES: Final = 256 * 2**20
 _NEEDED: Final = ("station_id", "nodata", "fields")
 _TIME: Final = "timestamp"
+_COMMENT: Final = re.compile("[#;].*")
+_VERSIONS: Final = ("0.9", "0.95", "0.99", "1.0", "1.1", "1.2")
+_OFFSET_FIRST: Final = _VERSIONS[:4]
+_ZONES: Final = (-14.0, 14.0)
+"""Hours east of Greenwich that a clock may show."""
 
 
 @dataclass(frozen=True, slots=True, repr=False)
@@ -121,6 +128,9 @@ class _Reading:
         if len(first) < 3 or first[0] != "SMET" or first[2] != "ASCII":
             found = self._lines[0][:80] if self._lines else "nothing"
             self._refuse(1, "", found, "SMET, a version and ASCII", "Export the station's data as SMET in ASCII.")
+        if first[1] not in _VERSIONS:
+            self._refuse(1, "", first[1], f"a version among {', '.join(_VERSIONS)}", "Export it in one of these.")
+        self._version = first[1]
         self._header, self._data = self._split()
 
     def _refuse(self, line: int, column: str, value: str, allowed: str, action: str) -> NoReturn:
@@ -139,7 +149,7 @@ class _Reading:
         """Keys of the header with their lines, and the line before the first row."""
         header: dict[str, tuple[int, str]] = {}
         for number, line in enumerate(self._lines, start=1):
-            plain = line.split("#", 1)[0].strip()
+            plain = _COMMENT.sub("", line).strip()
             if plain.upper() == "[DATA]":
                 return header, number
             key, equals, value = plain.partition("=")
@@ -157,19 +167,37 @@ class _Reading:
         names = listed.split()
         if _TIME not in names or len(set(names)) != len(names):
             self._refuse(line, "fields", listed[:80], f"different names, {_TIME} among them", "Correct the header.")
-        offset = self._number_of("tz", 0.0)
+        offset = self._zone()
         times, table = self._rows(names, offset)
-        offsets, factors = self._units("units_offset", 0.0, names), self._units("units_multiplier", 1.0, names)
         nodata = self._number_of("nodata", -999.0)
-        columns = {
-            name: np.where(column == nodata, math.nan, column * factor + zero)
-            for name, column, factor, zero in zip(names, table.T, factors, offsets, strict=True)
-            if name != _TIME
-        }
+        values = self._in_si(np.where(table == nodata, math.nan, table), names)
+        columns = {name: column for name, column in zip(names, values.T, strict=True) if name != _TIME}
         place = [self._number_of(key, math.nan) for key in ("latitude", "longitude", "altitude")]
         latitude, longitude, altitude = (None if math.isnan(each) or each == nodata else each for each in place)
         station = self._header.get("station_name", self._header["station_id"])[1]
         return StationSeries(self._file, station, latitude, longitude, altitude, offset, times, columns)
+
+    def _zone(self) -> float:
+        """Hours east of Greenwich of the times that name no zone."""
+        hours = self._number_of("tz", 0.0)
+        low, high = _ZONES
+        if not low <= hours <= high:
+            line, text = self._header["tz"]
+            self._refuse(line, "tz", text[:80], f"hours from {low:g} to {high:g}", "Correct the time zone.")
+        return hours
+
+    def _in_si(self, table: FloatArray, names: Sequence[str]) -> FloatArray:
+        """A table in SI, by the order of offset and multiplier of the file's version."""
+        offsets, factors = self._units("units_offset", 0.0, names), self._units("units_multiplier", 1.0, names)
+        with np.errstate(over="ignore", invalid="ignore"):
+            offset_first = self._version in _OFFSET_FIRST
+            values = (table + offsets) * factors if offset_first else table * factors + offsets
+        huge = ~np.isnan(table) & ~np.isfinite(values)
+        if huge.any():
+            name = names[int(np.argmax(huge.any(axis=0)))]
+            allowed, action = "finite numbers in SI", "Correct units_offset, units_multiplier or the numbers."
+            self._refuse(self._header["fields"][0], name, "a number that is not finite", allowed, action)
+        return values
 
     def _number_of(self, key: str, default: float) -> float:
         if key not in self._header:
@@ -200,7 +228,7 @@ class _Reading:
         times: list[float] = []
         table: list[list[float]] = []
         for number, line in enumerate(self._lines[self._data :], start=self._data + 1):
-            cells = line.split("#", 1)[0].split()
+            cells = _COMMENT.sub("", line).split()
             if not cells:
                 continue
             if len(cells) != len(names):
@@ -218,6 +246,9 @@ class _Reading:
     def _moment(self, line: int, text: str, zone: timezone) -> float:
         try:
             found = datetime.fromisoformat(text)
-        except ValueError:
+            moment = (found if found.tzinfo else found.replace(tzinfo=zone)).astimezone(UTC)
+        except (ValueError, OverflowError):
             self._refuse(line, _TIME, text[:80], "a time such as 2026-02-03T09:10", "Correct the time.")
-        return (found if found.tzinfo else found.replace(tzinfo=zone)).timestamp()
+        if not MINYEAR < moment.year < MAXYEAR:  # so that each zone has this time
+            self._refuse(line, _TIME, text[:80], f"a year between {MINYEAR} and {MAXYEAR}", "Correct the time.")
+        return moment.timestamp()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from datetime import UTC, datetime, timedelta, timezone
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
@@ -64,8 +65,9 @@ def _smet(series: StationSeries) -> Iterator[str]:
     }
     yield "SMET 1.1 ASCII"
     yield "[HEADER]"
-    yield f"station_id = {''.join(series.station.split()) or 'station'}"
-    yield f"station_name = {series.station}"
+    name = re.sub("[#;]", " ", series.station)  # these begin a comment
+    yield f"station_id = {''.join(name.split()) or 'station'}"
+    yield f"station_name = {name}"
     yield from (f"{key} = {NO_DATA if value is None else value:.10g}" for key, value in place.items())
     yield f"nodata = {NO_DATA:g}"
     yield f"tz = {series.utc_offset:g}"
