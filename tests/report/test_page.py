@@ -305,12 +305,17 @@ def test_small_campaigns_have_a_report(case: str, figures: int, campaign: Campai
 
 @pytest.mark.usefixtures("undrawn")
 def test_a_mark_says_its_sentence_its_count_and_whom_it_concerns(campaign: Campaign, tmp_path: Path) -> None:
-    tests = first_series(campaign, 40)
-    marked = replace(tests, cancelled=("crushed", *tests.cancelled[1:]))
-    rows = _Reader(reported(replace(campaign, penetration=marked), tmp_path).html).tables["marks"]
+    pressed, sheared = first_series(campaign, 40), first_shear(campaign, 3)
+    same_name = ("P1", "P2", pressed.experiment[0])
+    cancelled_tests = replace(
+        campaign,
+        penetration=replace(pressed, cancelled=("crushed", *pressed.cancelled[1:])),
+        shear=replace(sheared, cancelled=("", "", "slipped"), experiment=same_name),
+    )
+    rows = _Reader(reported(cancelled_tests, tmp_path).html).tables["marks"]
     cancelled = next(row for row in rows if row[0] == "cancelled")
     assert cancelled[1].startswith("The experiment was cancelled")
-    assert cancelled[2:] == ["yes", "1", "0", tests.experiment[0]]
+    assert cancelled[2:] == ["yes", "1", pressed.experiment[0], "1", pressed.experiment[0]]
 
 
 @pytest.mark.usefixtures("undrawn")

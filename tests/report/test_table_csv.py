@@ -97,7 +97,7 @@ HEADS = {
     "regressions": "response predictor group n intercept slope slope_by_site rmse rmse_dof r2 F p",
     "site_comparisons": "quantity site_a site_b ratio p n_for_10_percent",
     "comparisons": "source quantity value range own own_range own_over_published",
-    "marks": "code sentence excludes penetration_n shear_n experiments",
+    "marks": "code sentence excludes penetration_n penetration_experiments shear_n shear_experiments",
     "penetration_experiments": "experiment site tool edge_angle_deg n_loads used flags H_e_N_per_mm H_A_N_per_mm2 "
     "H_V_N_per_mm3",
     "shear_experiments": "experiment site plate edge_angle_deg depth_mm F_t_N S_f_N_per_mm2 used flags",

@@ -27,7 +27,7 @@ def hardness_beside(page: Page, served: Served) -> str:
     """H_V beside the series: that of all its readings by the library, not that of fewer of a moment ago."""
     with Store.open(served.store) as store:
         (head,) = Journals(store).list()
-        row = EditSession(Lab(store, served.lab), head.id).quick_results("A").penetration["1"]
+        row = EditSession(Lab(store, served.lab), head.id).quick_results("A").experiments["penetration.csv", "1"]
     words = f"H_V = {hardness_words(row)}"
     page.locator(".beside .value", has_text=words).wait_for()
     return words

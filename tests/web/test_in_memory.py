@@ -22,7 +22,7 @@ from skisnow.snow import snow_from_results
 from skisnow.web.analyses import Analyses, CampaignSource
 from skisnow.web.analysing import Choice, Numbers, figure, numbers_of
 from skisnow.web.correction_session import CorrectionSession
-from skisnow.web.edit_session import EditSession, _in_words
+from skisnow.web.edit_session import EditSession, _flag_sentences
 from skisnow.web.settings import Lab
 from skisnow.web.snow_of_campaign import campaign_snow, results_with
 from skisnow.web.transfer import entry_files, kept_files, write_entry
@@ -96,7 +96,7 @@ def experiments(results: dict[str, Any]) -> Any:
 @pytest.mark.usefixtures("no_folder")
 def test_tests_at_the_desk_say_at_once_what_the_analysis_says(lab: Lab) -> None:
     id_ = entered(lab)
-    (row,) = EditSession(lab, id_).quick_results("A").penetration.values()
+    (row,) = EditSession(lab, id_).quick_results("A").experiments.values()
     found = numbers_of(entry_files(lab, id_), Choice())
     assert isinstance(found, Numbers)
     assert experiments(found.results) == [row]
@@ -122,7 +122,7 @@ def test_a_kept_campaign_is_analysed_as_its_export_with_what_was_corrected(lab: 
     assert experiments(found.results) == experiments(results)
     assert found.results["provenance"]["files"] == results["provenance"]["files"]
     assert found.analysis.campaign.unread_files == ("photo.jpg",)
-    assert CorrectionSession(lab, id_).quick_results("A").penetration["2"] == experiments(results)[1]
+    assert CorrectionSession(lab, id_).quick_results("A").experiments["penetration.csv", "2"] == experiments(results)[1]
     unchanged = numbers_of(before, Choice())
     assert isinstance(unchanged, Numbers)
     assert experiments(unchanged.results)[1] != experiments(results)[1]
@@ -143,7 +143,10 @@ def test_recordings_and_weather_of_a_kept_campaign_are_read_from_the_store(lab: 
     assert found.results["snow_micro_pen"]["recordings"][0]["mean_force_N"] == pytest.approx(2.0, rel=0.01)
     assert found.results["weather"]["station"] == "S"
     assert set(CorrectionSession(lab, id_).tables) == {"penetration.csv"}
-    assert CorrectionSession(lab, id_).quick_results("A").penetration["1"] == experiments(found.results)[0]
+    assert (
+        CorrectionSession(lab, id_).quick_results("A").experiments["penetration.csv", "1"]
+        == experiments(found.results)[0]
+    )
 
 
 @pytest.mark.usefixtures("no_folder")
@@ -254,7 +257,7 @@ def test_a_workbook_that_cannot_be_gone_on_with_is_said(lab: Lab, tmp_path: Path
 
 def test_flags_of_experiments_say_what_was_found_where_there_is_something() -> None:
     code = sorted(QUALITY_FLAGS)[0]
-    told = _in_words(
+    told = _flag_sentences(
         [
             Problem("mark", code, "penetration.csv", None, None, name, value, "0.1 or less", "Look at it.")
             for name, value in (("1", "0.3"), ("2", None))
@@ -262,8 +265,8 @@ def test_flags_of_experiments_say_what_was_found_where_there_is_something() -> N
     )
     sentence = QUALITY_FLAGS[code].sentence
     assert told == {
-        "penetration.csv/1": {code: f"{sentence} Found: 0.3; not flagged would be 0.1 or less. Look at it."},
-        "penetration.csv/2": {code: f"{sentence} Look at it."},
+        ("penetration.csv", "1"): {code: f"{sentence} Found: 0.3; not flagged would be 0.1 or less. Look at it."},
+        ("penetration.csv", "2"): {code: f"{sentence} Look at it."},
     }
 
 

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 from ..estimate import quality_flags
 from ..estimate.quick_results import experiment_hardness, experiment_results
 from ..estimate.screening import screened_both
 from ..field import QUALITY_FLAGS, campaign_of_files
 from ..field.reading.campaign_file import read_campaign_file
+from ..field.reading.table_forms import PENETRATION, SHEAR
 from ..field.store import Journals, replayed
 from ..report.curves import SeriesCurve, series_curves
 from .transfer import replayed_in_memory
@@ -22,14 +23,27 @@ if TYPE_CHECKING:
     from .settings import Lab
 
 
+TestKey: TypeAlias = tuple[str, str]
+"""File of the table and name of the test: tests of different tables may have the same name."""
+
+
 @dataclass(frozen=True, slots=True)
 class QuickResults:
-    """Quick results of a site: rows of results.json and quality flags (words by code) by experiment; curves."""
+    """Quick results of the tests of one site.
 
-    penetration: dict[str, dict[str, Any]]
-    shear: dict[str, dict[str, Any]]
-    curves: dict[str, SeriesCurve]
-    flags: dict[str, dict[str, str]]
+    Attributes
+    ----------
+    experiments
+        Rows of results.json. Density samples and drop-cone tests have none.
+    curves
+        Readings and law of each penetration series.
+    flags
+        Sentences of the quality flags, by code.
+    """
+
+    experiments: dict[TestKey, dict[str, Any]]
+    curves: dict[TestKey, SeriesCurve]
+    flags: dict[TestKey, dict[str, str]]
 
 
 class EditSession:
@@ -90,25 +104,28 @@ def quick_results(campaign: Campaign, site: str) -> QuickResults:
     """Quick results of a site, of a campaign that may have other sites too."""
     screened = screened_both(campaign, geometry="extended")
     found = experiment_results(campaign, screened=screened)
-    here = {
-        kind: {row["experiment"]: row for row in found[kind]["experiments"] if row["site"] == site}
-        for kind in ("penetration", "shear")
+    experiments = {
+        (form.file, row["experiment"]): row
+        for kind, form in (("penetration", PENETRATION), ("shear", SHEAR))
+        for row in found[kind]["experiments"]
+        if row["site"] == site
     }
-    curves = series_curves(campaign, experiment_hardness(campaign))
+    curves = {
+        (PENETRATION.file, curve.experiment): curve for curve in series_curves(campaign, experiment_hardness(campaign))
+    }
     return QuickResults(
-        penetration=here["penetration"],
-        shear=here["shear"],
-        curves={curve.experiment: curve for curve in curves if curve.experiment in here["penetration"]},
-        flags=_in_words(quality_flags(campaign, screened=screened)),
+        experiments=experiments,
+        curves={key: curve for key, curve in curves.items() if key in experiments},
+        flags=_flag_sentences(quality_flags(campaign, screened=screened)),
     )
 
 
-def _in_words(problems: list[Problem]) -> dict[str, dict[str, str]]:
-    """Quality flags by file and experiment: sentences by code."""
-    sentences: dict[str, dict[str, str]] = {}
+def _flag_sentences(problems: list[Problem]) -> dict[TestKey, dict[str, str]]:
+    """Sentences of the quality flags of each test, by code."""
+    sentences: dict[TestKey, dict[str, str]] = {}
     for problem in problems:
         found = f" Found: {problem.value}; not flagged would be {problem.allowed}." if problem.value is not None else ""
-        key = f"{problem.file}/{problem.experiment}"
+        key = problem.file, problem.experiment or ""
         sentence = f"{QUALITY_FLAGS[problem.code].sentence}{found} {problem.action}"
         sentences.setdefault(key, {})[problem.code] = sentence
     return sentences

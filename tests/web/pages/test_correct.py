@@ -393,17 +393,17 @@ def test_a_session_hears_what_others_corrected(desk: Desk, id_: str) -> None:
     written = correct(desk, id_, "1", {"3/depth_mm": "2.15"})
     assert written == history(desk, id_)[-1]
     assert session.test("penetration.csv", "1").history == []
-    before = session.quick_results("A").penetration["1"]
+    before = session.quick_results("A").experiments["penetration.csv", "1"]
     for _ in range(2):
         session.refresh()
         assert len(session.test("penetration.csv", "1").history) == 2
     assert session.test("penetration.csv", "1").rows[0].cells["3/depth_mm"] == "2.15"
-    assert session.quick_results("A").penetration["1"] != before
-    assert other.quick_results("A").penetration["1"] == before
+    assert session.quick_results("A").experiments["penetration.csv", "1"] != before
+    assert other.quick_results("A").experiments["penetration.csv", "1"] == before
     entry = NewEntry(action="undo", file="penetration.csv", test="1", about=written.sequence)
     session.write_down(entry, seen=written.sequence)
     assert session.test("penetration.csv", "1").rows[0].corrections == []
-    assert session.quick_results("A").penetration["1"] == before
+    assert session.quick_results("A").experiments["penetration.csv", "1"] == before
 
 
 def test_the_description_is_that_of_the_file(desk: Desk, tmp_path: Path) -> None:

@@ -21,8 +21,9 @@ def quality_flags_table(data: ReportData) -> Table:
             flag.sentence,
             code in excluding,
             len(pressed.get(code, ())),
+            pressed.get(code, []),
             len(sheared.get(code, ())),
-            pressed.get(code, []) + sheared.get(code, []),
+            sheared.get(code, []),
         )
         for code, flag in QUALITY_FLAGS.items()
     ]
@@ -35,8 +36,9 @@ def quality_flags_table(data: ReportData) -> Table:
             Column("sentence", "What it says", "words"),
             Column("excludes", "excludes", "yes"),
             Column("penetration_n", "penetration", "count"),
+            Column("penetration_experiments", "penetration experiments", "codes"),
             Column("shear_n", "shear", "count"),
-            Column("experiments", "experiments", "codes"),
+            Column("shear_experiments", "shear experiments", "codes"),
         ),
         rows,
     )

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Final, TypeAlias
 from nicegui import background_tasks, run, ui
 
 from ...errors import FieldDataError, StoreError
+from ...field.reading.table_forms import PENETRATION
 from ..error_pages import error_sentence
 from ..line_chart import BEHIND, ChartLine, LineChart
 from ..worded import Words, named
@@ -17,12 +18,11 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
     from ...report.curves import SeriesCurve
-    from ..edit_session import QuickResults
+    from ..edit_session import QuickResults, TestKey
     from .table_view import TableView
 
     _Values: TypeAlias = list[float | None]
 
-PRESSED: Final = "penetration.csv"
 MISSING_YET: Final = frozenset({"too_few_loads"})
 """Flags of a series that is still being read."""
 
@@ -34,7 +34,7 @@ class Beside:
         self._view = view
         self._wanted: tuple[str, str, frozenset[str]] | None = None
         self._working = False
-        is_pressed = view.file == PRESSED
+        is_pressed = view.file == PENETRATION.file
         classes = "beside" if is_pressed else "beside above"
         with named(ui.element("section").classes(classes), "Results of the readings"):
             self._name = Words("").classes("quiet")
@@ -78,18 +78,18 @@ class Beside:
             self._working = False
 
     def _show(self, name: str, found: QuickResults, unsaid: frozenset[str]) -> None:
-        pressed = self._view.file == PRESSED
-        row = (found.penetration if pressed else found.shear).get(name)
+        key = self._view.file, name
+        row = found.experiments.get(key)
         self._name.set_text(f"Test {name}" if row else "")
-        self._value.set_text(_value(row, pressed=pressed))
+        self._value.set_text(_value(row, pressed=self._view.file == PENETRATION.file))
         self._marks.clear()
         with self._marks:
-            for code, sentence in found.flags.get(f"{self._view.file}/{name}", {}).items():
+            for code, sentence in found.flags.get(key, {}).items():
                 if code not in unsaid:
                     with ui.element("li"):
                         Words(in_words(sentence))
         if self._chart is not None:
-            self._chart.show(list(_lines(name, found.curves)), from_zero="xy")
+            self._chart.show(list(_lines(key, found.curves)), from_zero="xy")
 
 
 def _value(row: dict[str, Any] | None, *, pressed: bool) -> str:
@@ -100,10 +100,10 @@ def _value(row: dict[str, Any] | None, *, pressed: bool) -> str:
     return "; ".join(filter(None, (f"H_V = {hardness_words(row)}", unloading_words(row))))
 
 
-def _lines(name: str, curves: dict[str, SeriesCurve]) -> Iterator[ChartLine]:
+def _lines(key: TestKey, curves: dict[TestKey, SeriesCurve]) -> Iterator[ChartLine]:
     """Readings and law of a series, over those of all others, which are one thing: a site may have hundreds."""
-    others = [curve for other, curve in curves.items() if other != name]
-    own = [curves[name]] if name in curves else []
+    others = [curve for other, curve in curves.items() if other != key]
+    own = [curves[key]] if key in curves else []
     for chosen, style in ((others, BEHIND), (own, 0)):
         if chosen:
             points = [(curve.depth_mm, curve.load_N) for curve in chosen]

@@ -146,5 +146,6 @@ def head(id_: str) -> list[str]:
 
 def found(**curves: SeriesCurve) -> QuickResults:
     row = {"H_V_N_per_mm3": 0.25, "H_V_interval_N_per_mm3": None, "n_unloading": 0}
-    flags = {"penetration.csv/a": {"too_few_loads": "few", "poor_fit": "the depth_mm is odd"}}
-    return QuickResults(penetration=dict.fromkeys(curves, row), shear={}, curves=curves, flags=flags)
+    flags = {(PENETRATION, "a"): {"too_few_loads": "few", "poor_fit": "the depth_mm is odd"}}
+    keyed = {(PENETRATION, name): curve for name, curve in curves.items()}
+    return QuickResults(experiments=dict.fromkeys(keyed, row), curves=keyed, flags=flags)

@@ -295,9 +295,10 @@ def test_a_session_computes_a_site_by_itself(desk: Desk) -> None:
     session = EditSession(desk.lab, id_)
     assert [test.name for test in session.tests_of_site("A")] == ["1", "s", "d"]
     results = session.quick_results("A")
-    assert (list(results.penetration), list(results.shear), list(results.curves)) == (["1"], ["s"], ["1"])
-    assert list(session.quick_results("B").curves) == ["2"]
-    assert "too_few_loads" in session.quick_results("B").flags["penetration.csv/2"]
+    assert list(results.experiments) == [(PENETRATION, "1"), (SHEAR, "s")]
+    assert list(results.curves) == [(PENETRATION, "1")]
+    assert list(session.quick_results("B").curves) == [(PENETRATION, "2")]
+    assert "too_few_loads" in session.quick_results("B").flags[PENETRATION, "2"]
     for repeat, site in (("1", "A"), ("2", "B")):
         add(desk, id_, DROP_CONE, "c", test="c", site=site, repeat=repeat, drop_cone_depth_mm="12")
     session.refresh()

@@ -41,7 +41,7 @@ def test_the_hardness_follows_the_readings(desk: Desk) -> None:
     enter(page, "Depth under 40.5 N (mm)", str(2.6 * math.sqrt(40.5 / 60)))
     enter(page, "Depth under 60 N (mm)", "2.6")
     by_hand = 60.0 / (200.0 * 2.6**2 / (2.0 * math.tan(math.radians(30.0))))
-    row = EditSession(desk.lab, id_).quick_results("A").penetration["1"]
+    row = EditSession(desk.lab, id_).quick_results("A").experiments["penetration.csv", "1"]
     assert hardness_words(row).startswith(f"{significant(by_hand)} N/mm³, [")
     page.shows(f"[value] H_V = {hardness_words(row)}")
     assert "[quiet] Test 1" in page.outline()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+import pytest
 from nicegui import ui
 
 from skisnow.web.local_time import minute_words
@@ -34,6 +35,26 @@ NAMES = {
     "spot": "Measurement point",
     "plate": "Plate",
 }
+
+
+@pytest.mark.parametrize(
+    ("table", "key", "cells"),
+    [
+        (DENSITY, "sample", {"snow_density_kg_per_m3": "350"}),
+        (DROP_CONE, "test", {"repeat": "1", "drop_cone_depth_mm": "12"}),
+    ],
+)
+def test_a_test_never_shows_the_result_of_another_table(
+    desk: Desk, table: str, key: str, cells: dict[str, str]
+) -> None:
+    id_ = begun(desk)
+    add_shear(desk, id_, "4")
+    add(desk, id_, table, "4", **{key: "4", "site": "A"}, **cells)
+    page = desk.open(f"/enter/{id_}?table={table}&test=4")
+    page.until(lambda: not page.works("beside"))
+    assert not any("S_f" in line or line == "[quiet] Test 4" for line in page.outline())
+    sheared = desk.open(f"/enter/{id_}?table={SHEAR}&test=4")
+    assert "S_f = " in sheared.shows("S_f")
 
 
 def test_a_shear_test_is_asked_for_and_stored(desk: Desk) -> None:
