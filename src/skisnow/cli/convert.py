@@ -14,7 +14,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     parser = commands.add_parser(
         "convert",
         help="files between formats: CAAML, SnowMicroPen, SMET, SnowEx, OpenSim",
-        description="Read IN, a campaign (folder or .xlsx), a snow pit in CAAML 6 (.caaml, .xml) or a recording of a "
+        description="Read IN, a campaign (folder or .xlsx), a snow pit in CAAML (.caaml, .xml) or a recording of a "
         "SnowMicroPen (.pnt), and write OUT in the format that its ending tells: CAAML 6.0.3 (.caaml, .xml) or CSV "
         "with the column names of SnowEx (.csv). Weather in SMET (.smet) becomes SMET 1.1 in SI, or CSV; .mot and .sto "
         "each other, markers (.trc, .c3d) each other.",

@@ -1,7 +1,9 @@
-"""Snow pits from CAAML 6, the exchange format of avalanche services: ``.caaml``, ``.caaml.xml``.
+"""Snow pits from CAAML 5 and 6, the exchange format of avalanche services: ``.caaml``, ``.caaml.xml``.
 
 Read are place, time, observer, layers with hand hardness and grains, densities, temperatures, penetrometer forces, and
-H_V and S_f where skisnow wrote them. Everything else in a file is passed over.
+H_V and S_f where skisnow wrote them. Everything else in a file is passed over. Each quantity is converted from the unit
+in its ``uom``; an unknown unit is an error. Version 5 gives units at the profile (``uomDensity``), version 6 at each
+value, and some quantities have another place.
 """
 
 from __future__ import annotations
@@ -15,24 +17,39 @@ import numpy as np
 
 from ..errors import FieldDataError
 from ..given import GivenError, plain_bytes, xml_tree
-from ..units import CM, MM
+from .caaml_units import (
+    ANGLE,
+    DENSITY,
+    ELEVATION,
+    FORCE,
+    GRAIN_SIZE,
+    LENGTH,
+    SHEAR_STRESS,
+    SNOW_HARDNESS,
+    TEMPERATURE,
+)
 from .problems import error
 from .snow_pit import DepthTemperature, ForceProfile, LayerDensity, PlateValue, SnowLayer, SnowPit
 
 if TYPE_CHECKING:
     from ..given import Element
+    from .caaml_units import CaamlUnits
 
 MOST_BYTES: Final = 32 * 2**20
-NAMESPACE: Final = re.compile(r"http://caaml\.org/Schemas/SnowProfileIACS/v6\.\d+(\.\d+)?")
+NAMESPACE: Final = re.compile(
+    r"http://(www\.)?caaml\.org/"
+    r"(Schemas/SnowProfileIACS/v6\.\d+(\.\d+)?|Schemas/V5\.0/Profiles/Snow[Pp]rofileIACS|v5\.0/Snow[Pp]rofile/IACS)"
+)
 OWN_NAMESPACE: Final = "urn:skisnow:caaml:1"
 """Of H_V and S_f in ``customData``."""
 NIL: Final = ("", "inapplicable", "missing", "template", "unknown", "withheld", "n/a", "none")
 """Words for a value that is not there, which the standard allows in the place of any number."""
-_FACTOR: Final = {"cm": CM, "mm": MM, "m": 1.0}
+_UNIT_OF_PROFILE: Final = {"snowTemp": "uomTemp"}
+"""Attributes of a profile with the unit of its values, if they are not called ``uom`` and the value's name."""
 
 
 def read_caaml(path: str | Path) -> SnowPit:
-    """Read a snow profile in CAAML 6.0 to 6.0.6.
+    """Read a snow profile in CAAML 5.0 or 6.0 to 6.0.6.
 
     Returns
     -------
@@ -42,8 +59,8 @@ def read_caaml(path: str | Path) -> SnowPit:
     Raises
     ------
     FieldDataError
-        The file cannot be read, is no CAAML 6, declares entities, counts from the ground up without saying the height
-        of the snow, or has a number that is none.
+        The file cannot be read, is not CAAML 5 or 6, declares entities, counts from the ground up without the height
+        of the snow, or has a number or unit that cannot be read.
     """
     path = Path(path)
     try:
@@ -54,7 +71,7 @@ def read_caaml(path: str | Path) -> SnowPit:
             path.name,
             row=failure.line,
             value=failure.what,
-            allowed="a snow profile in CAAML 6",
+            allowed="a snow profile in CAAML 5 or 6",
             action="Export it again from the program that wrote it.",
         )
         raise FieldDataError([problem]) from failure
@@ -69,11 +86,12 @@ class _Profile:
         self._root = root
         if root.name != "SnowProfile" or NAMESPACE.fullmatch(root.namespace) is None:
             found = f"{root.name} of {root.namespace or 'no namespace'}"
-            self._refuse("SnowProfile", found, "SnowProfile of CAAML 6", "Export it as CAAML 6.")
+            self._refuse("SnowProfile", found, "SnowProfile of CAAML 5 or 6", "Export it as CAAML 6.")
         measured = root.child("snowProfileResultsOf", "SnowProfileMeasurements")
         if measured is None:
             self._refuse("snowProfileResultsOf", "nothing", "SnowProfileMeasurements", "The file holds no profile.")
         self._measured = measured
+        self._is_version_6 = "v6" in root.namespace
         height = self._height()
         self._from_ground = measured.attributes.get("dir", "top down") != "top down"
         if self._from_ground and height is None:
@@ -88,135 +106,165 @@ class _Profile:
 
     def pit(self) -> SnowPit:
         """Everything that is read."""
-        root, place = self._root, self._root.child("locRef")
-        place = root if place is None else place
+        root, measured = self._root, self._measured
+        place = root.child("locRef", "ObsPoint") or root.child("locRef") or root
         latitude, longitude = self._position(place)
         return SnowPit(
             name=place.text_of("name") or root.attributes.get("id", ""),
-            time=root.text_of("timeRef", "recordTime", "TimeInstant", "timePosition")
-            or root.text_of("timeRef", "recordTime", "TimePeriod", "beginPosition"),
+            time=self._time(),
             observer=self._observer(),
-            comment=root.text_of("metaData", "comment"),
+            comment=root.text_of("metaData", "comment") or measured.text_of("comment"),
             country=place.text_of("country"),
             region=place.text_of("region"),
             latitude_deg=latitude,
             longitude_deg=longitude,
-            elevation=self._number(place, "validElevation", "ElevationPosition", "position"),
-            aspect=self._word(place.text_of("validAspect", "AspectPosition", "position")),
-            slope_angle_deg=self._number(place, "validSlopeAngle", "SlopeAnglePosition", "position"),
+            elevation=self._quantity(ELEVATION, place, "validElevation", "ElevationPosition", "position"),
+            aspect=self._aspect(place, "validAspect", "AspectPosition", "position"),
+            slope_angle_deg=self._quantity(ANGLE, place, "validSlopeAngle", "SlopeAnglePosition", "position"),
             snow_height=self._snow_height,
-            air_temperature_C=self._number(self._measured, "weatherCond", "airTempPres"),
-            layers=tuple(self._layer(each) for each in self._of("stratProfile", "Layer")),
-            densities=tuple(self._density(each) for each in self._of("densityProfile", "Layer")),
-            temperatures=tuple(self._temperature(each) for each in self._of("tempProfile", "Obs")),
-            forces=tuple(self._forces(each) for each in self._measured.every("hardnessProfile")),
-            snow_hardness=self._plate_value("snowHardness"),
-            failure_shear_stress=self._plate_value("failureShearStress"),
+            air_temperature_C=self._quantity(TEMPERATURE, measured.child("weatherCond") or measured, "airTempPres"),
+            layers=tuple(self._layer(*each) for each in self._of("stratProfile", "Layer")),
+            densities=tuple(self._density(*each) for each in self._of("densityProfile", "Layer")),
+            temperatures=tuple(self._temperature(*each) for each in self._of("tempProfile", "Obs")),
+            forces=tuple(self._forces(each) for each in measured.every("hardnessProfile")),
+            snow_hardness=self._plate_value("snowHardness", SNOW_HARDNESS),
+            failure_shear_stress=self._plate_value("failureShearStress", SHEAR_STRESS),
         )
 
-    def _of(self, profile: str, name: str) -> list[Element]:
-        """The layers or observations of all profiles of a kind that hold them one by one."""
-        return [each for found in self._measured.every(profile) for each in found.every(name)]
+    def _of(self, profile: str, name: str) -> list[tuple[Element, Element]]:
+        """The layers or observations of all profiles of a kind that hold them one by one, each after its profile."""
+        return [(found, each) for found in self._measured.every(profile) for each in found.every(name)]
 
     def _height(self) -> float | None:
-        pack = self._measured.child("snowPackCond", "hS", "Components")
-        return None if pack is None else self._length(pack, "height")
+        components = self._measured.child("snowPackCond", "hS", "Components")
+        if components is not None:
+            return self._quantity(LENGTH, components, "height")
+        return self._quantity(LENGTH, self._measured, "hS", "Components", "snowHeight")
+
+    def _time(self) -> str:
+        records = (self._root.child("timeRef", "recordTime"), self._root.child("validTime"))
+        paths = (("TimeInstant", "timePosition"), ("TimePeriod", "beginPosition"))
+        return next(filter(None, (each.text_of(*path) for each in records if each for path in paths)), "")
+
+    def _aspect(self, place: Element, *path: str) -> str:
+        """A compass point, or a number of degrees as text."""
+        text = place.text_of(*path)
+        is_number = text.replace(".", "", 1).isdecimal()
+        return f"{self._quantity(ANGLE, place, *path):.10g}" if is_number else self._word(text)
 
     def _observer(self) -> str:
-        source = self._root.child("srcRef")
+        source = self._root.child("srcRef") or self._root.child("metaDataProperty", "MetaData", "srcRef")
         if source is None:
             return ""
-        paths = (("Person", "name"), ("Operation", "contactPerson", "name"), ("Operation", "name"))
+        paths = (
+            ("Person", "name"),
+            ("Operation", "contactPerson", "name"),
+            ("Operation", "contactPerson", "Person", "name"),
+            ("Operation", "name"),
+        )
         return next(filter(None, (source.text_of(*path) for path in paths)), "")
 
     def _position(self, place: Element) -> tuple[float, float] | tuple[None, None]:
-        text = place.text_of("pointLocation", "Point", "pos")
-        if not text:
+        """Latitude and longitude; version 5 gives the longitude first where it names CRS84, as that says."""
+        point = place.child("pointLocation", "Point") or place.child("Point")
+        text = "" if point is None else point.text_of("pos")
+        if point is None or not text:
             return None, None
         both = [self._finite("pos", each) for each in text.split()[:2]]
+        if not self._is_version_6 and point.attributes.get("srsName", "").endswith("CRS84"):
+            both.reverse()
         if len(both) != 2 or not (-90.0 <= both[0] <= 90.0 and -180.0 <= both[1] <= 180.0):
             self._refuse("pos", text, "latitude and longitude in degrees", "Correct the place.")
         return both[0], both[1]
 
-    def _layer(self, layer: Element) -> SnowLayer:
-        top, thickness = self._top_and_thickness(layer)
+    def _layer(self, profile: Element, layer: Element) -> SnowLayer:
+        top, thickness = self._top_and_thickness(profile, layer)
         hand, upper, lower = (self._word(layer.text_of(name)) for name in ("hardness", "hardnessTop", "hardnessBottom"))
-        size = layer.child("grainSize")
-        average = None if size is None else self._number(size, "Components", "avg", words=True)
         return SnowLayer(
             top=top,
             thickness=thickness,
             hardness=hand or upper or lower,
             grain_form=self._word(layer.text_of("grainFormPrimary")),
-            grain_size=None if average is None else average * MM,
-            comment=layer.text_of("metaData", "comment"),
+            grain_size=self._quantity(GRAIN_SIZE, layer, "grainSize", "Components", "avg", words=True),
+            comment=layer.text_of("metaData", "comment") or layer.text_of("comment"),
             hardness_bottom=lower if upper and not hand else "",
         )
 
-    def _density(self, layer: Element) -> LayerDensity:
-        top, thickness = self._top_and_thickness(layer)
-        return LayerDensity(top, self._required(layer, "density"), thickness)
+    def _density(self, profile: Element, layer: Element) -> LayerDensity:
+        top, thickness = self._top_and_thickness(profile, layer)
+        return LayerDensity(top, self._required(DENSITY, profile, layer, "density"), thickness)
 
-    def _temperature(self, observed: Element) -> DepthTemperature:
-        depth = self._required_length(observed, "depth")
-        return DepthTemperature(self._down(depth), self._required(observed, "snowTemp"))
+    def _temperature(self, profile: Element, observed: Element) -> DepthTemperature:
+        depth = self._required(LENGTH, profile, observed, "depth")
+        return DepthTemperature(self._down(depth), self._required(TEMPERATURE, profile, observed, "snowTemp"))
 
     def _forces(self, profile: Element) -> ForceProfile:
-        method = self._word(profile.text_of("hardnessMetaData", "methodOfMeas"))
+        about = profile.child("hardnessMetaData") or profile.child("MetaData") or profile
+        method = self._word(about.text_of("methodOfMeas"))
         rows = profile.text_of("Measurements", "tupleList").split()
+        if not rows:
+            layers = list(profile.every("Layer"))
+            depths = [self._top_and_thickness(profile, each)[0] for each in layers]
+            forces = [self._required(FORCE, profile, each, "hardness") for each in layers]
+            return ForceProfile(method, np.array(depths, dtype=float), np.array(forces, dtype=float))
         pairs = [[self._finite("tupleList", number) for number in row.split(",")] for row in rows]
         if any(len(pair) != 2 for pair in pairs):
             self._refuse("tupleList", rows[0], "pairs of depth and force", "Correct the list.")
-        table = np.array(pairs, dtype=float).reshape(-1, 2)
-        if not rows:
-            layers = list(profile.every("Layer"))
-            depths = np.array([self._top_and_thickness(each)[0] for each in layers], dtype=float)
-            return ForceProfile(method, depths, np.array([self._required(each, "hardness") for each in layers]))
-        return ForceProfile(method, table[:, 0] * CM, table[:, 1])
+        units = (profile.child("MeasurementComponents") or profile).attributes
+        columns = [
+            np.array([self._convert(kind, attribute, pair[column], units.get(attribute)) for pair in pairs])
+            for column, (kind, attribute) in enumerate(((LENGTH, "uomDepth"), (FORCE, "uomHardness")))
+        ]
+        return ForceProfile(method, columns[0], columns[1])
 
-    def _plate_value(self, name: str) -> PlateValue | None:
+    def _plate_value(self, name: str, units: CaamlUnits) -> PlateValue | None:
         custom = self._measured.child("customData", name)
         if custom is None or custom.namespace != OWN_NAMESPACE:
             return None
+        unit = custom.attributes.get("uom")
         ends = [custom.attributes.get(end) for end in ("low", "high")]
-        known = [self._finite(name, each) for each in ends if each is not None]
+        known = [self._convert(units, name, self._finite(name, each), unit) for each in ends if each is not None]
         interval = (known[0], known[1]) if len(known) == 2 else None
         count = round(self._finite(name, custom.attributes.get("n", "0")))
-        return PlateValue(self._finite(name, custom.text), count, interval)
+        return PlateValue(self._convert(units, name, self._finite(name, custom.text), unit), count, interval)
 
-    def _top_and_thickness(self, layer: Element) -> tuple[float, float | None]:
-        return self._down(self._required_length(layer, "depthTop")), self._length(layer, "thickness")
+    def _top_and_thickness(self, profile: Element, layer: Element) -> tuple[float, float | None]:
+        thickness = self._quantity(LENGTH, layer, "thickness", profile=profile)
+        return self._down(self._required(LENGTH, profile, layer, "depthTop")), thickness
 
     def _down(self, value: float) -> float:
         """A depth from the surface, whichever way the profile counts."""
         return (self._snow_height or 0.0) - value if self._from_ground else value
 
-    def _length(self, parent: Element, name: str) -> float | None:
-        value, found = self._number(parent, name), parent.child(name)
-        if value is None or found is None:
-            return None
-        unit = found.attributes.get("uom", "cm")
-        if unit not in _FACTOR:
-            self._refuse(name, unit, f"a unit among {', '.join(_FACTOR)}", "Correct the unit.")
-        return value * _FACTOR[unit]
-
-    def _required_length(self, parent: Element, name: str) -> float:
-        value = self._length(parent, name)
-        if value is None:
-            self._refuse(name, "nothing", "a length", f"Give every {parent.name} its {name}.")
-        return value
-
-    def _required(self, parent: Element, name: str) -> float:
-        value = self._number(parent, name)
+    def _required(self, units: CaamlUnits, profile: Element, parent: Element, name: str) -> float:
+        value = self._quantity(units, parent, name, profile=profile)
         if value is None:
             self._refuse(name, "nothing", "a number", f"Give every {parent.name} its {name}.")
         return value
 
-    def _number(self, parent: Element, *path: str, words: bool = False) -> float | None:
+    def _quantity(
+        self, units: CaamlUnits, parent: Element, *path: str, profile: Element | None = None, words: bool = False
+    ) -> float | None:
+        """A number converted from the unit of its element, of one that contains it, or of its profile."""
         text = parent.text_of(*path)
         if text.lower() in NIL or (words and not any(character.isdigit() for character in text)):
             return None
-        return self._finite(path[-1], text)
+        above = [parent.child(*path[:length]) for length in range(len(path), 0, -1)]
+        said = [each.attributes["uom"] for each in above if each is not None and "uom" in each.attributes]
+        name = path[-1]
+        if profile is not None:
+            of_profile = _UNIT_OF_PROFILE.get(name, f"uom{name[0].upper()}{name[1:]}")
+            said += [profile.attributes[of_profile]] if of_profile in profile.attributes else []
+        return self._convert(units, name, self._finite(name, text), said[0] if said else None)
+
+    def _convert(self, units: CaamlUnits, name: str, value: float, unit: str | None) -> float:
+        converted = units.convert(value, unit)
+        if converted is None:
+            allowed, action = f"a unit among {', '.join(units.sizes)}", "Correct the unit, or convert the numbers."
+            self._refuse(name, unit or "", allowed, action)
+        if not math.isfinite(converted):
+            self._refuse(name, f"{value:g} {unit}", "a finite number in SI", "Correct the number.")
+        return converted
 
     def _finite(self, element: str, text: str) -> float:
         try:

@@ -11,6 +11,7 @@ from .errors import GivenError
 
 DEEPEST: Final = 60
 MOST_ELEMENTS: Final = 500_000
+_LONGEST_REASON: Final = 100
 
 
 @dataclass(slots=True)
@@ -79,7 +80,7 @@ def xml_tree(data: bytes) -> Element:
     Raises
     ------
     GivenError
-        It is no XML, is damaged, declares a document type, or is nested or counted beyond the limits.
+        It is no XML, is damaged, has an unknown encoding, declares a document type, or exceeds the limits.
     """
     builder, parser = _Builder(), expat.ParserCreate(namespace_separator="}")
     parser.buffer_text = True
@@ -89,6 +90,11 @@ def xml_tree(data: bytes) -> Element:
         parser.Parse(data, True)
     except expat.ExpatError as error:
         raise GivenError(f"no XML, or a damaged one ({expat.ErrorString(error.code)})", line=error.lineno) from error
+    except GivenError:
+        raise
+    except (LookupError, ValueError) as error:  # Python's codec of the encoding that the first line declares
+        what = str(error)[:_LONGEST_REASON]
+        raise GivenError(f"text in an encoding that cannot be read ({what}). Save it as UTF-8.", line=1) from error
     if builder.root is None:
         raise GivenError("no element")
     return builder.root
