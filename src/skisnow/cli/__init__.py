@@ -35,6 +35,7 @@ def build_parser() -> argparse.ArgumentParser:
         race,
         reference,
         replay,
+        samples,
         serve,
         simulate,
         store,
@@ -52,8 +53,8 @@ def build_parser() -> argparse.ArgumentParser:
     commands = parser.add_subparsers(title="commands", metavar="COMMAND", parser_class=Parser)
     parser.set_defaults(run=lambda _: parser.print_help(), program=parser)
     every = (
-        new, check, analyse, store, reference, carve, simulate, replay, turn, study, race, track, compare, identify,
-        export, convert, serve, completion, man,
+        new, check, analyse, store, reference, samples, carve, simulate, replay, turn, study, race, track, compare,
+        identify, export, convert, serve, completion, man,
     )  # fmt: skip
     for command in every:
         command.add_parser(commands)

@@ -30,7 +30,7 @@ def write_smet(series: StationSeries, path: str | Path) -> Path:
     OutputError
         The file cannot be written.
     """
-    write_file(path, "\n".join(_smet(series)) + "\n")
+    write_file(path, smet_text(series))
     return Path(path)
 
 
@@ -55,6 +55,11 @@ def write_weather_csv(series: StationSeries, path: str | Path) -> Path:
     )
     write_file(path, "\n".join((",".join(("time", *known)), *rows)) + "\n")
     return Path(path)
+
+
+def smet_text(series: StationSeries) -> str:
+    """Content of an SMET 1.1 file with all fields in SI."""
+    return "\n".join(_smet(series)) + "\n"
 
 
 def _smet(series: StationSeries) -> Iterator[str]:
