@@ -9,9 +9,15 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from sqlalchemy import insert
 
+from skisnow import read_campaign
 from skisnow.cli import main
-from skisnow.field.store import Journals, NewEntry, Store
+from skisnow.errors import StoreError
+from skisnow.field.reading.campaign import check_campaign
+from skisnow.field.store import JournalHead, Journals, NewEntry, Store, StoredCampaign, find_campaign
+from skisnow.field.store.engine import writing
+from skisnow.field.store.schema import journal
 
 RAW = b"experiment;site\r\nP1;Gr\xf6den\r\n"
 
@@ -119,7 +125,7 @@ def test_whoever_has_something_to_look_at_is_told_where(
 
 def test_an_empty_store(shell: Shell, place: Path) -> None:
     Store.open(place).close()
-    assert shell.json("list") == {"campaigns": []}
+    assert shell.json("list") == {"campaigns": [], "lab_campaigns": []}
     assert shell.text("list") == ("The store holds no campaign.\n", "")
 
 
@@ -186,3 +192,93 @@ def test_store_and_json_stand_before_the_action_or_behind_it(
         assert json.loads(capsys.readouterr().out)["campaigns"][0]["id"] == added["id"]
     assert main(["store", "--store", str(place.with_name("other")), "list", "--store", str(place)]) == 0
     assert added["id"] in capsys.readouterr().out
+
+
+TOML = """name = "Nordhang"
+observers = ["Ada"]
+[[tool]]
+name = "ski"
+shape = "ski"
+length_mm = 200
+width_mm = 62
+"""
+
+
+def entered(place: Path, *depths: str) -> str:
+    """A campaign that consists of lab entries: its description and a reading for each depth (mm); its id."""
+    with Store.open(place) as store:
+        journals = Journals(store)
+        id_ = journals.begin(TOML)
+        seen = 0
+        for position, depth in enumerate(depths):
+            cells = {"experiment": "1", "site": "A", "tool": "ski", "edge_angle_deg": "30", "depth_mm": depth}
+            cells["load_N"] = str(20 * (position + 1))
+            entry = NewEntry(action="add", file="penetration.csv", test="1", cells=cells, position=position)
+            seen = journals.append(id_, entry, seen=seen).sequence
+    return id_
+
+
+def assert_read(folder: Path, *depths: float) -> None:
+    """`check` finds no error in a campaign folder, and it has these depths (mm)."""
+    assert [problem.code for problem in check_campaign(folder) if problem.severity == "error"] == []
+    tests = read_campaign(folder).penetration
+    assert tests is not None
+    assert [depth * 1000 for depth in tests.penetration_depth] == pytest.approx(depths)
+
+
+def test_a_campaign_of_lab_entries_is_listed_with_their_number_and_exported(
+    shell: Shell, place: Path, tmp_path: Path, folder: Path
+) -> None:
+    stored, lab = shell.json("add", folder), entered(place, "1.5", "2.25", "3")
+    listed = shell.json("list")
+    assert [each["id"] for each in listed["campaigns"]] == [stored["id"]]
+    (row,) = listed["lab_campaigns"]
+    assert (row["id"], row["name"], row["n_entries"]) == (lab, "Nordhang", 4)
+    assert f"{lab}  {row['begun_at'][:10]}" in shell.text("list")[0]
+    assert shell.json("export", lab[:6], "--out", tmp_path / "out") == {**row, "out": str(tmp_path / "out")}
+    assert_read(tmp_path / "out", 1.5, 2.25, 3.0)
+    shown = shell.json("show", lab)["files"]
+    assert shown == [
+        {"path": path.name, "size": path.stat().st_size, "sha256": hashlib.sha256(path.read_bytes()).hexdigest()}
+        for path in sorted((tmp_path / "out").iterdir())
+    ]
+
+
+def test_a_campaign_that_came_by_a_sync_is_exported_alike(shell: Shell, place: Path, tmp_path: Path) -> None:
+    lab, group = entered(place, "1.5", "2.25", "3"), tmp_path / "group.sqlite3"
+    shell.json("sync", group)
+    there = Shell(group, shell.capsys)
+    assert there.json("list") == shell.json("list")
+    for name, each in (("here", shell), ("there", there)):
+        each.text("export", lab, "--out", tmp_path / name)
+    for path in (tmp_path / "here").iterdir():
+        assert (tmp_path / "there" / path.name).read_bytes() == path.read_bytes()
+    assert_read(tmp_path / "there", 1.5, 2.25, 3.0)
+
+
+def test_export_of_lab_entries_never_overwrites_and_has_nothing_as_added(
+    shell: Shell, place: Path, tmp_path: Path
+) -> None:
+    lab = entered(place, "1.5")
+    out = tmp_path / "out"
+    shell.text("export", lab, "--out", out, "--as-added", code=1)
+    assert not out.exists()
+    out.mkdir()
+    (out / "own.txt").write_text("mine")
+    shell.text("export", lab, "--out", out, code=1)
+    assert [path.name for path in out.iterdir()] == ["own.txt"]
+    assert lab in shell.text("export", "ffffffff", "--out", tmp_path / "other", code=1)[1]  # lists what there is
+
+
+def test_an_id_that_fits_both_kinds_is_ambiguous(place: Path, folder: Path) -> None:
+    with Store.open(place) as store:
+        stored = store.add(folder).id
+        with writing(store.engine) as connection:
+            id_ = stored[:4] + ("0" if stored[4] != "0" else "1") * 8
+            connection.execute(insert(journal).values(id=id_, begun_at="2026-01-12T08:00:00Z"))
+        assert isinstance(find_campaign(store, stored), StoredCampaign)
+        assert isinstance(find_campaign(store, id_), JournalHead)
+        with pytest.raises(StoreError) as raised:
+            find_campaign(store, stored[:4])
+        assert stored in str(raised.value)
+        assert id_ in str(raised.value)

@@ -16,7 +16,7 @@ from .progress import Progress
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
-    from ..field.store import Side, Store, StoredCampaign, StorePlace
+    from ..field.store import JournalHead, Side, Store, StoredCampaign, StorePlace
 
 Json: TypeAlias = dict[str, object]
 Answer: TypeAlias = tuple[Json, str, int]
@@ -40,15 +40,17 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     actions = parser.add_subparsers(dest="action", required=True, metavar="ACTION")
     add = actions.add_parser("add", parents=[every], help="keep all files of a campaign's folder")
     add.add_argument("folder", type=Path, metavar="DIR", help="the campaign's folder")
-    actions.add_parser("list", parents=[every], help="list the campaigns")
+    actions.add_parser("list", parents=[every], help="list the campaigns: stored files and lab entries")
     show = actions.add_parser("show", parents=[every], help="list the files of a campaign")
     export = actions.add_parser(
-        "export", parents=[every], help="give a campaign back, with what was corrected in the lab"
+        "export", parents=[every], help="write a campaign as a folder, with the corrections made in the lab"
     )
     for with_id in (show, export):
         with_id.add_argument("id", metavar="ID", help="the campaign's id, or its first 4 digits or more")
     export.add_argument("--out", type=Path, metavar="DIR", required=True, help="folder to make")
-    export.add_argument("--as-added", action="store_true", help="its files alone, without corrections made in the lab")
+    export.add_argument(
+        "--as-added", action="store_true", help="write the stored files only, without corrections made in the lab"
+    )
     actions.add_parser("verify", parents=[every], help="check every file in the store; exit code 1 if any is damaged")
     syncing = actions.add_parser(
         "sync",
@@ -99,21 +101,32 @@ def _add(store: Store, args: argparse.Namespace) -> Answer:
 
 
 def _list(store: Store, _: argparse.Namespace) -> Answer:
-    campaigns = store.list()
-    lines = [_line(stored) for stored in campaigns] or ["The store holds no campaign."]
-    return {"campaigns": [_as_json(stored) for stored in campaigns]}, "\n".join(lines), 0
+    from ..field.store import Journals
+
+    stored, entered = store.list(), Journals(store).list()
+    lines = [*map(_line, stored), *map(_entered_line, entered)] or ["The store holds no campaign."]
+    answer: Json = {"campaigns": list(map(_as_json, stored)), "lab_campaigns": list(map(asdict, entered))}
+    return answer, "\n".join(lines), 0
 
 
 def _show(store: Store, args: argparse.Namespace) -> Answer:
-    stored = store.show(args.id)
-    files = [asdict(file) for file in stored.files]
-    lines = [_line(stored), *(f"{file.sha256}  {file.size:>12}  {file.path}" for file in stored.files)]
-    return {**_as_json(stored), "files": files}, "\n".join(lines), 0
+    from ..field.store import JournalHead, entered_files, find_campaign
+
+    found = find_campaign(store, args.id)
+    if isinstance(found, JournalHead):
+        first, as_json, files = _entered_line(found), asdict(found), entered_files(store, found.id)
+    else:
+        first, as_json, files = _line(found), _as_json(found), found.files
+    lines = [first, *(f"{file.sha256}  {file.size:>12}  {file.path}" for file in files)]
+    return {**as_json, "files": list(map(asdict, files))}, "\n".join(lines), 0
 
 
 def _export(store: Store, args: argparse.Namespace) -> Answer:
-    from ..field.store import ExportedCampaign, export_corrected
+    from ..field.store import ExportedCampaign, JournalHead, export_corrected, find_campaign
 
+    found = find_campaign(store, args.id)
+    if isinstance(found, JournalHead):
+        return _export_entered(store, found, args)
     with _share_shown("exporting") as progress:
         if args.as_added:
             exported = ExportedCampaign(store.export(args.id, args.out, progress=progress), 0)
@@ -123,6 +136,15 @@ def _export(store: Store, args: argparse.Namespace) -> Answer:
     text = f"{stored.id}  {stored.name}: {_amount(stored.n_files, stored.n_bytes)}, given back in {args.out}"
     text += f"\ncells corrected since, in corrections.csv: {n}" if n else ""
     return {**_as_json(stored), "n_corrections": n, "out": str(args.out)}, text, 0
+
+
+def _export_entered(store: Store, head: JournalHead, args: argparse.Namespace) -> Answer:
+    from ..field.store import export_entered
+
+    if args.as_added:
+        raise StoreError(f"The campaign {head.id} consists of lab entries and has no stored files. Omit --as-added.")
+    export_entered(store, head.id, args.out)
+    return {**asdict(head), "out": str(args.out)}, f"{_entered_line(head)}, written to {args.out}", 0
 
 
 def _verify(store: Store, _: argparse.Namespace) -> Answer:
@@ -183,6 +205,11 @@ def _as_json(stored: StoredCampaign) -> Json:
         "n_errors": stored.n_errors,
         "n_warnings": stored.n_warnings,
     }
+
+
+def _entered_line(head: JournalHead) -> str:
+    begun, n = f"{head.begun_at[:10]} {head.begun_at[11:16]}", head.n_entries
+    return f"{head.id}  {begun} UTC  {head.name or '(no name)'}: {n} lab entr{'y' if n == 1 else 'ies'}"
 
 
 def _line(stored: StoredCampaign) -> str:

@@ -74,7 +74,7 @@ class EditSession:
         """Replay what was written since."""
         new = self._written_since()
         if new or self._campaign is None:
-            self._last = new[-1].sequence if new else self._last
+            self._last = max((entry.sequence for entry in new), default=self._last)  # a sync brings older ones late
             self._campaign = replayed(new, before=self._campaign)
 
     def _written_since(self) -> tuple[JournalEntry, ...]:

@@ -16,7 +16,7 @@ from starlette.responses import RedirectResponse, Response
 
 from ..errors import ParameterError, SkisnowError, StoreError
 from ..field.reading import READ_FILES, FilesInMemory
-from ..field.store import Journals, campaign_files, corrected_files, export_corrected, replayed, write_campaign
+from ..field.store import Journals, campaign_files, corrected_files, export_corrected, export_entered, replayed
 from .confined import BOUNDS, confined
 from .error_pages import error_sentence, plain_page
 from .names import required_id
@@ -112,9 +112,7 @@ def _is_other(path: str) -> bool:
 
 def write_entry(lab: Lab, id_: str, folder: Path) -> None:
     """Write a campaign that is being entered into a new folder."""
-    entries = Journals(lab.store).entries(required_id(id_))
-    folder.mkdir()
-    write_campaign(replayed(entries), folder)
+    export_entered(lab.store, required_id(id_), folder)
 
 
 def write_kept(lab: Lab, id_: str, folder: Path) -> None:

@@ -5,6 +5,7 @@ from .address import ServerAddress, StorePlace, store_place
 from .corrected_export import ExportedCampaign, add_corrections, corrected_files, export_corrected
 from .journal import JournalHead, Journals, OvertakenError
 from .journal_entry import JournalEntry, NewEntry
+from .lookup import FoundCampaign, entered_files, export_entered, find_campaign
 from .replayed import ReplayedCampaign, ReplayedRow, ReplayedTest, replayed
 from .replayed_files import campaign_files, write_campaign
 from .store import AddedCampaign, Finding, Store, StoredCampaign, StoredFile, default_path
@@ -16,6 +17,7 @@ __all__ = [
     "Conflict",
     "ExportedCampaign",
     "Finding",
+    "FoundCampaign",
     "JournalEntry",
     "JournalHead",
     "Journals",
@@ -36,7 +38,10 @@ __all__ = [
     "campaign_files",
     "corrected_files",
     "default_path",
+    "entered_files",
     "export_corrected",
+    "export_entered",
+    "find_campaign",
     "replayed",
     "store_place",
     "stored_tables",

@@ -18,6 +18,7 @@ from sqlalchemy import ColumnElement, Connection, and_, func, insert, select
 
 from ...errors import StoreError
 from .engine import database_errors, reading, writing
+from .entered_name import entered_name
 from .entry_rows import file_uid, now, write_entry
 from .journal_entry import DESCRIPTION, JournalEntry, NewEntry, entry_of
 from .rows import damaged, number_of, text_of
@@ -38,9 +39,22 @@ class OvertakenError(StoreError):
 
 @dataclass(frozen=True, slots=True)
 class JournalHead:
-    """A journal in a list: when it was begun (UTC, ISO 8601), how many entries it has, when the last was made."""
+    """A campaign that consists of lab entries, in a list.
+
+    Attributes
+    ----------
+    id
+        12 hexadecimal digits.
+    name
+        From its description; "" if it has none or is damaged.
+    begun_at, last_at
+        Times of the beginning and of the last entry (UTC, ISO 8601).
+    n_entries
+        Number of its entries.
+    """
 
     id: str
+    name: str
     begun_at: str
     n_entries: int
     last_at: str
@@ -82,7 +96,8 @@ class Journals:
             .order_by(journal.c.begun_at, journal.c.id)
         )
         with database_errors(self._path, "could not be read"), reading(self._engine) as connection:
-            return tuple(_head(*row) for row in connection.execute(asked).all())
+            rows = connection.execute(asked).all()
+            return tuple(_head(entered_name(connection, row[0]), *row) for row in rows)
 
     def entries(self, id: str, *, after: int = 0) -> tuple[JournalEntry, ...]:  # noqa: A002 (as in Store)
         """Give the entries of a journal, oldest first, from the one behind a sequence on.
@@ -176,9 +191,9 @@ class Journals:
             return write_entry(connection, id, entry)
 
 
-def _head(id_: object, begun_at: object, n_entries: object, last_at: object) -> JournalHead:
+def _head(name: str, id_: object, begun_at: object, n_entries: object, last_at: object) -> JournalHead:
     try:
-        return JournalHead(text_of(id_), text_of(begun_at), number_of(n_entries), text_of(last_at))
+        return JournalHead(text_of(id_), name, text_of(begun_at), number_of(n_entries), text_of(last_at))
     except TypeError as error:
         raise damaged(f"The campaign in entry {id_}") from error
 

@@ -6,7 +6,7 @@ import hashlib
 import re
 from dataclasses import dataclass
 from datetime import UTC, datetime
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Final, NamedTuple
 
 from sqlalchemy import Connection, Row, delete, insert, select, update
 
@@ -22,6 +22,13 @@ ID_DIGITS: Final = 12
 _SHORTEST_PREFIX: Final = 4
 _SHOWN_CANDIDATES: Final = 10
 TIME: Final = "%Y-%m-%dT%H:%M:%SZ"
+
+
+class NamedId(NamedTuple):
+    """A campaign as a message names it."""
+
+    id: object
+    name: object
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,25 +82,48 @@ def one_campaign(connection: Connection, beginning: str) -> StoredCampaign:
     StoreError
         No hexadecimal digits, fewer than 4, unknown, or several: lists those that may be meant.
     """
-    beginning = beginning.strip().lower()
-    if not re.fullmatch(rf"[0-9a-f]{{{_SHORTEST_PREFIX},64}}", beginning):
-        raise StoreError(
-            f"{beginning!r} is no campaign's id: give its {ID_DIGITS} hexadecimal digits or the first "
-            f"{_SHORTEST_PREFIX} or more of them."
-        )
+    beginning = required_digits(beginning)
     begins_so = select(campaign).where(campaign.c.sha256.startswith(beginning)).order_by(campaign.c.id)
     rows = connection.execute(begins_so).all()
     if len(rows) == 1:
         return stored_campaign(connection, rows[0])
-    if rows:
-        raise StoreError(f"Several campaigns begin with {beginning}: {_candidates(rows)}; give more digits.")
-    known = connection.execute(select(campaign).order_by(campaign.c.added_at.desc(), campaign.c.id)).all()
-    raise StoreError(f"No campaign begins with {beginning}; the store holds {_candidates(known)}.")
+    matching = [NamedId(row.id, row.name) for row in rows]
+    raise unclear_id(beginning, matching, known_campaigns(connection))
 
 
-def _candidates(rows: Sequence[Row[tuple[object, ...]]]) -> str:
-    named = [f"{row.id} ({row.name})" for row in rows[:_SHOWN_CANDIDATES]]
-    further = len(rows) - len(named)
+def required_digits(beginning: str) -> str:
+    """The beginning of an id in lower case.
+
+    Raises
+    ------
+    StoreError
+        It has fewer than 4 hexadecimal digits, or other characters.
+    """
+    digits = beginning.strip().lower()
+    if not re.fullmatch(rf"[0-9a-f]{{{_SHORTEST_PREFIX},64}}", digits):
+        raise StoreError(
+            f"{digits!r} is no campaign's id: give its {ID_DIGITS} hexadecimal digits or the first "
+            f"{_SHORTEST_PREFIX} or more of them."
+        )
+    return digits
+
+
+def known_campaigns(connection: Connection) -> list[NamedId]:
+    """Id and name of each stored campaign, newest first."""
+    rows = connection.execute(select(campaign).order_by(campaign.c.added_at.desc(), campaign.c.id)).all()
+    return [NamedId(row.id, row.name) for row in rows]
+
+
+def unclear_id(beginning: str, matching: Sequence[NamedId], known: Sequence[NamedId]) -> StoreError:
+    """Error for an id that is the beginning of no or of several campaigns: lists those that may be meant."""
+    if matching:
+        return StoreError(f"Several campaigns begin with {beginning}: {_candidates(matching)}; give more digits.")
+    return StoreError(f"No campaign begins with {beginning}; the store holds {_candidates(known)}.")
+
+
+def _candidates(campaigns: Sequence[NamedId]) -> str:
+    named = [f"{each.id} ({each.name})" for each in campaigns[:_SHOWN_CANDIDATES]]
+    further = len(campaigns) - len(named)
     return (", ".join(named) or "none") + (f" and {further} more" if further else "")
 
 

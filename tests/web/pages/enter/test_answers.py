@@ -12,7 +12,7 @@ import pytest
 from nicegui import ui
 
 from skisnow.errors import StoreError
-from skisnow.field.store import NewEntry
+from skisnow.field.store import Journals, NewEntry, Store, sync
 from skisnow.report.curves import SeriesCurve
 from skisnow.web import answering
 from skisnow.web.answering import PageRequest
@@ -24,6 +24,7 @@ from .shared import (
     DENSITY,
     DROP_CONE,
     PENETRATION,
+    SERIES,
     SHEAR,
     add,
     add_series,
@@ -36,6 +37,7 @@ from .shared import (
 
 if TYPE_CHECKING:
     from collections.abc import Callable
+    from pathlib import Path
 
     from ..desk import Desk, Sheet
 
@@ -282,6 +284,21 @@ def test_a_session_hears_what_others_wrote_when_it_looks_again(desk: Desk) -> No
     written = session.write_down(entry, seen=history(desk, id_)[2].sequence)
     assert written == history(desk, id_)[3]
     assert len(session.test(PENETRATION, "1").rows) == 2
+
+
+def test_entries_that_came_by_a_sync_are_replayed_once(desk: Desk, tmp_path: Path) -> None:
+    """The other laptop's entry comes before the last one here, and has a later number in this store."""
+    id_ = begun(desk)
+    with Store.open(tmp_path / "other.sqlite3") as other:
+        sync(desk.lab.store, other)
+        cells = {"experiment": "2", **SERIES, "load_N": "20", "depth_mm": "1.5"}
+        Journals(other).append(id_, NewEntry(action="add", file=PENETRATION, test="2", cells=cells, position=0), seen=0)
+        add_series(desk, id_, "1", ("20", "1.5"), ("60", "2.6"))
+        sync(desk.lab.store, other)
+    session = EditSession(desk.lab, id_)
+    for _ in range(3):
+        assert {test.name: len(test.rows) for test in session.campaign.tests.values()} == {"1": 2, "2": 1}
+        session.refresh()
 
 
 def test_a_session_computes_a_site_by_itself(desk: Desk) -> None:

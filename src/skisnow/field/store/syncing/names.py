@@ -7,11 +7,8 @@ from typing import TYPE_CHECKING
 
 from sqlalchemy import Connection, select
 
-from ....errors import ParameterError, StoreError
-from ....given import toml_values
-from ..journal_entry import DESCRIPTION
+from ..entered_name import entered_name
 from ..schema import campaign, journal
-from .heads import entries_about
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -35,7 +32,7 @@ def names_of(connection: Connection) -> Names:
     rows = connection.execute(select(campaign.c.id, campaign.c.name)).all()
     stored = {str(id_): name for id_, name in rows if isinstance(name, str)}
     ids = set(connection.execute(select(journal.c.id)).scalars()) - {id_ for id_, _ in rows}
-    return Names(stored, {id_: name for id_ in ids if (name := _entered_name(connection, id_))})
+    return Names(stored, {id_: name for id_ in ids if (name := entered_name(connection, id_))})
 
 
 def same_names(here: Names, there: Names) -> Iterator[str]:
@@ -56,12 +53,3 @@ def same_names(here: Names, there: Names) -> Iterator[str]:
                 f"Two {what} are called {name!r}: {other}, which was here, and {id_} from there. "
                 "They are kept apart; give one another name if they are not the same."
             )
-
-
-def _entered_name(connection: Connection, journal_id: str) -> str:
-    try:
-        described = entries_about(connection, journal_id, (DESCRIPTION, ""))
-        name = toml_values(described[-1].cells[DESCRIPTION]).get("name") if described else ""
-    except (StoreError, ParameterError, KeyError):
-        return ""
-    return " ".join(name.split()) if isinstance(name, str) else ""
