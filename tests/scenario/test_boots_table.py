@@ -37,6 +37,10 @@ def test_four_poses_are_enough() -> None:
         ({"place": np.full((4, 2, 3), math.nan)}, "place holds a number that is not finite"),
         ({"at": np.array([0.0, 1.0, 2.0, math.inf])}, "at holds a number that is not finite"),
         ({"at": np.array([0.0, 1.0, 1.0, 2.0])}, "time of row 3 is 1 after 1; it must rise"),
+        ({"at": np.array([0.0, 5e-324, 1.0, 2.0])}, "time of row 2 is 4.94066e-324 after 0"),
+        ({"at": np.array([0.0, 1.0, 1.0 + 1e-7, 2.0])}, "time of row 3 is 1 after 1"),
+        ({"at": np.array([0.0, 1.0, 2.0, 1e308])}, "at has a number beyond"),
+        ({"place": np.full((4, 2, 3), -1e308)}, "place has a number beyond"),
         ({"axes": 1.001 * FLAT["axes"]}, r"axes are off by 2\.0e-03 from right-handed orthonormal ones"),
         ({"axes": MIRRORED}, "axes are off by 0.0e.00 from right-handed"),
         ({"frame": "slope", "over": "distance"}, "boots in the slope's frame go over time"),
@@ -64,6 +68,53 @@ def test_what_a_table_does_not_say_is_the_sledges(tmp_path: Path) -> None:
     assert left == pytest.approx([0.2, 0.0, 0.0], abs=1e-12)
     assert right == pytest.approx([0.2, math.radians(20.0), 0.0], abs=1e-12)
     assert read_boots(path).place[2, 1].tolist() == [0.0, 0.0, 0.0]
+
+
+CASES = Path(__file__).parents[2].parent / "shared" / "cases" / "boots"
+EDGES = "time_s,left_edge_angle_deg,left_up_m\n0,0,0\n0.1,1,0\n0.2,2,0\n0.3,3,0\n"
+
+
+@pytest.mark.parametrize("number", ["1e308", "-1e308", "1e309", "1.1e7"])
+@pytest.mark.parametrize("column", [0, 1, 2])
+def test_impossible_numbers_are_refused_with_row_and_column(tmp_path: Path, number: str, column: int) -> None:
+    cells = ["0.2", "2", "0"]
+    cells[column] = number
+    text = EDGES.replace("0.2,2,0", ",".join(cells))
+    name = EDGES.splitlines()[0].split(",")[column]
+    with pytest.raises(ParameterError, match=rf"boots\.csv, row 4, column {name}"):
+        read_boots(table(tmp_path, text))
+
+
+@pytest.mark.parametrize("number", ["5e-324", "1e-300", "9e-7"])
+def test_steps_too_short_for_a_spline_are_refused(tmp_path: Path, number: str) -> None:
+    with pytest.raises(ParameterError, match=r"boots\.csv, row 3, column time_s"):
+        read_boots(table(tmp_path, EDGES.replace("0.1,", f"{number},")))
+
+
+def test_splines_are_finite_or_refused() -> None:
+    """Steps of 1 µs to 100 s, coordinates up to 10,000 km, any axes."""
+    random = np.random.default_rng(1)
+    accepted = 0
+    for _ in range(200):
+        n = int(random.integers(4, 12))
+        at = np.cumsum(10.0 ** random.uniform(-5.9, 2.0, n))
+        place = random.uniform(-1.0, 1.0, (n, 2, 3)) * 10.0 ** random.uniform(-10.0, 7.0, (n, 2, 3))
+        axes = np.array([[axes_of(*random.uniform(-3.0, 3.0, 3).tolist()) for _ in range(2)] for _ in range(n)])
+        try:
+            boots = Boots(at, place, axes)
+        except ParameterError:
+            continue
+        accepted += 1
+        assert all(np.isfinite(each).all() for when in at for each in boots.poses(float(when)))
+    assert accepted > 0
+
+
+@pytest.mark.skipif(not CASES.is_dir(), reason="../shared is not beside this folder")
+def test_shared_cases() -> None:
+    with pytest.raises(ParameterError, match=r"boots\.csv, row 4, column left_x_m"):
+        read_boots(CASES / "boots.csv")
+    with pytest.raises(ParameterError, match=r"b\.mot, row 9, column time"):
+        read_boots(CASES / "b.mot")
 
 
 MOT = "turn\nnRows=4\nEndHeader\n\ntime left_edge_angle_deg\n0 0\n1 10\n2 20\n3 30\n"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Final, Literal, TypeAlias
 
@@ -19,6 +20,12 @@ FloatArray: TypeAlias = npt.NDArray[np.float64]
 Frame: TypeAlias = Literal["sledge", "slope"]
 Over: TypeAlias = Literal["time", "distance"]
 
+LARGEST: Final = 1e7
+"""Largest time (s), distance and coordinate (m) of a pose (modelling assumption: coordinates of a map are below it)."""
+SHORTEST_STEP: Final = 1e-6
+"""Shortest step from row to row (s, m), so that a spline through the rows is finite (modelling assumption)."""
+FURTHEST_TURN: Final = 1e3
+"""Largest rotation that the spline between two rows may make (rad): it makes about the half turn that rows can show."""
 FEWEST_POSES: Final = 4
 """Rows of a table of boots at least: a cubic goes through them."""
 
@@ -70,7 +77,6 @@ class Boots(Shown):
 
     def __post_init__(self) -> None:
         from scipy.interpolate import CubicSpline
-        from scipy.spatial.transform import Rotation, RotationSpline
 
         for name in ("at", "place", "axes"):
             table = np.array(getattr(self, name), dtype=float)
@@ -78,9 +84,28 @@ class Boots(Shown):
             object.__setattr__(self, name, table)
         self._require_sound()
         object.__setattr__(self, "_place", CubicSpline(self.at, self.place))
+        object.__setattr__(self, "_axes", self._join_axes())
+
+    def _join_axes(self) -> tuple[RotationSpline, ...]:
+        """Spline of rotations of each boot; SciPy's iteration diverges where axes turn far within a short step."""
+        from scipy.spatial.transform import Rotation, RotationSpline
+
         turned = np.swapaxes(self.axes, -1, -2)
-        splines = (RotationSpline(self.at, Rotation.from_matrix(turned[:, ski].copy())) for ski in range(2))
-        object.__setattr__(self, "_axes", tuple(splines))
+        powers = np.diff(self.at)[None, :, None] ** np.arange(3, -1, -1)[:, None, None]
+        cause: Exception | None = None
+        try:
+            with np.errstate(over="raise", divide="raise", invalid="raise"):
+                rotations = (Rotation.from_matrix(turned[:, ski].copy()) for ski in range(2))
+                splines = tuple(RotationSpline(self.at, each) for each in rotations)
+                furthest = max(float((np.abs(each.interpolator.c) * powers).sum(axis=0).max()) for each in splines)
+        except (ValueError, FloatingPointError, np.linalg.LinAlgError) as error:
+            furthest, cause = math.inf, error
+        if furthest > FURTHEST_TURN:
+            raise ParameterError(
+                "boots: no spline joins these axes: they turn too far within too short a step. Correct the rows, or "
+                "space them more evenly."
+            ) from cause
+        return splines
 
     def _require_sound(self) -> None:
         n = len(self.at) if self.at.ndim == 1 else 0
@@ -92,10 +117,18 @@ class Boots(Shown):
         for name in ("at", "place", "axes"):
             if not np.isfinite(getattr(self, name)).all():
                 raise ParameterError(f"boots: {name} holds a number that is not finite")
+            if np.abs(getattr(self, name)).max() > LARGEST:
+                raise ParameterError(f"boots: {name} has a number beyond ±{LARGEST:g}. Correct it.")
         if not (np.diff(self.at) > 0.0).all():
             row = int(np.argmin(np.diff(self.at) > 0.0))
             raise ParameterError(
                 f"boots: {self.over} of row {row + 2} is {self.at[row + 1]:g} after {self.at[row]:g}; it must rise"
+            )
+        if not (np.diff(self.at) >= SHORTEST_STEP).all():
+            row = int(np.argmin(np.diff(self.at) >= SHORTEST_STEP))
+            raise ParameterError(
+                f"boots: {self.over} of row {row + 2} is {self.at[row + 1]:g} after {self.at[row]:g}. Allowed: steps "
+                f"of {SHORTEST_STEP:g} or more. Correct the number, or omit one of the rows."
             )
         off = np.abs(self.axes @ np.swapaxes(self.axes, -1, -2) - np.eye(3)).max()
         if off > 1e-9 or np.any(np.linalg.det(self.axes) < 0.0):
