@@ -215,8 +215,8 @@ def test_tables_that_do_not_fit_are_refused(tmp_path: Path) -> None:
 
 
 def test_heads_are_read_and_written_as_other_programs_have_them(tmp_path: Path) -> None:
-    """Degrees where nothing else is said; a missing name is the file's; rows are counted only where they are."""
-    (tmp_path / "own.mot").write_text("\nunits=N\nendheader\ntime\ta\n0\t1\n\n", encoding="utf-8")
+    """A missing name is that of the file; rows are counted only where the head counts them."""
+    (tmp_path / "own.mot").write_text("\nunits=N\ninDegrees=yes\nendheader\ntime\ta\n0\t1\n\n", encoding="utf-8")
     found = read_motion(tmp_path / "own.mot")
     assert (found.name, found.in_degrees, dict(found.head)) == ("own", True, {"units": "N"})
     write_motion(found, tmp_path / "again.mot")
@@ -360,7 +360,7 @@ def test_what_a_c3d_file_holds_becomes_metres_and_seconds(tmp_path: Path, monkey
     assert (found.names, found.rate, found.time.tolist()) == (("heel", "toe"), 50.0, [0.1, 0.12])
     for frame, marker, axis in np.ndindex(2, 2, 3):
         assert found.place[frame, marker, axis] == pytest.approx(1e-2 * points[axis, marker, frame])
-    for labels, unit, words in (([], "mm", "it has 0 markers in 'mm'"), (["a"], "inch", "it has 1 markers in 'inch'")):
+    for labels, unit, words in (([], "mm", "it has no markers"), (["a"], "inch", "marker a is in 'inch'")):
         point |= {"LABELS": {"value": labels}, "UNITS": {"value": [unit]}}
         with pytest.raises(ParameterError, match=words):
             read_c3d(tmp_path / "a.c3d")

@@ -12,6 +12,7 @@ import numpy.typing as npt
 import pytest
 
 from skisnow import scenario, simulate
+from skisnow.errors import ParameterError
 from skisnow.interop.opensim import Markers, MotionTable, read_motion, read_trc, write_motion, write_trc
 from skisnow.simulate.boots_table import write_boots
 
@@ -31,7 +32,7 @@ def columns_of(table: Any) -> dict[str, list[float]]:
 
 @pytest.mark.parametrize("ending", [".mot", ".sto"])
 def test_tables_both_ways(tmp_path: Path, ending: str) -> None:
-    ours = MotionTable(TIME, {"knee_angle_r": TIME**2 / 3.0, "pelvis_tx": -TIME}, name="ours")
+    ours = MotionTable(TIME, {"knee_angle_r": TIME**2 / 3.0, "pelvis_tx": -TIME}, in_degrees=True, name="ours")
     write_motion(ours, tmp_path / f"ours{ending}")
     theirs = opensim.TimeSeriesTable(str(tmp_path / f"ours{ending}"))
     assert list(theirs.getIndependentColumn()) == TIME.tolist()
@@ -40,6 +41,32 @@ def test_tables_both_ways(tmp_path: Path, ending: str) -> None:
     opensim.STOFileAdapter.write(theirs, str(tmp_path / "theirs.sto"))
     again = read_motion(tmp_path / "theirs.sto")
     assert again.columns["knee_angle_r"] == pytest.approx(ours.columns["knee_angle_r"], rel=1e-12)
+
+
+HEADS = {
+    "stated": "Coordinates\nversion=1\ninDegrees=yes\n",
+    "denied": "Coordinates\nversion=1\ninDegrees=no\n",
+    "abbreviated": "Coordinates\nversion=1\ninDegrees = Y\n",
+    "silent": "Coordinates\nversion=1\n",
+    "adapter": "DataType=double\nversion=3\nOpenSimVersion=4.4\n",
+    "old": "Coordinates\n",
+    "first line": "inDegrees=yes\nversion=1\n",
+}
+
+
+@pytest.mark.parametrize("ending", [".mot", ".sto"])
+@pytest.mark.parametrize("head", HEADS)
+def test_angles_are_in_degrees_where_opensim_reads_degrees(tmp_path: Path, head: str, ending: str) -> None:
+    path = tmp_path / f"a{ending}"
+    table = "nRows=2\nnColumns=2\nendheader\ntime\tknee_angle_r\n0\t0.5\n0.1\t0.7\n"
+    path.write_text(HEADS[head] + table, encoding="utf-8")
+    if (head, ending) == ("old", ".mot"):  # OpenSim guesses by the ending
+        with pytest.raises(ParameterError):
+            read_motion(path)
+        return
+    assert read_motion(path).in_degrees == opensim.Storage(str(path)).isInDegrees()
+    write_motion(read_motion(path), tmp_path / "again.sto")
+    assert opensim.Storage(str(tmp_path / "again.sto")).isInDegrees() == opensim.Storage(str(path)).isInDegrees()
 
 
 def test_forces_of_a_run_are_external_loads(tmp_path: Path) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import sys
 from pathlib import Path
 
 from .announced import announced
@@ -50,6 +51,7 @@ def run(options: argparse.Namespace) -> int:
             time=options.time,
             snow_height=None if height is None else height * CM,
             forces=options.forces,
+            report=lambda text: print(f"note: {text}", file=sys.stderr),
         )
         written = convert(options.source, options.target, asked)
     for path in written:

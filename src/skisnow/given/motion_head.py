@@ -12,6 +12,7 @@ if TYPE_CHECKING:
 
 HEAD_END: Final = "endheader"
 _COUNTS: Final = ("nRows", "nColumns")
+_WORDS: Final = {"yes": True, "y": True, "no": False, "n": False}
 
 
 def head_of_motion(lines: Sequence[str]) -> dict[str, str]:
@@ -24,9 +25,37 @@ def head_of_motion(lines: Sequence[str]) -> dict[str, str]:
     return {key.strip(): value.strip() for key, _, value in pairs}
 
 
-def is_in_degrees(head: Mapping[str, str]) -> bool:
-    """Whether angles are in degrees, as they are where nothing is said."""
-    return _said(head).get("indegrees", "yes").lower() != "no"
+def degrees_stated(path: str | Path, head: Mapping[str, str]) -> bool | None:
+    """Whether the head says that angles are in degrees; None if it says nothing.
+
+    Raises
+    ------
+    ParameterError
+        It says neither yes nor no.
+    """
+    word = _said(head).get("indegrees")
+    if word is None:
+        return None
+    if word.lower() not in _WORDS:
+        raise ParameterError(f"{path}: the head says inDegrees={word}. Allowed: yes, no. Correct the line.")
+    return _WORDS[word.lower()]
+
+
+def is_in_degrees(path: str | Path, head: Mapping[str, str]) -> bool:
+    """Whether OpenSim reads the angles of a file in degrees: radians if a head with a version says nothing.
+
+    Raises
+    ------
+    ParameterError
+        The head says nothing and has no version: OpenSim then reads degrees in .mot and radians in .sto.
+    """
+    stated = degrees_stated(path, head)
+    if stated is None and "version" not in _said(head) and str(path).lower().endswith(".mot"):
+        raise ParameterError(
+            f"{path}: the head says neither whether angles are in degrees nor a version. Add the line inDegrees=yes "
+            "or inDegrees=no before endheader."
+        )
+    return stated is True
 
 
 def require_whole(path: str | Path, head: Mapping[str, str], *, rows: int, columns: int) -> None:

@@ -56,12 +56,15 @@ class ConvertOptions:
         ISO 8601, where the source does not say it.
     forces
         A .mot or .sto file whose columns go into a .c3d file beside the markers.
+    report
+        Called with each note about the source, such as the points of a .c3d file that were omitted.
     """
 
     site: str | None = None
     snow_height: float | None = None
     time: str | None = None
     forces: Path | None = None
+    report: Callable[[str], None] | None = None
 
 
 def convert(source: str | Path, target: str | Path, options: ConvertOptions | None = None) -> tuple[Path, ...]:
@@ -156,8 +159,12 @@ def _motion(source: Path, target: Path, _: ConvertOptions) -> tuple[Path, ...]:
 
 
 def _markers(read: Callable[[Path], Markers]) -> Conversion:
-    def convert_markers(source: Path, target: Path, _: ConvertOptions) -> tuple[Path, ...]:
-        write_trc(read(source), target)
+    def convert_markers(source: Path, target: Path, options: ConvertOptions) -> tuple[Path, ...]:
+        markers = read(source)
+        if markers.omitted and options.report is not None:
+            names = ", ".join(markers.omitted)
+            options.report(f"{source}: {len(markers.omitted)} points are not places and are omitted: {names}")
+        write_trc(markers, target)
         return (target,)
 
     return convert_markers

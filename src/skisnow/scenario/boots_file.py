@@ -15,10 +15,10 @@ import numpy.typing as npt
 from ..errors import ParameterError
 from ..geometry.boot_axes import axes_of
 from ..given import plain_text
-from ..given.motion_head import HEAD_END, head_of_motion, is_in_degrees, require_whole
+from ..given.motion_head import HEAD_END, degrees_stated, head_of_motion, require_whole
 from ..inputs import meant
 from ..units import DEGREE
-from .boots import FEWEST_POSES, Boots
+from .boots import FEWEST_POSES, LARGEST, SHORTEST_STEP, Boots
 
 SIDES: Final = ("left", "right")
 ANGLES: Final = ("edge_angle_deg", "pitch_deg", "heading_deg")
@@ -88,7 +88,7 @@ def _rows(path: Path, text: str) -> list[Row]:
         raise ParameterError(f"{path}: there is no row with the names of columns")
     names = rows[0][1]
     require_whole(path, said, rows=len(rows) - 1, columns=len(names))
-    if any(name.endswith(ANGLES) for name in names) and not is_in_degrees(said):
+    if degrees_stated(path, said) is False and any(name.endswith(ANGLES) for name in names):
         raise ParameterError(
             f"{path}: the head says inDegrees=no, and angles of boots are in degrees; multiply them by 57.29578 and "
             "write inDegrees=yes"
@@ -148,6 +148,11 @@ def _require_rising(path: Path, clock: str, rows: list[Row], at: npt.NDArray[np.
                 f"{path}, row {line}, column {clock}: {after:g} after {before:g}; it must rise. Put the rows in order, "
                 "or leave one of two with the same pose out"
             )
+        if after - before < SHORTEST_STEP:
+            raise ParameterError(
+                f"{path}, row {line}, column {clock}: {after:g} after {before:g}. Allowed: steps of {SHORTEST_STEP:g} "
+                "or more. Correct the number, or omit one of the rows."
+            )
 
 
 def _column(path: Path, rows: list[Row], head: list[str], place: int) -> npt.NDArray[np.float64]:
@@ -163,6 +168,10 @@ def _column(path: Path, rows: list[Row], head: list[str], place: int) -> npt.NDA
             raise ParameterError(
                 f"{path}, row {line}, column {head[place]}: {row[place].strip()!r} is no finite number; write one"
                 f"{' with a decimal point' if ',' in row[place] else ''}"
+            )
+        if abs(values[i]) > LARGEST:
+            raise ParameterError(
+                f"{path}, row {line}, column {head[place]}: {values[i]:g} is beyond ±{LARGEST:g}. Correct the number."
             )
         if head[place].endswith(_EDGE) and abs(values[i]) > _ON_ITS_SIDE:
             raise ParameterError(

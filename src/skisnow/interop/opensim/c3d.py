@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import re
 import tempfile
+from itertools import count, takewhile
 from pathlib import Path
 from typing import Any, Final
 
@@ -23,11 +25,21 @@ MOST_FRAMES: Final = 65_535
 MOST_NAMES: Final = 255
 OFF_FRAME: Final = 0.25
 """Share of a frame by which a time may lie beside it, as rounded times of text files do: the format counts frames."""
+_GROUPS: Final = ("ANGLES", "FORCES", "MOMENTS", "POWERS", "REACTIONS", "SCALARS")
+"""Lists of points that are not places, as gait programs write them."""
+_JOINT: Final = "ankle|knee|hip|pelvis|trunk|spine|thorax|waist|neck|head|shoulder|elbow|wrist|foot|toe|progress(ion)?"
+_QUANTITY: Final = re.compile(
+    rf"(angles|({_JOINT})[ _]?angle|forces?|moments?|torques?|powers?|GRF|velocit(y|ies)|accelerations?)[ _]?\d*$",
+    re.IGNORECASE,
+)
+"""Ends of the names that these programs give to such points, for files without the lists."""
 _UNITS: Final = {"_force_v": "N", "_force_p": "m", "_moment_": "Nm", "_torque_": "Nm"}  # by what a name contains
 
 
 def read_c3d(path: str | Path) -> Markers:
     """Read the markers of a .c3d file; needs ezc3d (``skisnow[c3d]``).
+
+    Angles, forces, moments and powers that a program for gait stored among the points are listed in ``omitted``.
 
     Raises
     ------
@@ -39,20 +51,56 @@ def read_c3d(path: str | Path) -> Markers:
     try:
         found: Any = ezc3d.c3d(str(path))
         about = found["parameters"]["POINT"]
-        names = tuple(map(str, about["LABELS"]["value"]))
-        unit = str(about["UNITS"]["value"][0])
         rate = float(found["header"]["points"]["frame_rate"])
         first = int(found["header"]["points"]["first_frame"])
         points = np.asarray(found["data"]["points"], float)
+        labels, units = _labels_and_units(about)
+        quantities = {name for group in _GROUPS for name in _words(about, group)}
     except Exception as error:  # whatever a broken file makes of it
         raise ParameterError(f"{path} cannot be read as .c3d: {error}") from error
-    if not names or unit not in METRES:
+    names = labels[: points.shape[1]]
+    place_of = {name: i for i, name in enumerate(names) if not _is_quantity(name, quantities)}
+    if not place_of:
+        raise ParameterError(f"{path}: it has no markers. Allowed: at least one name in POINT:LABELS with a place.")
+    unknown = next((name for name, i in place_of.items() if units[i] not in METRES), None)
+    if unknown is not None:
         raise ParameterError(
-            f"{path}: it has {len(names)} markers in {unit!r}; markers in {', '.join(METRES)} are read"
+            f"{path}: marker {unknown} is in {units[place_of[unknown]]!r}. Allowed: {', '.join(METRES)}. Export the "
+            "markers in one of these units."
         )
-    place = METRES[unit] * np.moveaxis(points[:3, : len(names)], (0, 1, 2), (2, 1, 0))
+    if not (np.isfinite(rate) and rate > 0.0):
+        raise ParameterError(f"{path}: its rate is {rate:g} Hz. Allowed: above 0. Export the file again.")
+    columns = list(place_of.values())
+    sizes = np.array([METRES[units[i]] for i in columns])
+    place = np.moveaxis(points[:3, columns] * sizes[:, None], (0, 1, 2), (2, 1, 0))
     time = (first + np.arange(len(place))) / rate
-    return Markers(time, names, np.ascontiguousarray(place), rate)
+    omitted = tuple(name for name in names if name not in place_of)
+    try:
+        return Markers(time, tuple(names[i] for i in columns), np.ascontiguousarray(place), rate, omitted)
+    except ParameterError as error:
+        raise ParameterError(f"{path}: {error}") from error
+
+
+def _labels_and_units(about: Any) -> tuple[list[str], list[str]]:
+    """Name and unit of each point; further blocks of 255 names are called LABELS2, LABELS3 and so on."""
+    labels: list[str] = []
+    units: list[str] = []
+    blocks = (str(number) if number > 1 else "" for number in count(1))
+    for block in takewhile(lambda each: f"LABELS{each}" in about, blocks):
+        names, of_block = _words(about, f"LABELS{block}"), _words(about, f"UNITS{block}")
+        labels += names
+        one = next(iter(of_block or units), "")
+        units += [each.lower() for each in (of_block if len(of_block) == len(names) else [one] * len(names))]
+    return labels, units
+
+
+def _words(about: Any, key: str) -> list[str]:
+    return [str(each).strip() for each in about[key]["value"]] if key in about else []
+
+
+def _is_quantity(name: str, quantities: set[str]) -> bool:
+    """Whether a point is an angle, a force or the like, by the lists of the file or by its name."""
+    return name in quantities or _QUANTITY.search(name) is not None
 
 
 def write_c3d(markers: Markers, path: str | Path, *, forces: MotionTable | None = None) -> None:

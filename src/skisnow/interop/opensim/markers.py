@@ -36,6 +36,8 @@ class Markers(Shown):
         (n, k, 3) in the laboratory's axes (m); not a number where a marker was not seen.
     rate
         Frames a second (Hz).
+    omitted
+        Names of points of the file that are not places, such as angles and forces.
 
     Raises
     ------
@@ -47,6 +49,7 @@ class Markers(Shown):
     names: tuple[str, ...]
     place: FloatArray
     rate: float
+    omitted: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         require_rising("markers", self.time)
@@ -60,7 +63,8 @@ class Markers(Shown):
             raise ParameterError(f"markers: rate is {self.rate!r} Hz; it must be above 0")
 
     def _facts(self) -> Facts:
-        return Facts(f"{len(self.names)} markers, {len(self.time)} frames at {amount(self.rate, 'Hz')}")
+        omitted = f", {len(self.omitted)} other points omitted" if self.omitted else ""
+        return Facts(f"{len(self.names)} markers, {len(self.time)} frames at {amount(self.rate, 'Hz')}{omitted}")
 
     def of(self, name: str) -> FloatArray:
         """Places of one marker, (n, 3) (m).

@@ -21,6 +21,7 @@ FloatArray: TypeAlias = npt.NDArray[np.float64]
 ENDINGS: Final = (".mot", ".sto")
 MOST_BYTES: Final = 1 << 28
 _CLOCK: Final = "time"
+_OWN_KEYS: Final = ("nrows", "ncolumns", "indegrees", "version")
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
@@ -34,7 +35,7 @@ class MotionTable(Shown):
     columns
         By name, (n,) each; what they are says their name.
     in_degrees
-        Whether angles are in degrees; else in radians.
+        Whether angles are in degrees (default: False, radians, as OpenSim reads a file that says nothing).
     name
         That the head begins with.
     head
@@ -48,7 +49,7 @@ class MotionTable(Shown):
 
     time: FloatArray
     columns: Mapping[str, FloatArray]
-    in_degrees: bool = True
+    in_degrees: bool = False
     name: str = "motion"
     head: Mapping[str, str] = field(default_factory=dict)
 
@@ -77,14 +78,15 @@ def read_motion(path: str | Path) -> MotionTable:
     Raises
     ------
     ParameterError
-        The file cannot be read, has no head or no column ``time``, or a cell holds no number; file, row, column and
-        value are named.
+        The file cannot be read, has no head or no column ``time``, its head leaves open whether angles are in degrees,
+        or a cell is not a number; file, row, column and value are named.
     """
     lines = plain_text(path, most_bytes=MOST_BYTES).splitlines()
     ends = next((i for i, line in enumerate(lines) if line.strip().lower() == HEAD_END), None)
     if ends is None or ends + 1 >= len(lines):
         raise ParameterError(f"{path} has no line {HEAD_END} with a table behind it; a .mot or .sto file has one")
-    head = head_of_motion(lines[1:ends])
+    head = head_of_motion(lines[:ends])
+    name = "" if "=" in lines[0] else lines[0].strip()
     names = lines[ends + 1].split()
     if not names or names[0].lower() != _CLOCK or len(set(names)) < len(names):
         raise ParameterError(f"{path}, line {ends + 2}: the columns must begin with {_CLOCK}, each name once")
@@ -92,10 +94,11 @@ def read_motion(path: str | Path) -> MotionTable:
     rows = [(i + 1, line.split()) for i, line in enumerate(lines[first:], start=first) if line.strip()]
     require_whole(path, head, rows=len(rows), columns=len(names))
     numbers = np.array([_numbers(path, number, cells, names) for number, cells in rows]).reshape(-1, len(names))
-    others = {key: value for key, value in head.items() if key not in ("nRows", "nColumns", "inDegrees", "version")}
+    others = {key: value for key, value in head.items() if key.lower() not in _OWN_KEYS}
+    in_degrees = is_in_degrees(path, head)
     try:
         columns = {name: numbers[:, place] for place, name in enumerate(names) if place}
-        return MotionTable(numbers[:, 0], columns, is_in_degrees(head), lines[0].strip() or Path(path).stem, others)
+        return MotionTable(numbers[:, 0], columns, in_degrees, name or Path(path).stem, others)
     except ParameterError as error:
         raise ParameterError(f"{path}: {error}") from error
 

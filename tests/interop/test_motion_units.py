@@ -1,0 +1,148 @@
+"""Units of motion: degrees or radians of a table, points of a .c3d file that are not places, units of its blocks."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from skisnow.cli import main
+from skisnow.errors import ParameterError
+from skisnow.interop.opensim import Markers, read_c3d, read_motion, read_trc
+
+CASES = Path(__file__).parents[2].parent / "shared" / "cases" / "motion"
+shared = pytest.mark.skipif(not CASES.is_dir(), reason="../shared is not beside this folder")
+TABLE = "endheader\ntime\tknee_angle_r\n0.0\t0.5\n0.1\t0.7\n"
+
+
+def degrees(folder: Path, head: str, name: str = "a.sto") -> bool:
+    (folder / name).write_text(head + TABLE, encoding="utf-8")
+    return read_motion(folder / name).in_degrees
+
+
+def converted(folder: Path, source: Path, name: str) -> str:
+    assert main(["convert", str(source), str(folder / name)]) == 0
+    return (folder / name).read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize("first", ["Coordinates", "DataType=double"])
+def test_a_head_that_says_nothing_is_in_radians(tmp_path: Path, first: str) -> None:
+    assert not degrees(tmp_path, f"{first}\nversion=3\nOpenSimVersion=4.4\n")
+    assert not degrees(tmp_path, f"{first}\nversion=3\n", "a.mot")
+    assert not degrees(tmp_path, f"{first}\n")
+    assert "inDegrees=yes" not in converted(tmp_path, tmp_path / "a.sto", "b.mot")
+
+
+@pytest.mark.parametrize(("word", "answer"), [("yes", True), ("Y", True), ("YES", True), ("no", False), ("N", False)])
+def test_a_head_is_believed(tmp_path: Path, word: str, answer: bool) -> None:
+    for head in (f"a\nversion=1\ninDegrees={word}\n", f"inDegrees = {word}\nversion=1\n", f"a\ninDegrees={word}\n"):
+        assert degrees(tmp_path, head) is answer
+        assert degrees(tmp_path, head, "a.mot") is answer
+
+
+@pytest.mark.parametrize(
+    "head", ["a\n", "a\nnRows=2\n", "a\nversion=1\ninDegrees=maybe\n", "a\nversion=1\ninDegrees=\n"]
+)
+def test_a_head_that_leaves_it_open_is_refused(tmp_path: Path, head: str) -> None:
+    with pytest.raises(ParameterError, match="inDegrees"):
+        degrees(tmp_path, head, "a.mot")
+
+
+def capture(
+    path: Path, monkeypatch: pytest.MonkeyPatch, parameters: dict[str, list[str]], *, rate: float = 50.0
+) -> None:
+    """A .c3d file as ezc3d gives it: point i of frame t is at (i, 10 t, 1) in its unit."""
+    count = sum(len(values) for key, values in parameters.items() if key.startswith("LABELS"))
+    points = np.ones((4, count, 2))
+    points[0], points[1] = np.arange(count)[:, None], [0.0, 10.0]
+    read: dict[str, Any] = {
+        "parameters": {"POINT": {key: {"value": values} for key, values in parameters.items()}},
+        "header": {"points": {"frame_rate": rate, "first_frame": 0}},
+        "data": {"points": points},
+    }
+    path.write_bytes(b"read by another")
+    monkeypatch.setitem(sys.modules, "ezc3d", SimpleNamespace(c3d=lambda _: read))
+
+
+def test_names_go_on_in_further_blocks(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    names = [f"m{i}" for i in range(600)]
+    blocks = {"LABELS": names[:255], "LABELS2": names[255:510], "LABELS3": names[510:], "UNITS": ["mm"]}
+    capture(tmp_path / "a.c3d", monkeypatch, blocks)
+    found = read_c3d(tmp_path / "a.c3d")
+    assert list(found.names) == names
+    assert found.of("m599")[1].tolist() == pytest.approx([0.599, 0.01, 0.001])
+
+
+@pytest.mark.parametrize(
+    "name",
+    ["LAnkleAngles", "Subject:RKneeAngles", "L_HIP_ANGLE", "RAbsAnkleAngle", "LGroundReactionForce", "LNormalisedGRF",
+     "RHipMoment", "LKneePower", "Torque1", "com_velocity", "HeadAcceleration"],
+)  # fmt: skip
+def test_quantities_among_the_points_are_omitted(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str) -> None:
+    capture(tmp_path / "a.c3d", monkeypatch, {"LABELS": ["LHEE", name, "LTOE"], "UNITS": ["mm"]})
+    found = read_c3d(tmp_path / "a.c3d")
+    assert (found.names, found.omitted) == (("LHEE", "LTOE"), (name,))
+    assert found.of("LTOE")[0].tolist() == [0.002, 0.0, 0.001]
+
+
+@pytest.mark.parametrize("group", ["ANGLES", "FORCES", "MOMENTS", "POWERS", "REACTIONS", "SCALARS"])
+def test_quantities_of_the_lists_of_the_file_are_omitted(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], group: str
+) -> None:
+    capture(tmp_path / "a.c3d", monkeypatch, {"LABELS": ["LHEE", "x1"], "UNITS": ["mm"], group: ["x1 "]})
+    assert main(["convert", str(tmp_path / "a.c3d"), str(tmp_path / "a.trc")]) == 0
+    assert "x1" in capsys.readouterr().err
+    assert read_trc(tmp_path / "a.trc").names == ("LHEE",)
+    capture(tmp_path / "a.c3d", monkeypatch, {"LABELS": ["x1"], "UNITS": ["mm"], group: ["x1"]})
+    with pytest.raises(ParameterError, match="no markers"):
+        read_c3d(tmp_path / "a.c3d")
+
+
+@pytest.mark.parametrize("name", ["LHEE", "MandibleAngle", "ForceShoe", "PowerPack", "*17", "CentreOfMass", "Momentum"])
+def test_markers_with_similar_names_stay(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str) -> None:
+    capture(tmp_path / "a.c3d", monkeypatch, {"LABELS": [name], "UNITS": ["mm"]})
+    assert read_c3d(tmp_path / "a.c3d").names == (name,)
+
+
+def test_each_block_and_each_point_may_have_its_unit(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    blocks = {"LABELS": ["a", "b"], "UNITS": ["mm", "m"], "LABELS2": ["c"], "UNITS2": ["CM "]}
+    capture(tmp_path / "a.c3d", monkeypatch, blocks)
+    assert [read_c3d(tmp_path / "a.c3d").of(name)[1, 1] for name in "abc"] == pytest.approx([0.01, 10.0, 0.1])
+    capture(tmp_path / "a.c3d", monkeypatch, blocks | {"UNITS2": ["deg"]})
+    with pytest.raises(ParameterError, match="marker c"):
+        read_c3d(tmp_path / "a.c3d")
+
+
+@pytest.mark.parametrize("rate", [0.0, -1.0, np.nan])
+def test_a_rate_that_is_none_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, rate: float) -> None:
+    capture(tmp_path / "a.c3d", monkeypatch, {"LABELS": ["a"], "UNITS": ["mm"]}, rate=rate)
+    with pytest.raises(ParameterError, match=r"a\.c3d"):
+        read_c3d(tmp_path / "a.c3d")
+
+
+def test_ezc3d_gives_blocks_as_they_are_read_here(tmp_path: Path) -> None:
+    ezc3d = pytest.importorskip("ezc3d", reason="ezc3d is not installed: pip install 'skisnow[c3d]'")
+    names = [*(f"m{i}" for i in range(299)), "LKneeAngles"]
+    made = ezc3d.c3d()
+    made["parameters"]["POINT"]["RATE"]["value"], made["parameters"]["POINT"]["UNITS"]["value"] = [100.0], ["mm"]
+    made["parameters"]["POINT"]["LABELS"]["value"] = names
+    made["data"]["points"] = np.ones((4, 300, 2)) * np.arange(300)[:, None]
+    made.write(str(tmp_path / "a.c3d"))
+    found = read_c3d(tmp_path / "a.c3d")
+    assert (list(found.names), found.omitted) == (names[:-1], ("LKneeAngles",))
+    assert found.of("m298")[0] == pytest.approx([0.298] * 3)
+
+
+@shared
+def test_shared_cases(tmp_path: Path) -> None:
+    assert not read_motion(CASES / "stofileadapter.sto").in_degrees
+    assert "inDegrees=yes" not in converted(tmp_path, CASES / "stofileadapter.sto", "a.mot")
+    pytest.importorskip("ezc3d", reason="ezc3d is not installed: pip install 'skisnow[c3d]'")
+    many: Markers = read_c3d(CASES / "many300.c3d")
+    assert many.names == tuple(f"M{i}" for i in range(300))
+    assert many.of("M299")[0].tolist() == pytest.approx([2.99, 0.5, 0.1])
+    assert read_c3d(CASES / "angles.c3d").names == ("LHEE", "LTOE")
