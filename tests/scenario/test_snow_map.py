@@ -97,7 +97,14 @@ def test_hardness_where_it_matters(tmp_path: Path) -> None:
     [
         ("y_m,H_V_N_per_mm3\n0,1\n", "row 1: there is no column x_m"),
         ("x_m,y_m\n0,0\n", "there is no column H_V_N_per_mm3 and none S_f_N_per_mm2, or no row"),
-        ("x_m,H_V_N_per_mm3\n0,1\n1,-2\n", "row 3, column H_V_N_per_mm3: '-2' is not above 0"),
+        ("x_m,H_V_N_per_mm3\n0,1\n1,-2\n", "row 3, column H_V_N_per_mm3: '-2'"),
+        ("x_m,H_V_N_per_mm3\n0,1\n1,0\n", "row 3, column H_V_N_per_mm3: '0'"),
+        ("x_m,H_V_N_per_mm3\n0,1\n1,1e308\n", "row 3, column H_V_N_per_mm3: '1e308'"),
+        ("x_m,H_V_N_per_mm3\n0,1\n1,2e8\n", "row 3, column H_V_N_per_mm3: '2e8'"),  # N/m³
+        ("x_m,H_V_N_per_mm3\n0,1\n1e308,1\n", "row 3, column x_m: '1e308'"),
+        ("x_m,H_V_N_per_mm3\n0,1\n5e-324,1\n", "row 3, column x_m: '5e-324'"),
+        (OVER.replace("20,5,", "20,1e308,"), "row 5, column y_m: '1e308'"),
+        (OVER.replace("20,", "0.0002,").replace("5,0.", ".00005,0."), "looks like degrees"),
         ("x_m,H_V_N_per_mm3\n0,1\n1,soft\n", "row 3, column H_V_N_per_mm3: 'soft' is no finite number"),
         ("x_m,H_V_N_per_mm3\n0,1\n0,2\n", "row 3, column x_m: '0' does not rise"),
         ("x_m,H_V_N_per_mm3\n0,1\n", "there are 1 rows"),

@@ -3,10 +3,7 @@
 from __future__ import annotations
 
 import math
-import sys
-from contextlib import nullcontext
 from pathlib import Path
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -61,16 +58,6 @@ def test_places_that_differ_by_rounding_are_one(tmp_path: Path) -> None:
     rows = [f"{x!r},{y},0" for x, y in ((0.1 + 0.2, 0), (0.3, 1), (0.6, 0), (0.6, 1), (0.0, 0), (0.0, 1))]
     terrain = read_terrain(written(tmp_path, "\n".join(["x_m,y_m,z_m", *rows])))
     assert terrain.x == pytest.approx([0.0, 0.3, 0.6], abs=1e-12)
-
-
-def test_esri_grid_begins_in_the_north_and_its_places_are_the_middles_of_the_cells(tmp_path: Path) -> None:
-    terrain = read_terrain(written(tmp_path, ASC, "heights.asc"))
-    assert terrain.x.tolist() == [101.0, 103.0, 105.0]
-    assert terrain.y.tolist() == [51.0, 53.0]
-    assert terrain.height.tolist() == [[1.0, 5.0], [2.0, 6.0], [3.0, 7.0]]  # north is y = 53
-    middles = ASC.replace("xllcorner 100", "XLLCENTER 101").replace("yllcorner 50", "yllcenter 51")
-    again = read_terrain(written(tmp_path, middles, "other.asc"))
-    assert (again.x.tolist(), again.y.tolist()) == (terrain.x.tolist(), terrain.y.tolist())
 
 
 def test_origin_is_where_the_scenario_begins(tmp_path: Path) -> None:
@@ -163,30 +150,6 @@ def test_what_is_wrong_in_a_table_is_told_with_its_place(tmp_path: Path, text: s
     assert str(error.value).startswith(str(path))
 
 
-@pytest.mark.parametrize(
-    ("old", "new", "said"),
-    [
-        ("5 6 7", "5 6", "line 7: 2 values where ncols is 3"),
-        ("5 6 7", "5 six 7", "line 7, column 2: 'six' is no finite number"),
-        ("5 6 7", "5 6 nan", "line 7, column 3: 'nan' is no finite number"),
-        ("5 6 7", "5 -9999 7", "line 7, column 2: -9999 is NODATA_value: nobody measured a height there"),
-        ("1 2 3\n", "", "there are 1 rows of values where nrows is 2"),
-        ("ncols 3", "ncols 3.5", "ncols is 3.5; a surface needs a whole number of 2 or more"),
-        ("nrows 2", "nrows two", "line 2: 'nrows two' must be nrows and one number"),
-        ("cellsize 2.0\n", "", "the header has no cellsize"),
-        ("cellsize 2.0", "cellsize 0", "cellsize is 0; it must be above 0"),
-        ("xllcorner 100.0\n", "", "neither xllcorner nor xllcenter"),
-        ("yllcorner 50.0", "yllcorner inf", "y of the lower left is inf"),
-        ("ncols 3\nnrows 2", "ncols 99999\nnrows 99999", "are too many: at most"),
-    ],
-)
-def test_what_is_wrong_in_an_esri_grid_is_told_with_its_place(tmp_path: Path, old: str, new: str, said: str) -> None:
-    path = written(tmp_path, ASC.replace(old, new), "heights.asc")
-    with pytest.raises(ParameterError, match=said) as error:
-        read_terrain(path)
-    assert str(error.value).startswith(str(path))
-
-
 @pytest.mark.parametrize(("rows", "refused"), [(10, False), (11, True)])
 def test_rows_that_lie_on_no_grid_are_told(tmp_path: Path, rows: int, refused: bool) -> None:
     """Ten and more different places along both axes for each row: a line across the grid."""
@@ -210,73 +173,3 @@ def test_file_that_is_not_there_is_told(tmp_path: Path) -> None:
     for name in ("none.csv", "none.asc", "none.tif"):
         with pytest.raises(ParameterError, match=rf"{name} cannot be read"):
             read_terrain(tmp_path / name)
-
-
-def test_geotiff_lies_as_on_its_map(tmp_path: Path) -> None:
-    rasterio = pytest.importorskip("rasterio", reason="the extra geotiff is not installed")
-    path = tmp_path / "heights.tif"
-    heights = np.array([[5.0, 6.0, 7.0], [1.0, 2.0, 3.0]])
-
-    def write(data: object, transform: object, system: str) -> None:
-        form = {"driver": "GTiff", "width": 3, "height": 2, "count": 1, "dtype": "float64", "nodata": -9999.0}
-        with rasterio.open(path, "w", crs=system, transform=transform, **form) as file:
-            file.write(data, 1)
-
-    north_up = rasterio.Affine(2.0, 0.0, 100.0, 0.0, -2.0, 54.0)
-    write(heights, north_up, "EPSG:32632")
-    terrain = read_terrain(path)
-    assert (terrain.x.tolist(), terrain.y.tolist()) == ([101.0, 103.0, 105.0], [51.0, 53.0])
-    assert terrain.height.tolist() == [[1.0, 5.0], [2.0, 6.0], [3.0, 7.0]]
-    write(np.where(heights == 2.0, -9999.0, heights), north_up, "EPSG:32632")
-    with pytest.raises(ParameterError, match="row 2, column 2: no height, and 1 cells like it"):
-        read_terrain(path)
-    write(heights, north_up, "EPSG:4326")
-    with pytest.raises(ParameterError, match="its coordinates are degrees"):
-        read_terrain(path)
-    write(heights, rasterio.Affine(2.0, 0.5, 100.0, 0.5, -2.0, 54.0), "EPSG:32632")
-    with pytest.raises(ParameterError, match="its rows do not run east"):
-        read_terrain(path)
-    path.write_bytes(b"no picture")
-    with pytest.raises(ParameterError, match="is no GeoTIFF"):
-        read_terrain(path)
-
-
-def test_geotiff_without_its_package_says_what_to_install(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setitem(sys.modules, "rasterio", None)
-    with pytest.raises(ParameterError, match=r"pip install 'skisnow\[geotiff\]'"):
-        read_terrain(written(tmp_path, "", "heights.tif"))
-
-
-@pytest.mark.parametrize("east", [1.0, -1.0])
-@pytest.mark.parametrize("north", [1.0, -1.0])
-def test_rows_and_columns_of_a_geotiff_may_run_either_way(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, east: float, north: float
-) -> None:
-    """An eighth of the column's x and half of the row's y, whichever the file begins with; of any reader."""
-    x, y = 101.0 + 2.0 * np.arange(3)[:: int(east)], 51.0 + 2.0 * np.arange(2)[:: int(north)]
-    steps = {"a": 2.0 * east, "b": 0.0, "c": x[0] - east, "d": 0.0, "e": 2.0 * north, "f": y[0] - north}
-    metres = SimpleNamespace(is_geographic=False, linear_units_factor=("metre", 1.0), linear_units="metre")
-    file = SimpleNamespace(
-        read=lambda band, masked: np.ma.array(0.125 * x[None, :] + 0.5 * y[:, None], mask=(band != 1) or not masked),
-        transform=SimpleNamespace(**steps),
-        crs=metres,
-    )
-    reader = SimpleNamespace(open=lambda _: nullcontext(file), errors=SimpleNamespace(RasterioError=OSError))
-    monkeypatch.setitem(sys.modules, "rasterio", reader)
-    path = written(tmp_path, "", "heights.tif")
-    found = read_terrain(path)
-    assert (found.x.tolist(), found.y.tolist()) == ([101.0, 103.0, 105.0], [51.0, 53.0])
-    assert found.height.tolist() == [[0.125 * a + 0.5 * b for b in (51.0, 53.0)] for a in (101.0, 103.0, 105.0)]
-    file.crs = None  # nothing is said: metres
-    assert read_terrain(path).x.tolist() == found.x.tolist()
-    for changes, told in (
-        ({"is_geographic": True}, "its coordinates are degrees"),
-        ({"linear_units_factor": ("foot", 0.3048), "linear_units": "foot"}, "its coordinates are in foot"),
-    ):
-        file.crs = SimpleNamespace(**vars(metres) | changes)
-        with pytest.raises(ParameterError, match=told):
-            read_terrain(path)
-    for name in ("b", "d"):
-        file.crs, file.transform = None, SimpleNamespace(**steps | {name: 0.5})
-        with pytest.raises(ParameterError, match="its rows do not run east"):
-            read_terrain(path)

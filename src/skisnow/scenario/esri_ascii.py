@@ -1,8 +1,9 @@
-"""Heights from an ESRI ASCII grid: a header, then rows from north to south, each from west to east."""
+"""Heights from an ESRI ASCII grid: a header, then values from north to south, each row from west to east."""
 
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Final, NoReturn
@@ -10,120 +11,144 @@ from typing import Final, NoReturn
 import numpy as np
 
 from ..errors import ParameterError
-from ..given import plain_text
-from .grid_table import FloatArray, PlacedValues
+from ..given import is_file, plain_text
+from .map_system import MapSystem, map_system
+from .raster import FloatArray, PlacedValues, Raster, placed_heights, require_size
 
 MOST_BYTES: Final = 1 << 28
-MOST_CELLS: Final = 50_000_000
-_WORDS: Final = ("ncols", "nrows", "xllcorner", "xllcenter", "yllcorner", "yllcenter", "cellsize", "nodata_value")
-_NEEDED: Final = ("ncols", "nrows", "cellsize")
+_MOST_BYTES_OF_SYSTEM: Final = 1 << 20
+_WORDS: Final = (
+    "ncols", "nrows", "xllcorner", "xllcenter", "yllcorner", "yllcenter", "cellsize", "dx", "dy",
+    "nodata_value", "nodata",
+)  # fmt: skip
+_ENTRY: Final = re.compile(r"\s*([A-Za-z_]+)[ \t]+(\S+)")
 
 
 def read_esri_ascii(path: str | Path, *, column: str) -> PlacedValues:
     """Read a grid: x is east, y is north, in the file's coordinates (m); places are the middles of the cells.
 
+    Line breaks between values do not matter. A ``.prj`` file of the same name gives the map system.
+
     Raises
     ------
     ParameterError
-        The file cannot be read, its header lacks something, there are more or fewer numbers than cells, one is no
-        finite number or is NODATA; line and column are named.
+        The file cannot be read, its header lacks an entry, there are more or fewer numbers than cells, a cell is a
+        hole, or the grid breaks a rule of `raster`; line and column are named.
     """
-    lines = plain_text(path, most_bytes=MOST_BYTES).splitlines()
-    header, first = _header(path, lines)
-    n_columns, n_rows = (_count(path, header, word) for word in ("ncols", "nrows"))
-    if n_columns * n_rows > MOST_CELLS:
-        _refuse(path, f"{n_columns} × {n_rows} cells are too many: at most {MOST_CELLS} are read; cut out the slope")
-    values = _values(path, lines, first, (n_columns, n_rows), header.get("nodata_value"))
-    size = header["cellsize"]
-    if not size > 0.0:
-        _refuse(path, f"cellsize is {size:g}; it must be above 0, in m")
-    x, y = (
-        _lower_left(path, header, axis, size) + size * np.arange(count, dtype=np.float64)
-        for axis, count in (("x", n_columns), ("y", n_rows))
+    text = plain_text(path, most_bytes=MOST_BYTES)
+    header, first = _header(path, text)
+    for word in ("ncols", "nrows"):
+        if word not in header:
+            _refuse(path, f"The header has no {word}. Is it an ESRI ASCII grid? Export it again")
+    require_size(path, header["ncols"], header["nrows"])
+    counts = int(header["ncols"]), int(header["nrows"])
+    steps = _cell(path, header, "dx"), _cell(path, header, "dy")
+    west, south = (_lower_left(path, header, axis, size) for axis, size in zip("xy", steps, strict=True))
+    system = _system(path)
+    raster = Raster(
+        path=path,
+        values=_values(path, text, first, counts, header.get("nodata_value", header.get("nodata"))),
+        first=(west, south + (counts[1] - 1) * steps[1]),
+        step=(steps[0], -steps[1]),
+        height_unit=1.0 if system is None or system.height_unit is None else system.height_unit,
+        system=system,
+        where=lambda row, at: _where(text, first, row * counts[0] + at),
     )
-    return PlacedValues(x, y, {column: np.ascontiguousarray(values[::-1].T)})
+    return placed_heights(raster, column=column)
 
 
 def _refuse(path: str | Path, what: str) -> NoReturn:
     raise ParameterError(f"{path}: {what}")
 
 
-def _header(path: str | Path, lines: list[str]) -> tuple[dict[str, float], int]:
-    """By lower-case word, and the number of the first line of values."""
+def _header(path: str | Path, text: str) -> tuple[dict[str, float], int]:
+    """Numbers by lower-case word, and the place in the text at which the values begin."""
     found: dict[str, float] = {}
-    for number, line in enumerate(lines):
-        words = line.split()
-        if not words:
-            continue
-        if words[0].lower() not in _WORDS:
-            break
+    at = 0
+    while (entry := _ENTRY.match(text, at)) and entry[1].lower() in _WORDS:
         try:
-            (value,) = (float(word) for word in words[1:])
+            found[entry[1].lower()] = float(entry[2])
         except ValueError:
-            _refuse(path, f"line {number + 1}: {line.strip()!r} must be {words[0]} and one number; correct it")
-        found[words[0].lower()] = value
-    else:
-        number = len(lines)
-    missing = [word for word in _NEEDED if word not in found]
-    if missing:
-        _refuse(path, f"line {number + 1}: the header has no {missing[0]}. Is it an ESRI ASCII grid? Export it again")
-    return found, number
+            line = text.count("\n", 0, entry.start(2)) + 1
+            raise ParameterError(f"{path}, line {line}: {entry[1]} is {entry[2]!r}. Allowed: a number.") from None
+        at = entry.end()
+    return found, at
 
 
-def _count(path: str | Path, header: Mapping[str, float], word: str) -> int:
-    value = header[word]
-    if not (value >= 2.0 and value == math.floor(value) and value < MOST_CELLS):
-        _refuse(path, f"{word} is {value:g}; a surface needs a whole number of 2 or more")
-    return int(value)
+def _cell(path: str | Path, header: Mapping[str, float], word: str) -> float:
+    """Width of the cells in x (dx) or y (dy)."""
+    sizes = {header[name] for name in (word, "cellsize") if name in header}
+    if not sizes:
+        _refuse(path, f"The header has no cellsize, and no {word}. Is it an ESRI ASCII grid? Export it again")
+    if len(sizes) > 1:
+        _refuse(path, f"cellsize is {header['cellsize']:g}, but {word} is {header[word]:g}. Remove one of them")
+    (size,) = sizes
+    if not size > 0.0:
+        _refuse(path, f"{word if word in header else 'cellsize'} is {size:g}. Allowed: above 0, in m")
+    return size
 
 
 def _lower_left(path: str | Path, header: Mapping[str, float], axis: str, size: float) -> float:
     """The middle of the first cell."""
     corner, middle = (header.get(f"{axis}ll{word}") for word in ("corner", "center"))
     if corner is None and middle is None:
-        _refuse(path, f"the header has neither {axis}llcorner nor {axis}llcenter: where does the grid begin? Add one")
+        _refuse(path, f"The header has no {axis}llcorner and no {axis}llcenter. Add the one that the grid begins with")
     found = middle if middle is not None else (corner or 0.0) + size / 2.0
     if not math.isfinite(found):
-        _refuse(path, f"{axis} of the lower left is {found}; it must be a finite number in m")
+        _refuse(path, f"{axis} of the lower left is {found}. Allowed: a finite number in m")
     return found
 
 
-def _values(
-    path: str | Path, lines: list[str], first: int, counts: tuple[int, int], no_data: float | None
-) -> FloatArray:
-    """(rows, columns), the northern row first."""
-    n_columns, n_rows = counts
-    rows = [(number, line.split()) for number, line in enumerate(lines[first:], start=first + 1) if line.strip()]
-    if len(rows) != n_rows:
-        _refuse(path, f"there are {len(rows)} rows of values where nrows is {n_rows}; the file is cut, or has more")
-    values = np.empty((n_rows, n_columns))
-    for place, (number, words) in enumerate(rows):
-        if len(words) != n_columns:
-            _refuse(path, f"line {number}: {len(words)} values where ncols is {n_columns}; write one row on each line")
+def _values(path: str | Path, text: str, first: int, counts: tuple[int, int], no_data: float | None) -> FloatArray:
+    """(rows, columns), the northern row first; NaN in a hole."""
+    cells = counts[0] * counts[1]
+    if len(text) - first < 2 * cells - 1:  # before memory is allocated
+        _refuse_number(path, len(text[first:].split()), counts)
+    values = np.empty(cells)
+    count, line = 0, text.count("\n", 0, first) + 1
+    for line, words in enumerate((part.split() for part in text[first:].split("\n")), start=line):  # noqa: B020
+        if count + len(words) > cells:
+            _refuse_number(path, len(text[first:].split()), counts)
         try:
-            values[place] = [float(word) for word in words]
+            values[count : count + len(words)] = [float(word) for word in words]
         except ValueError:
-            pass
-        else:
-            bad = ~np.isfinite(values[place]) | (values[place] == (math.nan if no_data is None else no_data))
-            if not bad.any():
-                continue
-        _refuse_value(path, number, words, no_data)
-    return values
+            _refuse_word(path, line, words)
+        count += len(words)
+    if count < cells:
+        _refuse_number(path, count, counts)
+    if no_data is not None:
+        values[values == no_data] = np.nan
+    return values.reshape(counts[1], counts[0])
 
 
-def _refuse_value(path: str | Path, number: int, words: list[str], no_data: float | None) -> NoReturn:
+def _refuse_number(path: str | Path, found: int, counts: tuple[int, int]) -> NoReturn:
+    _refuse(
+        path,
+        f"The file has {found} values. Allowed: ncols × nrows = {counts[0]} × {counts[1]} = {counts[0] * counts[1]}. "
+        "Export it again",
+    )
+
+
+def _refuse_word(path: str | Path, line: int, words: list[str]) -> NoReturn:
     for column, word in enumerate(words, start=1):
         try:
-            value = float(word)
+            float(word)
         except ValueError:
-            value = math.nan
-        if value == no_data:
-            _refuse(
-                path,
-                f"line {number}, column {column}: {word} is NODATA_value: nobody measured a height there. Cut out a "
-                "rectangle that is measured everywhere, or fill the gap",
-            )
-        if not math.isfinite(value):
-            _refuse(path, f"line {number}, column {column}: {word!r} is no finite number; correct it")
-    _refuse(path, f"line {number} cannot be read; correct it")
+            raise ParameterError(
+                f"{path}, line {line}, column {column}: {word!r} is not a number. Use digits and a decimal point."
+            ) from None
+    raise AssertionError(words)
+
+
+def _where(text: str, first: int, cell: int) -> str:
+    """Line and column of a value by its number (0 or more)."""
+    for line, words in enumerate(map(str.split, text[first:].split("\n")), start=text.count("\n", 0, first) + 1):
+        if cell < len(words):
+            return f"line {line}, column {cell + 1}"
+        cell -= len(words)
+    raise AssertionError(cell)
+
+
+def _system(path: str | Path) -> MapSystem | None:
+    file = Path(path).with_suffix(".prj")
+    return map_system(plain_text(file, most_bytes=_MOST_BYTES_OF_SYSTEM)) if is_file(file) else None

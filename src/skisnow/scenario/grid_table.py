@@ -3,17 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from pathlib import Path
-from typing import Final, TypeAlias
+from typing import Final
 
 import numpy as np
 import numpy.typing as npt
 
 from ..csv_rows import CsvRow, csv_rows
 from ..errors import ParameterError
-
-FloatArray: TypeAlias = npt.NDArray[np.float64]
+from .raster import FloatArray, PlacedValues, number_within, require_places
 
 ROUNDED: Final = 0.01
 """Share of the spacing by which a place may lie off its even place: it was written rounded (modelling assumption)."""
@@ -22,37 +20,23 @@ SPARSE: Final = 10
 """Places for each row beyond which rows lie on no grid at all."""
 
 
-@dataclass(frozen=True, slots=True)
-class PlacedValues:
-    """Columns over evenly spaced places.
-
-    Attributes
-    ----------
-    x, y
-        Places (m), (n,) and (m,), rising.
-    columns
-        Values (n, m) by the name of their column.
-    """
-
-    x: FloatArray
-    y: FloatArray
-    columns: dict[str, FloatArray]
-
-
 def read_grid_table(path: str | Path, columns: Sequence[str], *, action: str) -> PlacedValues:
     """Read columns over ``x_m, y_m``: rows in any order, one for each place of a grid.
 
     Raises
     ------
     ParameterError
-        The file cannot be read, a column is missing, a cell holds no finite number, a place stands there twice or not
-        at all, or places are not evenly spaced; file, row, column and value are named.
+        The file cannot be read, a column is missing, a cell holds no finite number or one outside `LIMITS`, a
+        place is listed twice or not at all, places are not evenly spaced, or x and y look like degrees; file, row,
+        column and value are named.
     """
     rows = csv_rows(path, ("x_m", "y_m", *columns), action=action)
-    numbers = {name: np.array([row.number(name) for row in rows]) for name in ("x_m", "y_m", *columns)}
+    numbers = {name: np.array([number_within(row, name) for row in rows]) for name in ("x_m", "y_m", *columns)}
     x, i = _even(path, numbers["x_m"], rows, "x_m")
     y, j = _even(path, numbers["y_m"], rows, "y_m")
     _require_each_once(path, rows, (x, i), (y, j), action)
+    steps = float(x[1] - x[0]), float(y[1] - y[0])
+    require_places(path, (float(x[0]), float(y[0])), steps, (len(x), len(y)))
     filled = {}
     for name in columns:
         values = np.empty((len(x), len(y)))

@@ -9,6 +9,7 @@ import numpy as np
 
 from ..csv_rows import csv_rows
 from ..errors import ParameterError
+from .raster import number_within, profile_limits
 from .slope import Gap, Profile
 
 COLUMNS: Final = ("x", "y")
@@ -29,11 +30,13 @@ def read_profile(path: str | Path, *, gap: Gap = "error") -> Profile:
     Raises
     ------
     ParameterError
-        The file cannot be read, a column is missing, a cell holds no finite number (file, row, column and value are
-        named), or it is no profile: too few points, x that does not rise, a gap, a cliff.
+        The file cannot be read, a column is missing, a cell holds no finite number or an impossible one (file, row,
+        column and value are named), or it is no profile: too few points, x that does not rise, a gap, a cliff.
     """
     rows = csv_rows(path, COLUMNS, action=_ACTION)
-    table = np.array([[row.number(name) for name in COLUMNS] for row in rows], dtype=float).reshape(-1, 2)
+    limits = profile_limits(COLUMNS)
+    numbers = [[number_within(row, name, limits[name]) for name in COLUMNS] for row in rows]
+    table = np.array(numbers, dtype=float).reshape(-1, 2)
     try:
         return Profile(table[:, 0], table[:, 1], gap=gap, source=str(path))
     except ParameterError as error:

@@ -5,24 +5,24 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Final, TypeAlias
+from typing import Final
 
 import numpy as np
-import numpy.typing as npt
 
 from ..csv_rows import CsvRow, csv_rows
 from ..errors import ParameterError
 from ..geometry.surfaces import Grid
 from ..units import N_PER_MM2, N_PER_MM3
 from .grid_table import read_grid_table
+from .raster import number_within
 from .snow_map import SnowMap
-
-FloatArray: TypeAlias = npt.NDArray[np.float64]
 
 SIZES: Final = {"H_V_N_per_mm3": N_PER_MM3, "S_f_N_per_mm2": N_PER_MM2}
 FINER: Final = 16
 """Places of an uneven row's even table for each of its shortest distances."""
 MOST_PLACES: Final = 20_000
+CLOSEST: Final = 1e-6
+"""Rows nearer to each other (m) are at the same place (modelling assumption)."""
 _ACTION: Final = (
     "write x_m and H_V_N_per_mm3, S_f_N_per_mm2 or both, one row for each place along the slope; with y_m one row for "
     "each place of an even grid"
@@ -62,7 +62,7 @@ def read_snow_map(path: str | Path) -> SnowMap:
 
 def _require_positive(row: CsvRow, names: Sequence[str]) -> None:
     for name in names:
-        if not row.number(name) > 0.0:
+        if not number_within(row, name) > 0.0:
             raise row.refused(name, "is not above 0")
 
 
@@ -73,11 +73,11 @@ def _grids(path: str | Path, names: Sequence[str]) -> dict[str, Grid]:
 
 def _along(path: str | Path, rows: Sequence[CsvRow], names: Sequence[str]) -> dict[str, Grid]:
     """Uneven places are brought to even ones by cubics that do not overshoot."""
-    x = np.array([row.number("x_m") for row in rows])
+    x = np.array([number_within(row, "x_m") for row in rows])
     if len(x) < 2:
         raise ParameterError(f"{path}: there are {len(x)} rows; snow that varies needs two or more")
     for row, step in zip(rows[1:], np.diff(x), strict=True):
-        if not step > 0.0:
+        if not step > CLOSEST:
             raise row.refused("x_m", "does not rise", action="sort the rows, and keep one of those at the same place")
     from scipy.interpolate import PchipInterpolator  # slow to load
 

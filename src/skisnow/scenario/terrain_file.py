@@ -8,7 +8,8 @@ from typing import Final
 from ..errors import ParameterError
 from .esri_ascii import read_esri_ascii
 from .geotiff import read_geotiff
-from .grid_table import PlacedValues, read_grid_table
+from .grid_table import read_grid_table
+from .raster import PlacedValues
 from .terrain import Terrain
 
 HEIGHT: Final = "z_m"

@@ -1,0 +1,228 @@
+"""Rules that every grid from a file must follow: size, places, units, holes, and map system."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final, NamedTuple, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from ..csv_rows import CsvRow
+from ..errors import ParameterError
+from .map_system import MapSystem, require_true_lengths, utm_zone
+
+FloatArray: TypeAlias = npt.NDArray[np.float64]
+
+MOST_CELLS: Final = 50_000_000
+FINEST, COARSEST = 0.01, 1e5
+"""Smallest and largest allowed cell (m): below, coordinates within ±360 look like degrees (modelling assumption)."""
+
+
+class Limits(NamedTuple):
+    """Smallest and largest allowed number, and a word on numbers outside."""
+
+    lowest: float
+    highest: float
+    note: str
+
+
+_PLACE: Final = Limits(-1e8, 1e8, "Give coordinates in m.")
+_HEIGHT: Final = Limits(
+    -5000.0,
+    9000.0,
+    "A number outside often marks a hole. Fix: cut out a rectangle that is measured everywhere, or fill the gaps, such "
+    "as by gdal_fillnodata.",
+)
+_SNOW: Final = Limits(0.0, 1e6, "Check the unit.")
+LIMITS: Final[Mapping[str, Limits]] = {
+    "x_m": _PLACE,
+    "y_m": _PLACE,
+    "z_m": _HEIGHT,
+    "H_V_N_per_mm3": _SNOW,
+    "S_f_N_per_mm2": _SNOW,
+}
+"""By column; 9000 m is above the highest mountain, and heights may count from a place of the slope."""
+
+
+@dataclass(frozen=True, slots=True)
+class PlacedValues:
+    """Columns over evenly spaced places.
+
+    Attributes
+    ----------
+    x, y
+        Places (m), (n,) and (m,), rising.
+    columns
+        Values (n, m) by the name of their column.
+    """
+
+    x: FloatArray
+    y: FloatArray
+    columns: dict[str, FloatArray]
+
+
+@dataclass(frozen=True, slots=True)
+class Raster:
+    """A grid of heights as its file gives it.
+
+    Attributes
+    ----------
+    path
+        The file.
+    values
+        Heights (rows, columns) in units of `height_unit`, NaN in a hole.
+    first, step
+        Middle of the first cell and distance to the next, in x and in y, in the map system's units.
+    height_unit : m
+        Length of one unit of the heights.
+    system
+        Map system; None if the file states none: metres.
+    where
+        Words for the place of a cell in the file, from its row and column (0 or more).
+    """
+
+    path: str | Path
+    values: FloatArray
+    first: tuple[float, float]
+    step: tuple[float, float]
+    height_unit: float
+    system: MapSystem | None
+    where: Callable[[int, int], str]
+
+
+def number_within(row: CsvRow, column: str, limits: Limits | None = None) -> float:
+    """Number in a cell of a table.
+
+    Raises
+    ------
+    ParameterError
+        The cell holds no finite number, or one outside the limits of its column.
+    """
+    value = row.number(column)
+    allowed = limits or LIMITS[column]
+    if not allowed.lowest <= value <= allowed.highest:
+        raise ParameterError(
+            f"{row.path}, row {row.row}, column {column}: {row.cells[column]!r} is out of range. Allowed: from "
+            f"{allowed.lowest:g} to {allowed.highest:g}. {allowed.note}"
+        )
+    return value
+
+
+def profile_limits(columns: tuple[str, str]) -> dict[str, Limits]:
+    """Limits of a profile's columns: horizontal distance, height."""
+    return dict(zip(columns, (_PLACE, _HEIGHT), strict=True))
+
+
+def require_size(path: str | Path, n_columns: float, n_rows: float) -> None:
+    """Reject a grid that is too small for a surface or too large for the memory.
+
+    Raises
+    ------
+    ParameterError
+        A count is not a whole number of 2 or more, or there are more than `MOST_CELLS` cells.
+    """
+    for name, count in (("ncols", n_columns), ("nrows", n_rows)):
+        if not 2 <= count <= MOST_CELLS or count != int(count):
+            raise ParameterError(f"{path}: {name} is {count:g}. Allowed: whole numbers from 2 to {MOST_CELLS}.")
+    if n_columns * n_rows > MOST_CELLS:
+        raise ParameterError(
+            f"{path}: The grid has {n_columns:g} × {n_rows:g} cells. Allowed: at most {MOST_CELLS}. Cut out the slope."
+        )
+
+
+def require_places(path: str | Path, first: tuple[float, float], step: tuple[float, float], n: tuple[int, int]) -> None:
+    """Reject places that are not finite or look like degrees, and cells of impossible size.
+
+    Raises
+    ------
+    ParameterError
+        A coordinate is beyond `LIMITS`, or a cell smaller than `FINEST` or larger than `COARSEST`.
+    """
+    ends = []
+    for axis, start, size, count in zip("xy", first, step, n, strict=True):
+        if not 0.0 < abs(size) <= COARSEST:
+            raise ParameterError(
+                f"{path}: The cells are {size:g} m wide in {axis}. Allowed: from {FINEST:g} to {COARSEST:g} m."
+            )
+        ends += [start, start + size * (count - 1)]
+        if not max(abs(ends[-2]), abs(ends[-1])) <= _PLACE.highest:
+            raise ParameterError(
+                f"{path}: The grid reaches from {axis} = {ends[-2]:g} to {ends[-1]:g} m. Allowed: from "
+                f"{_PLACE.lowest:g} to {_PLACE.highest:g} m."
+            )
+    fine = max(abs(size) for size in step) < FINEST
+    if fine and max(map(abs, ends[:2])) <= 360.0 and max(map(abs, ends[2:])) <= 90.0:
+        raise ParameterError(_in_degrees(path, "looks like degrees", ends[0], ends[2], abs(step[0])))
+    if min(abs(size) for size in step) < FINEST:
+        raise ParameterError(f"{path}: A cell is {min(map(abs, step)):g} m wide. Allowed: {FINEST:g} m or more.")
+
+
+def placed_heights(raster: Raster, *, column: str) -> PlacedValues:
+    """Heights over places that rise, in m.
+
+    Raises
+    ------
+    ParameterError
+        The grid is in degrees, on a map that stretches lengths, has a hole, or violates another rule of this module.
+    """
+    path, system, (n_rows, n_columns) = raster.path, raster.system, raster.values.shape
+    require_size(path, n_columns, n_rows)
+    if system is not None:
+        _require_usable(raster, system)
+    unit = 1.0 if system is None else system.unit
+    first, step = ((pair[0] * unit, pair[1] * unit) for pair in (raster.first, raster.step))
+    require_places(path, first, step, (n_columns, n_rows))
+    heights = raster.values * raster.height_unit
+    _require_heights(raster, heights)
+    x, y = (
+        start + size * np.arange(count, dtype=float)
+        for start, size, count in zip(first, step, (n_columns, n_rows), strict=True)
+    )
+    values = heights.T
+    if step[0] < 0.0:
+        x, values = x[::-1], values[::-1]
+    if step[1] < 0.0:
+        y, values = y[::-1], values[:, ::-1]
+    return PlacedValues(x, y, {column: np.ascontiguousarray(values)})
+
+
+def _require_usable(raster: Raster, system: MapSystem) -> None:
+    n_rows, n_columns = raster.values.shape
+    x, y = (
+        start + size * (count - 1) / 2.0
+        for start, size, count in zip(raster.first, raster.step, (n_columns, n_rows), strict=True)
+    )
+    if system.in_degrees:
+        raise ParameterError(_in_degrees(raster.path, f"is degrees ({system.name})", x, y, abs(raster.step[0])))
+    if system.downwards:
+        raise ParameterError(
+            f"{raster.path}: The vertical system of {system.name} counts downwards. Allowed: heights. Fix: change the "
+            "sign and state heights."
+        )
+    require_true_lengths(raster.path, system, x, y)
+
+
+def _in_degrees(path: str | Path, what: str, longitude: float, latitude: float, size: float) -> str:
+    target = utm_zone(longitude, latitude) if abs(latitude) <= 90.0 else "EPSG:32632"
+    return (
+        f"{path}: The unit of x and y {what}: the grid is at x = {longitude:.6g}, y = {latitude:.6g}, its cells are "
+        f"{size:.3g} wide. Allowed: metres, with cells of {FINEST:g} m or more. Fix: warp it to metres, such as "
+        f"gdalwarp -t_srs {target} -r cubic."
+    )
+
+
+def _require_heights(raster: Raster, heights: FloatArray) -> None:
+    """Reject holes: NODATA, numbers that are not finite, and numbers that no place on the earth has as its height."""
+    bad = ~((heights >= _HEIGHT.lowest) & (heights <= _HEIGHT.highest))
+    if not bad.any():
+        return
+    row, column = (int(each) for each in np.argwhere(bad)[0])
+    value = heights[row, column]
+    what = "no height (NODATA)" if np.isnan(value) else f"{value:g} m is not a height"
+    raise ParameterError(
+        f"{raster.path}, {raster.where(row, column)}: {what}; {int(bad.sum())} of {bad.size} cells are like it. "
+        f"Allowed: from {_HEIGHT.lowest:g} to {_HEIGHT.highest:g} m. {_HEIGHT.note}"
+    )

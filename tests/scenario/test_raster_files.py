@@ -1,0 +1,357 @@
+"""ESRI ASCII grids and GeoTIFF: places, heights in m, and each rule that rejects a grid."""
+
+from __future__ import annotations
+
+import math
+import sys
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from skisnow.errors import ParameterError
+from skisnow.scenario import read_snow_map, read_terrain
+from skisnow.scenario.map_system import length_unit, map_system
+from skisnow.scenario.raster import Raster, placed_heights
+
+CASES = Path(__file__).parents[3] / "shared" / "cases" / "terrain"
+PLANE = 2500.0 - math.tan(math.radians(12.0)) * (1.0 + 2.0 * np.arange(40.0)) + np.zeros((40, 1))
+"""A slope of 12° that falls east, cells of 2 m: the terrain of the cases."""
+HEADER = {
+    "ncols": "3",
+    "nrows": "2",
+    "xllcorner": "100.0",
+    "yllcorner": "50.0",
+    "cellsize": "2.0",
+    "NODATA_value": "-9999",
+}
+VALUES = "5 6 7\n1 2 3\n"
+US_FOOT = 1200.0 / 3937.0
+
+
+def header(**changes: str | None) -> str:
+    entries = HEADER | changes
+    return "".join(f"{word} {value}\n" for word, value in entries.items() if value is not None)
+
+
+def written(folder: Path, text: str, name: str = "heights.asc") -> Path:
+    path = folder / name
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+def slope_deg(path: Path) -> float:
+    along_x, along_y = read_terrain(path).surface.gradients(40.0, 0.0)
+    return math.degrees(math.atan(math.hypot(float(along_x), float(along_y))))
+
+
+def test_places_are_the_middles_of_cells_and_rows_begin_in_the_north(tmp_path: Path) -> None:
+    terrain = read_terrain(written(tmp_path, header() + VALUES))
+    assert terrain.x.tolist() == [101.0, 103.0, 105.0]
+    assert terrain.y.tolist() == [51.0, 53.0]
+    assert terrain.height.tolist() == [[1.0, 5.0], [2.0, 6.0], [3.0, 7.0]]  # north is y = 53
+    middles = header(xllcorner=None, yllcorner=None, XLLCENTER="101", yllcenter="51")
+    again = read_terrain(written(tmp_path, middles + VALUES, "other.asc"))
+    assert (again.x.tolist(), again.y.tolist()) == (terrain.x.tolist(), terrain.y.tolist())
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        header() + "5 6 7 1 2 3",
+        header() + "5\n6\n7\n1\n2\n3\n",
+        header() + "5 6\n7 1\n\n2 3\n",
+        header().replace("\n", " ") + VALUES,
+        header(cellsize=None, dx="2.0", dy="2.0") + VALUES,
+        header(cellsize=None, DX="2", DY="2", NODATA_value=None, nodata="-1") + VALUES,
+        header().replace("\n", "\r\n") + VALUES.replace("\n", "\r"),
+    ],
+)
+def test_values_count_and_not_lines(tmp_path: Path, text: str) -> None:
+    terrain = read_terrain(written(tmp_path, text))
+    assert (terrain.x.tolist(), terrain.y.tolist()) == ([101.0, 103.0, 105.0], [51.0, 53.0])
+    assert terrain.height.tolist() == [[1.0, 5.0], [2.0, 6.0], [3.0, 7.0]]
+
+
+def test_cells_need_not_be_square(tmp_path: Path) -> None:
+    terrain = read_terrain(written(tmp_path, header(cellsize=None, dx="2", dy="3") + VALUES))
+    assert (terrain.x.tolist(), terrain.y.tolist()) == ([101.0, 103.0, 105.0], [51.5, 54.5])
+    assert [float(each) for each in terrain.surface.gradients(103.0, 53.0)] == pytest.approx([0.5, 4.0 / 3.0])
+
+
+@pytest.mark.parametrize(
+    ("text", "place"),
+    [
+        (header() + "5 six 7\n1 2 3\n", "line 7, column 2: 'six'"),
+        (header() + "5 6 nan\n1 2 3\n", "line 7, column 3:"),
+        (header() + "5 -9999 7\n1 2 3\n", "line 7, column 2:"),
+        (header(NODATA_value="0") + "5 6 7 1\n2 0", "line 8, column 2:"),
+        (header(NODATA_value=None) + "5 -9999 7\n1 2 3\n", "line 6, column 2:"),
+        (header(NODATA_value=None) + "5 6 7\n1 -32768 3\n", "line 7, column 2:"),
+        (header(NODATA_value=None) + "5 6 7\n1 2 -3.4028235e38\n", "line 7, column 3:"),
+        (header(NODATA_value=None) + "1e308 6 7\n1 2 3\n", "line 6, column 1:"),
+        (header() + "5 6 7\n1 2\n", "5 values"),
+        (header() + "5 6 7\n1 2 3 4\n", "7 values"),
+        (header() + "5 6 7\n", "3 values"),
+        (header(ncols="3.5") + VALUES, "ncols is 3.5"),
+        (header(ncols="1e309") + VALUES, "ncols is inf"),
+        (header(nrows="nan") + VALUES, "nrows is nan"),
+        (header(nrows="-2") + VALUES, "nrows is -2"),
+        (header(nrows="1") + VALUES, "nrows is 1"),
+        (header(nrows="two") + VALUES, "line 2: nrows is 'two'"),
+        (header(nrows=None) + VALUES, "no nrows"),
+        (header(cellsize=None) + VALUES, "no cellsize"),
+        (header(cellsize=None, dx="2") + VALUES, "no cellsize, and no dy"),
+        (header(dx="3", dy="3") + VALUES, "cellsize is 2, but dx is 3"),
+        (header(cellsize="0") + VALUES, "cellsize is 0"),
+        (header(cellsize="inf") + VALUES, "inf"),
+        (header(cellsize="1e300") + VALUES, r"1e\+300 m wide"),
+        (header(xllcorner=None) + VALUES, "no xllcorner and no xllcenter"),
+        (header(yllcorner="inf") + VALUES, "y of the lower left is inf"),
+        (header(yllcorner="1e200") + VALUES, r"y = 1e\+200"),
+        (header(ncols="99999", nrows="99999") + VALUES, "99999 × 99999 cells"),
+        (header(ncols="7000", nrows="7000") + VALUES, "6 values"),
+        (header(cellsize="0.0000277778", xllcorner="11", yllcorner="47") + VALUES, "looks like degrees"),
+        (header(cellsize="0.008333", xllcorner="-117.5", yllcorner="-33") + VALUES, "degrees.*EPSG:32711"),
+        ("", "no ncols"),
+        ("DSAA\n3 2\n", "no ncols"),
+    ],
+)
+def test_an_esri_grid_is_rejected_with_the_place_of_the_fault(tmp_path: Path, text: str, place: str) -> None:
+    path = written(tmp_path, text)
+    with pytest.raises(ParameterError, match=place) as error:
+        read_terrain(path)
+    assert str(error.value).startswith(str(path))
+
+
+UTM = (
+    'PROJCS["WGS_1984_UTM_Zone_32N",GEOGCS["GCS_WGS_1984",DATUM["D_WGS_1984",SPHEROID["WGS_1984",6378137.0,298.257223563]],'
+    'PRIMEM["Greenwich",0.0],UNIT["Degree",0.0174532925199433]],PROJECTION["Transverse_Mercator"],'
+    'PARAMETER["False_Easting",500000.0],PARAMETER["False_Northing",0.0],PARAMETER["Central_Meridian",9.0],'
+    'PARAMETER["Scale_Factor",0.9996],PARAMETER["Latitude_Of_Origin",0.0],UNIT["Meter",1.0]]'
+)
+FEET = UTM.replace('UNIT["Meter",1.0]', 'UNIT["Foot_US",0.3048006096012192]')
+HEIGHT_FEET = f'{UTM},VERTCS["NAVD88_height_(ftUS)",VDATUM["NAVD88"],UNIT["Foot_US",0.3048006096012192]]'
+DEGREES = UTM[UTM.index("GEOGCS") : UTM.index(",PROJECTION")]
+MERCATOR = UTM.replace("Transverse_Mercator", "Mercator_Auxiliary_Sphere").replace("UTM_Zone_32N", "Web_Mercator")
+
+
+@pytest.mark.parametrize(
+    ("text", "in_degrees", "unit", "height_unit"),
+    [
+        (UTM, False, 1.0, None),
+        (FEET, False, US_FOOT, None),
+        (HEIGHT_FEET, False, 1.0, US_FOOT),
+        (f'COMPD_CS["both",{FEET},VERT_CS["h",UNIT["foot",0.3048]]]', False, US_FOOT, 0.3048),
+        (DEGREES, True, 1.0, None),
+        ('GEOGCRS["WGS 84",CS[ellipsoidal,2],UNIT["degree",0.017]]', True, 1.0, None),
+        ('LOCAL_CS["pit",UNIT["metre",1]]', False, 1.0, None),
+        ("Projection GEOGRAPHIC\nDatum NAD83\nUnits DD\n", True, 1.0, None),
+        ("Projection UTM\nZone 12\nZunits FEET\nUnits METERS\n", False, 1.0, 0.3048),
+    ],
+)
+def test_units_of_a_map_system(text: str, in_degrees: bool, unit: float, height_unit: float | None) -> None:
+    system = map_system(text)
+    assert system.in_degrees is in_degrees
+    assert system.unit == pytest.approx(unit)
+    assert system.height_unit == (height_unit and pytest.approx(height_unit))
+    assert not system.downwards
+
+
+def test_the_prj_file_gives_the_units_of_an_esri_grid(tmp_path: Path) -> None:
+    path = written(tmp_path, header(xllcorner="500000", yllcorner="5200000", cellsize="20") + VALUES)
+    written(tmp_path, FEET, "heights.prj")
+    assert read_terrain(path).x == pytest.approx(np.array([500010.0, 500030.0, 500050.0]) * US_FOOT)
+    assert read_terrain(path).height[2].tolist() == [3.0, 7.0]
+    written(tmp_path, HEIGHT_FEET, "heights.prj")
+    assert read_terrain(path).height[2].tolist() == pytest.approx([3.0 * US_FOOT, 7.0 * US_FOOT])
+    for text, fault in ((DEGREES, "degrees"), (MERCATOR, "stretches lengths")):
+        written(tmp_path, text, "heights.prj")
+        with pytest.raises(ParameterError, match=fault):
+            read_terrain(path)
+
+
+@pytest.mark.parametrize("east", [1.0, -1.0])
+@pytest.mark.parametrize("north", [1.0, -1.0])
+def test_rows_and_columns_run_in_either_direction(east: float, north: float) -> None:
+    """An eighth of x plus half of y, from whichever corner the file begins."""
+    x, y = 101.0 + 2.0 * np.arange(3)[:: int(east)], 51.0 + 2.0 * np.arange(2)[:: int(north)]
+    raster = Raster(
+        path="heights", values=0.125 * x[None, :] + 0.5 * y[:, None], first=(x[0], y[0]),
+        step=(2.0 * east, 2.0 * north), height_unit=10.0, system=None, where=lambda row, column: f"{row}, {column}",
+    )  # fmt: skip
+    found = placed_heights(raster, column="z_m")
+    assert (found.x.tolist(), found.y.tolist()) == ([101.0, 103.0, 105.0], [51.0, 53.0])
+    assert found.columns["z_m"].tolist() == [[1.25 * a + 5.0 * b for b in (51.0, 53.0)] for a in (101.0, 103.0, 105.0)]
+
+
+def test_geotiff_without_its_package_names_the_extra(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "rasterio", None)
+    with pytest.raises(ParameterError, match=r"pip install 'skisnow\[geotiff\]'"):
+        read_terrain(written(tmp_path, "", "heights.tif"))
+
+
+@pytest.fixture(name="rasterio")
+def _rasterio() -> Any:
+    return pytest.importorskip("rasterio", reason="the extra geotiff is not installed")
+
+
+@pytest.fixture(name="tif")
+def _tif(rasterio: Any, tmp_path: Path) -> Any:
+    """Writes a GeoTIFF of heights in the given system and unit."""
+
+    def write(
+        heights: Any, *, crs: str | None = "EPSG:32632", corner: tuple[float, float] = (500000.0, 5200000.0),
+        cell: float = 2.0, unit: str | None = None, scale: float = 1.0, offset: float = 0.0, dtype: str = "float64",
+        nodata: float | None = None, turned: float = 0.0,
+    ) -> Path:  # fmt: skip
+        path, values = tmp_path / "heights.tif", np.asarray(heights)
+        form: dict[str, Any] = {"driver": "GTiff", "count": 1, "dtype": dtype, "nodata": nodata}
+        transform = rasterio.Affine(cell, turned, corner[0], turned, -cell, corner[1])
+        n_rows, n_columns = values.shape
+        with rasterio.open(path, "w", crs=crs, transform=transform, width=n_columns, height=n_rows, **form) as file:
+            file.write(values.astype(dtype), 1)
+            file.scales, file.offsets = (scale,), (offset,)
+            if unit is not None:
+                file.units = (unit,)
+        return path
+
+    return write
+
+
+def test_geotiff_lies_as_on_its_map(tif: Any) -> None:
+    terrain = read_terrain(tif([[5.0, 6.0, 7.0], [1.0, 2.0, 3.0]], corner=(500100.0, 5200054.0)))
+    assert (terrain.x.tolist(), terrain.y.tolist()) == ([500101.0, 500103.0, 500105.0], [5200051.0, 5200053.0])
+    assert terrain.height.tolist() == [[1.0, 5.0], [2.0, 6.0], [3.0, 7.0]]
+
+
+@pytest.mark.parametrize(
+    ("changes", "unit"),
+    [
+        ({}, 1.0),
+        ({"unit": "m"}, 1.0),
+        ({"unit": "ft"}, 0.3048),
+        ({"unit": "US survey foot"}, US_FOOT),
+        ({"unit": "us-ft"}, US_FOOT),
+        ({"unit": "dm"}, 0.1),
+        ({"unit": "cm"}, 0.01),
+        ({"crs": "EPSG:32632+5703"}, 1.0),
+        ({"crs": "EPSG:32632+6360"}, US_FOOT),
+        ({"crs": "EPSG:32632+8228"}, 0.3048),
+        ({"crs": "EPSG:32632+6360", "unit": "US survey foot"}, US_FOOT),
+    ],
+)
+def test_heights_of_a_geotiff_are_metres_whatever_their_unit(tif: Any, changes: dict[str, Any], unit: float) -> None:
+    path = tif(PLANE / unit, **changes)
+    terrain = read_terrain(path)
+    assert terrain.height == pytest.approx(PLANE.T, rel=1e-12)
+
+
+@pytest.mark.parametrize(("scale", "offset", "unit"), [(0.1, 2400.0, "m"), (1.0, 2000.0, "m"), (0.25, 8000.0, "ft")])
+def test_scale_and_offset_of_a_geotiff_count(tif: Any, scale: float, offset: float, unit: str) -> None:
+    size = {"m": 1.0, "ft": 0.3048}[unit]
+    stored = np.rint((PLANE / size - offset) / scale)
+    terrain = read_terrain(tif(stored, scale=scale, offset=offset, unit=unit, dtype="uint16"))
+    assert terrain.height == pytest.approx(PLANE.T, abs=scale * size / 2.0 + 1e-9)
+
+
+def test_nodata_is_a_stored_number_before_scale_and_offset(tif: Any) -> None:
+    stored = np.full((3, 3), 960)
+    stored[1, 2] = 0
+    with pytest.raises(ParameterError, match="row 2, column 3: no height"):
+        read_terrain(tif(stored, scale=0.1, offset=2400.0, dtype="uint16", nodata=0))
+
+
+def test_places_in_feet_become_metres(tif: Any) -> None:
+    terrain = read_terrain(tif(PLANE / US_FOOT, crs="EPSG:2231", corner=(3e6, 1.4e6), unit="us-ft"))
+    assert terrain.x[:2] == pytest.approx(np.array([3000001.0, 3000003.0]) * US_FOOT)
+    along_x, _ = terrain.surface.gradients(terrain.x[20], terrain.y[20])
+    assert float(along_x) == pytest.approx(-math.tan(math.radians(12.0)) / US_FOOT)
+
+
+@pytest.mark.parametrize(
+    ("changes", "fault"),
+    [
+        ({"crs": "EPSG:4326", "corner": (11.0, 47.0), "cell": 2.8e-5}, "degrees.*EPSG:32632"),
+        ({"crs": None, "corner": (11.0, 47.0), "cell": 2.8e-5}, "degrees"),
+        ({"crs": "EPSG:4326+5773", "corner": (11.0, 47.0), "cell": 2.8e-5}, "degrees"),
+        ({"crs": "EPSG:3857", "corner": (1224514.0, 5942074.0)}, r"factor of 1\.46.*EPSG:32632"),
+        ({"crs": "EPSG:3395", "corner": (1224514.0, 5911060.0)}, r"factor of 1\.46"),
+        ({"crs": "EPSG:3031", "corner": (0.0, 3e6)}, "stretches lengths"),
+        ({"crs": "EPSG:5070", "corner": (-856000.0, 1850000.0)}, "stretches lengths"),
+        ({"crs": "EPSG:32632+5715"}, "downwards"),
+        ({"crs": "EPSG:32632+6360", "unit": "m"}, "vertical system"),
+        ({"unit": "fathom"}, "fathom"),
+        ({"turned": 0.5}, "do not run east"),
+        ({"nodata": PLANE[0, 0]}, "row 1, column 1: no height"),
+        ({"scale": math.inf}, "scale inf"),
+        ({"scale": 1e300}, "row 1, column 1: .* is not a height"),
+    ],
+)
+def test_a_geotiff_that_would_be_misread_is_rejected(tif: Any, changes: dict[str, Any], fault: str) -> None:
+    path = tif(PLANE, **changes)
+    with pytest.raises(ParameterError, match=fault) as error:
+        read_terrain(path)
+    assert str(error.value).startswith(str(path))
+
+
+@pytest.mark.parametrize("code", [2056, 31287, 3035, 2154, 27700, 3006])
+def test_maps_with_true_lengths_are_read(rasterio: Any, tif: Any, code: int) -> None:  # noqa: ARG001 - it skips
+    from rasterio.warp import transform
+
+    place = {27700: (-4.0, 57.0), 3006: (14.0, 66.0)}.get(code, (9.0, 46.8))
+    x, y = transform("EPSG:4326", f"EPSG:{code}", *([each] for each in place))
+    assert len(read_terrain(tif(PLANE, crs=f"EPSG:{code}", corner=(x[0], y[0]))).x) == 40
+
+
+def test_a_picture_without_a_place_and_other_bytes_are_rejected(rasterio: Any, tmp_path: Path) -> None:
+    path = tmp_path / "heights.tif"
+    path.write_bytes(b"no picture")
+    with pytest.raises(ParameterError, match="GeoTIFF"):
+        read_terrain(path)
+    form: dict[str, Any] = {"driver": "GTiff", "width": 3, "height": 3, "count": 1, "dtype": "uint8"}
+    with pytest.warns(rasterio.errors.NotGeoreferencedWarning), rasterio.open(path, "w", **form) as file:
+        file.write(np.ones((3, 3), "uint8"), 1)
+    with pytest.raises(ParameterError, match="where it lies"):
+        read_terrain(path)
+
+
+@pytest.mark.parametrize(("name", "unit"), [("Meters", 1.0), ("US_survey-foot", US_FOOT), ("fathom", None)])
+def test_names_of_units(name: str, unit: float | None) -> None:
+    assert length_unit(name) == unit
+
+
+@pytest.mark.skipif(not CASES.is_dir(), reason="the shared cases are not beside the repository")
+@pytest.mark.parametrize("name", ["ok.tif", "scaled_dm.tif", "dxdy.asc", "onerow.asc", "wrap.asc"])
+def test_shared_grids_are_the_same_slope(name: str) -> None:
+    if name.endswith(".tif"):
+        pytest.importorskip("rasterio", reason="the extra geotiff is not installed")
+    terrain = read_terrain(CASES / name)
+    assert terrain.height.mean() == pytest.approx(2491.5, abs=0.1)
+    assert terrain.height[9].mean() == pytest.approx(2496.0, abs=0.1)
+    assert slope_deg(CASES / name) == pytest.approx(12.0, abs=0.7)  # heights in whole decimetres, at one place
+    assert (terrain.x[0], terrain.x[-1], terrain.y[0], terrain.y[-1]) == (1.0, 79.0, -39.0, 39.0)
+
+
+@pytest.mark.skipif(not CASES.is_dir(), reason="the shared cases are not beside the repository")
+@pytest.mark.parametrize(
+    ("name", "fault"),
+    [
+        ("merc.tif", "stretches lengths"),
+        ("deg.asc", "degrees.*gdalwarp"),
+        ("hole_nohead.asc", "line 11, column 6: -9999 m is not a height"),
+        ("nrows-1e309.asc", "nrows is inf"),
+    ],
+)
+def test_shared_grids_that_are_rejected(name: str, fault: str) -> None:
+    if name.endswith(".tif"):
+        pytest.importorskip("rasterio", reason="the extra geotiff is not installed")
+    with pytest.raises(ParameterError, match=fault):
+        read_terrain(CASES / name)
+
+
+@pytest.mark.skipif(not CASES.is_dir(), reason="the shared cases are not beside the repository")
+def test_shared_snow_map_with_a_huge_value_is_rejected() -> None:
+    with pytest.raises(ParameterError, match="row 5, column H_V_N_per_mm3: '1e308'"):
+        read_snow_map(CASES / "map-huge-value.csv")
