@@ -47,7 +47,7 @@ def test_what_comes_back_is_within_the_stated_error(replay: Replay) -> None:
             # the error is that of the encoder; reading multiplies and adds once more
             assert difference <= errors["gate_place" if name == "gates" else before + name] + 1e-12, name
             compared += 1
-    assert compared == 8 + 8 + 7
+    assert compared == 8 + 10 + 7
     assert (back.title, back.facts, back.tilt) == (replay.title, replay.facts, replay.tilt)
 
 
@@ -106,9 +106,8 @@ def test_one_moment_is_enough_and_none_is_refused() -> None:
     over = {
         name: getattr(one, name)[:1] for name in ("time", "place", "attitude", "speed", "curvature", "heading", "depth")
     }
-    skis = replace(one.skis, **{
-        name: getattr(one.skis, name)[:1] for name in ("bending", "twist", "edge_depth", "force_per_length")
-    })  # fmt: skip
+    histories = ("bending", "twist", "edge_depth", "force_per_length", "force", "normal_force")
+    skis = replace(one.skis, **{name: getattr(one.skis, name)[:1] for name in histories})
     assert len(replay_of_bytes(replay_bytes(replace(one, skis=skis, **over))).time) == 1
     with pytest.raises(ParameterError, match="no moment"):
         replay_of_run(replace(circle_run(count=3), time=np.zeros(0)))
@@ -121,7 +120,7 @@ def test_one_moment_is_enough_and_none_is_refused() -> None:
         (lambda content: b"GIF8" + content[4:], "do not begin with SKRP"),
         (lambda content: content[:-4000], "damaged or cut off"),
         (lambda content: content[:100], "damaged or cut off"),
-        (lambda content: content.replace(b'"format": 1', b'"format": 2'), "reads format 1"),
+        (lambda content: content.replace(b'"format": 2', b'"format": 3'), "reads format 2"),
     ],
 )
 def test_damaged_bytes_are_refused(replay: Replay, damage: Any, words: str) -> None:

@@ -30,7 +30,7 @@ def test_pieces_of_groove_of_a_single_moment_have_its_time() -> None:
 
 def test_every_array_has_a_kind_and_a_unit_that_readers_know() -> None:
     assert {each.type for each in KEPT.values()} == {"float32", "uint16"}
-    assert {each.unit for each in KEPT.values()} == {"1", "m", "m/s", "1/m", "rad", "s", "N/m"}
+    assert {each.unit for each in KEPT.values()} == {"1", "m", "m/s", "1/m", "rad", "s", "N/m", "N"}
 
 
 def test_quaternions_go_on_over_more_than_a_turn() -> None:

@@ -9,6 +9,7 @@ import numpy as np
 from skisnow.scenario import Air, Contact, Plane, RigidSledge, Scenario, Solver, Start, Stop
 from skisnow.simulate.boot_history import BootHistory
 from skisnow.simulate.run import Groove, Run, SkiHistory
+from skisnow.simulate.snow_forces import node_lengths
 from skisnow.ski import ski_named
 from skisnow.snow import SnowProperties
 from skisnow.units import DEGREE, N_PER_MM2, N_PER_MM3
@@ -76,13 +77,16 @@ def _skis(time: np.ndarray, place: np.ndarray, to_left: np.ndarray, deep: float)
     edge_depth = deep * outer * grows * along
     force = 600.0 * outer * grows * np.exp(-((station - 0.1) ** 2) / 0.08)
     half = np.array([STANCE / 2.0, -STANCE / 2.0])
+    shear = 0.4 * 0.5e6 * np.maximum(edge_depth, 0.0)
+    normal, side = (np.broadcast_to(each, shape) @ node_lengths(station) for each in (force, shear))
     return SkiHistory(
         station=station,
         track=place[:, None, :] + half[None, :, None] * to_left[:, None, :],
         depth=edge_depth[:, :, np.argmin(abs(station))],
         edge_depth=edge_depth,
         force_per_length=np.broadcast_to(force, shape),
-        shear_per_length=0.4 * 0.5e6 * np.maximum(edge_depth, 0.0),
+        shear_per_length=shear,
+        force=side[..., None] * to_left[:, None, :] + normal[..., None] * np.array([0.0, 0.0, 1.0]),
         bending=np.broadcast_to(0.02 * station**2, shape),
         twist=np.broadcast_to(-0.5 * DEGREE * station**2, shape),
     )

@@ -96,6 +96,7 @@ def _skis(place: np.ndarray, stance: float) -> SkiHistory:
         edge_depth=np.broadcast_to(depth[:, :, None], flat.shape),
         force_per_length=flat,
         shear_per_length=flat,
+        force=np.zeros((n, 2, 3)),
         bending=flat,
         twist=flat,
     )

@@ -67,6 +67,8 @@ def scalars_dict(equilibrium: Equilibrium) -> dict[str, Any]:
         "holds": None if equilibrium.holds is None else bool(equilibrium.holds),
         "side_force_N": json_number(equilibrium.side_force),
         "side_force_limit_N": json_number(equilibrium.side_force_limit),
+        "total_force_N": json_number(equilibrium.total_force),
+        "grip_utilisation": json_number(equilibrium.grip_utilisation),
         "turn_radius_boot_m": json_number(equilibrium.turn_radius_boot),
         "turn_radius_boot_other_spread_m": json_number(equilibrium.turn_radius_boot_other_spread),
         "turn_radius_chord_m": json_number(equilibrium.turn_radius_chord),

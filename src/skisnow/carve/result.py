@@ -128,6 +128,20 @@ class Equilibrium(Shown):
     warnings: tuple[str, ...]
     iterations: int
 
+    @property
+    def total_force(self) -> float | None:
+        """Magnitude of load and side force together (N)."""
+        if self.side_force is None or self.forebody_load is None or self.afterbody_load is None:
+            return None
+        return math.hypot(self.side_force, self.forebody_load + self.afterbody_load)
+
+    @property
+    def grip_utilisation(self) -> float | None:
+        """Side force over its limit; None without a limit above 0."""
+        return (
+            self.side_force / self.side_force_limit if self.side_force is not None and self.side_force_limit else None
+        )
+
     def _facts(self) -> Facts:
         deepest = None if self.edge_depth is None else float(np.max(self.edge_depth)) / MM
         holds = {True: "holds", False: "does not hold", None: "unknown"}[self.holds]

@@ -3,7 +3,7 @@
 The bytes are: the four letters ``SKRP``, a little-endian uint32 with the length of the header, the header as JSON in
 UTF-8 padded with spaces to a multiple of four, then the arrays one after the other, each padded to a multiple of four.
 
-The header has ``format`` (1), the words and single numbers of the replay, the colours it is shown in, and ``arrays``:
+The header has ``format`` (2), the words and single numbers of the replay, the colours it is shown in, and ``arrays``:
 under each name its ``type`` ("float32" or "uint16", little-endian), ``shape``, ``start`` (bytes from the end of the
 header), ``unit``, and for uint16 ``lowest`` and ``step``: value = lowest + step * number. ``error`` is the largest
 difference from the run.
@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 
 MAGIC: Final = b"SKRP"
-FORMAT: Final = 1
+FORMAT: Final = 2
 MOST_FRAMES_PER_SECOND: Final = 100.0
 """Finer outputs are thinned to this: a screen shows no more."""
 _STEPS: Final = 65535
@@ -68,6 +68,8 @@ KEPT: Final[dict[str, _Kept]] = {
     "twist": _Kept(_COARSE, "rad"),
     "edge_depth": _Kept(_COARSE, "m"),
     "force_per_length": _Kept(_COARSE, "N/m"),
+    "force": _Kept(_EXACT, "N"),
+    "normal_force": _Kept(_EXACT, "N"),
     "groove_middle": _Kept(_EXACT, "m"),
     "groove_left": _Kept(_COARSE, "1"),
     "groove_width": _Kept(_COARSE, "m"),
@@ -90,6 +92,9 @@ KEPT: Final[dict[str, _Kept]] = {
     "skier_triangles": _Kept(_COARSE, "1"),
 }
 """Every array that a file may hold. Those in uint16 are off by half a step at most: 1/131070 of the array's range."""
+_OF_SHAPE: Final = ("station", "half_width", "base_height", "middle")
+_OVER_TIME: Final = ("bending", "twist", "edge_depth", "force_per_length", "force", "normal_force")
+"""Fields of the skis: their shape, and their histories."""
 
 
 def replay_bytes(replay: Replay) -> bytes:
@@ -147,9 +152,7 @@ def thinned(replay: Replay) -> Replay:
 def at_moments(replay: Replay, kept: npt.NDArray[np.int64]) -> Replay:
     """Those moments alone, by their numbers; the groove stays whole."""
     skis = replay.skis
-    along: dict[str, Any] = {
-        name: getattr(skis, name)[kept] for name in ("bending", "twist", "edge_depth", "force_per_length")
-    }
+    along: dict[str, Any] = {name: getattr(skis, name)[kept] for name in _OVER_TIME}
     if skis.boots is not None:
         along["boots"] = ReplayBoots(place=skis.boots.place[kept], attitude=skis.boots.attitude[kept])
     over: dict[str, Any] = {
@@ -167,9 +170,9 @@ def _arrays(replay: Replay) -> dict[str, FloatArray]:
         name: getattr(replay, name)
         for name in ("time", "place", "attitude", "speed", "curvature", "heading", "depth", "profile")
     }
-    for name in ("station", "half_width", "base_height", "middle", "bending", "twist", "edge_depth"):
+    for name in (*_OF_SHAPE, *_OVER_TIME):
         found[name] = getattr(skis, name)
-    found |= {"force_per_length": skis.force_per_length, "thickness": drawn_thickness(skis.station)}
+    found["thickness"] = drawn_thickness(skis.station)
     for name in ("middle", "left", "width", "depth", "residual_depth", "time", "ski"):
         found[f"groove_{name}"] = getattr(groove, name)
     if replay.track is not None:
@@ -249,7 +252,7 @@ def _rebuilt(header: Mapping[str, Any], arrays: dict[str, FloatArray]) -> Replay
     def some(*names: str, before: str = "") -> dict[str, Any]:
         return {name: arrays[f"{before}{name}"] for name in names}
 
-    along = some("station", "half_width", "base_height", "middle", "bending", "twist", "edge_depth", "force_per_length")
+    along = some(*_OF_SHAPE, *_OVER_TIME)
     pieces = some("middle", "left", "width", "depth", "residual_depth", "time", before="groove_")
     boots = ReplayBoots(**some("place", "attitude", before="boot_")) if "boot_place" in arrays else None
     terrain = None

@@ -22,7 +22,7 @@ def replay_model(replay: Replay, time: float, *, exaggeration: float = 1.0) -> b
     Notes
     -----
     Metres; y is up as glTF 2.0 wants it, the run's own axes are those of the node ``run`` below. Colours of vertices:
-    force per length along the skis, depth that stays along the groove, on the same scales as in the picture.
+    normal force per length along the skis, depth that stays along the groove, on the same scales as in the picture.
     """
     frame = nearest_frame(replay, time)
     named = {"snow": snow_mesh(replay)}

@@ -46,7 +46,7 @@ def moving_replay_model(replay: Replay, *, exaggeration: float = 1.0) -> bytes:
     begins at 0 with the first moment and has a key at every moment, at most 100 a second; between them places go
     straight and attitudes by the shortest turn. The node ``sledge`` has the middle between the boots; below it each ski
     has one joint for each station, from tip to tail, and a skier one node for each part of the body. Nothing of the
-    skis stays the same but their colours, which glTF 2.0 cannot move: they tell the mean force over the run. Each part
+    skis stays the same but their colours, which glTF 2.0 cannot move: they show the mean normal force. Each part
     of the groove has scale 0 until it is made, as section 3.5.3 of the specification hides what is not to be seen. A
     camera goes along.
     """
@@ -198,6 +198,6 @@ def _extras(replay: Replay, exaggeration: float) -> dict[str, Any]:
     force = end_of_force_scale(replay.skis.force_per_length)
     return {
         "exaggeration_of_bending_and_twist": exaggeration,
-        "colour_of_skis": f"mean over the run of the force of the snow per length, 0 to {force:g} N/m and more",
+        "colour_of_skis": f"mean over the run of the normal force of the snow per length, 0 to {force:g} N/m and more",
         "facts": dict(replay.facts),
     }

@@ -31,12 +31,13 @@ _DAMAGE: Final = (TypeError, ValueError, LookupError, AttributeError, Arithmetic
 RUN_FILE: Final = "run.nc"
 _PLAIN: Final = (
     "time", "speed", "heading", "turn_radius", "depth", "station", "bending", "twist", "edge_depth",
-    "force_per_length", "attitude", "groove_width", "groove_depth", "groove_residual_depth",
+    "force_per_length", "normal_force", "attitude", "groove_width", "groove_depth", "groove_residual_depth",
 )  # fmt: skip
 _VECTORS: Final = {
     "place": "{}",
     "velocity": "velocity_{}",
     "ski": "ski_{}",
+    "snow_force": "snow_force_{}",
     "groove": "groove_{}",
     "groove_left": "groove_left_{}",
 }

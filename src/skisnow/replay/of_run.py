@@ -110,7 +110,8 @@ def _arrays(run: Run) -> dict[str, FloatArray]:
         "velocity": run.velocity, "centre": centre,
         "turn_radius": run.turn_radius, "depth": skis.depth, "ski": skis.track, "station": skis.station,
         "bending": skis.bending, "twist": skis.twist, "edge_depth": skis.edge_depth,
-        "force_per_length": skis.force_per_length, "groove": groove.middle, "groove_left": groove.left,
+        "force_per_length": skis.force_per_length, "snow_force": skis.force, "normal_force": skis.normal_force,
+        "groove": groove.middle, "groove_left": groove.left,
         "groove_width": groove.width, "groove_depth": groove.depth, "groove_residual_depth": groove.residual_depth,
     }  # fmt: skip
 
@@ -285,6 +286,8 @@ def _skis(arrays: Mapping[str, FloatArray], setting: Setting, boots: ReplayBoots
         twist=arrays["twist"],
         edge_depth=arrays["edge_depth"],
         force_per_length=arrays["force_per_length"],
+        force=arrays["snow_force"],
+        normal_force=arrays["normal_force"],
         boots=boots,
     )
 

@@ -95,7 +95,11 @@ class ReplaySkis:
     edge_depth
         (n, 2, m) of the edge that is down below the undisturbed surface; negative: above it (m).
     force_per_length
-        (n, 2, m) of the snow along its normal (N/m).
+        (n, 2, m) normal force of the snow per length (N/m).
+    force
+        (n, 2, 3) total force of the snow in space: normal force, shear and friction (N).
+    normal_force
+        (n, 2) part of it along the snow's normal (N).
     boots
         Where they move, they say where the skis are; None: middle and edge angle do.
     """
@@ -109,6 +113,8 @@ class ReplaySkis:
     twist: FloatArray
     edge_depth: FloatArray
     force_per_length: FloatArray
+    force: FloatArray
+    normal_force: FloatArray
     boots: ReplayBoots | None = None
 
 

@@ -104,6 +104,8 @@ _ROWS: Final[tuple[tuple[str, Callable[[Json], str]], ...]] = (
     ("grip holds", lambda answer: "-" if answer["holds"] is None else _yes(answer["holds"])),
     ("side force (N)", _number("side_force_N")),
     ("shear capacity of the snow (N)", _number("side_force_limit_N")),
+    ("grip utilisation (1: side-slip)", _number("grip_utilisation")),
+    ("total force of the snow (N)", _number("total_force_N")),
     ("turn radius, boot and 0.4 m to each side (m)", _number("turn_radius_boot_m")),
     (
         "the same, side force spread the other way (m)",
@@ -116,7 +118,7 @@ _ROWS: Final[tuple[tuple[str, Callable[[Json], str]], ...]] = (
     ("loaded contact length (m)", _number("bearing_length_m")),
     ("edge depth, afterbody / forebody", _number("afterbody_depth_ratio")),
     ("edge depth, maximum (mm)", _greatest("edge_depth_mm")),
-    ("force per length, maximum (N/m)", _greatest("force_per_length_N_per_m")),
+    ("normal force per length, maximum (N/m)", _greatest("force_per_length_N_per_m")),
     ("deflection, maximum (mm)", _greatest("bending_mm", by=abs)),
     ("twist, maximum (degrees)", _greatest("twist_deg", by=abs)),
     ("boot moment about the ski's cross axis (N m)", _number("boot_pitch_moment_Nm")),

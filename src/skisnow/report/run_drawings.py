@@ -84,9 +84,8 @@ def run_drawings(run: Run) -> Iterator[Drawing]:
             "balance",
             prose(
                 "(a) Lean of the line from the middle of the boots to the centre of mass, edge angle, and the lean "
-                "that would be in balance with speed and path radius of the centre of mass. (b) Load of each ski along "
-                "the snow's normal. (c) Side force of the snow on each. The axes of (b, c) leave one peak in a hundred "
-                "out."
+                "that would be in balance with speed and path radius of the centre of mass. Force of the snow on each "
+                "ski: (b) total, (c) normal, (d) side force. The axes of (b, c, d) leave one peak in a hundred out."
             ),
             "Lean, edge angle and forces of a skier over time.",
             run_balance(run),
@@ -95,22 +94,22 @@ def run_drawings(run: Run) -> Iterator[Drawing]:
     yield Drawing(
         "along_ski",
         prose(
-            "(a, b) Depth of the edge below the undisturbed surface and (c, d) force of the snow per length of ski, "
+            "(a, b) Depth of the edge below the undisturbed surface and (c, d) normal force of the snow per length, "
             "over time. White: the edge is above the snow, or the snow does not press: behind the place of the largest "
             "load the afterbody runs in the groove that the forebody cut."
         ),
-        "Maps of edge depth and force per length over position along the ski and time, for both skis.",
+        "Maps of edge depth and normal force per length over position along the ski and time, for both skis.",
         run_along_ski(run),
         wide=True,
     )
     yield Drawing(
         "grip",
         prose(
-            "Grip utilisation, the side force over the shear capacity S_f e, (a, b) along each ski and (c) for each "
-            "whole ski. At 1 the snow yields and the edge side-slips."
+            "Grip utilisation of each ski: the sum of its side force over the sum of the shear capacity S_f e. At 1 "
+            "the ski side-slips."
         )
         + _other_strength(run),
-        "Grip utilisation over position along the ski and time.",
+        "Grip utilisation of each ski over time.",
         run_grip(run),
         wide=True,
     )

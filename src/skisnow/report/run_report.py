@@ -25,7 +25,7 @@ from .run_file import write_run_file
 from .sheet import Header, Section, sheet
 from .symbols import html, prose
 from .tables.gates import gates_table
-from .tables.run import energies_table, scenario_table, verification_table
+from .tables.run import energies_table, scenario_table, skis_table, verification_table
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -110,7 +110,12 @@ def run_page(
         *_course_section(run, by_name),
         Section("motion", "Speed, heading, turn radius", pictures=by_name.get("motion", ())),
         *_boots_sections(by_name),
-        Section("along-skis", "Along the skis", pictures=[*by_name.get("along_ski", ()), *by_name.get("grip", ())]),
+        Section(
+            "along-skis",
+            "Along the skis",
+            pictures=[*by_name.get("along_ski", ()), *by_name.get("grip", ())],
+            tables=[skis_table(run)],
+        ),
         Section("energies", "Energies", pictures=by_name.get("energies", ()), tables=[energies_table(dict(summary))]),
     ]
     if not pictures:

@@ -132,7 +132,7 @@ def _along_skis() -> list[RunVariable]:
     named: list[tuple[str, str, str, Values]] = [
         ("edge_depth", "m", "depth of the edge that is down below the undisturbed surface; negative: above it",
          lambda run: run.skis.edge_depth),
-        ("force_per_length", "N m-1", "force of the snow on the ski along the snow's normal, per length",
+        ("force_per_length", "N m-1", "normal force of the snow on the ski per length",
          lambda run: run.skis.force_per_length),
         ("shear_per_length", "N m-1", "force of the snow on the ski across its edge, per length, positive to the left",
          lambda run: run.skis.shear_per_length),
@@ -143,6 +143,17 @@ def _along_skis() -> list[RunVariable]:
         RunVariable(name, (TIME, SKI, STATION), units, meaning, values, coordinates=_EDGE)
         for name, units, meaning, values in named
     ]
+
+
+def _forces_of_snow() -> list[RunVariable]:
+    total = "total force of the snow on the ski, in space (normal force, shear and friction): {}"
+    return [
+        *_three("snow_force_{}", (TIME, SKI), "N", total, lambda run: run.skis.force),
+        RunVariable("total_force", (TIME, SKI), "N", "magnitude of the total force of the snow on the ski",
+                    lambda run: run.skis.total_force),
+        RunVariable("normal_force", (TIME, SKI), "N", "its part along the snow's normal",
+                    lambda run: run.skis.normal_force),
+    ]  # fmt: skip
 
 
 def _coordinates() -> list[RunVariable]:
@@ -199,7 +210,9 @@ def _of_groove() -> list[RunVariable]:
     ]  # fmt: skip
 
 
-RUN_VARIABLES: Final = (*_coordinates(), *_over_time(), *_along_skis(), *_of_boots(), *_energies(), *_of_groove())
+RUN_VARIABLES: Final = (
+    *_coordinates(), *_over_time(), *_along_skis(), *_forces_of_snow(), *_of_boots(), *_energies(), *_of_groove(),
+)  # fmt: skip
 """Every variable of run.nc but the names of the skis, in the order of the file."""
 
 
@@ -222,7 +235,7 @@ def _of_balance() -> tuple[RunVariable, ...]:
     return (
         *(RunVariable(name, (TIME,), "rad", meaning, of(name)) for name, meaning in leans.items()),
         *(RunVariable(name, (TIME,), "m", meaning, of(name)) for name, meaning in lengths.items()),
-        RunVariable("load", (TIME, SKI), "N", "load of the ski along the snow's normal", of("load")),
+        RunVariable("load", (TIME, SKI), "N", "force of the ski on its boot along the snow's normal", of("load")),
         *_three("centre_{}", (TIME,), "m", centre, _centre),
     )
 

@@ -26,8 +26,8 @@ YIELDS: Final = 0.95
 
 
 def loaded_skis(run: Run) -> npt.NDArray[np.intp]:
-    """The more heavily loaded ski at each time, (n,): 0 left, 1 right."""
-    return np.argmax(np.trapezoid(run.skis.force_per_length, -run.skis.station, axis=2), axis=1)
+    """The ski with the larger total force at each time, (n,): 0 left, 1 right."""
+    return np.argmax(run.skis.total_force, axis=1)
 
 
 def afterbody_depth_ratio(run: Run) -> float | None:

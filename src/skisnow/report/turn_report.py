@@ -99,16 +99,17 @@ def _drawings(chain: TurnChain) -> Iterator[Drawing]:
     yield Drawing(
         "along_ski",
         prose(
-            "Edge depth and force per length along both skis, {name}. White: no contact, or no force.", name=html(name)
+            "Edge depth and normal force per length along both skis, {name}. White: no contact, or no force.",
+            name=html(name),
         ),
-        "Maps of edge depth and force per length over position along the ski and time.",
+        "Maps of edge depth and normal force per length over position along the ski and time.",
         run_along_ski(nominal),
         wide=True,
     )
     yield Drawing(
         "grip",
-        prose("Grip utilisation: side force over the shear capacity S_f e, {name}.", name=html(name)),
-        "Grip utilisation over position along the ski and time.",
+        prose("Grip utilisation of each ski: side force over the shear capacity S_f e, {name}.", name=html(name)),
+        "Grip utilisation of each ski over time.",
         run_grip(nominal),
         wide=True,
     )

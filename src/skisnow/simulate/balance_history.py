@@ -37,7 +37,7 @@ class BalanceHistory(Shown):
     pressure
         Centre of pressure from the middle of the boots, to the left (m); NaN where the skis do not bear.
     load
-        (n, 2) of each ski along the snow's normal (N).
+        (n, 2) force of each ski on its boot along the snow's normal (N).
 
     See Also
     --------

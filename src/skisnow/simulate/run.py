@@ -15,6 +15,7 @@ from ..scenario import Plane, Scenario, Terrain
 from ..shown import Facts, Shown, amount, field_facts, name_with_values, span
 from ..track.track import Track
 from ..units import DEGREE, MM
+from .snow_forces import node_lengths
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -68,6 +69,8 @@ class SkiHistory(Shown):
         (n, 2, m) of the edge that is down, below the undisturbed surface (m); negative: above it.
     force_per_length, shear_per_length
         (n, 2, m) of the snow along its normal, and across the edge, positive left (N/m).
+    force
+        (n, 2, 3) total force of the snow on the ski in the slope's axes: normal force, shear and friction (N).
     bending, twist
         (n, 2, m) deflection of the base away from the snow (m), growth of the edge angle (rad), against the boot.
     """
@@ -80,10 +83,21 @@ class SkiHistory(Shown):
     shear_per_length: FloatArray
     bending: FloatArray
     twist: FloatArray
+    force: FloatArray
+
+    @property
+    def total_force(self) -> FloatArray:
+        """(n, 2) magnitude of `force` (N)."""
+        return np.asarray(np.linalg.norm(self.force, axis=-1))
+
+    @property
+    def normal_force(self) -> FloatArray:
+        """(n, 2) part of `force` along the snow's normal (N)."""
+        return np.asarray(self.force_per_length @ node_lengths(self.station))
 
     def _facts(self) -> Facts:
         force = dict.fromkeys(("force_per_length", "shear_per_length"), "N/m")
-        return field_facts(self, dict.fromkeys(self.__slots__, "m") | force | {"twist": "rad"})
+        return field_facts(self, dict.fromkeys(self.__slots__, "m") | force | {"twist": "rad", "force": "N"})
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
@@ -225,7 +239,7 @@ class Run(Shown):
         ----------
         what
             "track": from above, with the grooves; "motion": speed, heading and turn radius; "along_ski": depth and
-            force along both skis over time; "grip": the share of the shear strength in use; "energies";
+            normal force along both skis over time; "grip": grip utilisation of each ski; "energies";
             "course": the line over the gates, with the edge angle as colour; "balance": lean, edge angle and forces;
             "boots": edge angles of both boots, forces and edging moments of the skis on them.
 

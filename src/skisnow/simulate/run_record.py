@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any, Final, TypeAlias
 
 import numpy as np
@@ -14,6 +14,7 @@ from ..scenario.slope_surface import down_and_left, heights_of, normals_of
 from .boot_history import BootHistory
 from .run import GIVEN, LOST, STORED, Outcome, SkiHistory
 from .run_setup import Setup
+from .snow_forces import AlongEdge, snow_forces, thrust_per_length
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 
@@ -37,6 +38,8 @@ class Moment:
         the skis and of the snow since the start; given by boots that move and by pushes (J), (12,).
     along
         Depth of the edge (m), force and shear per length (N/m) at the nodes, for each ski (3, m).
+    push
+        Force of the snow along the edge of each ski, forward positive (N), (skis,).
     dofs
         Of the beams at the free nodes (skis, n): deflection (m), its slope and twist (rad).
     body
@@ -51,6 +54,7 @@ class Moment:
     velocity: FloatArray
     energies: tuple[float, ...]
     along: tuple[FloatArray, ...]
+    push: tuple[float, ...]
     dofs: FloatArray
     body: tuple[FloatArray, FloatArray]
     boots: FloatArray
@@ -86,9 +90,12 @@ class Record:
 
     def _present(self) -> Moment:
         setup, dynamics = self.setup, self.setup.dynamics
-        along = tuple(dynamics.along(k) for k in range(len(dynamics.body.skis)))
+        skis = range(len(dynamics.body.skis))
+        along = tuple(dynamics.along(k) for k in skis)
+        push = tuple(float(dynamics.contact.sections(k).push.sum()) for k in skis)
         return Moment(
-            dynamics.time, setup.place, setup.attitude, setup.velocity, self._energies(), along, dynamics.beam_dofs,
+            dynamics.time, setup.place, setup.attitude, setup.velocity, self._energies(), along, push,
+            dynamics.beam_dofs,
             (dynamics.position, dynamics.rotation), dynamics.boots, dynamics.boot_wrench,
         )  # fmt: skip
 
@@ -134,7 +141,7 @@ class Record:
 
     def histories(self) -> dict[str, Any]:
         """The arrays of a `Run`."""
-        time, place, attitude, velocity, energies, along, dofs = (
+        time, place, attitude, velocity, energies, along, push, dofs = (
             np.array([getattr(each, name) for each in self._moments]) for name in _ARRAYS
         )
         normal = normals_of(self.setup.scenario.slope, place[:, 0], place[:, 1])
@@ -142,6 +149,18 @@ class Record:
         skis = dict(zip(_ALONG, (*np.moveaxis(along, 2, 0), bent[..., 0], bent[..., 2]), strict=True))
         node, history = self.setup.node, self._boots()
         track = self._tracks(place, attitude) if self.setup.drive is None else self._moved_tracks(history)
+        skis["force_per_length"], force = self._forces(
+            AlongEdge(
+                station=node,
+                depth=skis["edge_depth"],
+                force=skis["force_per_length"],
+                shear=skis["shear_per_length"],
+                bending=skis["bending"],
+                twist=skis["twist"],
+                push=push,
+            ),
+            history,
+        )
         return {
             "time": time,
             "place": place,
@@ -149,10 +168,20 @@ class Record:
             "velocity": velocity,
             "heading": _heading(attitude, normal),
             "turn_radius": turn_radius(time, velocity, attitude[:, :, 2]),
-            "skis": SkiHistory(station=node, track=track, depth=_at_boot(node, skis["edge_depth"]), **skis),
+            "skis": SkiHistory(
+                station=node, track=track, depth=_at_boot(node, skis["edge_depth"]), force=force, **skis
+            ),
             "energies": {name: energies[:, i] for i, name in enumerate((*STORED, *LOST, *GIVEN))},
             "boots": history,
         }
+
+    def _forces(self, along: AlongEdge, boots: BootHistory) -> tuple[FloatArray, FloatArray]:
+        """Force per length along the snow's normal, thrust included, and total force of the snow on each ski."""
+        scenario, (x, y) = self.setup.scenario, boots.place.reshape(-1, 3).T[:2]
+        normal = np.broadcast_to(normals_of(scenario.slope, x, y), (x.size, 3)).reshape(boots.place.shape)
+        thrust = thrust_per_length(along, boots, normal=normal, shear=self.setup.snow.shear)
+        along = replace(along, force=along.force + thrust)
+        return along.force, snow_forces(along, boots, normal=normal, ski=scenario.flexing_ski)
 
     def _boots(self) -> BootHistory:
         """The boots in space."""
@@ -214,7 +243,7 @@ def _arc(one: Moment, other: Moment) -> float:
     return chord * (1.0 + angle2 / 24.0) if angle2 < 1.0 else chord
 
 
-_ARRAYS = ("time", "place", "attitude", "velocity", "energies", "along", "dofs")
+_ARRAYS = ("time", "place", "attitude", "velocity", "energies", "along", "push", "dofs")
 _ALONG = ("edge_depth", "force_per_length", "shear_per_length", "bending", "twist")
 
 

@@ -29,8 +29,12 @@ COLUMNS: Final = (
     "right_x_m",
     "right_y_m",
     "right_depth_mm",
+    "left_total_force_N",
+    "right_total_force_N",
+    "left_normal_force_N",
+    "right_normal_force_N",
 )
-SKIER_COLUMNS: Final = ("lean_deg", "edge_angle_deg", "left_load_N", "right_load_N")
+SKIER_COLUMNS: Final = ("lean_deg", "edge_angle_deg")
 """Columns that a skier's run has besides."""
 
 
@@ -40,15 +44,16 @@ def track_columns(run: Run) -> tuple[str, ...]:
 
 
 def track_table(run: Run) -> npt.NDArray[np.float64]:
-    """The rows of track.csv under `track_columns`, (n, 13) or more; the turn radius of a straight path is infinite."""
+    """The rows of track.csv under `track_columns`, (n, 17) or more; the turn radius of a straight path is infinite."""
     skis = [
         column
         for ski in (0, 1)
         for column in (run.skis.track[:, ski, 0], run.skis.track[:, ski, 1], run.skis.depth[:, ski] / MM)
     ]
+    skis += [*run.skis.total_force.T, *run.skis.normal_force.T]
     if run.scenario.skier is not None:
         balance = run.balance
-        skis += [balance.lean / DEGREE, (balance.lean + balance.angulation) / DEGREE, *balance.load.T]
+        skis += [balance.lean / DEGREE, (balance.lean + balance.angulation) / DEGREE]
     return np.column_stack([run.time, run.place, run.speed, run.heading / DEGREE, run.turn_radius, *skis])
 
 

@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 
 from skisnow.report.figures.run_along_ski import run_along_ski
 from skisnow.report.figures.run_energies import run_energies, stacked_energies
-from skisnow.report.figures.run_grip import run_grip, used_share, used_share_of_skis
+from skisnow.report.figures.run_grip import run_grip, used_share_of_skis
 from skisnow.report.figures.run_motion import drawn_radius, run_motion
 from skisnow.report.figures.run_track import beside_track, groove_corners, run_track
 from skisnow.report.figures.runs_compared import loaded_ski, runs_compared
@@ -145,14 +145,19 @@ def test_energies_stack_to_a_level_rim(run: Run) -> None:
 
 
 def test_share_of_the_shear_strength(run: Run) -> None:
-    share = used_share(run)
-    assert np.array_equal(np.isnan(share), run.skis.edge_depth <= 0.0)
-    assert share[np.isfinite(share)] == pytest.approx(np.full(int(np.isfinite(share).sum()), 0.4))
     assert used_share_of_skis(run) == pytest.approx(np.full((len(run.time), 2), 0.4))
     to_the_right = replace(run.skis, shear_per_length=-run.skis.shear_per_length)
     assert used_share_of_skis(replace(run, skis=to_the_right)) == pytest.approx(np.full((len(run.time), 2), 0.4))
+
+
+def test_grip_is_drawn_for_each_ski_not_for_each_section(run: Run) -> None:
+    """Sections slip one by one at 1 while the ski holds: a map of them would say the contrary of the ski's number."""
     with journal_style():
-        assert run_grip(run).axes
+        (axes,) = run_grip(run).axes
+    left, right, limit = (np.asarray(line.get_ydata()) for line in axes.lines)
+    assert not axes.collections
+    assert np.stack([left, right], axis=1) == pytest.approx(used_share_of_skis(run))
+    assert np.all(limit == 1.0)
 
 
 def test_distance_between_circles_of_one_centre() -> None:

@@ -40,13 +40,15 @@ FACTS = {
     "Contact length": ("contact_length_m", "m"),
     "Side force": ("side_force_N", "N"),
     "Shear capacity of the snow": ("side_force_limit_N", "N"),
+    "Grip utilisation (1: side-slip)": ("grip_utilisation", ""),
+    "Total force of the snow": ("total_force_N", "N"),
     "Moment at the boot about the cross axis": ("boot_pitch_moment_Nm", "N\u00a0m"),
     "Radius, were the side force spread the other way": ("turn_radius_boot_other_spread_m", "m"),
     "Radius through the ends of the contact": ("turn_radius_chord_m", "m"),
 }
 CHARTS = {
     "Depth of the edge (mm)": "edge_depth_mm",
-    "Force per length (N/m)": "force_per_length_N_per_m",
+    "Normal force per length (N/m)": "force_per_length_N_per_m",
     "Deflection (mm)": "bending_mm",
     "Twist (°)": "twist_deg",
 }
@@ -70,7 +72,7 @@ def facts(*found: Any) -> list[str]:
     """The lines of the table."""
     lines = [each["ski"]["name"] for each in found]
     for words, (key, unit) in FACTS.items():
-        lines += [words, *(f"{significant(each[key])} {unit}" for each in found)]
+        lines += [words, *(f"{significant(each[key])} {unit}".rstrip() for each in found)]
     return lines
 
 
@@ -218,7 +220,7 @@ def test_two_skis_stand_beside_each_other(desk: Desk) -> None:
     assert [line for line in page.outline() if line.startswith("[value] ")] == list(map(radius, found))
     lines = page.outline()
     begin = lines.index("slalom")
-    assert lines[begin : begin + 26] == facts(*found)
+    assert lines[begin : begin + 2 + 3 * len(FACTS)] == facts(*found)
     for title, key in CHARTS.items():
         chart = page.charts()[title]
         shown = [(line["name"], line["style"], len(line["x"])) for line in chart["lines"]]
@@ -230,8 +232,8 @@ def test_two_skis_stand_beside_each_other(desk: Desk) -> None:
     colours = [each.style["color"] for each in page.of() if {"value"} & set(each.classes)]
     assert colours == ["#0b4f8a", "#b3450b"]
     assert [each.style["color"] for each in page.tagged("th") if "color" in each.style] == colours
-    assert [each.style["color"] for each in page.tagged("td") if "n" in each.classes] == colours * 8
-    assert [each.props["scope"] for each in page.tagged("th")] == ["col", "col", *["row"] * 8]
+    assert [each.style["color"] for each in page.tagged("td") if "n" in each.classes] == colours * len(FACTS)
+    assert [each.props["scope"] for each in page.tagged("th")] == ["col", "col", *["row"] * len(FACTS)]
 
 
 def test_depth_counts_downwards_to_a_little_below_the_deepest_edge(desk: Desk) -> None:
@@ -296,7 +298,7 @@ def test_a_turn_that_is_none_has_no_numbers(desk: Desk, monkeypatch: pytest.Monk
     page.shows("[status] carver: not converged, take less.")
     lines = page.outline()
     assert lines[1] == "[value] carver: no carved radius"
-    assert [line for line in lines if line == "–"] == ["–"] * 8
+    assert [line for line in lines if line == "–"] == ["–"] * len(FACTS)
     assert lines[-4:] == [f"chart {title} along the ski: nothing yet" for title in CHARTS]
     assert [chart["range"] for chart in page.charts().values()] == [None] * 4
 

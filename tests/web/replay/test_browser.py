@@ -301,16 +301,17 @@ def test_the_word_at_the_fall_line_does_not_cover_its_arrow(seen: Watched) -> No
 
 def test_forces_are_arrows_and_numbers_on_demand(seen: Watched, replay: Replay) -> None:
     seen.does("replay.seek(2.0)")
-    assert "Force on left ski" not in seen.page.locator(".replay-readings").inner_text()
+    assert "Total force on left ski" not in seen.page.locator(".replay-readings").inner_text()
     before = seen.picture()
     seen.page.get_by_label("Forces", exact=True).check()
     assert (np.abs(seen.picture() - before).max(axis=2) > 30).mean() > 0.001
     text = seen.page.locator(".replay-readings").inner_text()
     frame = int(np.argmin(np.abs(replay.time - 2.0)))
     for ski, side in enumerate(("left", "right")):
-        force = abs(np.trapezoid(replay.skis.force_per_length[frame, ski], replay.skis.station))
-        told = float(text.split(f"Force on {side} ski")[1].split("N")[0])
-        assert told == pytest.approx(force, abs=0.6)
+        total, normal = np.linalg.norm(replay.skis.force[frame, ski]), replay.skis.normal_force[frame, ski]
+        for name, force in (("Total", total), ("Normal", normal)):
+            told = float(text.split(f"{name} force on {side} ski")[1].split("N")[0])
+            assert told == pytest.approx(force, abs=0.6)
 
 
 def test_effects_step_down_where_the_machine_is_slow_and_stay_where_it_was_chosen(seen: Watched) -> None:

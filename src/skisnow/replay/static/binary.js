@@ -1,7 +1,7 @@
 // A replay's bytes, as skisnow.replay.binary writes them, made into arrays of numbers.
 
 const MAGIC = "SKRP";
-const FORMAT = 1;
+const FORMAT = 2;
 
 /** The header with `arrays`: {name: {values: Float32Array, shape, unit, lowest, highest}}. */
 export function decoded(buffer) {

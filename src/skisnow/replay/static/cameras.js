@@ -148,11 +148,10 @@ function offset(pose, forward, left, up) {
   );
 }
 
-/** The ski that carries more over the run: 0 left, 1 right. */
+/** The ski with the larger total force over the run: 0 left, 1 right. */
 function outerSki(run) {
-  const force = run.arrays.force_per_length.values;
-  const count = run.arrays.station.values.length;
+  const force = run.arrays.force.values;
   const sums = [0, 0];
-  for (let i = 0; i < force.length; i++) sums[Math.floor(i / count) % 2] += force[i];
+  for (let i = 0; i < force.length; i += 3) sums[(i / 3) % 2] += Math.hypot(force[i], force[i + 1], force[i + 2]);
   return sums[1] >= sums[0] ? 1 : 0;
 }

@@ -13,7 +13,7 @@ const viewNames = () => ({
   chase: said("From behind"), boot: said("From the boot"), above: said("From above"), edge: said("Along the edge"), free: said("Free"),
 });
 export const marks = () => said("Squares 1 m, a dash of the path each metre");
-export const forceTitle = () => said("Force of the snow on the ski (N/mm)");
+export const forceTitle = () => said("Normal force of the snow on the ski (N/mm)");
 export const depthTitle = () => said("Permanent groove depth (mm)");
 const keysOf = () => [
   [said("Space"), said("play or pause")], ["← →", said("a twentieth of a second; with Shift half a second")],
@@ -124,7 +124,7 @@ export function fillLegend(element, scales, colours, hasSkier) {
       : bar("depth", depthTitle(), ticksOf(scales.depth * 1000)),
     made("div", { className: "replay-notes" },
       made("span", { className: "replay-marks", textContent: marks() }),
-      made("span", { className: "replay-arrows", hidden: true, textContent: said("Arrows: orange, force per length; purple, whole ski") }),
+      made("span", { className: "replay-arrows", hidden: true, textContent: said("Arrows: orange, normal force per length; purple, total force on the ski") }),
       ...(hasSkier ? [made("span", { textContent: said("Assumed: knees, trunk's bend, head, arms, poles") })] : [])),
   );
 }
@@ -146,7 +146,7 @@ function edged(run, time) {
 
 /**
  * What is told of a moment, as {name, text, large, words}: the numbers that matter first and large. `outer` is the ski
- * that carries more; `gap` is told of two runs through gates, `forces` (N) of both skis where they are shown.
+ * that carries more; `gap` is told of two runs through gates, `forces` of both skis, {total, normal} (N) each, where they are shown.
  */
 export function readings(run, pose, { row, outer, gap = null, forces = null }) {
   const of = (name, size = 1) => row(run.arrays[name].values, pose.at, size);
@@ -166,6 +166,10 @@ export function readings(run, pose, { row, outer, gap = null, forces = null }) {
     { name: said("Time"), text: `${decimal(pose.time, 2)} s`, large: false },
   ];
   if (!forces) return lines;
-  const names = [said("Force on left ski"), said("Force on right ski")];
-  return [...lines, ...names.map((name, ski) => ({ name, text: `${forces[ski].toFixed(0)} N`, large: false }))];
+  const names = [
+    { total: said("Total force on left ski"), normal: said("Normal force on left ski") },
+    { total: said("Total force on right ski"), normal: said("Normal force on right ski") },
+  ];
+  const text = (force) => `${force.toFixed(0)} N`;
+  return [...lines, ...["total", "normal"].flatMap((part) => forces.map((force, ski) => ({ name: names[ski][part], text: text(force[part]), large: false })))];
 }

@@ -1,4 +1,4 @@
-// Force of the snow as arrows: along each ski its force per length, and one for the whole ski.
+// Force of the snow as arrows: along each ski its normal force per length, and one for the total force.
 
 import { row } from "./motion.js";
 import * as THREE from "./three.module.min.js";
@@ -6,21 +6,16 @@ import * as THREE from "./three.module.min.js";
 const LONG = 0.3; // m, of a force per length that a twentieth of those in the run exceed: its largest may be a moment's
 const LEAST = 0.02; // share of it below which none is drawn
 const EVERY = 0.06; // m between arrows, at least
-const WHOLE = 0.0011; // m for each N of a whole ski's force
+const WHOLE = 0.0011; // m for each N of a ski's total force
 const COLOURS = { along: 0xd55e00, whole: 0xb43be0 };
 const AWAY = new THREE.Vector3(0, 0, 1);
 
-/** Force of each ski (N): its force per length, summed along it by trapezoids. */
-export function wholeForces(run, at) {
-  const station = run.arrays.station.values;
-  const count = station.length;
-  const force = row(run.arrays.force_per_length.values, at, 2 * count);
+/** Force of the snow on each ski (N): {vector, total, normal}. */
+export function skiForces(run, at) {
+  const [vectors, normals] = [row(run.arrays.force.values, at, 6), row(run.arrays.normal_force.values, at, 2)];
   return [0, 1].map((ski) => {
-    let sum = 0;
-    for (let j = 1; j < count; j++) {
-      sum += 0.5 * (force[ski * count + j] + force[ski * count + j - 1]) * Math.abs(station[j] - station[j - 1]);
-    }
-    return sum;
+    const vector = Array.from(vectors.subarray(3 * ski, 3 * ski + 3));
+    return { vector, total: Math.hypot(...vector), normal: normals[ski] };
   });
 }
 
@@ -43,15 +38,14 @@ export function forceArrows(run) {
     group,
     show(pose, sections) {
       const force = row(run.arrays.force_per_length.values, pose.at, 2 * count);
-      const sums = wholeForces(run, pose.at);
+      const forces = skiForces(run, pose.at);
       for (const ski of [0, 1]) {
         const own = force.subarray(ski * count, (ski + 1) * count);
         chosen.forEach((j, i) => {
           const share = own[j] / most;
           along.set(ski * chosen.length + i, ...placed(sections[ski], j), share > LEAST ? LONG * share : 0);
         });
-        const [place, away] = centre(run, sections[ski], own);
-        whole.set(ski, place, away, WHOLE * sums[ski]);
+        whole.set(ski, centre(run, sections[ski], own), forces[ski].vector, WHOLE * forces[ski].total);
       }
       for (const each of [along, whole]) each.done();
     },
@@ -66,21 +60,18 @@ function spaced(station) {
 
 const placed = (section, j) => [Array.from(section.subarray(9 * j, 9 * j + 3)), Array.from(section.subarray(9 * j + 6, 9 * j + 9))];
 
-/** Where the whole force acts on a ski, and which way. */
+/** Centre of the normal force on a ski, where its total force is drawn. */
 function centre(run, section, force) {
   const station = run.arrays.station.values;
-  const [place, away] = [[0, 0, 0], [0, 0, 0]];
+  const place = [0, 0, 0];
   let sum = 0;
   for (let j = 0; j < station.length; j++) {
     const [before, after] = [station[Math.max(j - 1, 0)], station[Math.min(j + 1, station.length - 1)]];
     const share = force[j] * Math.abs(after - before);
     sum += share;
-    for (let i = 0; i < 3; i++) {
-      place[i] += share * section[9 * j + i];
-      away[i] += share * section[9 * j + 6 + i];
-    }
+    for (let i = 0; i < 3; i++) place[i] += share * section[9 * j + i];
   }
-  return sum > 0 ? [place.map((part) => part / sum), away] : placed(section, 0);
+  return sum > 0 ? place.map((part) => part / sum) : placed(section, 0)[0];
 }
 
 /** So many arrows of one thickness and colour: a shaft and a head each. */

@@ -3,7 +3,7 @@
 import { decoded } from "./binary.js";
 import { VIEWS } from "./cameras.js";
 import { controls, depthTitle, fillLegend, forceTitle, laidOut, made, marks, MOST_RELIEF, readings } from "./controls.js";
-import { wholeForces } from "./force_arrows.js";
+import { skiForces } from "./force_arrows.js";
 import { gapAt } from "./gap.js";
 import { miniMap } from "./mini_map.js";
 import { edges, row } from "./motion.js";
@@ -90,7 +90,7 @@ class Player {
   draw() {
     const pose = this.stage.draw(this.time, this.exaggeration);
     this.frames += 1;
-    const forces = this.shown.forces ? wholeForces(this.run, pose.at) : null;
+    const forces = this.shown.forces ? skiForces(this.run, pose.at) : null;
     const gap = gapAt(this.run, this.ghost, this.time);
     this.lines = readings(this.run, pose, { row, outer: this.stage.follower.outer, gap, forces });
     this.#tell();

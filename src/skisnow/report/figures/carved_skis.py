@@ -23,7 +23,7 @@ FloatArray = npt.NDArray[np.float64]
 
 _PANELS: Final = (
     ("edge_depth_mm", "edge depth $e$ (mm)"),
-    ("force_per_length_N_per_m", "force per length (N/m)"),
+    ("force_per_length_N_per_m", "normal force per length (N/m)"),
     ("bending_mm", "deflection (mm)"),
     ("twist_deg", "twist (°)"),
 )

@@ -1,4 +1,4 @@
-"""Depth of the edge and force per length along both skis over time."""
+"""Depth of the edge and normal force per length along both skis over time."""
 
 from __future__ import annotations
 
@@ -28,7 +28,9 @@ def run_along_ski(run: Run) -> Figure:
     depth, force = run.skis.edge_depth / MM, run.skis.force_per_length
     figure = new_figure(width_mm=DOUBLE_MM, height_mm=112.0)
     grid = figure.subplots(2, 2, sharex=True, sharey=True)
-    for row, (values, label) in zip(grid, ((depth, "edge depth (mm)"), (force, "force per length (N/m)")), strict=True):
+    for row, (values, label) in zip(
+        grid, ((depth, "edge depth (mm)"), (force, "normal force per length (N/m)")), strict=True
+    ):
         top = highest(values)
         for ski, axes in enumerate(row):
             mesh = along_ski_map(axes, run, np.where(values[:, ski] > 0.0, values[:, ski], np.nan), top)

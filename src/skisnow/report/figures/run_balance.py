@@ -17,9 +17,9 @@ if TYPE_CHECKING:
 
 
 def run_balance(run: Run) -> Figure:
-    """Draw three panels over one time axis."""
-    figure = new_figure(width_mm=DOUBLE_MM, height_mm=128.0)
-    leans, loads, sides = figure.subplots(3, 1, sharex=True)
+    """Draw four panels over one time axis: leans; total, normal and side force of the snow on each ski."""
+    figure = new_figure(width_mm=DOUBLE_MM, height_mm=156.0)
+    leans, totals, normals, sides = figure.subplots(4, 1, sharex=True)
     balance, boots = run.balance, run.boots
     assert boots is not None
     edge = balance.lean + balance.angulation
@@ -31,14 +31,15 @@ def run_balance(run: Run) -> Figure:
     leans.set_ylim(-max(most, 1.0), max(most, 1.0))
     leans.set_ylabel("lean, edge angle (°)\nto the left +")
     left = np.cross(np.array([0.0, 0.0, 1.0]), boots.axes[:, :, 0])
-    side = np.einsum("nka,nka->nk", boots.force, left)
-    draw_both(loads, run, balance.load)
-    loads.set_ylabel("load (N)")
-    draw_both(sides, run, side)
+    draw_both(totals, run, run.skis.total_force)
+    totals.set_ylabel("total\nforce (N)")
+    draw_both(normals, run, run.skis.normal_force)
+    normals.set_ylabel("normal\nforce (N)")
+    draw_both(sides, run, np.einsum("nka,nka->nk", run.skis.force, left))
     sides.set_ylabel("side force (N)\nto the left +")
-    for axes in (leans, loads, sides):
+    for axes in (leans, totals, normals, sides):
         axes.axhline(0.0, color=PALE, linewidth=0.6, zorder=0)
-    for axes in (leans, loads):
+    for axes in (leans, totals):
         axes.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=3, borderaxespad=0.2, frameon=False)
     sides.set_xlabel("time (s)")
     sides.set_xlim(float(run.time[0]), float(run.time[-1]))

@@ -1,4 +1,4 @@
-"""How much of the snow's shear strength the skis use, along them and over time."""
+"""Share of the snow's shear strength that each whole ski uses, over time."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 from matplotlib.lines import Line2D
 
-from .run_along_ski import SKIS, along_ski_map, label_maps
+from .run_along_ski import SKIS
 from .run_track import SKI_COLOURS
 from .style import DOUBLE_MM, GREY, legend_below, new_figure
 
@@ -21,34 +21,20 @@ FloatArray = npt.NDArray[np.float64]
 
 
 def run_grip(run: Run) -> Figure:
-    """Draw the share S/(S_f e) along each ski, and that of each whole ski; 1: the snow yields."""
-    figure = new_figure(width_mm=DOUBLE_MM, height_mm=112.0)
-    grid = figure.add_gridspec(2, 2)
-    maps = [figure.add_subplot(grid[0, 0])]
-    maps.append(figure.add_subplot(grid[0, 1], sharex=maps[0], sharey=maps[0]))
-    share = used_share(run)
-    for ski, axes in enumerate(maps):
-        mesh = along_ski_map(axes, run, share[:, ski], 1.0)
-    figure.colorbar(mesh, ax=maps, label="grip utilisation", pad=0.01, aspect=20)
-    label_maps(np.array([maps]))
-    below = figure.add_subplot(grid[1, :], sharex=maps[0])
-    for ski, colour in enumerate(SKI_COLOURS):
-        below.plot(run.time, used_share_of_skis(run)[:, ski], color=colour)
-    below.axhline(1.0, color=GREY, linewidth=0.8, linestyle=(0, (4, 2)))
-    below.set_ylim(-0.02, 1.12)
-    below.set_ylabel("grip utilisation of\nthe ski (1: side-slip)")
-    below.set_xlabel("time (s)")
+    """Draw the grip utilisation of each whole ski over time; 1: side-slip."""
+    figure = new_figure(width_mm=DOUBLE_MM, height_mm=62.0)
+    axes = figure.subplots()
+    for share, colour, name in zip(used_share_of_skis(run).T, SKI_COLOURS, SKIS, strict=True):
+        axes.plot(run.time, share, color=colour, label=name)
+    axes.axhline(1.0, color=GREY, linewidth=0.8, linestyle=(0, (4, 2)))
+    axes.set_xlim(float(run.time[0]), float(run.time[-1]))
+    axes.set_ylim(-0.02, 1.12)
+    axes.set_ylabel("grip utilisation of\nthe ski (1: side-slip)")
+    axes.set_xlabel("time (s)")
     legend_below(
         figure, [Line2D([], [], color=colour, label=name) for colour, name in zip(SKI_COLOURS, SKIS, strict=True)]
     )
     return figure
-
-
-def used_share(run: Run) -> FloatArray:
-    """|shear per length| / (S_f e), (n, 2, m); nan where the edge is above the snow."""
-    limit = _limit(run)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        return np.where(limit > 0.0, np.abs(run.skis.shear_per_length) / limit, np.nan)
 
 
 def used_share_of_skis(run: Run) -> FloatArray:

@@ -102,6 +102,5 @@ def _at(run: Run, moment: float) -> int:
 
 
 def loaded_ski(run: Run, moment: float) -> int:
-    """Which ski presses harder at a time (s): 0 left, 1 right."""
-    force = run.skis.force_per_length[_at(run, moment)]
-    return int(np.argmax(np.trapezoid(force, -run.skis.station, axis=1)))
+    """The ski with the larger total force at a time (s): 0 left, 1 right."""
+    return int(np.argmax(run.skis.total_force[_at(run, moment)]))

@@ -1,14 +1,23 @@
-"""Tables of a simulated run: its scenario with every key, its energies, and the same run computed finer."""
+"""Tables of a simulated run: scenario with every key, forces on the skis, energies, and the run computed finer."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
 
 from ...scenario.keys import SCENARIO_KEYS
 from ...simulate.run import WARNED_SHARE
+from ..figures.run_grip import used_share_of_skis
 from ..number_formatting import significant
 from ..table import Column, Table
+
+if TYPE_CHECKING:
+    from ...simulate.run import Run
+
+FloatArray: TypeAlias = npt.NDArray[np.float64]
 
 Json = Mapping[str, Any]
 
@@ -84,6 +93,36 @@ def _text(value: Any) -> str | None:
     if isinstance(value, list | tuple):
         return f"[{', '.join(str(_text(each)) for each in value)}]"
     return f"{value:.10g}" if isinstance(value, int | float) else str(value)
+
+
+def skis_table(run: Run) -> Table:
+    """Force of the snow on each ski, total and normal, and grip utilisation: one row for each ski."""
+    total, normal, grip = run.skis.total_force, run.skis.normal_force, used_share_of_skis(run)
+    rows = [
+        (name, *_middle_and_high(total[:, ski]), *_middle_and_high(normal[:, ski]), *_middle_and_high(grip[:, ski]))
+        for ski, name in enumerate(("left ski", "right ski"))
+    ]
+    return Table(
+        "skis",
+        "Force of the snow on each ski, and its grip utilisation: median and 95 % quantile over time.",
+        (
+            Column("ski", "Ski", "words"),
+            Column("total_force_N", "Total force", unit="N"),
+            Column("total_force_p95_N", "95 %", unit="N"),
+            Column("normal_force_N", "Normal force", unit="N"),
+            Column("normal_force_p95_N", "95 %", unit="N"),
+            Column("grip_utilisation", "Grip utilisation"),
+            Column("grip_utilisation_p95", "95 %"),
+        ),
+        rows,
+        note="Total force: normal force, shear and friction as one vector. Grip utilisation: side force over shear "
+        "capacity; at 1 the ski side-slips.",
+    )
+
+
+def _middle_and_high(values: FloatArray) -> tuple[float | None, float | None]:
+    known = values[np.isfinite(values)]
+    return (float(np.median(known)), float(np.quantile(known, 0.95))) if known.size else (None, None)
 
 
 def energies_table(summary: Json) -> Table:

@@ -37,7 +37,7 @@ ENDS: Final = ("tail", "tip")
 """Where the axis leads to: stations count forward from the boot."""
 PANELS: Final = {
     "edge_depth_mm": "Depth of the edge (mm)",
-    "force_per_length_N_per_m": "Force per length (N/m)",
+    "force_per_length_N_per_m": "Normal force per length (N/m)",
     "bending_mm": "Deflection (mm)",
     "twist_deg": "Twist (°)",
 }
@@ -75,6 +75,8 @@ FACTS: Final = {
     "contact_length_m": ("Contact length", "m"),
     "side_force_N": ("Side force", "N"),
     "side_force_limit_N": ("Shear capacity of the snow", "N"),
+    "grip_utilisation": ("Grip utilisation (1: side-slip)", ""),
+    "total_force_N": ("Total force of the snow", "N"),
     "boot_pitch_moment_Nm": ("Moment at the boot about the cross axis", "N\u00a0m"),
     "turn_radius_boot_other_spread_m": ("Radius, were the side force spread the other way", "m"),
     "turn_radius_chord_m": ("Radius through the ends of the contact", "m"),
@@ -234,7 +236,7 @@ class _Carve:
             words.set_text(_radius(answer))
         for key, (_, unit) in FACTS.items():
             for cell, answer in zip(self._cells[key], answers, strict=True):
-                cell.set_text("–" if answer[key] is None else f"{significant(answer[key])} {unit}")
+                cell.set_text("–" if answer[key] is None else f"{significant(answer[key])} {unit}".rstrip())
         for key, each in self._charts.items():
             lines = [
                 ChartLine(a["station_m"], a[key], number, name=a["ski"]["name"])
