@@ -28,12 +28,6 @@ def test_lengths_and_tolerances(name: str, value: float) -> None:
         StepControl(**given_so)
 
 
-@pytest.mark.parametrize("kept", [0, -1])
-def test_matrix_kept(kept: int) -> None:
-    with pytest.raises(ParameterError, match=rf"matrix_kept is {kept}; it must be 1 or more"):
-        StepControl(matrix_kept=kept)
-
-
 def test_shortest_above_longest() -> None:
     with pytest.raises(ParameterError, match=r"shortest is 0\.01, above longest, 0\.006"):
         StepControl(shortest=0.01)

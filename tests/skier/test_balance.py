@@ -231,14 +231,17 @@ def test_loads_do_not_chatter_from_ski_to_ski() -> None:
 
 
 def test_left_and_right_mirror() -> None:
-    """The first turn."""
+    """The first turn. Rounding leads both runs to other steps, so they agree within the solver's error.
+
+    That error is at most 7 mm after 46 m, so 0.8 mm after these 5.6 m.
+    """
     ends = []
     for to_left in (True, False):
         turn = tall(Skier(first_turn=0.3, first_to_left=to_left), duration_s=1.2)
         ends.append(simulate(turn).place[-1])
     assert abs(ends[0][1]) > 0.02
-    assert ends[0][0] == pytest.approx(ends[1][0], abs=1e-4)
-    assert ends[0][1] == pytest.approx(-ends[1][1], abs=1e-4)
+    assert ends[0][0] == pytest.approx(ends[1][0], abs=8e-4)
+    assert ends[0][1] == pytest.approx(-ends[1][1], abs=8e-4)
 
 
 def test_who_carves_too_fast_falls() -> None:

@@ -135,8 +135,7 @@ void bind_body(nb::module_& m) {
       .def_rw("tolerance", &StepRule::tolerance)
       .def_rw("shortest", &StepRule::shortest)
       .def_rw("longest", &StepRule::longest)
-      .def_rw("closeness", &StepRule::closeness)
-      .def_rw("keep", &StepRule::keep);
+      .def_rw("closeness", &StepRule::closeness);
 }
 
 void bind_motion(nb::class_<Dynamics>& bound) {

@@ -8,16 +8,16 @@ namespace skisnow::SKISNOW_LANES {
 
 using Width = Lanes<SKISNOW_WIDTH>;
 
-extern const Kernels SET{
-    SKISNOW_NAME(SKISNOW_LANES),
-    SKISNOW_WIDTH,
-    find_sections<Width>,
-    press<Width>,
-    slide<Width>,
-    push<Width>,
-    differ<Width>,
-    add_stiffness,
-    add_friction_damping,
-    {eliminate, substitute_forwards, substitute_backwards, add_band, add_coupling, add_coupled, carry}};
+extern const Kernels SET{SKISNOW_NAME(SKISNOW_LANES),
+                         SKISNOW_WIDTH,
+                         find_sections<Width>,
+                         press<Width>,
+                         slide<Width>,
+                         push<Width>,
+                         differ<Width>,
+                         add_stiffness,
+                         add_friction_damping,
+                         {eliminate, substitute_forwards, substitute_backwards, add_band, add_coupling, add_coupled,
+                          combine, add_congruent}};
 
 }  // namespace skisnow::SKISNOW_LANES

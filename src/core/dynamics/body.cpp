@@ -30,6 +30,17 @@ double quadratic(const std::vector<double>& lower, const double* x) {
   return total;
 }
 
+// Rows of a `BorderedSystem` from the lower half of a symmetric band.
+Column band_rows(const std::vector<double>& lower) {
+  const int n = int(lower.size()) / LOWER;
+  Column out(std::size_t(BAND_ROW * n), 0.0);
+  for (int i = 0; i < n; i++)
+    for (int j = 0; j <= std::min(i, HALF_BAND); j++)
+      out[std::size_t(BAND_ROW * i + HALF_BAND - j)] = out[std::size_t(BAND_ROW * (i - j) + HALF_BAND + j)] =
+          lower[std::size_t(LOWER * i + j)];
+  return out;
+}
+
 // Of the centre of pressure of the air.
 Vector3 air_velocity(const Body& body, const BodyState& state) {
   const double high = body.drag_height;
@@ -43,6 +54,36 @@ void FlexibleSki::prepare() {
   mass_columns = BeamColumns(mass);
   stiffness_columns = BeamColumns(stiffness);
   coupling_columns = BeamColumns(coupling);
+  mass_rows = band_rows(mass), stiffness_rows = band_rows(stiffness);
+  clamp_coupling.assign(std::size_t(BORDER_ROW * size()), 0.0);
+  for (std::size_t i = 0; i < std::size_t(size()); i++) {
+    const double* row = coupling.data() + BODY * i;
+    const Vector3 v{row[0], row[1], row[2]}, o{row[3], row[4], row[5]}, by = cross(boot, v);
+    for (std::size_t c = 0; c < 3; c++)
+      for (std::size_t a = 0; a < 3; a++) {
+        clamp_coupling[BORDER_ROW * i + c] += axes[c][a] * v[a];
+        clamp_coupling[BORDER_ROW * i + c + 3] += axes[c][a] * (o[a] - by[a]);
+      }
+  }
+  find_free_nodes();
+}
+
+void FlexibleSki::find_free_nodes() {
+  free.clear(), held_places.clear();
+  const int nodes = int(unknown.size());
+  const auto is_free = [&](int node) { return node >= 0 && node < nodes && unknown[std::size_t(node)] >= 0; };
+  for (int j = 0; j < nodes; j++) {
+    if (!is_free(j)) continue;
+    if (is_free(j - 1))
+      free.back().count++;
+    else
+      free.push_back({unknown[std::size_t(j)], j, 1});
+    for (int row = 3 * j; row < 3 * j + 3; row++)
+      for (int m = 0; m < 2 * HALF_BAND + 1; m++) {
+        const int other = row + m - HALF_BAND;
+        if (!is_free(other < 0 ? -1 : other / 3)) held_places.push_back(BAND_ROW * row + m);
+      }
+  }
 }
 
 Layout Body::layout() const {

@@ -22,9 +22,20 @@ struct FlexibleSki {
   std::vector<double> coupling;         // (n, 6) of the mass matrix, with the body
   double damping = 0.0;                 // times the stiffness (s)
   BeamColumns mass_columns, stiffness_columns, coupling_columns;  // the same, for products
+  // The same as rows of a `BorderedSystem`; coupling with the clamp's freedoms in the ski's axes, the same wherever the
+  // boot goes.
+  Column mass_rows, stiffness_rows, clamp_coupling;
+  struct FreeNodes {
+    int unknown, node, count;  // their first unknown, the first of them, how many follow each other
+  };
+  std::vector<FreeNodes> free;
+  std::vector<int> held_places;  // in rows of all nodes' unknowns: columns of nodes that are held or do not exist
 
   void prepare();
   int size() const { return int(mass.size()) / (HALF_BAND + 1); }
+
+ private:
+  void find_free_nodes();
 };
 
 struct Body {

@@ -90,14 +90,8 @@ MovingSki::MovingSki(const FlexibleSki& stage, const double* inertia, const Body
   alone.boot = alone.velocity = alone.turning = {};
   for (std::size_t c = 0; c < 3; c++)
     for (std::size_t a = 0; a < 3; a++) alone.axes[c][a] = c == a ? 1.0 : 0.0;
-  // coupling with the carrier, times the inverse of what carries: rates of the carrier by those of the ski
-  for (int i = 0; i < stage.size(); i++) {
-    double* row = alone.coupling.data() + BODY * i;
-    const Vector3 v{row[0], row[1], row[2]}, o{row[3], row[4], row[5]}, by = cross(stage.boot, v);
-    const Vector3 a = in_axes(stage, v), b = in_axes(stage, {o[0] - by[0], o[1] - by[1], o[2] - by[2]});
-    std::copy(a.begin(), a.end(), row);
-    std::copy(b.begin(), b.end(), row + 3);
-  }
+  for (int i = 0; i < stage.size(); i++)
+    std::copy_n(stage.clamp_coupling.data() + BORDER_ROW * i, BODY, alone.coupling.data() + BODY * i);
   alone.prepare();
   body_.skis = {alone};
   layout_ = body_.layout();
@@ -157,18 +151,6 @@ void MovingSki::add_to(Body& carrier, const FlexibleSki& stage, double sign) con
   const Vector3 centre = out_of_axes(stage, body_.first_moment);
   carrier.mass += sign * body_.mass;
   for (std::size_t a = 0; a < 3; a++) carrier.first_moment[a] += sign * (centre[a] + body_.mass * stage.boot[a]);
-}
-
-void MovingSki::couple(FlexibleSki& stage) const {
-  double by[BODY][BODY];
-  carried(stage, by);
-  const std::vector<double>& own = body_.skis[0].coupling;
-  for (int i = 0; i < stage.size(); i++)
-    for (int b = 0; b < BODY; b++) {
-      double sum = 0.0;
-      for (int m = 0; m < BODY; m++) sum += own[std::size_t(BODY * i + m)] * by[m][b];
-      stage.coupling[std::size_t(BODY * i + b)] = sum;
-    }
 }
 
 }  // namespace skisnow

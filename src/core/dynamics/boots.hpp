@@ -45,8 +45,6 @@ class MovingSki {
   double power(const FlexibleSki& stage) const;
   // Adds the undeformed ski, as it stands on its carrier, to a body, or with -1 takes it out.
   void add_to(Body& carrier, const FlexibleSki& stage, double sign) const;
-  // The beam's part of the mass matrix with the carrier, as it stands there.
-  void couple(FlexibleSki& stage) const;
   void write(ByteWriter& out) const;
   void read(ByteReader& in);
 

@@ -11,10 +11,12 @@ namespace skisnow {
 namespace {
 
 constexpr int MOST_ITERATIONS = 12;
-constexpr double SLOW = 0.15;             // contraction from which on the matrix is made anew
-constexpr double UNSEEN = 0.3;            // contraction to reckon with before it was seen
-constexpr double LEAST_ERROR = 0.1;       // of the tolerance: what a step's own error is taken for at least
-constexpr double SAME_REACH = 0.1;        // by which β may differ from that of a matrix that is kept
+constexpr double SLOW = 0.5;         // contraction above which the matrix is made again within a step
+constexpr double UNSEEN = 0.3;       // contraction to reckon with before it was seen
+constexpr double LEAST_ERROR = 0.1;  // of the tolerance: what a step's own error is taken for at least
+constexpr double OVERSHOOT = 0.3;    // work of the residual along a change, of the other sign, to go back for
+constexpr double LEAST_SHARE_BACK = 0.1, MOST_SHARE_BACK = 0.9;  // of the change
+constexpr int MOST_BACKTRACKS = 2;                               // for one change
 constexpr double LEAST_SHARE = 1.0 / 64;  // of a fixed step, into which it is divided where it is not solved
 constexpr double FARTHEST = 1.0;          // way (m), turn (rad), bend beyond which a step has diverged
 constexpr double SAFETY = 0.85, UP = 1.35, DOWN = 0.93;  // of the step's choice
@@ -28,7 +30,7 @@ Dynamics::Dynamics(Body body, SnowContact& contact, const StepRule& rule)
     : body_(std::move(body)), contact_(&contact), rule_(rule), layout_(body_.layout()), step_(rule.first) {
   body_.kernels = &contact.kernels().band;
   state = next_ = BodyState(layout_);
-  rate_before_ = moved_ = increment_ = residual_ = difference_ = state.rate;
+  rate_before_ = moved_ = increment_ = residual_ = change_ = difference_ = state.rate;
   system_ = BorderedSystem(layout_, contact.kernels().band);
   end_.poses.resize(body_.skis.size());
   end_.motions.resize(body_.skis.size());
@@ -98,81 +100,58 @@ void Dynamics::find_residual(const Formula& f) {
   add_mass(body_, layout_, difference_, -1.0, residual_);
 }
 
-// What the body does to a ski: the ski's way and rotation in its own axes by the body's.
-struct Carried {
-  double by[BODY][BORDER_ROW] = {};
-
-  explicit Carried(const FlexibleSki& ski) {
-    const Vector3& r = ski.boot;
-    for (int c = 0; c < 3; c++) {
-      const Vector3& e = ski.axes[c];
-      const Vector3 turning{r[1] * e[2] - r[2] * e[1], r[2] * e[0] - r[0] * e[2], r[0] * e[1] - r[1] * e[0]};
-      for (std::size_t a = 0; a < 3; a++) by[c][a] = by[c + 3][a + 3] = e[a], by[c][a + 3] = turning[a];
+// The freedoms of a ski's clamp, in the ski's axes, by the body's.
+void fill_clamp(const FlexibleSki& ski, double (&by_body)[BODY][BORDER_ROW]) {
+  const Vector3& r = ski.boot;
+  for (int c = 0; c < 3; c++) {
+    const Vector3& e = ski.axes[c];
+    const Vector3 turning{r[1] * e[2] - r[2] * e[1], r[2] * e[0] - r[0] * e[2], r[0] * e[1] - r[1] * e[0]};
+    for (std::size_t a = 0; a < 3; a++) {
+      by_body[c][a] = by_body[c + 3][a + 3] = e[a];
+      by_body[c][a + 3] = turning[a], by_body[c + 3][a] = 0.0;
     }
   }
-};
+}
 
-void Dynamics::add_contact_tangent(double stiffness, double damping) {
-  const auto carry = body_.kernels->carry;
+// The rows of the beams: mass, stiffness and coupling by their weights, and the snow's tangent.
+void Dynamics::fill_beams(const BeamWeights& weights) {
+  const auto combine = body_.kernels->combine;
   for (std::size_t k = 0; k < body_.skis.size(); k++) {
     const FlexibleSki& ski = body_.skis[k];
-    contact_->find_tangent(int(k), end_.poses[k], stiffness, damping, tangent_);
-    const Carried carried(ski);
-    for (int m = 0; m < BODY; m++) {
-      double half[BORDER_ROW] = {};
-      carry(tangent_.body[m], &carried.by[0][0], half);
-      for (int r = 0; r < BODY; r++)
-        for (int c = 0; c < BODY; c++) system_.corner[r][c] += carried.by[m][r] * half[c];
+    contact_->find_tangent(int(k), end_.poses[k], weights.snow_stiffness, weights.snow_damping, tangent_);
+    BorderedSystem::Clamp& clamp = system_.clamp(int(k));
+    std::copy_n(&tangent_.body[0][0], BODY * BORDER_ROW, &clamp.own[0][0]);
+    fill_clamp(ski, clamp.by_body);
+    for (const int place : ski.held_places) tangent_.beam[std::size_t(place)] = 0.0;
+    const double stiffness = weights.stiffness + weights.damping * ski.damping;
+    for (const FlexibleSki::FreeNodes& nodes : ski.free) {
+      const auto row = std::size_t(nodes.unknown), from = std::size_t(3 * nodes.node);
+      const int rows = 3 * nodes.count;
+      combine(ski.mass_rows.data() + BAND_ROW * row, weights.mass, ski.stiffness_rows.data() + BAND_ROW * row,
+              stiffness, tangent_.beam.data() + BAND_ROW * from, BAND_ROW * rows, system_.band(int(k), nodes.unknown));
+      const double* coupling = ski.clamp_coupling.data() + BORDER_ROW * row;
+      combine(coupling, weights.coupling, coupling, 0.0, tangent_.beam_by_body.data() + BORDER_ROW * from,
+              BORDER_ROW * rows, system_.border(int(k), nodes.unknown));
+      combine(coupling, weights.coupling, coupling, 0.0, tangent_.body_by_beam.data() + BORDER_ROW * from,
+              BORDER_ROW * rows, system_.border_column(int(k), nodes.unknown));
     }
-    for (std::size_t j = 0; j < ski.unknown.size(); j++)
-      for (int c = 0; c < 3 && ski.unknown[j] >= 0; c++) {
-        const int row = ski.unknown[j] + c;
-        const auto node = 3 * j + std::size_t(c);
-        carry(tangent_.beam_by_body.data() + BORDER_ROW * node, &carried.by[0][0], system_.border(int(k), row));
-        carry(tangent_.body_by_beam.data() + BORDER_ROW * node, &carried.by[0][0], system_.border_column(int(k), row));
-        double* band = system_.band(int(k), row);
-        for (int m = 0; m < 2 * HALF_BAND + 1; m++) {
-          const int other = row + m - HALF_BAND;
-          if (other >= 0 && other < ski.size()) band[m] += tangent_.beam[BAND_ROW * node + std::size_t(m)];
-        }
-      }
   }
 }
 
 // [matrix] W = M + β (β + c) K + β² K_snow + β D_snow.
 bool Dynamics::factor(double reach) {
   counts_.factored++;
-  system_.clear();
-  for (int a = 0; a < BODY; a++)
-    for (int b = 0; b < BODY; b++) system_.corner[a][b] = body_.inertia[a][b];
-  for (std::size_t k = 0; k < body_.skis.size(); k++) {
-    const FlexibleSki& ski = body_.skis[k];
-    const double stiff = reach * (reach + ski.damping);
-    for (int i = 0; i < ski.size(); i++) {
-      for (int j = 0; j <= std::min(i, HALF_BAND); j++) {
-        const auto at = std::size_t((HALF_BAND + 1) * i + j);
-        const double value = ski.mass[at] + stiff * ski.stiffness[at];
-        system_.band(int(k), i)[HALF_BAND - j] += value;
-        if (j > 0) system_.band(int(k), i - j)[HALF_BAND + j] += value;
-      }
-      for (int a = 0; a < BODY; a++)
-        system_.border(int(k), i)[a] = system_.border_column(int(k), i)[a] = ski.coupling[std::size_t(BODY * i + a)];
-    }
-  }
-  add_contact_tangent(reach * reach, reach);
-  if (held_) hold_rows();
-  reach_ = reach;
-  return system_.factor();
-}
-
-// The body's unknowns stay as they are.
-void Dynamics::hold_rows() {
   for (int a = 0; a < BODY; a++) {
-    for (int b = 0; b < BODY; b++) system_.corner[a][b] = a == b ? 1.0 : 0.0;
-    for (std::size_t k = 0; k < body_.skis.size(); k++)
-      for (int i = 0; i < body_.skis[k].size(); i++)
-        system_.border(int(k), i)[a] = system_.border_column(int(k), i)[a] = 0.0;
+    for (int b = 0; b < BODY; b++) system_.corner[a][b] = body_.inertia[a][b];
+    system_.held[a] = held_;
   }
+  fill_beams({.mass = 1.0,
+              .stiffness = reach * reach,
+              .damping = reach,
+              .coupling = 1.0,
+              .snow_stiffness = reach * reach,
+              .snow_damping = reach});
+  return system_.factor();
 }
 
 // How far rates move the boots, ends a metre off that turn with them, and the beams, in a time (m).
@@ -187,40 +166,57 @@ double Dynamics::size_of(const Numbers& rates, double reach) const {
   return most * reach;
 }
 
-// [newton] The rates at the step's end; whether they were found.
+// [line search] Go back along the last change of the rates where it overshot. Along the change δ the work β g·δ of the
+// residual g falls from `begun` > 0 to a negative number: the snow's pressure rises with depth, so the line has one
+// zero, and the secant through both ends estimates it. `share` of the change has been made.
+void Dynamics::limit_overshoot(const Formula& f, double begun, double share) {
+  for (int tries = 0; tries < MOST_BACKTRACKS; tries++) {
+    double left = 0.0;
+    for (std::size_t i = 0; i < residual_.size(); i++) left += f.reach * residual_[i] * change_[i];
+    if (!(begun > 0.0 && left < -OVERSHOOT * begun)) return;
+    const double shorter = share * std::clamp(begun / (begun - left), LEAST_SHARE_BACK, MOST_SHARE_BACK);
+    for (std::size_t i = 0; i < residual_.size(); i++) next_.rate[i] -= (share - shorter) * change_[i];
+    share = shorter;
+    place(f);
+    find_residual(f);
+  }
+}
+
+// [newton] The rates at the step's end; returns whether they were found. Each step has a matrix of its own, and another
+// one where the iterates contract slowly.
 bool Dynamics::solve_step(const Formula& f) {
   const double displacement = 0.1 * contact_->shear_displacement();
-  double last = std::numeric_limits<double>::infinity();
-  bool renew = kept_ <= 0 || std::fabs(f.reach - reach_) > SAME_REACH * reach_;
+  double last = std::numeric_limits<double>::infinity(), begun = 0.0, share = 1.0;
+  bool renew = true;
   for (int iteration = 0; iteration < MOST_ITERATIONS; iteration++) {
     find_residual(f);
-    if (renew) {
-      if (!factor(f.reach)) return false;
-      kept_ = rule_.keep;
-      renew = false;
-    }
-    for (double& each : residual_) each *= f.reach;
-    system_.solve(residual_);
-    counts_.iterations++;
-    const double size = size_of(residual_, f.reach);
+    if (iteration > 0) limit_overshoot(f, begun, share);
+    if (renew && !factor(f.reach)) return false;
+    begun = find_change(f);
+    const double size = size_of(change_, f.reach);
     if (!(size < FARTHEST)) return false;
-    if (iteration > 0) {
-      contraction_ = std::min(size / last, 0.99);
-      renew = contraction_ > SLOW;
-    }
-    const double damping = iteration > 1 && size > 0.9 * last ? 0.5 : 1.0;
+    if (iteration > 0) contraction_ = std::min(size / last, 0.99);
+    renew = iteration > 0 && contraction_ > SLOW;
+    share = iteration > 1 && size > 0.9 * last ? 0.5 : 1.0;
     last = size;
-    for (std::size_t i = 0; i < residual_.size(); i++) next_.rate[i] += damping * residual_[i];
+    for (std::size_t i = 0; i < change_.size(); i++) next_.rate[i] += share * change_[i];
     place(f);
     const double contraction = iteration > 0 ? contraction_ : std::max(contraction_, UNSEEN);
-    // close to what the step's own error is, where that is below the tolerance
+    // the change that is left is small beside the step's own error, or beside the tolerance where that is smaller
     const double own = std::clamp(error(f), LEAST_ERROR * rule_.tolerance, rule_.tolerance);
-    if (contraction / (1.0 - contraction) * size < std::min(rule_.closeness * own, displacement)) {
-      kept_--;
-      return true;
-    }
+    if (contraction / (1.0 - contraction) * size < std::min(rule_.closeness * own, displacement)) return true;
   }
   return false;
+}
+
+// The change W⁻¹ β g of the rates; returns the work β g·δ of the residual along it.
+double Dynamics::find_change(const Formula& f) {
+  double work = 0.0;
+  for (std::size_t i = 0; i < residual_.size(); i++) change_[i] = f.reach * residual_[i];
+  system_.solve(change_);
+  counts_.iterations++;
+  for (std::size_t i = 0; i < residual_.size(); i++) work += f.reach * residual_[i] * change_[i];
+  return work;
 }
 
 // [error] Of place and rotation (m, rad), by Milne's device: distance from the explicit step of the same order.
@@ -321,7 +317,6 @@ void Dynamics::begin() {
   last_step_ = 0.0;
   time = 0.0;
   share_ = 1.0;
-  kept_ = 0;
   step_ = rule_.fixed ? rule_.first : on_ladder(rule_.first);
 }
 
@@ -329,7 +324,6 @@ void Dynamics::begin() {
 void Dynamics::reject() {
   contact_->take_back();
   counts_.rejected++;
-  kept_ = 0;
 }
 
 // After a fixed step: halved where it was not solved, and so on.
@@ -364,7 +358,7 @@ Advance Dynamics::advance(double until, long most) {
     if (tries == most) return Advance::PAUSED;
     if (tries > 0 && std::chrono::steady_clock::now() - entered > LONGEST_STAY) return Advance::PAUSED;
     const double left = until - time;
-    // equal steps on the way that is left: the matrix serves them all
+    // equal steps on the time that is left
     double h = left / std::max(1.0, std::ceil(left / step_ - ROUNDING));
     if (std::fabs(h - last_step_) < ROUNDING * h) h = last_step_;
     h *= share_;

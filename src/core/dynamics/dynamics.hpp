@@ -14,8 +14,7 @@ struct StepRule {
   bool fixed = false;
   double tolerance = 1e-6;                 // error of place (m) of one step, by its own estimate
   double shortest = 1e-7, longest = 6e-3;  // (s)
-  double closeness = 0.03;                 // share of a step's own error to which Newton's method solves it
-  int keep = 8;                            // steps over which the matrix may be kept
+  double closeness = 0.2;                  // share of a step's own error to which Newton's method solves it
 };
 
 enum class Advance { REACHED = 0, STEP_TOO_SMALL = 1, NOT_FINITE = 2, PAUSED = 3 };
@@ -100,12 +99,11 @@ class Dynamics {
   bool touches_ = false;
   // the step in the making
   BodyState next_;
-  Numbers increment_, residual_, difference_;
+  Numbers increment_, residual_, change_, difference_;
   Situation end_;
   BorderedSystem system_;
   RunnerTangent tangent_;
-  int kept_ = 0;
-  double reach_ = 0.0, contraction_ = 0.5;  // β of the matrix; of Newton's method, as last seen
+  double contraction_ = 0.5;  // of Newton's method in its last iteration
 
   struct Formula {
     double h, reach, keep;       // β = h/a₁; share of the last increments
@@ -123,9 +121,13 @@ class Dynamics {
   void follow_skis();
   void feel_boots(double newest, double now, double before);
   bool factor(double reach);
-  void hold_rows();
-  void add_contact_tangent(double stiffness, double damping);
+  struct BeamWeights {
+    double mass, stiffness, damping, coupling, snow_stiffness, snow_damping;
+  };
+  void fill_beams(const BeamWeights& weights);
   double size_of(const Numbers& rates, double reach) const;
+  double find_change(const Formula& f);
+  void limit_overshoot(const Formula& f, double begun, double share);
   bool solve_step(const Formula& f);
   double error(const Formula& f) const;
   void accept(const Formula& f, bool observed);

@@ -35,7 +35,6 @@ void Dynamics::place_boots(double when) {
   for (std::size_t k = 0; k < skis_.size(); k++) {
     motions_[k].set(when, body_.skis[k]);
     skis_[k].add_to(body_, body_.skis[k], 1.0);
-    skis_[k].couple(body_.skis[k]);
   }
 }
 

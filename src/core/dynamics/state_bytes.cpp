@@ -213,18 +213,6 @@ void take_bytes(SnowContact& contact, const unsigned char* bytes, std::size_t si
   contact.take(std::move(kept));
 }
 
-void BorderedSystem::write(ByteWriter& out) const {
-  out.numbers(&corner[0][0], std::size_t(BODY * BORDER_ROW));
-  for (const Column* each : {&band_, &border_, &column_}) out.all(*each);
-  for (const int each : order_) out.whole(each);
-}
-
-void BorderedSystem::read(ByteReader& in) {
-  in.numbers(&corner[0][0], std::size_t(BODY * BORDER_ROW));
-  for (Column* each : {&band_, &border_, &column_}) in.all(*each);
-  for (int& each : order_) each = int(in.whole(0, BODY - 1));
-}
-
 namespace {
 
 void write_body(const BodyState& state, ByteWriter& out) {
@@ -253,12 +241,10 @@ void Dynamics::write(ByteWriter& out) const {
   if (!motions_.empty() || held_) throw std::logic_error("a body whose boots move has no form in bytes");
   write_body(state, out);
   out.all(rate_before_), out.all(moved_);
-  out.numbers(std::vector{time, last_step_, share_, step_, reach_, contraction_}.data(), 6);
-  out.whole(kept_);
+  out.numbers(std::vector{time, last_step_, share_, step_, contraction_}.data(), 5);
   for (const Work* work : {&work_, &power_}) each_work(*work, [&](double each) { out.number(each); });
   for (const long each : {counts_.steps, counts_.rejected, counts_.looks, counts_.factored, counts_.iterations})
     out.whole(each);
-  system_.write(out);
   for (const MovingSki& each : skis_) each.write(out);
 }
 
@@ -266,12 +252,10 @@ void Dynamics::read(ByteReader& in) {
   read_body(in, state);
   in.all(rate_before_, FARTHEST), in.all(moved_, FARTHEST);
   time = in.number(), last_step_ = in.number(), share_ = in.within(0.0, 1.0), step_ = in.within(0.0, rule_.longest);
-  reach_ = in.number(), contraction_ = in.number();
-  kept_ = int(in.whole(-MOST_COUNT, MOST_COUNT));
+  contraction_ = in.number();
   for (Work* work : {&work_, &power_}) each_work(*work, [&](double& each) { each = in.number(); });
   for (long* each : {&counts_.steps, &counts_.rejected, &counts_.looks, &counts_.factored, &counts_.iterations})
     *each = long(in.whole(0, MOST_LINES));
-  system_.read(in);
   for (MovingSki& each : skis_) each.read(in);
 }
 

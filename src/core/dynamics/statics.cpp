@@ -60,20 +60,12 @@ void Dynamics::static_residual(const BodyState& at, Numbers& out) {
 
 // [static matrix] K + K_snow, the turning of gravity with the body, and a trace of inertia; held unknowns stay.
 bool Dynamics::factor_static(double inertia) {
-  system_.clear();
-  for (int a = 0; a < BODY; a++)
+  for (int a = 0; a < BODY; a++) {
     for (int b = 0; b < BODY; b++) system_.corner[a][b] = inertia * body_.inertia[a][b];
-  for (std::size_t k = 0; k < body_.skis.size(); k++) {
-    const FlexibleSki& ski = body_.skis[k];
-    for (int i = 0; i < ski.size(); i++)
-      for (int j = 0; j <= std::min(i, HALF_BAND); j++) {
-        const auto at = std::size_t((HALF_BAND + 1) * i + j);
-        const double value = ski.stiffness[at] + inertia * ski.mass[at];
-        system_.band(int(k), i)[HALF_BAND - j] += value;
-        if (j > 0) system_.band(int(k), i - j)[HALF_BAND + j] += value;
-      }
+    system_.held[a] = HELD[a] || held_;
   }
-  add_contact_tangent(1.0, 0.0);
+  fill_beams(
+      {.mass = inertia, .stiffness = 1.0, .damping = 0.0, .coupling = 0.0, .snow_stiffness = 1.0, .snow_damping = 0.0});
   // a rotation δ of the body turns gravity by g × δ as the body sees it: minus the derivative of its forces
   const Vector3 g = next_.in_body(body_.gravity);
   const double turned[3][3] = {{0.0, -g[2], g[1]}, {g[2], 0.0, -g[0]}, {-g[1], g[0], 0.0}};  // [g]×
@@ -83,16 +75,18 @@ bool Dynamics::factor_static(double inertia) {
     for (int b = 0; b < 3; b++) {
       system_.corner[a][b + 3] -= body_.mass * turned[a][b];
       for (int m = 0; m < 3; m++) system_.corner[a + 3][b + 3] -= lever[a][m] * turned[m][b];
-      for (std::size_t k = 0; k < body_.skis.size(); k++)
-        for (int i = 0; i < body_.skis[k].size(); i++)
-          system_.border(int(k), i)[b + 3] -= body_.skis[k].coupling[std::size_t(BODY * i + a)] * turned[a][b];
     }
-  for (int a = 0; a < BODY; a++) {
-    if (!HELD[a] && !held_) continue;
-    for (int b = 0; b < BODY; b++) system_.corner[a][b] = system_.corner[b][a] = a == b ? 1.0 : 0.0;
-    for (std::size_t k = 0; k < body_.skis.size(); k++)
-      for (int i = 0; i < body_.skis[k].size(); i++)
-        system_.border(int(k), i)[a] = system_.border_column(int(k), i)[a] = 0.0;
+  for (std::size_t k = 0; k < body_.skis.size(); k++) {
+    const FlexibleSki& ski = body_.skis[k];
+    double pull[3] = {};  // gravity in the ski's axes
+    for (int c = 0; c < 3; c++)
+      for (std::size_t a = 0; a < 3; a++) pull[c] += ski.axes[c][a] * g[a];
+    for (int i = 0; i < ski.size(); i++)
+      for (int b = 0; b < 3; b++) {
+        const int p = (b + 1) % 3, q = (b + 2) % 3;
+        const double* own = ski.clamp_coupling.data() + BORDER_ROW * i;
+        system_.border(int(k), i)[b + 3] -= own[p] * pull[q] - own[q] * pull[p];
+      }
   }
   return system_.factor();
 }

@@ -133,13 +133,13 @@ Body body_of(const Fields& data) {
 }
 
 void put_rule(const StepRule& rule, Fields& out) {
-  out.put("rule", std::vector{rule.first, rule.fixed ? 1.0 : 0.0, rule.tolerance, rule.shortest, rule.longest,
-                              rule.closeness, double(rule.keep)});
+  out.put("rule",
+          std::vector{rule.first, rule.fixed ? 1.0 : 0.0, rule.tolerance, rule.shortest, rule.longest, rule.closeness});
 }
 
 StepRule rule_of(const Fields& data) {
-  const auto& rule = data.at("rule", 7);
-  return {rule[0], rule[1] != 0.0, rule[2], rule[3], rule[4], rule[5], int(rule[6])};
+  const auto& rule = data.at("rule", 6);
+  return {rule[0], rule[1] != 0.0, rule[2], rule[3], rule[4], rule[5]};
 }
 
 }  // namespace skisnow

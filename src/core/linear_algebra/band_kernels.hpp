@@ -87,10 +87,23 @@ inline void add_coupled(const BeamColumns& columns, const double* x, double* sum
   }
 }
 
-inline void carry(const double* row, const double* by, double* out) {
-  Eight total = load<Eight>(out);
-  for (int m = 0; m < BODY; m++) total += row[m] * load<Eight>(by + BORDER_ROW * m);
-  store(out, total);
+inline void combine(const double* a, double share_a, const double* b, double share_b, const double* c, int count,
+                    double* out) {
+  for (int i = 0; i < count; i += BORDER_ROW)
+    store(out + i, share_a * load<Eight>(a + i) + share_b * load<Eight>(b + i) + load<Eight>(c + i));
+}
+
+inline void add_congruent(const double* own, const double* by, double* out) {
+  Eight half[BODY];
+  for (int m = 0; m < BODY; m++) {
+    half[m] = own[BORDER_ROW * m] * load<Eight>(by);
+    for (int n = 1; n < BODY; n++) half[m] += own[BORDER_ROW * m + n] * load<Eight>(by + BORDER_ROW * n);
+  }
+  for (int a = 0; a < BODY; a++) {
+    Eight total = load<Eight>(out + BORDER_ROW * a);
+    for (int m = 0; m < BODY; m++) total += by[BORDER_ROW * m + a] * half[m];
+    store(out + BORDER_ROW * a, total);
+  }
 }
 
 }  // namespace skisnow::SKISNOW_LANES

@@ -26,6 +26,7 @@ BorderedSystem::BorderedSystem(const Layout& layout, const BandKernels& kernels)
   band_.resize(BAND_ROW * rows);
   border_.resize(BORDER_ROW * rows);
   column_.resize(BORDER_ROW * rows);
+  clamps_.resize(std::size_t(layout.beams()));
   clear();
 }
 
@@ -57,8 +58,13 @@ bool BorderedSystem::factor_corner() {
 }
 
 bool BorderedSystem::factor() {
-  for (int beam = 0; beam < layout_.beams(); beam++)
-    if (!kernels_->eliminate(rows(beam), &corner[0][0])) return false;
+  for (int beam = 0; beam < layout_.beams(); beam++) {
+    Clamp& clamp = clamps_[std::size_t(beam)];
+    if (!kernels_->eliminate(rows(beam), &clamp.own[0][0])) return false;
+    kernels_->add_congruent(&clamp.own[0][0], &clamp.by_body[0][0], &corner[0][0]);
+  }
+  for (int a = 0; a < BODY; a++)
+    for (int b = 0; b < BODY && held[a]; b++) corner[a][b] = corner[b][a] = a == b ? 1.0 : 0.0;
   return factor_corner();
 }
 
@@ -78,12 +84,24 @@ void BorderedSystem::solve_corner(double* right) const {
 void BorderedSystem::solve(Numbers& vector) const {
   double right[BORDER_ROW] = {};
   std::copy_n(vector.data(), BODY, right);
-  for (int beam = 0; beam < layout_.beams(); beam++)
-    kernels_->substitute_forwards(rows(beam), vector.data() + layout_.first(beam), right);
+  for (int beam = 0; beam < layout_.beams(); beam++) {
+    double at_clamp[BORDER_ROW] = {};
+    kernels_->substitute_forwards(rows(beam), vector.data() + layout_.first(beam), at_clamp);
+    const auto& by = clamps_[std::size_t(beam)].by_body;
+    for (int a = 0; a < BODY; a++)
+      for (int m = 0; m < BODY; m++) right[a] += by[m][a] * at_clamp[m];
+  }
+  for (int a = 0; a < BODY; a++)
+    if (held[a]) right[a] = 0.0;
   solve_corner(right);
   std::copy_n(right, BODY, vector.data());
-  for (int beam = 0; beam < layout_.beams(); beam++)
-    kernels_->substitute_backwards(rows(beam), right, vector.data() + layout_.first(beam));
+  for (int beam = 0; beam < layout_.beams(); beam++) {
+    double at_clamp[BORDER_ROW] = {};
+    const auto& by = clamps_[std::size_t(beam)].by_body;
+    for (int m = 0; m < BODY; m++)
+      for (int a = 0; a < BODY; a++) at_clamp[m] += by[m][a] * right[a];
+    kernels_->substitute_backwards(rows(beam), at_clamp, vector.data() + layout_.first(beam));
+  }
 }
 
 }  // namespace skisnow

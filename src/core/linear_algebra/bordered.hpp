@@ -1,10 +1,9 @@
-// Linear systems of a body and the beams that are clamped to it: a band for each beam, the body's six unknowns as their
-// border.
+// Linear systems of a body and the beams that are clamped to it: a band for each beam, bordered by the six freedoms of
+// its clamp, which follow from the body's six.
 #pragma once
 
 #include <vector>
 
-#include "support/bytes.hpp"
 #include "support/columns.hpp"
 
 namespace skisnow {
@@ -63,8 +62,11 @@ struct BandKernels {
   void (*add_band)(const BeamColumns&, const double* x, const double* y, double share, double scale, double* out);
   void (*add_coupling)(const BeamColumns&, const double* body, double scale, double* out);
   void (*add_coupled)(const BeamColumns&, const double* x, double* sums);
-  // out += row × by: a row of six by a matrix with rows of eight
-  void (*carry)(const double* row, const double* by, double* out);
+  // out = share_a a + share_b b + c, `count` numbers, a multiple of eight
+  void (*combine)(const double* a, double share_a, const double* b, double share_b, const double* c, int count,
+                  double* out);
+  // out += byᵀ own by, matrices of six rows of eight
+  void (*add_congruent)(const double* own, const double* by, double* out);
 };
 
 class BorderedSystem {
@@ -73,9 +75,16 @@ class BorderedSystem {
   BorderedSystem(const Layout& layout, const BandKernels& kernels);
 
   double corner[BODY][BORDER_ROW];
+  bool held[BODY] = {};  // unknowns of the body that stay as they are
+
+  // The clamp of a beam: the matrix of its own six freedoms in the ski's axes, and those freedoms by the body's.
+  struct Clamp {
+    double own[BODY][BORDER_ROW] = {}, by_body[BODY][BORDER_ROW] = {};
+  };
+  Clamp& clamp(int beam) { return clamps_[std::size_t(beam)]; }
 
   void clear();
-  // Of one row of a beam: columns row - 5 to row + 5 and zeros, and the body's; and its column in the body's rows.
+  // Of one row of a beam: columns row - 5 to row + 5 and zeros, and the clamp's; and its column in the clamp's rows.
   double* band(int beam, int row) { return band_.data() + BAND_ROW * at(beam, row); }
   double* border(int beam, int row) { return border_.data() + BORDER_ROW * at(beam, row); }
   double* border_column(int beam, int row) { return column_.data() + BORDER_ROW * at(beam, row); }
@@ -85,13 +94,11 @@ class BorderedSystem {
   // Replace a right side by the solution.
   void solve(Numbers& vector) const;
 
-  void write(ByteWriter& out) const;
-  void read(ByteReader& in);
-
  private:
   Layout layout_;
   const BandKernels* kernels_ = nullptr;
   Column band_, border_, column_;
+  std::vector<Clamp> clamps_;
   int order_[BODY] = {};
 
   std::size_t at(int beam, int row) const { return std::size_t(layout_.first(beam) + row); }

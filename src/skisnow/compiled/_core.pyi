@@ -124,7 +124,6 @@ class StepRule:
     shortest: float
     longest: float
     closeness: float
-    keep: int
 
 class Dynamics:
     time: float

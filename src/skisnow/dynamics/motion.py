@@ -27,11 +27,9 @@ LONGEST_STEP: Final = 6e-3
 """Longest step (s) (modelling assumption: the powers are summed by the trapezoidal rule from step to step)."""
 SHORTEST_STEP: Final = 1e-7
 """Step (s) below which a run ends."""
-CLOSENESS: Final = 0.03
-"""Share of a step's own error to which Newton's method solves it (modelling assumption: 0.01 moves ends by less than
-their error)."""
-MATRIX_KEPT: Final = 8
-"""Steps over which Newton's matrix is kept while it serves (modelling assumption)."""
+CLOSENESS: Final = 0.2
+"""Share of a step's own error to which Newton's method solves it . The last change counts times
+its contraction, so a value ten times smaller moves ends by less than their error."""
 
 
 class Ended(IntEnum):
@@ -59,8 +57,8 @@ class StepControl:
         Error of position of one step (m); one metre from the boots for rotations.
     longest, shortest
         Between which the error control chooses (s).
-    closeness, matrix_kept
-        Numerics, see the constants of this module.
+    closeness
+        Share of a step's own error to which Newton's method solves it.
     """
 
     first: float = 1e-4
@@ -69,7 +67,6 @@ class StepControl:
     longest: float = LONGEST_STEP
     shortest: float = SHORTEST_STEP
     closeness: float = CLOSENESS
-    matrix_kept: int = MATRIX_KEPT
 
     def __post_init__(self) -> None:
         for name in ("first", "tolerance", "longest", "shortest", "closeness"):
@@ -79,8 +76,6 @@ class StepControl:
             raise ParameterError(
                 f"StepControl: shortest is {self.shortest!r}, above longest, {self.longest!r}; it must not be"
             )
-        if self.matrix_kept < 1:
-            raise ParameterError(f"StepControl: matrix_kept is {self.matrix_kept!r}; it must be 1 or more")
 
     def compiled(self) -> core.StepRule:
         """What the core takes."""
@@ -88,7 +83,7 @@ class StepControl:
         rule.first, rule.fixed = self.first if self.fixed else min(self.first, self.longest), self.fixed
         rule.tolerance = self.tolerance
         rule.longest, rule.shortest = self.longest, self.shortest
-        rule.closeness, rule.keep = self.closeness, self.matrix_kept
+        rule.closeness = self.closeness
         return rule
 
 

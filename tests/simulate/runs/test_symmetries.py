@@ -65,10 +65,13 @@ def test_mirrored_skids(changes: dict[str, float], duration: float) -> None:
 
 @pytest.mark.parametrize("hardness", [0.03, 0.2])
 def test_straight_down_stays_straight(hardness: float) -> None:
-    """But for rounding, which grows most on the second: to some 5e-11 m."""
+    """A knot closer than 1e-12 m to another is merged, perhaps on one side only.
+
+    The ski then swings by up to a hundred times that distance. An unstable run would swing by millimetres.
+    """
     changes = {"sledge.edge_angle_deg": 0.0, "start.heading_deg": 0.0, "snow.H_V_N_per_mm3": hardness}
     run = simulated(**changes, **{"run.duration_s": 1.0}, **FIXED)
-    assert np.abs(run.place[:, 1]).max() < 1e-10
+    assert np.abs(run.place[:, 1]).max() < 1e-9
 
 
 @pytest.mark.slow
