@@ -101,7 +101,7 @@ def compute_missing(
     numbers = range(len(points)) if numbers is None else numbers
     finished = bytearray(len(points))
     for number in kept.numbers():
-        if number < len(finished):
+        if 0 <= number < len(finished):
             finished[number] = True
     done = sum(finished[numbers.start : numbers.stop : numbers.step])
     missing = len(numbers) - done

@@ -5,15 +5,16 @@ from __future__ import annotations
 import json
 import sqlite3
 import weakref
+import zlib
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager
 from pathlib import Path
 from typing import Any, Final, Self, TypeAlias
 
 from ..errors import OutputError, ParameterError
 from ..files import cannot_write
 from ..given import own_json
-from .former_rows import fingerprint_of_text, rows_of_text
+from ..sqlite_file import connect, first_damage, place_reason, primary_code, require_schema, require_sound_pages
 
 Row: TypeAlias = dict[str, Any]
 NumberedText: TypeAlias = tuple[int, str]
@@ -21,9 +22,12 @@ NumberedText: TypeAlias = tuple[int, str]
 
 _TABLES: Final = """
 create table about (name text primary key, value text not null) without rowid;
-create table rows (number integer primary key, row text not null);
+create table rows (number integer primary key, row text not null, checksum integer not null);
 """
-_FORM: Final = "skisnow rows 2"
+_SCHEMA: Final = {"about": ("name", "value"), "rows": ("number", "row", "checksum")}
+_FORM: Final = "skisnow rows 3"
+_CHECKSUM: Final = "checksum"
+"""Name in the table `about` of the checksum of all its other rows."""
 _BUSY: Final = (sqlite3.SQLITE_BUSY, sqlite3.SQLITE_LOCKED)
 
 
@@ -32,6 +36,9 @@ class KeptRows:
 
     A row is written as soon as it is finished, and a kill at any moment loses none that `add` has taken. One process at
     a time has the file. What a computer that lost its power had not yet on its disk is computed again.
+
+    Every row has a checksum. The schema and the pages are checked at each opening, a checksum when its row is read: a
+    damaged file is an error that names it, whatever is damaged in it.
 
     Attributes
     ----------
@@ -44,9 +51,7 @@ class KeptRows:
     def __init__(self, path: Path | None = None, *, columns: Sequence[str] | None = None) -> None:
         self.path = path
         self.columns = None if columns is None else tuple(columns)
-        self._database = sqlite3.connect(
-            ":memory:" if path is None else path, timeout=0.0, isolation_level=None, check_same_thread=False
-        )
+        self._database = connect(path)
         weakref.finalize(self, self._database.close)
         if path is None:
             self._database.executescript(_TABLES)
@@ -60,7 +65,7 @@ class KeptRows:
         columns: Sequence[str] | None = None,
         about: Mapping[str, str] | None = None,
     ) -> Self:
-        """Open the file of a batch, or begin it; a file of the former format is brought into this one.
+        """Open the file of a batch, or begin it.
 
         Parameters
         ----------
@@ -76,7 +81,7 @@ class KeptRows:
         Raises
         ------
         ParameterError
-            The file belongs to another batch: its fingerprint differs; or it is none of rows.
+            The file belongs to another batch: its fingerprint differs. Or it is damaged, or not a file of rows.
         OutputError
             It cannot be written, or another run is writing it.
         """
@@ -87,8 +92,6 @@ class KeptRows:
         kept = {"form": _FORM, "fingerprint": fingerprint, **(about or {})}
         if columns is not None:
             kept["columns"] = json.dumps(list(columns))
-        if _is_text(path):
-            cls._bring_over(path, kept, columns)
         return cls._begun(path, kept, columns)
 
     @classmethod
@@ -98,15 +101,16 @@ class KeptRows:
         Raises
         ------
         ParameterError
-            There is none, or it is none of rows.
+            There is none, or it is damaged, or not a file of rows.
         OutputError
             It cannot be opened, or another run is writing it.
         """
         if not path.is_file():
             raise ParameterError(f"{path} cannot be read: there is no such file. Check the path")
-        found = cls(path)
+        with _errors(path):
+            found = cls(path)
         try:
-            with _told(path):
+            with found._told():
                 found._take()
                 columns = found.about().get("columns")
             found.columns = None if columns is None else tuple(own_json(columns))
@@ -117,10 +121,10 @@ class KeptRows:
 
     @classmethod
     def _begun(cls, path: Path, about: Mapping[str, str], columns: Sequence[str] | None) -> Self:
-        with _told(path):
+        with _errors(path):
             found = cls(path, columns=columns)
         try:
-            with _told(path):
+            with found._told():
                 found._take(about)
                 kept = found.about()
             if kept["fingerprint"] != about["fingerprint"]:
@@ -129,24 +133,6 @@ class KeptRows:
             found.close()
             raise
         return found
-
-    @classmethod
-    def _bring_over(cls, path: Path, about: Mapping[str, str], columns: Sequence[str] | None) -> None:
-        """Rows of a text file go to a database beside it, which then takes its place."""
-        former = fingerprint_of_text(path)
-        if former is None:
-            raise _damaged(path)
-        if former not in ("", about["fingerprint"]):
-            raise _another(path)
-        beside = path.with_name(f"{path.name}.new")
-        forget(beside)
-        with rows_of_text(path) as rows:
-            new = cls._begun(beside, about, columns)
-            try:
-                new.add((number, new.form(text)) for number, text in _sound(rows))
-            finally:
-                new.close()
-            beside.replace(path)
 
     def _take(self, about: Mapping[str, str] | None = None) -> None:
         """Take the file for this process alone, and begin it where it is new."""
@@ -159,13 +145,19 @@ class KeptRows:
             if about is not None and not run("select count(*) from sqlite_master").fetchone()[0]:
                 for statement in _TABLES.split(";\n"):
                     run(statement)
-                self._database.executemany("insert into about values (?, ?)", about.items())
+                whole = {**about, _CHECKSUM: _checksum_of(about)}
+                self._database.executemany("insert into about values (?, ?)", whole.items())
+            require_schema(self._database, _SCHEMA)
             if self.about().get("form") != _FORM:
                 raise sqlite3.DatabaseError("it has another form")
+            require_sound_pages(self._database)
 
     def about(self) -> dict[str, str]:
         """What was kept of the batch when it was begun."""
-        return dict(self._database.execute("select name, value from about"))
+        found = dict(self._selected("select name, value from about"))
+        if found.pop(_CHECKSUM, None) != _checksum_of(found):
+            raise _damaged(self.path, "the description of the batch has changed")
+        return found
 
     def add(self, rows: Iterable[NumberedText]) -> int:
         """Keep rows, all of them or none: after this call a kill does not lose them. Gives their number.
@@ -176,10 +168,13 @@ class KeptRows:
             The file cannot be written.
         """
         new = list(rows)
-        with _told(self.path):
+        with self._told():
             self._database.execute("begin")
             with self._database:
-                self._database.executemany("insert into rows values (?, ?)", new)
+                self._database.executemany(
+                    "insert into rows values (?, ?, ?)",
+                    ((number, text, _checksum(number, text)) for number, text in new),
+                )
         return len(new)
 
     def form(self, text: str) -> str:
@@ -188,19 +183,20 @@ class KeptRows:
 
     def __len__(self) -> int:
         """How many rows are finished."""
-        return int(self._database.execute("select count(*) from rows").fetchone()[0])
+        ((count,),) = self._selected("select count(*) from rows")
+        return int(count)
 
     def __contains__(self, number: object) -> bool:
         """Whether the row of a point is finished."""
-        return self._database.execute("select 1 from rows where number = ?", (number,)).fetchone() is not None
+        return bool(list(self._selected("select 1 from rows where number = ?", number)))
 
     def numbers(self) -> Iterator[int]:
         """The finished points, in rising order."""
-        return (number for (number,) in self._database.execute("select number from rows order by number"))
+        return (number for (number,) in self._selected("select number from rows order by number"))
 
     def row(self, number: int) -> Row:
         """The row of a finished point."""
-        ((text,),) = self._database.execute("select row from rows where number = ?", (number,)).fetchall()
+        ((_, text),) = self._checked("where number = ?", number)
         return self._row(text)
 
     def rows(self) -> Iterator[tuple[int, Row]]:
@@ -212,8 +208,29 @@ class KeptRows:
         return (own_json(text) for _, text in self.texts())
 
     def texts(self) -> Iterator[NumberedText]:
-        """Points with their rows as they are kept, in rising order."""
-        return iter(self._database.execute("select number, row from rows order by number"))
+        """Points with their rows as they are kept, in rising order.
+
+        Raises
+        ------
+        ParameterError
+            A row, or the file, is damaged.
+        """
+        return self._checked("order by number")
+
+    def _checked(self, which: str, *parameters: object) -> Iterator[NumberedText]:
+        for number, text, checksum in self._selected(f"select number, row, checksum from rows {which}", *parameters):
+            if not isinstance(text, str) or checksum != _checksum(number, text):
+                raise _damaged(self.path, f"the row of point {number + 1} has changed")
+            yield number, text
+
+    def _told(self) -> AbstractContextManager[None]:
+        return _errors(self.path, self._database)
+
+    def _selected(self, query: str, *parameters: object) -> Iterator[tuple[Any, ...]]:
+        with self._told():
+            # `yield from` closes the cursor, which fails behind a closed database
+            for found in self._database.execute(query, parameters):  # noqa: UP028
+                yield found
 
     def _row(self, text: str) -> Row:
         found = own_json(text)
@@ -248,47 +265,26 @@ def json_text(value: Any) -> str:
     return json.dumps(value, ensure_ascii=True, separators=(",", ":"))
 
 
-def _is_text(path: Path) -> bool:
-    """Whether a file is there that is neither empty nor a database. It is not opened where it may be one in use."""
-    try:
-        if not path.is_file() or path.stat().st_size == 0:
-            return False
-    except OSError as error:
-        raise cannot_write(path, error) from error
-    probe = sqlite3.connect(f"{path.absolute().as_uri()}?mode=ro", uri=True, timeout=0.0)
-    try:
-        probe.execute("select count(*) from sqlite_master")
-    except sqlite3.DatabaseError as error:
-        return error.sqlite_errorcode == sqlite3.SQLITE_NOTADB
-    finally:
-        probe.close()
-    return False
+def _checksum(number: int, text: str) -> int:
+    return zlib.crc32(f"{number} {text}".encode("utf-8", "surrogatepass"))
 
 
-def _sound(rows: Iterator[NumberedText]) -> Iterator[NumberedText]:
-    for number, text in rows:
-        try:
-            own_json(text)
-        except ValueError:
-            return
-        yield number, text
+def _checksum_of(about: Mapping[str, object]) -> str:
+    return str(zlib.crc32(repr(sorted(about.items(), key=str)).encode("utf-8", "surrogatepass")))
 
 
 @contextmanager
-def _told(path: Path | None) -> Iterator[None]:
-    """Errors of the database in words."""
+def _errors(path: Path | None, database: sqlite3.Connection | None = None) -> Iterator[None]:
+    """Turn an error of the database into one that names the file and the remedy."""
     try:
         yield
-    except sqlite3.DatabaseError as error:
-        place = path or Path("memory")
-        code = getattr(error, "sqlite_errorcode", None)
-        if code is not None and code & 0xFF in _BUSY:
-            raise OutputError(
-                f"{place} is being written by another run of this study. Wait for it or stop it"
-            ) from None
-        if isinstance(error, sqlite3.OperationalError):
-            raise cannot_write(place, OSError(str(error))) from error
-        raise _damaged(place) from error
+    except (sqlite3.DatabaseError, UnicodeDecodeError) as error:  # the latter where a name in the schema is no text
+        if primary_code(error) in (sqlite3.SQLITE_BUSY, sqlite3.SQLITE_LOCKED):
+            raise OutputError(f"{path} is being written by another run of this study. Wait for it or stop it") from None
+        if place_reason(error) is not None:
+            raise cannot_write(path or Path("memory"), OSError(str(error))) from error
+        found = None if database is None else first_damage(database)
+        raise _damaged(path, found or str(error)) from error
 
 
 def _another(path: Path) -> ParameterError:
@@ -298,8 +294,8 @@ def _another(path: Path) -> ParameterError:
     )
 
 
-def _damaged(path: Path) -> ParameterError:
+def _damaged(path: Path | None, why: str) -> ParameterError:
     return ParameterError(
-        f"{path} stands where finished points are kept, and is damaged or no file of such. Remove it to begin anew, or "
+        f"{path} is damaged, or it is not a file of finished points: {why}. Remove it to compute its points again, or "
         "move it away"
     )

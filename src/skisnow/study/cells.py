@@ -73,8 +73,34 @@ def _fails(read: Reader, text: str) -> bool:
     return False
 
 
+def is_text(name: str, keys: Mapping[str, Quantity]) -> bool:
+    """True for a column of texts; all others hold numbers, switches, or lists of numbers."""
+    return name in TEXTS or (name in keys and keys[name].kind == "text")
+
+
+def require_kinds(place: str, row: Row, texts: Sequence[bool]) -> None:
+    """Check the values of a row that a database gave; `texts` tells the columns of texts.
+
+    Raises
+    ------
+    ParameterError
+        A value is of another kind than its column; the message begins with the place.
+    """
+    for (name, value), text in zip(row.items(), texts, strict=True):
+        if value is None or (isinstance(value, str) if text else _is_number(value)):
+            continue
+        if not text and isinstance(value, list) and all(map(_is_number, value)):
+            continue
+        kind = "a text" if text else "a number, a switch or a list of numbers"
+        raise ParameterError(f"{place}: {name} is {str(value)[:80]!r}. Allowed: {kind}. Correct or remove it")
+
+
+def _is_number(value: object) -> bool:
+    return isinstance(value, int | float)
+
+
 def _reader(name: str, keys: Mapping[str, Quantity], mark: str) -> Reader:
-    if name in TEXTS or (name in keys and keys[name].kind == "text"):
+    if is_text(name, keys):
         empty = "" if name in BLANK else None
         return lambda text: unguarded(text) if text else empty
     number = int if name in keys and keys[name].kind == "whole number" else float

@@ -8,15 +8,19 @@ import itertools
 import sqlite3
 import weakref
 from abc import ABC, abstractmethod
-from collections.abc import Iterator, Sequence
+from array import array
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from typing import IO, Any, Final, overload
 
 from ..errors import ParameterError
 from ..given import own_json
+from ..inputs import Quantity
 from ..optional_packages import needed
 from ..parallel.kept_rows import Row
-from .cells import Reader, row_of
+from ..sqlite_file import connect, first_damage, place_reason, require_schema, require_sound_pages
+from .cells import Reader, is_text, require_kinds, row_of
 
 ROWS_OF_A_BLOCK: Final = 1000
 """Rows that are read at once: a few megabytes (modelling assumption)."""
@@ -120,53 +124,95 @@ def csv_block(path: Path, data: bytes, columns: Sequence[str], readers: Sequence
 
 
 class DatabaseRows(StoredRows):
-    """Rows of the table `study` of an SQLite file."""
+    """Rows of the table `study` of an SQLite file, in the order of their rowid.
 
-    def __init__(self, path: Path) -> None:
-        try:
-            self._database = sqlite3.connect(f"{path.absolute().as_uri()}?mode=ro", uri=True, check_same_thread=False)
-            weakref.finalize(self, self._database.close)
+    Raises
+    ------
+    ParameterError
+        The file cannot be opened, is damaged, or is not a study's table.
+    """
+
+    def __init__(self, path: Path, keys: Mapping[str, Quantity]) -> None:
+        self._path = path
+        with self._errors():
+            self._database = connect(path, mode="ro")
+        weakref.finalize(self, self._database.close)
+        with self._errors():
+            require_schema(self._database, {"study": ("outcome", "study")})
+            require_sound_pages(self._database)
             declared = self._database.execute("select name, type from pragma_table_info('study')").fetchall()
-            (count,) = self._database.execute("select count(*) from study").fetchone()
-        except sqlite3.Error as error:
-            raise ParameterError(f"{path} is no table of a study: {error}") from error
-        super().__init__(count)
+            numbers = [number for (number,) in self._database.execute("select rowid from study order by rowid")]
+        super().__init__(len(numbers))
+        self._firsts = array("q", numbers[::ROWS_OF_A_BLOCK])
         self.columns = tuple(name for name, _ in declared)
         self._kinds = [kind for _, kind in declared]
+        self._texts = [is_text(name, keys) for name in self.columns]
+
+    @contextmanager
+    def _errors(self) -> Iterator[None]:
+        try:
+            yield
+        except (sqlite3.Error, UnicodeDecodeError) as error:  # the latter where a name in the schema is no text
+            damage = first_damage(self._database) if hasattr(self, "_database") else None
+            raise _no_table(self._path, place_reason(error) or damage or error) from error
 
     def block(self, number: int) -> list[Row]:
         """Some rows."""
-        first = number * ROWS_OF_A_BLOCK
-        rows = self._database.execute(
-            "select * from study where rowid > ? and rowid <= ? order by rowid", (first, first + ROWS_OF_A_BLOCK)
-        )
-        return [
-            {name: _natural(value, kind) for name, value, kind in zip(self.columns, row, self._kinds, strict=True)}
-            for row in rows
-        ]
+        query = "select * from study where rowid >= ? order by rowid limit ?"
+        with self._errors():
+            rows = self._database.execute(query, (self._firsts[number], ROWS_OF_A_BLOCK)).fetchall()
+        first = number * ROWS_OF_A_BLOCK + 1
+        return [self._row(place, row) for place, row in enumerate(rows, start=first)]
+
+    def _row(self, place: int, values: Sequence[Any]) -> Row:
+        try:
+            found = dict(zip(self.columns, map(_natural, values, self._kinds), strict=True))
+        except ValueError as error:
+            raise _no_table(self._path, f"row {place}: {error}") from error
+        require_kinds(f"{self._path}, row {place}", found, self._texts)
+        return found
+
+
+def _no_table(path: Path, why: object) -> ParameterError:
+    return ParameterError(
+        f"{path} cannot be read as a study's table: {why}. Put back a copy, or remove it and run the study again"
+    )
 
 
 def _natural(value: Any, kind: str) -> Any:
     if value is None:
         return None
-    if kind == "BOOLEAN":
+    if kind == "BOOLEAN" and value in (0, 1):
         return bool(value)
-    return own_json(value) if kind == "JSON" else value
+    return own_json(value) if kind == "JSON" and isinstance(value, str) else value
 
 
 class ParquetRows(StoredRows):
     """Rows of a Parquet file; the row group that was read last is remembered."""
 
-    def __init__(self, path: Path) -> None:
+    def __init__(self, path: Path, keys: Mapping[str, Quantity]) -> None:
         parquet = require_pyarrow().parquet
-        try:
+        self._path = path
+        with self._errors():
             self._file = parquet.ParquetFile(path)
-        except (OSError, ValueError) as error:
-            raise ParameterError(f"{path} is no table of a study: {error}") from error
-        super().__init__(self._file.metadata.num_rows)
-        self.columns = tuple(self._file.schema_arrow.names)
-        self._groups = _group_begins(self._file.metadata)
+            super().__init__(self._file.metadata.num_rows)
+            self.columns = tuple(self._file.schema_arrow.names)
+            self._groups = _group_begins(self._file.metadata)
+        self._texts = [is_text(name, keys) for name in self.columns]
         self._read: tuple[int, Any] = (-1, None)
+
+    @contextmanager
+    def _errors(self) -> Iterator[None]:
+        try:
+            yield
+        except (
+            OSError,
+            ValueError,
+            TypeError,
+            NotImplementedError,
+            MemoryError,
+        ) as error:  # and what pyarrow makes of them
+            raise _no_table(self._path, " ".join(str(error).split())) from error
 
     def block(self, number: int) -> list[Row]:
         """Some rows."""
@@ -175,9 +221,12 @@ class ParquetRows(StoredRows):
         rows: list[Row] = []
         for group, (begin, end) in enumerate(self._groups):
             if begin < last and end > first:
-                if self._read[0] != group:
-                    self._read = (group, self._file.read_row_group(group))
-                rows += self._read[1].slice(max(first - begin, 0), last - max(first, begin)).to_pylist()
+                with self._errors():
+                    if self._read[0] != group:
+                        self._read = (group, self._file.read_row_group(group))
+                    rows += self._read[1].slice(max(first - begin, 0), last - max(first, begin)).to_pylist()
+        for place, row in enumerate(rows, start=first + 1):
+            require_kinds(f"{self._path}, row {place}", row, self._texts)
         return rows
 
 

@@ -219,7 +219,8 @@ class _Parts:
         found = bytearray(self.count)
         for part in self._parts:
             for number in part.numbers():
-                found[number] = True
+                if 0 <= number < self.count:  # all others are rejected with their row
+                    found[number] = True
         missing = found.count(0)
         if missing:
             first = found.index(0)

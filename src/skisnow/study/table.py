@@ -118,7 +118,7 @@ def stored_rows(
     """Columns and rows that are read as they are used; None of a small CSV file, and of one of another program."""
     ending = path.suffix.lower()
     if ending in (".sqlite", ".parquet"):
-        found = DatabaseRows(path) if ending == ".sqlite" else ParquetRows(path)
+        found = DatabaseRows(path, keys) if ending == ".sqlite" else ParquetRows(path, keys)
         return found.columns, found
     try:
         if begins is None and path.stat().st_size <= MOST_BYTES_HELD:

@@ -14,6 +14,7 @@ from typing import IO, Any, Final, TypeAlias
 
 from ..errors import ParameterError
 from ..files import cannot_write, place_to_write
+from ..sqlite_file import connect
 from .cells import cell, cells
 from .rows import ROWS_OF_A_BLOCK, require_pyarrow
 
@@ -101,7 +102,7 @@ def _write_database(path: Path, columns: Sequence[str], rows: ValueRows) -> None
     named = ", ".join(f'"{name}" {kind}'.rstrip() for name, kind in zip(columns, types, strict=True))
     with place_to_write(path) as place:
         try:
-            _fill(sqlite3.connect(place, isolation_level=None), named, len(columns), rows())
+            _fill(connect(place), named, len(columns), rows())
         except sqlite3.Error as error:
             raise cannot_write(path, OSError(str(error))) from error
 

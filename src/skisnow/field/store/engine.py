@@ -8,19 +8,18 @@ every connection has foreign keys on and waits for others; every commit is on th
 from __future__ import annotations
 
 import errno
-import os
 import sqlite3
 import time
-from contextlib import contextmanager
-from typing import TYPE_CHECKING, Final
-from urllib.parse import quote
+from contextlib import closing, contextmanager, suppress
+from typing import TYPE_CHECKING, Any, Final
 
 from sqlalchemy import Connection, Engine, NullPool, create_engine, event
 from sqlalchemy.exc import DBAPIError
 
 from ...errors import StoreError
+from ...sqlite_file import NO_ROOM, READ_ONLY, connect, first_damage, place_reason, primary_code, require_schema
 from .address import ServerAddress
-from .schema import APPLICATION_ID
+from .schema import APPLICATION_ID, metadata
 from .server import lock_for_writing, needs_migration, open_server, reason
 
 if TYPE_CHECKING:
@@ -29,25 +28,16 @@ if TYPE_CHECKING:
 
     from sqlalchemy import ExceptionContext
 
+    from ...sqlite_file import Mode
     from .address import StorePlace
 
-_NO_ROOM: Final = "there is no room left on the disk; free some space and try again"
-_READ_ONLY: Final = "it is read-only; allow writing to the file and its folder, or name another place"
-_SQLITE_REASONS: Final = {
-    sqlite3.SQLITE_FULL: _NO_ROOM,
-    sqlite3.SQLITE_READONLY: _READ_ONLY,
-    sqlite3.SQLITE_PERM: _READ_ONLY,
-    sqlite3.SQLITE_BUSY: "another program has kept it locked for too long; wait until that one is done and try again",
-    sqlite3.SQLITE_CANTOPEN: "it cannot be opened; the file and its folder must exist and be readable and writable",
-    sqlite3.SQLITE_NOTADB: "this file is no store but something else; name another file",
-    sqlite3.SQLITE_CORRUPT: "the file is damaged; put a backup in its place, or export what can still be exported",
-    sqlite3.SQLITE_IOERR: "the disk could not be read or written; check it and the space left on it",
-}
+_DAMAGED: Final = "the file is damaged; put a backup in its place, or export what can still be exported"
+_NO_STORE: Final = "this file is no store but something else; name another file"
 _NO_TEXT: Final = "Could not decode to UTF-8"
 _SYSTEM_REASONS: Final = {
-    errno.ENOSPC: _NO_ROOM,
-    errno.EDQUOT: _NO_ROOM,
-    errno.EROFS: _READ_ONLY,
+    errno.ENOSPC: NO_ROOM,
+    errno.EDQUOT: NO_ROOM,
+    errno.EROFS: READ_ONLY,
     errno.EACCES: "access is not allowed; change the permissions or name another place",
     errno.EPERM: "access is not allowed; change the permissions or name another place",
 }
@@ -62,12 +52,26 @@ def database_errors(store: StorePlace, doing: str) -> Iterator[None]:
         store = _place_of(error) or store
         if isinstance(store, ServerAddress):
             raise StoreError(f"The store {store} {doing}: {reason(error, store)}.") from error
-        message = str(getattr(error, "orig", error))
-        code = sqlite3.SQLITE_CORRUPT if message.startswith(_NO_TEXT) else _primary_code(error)
-        why = _SQLITE_REASONS.get(code, message)
-        raise StoreError(f"The store {store} {doing}: {why}.") from error
+        original = getattr(error, "orig", error)
+        raise StoreError(f"The store {store} {doing}: {_file_reason(original, store)}.") from error
     except UnicodeDecodeError as error:  # what SQLite says names a part of the schema that is no text any more
-        raise StoreError(f"The store {store} {doing}: {_SQLITE_REASONS[sqlite3.SQLITE_CORRUPT]}.") from error
+        raise StoreError(f"The store {store} {doing}: {_DAMAGED}.") from error
+
+
+def _file_reason(error: BaseException, path: Path) -> str:
+    """Why a store in a file cannot be used, and what to do."""
+    message, code = str(error), primary_code(error)
+    if code == sqlite3.SQLITE_NOTADB:
+        return _NO_STORE
+    if code == sqlite3.SQLITE_CORRUPT or message.startswith(_NO_TEXT):
+        return f"{_DAMAGED} ({damage})" if (damage := _damage(path)) else _DAMAGED
+    return place_reason(error) or message
+
+
+def _damage(path: Path) -> str | None:
+    with suppress(sqlite3.Error), closing(connect(path, mode="ro")) as database:
+        return first_damage(database)
+    return None
 
 
 @contextmanager
@@ -91,11 +95,6 @@ def _remember_place(engine: Engine, place: StorePlace) -> None:
 
 def _place_of(error: BaseException) -> StorePlace | None:
     return getattr(getattr(error, "orig", None) or error, "skisnow_place", None)
-
-
-def _primary_code(error: DBAPIError | sqlite3.Error) -> int:
-    code: int = getattr(getattr(error, "orig", error), "sqlite_errorcode", 0)
-    return code & 0xFF  # the upper bits say more than a user can act on
 
 
 @contextmanager
@@ -154,33 +153,41 @@ def _open_file(path: Path, *, create: bool, busy_timeout_s: float) -> Engine:
     engine = _readable_engine(path, create=create, busy_timeout_s=busy_timeout_s)
     if _is_outdated(engine, path):
         _bring_up_to_date(engine, path, busy_timeout_s)
+    _require_tables(engine, path)
     return engine
 
 
+def _require_tables(engine: Engine, path: Path) -> None:
+    """Check that every table of the schema is there with all of its columns."""
+    with reading(engine) as connection:
+        database: Any = connection.connection.driver_connection
+        try:
+            require_schema(database, {name: table.columns.keys() for name, table in metadata.tables.items()})
+        except sqlite3.DatabaseError as error:
+            if place_reason(error) is not None:
+                raise
+            raise StoreError(f"{path} is damaged: {error}. Put a backup in its place.") from error
+
+
 def _readable_engine(path: Path, *, create: bool, busy_timeout_s: float) -> Engine:
-    engine = _engine(path, "mode=rwc" if create else "mode=rw", busy_timeout_s)
+    engine = _engine(path, "rwc" if create else "rw", busy_timeout_s)
     try:
         _tables(engine)
     except DBAPIError as error:
         # A write-ahead log needs a file beside the store. Where the folder forbids that and there is no log, nobody is
         # writing, and SQLite can be told to read the file as it stands.
         log = path.with_name(path.name + "-wal")
-        forbidden = _primary_code(error) in (sqlite3.SQLITE_CANTOPEN, sqlite3.SQLITE_READONLY)
+        forbidden = primary_code(error.orig or error) in (sqlite3.SQLITE_CANTOPEN, sqlite3.SQLITE_READONLY)
         if not forbidden or not path.exists() or (log.exists() and log.stat().st_size > 0):
             raise
-        engine = _engine(path, "mode=ro&immutable=1", busy_timeout_s)
+        engine = _engine(path, "ro&immutable=1", busy_timeout_s)
         _tables(engine)
     return engine
 
 
-def _engine(path: Path, mode: str, busy_timeout_s: float) -> Engine:
-    name = quote(os.fsencode(path.absolute().as_posix()))
-    address = f"file://{'' if name.startswith('/') else '/'}{name}?{mode}"
-
-    def connect() -> sqlite3.Connection:
-        connection = sqlite3.connect(
-            address, uri=True, timeout=busy_timeout_s, isolation_level=None, check_same_thread=False
-        )
+def _engine(path: Path, mode: Mode, busy_timeout_s: float) -> Engine:
+    def open_file() -> sqlite3.Connection:
+        connection = connect(path, mode=mode, timeout_s=busy_timeout_s)
         try:
             connection.execute("PRAGMA foreign_keys = ON")
             connection.execute("PRAGMA synchronous = FULL")
@@ -189,7 +196,7 @@ def _engine(path: Path, mode: str, busy_timeout_s: float) -> Engine:
             raise
         return connection
 
-    engine = create_engine("sqlite://", creator=connect, poolclass=NullPool)
+    engine = create_engine("sqlite://", creator=open_file, poolclass=NullPool)
     event.listen(engine, "begin", _begin)
     return engine
 
@@ -249,6 +256,6 @@ def _use_write_ahead_log(engine: Engine, busy_timeout_s: float) -> None:
                 connection.connection.cursor().execute("PRAGMA journal_mode = WAL")
             return
         except sqlite3.OperationalError as error:
-            if _primary_code(error) != sqlite3.SQLITE_BUSY or time.monotonic() > give_up:
+            if primary_code(error) != sqlite3.SQLITE_BUSY or time.monotonic() > give_up:
                 raise
         time.sleep(0.01)
