@@ -133,7 +133,8 @@ def test_nobody_heads_anywhere_at_rest() -> None:
 
 def test_running_mean_knows_only_what_is_known() -> None:
     time, values = np.arange(5.0), np.array([1.0, np.nan, 3.0, 5.0, 10.0])
-    assert running_mean(time, values, 2.0).tolist() == pytest.approx([1.0, np.nan, 4.0, 6.0, 7.5], nan_ok=True)
+    one = np.zeros(len(time), dtype=np.int64)
+    assert running_mean(time, values, 2.0, one).tolist() == pytest.approx([1.0, np.nan, 4.0, 6.0, 7.5], nan_ok=True)
 
 
 def test_error_of_the_curvature_is_that_of_drawn_velocities_and_accelerations() -> None:

@@ -16,6 +16,7 @@ from .smoothing import SmoothedTrack, filled, smoothed_track
 from .track import Track
 
 FloatArray = npt.NDArray[np.float64]
+IntArray = npt.NDArray[np.int64]
 
 SpeedSource: TypeAlias = Literal["recorded", "fitted"]
 ArcLengthSource: TypeAlias = Literal["odometer", "recorded speed", "places"]
@@ -25,6 +26,8 @@ LEAST_SPEED: Final = 1.0
 rest."""
 CERTAIN: Final = 3.0
 """A heading needs a speed of so many of its standard errors."""
+LONGEST_HOLE: Final = 1.5
+"""Time (s) between recorded speeds over which they are interpolated. Modelling assumption: the shortest of turns."""
 INTERVAL_FACTOR: Final = float(norm.ppf(0.5 + CONFIDENCE / 2.0))
 """Standard errors on each side of a 95 % interval."""
 
@@ -114,7 +117,7 @@ def track_motion(track: Track, *, window: float | None = None, place_noise: floa
     smoothed = smoothed_track(track, window=window, place_noise=place_noise)
     fitted = np.linalg.norm(smoothed.velocity, axis=1)
     speed, speed_source = _speed(track, fitted)
-    arc_length, arc_length_source = _arc_length(track, smoothed, speed)
+    arc_length, arc_length_source = _arc_length(track, smoothed, speed, speed_source)
     heading, heading_sd = _heading(smoothed, fitted)
     curvature, curvature_sd = _curvature(smoothed, fitted)
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -127,22 +130,37 @@ def track_motion(track: Track, *, window: float | None = None, place_noise: floa
 
 
 def _speed(track: Track, fitted: FloatArray) -> tuple[FloatArray, SpeedSource]:
-    """The recorded speed, else that of the recorded velocity, else the fitted one."""
+    """The recorded speed, else that of the recorded velocity, else the fitted one.
+
+    Speeds recorded less often than places are interpolated over at most `LONGEST_HOLE`.
+    """
     speed = track.speed.astype(float)
     if track.velocity is not None:
         whole = np.linalg.norm(np.nan_to_num(track.velocity), axis=1)
         known = np.isfinite(track.velocity[:, :2]).all(axis=1)
         speed = np.where(np.isnan(speed) & known, whole, speed)
+    placed = np.flatnonzero(np.isfinite(speed) & track.usable)
+    if len(placed) < 2:
+        return np.where(np.isfinite(speed), speed, fitted), "fitted"
+    time = np.maximum.accumulate(track.time)
+    holes = np.diff(time[placed])
+    step = np.searchsorted(time[placed], time, side="right") - 1
+    inside = (step >= 0) & (step < len(holes))
+    close = np.zeros(len(time), dtype=bool)
+    close[inside] = holes[step[inside]] <= max(LONGEST_HOLE, 2.0 * float(np.median(np.diff(time))))
+    speed = np.where(np.isnan(speed) & close, np.interp(time, time[placed], speed[placed]), speed)
     recorded = np.isfinite(speed)
     source: SpeedSource = "recorded" if 2 * np.count_nonzero(recorded) >= len(track) else "fitted"
     return np.where(recorded, speed, fitted), source
 
 
-def _arc_length(track: Track, smoothed: SmoothedTrack, speed: FloatArray) -> tuple[FloatArray, ArcLengthSource]:
+def _arc_length(
+    track: Track, smoothed: SmoothedTrack, speed: FloatArray, speed_source: SpeedSource
+) -> tuple[FloatArray, ArcLengthSource]:
     """The device's own distance, else the integral of a recorded speed, else the length of the smoothed track."""
     if track.odometer is not None and np.count_nonzero(np.isfinite(track.odometer)) >= 2:
         return odometer_arc_length(track), "odometer"
-    if 2 * np.count_nonzero(np.isfinite(track.speed)) >= len(track) or track.velocity is not None:
+    if speed_source == "recorded":
         return integrated_arc_length(track, smoothed, speed), "recorded speed"
     return places_arc_length(track, smoothed), "places"
 
@@ -156,7 +174,7 @@ def odometer_arc_length(track: Track) -> FloatArray:
 
 
 def integrated_arc_length(track: Track, smoothed: SmoothedTrack, speed: FloatArray) -> FloatArray:
-    """Integral (n,) (m) of the speed by the trapezoidal rule; over a gap the straight line between its ends."""
+    """Integral (n,) (m) of the speed by the trapezoidal rule; straight over gaps, nothing between segments."""
     rising = np.maximum.accumulate(track.time)
     known = np.isfinite(speed) & track.usable
     if not known.any():
@@ -165,17 +183,22 @@ def integrated_arc_length(track: Track, smoothed: SmoothedTrack, speed: FloatArr
     steps = np.diff(rising) * (whole[1:] + whole[:-1]) / 2.0
     gap = np.diff(smoothed.part) > 0
     steps[gap] = np.linalg.norm(np.diff(filled(track.place[:, :2], track.usable), axis=0)[gap], axis=1)
+    steps[np.diff(segments(track)) > 0] = 0.0
     return np.concatenate([[0.0], np.cumsum(steps)])
 
 
 def places_arc_length(track: Track, smoothed: SmoothedTrack) -> FloatArray:
-    """Length (n,) (m) of the smoothed track, with the recorded heights where there are any; straight over gaps."""
+    """Length (n,) (m) of the smoothed track, with the recorded heights if there are any.
+
+    The path is straight over gaps, and nothing counts between segments.
+    """
     chosen = smoothed.usable
     place = np.where(np.isfinite(smoothed.place), smoothed.place, track.place[:, :2])[chosen]
     steps = np.sum(np.diff(place, axis=0) ** 2, axis=1)
     height = smooth_height(track, smoothed)[chosen]
     rises = np.nan_to_num(np.diff(height))
-    arc_length = np.concatenate([[0.0], np.cumsum(np.sqrt(steps + rises**2))])
+    lengths = np.where(np.diff(segments(track)[chosen]) > 0, 0.0, np.sqrt(steps + rises**2))
+    arc_length = np.concatenate([[0.0], np.cumsum(lengths)])
     rising = np.maximum.accumulate(track.time)
     return np.interp(rising, rising[chosen], arc_length)
 
@@ -183,15 +206,23 @@ def places_arc_length(track: Track, smoothed: SmoothedTrack) -> FloatArray:
 def smooth_height(track: Track, smoothed: SmoothedTrack) -> FloatArray:
     """Running mean of the height (n,) (m) over the window; NaN where it was not recorded."""
     height = np.where(smoothed.usable, track.place[:, 2], np.nan)
-    return running_mean(track.time, height, smoothed.resolution.window)
+    return running_mean(track.time, height, smoothed.resolution.window, segments(track))
 
 
-def running_mean(time: FloatArray, values: FloatArray, window: float) -> FloatArray:
-    """Mean (n,) of the known values within half a window (s) before and after each point, NaN where none is known."""
+def segments(track: Track) -> IntArray:
+    """Number (n,) of the segment of each point, from 0: the file begins a new one after a pause."""
+    begins = track.flags.get("new_segment")
+    return np.zeros(len(track), dtype=np.int64) if begins is None else np.cumsum(begins).astype(np.int64)
+
+
+def running_mean(time: FloatArray, values: FloatArray, window: float, segment: IntArray) -> FloatArray:
+    """Mean (n,) of the known values of a segment within half a window (s) of each point, NaN if none is known."""
     known = np.isfinite(values)
     rising = np.maximum.accumulate(time)
     first = np.searchsorted(rising, rising - window / 2.0, side="left")
     last = np.searchsorted(rising, rising + window / 2.0, side="right")
+    first = np.maximum(first, np.searchsorted(segment, segment, side="left"))
+    last = np.minimum(last, np.searchsorted(segment, segment, side="right"))
     base = float(np.mean(values[known])) if known.any() else 0.0
     sums = np.concatenate([[0.0], np.cumsum(np.where(known, values - base, 0.0))])
     counts = np.concatenate([[0], np.cumsum(known)])

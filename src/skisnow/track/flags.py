@@ -22,11 +22,15 @@ if TYPE_CHECKING:
 
     BoolArray = npt.NDArray[np.bool_]
     FloatArray = npt.NDArray[np.float64]
+    IntArray = npt.NDArray[np.int64]
 
 FASTEST: Final = 75.0
 """Speed (m/s) above which a step is impossible: the fastest run ever skied had 71 m/s (modelling assumption)."""
 GAP_FACTOR: Final = 5.0
 """A pause of more than so many usual intervals is a gap (modelling assumption)."""
+
+_CONTINUED: Final = 1.5
+"""Usual intervals up to which a segment continues the one before."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,6 +46,11 @@ _ALL: Final = (
     PointFlag("no_fix", "The receiver had no fix, or the file has no place for this point.", True),
     PointFlag("missing_height", "The point has a place but no height.", False),
     PointFlag("repeated_time", "The point has the same time stamp as the one before it.", True),
+    PointFlag(
+        "rounded_time", "The file's time stamps are coarser than its points: spread over the time of each stamp.", False
+    ),
+    PointFlag("not_finite", "A cell of the point is nan, inf or the like: it counts as blank.", False),
+    PointFlag("new_segment", "The file begins a new segment here: nothing is computed across.", False),
     PointFlag("gap", "The time since the point before is much longer than the usual interval.", False),
     PointFlag("jump", "A single point far off: the speed out to it and back again is impossible.", True),
     PointFlag("impossible_step", "The speed to this point is impossible, and no single point explains it.", False),
@@ -64,6 +73,9 @@ def point_flags(
     fastest: float = FASTEST,
     gap_factor: float = GAP_FACTOR,
     solution: SolutionArray | None = None,
+    segment: IntArray | None = None,
+    rounded: BoolArray | None = None,
+    not_finite: BoolArray | None = None,
 ) -> dict[str, BoolArray]:
     """Flags of every code, each (n,) bool.
 
@@ -83,6 +95,11 @@ def point_flags(
         A time step longer than this many medians of the steps above zero is a gap; the point after it is flagged.
     solution : (n,) or None
         How the receiver came to each place, as in `Track`.
+    segment : (n,) or None
+        Number of the segment of each point. A segment that continues the one before, at most 1.5 usual intervals later
+        and at a possible speed, is not flagged: some programs begin a segment for each lap.
+    rounded, not_finite : (n,) bool or None
+        Points whose time stamp was rounded, and points with a cell that is not a finite number.
     """
     placed = fix & np.isfinite(place[:, :2]).all(axis=1)
     repeated = np.zeros(len(time), bool)
@@ -90,13 +107,20 @@ def point_flags(
     sure = np.flatnonzero(placed & ~repeated)
     jump, impossible = np.zeros(len(time), bool), np.zeros(len(time), bool)
     jumped, stepped = _impossible(time[sure], place[sure, :2], fastest)
+    apart = _apart(time, place, sure, segment, fastest)
     jump[sure[jumped]] = True
     impossible[sure[stepped]] = True
+    jump &= ~apart
+    impossible &= ~apart
+    none = np.zeros(len(time), bool)
     return {
         "no_fix": ~placed,
         "missing_height": placed & np.isnan(place[:, 2]),
         "repeated_time": repeated,
-        "gap": _after_gap(time, gap_factor),
+        "rounded_time": none.copy() if rounded is None else rounded,
+        "not_finite": none.copy() if not_finite is None else not_finite,
+        "new_segment": apart,
+        "gap": _after_gap(time, gap_factor) & ~apart,
         "jump": jump,
         "impossible_step": impossible,
         "negative_speed": negative_speed,
@@ -110,6 +134,18 @@ def _after_gap(time: FloatArray, factor: float) -> BoolArray:
     if np.any(steps > 0.0):
         after[1:] = steps > factor * np.median(steps[steps > 0.0])
     return after
+
+
+def _apart(time: FloatArray, place: FloatArray, sure: IntArray, segment: IntArray | None, fastest: float) -> BoolArray:
+    """First points (n,) bool of segments that do not continue the one before."""
+    apart = np.zeros(len(time), bool)
+    if segment is None or len(sure) < 2:
+        return apart
+    steps = np.diff(time[sure])
+    lengths = np.hypot(*np.diff(place[sure, :2], axis=0).T)
+    continued = (steps <= _CONTINUED * np.median(steps)) & (lengths <= fastest * steps)
+    apart[sure[1:][(np.diff(segment[sure]) != 0) & ~continued]] = True
+    return apart
 
 
 def _impossible(time: FloatArray, place: FloatArray, fastest: float) -> tuple[list[int], list[int]]:

@@ -18,7 +18,7 @@ from .readers.rtklib import read_rtklib
 from .readers.rtklib_header import HEADER
 from .readers.table import read_table
 from .readers.text import text_of
-from .readers.ubx import SYNC, read_ubx
+from .readers.ubx import SYNC, has_places, read_ubx
 
 if TYPE_CHECKING:
     from .projection import GeodeticPoint
@@ -35,6 +35,7 @@ SUFFIXES: Final[dict[str, TrackFormat]] = {
     ".csv": "csv",
 }
 _HEAD: Final = 1 << 16
+_UTF_16: Final = (b"\xff\xfe", b"\xfe\xff")
 _UBX_NAVIGATION: Final = SYNC + b"\x01\x07"
 
 
@@ -65,7 +66,8 @@ def read_track(
     Returns
     -------
     Track
-        Every point of the file, in its order; doubtful ones are flagged, none is dropped, moved or filled in.
+        The points from the first to the last one with a fix, in the order of the file. Doubtful ones are flagged, and
+        records that are not used are counted in `Track.left_out`.
 
     Raises
     ------
@@ -92,7 +94,7 @@ def read_track(
         raise ParameterError(f"there is no track format {kind!r}; there are {', '.join(get_args(TrackFormat))}")
     path = Path(path)
     data = _bytes(path)
-    recording = _recording(data, path.name, kind or format_of(data, path.suffix))
+    recording = _recording(data, path.name, kind or _kind(data, path.suffix))
     return track_of(recording, origin=origin, fastest=fastest, gap_factor=gap_factor)
 
 
@@ -103,17 +105,21 @@ def format_of(data: bytes, suffix: str) -> TrackFormat:
     ('csv', 'nmea', 'fit')
     """
     head = data[:_HEAD]
-    if data[8:12] == b".FIT":
-        return "fit"
-    if _UBX_NAVIGATION in data or head.startswith(SYNC):
-        return "ubx"
-    if re.search(rb"<gpx[\s>]", head) or "<gpx".encode("utf-16-le") in head:
-        return "gpx"
-    if SENTENCE.search(head):
-        return "nmea"
-    if HEADER.search(head.decode("latin-1").replace("\r", "\n")):
-        return "rtklib"
-    return SUFFIXES.get(suffix.lower(), "csv")
+    signs: tuple[tuple[TrackFormat, object], ...] = (
+        ("fit", data[8:12] == b".FIT"),
+        ("ubx", _UBX_NAVIGATION in data),
+        ("gpx", re.search(rb"<(?:\w+:)?gpx[\s>]", head)),
+        ("rtklib", HEADER.search(head.decode("latin-1").replace("\r", "\n"))),
+        ("nmea", SENTENCE.search(data)),
+        ("ubx", head.startswith(SYNC)),
+    )
+    return next((kind for kind, sign in signs if sign), SUFFIXES.get(suffix.lower(), "csv"))
+
+
+def _kind(data: bytes, suffix: str) -> TrackFormat:
+    """The format of the content; sentences in a file with UBX frames if no NAV-PVT among them has a place."""
+    kind = format_of(data, suffix)
+    return "nmea" if kind == "ubx" and not has_places(data) and SENTENCE.search(data) else kind
 
 
 def _bytes(path: Path) -> bytes:
@@ -131,7 +137,7 @@ def _bytes(path: Path) -> bytes:
             allowed="a track",
             action="The file is empty; was anything recorded?",
         )
-    return data
+    return data.decode("utf-16", errors="replace").encode() if data.startswith(_UTF_16) else data
 
 
 def _unreadable(path: Path, reason: str) -> Exception:

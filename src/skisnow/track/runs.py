@@ -12,7 +12,7 @@ import numpy.typing as npt
 
 from ..constants import STANDARD_GRAVITY
 from ..shown import ShownFields
-from .curvature import TrackMotion, running_mean
+from .curvature import TrackMotion, running_mean, segments
 from .phases import turning_points
 from .track import Track
 
@@ -94,12 +94,12 @@ def split_day(track: Track, motion: TrackMotion) -> Day:
     the last moment at the top at which the speed was below 1 m/s to the first such moment at the bottom; a stop in
     between does not end it. Top and bottom are the first and last 2 % of the descent's height, at least 1 m. Where the
     heights differ by less than 15 m, or there are none, every stretch in motion is a run; stops up to 30 s do not end
-    it.
+    it. An ascent between two segments of the file separates runs, but it is not listed as a lift.
     """
     height, remarks = known_height(track, motion)
     if height is None:
         return Day(tuple(_moving_stretches(track, motion, None)), (), "motion", remarks)
-    smooth = running_mean(track.time, height, HEIGHT_WINDOW)
+    smooth = running_mean(track.time, height, HEIGHT_WINDOW, segments(track))
     corners = turning_points(smooth, LEAST_HEIGHT)
     changes = np.diff(smooth[corners])
     if not np.any(np.abs(changes) >= LEAST_HEIGHT):
@@ -110,7 +110,8 @@ def split_day(track: Track, motion: TrackMotion) -> Day:
         for low, high, rise in zip(corners[:-1], corners[1:], changes, strict=True)
         if rise >= max(LEAST_HEIGHT, _carried(motion, low))
     ]
-    lifts = [_stretch(track, motion, height, *_climb(smooth, *ascent)) for ascent in ascents]
+    climbs = [_climb(smooth, *ascent) for ascent in ascents if _recorded_rise(track, smooth, *ascent) >= LEAST_HEIGHT]
+    lifts = [_stretch(track, motion, height, *climb) for climb in climbs]
     found = (_descent(motion, smooth, corners, area) for area in _between(ascents, len(track)))
     runs = [_stretch(track, motion, height, *ends) for ends in found if ends is not None]
     return Day(tuple(run for run in runs if _is_run(run)), tuple(lifts), "height", remarks)
@@ -128,6 +129,12 @@ def known_height(track: Track, motion: TrackMotion) -> tuple[FloatArray | None, 
     if track.axes == "file" and np.ptp(height) < _LEVEL_SHARE * arc_length:
         return None, ("The third axis hardly changes: it is taken as the slope's own, and descents are unknown.",)
     return height, ()
+
+
+def _recorded_rise(track: Track, smooth: FloatArray, low: int, high: int) -> float:
+    """Rise (m) of an ascent without that between two segments of the file."""
+    between = np.diff(segments(track)[low : high + 1]) > 0
+    return float(np.sum(np.diff(smooth[low : high + 1])[~between]))
 
 
 def _carried(motion: TrackMotion, foot: int) -> float:

@@ -118,7 +118,7 @@ def usable_points(track: Track) -> BoolArray:
 
 
 def parts(track: Track, usable: BoolArray) -> IntArray:
-    """Number of the part of each point: a new one begins after a gap and after an impossible step.
+    """Number of the part of each point: a new one begins after a gap, an impossible step and with a new segment.
 
     Parameters
     ----------
@@ -129,7 +129,7 @@ def parts(track: Track, usable: BoolArray) -> IntArray:
         that is a gap too.
     """
     begins = np.zeros(len(track), dtype=bool)
-    for code in ("gap", "impossible_step"):
+    for code in ("gap", "impossible_step", "new_segment"):
         begins |= track.flags.get(code, False)
     chosen = np.flatnonzero(usable)
     late = np.diff(track.time[chosen]) > GAP_FACTOR * _interval(track.time[chosen])

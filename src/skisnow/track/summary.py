@@ -12,7 +12,7 @@ from ..errors import ParameterError
 from ..json_number import json_number
 from ..shown import Facts, Shown, amount
 from ..units import DEGREE
-from .curvature import TrackMotion, integrated_arc_length, places_arc_length, track_motion
+from .curvature import TrackMotion, integrated_arc_length, places_arc_length, segments, track_motion
 from .runs import Day, Stretch, max_speed, split_day
 from .solution import solution_counts
 from .track import Track
@@ -112,7 +112,7 @@ def track_summary(track: Track, *, window: float | None = None, place_noise: flo
     distances = _distances(track, motion)
     return TrackSummary(
         track, motion, day, turns, distances, max_speed(track, motion, slice(None)),
-        (*_remarks(motion, distances), *day.remarks),
+        (*_reading_remarks(track), *_remarks(track, motion, distances), *day.remarks),
     )  # fmt: skip
 
 
@@ -125,7 +125,12 @@ def _distances(track: Track, motion: TrackMotion) -> dict[str, float]:
     return {name: float(arc_length[-1] - arc_length[0]) for name, arc_length in ways.items()}
 
 
-def _remarks(motion: TrackMotion, distances: dict[str, float]) -> tuple[str, ...]:
+def _reading_remarks(track: Track) -> tuple[str, ...]:
+    """How the file was read, and what of it is not used."""
+    return (*track.notes, *(f"Not used: {count} {words}." for words, count in track.left_out.items()))
+
+
+def _remarks(track: Track, motion: TrackMotion, distances: dict[str, float]) -> tuple[str, ...]:
     found = []
     chosen = distances[motion.arc_length_source]
     for name, distance in distances.items():
@@ -136,8 +141,11 @@ def _remarks(motion: TrackMotion, distances: dict[str, float]) -> tuple[str, ...
             )
     if motion.speed_source == "fitted":
         found.append("No speeds in the track: they are those of the smoothed places.")
-    gaps = int(np.count_nonzero(np.diff(motion.smoothed.part)))
-    if gaps:
+    pauses = int(segments(track)[-1])
+    if pauses:
+        found.append(f"{pauses + 1} segments: nothing between them counts as path.")
+    gaps = int(np.count_nonzero(np.diff(motion.smoothed.part))) - pauses
+    if gaps > 0:
         count = "1 gap" if gaps == 1 else f"{gaps} gaps"
         found.append(f"{count}: nothing is smoothed across, and the path over it is straight.")
     return tuple(found)

@@ -63,7 +63,10 @@ class Track(Shown):
     further_columns
         Columns of the file that were not read, by name.
     left_out
-        In words to a count: records of the file that hold no point, such as those with a wrong checksum.
+        Kind of record to number: records that are not used, such as sentences with a wrong checksum and points before
+        the first fix.
+    notes
+        Sentences on how the file was read.
 
     See Also
     --------
@@ -90,6 +93,7 @@ class Track(Shown):
     speed_kind: str = "as recorded"
     further_columns: tuple[str, ...] = ()
     left_out: Mapping[str, int] = field(default_factory=dict)
+    notes: tuple[str, ...] = ()
 
     def __len__(self) -> int:
         return len(self.time)

@@ -28,18 +28,35 @@ def fit_checksum(data: bytes) -> int:
     return value
 
 
-def fit_file(records: Sequence[dict[str, int]]) -> bytes:
-    """A FIT file with messages ``record``; raw numbers, what is absent is written as invalid."""
+TIMER_START, TIMER_STOP = 0, 4
+"""Values of event_type."""
+
+
+def fit_file(
+    records: Sequence[dict[str, int]], *, then: Sequence[int] = (), more: Sequence[dict[str, int]] = ()
+) -> bytes:
+    """A FIT file with messages ``record``, messages ``event`` of the timer, and more records.
+
+    Numbers are raw; absent ones are written as invalid.
+    """
     definition = struct.pack("<BBBHB", 0x40, 0, 0, 20, len(FIT_FIELDS))
     definition += b"".join(struct.pack("BBB", *field[:3]) for field in FIT_FIELDS.values())
-    body = definition
-    for record in records:
-        body += b"\x00" + b"".join(
-            struct.pack("<" + code, record.get(name, invalid)) for name, (*_, code, invalid) in FIT_FIELDS.items()
-        )
+    event = struct.pack("<BBBHB", 0x41, 0, 0, 21, 2) + bytes([0, 1, 0, 1, 1, 0])  # event and event_type, enums
+    body = definition + event + _fit_records(records)
+    body += b"".join(bytes([1, 0, event_type]) for event_type in then) + _fit_records(more)
     head = struct.pack("<BBHI4s", 14, 0x20, 2132, len(body), b".FIT")
     whole = head + struct.pack("<H", fit_checksum(head)) + body
     return whole + struct.pack("<H", fit_checksum(whole))
+
+
+def _fit_records(records: Sequence[dict[str, int]]) -> bytes:
+    return b"".join(
+        b"\x00"
+        + b"".join(
+            struct.pack("<" + code, record.get(name, invalid)) for name, (*_, code, invalid) in FIT_FIELDS.items()
+        )
+        for record in records
+    )
 
 
 def ubx_frame(message: bytes, payload: bytes) -> bytes:

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from .. import metres_per_degree
-from .receivers import FIT_EPOCH, fit_file
+from .receivers import FIT_EPOCH, TIMER_START, TIMER_STOP, fit_file
 from .test_table import read, refused
 
 BEGIN = int(datetime(2022, 12, 27, 15, 51, 14, tzinfo=UTC).timestamp()) - FIT_EPOCH
@@ -65,5 +65,45 @@ def test_refused(tmp_path: Path) -> None:
     assert "unreadable_file" in refused(tmp_path, whole[:9], "a.fit")
     assert "CRC" in refused(tmp_path, whole[:-30] + b"\x01" + whole[-29:], "a.fit")
     assert "empty_file" in refused(tmp_path, fit_file([]), "a.fit")
-    assert "time_backwards: a.fit, record 2" in refused(tmp_path, fit_file(RECORDS[::-1]), "a.fit")
+    assert "time_backwards: a.fit, record 3" in refused(tmp_path, fit_file(RECORDS[::-1]), "a.fit")
     assert "no_place" in refused(tmp_path, fit_file(RECORDS[1:2]), "a.fit")
+
+
+def shifted(seconds: int) -> list[dict[str, int]]:
+    return [record | {"timestamp": record["timestamp"] + seconds} for record in RECORDS]
+
+
+@pytest.mark.parametrize("extra", [b"\xff" * 64, b"\x00" * 7, b"\x0e.FIT", b"\r\n", b"a note .FIT of the device"])
+def test_bytes_after_the_end(tmp_path: Path, extra: bytes) -> None:
+    track = read(tmp_path, fit_file(RECORDS) + extra, "a.fit")
+    assert len(track) == 3
+    assert len(track.notes) == 1
+    assert str(len(extra)) in track.notes[0]
+    assert read(tmp_path, fit_file(RECORDS), "b.fit").notes == ()
+
+
+@pytest.mark.parametrize("between", [b"", b"\xff" * 16])
+def test_two_files_one_after_the_other(tmp_path: Path, between: bytes) -> None:
+    track = read(tmp_path, fit_file(RECORDS) + between + fit_file(shifted(100)) + between, "a.fit")
+    np.testing.assert_array_equal(track.time, [0.0, 1.0, 3.0, 100.0, 101.0, 103.0])
+    assert track.flags["new_segment"].tolist() == [False, False, False, True, False, False]
+
+
+def test_second_file_that_is_damaged(tmp_path: Path) -> None:
+    whole = fit_file(RECORDS)
+    assert "unreadable_file" in refused(tmp_path, whole + whole[:-10], "a.fit")
+
+
+def test_pause_of_the_device_begins_a_segment(tmp_path: Path) -> None:
+    track = read(tmp_path, fit_file(RECORDS, then=[TIMER_STOP, TIMER_START], more=shifted(60)), "a.fit")
+    assert track.flags["new_segment"].tolist() == [False, False, False, True, False, False]
+    lap = read(tmp_path, fit_file(RECORDS, then=[TIMER_START], more=shifted(60)), "b.fit")
+    assert not lap.flags["new_segment"].any()
+
+
+def test_points_without_a_place_at_the_ends(tmp_path: Path) -> None:
+    nowhere = [{"timestamp": BEGIN - 60 + second} for second in range(60)]
+    track = read(tmp_path, fit_file([*nowhere, *RECORDS, {"timestamp": BEGIN + 9}]), "a.fit")
+    assert track.start == datetime(2022, 12, 27, 15, 51, 14, tzinfo=UTC)
+    assert track.left_out == {"points before the first fix": 60, "points after the last fix": 1}
+    np.testing.assert_array_equal(track.time, [0.0, 1.0, 3.0])

@@ -8,6 +8,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from skisnow.track.summary import track_summary
+
 from .. import metres_per_degree
 from .test_table import read, refused
 
@@ -32,7 +34,7 @@ def test_places_times_heights(tmp_path: Path) -> None:
         np.testing.assert_array_equal(track.time, [0.0, 0.5, 16.0])
         stretched = 1e-4 * metres_per_degree.north(47.0) * (1 + 1500.5 / 6.37e6)
         np.testing.assert_allclose(track.place[1, :2], [0.0, stretched], atol=2e-5)
-        assert track.flagged == {"missing_height": 1}
+        assert track.flagged == {"missing_height": 1, "new_segment": 1}
         assert np.isnan(track.speed).all()
         assert "above mean sea level" in track.frame
 
@@ -65,9 +67,10 @@ def test_time_zones(tmp_path: Path) -> None:
 
 
 def test_no_fix(tmp_path: Path) -> None:
-    track = read(tmp_path, gpx(point(47.0, "14Z") + point(47.0, "15Z", "<fix>none</fix>")), "a.gpx")
+    points = point(47.0, "14Z") + point(47.0, "15Z", "<fix>none</fix>") + point(47.0, "16Z")
+    track = read(tmp_path, gpx(points), "a.gpx")
     assert track.flagged["no_fix"] == 1
-    assert track.usable.tolist() == [True, False]
+    assert track.usable.tolist() == [True, False, True]
 
 
 def test_other_encoding(tmp_path: Path) -> None:
@@ -134,12 +137,51 @@ def test_the_place_is_a_points_own(tmp_path: Path) -> None:
     assert track.start == datetime(2022, 12, 27, 15, 51, 14, tzinfo=UTC)
 
 
-@pytest.mark.parametrize("height", ["<ele></ele>", "<ele>NaN</ele>", ""])
+@pytest.mark.parametrize("height", ["<ele></ele>", "<ele>NaN</ele>", "<ele>-inf</ele>", ""])
 def test_a_height_may_be_missing(tmp_path: Path, height: str) -> None:
-    assert read(tmp_path, gpx(point(47.0, "14Z", height)), "a.gpx").flagged == {"missing_height": 1}
+    flagged = read(tmp_path, gpx(point(47.0, "14Z", height)), "a.gpx").flagged
+    assert flagged == {"missing_height": 1} | ({"not_finite": 1} if "n<" in height.lower() or "inf" in height else {})
 
 
 @pytest.mark.parametrize("place", ['lat="47"', 'lat="x" lon="11"', 'lat="1e999" lon="11"'])
 def test_a_point_needs_a_place(tmp_path: Path, place: str) -> None:
     content = gpx(f"<trkpt {place}><time>2022-12-27T15:51:14Z</time></trkpt>")
     assert "not_a_number: a.gpx, point 1, column l" in refused(tmp_path, content, "a.gpx")
+
+
+def test_segment_for_each_lap_continues_the_one_before(tmp_path: Path) -> None:
+    laps = ["".join(point(47.0 + 1e-4 * (3 * lap + n), f"{10 + 3 * lap + n}Z") for n in range(3)) for lap in range(3)]
+    track = read(tmp_path, gpx(*laps), "a.gpx")
+    assert (len(track), track.flagged) == (9, {})
+
+
+@pytest.mark.parametrize("apart", ["track", "segment"])
+@pytest.mark.parametrize(("second", "lat"), [("30", 47.0003), ("13", 47.1), ("13.01", 47.0003)])
+def test_parts_of_a_file_are_not_joined(tmp_path: Path, apart: str, second: str, lat: float) -> None:
+    """Later, elsewhere, or both: nothing between two parts counts as path."""
+    begin, middle = gpx(*["".join(point(47.0 + 1e-4 * n, f"{10 + n}Z") for n in range(3))]).split("</trkseg>")
+    joint = "</trkseg></trk><trk><trkseg>" if apart == "track" else "</trkseg><trkseg>"
+    more = "".join(point(lat + 1e-4 * n, f"{float(second) + n:.2f}Z") for n in range(7))
+    track = read(tmp_path, begin + joint + more + "</trkseg>" + middle, "a.gpx")
+    expected = [3] if second != "13.01" else []
+    assert np.flatnonzero(track.flags["new_segment"]).tolist() == expected
+    length = track_summary(track).distances["places"]
+    steps = 8 if expected else 9
+    assert length == pytest.approx(steps * 1e-4 * metres_per_degree.north(47.0), rel=2e-3)
+
+
+def test_only_points_with_a_fix_count(tmp_path: Path) -> None:
+    nowhere = '<trkpt lat="0" lon="0"><time>1980-01-06T00:00:0{}Z</time></trkpt>'
+    content = gpx("".join(nowhere.format(n) for n in range(3)) + point(47.0, "14Z") + point(47.0001, "15Z"))
+    track = read(tmp_path, content, "a.gpx")
+    assert track.start == datetime(2022, 12, 27, 15, 51, 14, tzinfo=UTC)
+    assert (len(track), track.left_out) == (2, {"points before the first fix": 3})
+
+
+@pytest.mark.parametrize("rate", [2, 5, 10, 25])
+def test_whole_seconds_at_higher_rates(tmp_path: Path, rate: int) -> None:
+    points = "".join(point(47.0 + 1e-4 * n / rate, f"{10 + n // rate}Z") for n in range(9 * rate))
+    track = read(tmp_path, gpx(points), "a.gpx")
+    np.testing.assert_allclose(np.diff(track.time), 1.0 / rate, atol=1e-9)
+    assert track.usable.all()
+    assert track_summary(track).max_speed == pytest.approx(1e-4 * metres_per_degree.north(47.0), rel=0.01)

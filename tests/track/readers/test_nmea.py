@@ -98,18 +98,20 @@ def test_carrier_phase_of_gns(tmp_path: Path) -> None:
     """A letter for each system; of several the least exact."""
     lines = [
         sentence(f"GNGNS,15511{i}.00,4714.0,N,01107.4,E,{modes},12,0.6,1452.3,47.9,,")
-        for i, modes in enumerate(("RR", "RF", "RA", "AN", "NN"))
+        for i, modes in enumerate(("RR", "RF", "RA", "AN", "NN", "DD"))
     ]
     track = read(tmp_path, b"".join(lines), "a.nmea")
     assert track.solution is not None
-    assert track.solution.tolist() == ["fixed", "float", "code", "code", ""]
+    assert track.solution.tolist() == ["fixed", "float", "code", "code", "", "code"]
 
 
 def test_no_fix(tmp_path: Path) -> None:
     empty = sentence("GNGGA,155113.00,,,,,0,00,99.99,,,,,,")
-    track = read(tmp_path, empty + rmc("155113.00", "", "", ok="V") + gga() + rmc("155115.00", ok="V"), "a.nmea")
-    assert track.usable.tolist() == [False, True, False]
-    assert track.flagged["no_fix"] == 2
+    before = empty + rmc("155113.00", "", "", ok="V")
+    track = read(tmp_path, before + gga() + rmc("155115.00", ok="V") + gga("155116.00"), "a.nmea")
+    assert track.usable.tolist() == [True, False, True]
+    assert track.flagged == {"no_fix": 1}
+    assert track.left_out == {"times before the first fix": 1}
 
 
 def test_the_same_time_twice(tmp_path: Path) -> None:
@@ -123,7 +125,11 @@ def test_damaged_sentences_are_counted(tmp_path: Path) -> None:
     silent = sentence("GNGGA,,,,,,0,00,99.99,,,,,,")
     track = read(tmp_path, gga() + wrong + silent + b"$GNGGA,155116.00,47\r\nlogger says hello\r\n", "a.nmea")
     assert len(track) == 1
-    assert track.left_out == {"sentences with a wrong checksum": 2, "sentences without a time": 1}
+    assert track.left_out == {
+        "sentences with a wrong checksum": 1,
+        "sentences without a checksum, next to others with one": 1,
+        "sentences without a time": 1,
+    }
 
 
 def test_refused(tmp_path: Path) -> None:

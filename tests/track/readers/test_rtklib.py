@@ -163,7 +163,7 @@ def test_baseline_with_its_base(tmp_path: Path) -> None:
 
 def test_no_solution_is_marked(tmp_path: Path) -> None:
     track = read(tmp_path, LLH.replace("1499.5000   1", "1499.5000   0"), "a.pos")
-    assert track.flagged == {"no_fix": 1}
+    assert (len(track), track.left_out) == (1, {"points after the last fix": 1})
 
 
 @pytest.mark.parametrize(
@@ -216,3 +216,26 @@ def test_a_row_that_is_cut_short_is_told_by_what_is_missing(tmp_path: Path, row:
     message = refused(tmp_path, f"{LLH}{row}\n", "a.pos")
     assert f"error {why}: " in message
     assert f"row {len(LLH.splitlines()) + 1}" in message
+
+
+@pytest.mark.parametrize("word", ["-nan(ind)", "nan", "inf", "-inf", "1.#QNAN", "*****", "1e300", "9" * 400])
+@pytest.mark.parametrize("cell", [3, 13, 14])
+def test_unreadable_cell_of_a_column_that_is_not_used(tmp_path: Path, word: str, cell: int) -> None:
+    """The number of satellites, the age and the ratio are not used: the row is flagged and read."""
+    lines = LLH.splitlines()
+    number = next(place for place, line in enumerate(lines) if not line.startswith("%"))
+    cells = lines[number].split()
+    cells[{3: 6, 13: 13, 14: 14}[cell]] = word
+    changed = "\n".join([*lines[:number], " ".join(cells), *lines[number + 1 :]])
+    track, plain = read(tmp_path, changed, "a.pos"), read(tmp_path, LLH, "b.pos")
+    assert track.flagged == {**plain.flagged, "not_finite": 1}
+    np.testing.assert_array_equal(track.place, plain.place)
+
+
+@pytest.mark.parametrize("end", ["\n", "\r\n", "\r", "\u0085", "\u2028"])
+def test_any_line_end_and_case(tmp_path: Path, end: str) -> None:
+    plain = read(tmp_path, LLH, "b.pos")
+    for text in (LLH, "\ufeff" + LLH.upper()):
+        track = read(tmp_path, text.replace("\n", end), "a.pos")
+        np.testing.assert_array_equal(track.place, plain.place)
+        assert track.time_scale == plain.time_scale

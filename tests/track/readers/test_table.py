@@ -109,17 +109,19 @@ def test_sixty_kilometres_from_the_origin_up_is_down(tmp_path: Path) -> None:
     assert track.place[0, 2] == pytest.approx(-(distance**2) / (2 * 6.367e6), rel=1e-2)
 
 
-def test_points_without_a_place_stay(tmp_path: Path) -> None:
+def test_points_without_a_place_stay_between_others(tmp_path: Path) -> None:
     track = read(tmp_path, "time,lat,lon\n0,,\n1,46,7\n2,,7\n3,46,7\n")
-    assert len(track) == 4
-    assert track.flagged == {"no_fix": 2, "missing_height": 2}
-    np.testing.assert_array_equal(track.usable, [False, True, False, True])
-    np.testing.assert_array_equal(track.place[1, :2], [0.0, 0.0])
+    assert len(track) == 3
+    assert track.left_out == {"points before the first fix": 1}
+    assert track.flagged == {"no_fix": 1, "missing_height": 2}
+    np.testing.assert_array_equal(track.usable, [True, False, True])
+    np.testing.assert_array_equal(track.time, [0.0, 1.0, 2.0])
+    assert track.first_time == 1.0
 
 
 def test_latitude_and_longitude_zero_are_no_place(tmp_path: Path) -> None:
     track = read(tmp_path, "time,lat,lon,alt_m\n0,0,0.0,0\n1,0,7,5\n2,0,7,5\n")  # on the equator there is a place
-    assert track.flagged == {"no_fix": 1}
+    assert track.left_out == {"points before the first fix": 1}
     assert track.origin == GeodeticPoint(0.0, 7.0, height=5.0)
 
 
@@ -156,7 +158,7 @@ def test_uncertainties_and_odometer(tmp_path: Path) -> None:
         ("Zeit [s];x [m];y (m)\n0;1,5;2\n", ["Likely time_s for 'Zeit [s]', x_m for 'x [m]', y_m for 'y (m)'."]),
         ("Zeit,Breite,Länge,Höhe_m\n0,46,7,9\n", ["time for 'Zeit', lat for 'Breite', lon for 'Länge', alt_m for"]),
         ("time_s,x_m,y_m\n0,1,2\n1,one,2\n", ["not_a_number", "row 3, column x_m", "'one'", "decimal point"]),
-        ("time_s,x_m,y_m\n0,1,2\n\n1,nan,2\n", ["not_a_number", "row 4, column x_m", "'nan'"]),
+        ("time_s,x_m,y_m\n0,1,2\n\n1,4OO,2\n", ["not_a_number", "row 4, column x_m", "'4OO'"]),
         ("time_s;x_m;y_m\n0;1,5;2,5\n1;1.5;2,5\n", ["not_a_number", "row 3, column x_m", "'1.5'", "decimal comma"]),
         ("time_s,x_m,y_m\n0,1,5,2,5\n", ["too_many_cells", "row 2", "3 cells", "decimal comma"]),
         ("time_s,x_m,y_m\n,1,2\n", ["not_a_number", "row 2, column time_s"]),
@@ -232,3 +234,80 @@ def test_tables_of_no_measurement_are_refused(tmp_path: Path) -> None:
     assert "at most 1000 columns" in refused(tmp_path, "x," * 100_000 + "\n1\n")
     assert "row 2" in refused(tmp_path, f"time_s,x_m,y_m\n1,2,{'9' * 40_000}\n")
     assert "not_a_number" in refused(tmp_path, f"time_s,x_m,y_m\n1,2,{'9' * 30_000}\n")
+
+
+@pytest.mark.parametrize("end", ["\n", "\r\n", "\r", "\r\r\n", "\u0085", "\u2028", "\u2029", "\x0b", "\x0c"])
+@pytest.mark.parametrize("begin", ["", "\ufeff", "\n\n", "\ufeff\n\ufeff"])
+def test_any_line_end(tmp_path: Path, end: str, begin: str) -> None:
+    plain = read(tmp_path, LOCAL)
+    track = read(tmp_path, begin + LOCAL.replace("\n", end), "b.csv")
+    np.testing.assert_array_equal(track.place, plain.place)
+    np.testing.assert_array_equal(track.time, plain.time)
+
+
+@pytest.mark.parametrize(
+    "header",
+    ["TIME_S,X_M,Y_M,Z_M,SPEED_M_PER_S", " Time s , X m,Y  m,z_M,Speed m per s", "Time_s,X_m,Y_m,Z_m,Speed_mps"],
+)
+def test_headings_in_capitals_and_with_spaces(tmp_path: Path, header: str) -> None:
+    plain = read(tmp_path, LOCAL)
+    track = read(tmp_path, LOCAL.replace(LOCAL.split("\n", maxsplit=1)[0], header), "b.csv")
+    np.testing.assert_array_equal(track.place, plain.place)
+    np.testing.assert_array_equal(track.speed, plain.speed)
+    assert track.further_columns == ()
+    assert "column_twice" in refused(tmp_path, LOCAL.replace("z_m", "X_M"))
+
+
+@pytest.mark.parametrize("word", ["nan", "NaN", "-nan(ind)", "inf", "-Infinity", "1.#INF", "-1.#IND00", "NaN(0x1)"])
+def test_cells_that_are_not_finite(tmp_path: Path, word: str) -> None:
+    """In a column that is not read they do not matter; in one that is read they are blank and flagged."""
+    table = f"time,lat,lon,alt_m,hdop\n0,46,7,5,1\n1,46,7,5,{word}\n2,46,7,{word},1\n3,{word},7,5,1\n4,46,7,5,1\n"
+    track = read(tmp_path, table)
+    assert track.flagged == {"no_fix": 1, "missing_height": 1, "not_finite": 2}
+    assert track.flags["not_finite"].tolist() == [False, False, True, True, False]
+    assert "not_a_time" in refused(tmp_path, f"time,lat,lon\n0,46,7\n{word},46,7\n")
+
+
+def serial(days: str, *, rows: int = 30, rate: float = 1.0, header: str = "time,lat,lon") -> str:
+    """Rows from a day and fraction on, in the digits that a spreadsheet writes."""
+    begin = float(days)
+    return f"{header}\n" + "".join(
+        f"{begin + n / rate / 86400.0:.10f},{46.0 + 1e-4 * n / rate:.7f},7\n" for n in range(rows)
+    )
+
+
+@pytest.mark.parametrize("rate", [0.2, 1.0, 10.0, 25.0])
+@pytest.mark.parametrize(
+    ("days", "start"),
+    [
+        ("45332.4166666667", datetime(2024, 2, 10, 10)),
+        ("43870.4166666667", datetime(2020, 2, 9, 10)),  # 2024-02-10 in the date system 1904, which no number shows
+        ("44927", datetime(2023, 1, 1)),
+    ],
+)
+def test_serial_dates_of_a_spreadsheet(tmp_path: Path, days: str, start: datetime, rate: float) -> None:
+    for text in (serial(days, rate=rate), serial(days, rate=rate).replace(",", ";").replace(".", ",")):
+        track = read(tmp_path, text)
+        np.testing.assert_allclose(np.diff(track.time), 1.0 / rate, atol=2.1e-3)
+        assert track.start == start
+        assert len(track.notes) == 1
+        assert "1462" in track.notes[0]
+
+
+def test_fractions_of_a_day(tmp_path: Path) -> None:
+    track = read(tmp_path, serial("0.999826388888889", rows=40))
+    np.testing.assert_allclose(track.time, np.arange(40.0), atol=2e-3)
+    assert track.start is None
+    assert len(track.notes) == 1
+
+
+@pytest.mark.parametrize("begin", [0.0, 0.25, 45332.0, 1_707_559_200.0])
+@pytest.mark.parametrize("rate", [1.0, 10.0, 100.0])
+def test_seconds_are_not_days(tmp_path: Path, begin: float, rate: float) -> None:
+    for name in ("time", "time_s"):
+        rows = "".join(f"{begin + n / rate:.3f},46,7\n" for n in range(20))
+        track = read(tmp_path, f"{name},lat,lon\n{rows}")
+        np.testing.assert_allclose(track.time, np.arange(20.0) / rate, atol=1e-6)
+        assert (track.start, track.notes) == (None, ())
+    in_days = read(tmp_path, serial("45332.4166666667", header="time_s,lat,lon"), "b.csv")
+    assert in_days.start is None  # the heading says seconds

@@ -85,7 +85,8 @@ def test_a_high_precision_place_that_is_not_valid_does_not_count(tmp_path: Path)
     track = read(tmp_path, nav_pvt() + nav_hpposllh(invalid=1), "a.ubx")
     assert track.origin is not None
     assert track.origin.height == 1500.123
-    assert read(tmp_path, nav_pvt() + nav_pvt(second=15, invalid_place=1), "b.ubx").flagged == {"no_fix": 1}
+    invalid = read(tmp_path, nav_pvt() + nav_pvt(second=15, invalid_place=1), "b.ubx")
+    assert invalid.left_out == {"points after the last fix": 1}
 
 
 def test_covariances(tmp_path: Path) -> None:
@@ -120,11 +121,11 @@ def test_covariances_that_are_not_valid_do_not_count(tmp_path: Path) -> None:
 def test_carrier_phase(tmp_path: Path) -> None:
     """Bits 6 and 7 of the flags: 0 none, 1 float, 2 fixed."""
     data = b"".join(nav_pvt(second=10 + i, carrier=carrier) for i, carrier in enumerate((2, 1, 0)))
-    track = read(tmp_path, data + nav_pvt(second=13, fix=0, carrier=2), "a.ubx")
+    track = read(tmp_path, data + nav_pvt(second=13, fix=0, carrier=2) + nav_pvt(second=14, carrier=2), "a.ubx")
     assert track.solution is not None
-    assert track.solution.tolist() == ["fixed", "float", "code", ""]
+    assert track.solution.tolist() == ["fixed", "float", "code", "", "fixed"]
     assert track.flagged == {"no_fix": 1, "float_solution": 1, "code_solution": 1}
-    assert track.usable.tolist() == [True, True, True, False]
+    assert track.usable.tolist() == [True, True, True, False, True]
     assert read(tmp_path, nav_pvt(), "b.ubx").flagged == {}
 
 
@@ -135,8 +136,9 @@ def test_negative_fraction_of_a_second(tmp_path: Path) -> None:
 
 def test_no_fix(tmp_path: Path) -> None:
     data = nav_pvt(second=1) + nav_pvt(second=2, fix=0) + nav_pvt(second=3, fix_ok=0) + nav_pvt(second=4, fix=5)
+    data += nav_pvt(second=5)
     track = read(tmp_path, data, "a.ubx")
-    assert track.usable.tolist() == [True, False, False, False]
+    assert track.usable.tolist() == [True, False, False, False, True]
     assert track.flagged == {"no_fix": 3}
 
 

@@ -20,22 +20,35 @@ from .refusal import refusal
 
 SEMICIRCLE: Final = 180.0 / 2**31
 """Degrees in a semicircle, the unit of FIT's latitude and longitude."""
+_MARK, _MARK_AT = b".FIT", 8
+_HEADERS: Final = (12, 14)
+"""Bytes of a header."""
+_CHECKSUM: Final = 2
 
 
 @dataclass(eq=False)
 class _Records:
-    """What the messages ``record`` say, one entry each."""
+    """The messages ``record``, one entry each, with the number of the segment."""
 
     times: list[datetime] = field(default_factory=list)
     numbers: list[tuple[float, ...]] = field(default_factory=list)
+    segments: list[int] = field(default_factory=list)
     without_time: int = 0
+    segment: int = 0
 
-    def add(self, message: Any) -> None:
+    def add_event(self, message: Any) -> None:
+        """Begin a new segment if the timer stops: the device pauses."""
+        timer = message.get_value("event", fallback=None) in ("timer", 0)
+        stops = str(message.get_value("event_type", fallback="")).startswith("stop")
+        self.segment += timer and stops
+
+    def add_record(self, message: Any) -> None:
         time = message.get_value("timestamp", fallback=None)
         if not isinstance(time, datetime):
             self.without_time += 1
             return
         self.times.append(time.astimezone(UTC))
+        self.segments.append(self.segment)
         self.numbers.append(
             (
                 _number(message, "position_lat") * SEMICIRCLE,
@@ -57,7 +70,10 @@ def read_fit(data: bytes, name: str) -> Recording:
         The file is no FIT, ends too early, or its checksum is wrong.
     """
     records = _Records()
-    _decode(data, name, records)
+    files, extra = _files(data)
+    for part in files or [data]:
+        _decode(part, name, records)
+        records.segment += 1
     table = np.array(records.numbers, dtype=float).reshape(-1, 6)
     accuracy = np.where(table[:, 5] > 0.0, table[:, 5], np.nan) / math.sqrt(2.0)
     place_sd = np.column_stack([accuracy, accuracy, np.full(len(table), np.nan)])
@@ -76,7 +92,29 @@ def read_fit(data: bytes, name: str) -> Recording:
         odometer=None if np.isnan(table[:, 4]).all() else table[:, 4],
         heights="above mean sea level, as the watch has them",
         left_out={"records without a date": records.without_time},
+        segment=np.array(records.segments, dtype=np.int64),
+        notes=(f"{extra} bytes outside of the FIT file are not read.",) if extra else (),
     )
+
+
+def _files(data: bytes) -> tuple[list[bytes], int]:
+    """The FIT files that are one after the other in the bytes, and the number of bytes outside of them.
+
+    The header of each gives its length: bytes that a device writes after the end belong to none.
+    """
+    found: list[bytes] = []
+    inside = place = 0
+    while (mark := data.find(_MARK, place)) >= 0:
+        begin = mark - _MARK_AT
+        size = data[begin] if begin >= place else 0
+        length = size + int.from_bytes(data[begin + 4 : begin + 8], "little") + _CHECKSUM
+        if size not in _HEADERS:
+            place = mark + 1
+            continue
+        found.append(data[begin : begin + length])
+        inside += len(found[-1])
+        place = begin + length
+    return found, len(data) - inside
 
 
 def _decode(data: bytes, name: str, records: _Records) -> None:
@@ -88,7 +126,9 @@ def _decode(data: bytes, name: str, records: _Records) -> None:
         ) as reader:
             for frame in reader:
                 if frame.frame_type == fitdecode.FIT_FRAME_DATA and frame.name == "record":
-                    records.add(frame)
+                    records.add_record(frame)
+                elif frame.frame_type == fitdecode.FIT_FRAME_DATA and frame.name == "event":
+                    records.add_event(frame)
     except Exception as error:  # damaged bytes make fitdecode fail in many ways
         read = len(records.times)
         raise refusal(

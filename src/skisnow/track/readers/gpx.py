@@ -16,6 +16,7 @@ from xml.parsers import expat
 import numpy as np
 
 from ...spreadsheet_text import number
+from .not_finite import is_not_finite
 from .recording import Recording
 from .refusal import refusal
 
@@ -44,10 +45,11 @@ class _TooMuchError(Exception):
 
 @dataclass(slots=True)
 class _Point:
-    """Texts of a point, as they stand in the file."""
+    """Texts of a point as written, and the number of its segment."""
 
     lat: str | None
     lon: str | None
+    segment: int
     texts: dict[str, str] = field(default_factory=dict)
 
 
@@ -56,6 +58,7 @@ class _Reader:
 
     def __init__(self) -> None:
         self.points: list[_Point] = []
+        self._segment = 0
         self._path: list[str] = []
         self._count = 0
         self._text: list[str] | None = None
@@ -68,8 +71,10 @@ class _Reader:
             raise _TooMuchError(f"{len(self._path)} elements within each other", f"at most {DEEPEST}")
         if self._count > MOST_ELEMENTS:
             raise _TooMuchError(f"more than {MOST_ELEMENTS} elements", f"at most {MOST_ELEMENTS}")
-        if tuple(self._path) == _POINT:
-            self.points.append(_Point(attributes.get("lat"), attributes.get("lon")))
+        if tuple(self._path) == _POINT[:3]:
+            self._segment += 1
+        elif tuple(self._path) == _POINT:
+            self.points.append(_Point(attributes.get("lat"), attributes.get("lon"), self._segment))
         elif self._key() is not None:
             self._text = []
 
@@ -98,7 +103,7 @@ class _Reader:
 
 
 def read_gpx(text: str, name: str) -> Recording:
-    """The recording in a GPX file: all points of all tracks, in the order of the file.
+    """The recording in a GPX file: all points of all tracks and segments, in the order of the file.
 
     Raises
     ------
@@ -119,6 +124,8 @@ def read_gpx(text: str, name: str) -> Recording:
         speed_kind="as the device gives it",
         fix=np.array([point.texts.get("fix") != "none" for point in points], dtype=bool),
         heights="above mean sea level, as recorded",
+        segment=np.array([point.segment for point in points], dtype=np.int64),
+        not_finite=np.array([_has_not_finite_text(point) for point in points], dtype=bool),
     )
 
 
@@ -193,9 +200,9 @@ def _speed(point: _Point, name: str, place: int) -> float:
 
 
 def _number(text: str | None, name: str, place: int, column: str, unit: str) -> float:
-    """NaN where the file says that itself."""
+    """The number; NaN if the file has `nan` or `inf`, which is flagged."""
     value = math.nan if text is None else number(text)
-    if math.isnan(value) and (text is None or text.lower() != "nan"):
+    if math.isnan(value) and (text is None or not is_not_finite(text)):
         raise refusal(
             "not_a_number",
             name,
@@ -206,3 +213,8 @@ def _number(text: str | None, name: str, place: int, column: str, unit: str) -> 
             action="Correct the point.",
         )
     return value
+
+
+def _has_not_finite_text(point: _Point) -> bool:
+    texts = (point.lat, point.lon, *(point.texts.get(key) for key in ("ele", "speed", "extended speed")))
+    return any(text is not None and is_not_finite(text) for text in texts)

@@ -1,14 +1,13 @@
-"""Tracks in NMEA 0183: sentences GGA, GNS, RMC, VTG, GST, ZDA of any talker, read with pynmeagps.
+"""Tracks in NMEA 0183: sentences GGA, GNS, GLL, RMC, VTG, GST, ZDA of any talker.
 
-Sentences with one time of day make one point. A time of day that falls by more than half a day begins the next day.
-Heights are those above the ellipsoid where every point with a height tells the geoid's separation, else above mean sea
-level.
+Sentences with one time of day make one point, whatever their talker. A time of day that falls by more than half a day
+begins the next day. Dates count from the first point with a fix: before it receivers send dates of their own. Heights
+are above the ellipsoid if every point with a height has the geoid's separation, otherwise above mean sea level.
 """
 
 from __future__ import annotations
 
 import math
-import re
 from dataclasses import dataclass, field
 from datetime import UTC, date, datetime, time, timedelta
 from typing import Any, Final
@@ -17,62 +16,69 @@ import numpy as np
 
 from ...units import DEGREE
 from ..solution import Solution, solution_array
+from .nmea_sentences import SENTENCE, WRONG_CHECKSUM, sentences
 from .recording import Recording
 from .refusal import refusal
+
+__all__ = ["SENTENCE", "read_nmea"]
 
 KNOT: Final = 1852.0 / 3600.0
 """m/s in a knot."""
 KM_PER_H: Final = 1.0 / 3.6
 """m/s in a km/h."""
-SENTENCE: Final = re.compile(rb"\$[A-Z]{2}(GGA|GNS|RMC|VTG|GST|ZDA),")
 QUALITIES: Final[dict[float, Solution]] = {1.0: "code", 2.0: "code", 3.0: "code", 4.0: "fixed", 5.0: "float"}
 """Of GGA; others are dead reckoning, typed in, or simulated."""
 MODES: Final[dict[str, Solution]] = {"A": "code", "D": "code", "P": "code", "R": "fixed", "F": "float"}
 """Of GNS, a letter for each satellite system."""
-LONGEST: Final = 1_000
-"""Bytes of a sentence: NMEA allows 82, receivers write somewhat more."""
 YEARS: Final = (1900, 2200)
 """Of a date that a receiver may send; others are damage."""
+PLACES: Final = ("GGA", "GNS", "RMC", "GLL")
+"""Sentences with a place, the best first: GGA and GNS have heights, GLL has neither height nor date."""
+NO_TIME: Final = "sentences without a time"
+OTHER_TALKER: Final = "places of other talkers at the same time"
+NO_PLACE: Final = "times without a sentence that has a place"
 _DAY, _HALF_A_DAY = 86400.0, 43200.0
+_RECENT: Final = 5
+"""Epochs back to which a late sentence may belong."""
 
 
 @dataclass(eq=False)
 class _Epoch:
-    """What the sentences of one time say."""
+    """The sentences of one time of day."""
 
     time: time
     row: int
-    seen: set[str] = field(default_factory=set)
+    seen: set[tuple[str, str]] = field(default_factory=set)
     day: date | None = None
+    placed_by: str = ""
     place: tuple[float, float] = (math.nan, math.nan)
     height: float = math.nan
     separation: float = math.nan
     speed: float = math.nan
     course: float = math.nan
     sd: tuple[float, float, float] = (math.nan, math.nan, math.nan)
-    fix: bool = True
+    fixes: dict[str, bool] = field(default_factory=dict)
     solution: Solution = ""
+    has_not_finite_cell: bool = False
 
     @property
     def second_of_day(self) -> float:
         at = self.time
         return at.hour * 3600.0 + at.minute * 60.0 + at.second + at.microsecond * 1e-6
 
-    def take(self, message: Any) -> None:
-        """Add one sentence."""
+    @property
+    def has_fix(self) -> bool:
+        """True if no kind of sentence denies the fix; places at exactly 0, 0 are written without one."""
+        return all(self.fixes.values()) and math.isfinite(sum(self.place)) and self.place != (0.0, 0.0)
+
+    def take(self, message: Any) -> bool:
+        """Add one sentence; False if it has a place that is not used."""
         kind = message.msgID
-        self.seen.add(kind)
-        if kind in ("GGA", "GNS"):
-            self._take_place(message)
-            self.height, self.separation = _number(message, "alt"), _number(message, "sep")
-            self.fix = self.fix and _has_fix(message)
-            self.solution = self.solution or _solution(message)
-        elif kind == "RMC":
-            if not self.seen & {"GGA", "GNS"}:
-                self._take_place(message)
-            self.fix = self.fix and getattr(message, "status", "") == "A"
+        self.seen.add((message.talker, kind))
+        used = self._take_place(message) if kind in PLACES else True
+        if kind == "RMC":
             self._take_speed(_number(message, "spd") * KNOT, _number(message, "cog"))
-            self.day = _date(getattr(message, "date", None))
+            self.day = _date(getattr(message, "date", None)) or self.day
         elif kind == "VTG":
             speed = _number(message, "sogk") * KM_PER_H
             self._take_speed(
@@ -81,10 +87,23 @@ class _Epoch:
         elif kind == "GST":
             self.sd = (_number(message, "stdLong"), _number(message, "stdLat"), _number(message, "stdAlt"))
         elif kind == "ZDA":
-            self.day = _whole_date(message)
+            self.day = _whole_date(message) or self.day
+        return used
 
-    def _take_place(self, message: Any) -> None:
-        self.place = (_number(message, "lat"), _number(message, "lon"))
+    def _take_place(self, message: Any) -> bool:
+        """Use the place of the best sentence; of equal ones the first that has any."""
+        kind = message.msgID
+        place = (_number(message, "lat"), _number(message, "lon"))
+        has_place = math.isfinite(sum(place))
+        self.fixes[kind] = self.fixes.get(kind, False) or _has_fix(message)
+        if self.placed_by and (not has_place or PLACES.index(kind) >= PLACES.index(self.placed_by)):
+            return not has_place or kind != self.placed_by
+        if has_place:
+            self.placed_by, self.place = kind, place
+        if has_place and kind in ("GGA", "GNS"):
+            self.height, self.separation = _number(message, "alt"), _number(message, "sep")
+            self.solution = _solution(message)
+        return True
 
     def _take_speed(self, speed: float, course: float) -> None:
         if math.isnan(self.speed):
@@ -94,24 +113,48 @@ class _Epoch:
 
 
 def read_nmea(data: bytes, name: str) -> Recording:
-    """The recording in a file of NMEA sentences; lines that are none are left alone.
+    """Read the sentences of a file; other lines are skipped.
 
     Raises
     ------
     FieldDataError
-        No sentence GGA, GNS or RMC with a right checksum and a time is in the file.
+        No sentence GGA, GNS, GLL or RMC with a time and a right checksum, or without checksums, is in the file.
     """
-    counts = {"sentences with a wrong checksum": 0, "sentences without a time": 0}
-    epochs = [epoch for epoch in _epochs(data, counts) if epoch.seen & {"GGA", "GNS", "RMC"}]
-    if not epochs:
+    counts: dict[str, int] = {WRONG_CHECKSUM: 0, NO_TIME: 0}
+    found = _epochs(data, counts)
+    fixed = [number for number, epoch in enumerate(found) if epoch.has_fix]
+    if fixed:
+        counts["times before the first fix"] = _placed_count(found[: fixed[0]])
+        found = found[fixed[0] :]
+    if not _placed_count(found):
         raise refusal(
             "empty_file",
             name,
-            value=", ".join(f"{count} {words}" for words, count in counts.items()),
-            allowed="sentences GGA, GNS or RMC with right checksums and times",
+            value=", ".join(f"{count} {words}" for words, count in counts.items() if count),
+            allowed="sentences GGA, GNS, GLL or RMC with times, and with right checksums or none",
             action="Switch these sentences on in the receiver, or copy the file again.",
         )
-    seconds, start = _times(epochs)
+    times, start = _times(found)
+    kept = [number for number, epoch in enumerate(found) if _is_placed(epoch)]
+    counts[NO_PLACE] = sum(not _is_placed(epoch) and any(kind == "GST" for _, kind in epoch.seen) for epoch in found)
+    return _recording(name, [found[number] for number in kept], times[kept], start, counts)
+
+
+def _is_placed(epoch: _Epoch) -> bool:
+    return any(kind in PLACES for _, kind in epoch.seen)
+
+
+def _placed_count(epochs: list[_Epoch]) -> int:
+    return sum(map(_is_placed, epochs))
+
+
+def _recording(
+    name: str,
+    epochs: list[_Epoch],
+    times: np.ndarray[Any, np.dtype[np.float64]],
+    start: datetime | None,
+    counts: dict[str, int],
+) -> Recording:
     course = np.array([epoch.course for epoch in epochs]) * DEGREE
     speed = np.array([epoch.speed for epoch in epochs])
     velocity = np.column_stack([speed * np.sin(course), speed * np.cos(course), np.full(len(epochs), np.nan)])
@@ -120,17 +163,18 @@ def read_nmea(data: bytes, name: str) -> Recording:
     return Recording(
         name=name,
         places_in_file=[f"row {epoch.row}" for epoch in epochs],
-        time=seconds,
+        time=times,
         place=np.column_stack([np.array([epoch.place for epoch in epochs]), height]),
         is_geodetic=True,
         time_scale="UTC",
-        start=start,
+        start=None if start is None else start + timedelta(seconds=float(times[0])),
         speed=speed,
         speed_kind="over the ground (horizontal)",
         velocity=None if np.isnan(course).all() else velocity,
         place_sd=None if np.isnan(sd).all() else sd,
-        fix=np.array([epoch.fix for epoch in epochs]),
+        fix=np.array([epoch.has_fix for epoch in epochs]),
         solution=solution_array([epoch.solution for epoch in epochs]),
+        not_finite=np.array([epoch.has_not_finite_cell for epoch in epochs]),
         heights=heights,
         left_out=counts,
     )
@@ -138,56 +182,50 @@ def read_nmea(data: bytes, name: str) -> Recording:
 
 def _epochs(data: bytes, counts: dict[str, int]) -> list[_Epoch]:
     epochs: list[_Epoch] = []
-    for row, line in enumerate(data.split(b"\n"), start=1):
-        begin = line.find(b"$")
-        if begin < 0:
-            continue
-        message = _message(line[begin:].strip(), counts)
-        if message is None:
-            continue
-        if message.msgID == "VTG":  # has no time of its own
-            if epochs:
-                epochs[-1].take(message)
-            continue
+    for sentence in sentences(data, counts):
+        message = sentence.message
         at = getattr(message, "time", "")
-        if not isinstance(at, time):
-            counts["sentences without a time"] += 1
+        if message.msgID == "VTG" and epochs:  # has no time of its own
+            epoch = epochs[-1]
+        elif isinstance(at, time):
+            epoch = _epoch_at(epochs, at, message, sentence.row)
+        else:
+            counts[NO_TIME] += 1
             continue
-        if not epochs or epochs[-1].time != at or message.msgID in epochs[-1].seen:
-            epochs.append(_Epoch(at, row))
-        epochs[-1].take(message)
+        if not epoch.take(message):
+            counts[OTHER_TALKER] = counts.get(OTHER_TALKER, 0) + 1
+        epoch.has_not_finite_cell |= sentence.has_not_finite_cell
     return epochs
 
 
-def _message(line: bytes, counts: dict[str, int]) -> Any:
-    """The sentence, None where it is another one or damaged."""
-    from pynmeagps import NMEAReader, calc_checksum
-
-    content, star, checksum = line[1:].partition(b"*")
-    if not star or calc_checksum(content.decode("latin-1")) != checksum[:2].decode("latin-1").upper():
-        counts["sentences with a wrong checksum"] += 1
-        return None
-    if not SENTENCE.match(line) or not content.isascii():
-        return None
-    if len(line) > LONGEST:
-        counts["sentences with a wrong checksum"] += 1
-        return None
-    try:
-        return NMEAReader.parse(b"$" + content + b"*" + checksum[:2])
-    except Exception:  # cells that are no numbers make pynmeagps fail in many ways
-        counts["sentences with a wrong checksum"] += 1
-        return None
+def _epoch_at(epochs: list[_Epoch], at: time, message: Any, row: int) -> _Epoch:
+    """The epoch of this time among the last ones, or a new one; the same sentence again begins a new one."""
+    for epoch in reversed(epochs[-_RECENT:]):
+        if epoch.time == at:
+            if (message.talker, message.msgID) not in epoch.seen:
+                return epoch
+            break
+    epochs.append(_Epoch(at, row))
+    return epochs[-1]
 
 
 def _times(epochs: list[_Epoch]) -> tuple[np.ndarray[Any, np.dtype[np.float64]], datetime | None]:
-    """Seconds from the first point, over midnights; the first moment where any sentence has a date."""
+    """Seconds from the first epoch, over midnights, and its moment if any sentence has a date.
+
+    An epoch with a place but without a fix is put after the epoch with a fix before it, and changes no date.
+    """
     day, dated = 0, None
     seconds: list[float] = []
     before = epochs[0]
     for epoch in epochs:
+        trusted = epoch.has_fix or not _is_placed(epoch)
+        falls = epoch.second_of_day < before.second_of_day - _HALF_A_DAY
+        if not trusted:
+            seconds.append((day + falls) * _DAY + epoch.second_of_day)
+            continue
         if epoch.day is not None and dated is not None:
             day = (epoch.day - dated).days
-        elif epoch.second_of_day < before.second_of_day - _HALF_A_DAY:
+        elif falls:
             day += 1
         if epoch.day is not None and dated is None:
             dated = epoch.day - timedelta(days=day)
@@ -206,7 +244,9 @@ def _heights(epochs: list[_Epoch]) -> tuple[np.ndarray[Any, np.dtype[np.float64]
 
 
 def _has_fix(message: Any) -> bool:
-    """Whether GGA has a quality above 0, or GNS a mode other than N for any satellites."""
+    """True if RMC or GLL is valid, GGA has a quality above 0, or GNS a mode other than N for any satellites."""
+    if message.msgID in ("RMC", "GLL"):
+        return getattr(message, "status", "") == "A"
     if message.msgID == "GGA":
         return _number(message, "quality") > 0.0
     return bool(set(getattr(message, "posMode", "")) - {"N"})

@@ -13,7 +13,9 @@ from ..flags import FASTEST, GAP_FACTOR, point_flags
 from ..point import GEODETIC, LOCAL, MOTION
 from ..projection import GeodeticPoint, east_north_up, turned_to_origin
 from ..track import Axes, Track
+from .fixed_points import fixed_points
 from .refusal import refusal
+from .rounded_times import spread_times
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -23,6 +25,7 @@ if TYPE_CHECKING:
 
     BoolArray = npt.NDArray[np.bool_]
     FloatArray = npt.NDArray[np.float64]
+    IntArray = npt.NDArray[np.int64]
 
 
 @dataclass(eq=False)
@@ -55,6 +58,12 @@ class Recording:
         Where the file itself names an origin.
     columns
         The file's own names of ``x``, ``y``, ``z``, for messages.
+    segment : (n,) or None
+        Number of the segment of each point, if the file separates segments.
+    not_finite : (n,) bool or None
+        True for points of which the file has a cell such as `nan` or `inf`.
+    notes
+        Sentences on how the file was read.
     """
 
     name: str
@@ -80,6 +89,9 @@ class Recording:
     further_columns: tuple[str, ...] = ()
     left_out: Mapping[str, int] = field(default_factory=dict)
     columns: Mapping[str, str] = field(default_factory=dict)
+    segment: IntArray | None = None
+    not_finite: BoolArray | None = None
+    notes: tuple[str, ...] = ()
 
 
 def track_of(
@@ -97,14 +109,28 @@ def track_of(
         There is no point, no point has a place, times run backwards, a number is out of range, or an origin is given
         for a file that says nothing of where on earth it is.
     """
+    _require_points(recording)
+    recording, fix = fixed_points(recording, _fix(recording))
     _require_in_range(recording)
     _require_time(recording)
-    fix = _fix(recording)
     place, velocity, at = _projected(recording, fix, origin)
     speed = np.full(len(recording.time), np.nan) if recording.speed is None else recording.speed
     negative = np.isfinite(speed) & (speed < 0.0)
-    time = recording.time - recording.time[0]
+    time, rounded = spread_times(recording.time - recording.time[0], place[:, :2])
+    time = time - time[0]
     solution = None if recording.solution is None else np.where(fix, recording.solution, "")
+    flags = point_flags(
+        time,
+        place,
+        fix,
+        negative,
+        fastest=fastest,
+        gap_factor=gap_factor,
+        solution=solution,
+        segment=recording.segment,
+        rounded=rounded,
+        not_finite=recording.not_finite,
+    )
     return Track(
         name=recording.name,
         time=time,
@@ -118,13 +144,14 @@ def track_of(
         solution=solution,
         odometer=recording.odometer,
         start=recording.start,
-        flags=point_flags(time, place, fix, negative, fastest=fastest, gap_factor=gap_factor, solution=solution),
+        flags=flags,
         axes="east_north_up" if recording.is_geodetic else recording.axes,
         origin=at,
         first_time=recording.first_time,
         speed_kind=recording.speed_kind,
         further_columns=recording.further_columns,
         left_out={words: count for words, count in recording.left_out.items() if count},
+        notes=recording.notes,
     )
 
 
@@ -140,13 +167,6 @@ def _fix(recording: Recording) -> BoolArray:
 def _projected(
     recording: Recording, fix: BoolArray, origin: GeodeticPoint | None
 ) -> tuple[FloatArray, FloatArray | None, GeodeticPoint | None]:
-    if not np.any(fix):
-        raise refusal(
-            "no_place",
-            recording.name,
-            allowed="at least one point with a place and a fix",
-            action=f"None of the {len(fix)} points has one; was the receiver under a roof?",
-        )
     if not recording.is_geodetic:
         if origin is not None:
             raise refusal(
@@ -176,7 +196,7 @@ def _frame(recording: Recording, at: GeodeticPoint | None) -> str:
     return f"east, north, up in m from {at}: the plane that touches WGS84 there; heights {recording.heights}"
 
 
-def _require_time(recording: Recording) -> None:
+def _require_points(recording: Recording) -> None:
     if not len(recording.time):
         raise refusal(
             "empty_file",
@@ -184,6 +204,17 @@ def _require_time(recording: Recording) -> None:
             allowed="at least one point",
             action="The file has no point; was anything recorded?",
         )
+    fix = _fix(recording)
+    if not np.any(fix):
+        raise refusal(
+            "no_place",
+            recording.name,
+            allowed="at least one point with a place and a fix",
+            action=f"None of the {len(fix)} points has one; was the receiver under a roof?",
+        )
+
+
+def _require_time(recording: Recording) -> None:
     falls = np.flatnonzero(np.diff(recording.time) < 0.0)
     if len(falls):
         point = int(falls[0]) + 1

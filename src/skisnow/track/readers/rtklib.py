@@ -18,6 +18,7 @@ from ...spreadsheet_text import number
 from ..point import FARTHEST, FASTEST_NUMBER
 from ..projection import GeodeticPoint, earth_centred, east_north_up_axes, geodetic
 from ..solution import Solution, solution_array
+from .not_finite import is_not_finite
 from .recording import Recording
 from .refusal import refusal
 from .rtklib_header import PLACES, Header, header_of
@@ -60,18 +61,19 @@ def read_rtklib(text: str, name: str) -> Recording:
     FieldDataError
         The header line is missing, a row is shorter than it, or a cell is no number or time.
     """
-    lines = re.split(r"\r\n|\r|\n", text)
-    header = header_of("\n".join(lines), name)
+    lines = text.split("\n")
+    header = header_of(text, name)
     base = _base(lines, header)
     numbered = [
         (row, line) for row, line in enumerate(lines, start=1) if line.strip() and line.lstrip()[0] not in "%+$"
     ]
-    rows, moments, table = [], [], []
+    rows, moments, table, not_finite = [], [], [], []
     for row, line in numbered:
-        moment, values = _row(line, header, name, row)
+        moment, values, has_not_finite_cell = _row(line, header, name, row)
         rows.append(f"row {row}")
         moments.append(moment)
         table.append(values)
+        not_finite.append(has_not_finite_cell)
     columns = _by_name(np.array(table, dtype=float).reshape(len(rows), len(header.columns)), header)
     place, is_geodetic = _place(columns, header, base)
     velocity, place_sd = _velocity(columns, header, place), _deviations(columns, header, place)
@@ -91,6 +93,7 @@ def read_rtklib(text: str, name: str) -> Recording:
         place_sd=place_sd,
         speed_sd=None if velocity is None else _speed_sd(columns, header),
         fix=None if quality is None else quality > 0.0,
+        not_finite=np.array(not_finite, dtype=bool),
         solution=None if quality is None else solution_array([QUALITIES.get(each, "") for each in quality.tolist()]),
         axes="east_north_up",
         axes_in_words="east, north, up in m from the base station of the solution",
@@ -100,8 +103,8 @@ def read_rtklib(text: str, name: str) -> Recording:
     )
 
 
-def _row(line: str, header: Header, name: str, row: int) -> tuple[datetime, list[float]]:
-    """The moment and one number for each column."""
+def _row(line: str, header: Header, name: str, row: int) -> tuple[datetime, list[float], bool]:
+    """The moment, one number for each column, and True if a cell is not a finite number."""
     cells = line.replace(header.separator, " ").split()
     moment = _moment(cells, header.scale)
     if moment is None:
@@ -124,18 +127,35 @@ def _row(line: str, header: Header, name: str, row: int) -> tuple[datetime, list
             allowed=f"{header.width} numbers behind the time, as the header line says",
             action="The row is cut short; solve again, or remove the row.",
         )
-    values = [number(cell) for cell in cells[: header.width]]
-    for cell, value in zip(cells, values, strict=False):
-        if (math.isnan(value) and cell.lower() not in ("nan", "-nan")) or abs(value) > LARGEST:
+    cells = cells[: header.width]
+    values = [number(cell) for cell in cells]
+    first_column = header.width - len(header.columns)
+    used = _used_columns(header.kind)
+    not_finite = False
+    for place, (cell, value) in enumerate(zip(cells, values, strict=True)):
+        if math.isfinite(value) and abs(value) <= LARGEST:
+            continue
+        not_finite = True
+        values[place] = math.nan
+        is_used = place < first_column or header.columns[place - first_column] in used
+        if is_used and not is_not_finite(cell):
             raise refusal(
                 "not_a_number",
                 name,
                 place=f"row {row}",
                 value=cell,
-                allowed=f"a finite number with a decimal point, at most {LARGEST:g}",
+                allowed=f"a finite number with a decimal point, at most {LARGEST:g}, or nan",
                 action="The row is damaged; solve again.",
             )
-    return moment, _degrees(cells, values) if header.sexagesimal else values
+    return moment, _degrees(cells, values) if header.sexagesimal else values, not_finite
+
+
+def _used_columns(kind: str) -> frozenset[str]:
+    """Names of the columns that are read; an unreadable cell in another one is only flagged."""
+    covariances = ("sdxy", "sdyz", "sdzx") if kind == "earth_centred" else ()
+    speeds, speed_covariances = SPEED_DEVIATIONS[kind]
+    deviations = (*DEVIATIONS[kind], *covariances, *speeds, *speed_covariances)
+    return frozenset({"q", *PLACES[kind], *VELOCITIES[kind], *deviations})
 
 
 def _degrees(cells: list[str], values: list[float]) -> list[float]:

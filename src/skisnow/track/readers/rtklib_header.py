@@ -15,7 +15,7 @@ PLACES: Final = {
     "baseline": ("e-baseline", "n-baseline", "u-baseline"),
 }
 HEADER: Final = re.compile(
-    r"^%[ \t]*+(?:(GPST|UTC|JST)[ \t,;]*+|[,;][ \t,;]*+)?(latitude|x-ecef|e-baseline).*", re.MULTILINE
+    r"^%[ \t]*+(?:(GPST|UTC|JST)[ \t,;]*+|[,;][ \t,;]*+)?(latitude|x-ecef|e-baseline).*", re.MULTILINE | re.IGNORECASE
 )
 
 
@@ -51,9 +51,9 @@ def header_of(text: str, name: str) -> Header:
             allowed="a header line such as: %  GPST  latitude(deg) longitude(deg) height(m) Q ns sdn(m) sde(m) sdu(m)",
             action="Switch the output of the header on in RTKLIB, and solve again.",
         )
-    line, first = found[0], found[2]
+    line, first = found[0], found[2].lower()
     kind = next(kind for kind, names in PLACES.items() if names[0] == first)
-    after = line[line.index(first) :]
+    after = line[line.lower().index(first) :]
     unit = re.match(r"[\w-]+\((.*?)\)(.)?", after)
     separator = unit[2] if unit and unit[2] in (",", ";", "\t") else " "
     cells = [cell for cell in re.split(r"[\s,;]+", after) if cell]
@@ -69,4 +69,4 @@ def header_of(text: str, name: str) -> Header:
             action="The header line is damaged; solve again.",
         )
     sexagesimal = kind == "geodetic" and unit is not None and "'" in unit[1]
-    return Header(SCALES.get(found[1] or "", "local"), kind, sexagesimal, separator, columns)
+    return Header(SCALES.get((found[1] or "").upper(), "local"), kind, sexagesimal, separator, columns)

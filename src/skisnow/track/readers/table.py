@@ -6,6 +6,7 @@ import dataclasses
 import difflib
 import itertools
 import math
+import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
@@ -14,8 +15,10 @@ import numpy as np
 from ...spreadsheet_text import number
 from ..point import FARTHEST
 from .likely_columns import likely_columns
+from .not_finite import is_not_finite
 from .recording import Recording
 from .refusal import refusal
+from .serial_dates import times_of_numbers
 from .text import Cells, cells_of, decimal_mark_of, moment, require_width
 
 if TYPE_CHECKING:
@@ -23,6 +26,7 @@ if TYPE_CHECKING:
 
     import numpy.typing as npt
 
+    BoolArray = npt.NDArray[np.bool_]
     FloatArray = npt.NDArray[np.float64]
 
 TIMES: Final = ("time_s", "time")
@@ -50,7 +54,7 @@ def read_table(text: str, name: str) -> Recording:
     table = _Table.of(cells_of(text, name), name)
     is_geodetic = table.kind()
     table.require_rows()
-    time, start = table.time()
+    time, start, note = table.time()
     first_time = 0.0 if start is not None else float(time[0])
     place = table.vectors(GEODETIC if is_geodetic else LOCAL)
     speeds = [column for column in SPEEDS if column in table.header]
@@ -71,28 +75,32 @@ def read_table(text: str, name: str) -> Recording:
         odometer=table.optional(ODOMETER),
         further_columns=tuple(column for column in table.header if column not in table.used),
         columns=dict(zip("xyz", GEODETIC if is_geodetic else LOCAL, strict=True)),
+        not_finite=table.not_finite,
+        notes=() if note is None else (note,),
     )
 
 
 @dataclass(eq=False)
 class _Table:
-    """Cells with the file's name and decimal mark; remembers which columns were used."""
+    """Cells with the file's name and decimal mark, the columns used so far, and the rows with `nan` or `inf`."""
 
     cells: Cells
     name: str
     mark: str
     used: set[str]
+    not_finite: BoolArray
 
     @classmethod
     def of(cls, cells: Cells, name: str) -> _Table:
-        """A table whose rows are as long as its header."""
+        """A table whose rows are as long as its header; the case of known headings does not matter."""
+        cells = dataclasses.replace(cells, header=tuple(map(_column_name, cells.header)))
         _require_header(cells, name)
         width = len(cells.header)
         require_width(cells, name)
         rows = tuple((row + ("",) * (width - len(row)))[:width] for row in cells.rows)
         known = [place for place, column in enumerate(cells.header) if column in COLUMNS]
         mark = decimal_mark_of((row[place] for place in known for row in rows), cells.separator)
-        return cls(dataclasses.replace(cells, rows=rows), name, mark, set())
+        return cls(dataclasses.replace(cells, rows=rows), name, mark, set(), np.zeros(len(rows), dtype=bool))
 
     @property
     def header(self) -> tuple[str, ...]:
@@ -147,11 +155,13 @@ class _Table:
         return [row[place] for row in self.cells.rows]
 
     def numbers(self, name: str) -> FloatArray:
-        """A column of numbers, NaN where a cell is blank."""
+        """A column of numbers, NaN if a cell is blank or, which is flagged, `nan` or `inf`."""
         cells = self.column(name)
         values = np.array([number(cell, self.mark) for cell in cells])
         for place in np.flatnonzero(np.isnan(values)).tolist():
-            if cells[place]:
+            if is_not_finite(cells[place]):
+                self.not_finite[place] = True
+            elif cells[place]:
                 raise self._no_number(place, name, cells[place])
         return values
 
@@ -163,12 +173,13 @@ class _Table:
         absent = np.full(len(self.cells.rows), np.nan)
         return np.column_stack([self.numbers(name) if name in self.header else absent for name in names])
 
-    def time(self) -> tuple[FloatArray, datetime | None]:
-        """Seconds, and the moment of the first row where the column holds dates."""
+    def time(self) -> tuple[FloatArray, datetime | None, str | None]:
+        """Seconds, the moment of the first row if the column has dates, and a note on how it was read."""
         name = next(column for column in TIMES if column in self.header)
         cells = self.column(name)
         if name == "time_s" or not math.isnan(number(cells[0], self.mark)):
-            return self._seconds(name, cells), None
+            seconds = self._seconds(name, cells)
+            return (seconds, None, None) if name == "time_s" else times_of_numbers(seconds)
         moments = [moment(cell) for cell in cells]
         for place, found in enumerate(moments):
             if found is None:
@@ -177,7 +188,7 @@ class _Table:
         for place, (one, other) in enumerate(itertools.pairwise(known)):
             if (one.tzinfo is None) != (other.tzinfo is None):
                 raise self._no_time(place + 1, name, cells[place + 1], "all with a zone, or all without")
-        return np.array([(found - known[0]).total_seconds() for found in known]), known[0]
+        return np.array([(found - known[0]).total_seconds() for found in known]), known[0], None
 
     def _seconds(self, name: str, cells: list[str]) -> FloatArray:
         values = np.array([number(cell, self.mark) for cell in cells])
@@ -208,6 +219,16 @@ class _Table:
             allowed=f"a finite number with {mark}, or nothing",
             action="Correct the cell.",
         )
+
+
+def _column_name(heading: str) -> str:
+    """The column that a heading names, whatever its case and with spaces for underscores; else the heading.
+
+    >>> [_column_name(heading) for heading in ("Time", "LAT", "Alt m", "Heart rate")]
+    ['time', 'lat', 'alt_m', 'Heart rate']
+    """
+    name = re.sub(r"[\s_]+", "_", heading.strip()).casefold()
+    return name if name in COLUMNS else heading
 
 
 def _require_header(cells: Cells, name: str) -> None:

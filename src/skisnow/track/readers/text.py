@@ -27,7 +27,9 @@ _HEAD: Final = 1 << 16
 
 
 def text_of(data: bytes, name: str) -> str:
-    """Text in UTF-8, in UTF-16 with byte order mark, or else in Windows-1252.
+    """Text in UTF-8, in UTF-16 with byte order mark, or else in Windows-1252, with line feeds as the only line ends.
+
+    Byte order marks are removed wherever they are: joined files have several.
 
     Raises
     ------
@@ -35,7 +37,7 @@ def text_of(data: bytes, name: str) -> str:
         The bytes are no text.
     """
     try:
-        return decoded(data).text
+        return "\n".join(decoded(data).text.replace("\ufeff", "").splitlines())
     except NoTextError as error:
         raise _no_text(name, error.place) from error
 
@@ -69,7 +71,7 @@ def cells_of(text: str, name: str) -> Cells:
     FieldDataError
         There is no header, a quote is never closed, a cell is too long, or there are too many columns.
     """
-    lines = re.split(r"\r\n|\r|\n", text)
+    lines = text.split("\n")
     named = named_separator(lines[0])
     first = 1 if named in SEPARATOR_NAMES else 0
     if not any(re.sub('[,;"]', "", line).strip() for line in lines[first:]):

@@ -20,6 +20,7 @@ import numpy as np
 
 from ...units import MM
 from ..solution import Solution, solution_array
+from .nmea_sentences import SENTENCE
 from .recording import Recording
 from .refusal import refusal
 
@@ -27,6 +28,9 @@ SYNC: Final = b"\xb5\x62"
 LENGTHS: Final = {b"\x01\x07": (84, 92), b"\x01\x14": (36,), b"\x01\x36": (64,)}
 """Of NAV-PVT, NAV-HPPOSLLH, NAV-COV in bytes; NAV-PVT has 84 of u-blox 7, 92 of all later; a request has none."""
 _HEAD, _CHECKSUM = 6, 2
+_DAMAGED: Final = "messages with a wrong checksum or cut short"
+_NO_TIME: Final = "messages without a valid time"
+_COUNTS: Final = (_DAMAGED, _NO_TIME)
 _NO_FIX: Final = (0, 5)  # none; time only
 CARRIER_SOLUTIONS: Final[dict[int, Solution]] = {0: "code", 1: "float", 2: "fixed"}
 """Of ``carrSoln``."""
@@ -51,7 +55,7 @@ def read_ubx(data: bytes, name: str) -> Recording:
     FieldDataError
         No message NAV-PVT with a right checksum and a valid time is in the file.
     """
-    counts = {"messages with a wrong checksum or cut short": 0, "messages without a valid time": 0}
+    counts = dict.fromkeys(_COUNTS, 0)
     epochs = _epochs(data, counts)
     if not epochs:
         counted = ", ".join(f"{count} {words}" for words, count in counts.items())
@@ -62,6 +66,7 @@ def read_ubx(data: bytes, name: str) -> Recording:
             allowed="messages NAV-PVT with right checksums and valid times",
             action="Switch NAV-PVT on in the receiver, or copy the file again.",
         )
+    counts["NMEA sentences next to messages NAV-PVT"] = len(SENTENCE.findall(data))
     table = np.array([_row(epoch) for epoch in epochs])
     start = epochs[0].moment
     return Recording(
@@ -84,6 +89,12 @@ def read_ubx(data: bytes, name: str) -> Recording:
     )
 
 
+def has_places(data: bytes) -> bool:
+    """True if the bytes have a NAV-PVT with a right checksum and a valid time."""
+    messages = _messages(data, dict.fromkeys(_COUNTS, 0))
+    return any(message.identity == "NAV-PVT" and _moment(message) is not None for _, message in messages)
+
+
 def _epochs(data: bytes, counts: dict[str, int]) -> list[_Epoch]:
     """Every NAV-PVT with a valid time, and the other messages of its time of week."""
     epochs: list[_Epoch] = []
@@ -98,7 +109,7 @@ def _epochs(data: bytes, counts: dict[str, int]) -> list[_Epoch]:
         elif (moment := _moment(message)) is not None:
             epochs.append(_Epoch(offset, moment, message))
         else:
-            counts["messages without a valid time"] += 1
+            counts[_NO_TIME] += 1
     for epoch in epochs:
         epoch.precise = precise.get(epoch.message.iTOW)
         epoch.covariance = covariances.get(epoch.message.iTOW)
@@ -115,7 +126,7 @@ def _messages(data: bytes, counts: dict[str, int]) -> Iterator[tuple[int, Any]]:
         length = int.from_bytes(data[at + 4 : at + _HEAD], "little")
         end = at + _HEAD + length + _CHECKSUM
         if end > len(data) or sums.between(at + 2, end - _CHECKSUM) != data[end - _CHECKSUM : end]:
-            counts["messages with a wrong checksum or cut short"] += 1
+            counts[_DAMAGED] += 1
             end = at + len(SYNC)
         elif length in LENGTHS.get(data[at + 2 : at + 4], ()):
             yield at, UBXReader.parse(data[at:end], validate=VALNONE)

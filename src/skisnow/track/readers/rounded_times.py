@@ -1,0 +1,106 @@
+"""Times of points whose time stamps are coarser than the points: several points share each stamp.
+
+Devices that record at 5 to 25 Hz write whole seconds or tenths of a second in some formats. The points of one stamp
+are spread over the time until the next one. Points that were recorded twice also share a stamp: there the place does
+not advance from one point of a stamp to the next, and the stamps stay.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+if TYPE_CHECKING:
+    import numpy.typing as npt
+
+    BoolArray = npt.NDArray[np.bool_]
+    FloatArray = npt.NDArray[np.float64]
+    IntArray = npt.NDArray[np.int64]
+
+LEAST_SHARE: Final = 0.3
+"""Share of points that do not begin a stamp, from which stamps are taken as rounded (modelling assumption)."""
+LEAST_ADVANCE: Final = 0.5
+"""Share of the path within stamps, relative to an even motion, from which the points advance (modelling assumption)."""
+_EVEN: Final = 1.01
+"""Steps between stamps up to this many units count as one unit: no stamp is missing."""
+
+
+def spread_times(time: FloatArray, place: FloatArray) -> tuple[FloatArray, BoolArray]:
+    """Times with the points of each stamp spread until the next stamp, and which points were moved.
+
+    Parameters
+    ----------
+    time : (n,) s
+        Never falling.
+    place : (n, 2) m
+        Horizontal places, NaN if unknown.
+
+    Returns
+    -------
+    tuple
+        Times (n,) (s), and (n,) bool. Without rounded stamps: the times given, and no point.
+
+    Examples
+    --------
+    >>> place = np.column_stack([np.arange(6.0), np.zeros(6)])
+    >>> spread_times(np.array([0.0, 1.0, 1.0, 2.0, 2.0, 3.0]), place)[0].tolist()
+    [0.5, 1.0, 1.5, 2.0, 2.5, 3.0]
+    """
+    unmoved = time, np.zeros(len(time), dtype=bool)
+    begins = np.r_[True, np.diff(time) > 0.0] if len(time) else np.zeros(0, dtype=bool)
+    if np.count_nonzero(begins) < 2 or np.count_nonzero(~begins) < LEAST_SHARE * len(time):
+        return unmoved
+    if _advance(place, begins) < LEAST_ADVANCE:
+        return unmoved
+    first = np.flatnonzero(begins)
+    unit = float(np.median(np.diff(time[first])))
+    spread = time.copy()
+    missing = np.flatnonzero(np.diff(time[first]) > _EVEN * unit) + 1
+    count = float(np.median(np.diff(np.append(first, len(time)))))
+    for block in np.split(np.arange(len(first)), missing):
+        begin = int(first[block[0]])
+        end = int(first[block[-1] + 1]) if block[-1] + 1 < len(first) else len(time)
+        spread[begin:end] = _block_times(time[first[block]], first[block] - begin, end - begin, (unit, count))
+    return np.maximum.accumulate(spread), spread != time
+
+
+def _advance(place: FloatArray, begins: BoolArray) -> float:
+    """Length of the path within stamps relative to its expected share; infinite if nothing moves."""
+    steps = np.hypot(*np.diff(place, axis=0).T)
+    known = np.isfinite(steps)
+    whole = float(np.sum(steps[known]))
+    if whole == 0.0:
+        return 0.0
+    within = known & ~begins[1:]
+    return float(np.sum(steps[within])) / whole / (np.count_nonzero(within) / np.count_nonzero(known))
+
+
+def _block_times(stamps: FloatArray, first: IntArray, size: int, usual: tuple[float, float]) -> FloatArray:
+    """Times of the points of consecutive stamps: at an even rate if all stamps agree with one, else stamp by stamp.
+
+    Parameters
+    ----------
+    stamps, first : (m,)
+        Stamps (s), and the number of the first point of each.
+    size
+        Number of points.
+    usual
+        Unit of the stamps (s), and the usual number of points in a stamp.
+    """
+    unit, count = usual
+    step = unit / count
+    if len(stamps) > 2:
+        step = float(np.polyfit(first[1:], stamps[1:], 1)[0])
+    even = step * np.arange(size)
+    crossings = stamps[1:] - even[first[1:]] if len(stamps) > 1 else np.array([stamps[0] + unit - step * size])
+    if np.ptp(crossings) <= max(1.5 * step, 1e-6 * unit):
+        return np.asarray(even + float(np.max(crossings)))
+    times = np.empty(size)
+    ends = np.append(first[1:], size)
+    for stamp, begin, end in zip(stamps, first, ends, strict=True):
+        points = end - begin
+        own = unit / points if begin > 0 and end < size else min(step, unit / points)
+        shift = unit - own * points if begin == 0 else 0.0
+        times[begin:end] = stamp + shift + own * np.arange(points)
+    return times

@@ -1,0 +1,61 @@
+"""Time stamps coarser than the points, with truths known from how they were rounded."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+
+from skisnow.track.readers.rounded_times import spread_times
+
+FloatArray = npt.NDArray[np.float64]
+
+
+def straight(time: FloatArray) -> FloatArray:
+    """10 m/s to the north."""
+    return np.column_stack([np.zeros(len(time)), 10.0 * time])
+
+
+@pytest.mark.parametrize("rate", [2.0, 3.0, 5.0, 10.0, 12.5, 18.18, 25.0, 100.0])
+@pytest.mark.parametrize("begin", [0.0, 0.37, 0.9])
+@pytest.mark.parametrize("unit", [1.0, 0.1])
+def test_even_rates(rate: float, begin: float, unit: float) -> None:
+    rate = rate if unit == 1.0 else 10.0 * rate
+    true = begin * unit + np.arange(round(12.0 * unit * rate)) / rate
+    found, moved = spread_times(unit * np.floor(true / unit + 1e-9), straight(true))
+    assert moved.any()
+    np.testing.assert_allclose(np.diff(found), 1.0 / rate, rtol=0.02)
+    assert np.max(np.abs(found - true)) <= 1.01 / rate  # the phase within a stamp is not recorded
+
+
+def test_lost_points_and_a_pause() -> None:
+    """Each stamp keeps its points: the speed over whole seconds is right."""
+    true = np.arange(0.0, 20.0, 0.1)
+    true = np.delete(true, [33, 34, 35, 77, 150])
+    true = true[(true < 8.0) | (true >= 12.0)]
+    found, _ = spread_times(np.floor(true + 1e-9), straight(true))
+    assert (np.diff(found) > 0.0).all()
+    assert np.max(np.abs(found - true)) < 0.5
+    assert np.max(np.diff(found)) == pytest.approx(4.1, abs=0.1)
+
+
+def test_stamps_that_are_not_rounded_stay() -> None:
+    time = np.arange(100.0)
+    for stamps in (time, np.delete(np.sort(np.r_[time, 7.0, 8.0, 50.0]), 3), time[:1], time[:0]):
+        found, moved = spread_times(stamps, straight(stamps))
+        np.testing.assert_array_equal(found, stamps)
+        assert not moved.any()
+
+
+def test_points_recorded_twice_stay() -> None:
+    time = np.repeat(np.arange(50.0), 2)
+    found, moved = spread_times(time, straight(time))
+    np.testing.assert_array_equal(found, time)
+    assert not moved.any()
+    nearby = straight(time) + np.tile([[0.0, 0.0], [1.0, 0.0]], (50, 1))  # two receivers 1 m apart
+    assert not spread_times(time, nearby)[1].any()
+
+
+def test_standing_still_stays() -> None:
+    time = np.repeat(np.arange(10.0), 5)
+    assert not spread_times(time, np.zeros((50, 2)))[1].any()
