@@ -24,6 +24,8 @@ N_PER_MM2: Final = 1e6
 """N/m² in 1 N/mm², the unit of H_A and S_f."""
 N_PER_MM3: Final = 1e9
 """N/m³ in 1 N/mm³, the unit of H_V."""
+KILOGRAM_FORCE: Final = 9.80665
+"""Newtons in the weight of a kilogram under standard gravity (CGPM 1901)."""
 DEGREE: Final = 0.017453292519943295
 """Radians in a degree."""
 HOUR: Final = 3600.0

@@ -21,6 +21,7 @@ ERROR_CODES = (
     "bad_toml",
     "correction_mismatch",
     "other_unit",
+    "unit_missing",
 )
 WARNING_CODES = (
     "angles_look_like_radians",
@@ -32,6 +33,7 @@ WARNING_CODES = (
     "unread_sheet",
     "encoding",
     "separator",
+    "converted_unit",
 )
 _SHOWN = {"mark": "flag"}
 """What a severity is called on a terminal, where it is not its own word."""

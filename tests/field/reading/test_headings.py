@@ -119,17 +119,17 @@ def test_many_alike_are_counted(
     assert printed[-1] == "errors: 17, warnings: 0, flags: 0"
 
 
-def test_another_unit_is_neither_proposed_nor_taken(
+def test_a_unit_of_another_quantity_is_neither_proposed_nor_taken(
     write_campaign: WriteCampaign, german: dict[str, str | bytes], small_campaign: dict[str, str]
 ) -> None:
-    table = GERMAN["penetration.csv"].replace("Eindringtiefe [mm]", "Eindringtiefe [cm]")
+    table = GERMAN["penetration.csv"].replace("Eindringtiefe [mm]", "Eindringtiefe [kg]")
     files = {**german, "penetration.csv": table, "shear.csv": small_campaign["shear.csv"]}
     problem = next(problem for problem in check_campaign(write_campaign(files)) if problem.severity == "error")
     assert "depth_mm" not in problem.action.split("}")[0]
     assert "No heading looks like depth_mm" in problem.action
-    assert "Convert first: Eindringtiefe [cm] names cm" in problem.action
-    mapped = f'columns."Eindringtiefe [cm]" = "depth_mm"\n{small_campaign["campaign.toml"]}'
-    table = small_campaign["penetration.csv"].replace("depth_mm", "Eindringtiefe [cm]")
+    assert "Convert first: Eindringtiefe [kg] names kg" in problem.action
+    mapped = f'columns."Eindringtiefe [kg]" = "depth_mm"\n{small_campaign["campaign.toml"]}'
+    table = small_campaign["penetration.csv"].replace("depth_mm", "Eindringtiefe [kg]")
     (problem,) = check_campaign(write_campaign({**small_campaign, "campaign.toml": mapped, "penetration.csv": table}))
     assert (problem.severity, problem.code, problem.row, problem.column) == ("error", "other_unit", 1, "depth_mm")
 

@@ -178,6 +178,8 @@ def _read(lying: CampaignFiles, progress: Callable[[str], None] | None) -> _Cont
         if table is not None:
             tables[form.file] = table
             files.found.extend(check_together(table, described))
+    if not any(problem.severity == "error" for problem in files.found):
+        files.found.extend(_units_without_heading(headings, tables))
     recordings = recording_contents(tables.get(SNOW_MICRO_PEN.file), files)
     weather = None if described is None else campaign_weather(described.weather, files)
     there = campaign.names()
@@ -211,6 +213,22 @@ def _unread(there: Mapping[str, bool]) -> tuple[str, ...]:
     """Files that are no part of a campaign; hidden ones, and what Excel puts beside an open one, are not spoken of."""
     files = sorted(name for name, is_file in there.items() if is_file)
     return tuple(name for name in files if name not in CAMPAIGN_FILES and not name.startswith((".", "~$")))
+
+
+def _units_without_heading(headings: Headings, tables: Mapping[str, Table]) -> list[Problem]:
+    """Units that campaign.toml states for headings that no table has: they would be ignored without a word."""
+    there = {file: table.headings for file, table in tables.items()}
+    return [
+        error(
+            "bad_toml",
+            CAMPAIGN_FILE,
+            column=path,
+            value=path.rpartition(".")[2],
+            allowed="a heading of a table",
+            action="Write the heading as the table has it, or remove the line.",
+        )
+        for path in headings.without_heading(there)
+    ]
 
 
 def _misnamed(there: Mapping[str, bool], absent: set[str]) -> list[Problem]:

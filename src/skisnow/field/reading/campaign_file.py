@@ -17,7 +17,7 @@ from ..quality_flags import ALWAYS_EXCLUDE, QUALITY_FLAGS
 from ..snow_micro_pen_records import SnowMicroPenSettings
 from ..weather_records import WeatherSettings
 from .headings import KEY as COLUMNS_KEY
-from .headings import Headings, headings_of
+from .headings import UNITS_KEY, Headings, headings_of
 from .toml_values import TomlValues
 from .tool_shapes import SHAPES
 
@@ -99,7 +99,7 @@ class CampaignFile:
 CAMPAIGN_KEYS: Final = {key.name: key for key in own_quantities(CampaignFile)}
 """Keys with one value or a list of numbers."""
 (PLATE_LENGTH,) = own_quantities(Plate)
-_SECTIONS: Final = ("tool", "plate", "screening", COLUMNS_KEY, "snow_micro_pen", "weather")
+_SECTIONS: Final = ("tool", "plate", "screening", COLUMNS_KEY, UNITS_KEY, "snow_micro_pen", "weather")
 TOP_KEYS: Final = ("name", "place", "observers", *list(CAMPAIGN_KEYS)[2:], *_SECTIONS)
 
 

@@ -30,7 +30,8 @@ def campaign_schema() -> Schema:
             "observers": {"description": "who", **_one_or_several({"type": "string"})},
             "tool": {"type": "array", "items": {"$ref": "#/$defs/tool"}},
             "plate": {"type": "array", "items": {"$ref": "#/$defs/plate"}},
-            "columns": _columns(),
+            "columns": _by_heading("Column of the numbers or texts below a heading"),
+            "units": _by_heading("Unit of the numbers below a heading that names none"),
             "snow_micro_pen": _recordings(),
             "weather": _weather(),
             "screening": {"type": "object", "properties": {"exclude": _exclude()}},
@@ -48,11 +49,11 @@ def _exclude() -> Schema:
     return {"description": words, **_one_or_several({"$ref": "#/$defs/mark"})}
 
 
-def _columns() -> Schema:
-    """Headings that stand for columns, for all tables or for one."""
+def _by_heading(words: str) -> Schema:
+    """Texts by headings, for all tables or for one."""
     pairs = {"type": "object", "additionalProperties": {"type": "string"}}
     either: Schema = {"anyOf": [{"type": "string"}, pairs]}
-    words = "Column by the heading that stands for it; in a table of a table's name, such as penetration, for that one."
+    words = f"{words}; in a table of a table's name, such as penetration, for that one."
     return {"description": words, "type": "object", "additionalProperties": either}
 
 

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from ...inputs import Quantity
     from ..problems import Problem
     from ..records import BoolArray, FloatArray, IntArray
+    from .heading_units import UnitConversion
 
 
 @dataclass(frozen=True, slots=True)
@@ -113,11 +114,12 @@ class NameCollector:
 
 
 class NumberCollector:
-    """Collects numbers in the file's own unit; NaN where a cell is blank or refused."""
+    """Collects numbers in the unit of the column's name; NaN where a cell is blank or refused."""
 
-    def __init__(self, column: Quantity, mark: str) -> None:
+    def __init__(self, column: Quantity, mark: str, unit: UnitConversion | None = None) -> None:
         self._column = column
         self._mark = mark
+        self._unit = unit if unit is not None and unit.changes else None
         self._parts: list[FloatArray] = []
 
     def take(self, cells: Sequence[str], rows: Rows, found: list[Problem]) -> None:
@@ -127,10 +129,14 @@ class NumberCollector:
             cell = cells[index].strip()
             if cell or self._column.needed:
                 found.append(self._refusal("not_a_number", index, cell, rows, self._how_to_write(cell)))
-        outside = self._column.outside(values)
+        if self._unit is not None:
+            with np.errstate(over="ignore"):
+                values = self._unit.convert(values)
+        outside = self._column.outside(values) | np.isinf(values)
         for index in np.flatnonzero(outside).tolist():
             action = "Correct the cell; its unit stands in the column's name."
-            found.append(self._refusal("out_of_range", index, cells[index].strip(), rows, action))
+            cell = cells[index].strip() + (f" {self._unit.name}" if self._unit is not None else "")
+            found.append(self._refusal("out_of_range", index, cell, rows, action))
         values[outside] = np.nan
         self._parts.append(values)
 

@@ -10,7 +10,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from ..problems import error, warning
-from .heading_words import other_unit, proposed
+from .heading_units import conversion, named_unit, unit_of_column
+from .heading_words import proposed
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -79,24 +80,6 @@ def check_header(form: TableForm, header: Header) -> list[Problem]:
     return problems
 
 
-def check_units(form: TableForm, header: Header, headings: Headings) -> list[Problem]:
-    """Find headings that stand for a column and name another unit than the column's."""
-    pairs = [(heading, headings.name(form, heading)) for heading in header.columns]
-    return [_other_unit(form, heading, name, header.row) for heading, name in pairs if other_unit(heading, name)]
-
-
-def _other_unit(form: TableForm, heading: str, name: str, row: int) -> Problem:
-    return error(
-        "other_unit",
-        form.file,
-        row=row,
-        column=name,
-        value=heading,
-        allowed=f"numbers in the unit of {name}",
-        action=f"Convert the numbers from {other_unit(heading, name)}, and write the unit in the heading.",
-    )
-
-
 def _all_missing(form: TableForm, header: Header) -> Problem:
     """One line for a table whose columns are called otherwise: what to write into campaign.toml."""
     meant = proposed(form, header.columns)
@@ -119,10 +102,10 @@ def _all_missing(form: TableForm, header: Header) -> Problem:
 
 
 def _unit_of_none(form: TableForm, heading: str) -> str | None:
-    """The unit of a heading that would stand for a column if it were the column's unit."""
-    bare = re.sub(r"[\[(].*", "", heading)
+    """The unit of a heading whose words name a column of another quantity."""
+    bare, unit = re.sub(r"[\[(].*", "", heading), named_unit(heading)
     column = next(iter(proposed(form, [bare]).values()), "") if bare != heading else ""
-    return other_unit(heading, column)
+    return unit if unit and unit_of_column(column) and conversion(unit, column) is None else None
 
 
 def _repeated(form: TableForm, name: str, row: int) -> Problem:

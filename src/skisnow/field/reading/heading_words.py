@@ -10,6 +10,8 @@ import re
 import unicodedata
 from typing import TYPE_CHECKING, Final
 
+from .heading_units import FORM, conversion, named_unit, unit_of_column
+
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
@@ -46,42 +48,8 @@ WORDS: Final = {
 }  # fmt: skip
 """Words for a column, as `_letters` writes them; phrases are found by their words."""
 
-_UNITS: Final = {
-    "deg": ("°", "deg", "degree", "degrees", "grad", "winkelgrad"), "N": ("n", "newton"),
-    "mm": ("mm", "millimeter"), "Nm": ("nm", "n m", "n·m", "n*m"),
-    "kg_per_m3": ("kg/m³", "kg/m3", "kg/m^3", "kg m-3", "kg·m⁻³"), "C": ("°c", "grad c", "celsius"),
-}  # fmt: skip
-_OTHER_UNITS: Final = (
-    "m", "cm", "dm", "µm", "um", "rad", "kn", "mn", "kg", "g", "kp", "nmm", "n mm", "ncm", "n cm", "knm", "kn m",
-    "g/cm³", "g/cm3", "g/cm^3", "kg/l", "k", "°f",
-)  # fmt: skip
-_FORM: Final = re.compile(
-    r"(?P<words>[^\[(]*?)\s*(?:[\[(](?P<in>[^\])]*)[\])]?|/\s*(?P<per>\S+)|\bin\s+(?P<of>\S+))?\s*"
-)
 _LIKELY: Final = 0.62
 _UNIT_COUNTS: Final = 0.25
-
-
-def unit_of_column(name: str) -> str:
-    """The unit in a column's name, as its last part writes it; empty where it has none.
-
-    >>> unit_of_column("snow_density_kg_per_m3"), unit_of_column("load_N"), unit_of_column("site")
-    ('kg_per_m3', 'N', '')
-    """
-    return next((unit for unit in sorted(_UNITS, key=len, reverse=True) if name.endswith(f"_{unit}")), "")
-
-
-def other_unit(heading: str, column: str) -> str | None:
-    """The unit that a heading names where the column has another one; None where they agree, or it names none.
-
-    >>> [other_unit(heading, "depth_mm") for heading in ("Tiefe [cm]", "Tiefe [mm]", "Tiefe (roh)")]
-    ['cm', None, None]
-    """
-    unit, of_column = _unit(heading), unit_of_column(column)
-    if not unit or not of_column or unit in _UNITS[of_column]:
-        return None
-    known = unit in _OTHER_UNITS or any(unit in words for words in _UNITS.values())
-    return unit if known else None
 
 
 def proposed(form: TableForm, headings: Sequence[str]) -> dict[str, str]:
@@ -102,13 +70,13 @@ def proposed(form: TableForm, headings: Sequence[str]) -> dict[str, str]:
 
 
 def _likeness(heading: str, column: str) -> float:
-    """From 0 up; 0 where the heading names another unit."""
-    if other_unit(heading, column) is not None:
+    """From 0 up; 0 if the heading names a unit that is not converted to the column's."""
+    unit = named_unit(heading) if unit_of_column(column) else ""
+    if unit and conversion(unit, column) is None:
         return 0.0
-    words = _letters(_FORM.fullmatch(heading)["words"] if _FORM.fullmatch(heading) else heading)  # type: ignore[index]
-    unit = _unit(heading)
-    agrees = _UNIT_COUNTS if unit and unit in _UNITS.get(unit_of_column(column), ()) else 0.0
-    return _of_words(words, WORDS.get(column, "")) + agrees
+    found = FORM.fullmatch(heading)
+    words = _letters(found["words"] if found else heading)
+    return _of_words(words, WORDS.get(column, "")) + (_UNIT_COUNTS if unit else 0.0)
 
 
 def _of_words(words: str, known: str) -> float:
@@ -129,12 +97,6 @@ def _nearest(words: str, vocabulary: Iterable[str]) -> float:
     return max(
         (difflib.SequenceMatcher(None, words, each).ratio() for each in vocabulary if len(each) > 3), default=0.0
     )
-
-
-def _unit(heading: str) -> str:
-    found = _FORM.fullmatch(" ".join(heading.split()))
-    unit = (found["in"] or found["per"] or found["of"] or "") if found else ""
-    return unit.strip().casefold()
 
 
 def _letters(text: str) -> str:

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import difflib
 import unicodedata
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Final
 
+from .heading_units import every_unit, known_unit
 from .table_forms import CORRECTIONS, TABLES
 
 if TYPE_CHECKING:
@@ -15,6 +16,7 @@ if TYPE_CHECKING:
     from .toml_values import TomlValues
 
 KEY: Final = "columns"
+UNITS_KEY: Final = "units"
 FORMS: Final = {form.file.removesuffix(".csv"): form for form in (*TABLES, CORRECTIONS)}
 """Tables by the names that ``[columns.NAME]`` and sheets of a workbook have."""
 
@@ -29,10 +31,14 @@ class Headings:
         In every table that may have such a column.
     of_table
         In one table, by its file; before what holds everywhere.
+    units, units_of_table
+        Units of the numbers below headings, in the same way.
     """
 
     everywhere: Mapping[str, str] = field(default_factory=dict)
     of_table: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
+    units: Mapping[str, str] = field(default_factory=dict)
+    units_of_table: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
 
     def name(self, form: TableForm, heading: str) -> str:
         """The column that a heading of a table stands for; the heading where it stands for itself."""
@@ -42,6 +48,20 @@ class Headings:
             return own
         name = self.everywhere.get(plain)
         return name if name is not None and name in form.known else heading
+
+    def unit(self, form: TableForm, heading: str) -> str:
+        """The unit that campaign.toml states for a heading of a table; empty if it states none."""
+        plain = plain_heading(heading)
+        return self.units_of_table.get(form.file, {}).get(plain) or self.units.get(plain, "")
+
+    def without_heading(self, headings: Mapping[str, Sequence[str]]) -> Iterator[str]:
+        """Paths of stated units whose heading no table has; the headings of each table are given by its file."""
+        there = {file: {plain_heading(each) for each in names} for file, names in headings.items()}
+        everywhere = set().union(*there.values())
+        yield from (f"{UNITS_KEY}.{name}" for name in self.units if name not in everywhere)
+        for file, units in self.units_of_table.items():
+            table = file.removesuffix(".csv")
+            yield from (f"{UNITS_KEY}.{table}.{name}" for name in units if name not in there.get(file, set()))
 
 
 def plain_heading(heading: str) -> str:
@@ -54,7 +74,8 @@ def plain_heading(heading: str) -> str:
 
 
 def headings_of(top: TomlValues) -> Headings:
-    """Read ``[columns]``: ``"Kantwinkel [°]" = "edge_angle_deg"``, for one table under ``[columns.penetration]``."""
+    """Read ``[columns]`` and ``[units]``; each for all tables, or for one under ``[columns.penetration]``."""
+    units, units_of_table = _units_of(top.table(UNITS_KEY))
     section = top.table(KEY)
     everywhere: dict[str, str] = {}
     of_table: dict[str, dict[str, str]] = {}
@@ -65,7 +86,30 @@ def headings_of(top: TomlValues) -> Headings:
             of_table[form.file] = _names(section.table(heading), form.known)
         else:
             everywhere |= _name(section, heading, every_name)
-    return Headings(everywhere, of_table)
+    return Headings(everywhere, of_table, units, units_of_table)
+
+
+def _units_of(section: TomlValues) -> tuple[dict[str, str], dict[str, dict[str, str]]]:
+    """Units of all tables and of single ones: ``"Last" = "kg"``."""
+    everywhere: dict[str, str] = {}
+    of_table: dict[str, dict[str, str]] = {}
+    for heading, value in section.values.items():
+        if heading in FORMS and isinstance(value, Mapping):
+            table = section.table(heading)
+            of_table[FORMS[heading].file] = {
+                plain_heading(name): unit for name in table.values if (unit := _unit(table, name))
+            }
+        elif unit := _unit(section, heading):
+            everywhere[plain_heading(heading)] = unit
+    return everywhere, of_table
+
+
+def _unit(section: TomlValues, heading: str) -> str:
+    value = section.values[heading]
+    unit = known_unit(value) if isinstance(value, str) else ""
+    if not unit:
+        section.refuse(heading, f"one of the units {every_unit()}", "Write the unit in quotes.")
+    return unit
 
 
 def _names(section: TomlValues, known: tuple[str, ...]) -> dict[str, str]:

@@ -47,24 +47,41 @@ LIKELY: Final = {
 
 
 def check_likely_units(table: Table) -> Iterator[Problem]:
-    """Warn of each column whose numbers, as a whole or in single rows, look like another unit."""
+    """Warn of each column whose numbers, as a whole or in single rows, look like another unit.
+
+    A whole column below a heading without a unit is an error of `check_missing_units`.
+    """
     for name, likely in LIKELY.items():
-        values = table.numbers.get(name)
-        above_zero = np.flatnonzero(values > 0) if values is not None else np.zeros(0, dtype=np.int64)
-        if values is None or len(above_zero) == 0:
+        middle = _median(table, name)
+        if middle is None:
             continue
-        middle = float(np.median(values[above_zero]))
-        if not likely.low <= middle <= likely.high:
-            yield _whole_column(table, name, likely, middle)
-        elif likely.each_row:
+        unlikely = unlikely_median(table, name)
+        if unlikely is not None and name not in table.unstated:
+            yield _whole_column(table, name, likely, *unlikely)
+        elif unlikely is None and likely.each_row:
+            values = table.numbers[name]
+            above_zero = np.flatnonzero(values > 0)
             ratio = values[above_zero] / middle
             far = above_zero[(ratio > FAR) | (ratio < 1.0 / FAR)]
             if len(far):
                 yield _some_rows(table, name, likely, middle, far.tolist())
 
 
-def _whole_column(table: Table, name: str, likely: LikelyColumn, middle: float) -> Problem:
-    unit = likely.if_low if middle < likely.low else likely.if_high
+def unlikely_median(table: Table, name: str) -> tuple[float, str] | None:
+    """Median of the numbers of a column of `LIKELY` above 0 and the unit they look like; None if it is likely."""
+    middle, likely = _median(table, name), LIKELY[name]
+    if middle is None or likely.low <= middle <= likely.high:
+        return None
+    return middle, likely.if_low if middle < likely.low else likely.if_high
+
+
+def _median(table: Table, name: str) -> float | None:
+    values = table.numbers.get(name, np.zeros(0))
+    above_zero = values[values > 0]
+    return float(np.median(above_zero)) if len(above_zero) else None
+
+
+def _whole_column(table: Table, name: str, likely: LikelyColumn, middle: float, unit: str) -> Problem:
     return warning(
         "unlikely_unit",
         table.form.file,

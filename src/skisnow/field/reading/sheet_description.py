@@ -32,9 +32,9 @@ def description_text(sheets: Mapping[str, Rows]) -> str:
     sheets
         Rows by the names of `DESCRIBING`. ``campaign`` has the columns key and value, with several values of one key
         parted by semicolons; ``tools`` and ``plates`` have the keys of ``[[tool]]`` and ``[[plate]]`` as columns;
-        ``columns`` has heading and column, and may have table.
+        ``columns`` has heading, and column or unit or both, and may have table.
     """
-    lines = [_column_line(row) for row in _records(sheets.get(COLUMNS, []))]
+    lines = [line for row in _records(sheets.get(COLUMNS, [])) for line in _column_lines(row)]
     for row in _records(sheets.get(CAMPAIGN, [])):
         key = row.get("key", "")
         if key and row.get("value"):
@@ -53,11 +53,11 @@ def _records(rows: Rows) -> Iterator[Mapping[str, str]]:
         yield dict(zip(header, cells, strict=False))
 
 
-def _column_line(row: Mapping[str, str]) -> str:
-    heading, column, table = (row.get(name, "") for name in ("heading", "column", "table"))
-    if not (heading and column):
-        return ""
-    return f"columns.{f'{_quoted(table)}.' if table else ''}{_quoted(heading)} = {_quoted(column)}"
+def _column_lines(row: Mapping[str, str]) -> Iterator[str]:
+    heading, table = row.get("heading", ""), row.get("table", "")
+    for section, name in (("columns", "column"), ("units", "unit")):
+        if heading and row.get(name):
+            yield f"{section}.{f'{_quoted(table)}.' if table else ''}{_quoted(heading)} = {_quoted(row[name])}"
 
 
 def _pair(key: str, cell: str) -> str:

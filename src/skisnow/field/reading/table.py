@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Table:
-    """A table as it was read: n rows in the order of the file, numbers in the file's own units.
+    """A table as it was read: n rows in the order of the file, numbers in the units of the columns' names.
 
     Attributes
     ----------
@@ -31,6 +31,10 @@ class Table:
         The other columns of the file, unknown ones too, as text.
     absent
         Required columns that the file lacks.
+    headings
+        Headings as the file has them.
+    unstated
+        Headings without a unit, by their columns of numbers.
     """
 
     form: TableForm
@@ -39,6 +43,8 @@ class Table:
     numbers: Mapping[str, FloatArray]
     further: Mapping[str, tuple[str, ...]]
     absent: frozenset[str]
+    headings: tuple[str, ...]
+    unstated: Mapping[str, str]
 
     def __len__(self) -> int:
         """Count the rows."""

@@ -8,10 +8,11 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from ..problems import error, warning
+from .column_units import ColumnUnits, column_units
 from .columns import NameCollector, NumberCollector, Rows, TextCollector
 from .corrections import Corrector, header_with_status
 from .dates import DateCollector
-from .header import Header, check_header, check_units, header_of
+from .header import Header, check_header, header_of
 from .headings import Headings
 from .number_cells import decimal_mark
 from .table import Table
@@ -71,8 +72,9 @@ def read_table(
         for lines, rows in text.records():
             if reading is None and rows:
                 header = header_of(lines, rows)
-                files.found.extend(check_units(form, header, headings))
-                reading = _TableReading(form, header.renamed(form, headings), text, corrections, files.found)
+                units = column_units(form, header, headings, files.found)
+                renamed = header.renamed(form, headings)
+                reading = _TableReading(form, renamed, text, corrections, files.found, header.columns, units)
             if reading is not None and rows:
                 reading.take(lines, rows)
                 if progress is not None:
@@ -105,8 +107,16 @@ class _TableReading:
     """Takes the records of a table in, some thousand at a time."""
 
     def __init__(
-        self, form: TableForm, header: Header, text: CsvText, corrections: RowCorrections, found: list[Problem]
+        self,
+        form: TableForm,
+        header: Header,
+        text: CsvText,
+        corrections: RowCorrections,
+        found: list[Problem],
+        headings: tuple[str, ...],
+        units: ColumnUnits,
     ) -> None:
+        self._headings, self._units = headings, units
         self._form = form
         self._found = found
         self._file_header = header
@@ -119,7 +129,9 @@ class _TableReading:
         self.met_rows = False
         present = self._header.position
         self._names = {name: NameCollector(name, required=name in form.names) for name in form.names + form.optional}
-        self._numbers = {column.name: NumberCollector(column, mark) for column in form.numbers}
+        self._numbers = {
+            column.name: NumberCollector(column, mark, units.conversions.get(column.name)) for column in form.numbers
+        }
         interpreted = (set(self._names) | set(self._numbers)) - set(form.further)
         self._further = {
             name: DateCollector(name) if name in DATES else TextCollector()
@@ -192,6 +204,8 @@ class _TableReading:
             numbers={name: collector.column(count) for name, collector in self._numbers.items()},
             further={name: collector.column() for name, collector in self._further.items()},
             absent=frozenset(name for name in self._form.required if name not in present),
+            headings=self._headings,
+            unstated=self._units.unstated,
         )
 
 

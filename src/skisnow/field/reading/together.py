@@ -12,6 +12,7 @@ from .branches import check_branches
 from .campaign_file import CAMPAIGN_FILE
 from .experiments import Blocks, check_one_site, check_series
 from .likely_units import check_likely_units
+from .missing_units import check_missing_units
 from .repeated_rows import check_repeated_rows
 from .table_forms import DENSITY, DROP_CONE, PENETRATION, SHEAR
 from .turning import check_turning, shear_blocks
@@ -27,6 +28,7 @@ if TYPE_CHECKING:
 def check_together(table: Table, described: CampaignFile | None) -> Iterator[Problem]:
     """Find contradictions between the rows of a table, or with campaign.toml where that could be read."""
     yield from check_likely_units(table)
+    yield from check_missing_units(table, described)
     if table.form in (DENSITY, DROP_CONE):
         yield from check_repeated_rows(table)
     if table.form == PENETRATION:
