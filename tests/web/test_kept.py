@@ -118,7 +118,7 @@ def test_an_imported_campaign_is_corrected(page: Page, served: Served, tmp_path:
     has_text(page.get_by_label("Depth (mm), row 4"), "2,6")
     page.get_by_label("Depth (mm), row 4").fill("two")
     page.keyboard.press("Enter")
-    page.get_by_text("Not corrected: Depth (mm) is a number of 0 or more; 'two' stands there.").wait_for()
+    page.locator(".refusals li", has_text="“two”").wait_for()
 
     killed_and_started_again(page, served)  # what was shown as stored is stored
     page.get_by_text("History of 1", exact=True).click()

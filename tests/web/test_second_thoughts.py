@@ -71,7 +71,7 @@ def test_readings_stay_under_their_loads_when_the_discs_change(page: Page, serve
     page.locator("summary", has_text="A load that is not in the disc set").press("Enter")
     fill(page, {"Further load (N)": "60", "Its depth (mm)": "2.6"})
     page.get_by_role("button", name="Store it").press("Enter")
-    page.get_by_text("Not stored: there is a reading under 60 N already").wait_for()
+    page.locator(".refusals li", has_text="there is a reading under 60 N already").wait_for()
     fill(page, {"Further load (N)": "50", "Its depth (mm)": "2.2"})
     page.get_by_role("button", name="Store it").press("Enter")
     page.get_by_text("Stored: 2.2 mm under 50 N.").wait_for()

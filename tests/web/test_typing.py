@@ -81,7 +81,7 @@ def test_what_is_refused_is_shown_at_its_field_and_nothing_is_lost(page: Page, s
     page.keyboard.type("A\n95\n1.5\n2.6\n")
     answers.let_go()
     page.get_by_text("Typed meanwhile and not used: 1.5 ⏎ 2.6 ⏎").wait_for()
-    page.get_by_role("alert").get_by_text("Edge angle (°) is a number from 0 to below 90; '95'").wait_for()
+    page.get_by_role("alert").get_by_text("“95” is not allowed. Enter a number from 0 to below 90.").wait_for()
     angle = page.get_by_label("Edge angle (°)", exact=True).and_(page.locator(":focus"))
     has_text(angle, "95")
     ready(page)
@@ -94,7 +94,7 @@ def test_what_is_refused_is_shown_at_its_field_and_nothing_is_lost(page: Page, s
     field.wait_for()
     ready(page)
     has_text(field, "2.1.5")
-    page.locator(".reading.refused").get_by_text("Depth (mm) is a number of 0 or more; '2.1.5' stands there").wait_for()
+    page.locator(".reading.refused").get_by_text("“2.1.5” is not allowed").wait_for()
     assert depths(served) == {"1": ["1.5", "2.6"]}
     field.select_text()
     page.keyboard.type("2.15\n")

@@ -61,6 +61,11 @@ def said(text: str, client: Client | None = None) -> str:
     return words.with_numbers(words.translated(text))
 
 
+def said_template(template: str, *fields: str, client: Client | None = None) -> str:
+    """A template with ``{}`` for each field in the language of the page; the fields stay as they are."""
+    return catalogue(language_of(client)).as_given(template).format(*fields)
+
+
 def decimal_mark(client: Client | None = None) -> str:
     """Of numbers in the language of the page."""
     return said(DECIMAL, client)[1]

@@ -144,7 +144,7 @@ class ScenarioField:
     def refuse(self, fault: str) -> None:
         """Say at the field why it is refused; nothing: it is not."""
         if isinstance(self.element, ui.input):
-            self.element.error = fault or None
+            self.element.error = said(fault, self.element.client) if fault else None
         else:
             self._range.set_text(fault or range_words(self.key))
             self._range.classes(add="bad" if fault else "", remove="" if fault else "bad")

@@ -11,6 +11,7 @@ from .confined import OF_A_SKI, confined
 from .error_pages import error_sentence
 from .fields import button, field
 from .lab_skis import check_ski_texts
+from .language import said
 from .layout import heading, sentence
 from .measured_ski import LISTS, MEASURED, NAME, OPTIONAL, STIFFNESS, measured_text
 from .ski_uploads import UPLOAD
@@ -72,7 +73,7 @@ class SkiAdding:
         self._said.classes(add="bad")
         for key, words in MEASURED.items():
             if why.startswith(f"{words}: "):
-                self._fields[key].error = "a number is needed here"
+                self._fields[key].error = said("a number is needed here")
                 self._fields[key].run_method("select")
                 self._said.set_text(f"Not saved: {words}")
 

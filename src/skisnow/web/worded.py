@@ -10,7 +10,7 @@ from ..report.translated import translated_html
 from .language import language_of, said
 
 if TYPE_CHECKING:
-    from collections.abc import Set
+    from collections.abc import Sequence, Set
     from typing import TypeVar
 
     Shown = TypeVar("Shown", bound=ui.element)
@@ -24,21 +24,31 @@ class Words(ui.label):
 
 
 class TypedField(ui.input):
-    """A field of one line; what is wrong with it is said in the language of the page."""
+    """A field of one line."""
 
     def __init__(self, label: str = "", *, value: str = "") -> None:
         super().__init__(said(label) or None, value=value)
 
-    @property
-    def error(self) -> str | None:
-        """What is wrong with what stands there, as it was said."""
-        return self._error
 
-    @error.setter
-    def error(self, error: str | None) -> None:
-        self._error = error
-        self._props["error"] = None if error is None else True
-        self._props["error-message"] = None if error is None else said(error, self.client)
+class StatusLine(ui.element):
+    """The outcome of the last action, with a list where there are several problems; screen readers announce it."""
+
+    def __init__(self) -> None:
+        super().__init__("div")
+        self.props("role=status aria-live=polite")
+        with self:
+            self._outcome = Words("").classes("status")
+            self._problems = ui.element("ul").classes("refusals")
+
+    def say(self, text: str, kind: str = "good", items: Sequence[str] = ()) -> None:
+        """Show a text in English, and below it items that are in the language of the page already."""
+        self._outcome.set_text(text)
+        self._outcome.classes(remove="good bad", add=kind)
+        self._problems.clear()
+        with self._problems:
+            for item in items:
+                with ui.element("li"):
+                    ui.label(item)
 
 
 def named(element: Shown, name: str) -> Shown:

@@ -52,8 +52,8 @@ def label(column: str) -> str:
 def in_words(message: str) -> str:
     """A message of the library with the names of columns and tables as the pages call them.
 
-    >>> in_words("depth_mm is a number of 0 or more; it is blank")
-    'Depth (mm) is a number of 0 or more; it is blank'
+    >>> in_words("the column depth_mm has no number")
+    'the column Depth (mm) has no number'
     """
     return _KEYS.sub(lambda key: _CALLED[key[0]], message)
 

@@ -67,6 +67,17 @@ class Sheet:
         """The line that says what came of the last act; nothing where nothing is said."""
         return next((line for line in self.outline() if line.startswith("[status")), "")
 
+    def refusals(self) -> list[str]:
+        """Problems that are listed below the status."""
+        (listed,) = (each for each in self.tagged("ul") if "refusals" in each.classes)
+        return [label.text for label in _seen(listed, ui.label)]
+
+    def faults(self, *names: str) -> list[str]:
+        """Problems shown at these fields; each is one."""
+        found = [self.field(name).error for name in names]
+        assert all(found), found
+        return found
+
     @property
     def content(self) -> Element:
         return next(each for each in self.of() if each.props.get("id") == "content")

@@ -1,4 +1,4 @@
-"""What is typed in fields, checked: a cell for each, or each fault at the field that has it."""
+"""Typed fields of a form, checked: a cell for each, or the problem of each field in the language of the page."""
 
 from __future__ import annotations
 
@@ -6,35 +6,51 @@ from typing import TYPE_CHECKING, TypeAlias
 
 from nicegui import ui
 
-from ...errors import ParameterError
-from ...field.store.cells import checked_cell
-from ..words import in_words
+from ...field.store.cells import CellError, checked_cell
+from ..language import number_said, said, said_template
+from ..words import in_words, label
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
+    from ...errors import SkisnowError
     from ...field.reading.table_forms import TableForm
 
 Field: TypeAlias = ui.input | ui.select
 
 
 def checked_fields(form: TableForm, fields: Mapping[str, Field]) -> dict[str, str] | None:
-    """The cells of a row as they are typed, by column; None where one is refused, which its field then says."""
+    """The cells of a row as they are typed, by column; None if one is rejected: its field then shows the problem."""
     cells: dict[str, str] = {}
     for column, each in fields.items():
         each.error = None
         try:
             cells[column] = checked_cell(form, column, str(each.value or ""))
-        except ParameterError as error:
-            each.error = in_words(str(error))
+        except CellError as error:
+            each.error = problem_said(error, name=_name_said(each))
     return cells if len(cells) == len(fields) else None
 
 
+def problem_said(error: SkisnowError, *, name: str = "") -> str:
+    """An error in the language of the page; each sentence about a cell is translated by its own template.
+
+    ``name`` of the field in that language (default: the name of the column).
+    """
+    if not isinstance(error, CellError):
+        return f"{said(in_words(str(error))).rstrip('.')}."
+    problem = said_template(error.problem, name or said(label(error.column)), error.value)
+    return f"{problem} {said_template(error.fix, *(number_said(f'{limit:g}') for limit in error.limits))}"
+
+
+def _name_said(field: Field) -> str:
+    return str(field.props.get("aria-label") or field.props.get("label") or "")
+
+
 def refuse(field: Field, fault: str) -> None:
-    """Say at a field why it is refused. What is typed stays; the fault goes when something else is typed."""
-    field.error = fault
+    """Show at a field why it is rejected. The typed text stays; the fault goes when something else is typed."""
+    field.error = said(in_words(fault))
 
 
 def faults(fields: Iterable[Field]) -> list[str]:
-    """What is wrong, field by field."""
+    """The problem of each rejected field, in the language of the page."""
     return [each.error for each in fields if each.error]

@@ -9,7 +9,7 @@ from nicegui import ui
 
 from ..fields import choice, field
 from ..language import said
-from ..worded import Words, named
+from ..worded import StatusLine, named
 from ..words import TABLES
 from .beside import Beside
 from .changes import Places
@@ -46,8 +46,7 @@ def table_view_of(
         What the sections of the form and of the changes are called, for who cannot see them.
     """
     who = _who(session)
-    status = Words("").classes("status").props("role=status aria-live=polite")
-    view = TableView(session, file, who, status)
+    view = TableView(session, file, who, StatusLine())
     with ui.element("div").classes("two"):
         place = named(ui.element("section"), form)
         beside = Beside(view)

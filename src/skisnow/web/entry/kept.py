@@ -125,7 +125,7 @@ class KeptForm:
             refused += faults(typed.values())
             changed |= {cell_key(line, column): text for column, text in (cells or {}).items() for line in lines}
         if refused:
-            self._view.say(f"Not corrected: {'; '.join(refused)}.", "bad")
+            self._view.say("Not corrected:", "bad", refused)
             return None
         return changed
 

@@ -12,6 +12,8 @@ from ...field.reading.table_forms import BRANCH
 from ...field.store import NewEntry
 from ...field.store.cells import FORMS, checked_cell
 from ..answering import LONGEST
+from ..language import number_said, said, said_template
+from .checking import problem_said
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -43,13 +45,12 @@ def take_resent(session: EditSession, changed: Callable[[set[str]], object]) -> 
         given = event.args if isinstance(event.args, list) else []
         answers, series = [], set[str]()
         for record in given[:MOST]:
-            once, why = _once(record), "this is no reading"
+            once, refusal = _once(record), ""
             try:
                 series.add(_stored(session, record, once))
-                why = ""
             except (StoreError, ParameterError) as error:
-                why = str(error)
-            answers.append((once, f"Not stored: {_words(record)}: {why}." if why else ""))
+                refusal = said_template("Not stored: {}: {}", _words_said(record), problem_said(error))
+            answers.append((once, refusal))
         changed(series)
         client.run_javascript(f"lab.resent({json.dumps(answers)})")
 
@@ -69,9 +70,13 @@ def _cells(record: Any) -> dict[str, str]:
     return cells if cells[BRANCH] else {column: text for column, text in cells.items() if column != BRANCH}
 
 
-def _words(record: Any) -> str:
+def _words_said(record: Any) -> str:
     cells = _cells(record)
-    return f"{cells['depth_mm']} mm under {cells['load_N']} N in series {cells['experiment']}" if cells else "a reading"
+    if not cells:
+        return said("a reading")
+    return said_template(
+        "{} mm under {} N in series {}", cells["depth_mm"], number_said(cells["load_N"]), cells["experiment"]
+    )
 
 
 def _stored(session: EditSession, record: Any, once: str) -> str:

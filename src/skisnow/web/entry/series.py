@@ -103,7 +103,7 @@ class SeriesForm:
             refuse(typed["experiment"], f"there is a test {head['experiment']} already; give this one another name")
             head = None
         if head is None:
-            self._view.say(f"Not begun: {'; '.join(faults(typed.values()))}.", "bad")
+            self._view.say("Not begun:", "bad", faults(typed.values()))
             return False
         self._view.say(f"Series {head['experiment']}: enter the depth under each load.")
         self.show(head["experiment"], head)
@@ -306,7 +306,7 @@ class SeriesForm:
             refuse(load, f"there is a reading under {cells['load_N']} N already; correct it in its own field")
             cells = None
         if cells is None:
-            self._view.say(f"Not stored: {'; '.join(faults(given.values()))}.", "bad")
+            self._view.say("Not stored:", "bad", faults(given.values()))
             return False
         step = load if isinstance(load, _Step) else _Step(cells["load_N"])
         branch = {BRANCH: step.branch} if step.branch else {}
@@ -324,7 +324,7 @@ class SeriesForm:
         test, entered, depth = self._test, row.entered, self._readings[step].depth
         cells = checked_fields(self._view.form, {"depth_mm": depth})
         if cells is None:
-            self._view.say(f"Not corrected: {'; '.join(faults([depth]))}.", "bad")
+            self._view.say("Not corrected:", "bad", faults([depth]))
             return False
         if cells["depth_mm"] == row.cells["depth_mm"]:  # the same number, with a comma
             depth.set_value(number_said(cells["depth_mm"], depth.client))

@@ -116,7 +116,7 @@ class SingleForm:
     def _cells(self) -> dict[str, str] | None:
         cells = checked_fields(self._view.form, self._fields)
         if cells is None:
-            self._view.say(f"Not stored: {'; '.join(faults(self._fields.values()))}.", "bad")
+            self._view.say("Not stored:", "bad", faults(self._fields.values()))
         return cells
 
     def _store(self) -> bool:
@@ -129,7 +129,7 @@ class SingleForm:
             return self._stored(before, cells["site"])
         if test.history and (fault := self._second_row_fault(test, cells)):
             refuse(self._fields[key], fault)
-            self._view.say(f"Not stored: {fault}.", "bad")
+            self._view.say("Not stored:", "bad", faults([self._fields[key]]))
             return False
         if not self._view.add(test.name, cells, position=len(test.rows), seen=test.last, said=""):
             return False

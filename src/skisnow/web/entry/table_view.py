@@ -13,11 +13,12 @@ from ..answering import asked
 from ..words import in_words
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
 
     from ...field.reading.table_forms import TableForm
     from ...field.store import ReplayedTest
     from ..edit_session import EditSession
+    from ..worded import StatusLine
 
 WHO: Final = "Operator"
 
@@ -25,7 +26,7 @@ WHO: Final = "Operator"
 class TableView:
     """Writes about the tests of one table, and says aloud what came of it."""
 
-    def __init__(self, session: EditSession, file: str, who: ui.select | ui.input, status: ui.label) -> None:
+    def __init__(self, session: EditSession, file: str, who: ui.select | ui.input, status: StatusLine) -> None:
         self.session = session
         self.file = file
         self.form: TableForm = FORMS[file]
@@ -107,10 +108,9 @@ class TableView:
         entry = NewEntry(action="undo", file=self.file, test=test.name, about=last.sequence, who=self._who.value or "")
         return self._write(entry, test.last, "Undone.")
 
-    def say(self, text: str, kind: str = "good") -> None:
-        """Say something where a screen reader hears it."""
-        self._status.set_text(in_words(text))
-        self._status.classes(remove="good bad", add=kind)
+    def say(self, text: str, kind: str = "good", items: Sequence[str] = ()) -> None:
+        """Show the outcome of the last action; ``items``: problems in the language of the page."""
+        self._status.say(in_words(text), kind, items)
 
     def _write(self, entry: NewEntry, seen: int, said: str) -> bool:
         try:

@@ -103,7 +103,7 @@ class AfterWaiting:
                 found[load] = cells[AFTER]
         if len(found) == len(typed):
             return found
-        self._view.say(f"Not stored: {'; '.join(faults(typed.values()))}.", "bad")
+        self._view.say("Not stored:", "bad", faults(typed.values()))
         return None
 
     def _correct(self, depths: dict[str, str], why: str, said: str) -> bool:

@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING, Any, Final
 
 from nicegui import ui
 
-from ...errors import ParameterError, SkisnowError
+from ...errors import FieldDataError, ParameterError, SkisnowError
+from ...field.problems import Problem
 from ...field.reading.tool_shapes import SHAPES
 from ...field.store import Journals, NewEntry, OvertakenError
 from ...field.store.description import Description, description_text
@@ -19,7 +20,7 @@ from ..language import said
 from ..layout import framed, heading, sentence
 from ..names import entering, required_id
 from ..typed import typed_number
-from ..worded import Words
+from ..worded import StatusLine
 
 if TYPE_CHECKING:
     from nicegui.events import GenericEventArguments
@@ -49,7 +50,7 @@ def add_page(lab: Lab) -> None:
     def describe(entry: str = "") -> None:
         session = EditSession(lab, required_id(entry)) if entry else None
         with framed("Campaign" if session else "New campaign", here=HERE, ahead=True):
-            status = Words("").classes("status").props("role=status")
+            status = StatusLine()
             with form(""):
                 described = DescriptionForm(toml_values(session.campaign.description) if session else None)
 
@@ -57,9 +58,7 @@ def add_page(lab: Lab) -> None:
                 try:
                     id_ = _stored(lab, session, described.text(), asked().once)
                 except SkisnowError as error:
-                    status.set_text(str(error) if isinstance(error, OvertakenError) else f"Not stored: {error}")
-                    status.classes(add="bad")
-                    status.run_method("scrollIntoView")
+                    _show_refusal(status, error)
                     return False
                 go_on(entering(id_))
                 return True
@@ -67,6 +66,15 @@ def add_page(lab: Lab) -> None:
             with ui.element("div").classes("acts end"):
                 asking_button("Store and enter tests", done, "main")
             _take_kept(described)
+
+
+def _show_refusal(status: StatusLine, error: SkisnowError) -> None:
+    if isinstance(error, FieldDataError):
+        errors = [each for each in error.problems if isinstance(each, Problem) and each.severity == "error"]
+        status.say("Not stored:", "bad", [said(str(each)) for each in errors])
+    else:
+        status.say(str(error) if isinstance(error, OvertakenError) else f"Not stored: {error}", "bad")
+    status.run_method("scrollIntoView")
 
 
 def _take_kept(described: DescriptionForm) -> None:

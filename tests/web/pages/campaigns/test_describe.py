@@ -11,6 +11,7 @@ from nicegui import ui
 from skisnow.field.store import Journals, NewEntry
 from skisnow.web.answering import ASK, ASK_FOR_ROW, ONWARD
 from skisnow.web.edit_session import EditSession
+from skisnow.web.worded import StatusLine
 
 from .shared import TOML, add_shear, begun, handlers
 
@@ -71,7 +72,7 @@ def test_the_form_of_a_new_campaign_has_the_published_discs_and_tool(desk: Desk)
         "ski": "piece of ski", "disc": "disc", "cylinder": "cylinder on its side",
     }  # fmt: skip
     assert page.at_first.count("lab.answered(0, true)") == 1
-    (status,) = (each for each in page.of() if "status" in getattr(each, "classes", ()))
+    (status,) = page.of(StatusLine)
     assert status.props["role"] == "status"
     assert handlers(page, "Store and enter tests") == [ASK]
     assert handlers(page, "Another tool") == handlers(page, "Another plate") == [ASK_FOR_ROW]
@@ -325,3 +326,17 @@ def test_an_address_that_names_no_campaign_is_refused(desk: Desk) -> None:
         assert answer.status_code == 404
         assert "This address names no campaign; the list of campaigns names all." in answer.text
     desk.failures.clear()
+
+
+def test_several_errors_of_a_description_are_listed(desk: Desk) -> None:
+    page = desk.open("/describe", "de")
+    page.fill("Name der Kampagne", "Nordhang")
+    page.fill("Schritt des Tiefenmessers (mm)", "-1")
+    page.fill("Unsicherheit der Last (N)", "-2")
+    page.press("Speichern und Versuche eingeben")
+    assert [("gauge_resolution_mm" in line, "load_uncertainty_N" in line) for line in page.refusals()] == [
+        (True, False),
+        (False, True),
+    ]
+    assert not any("allowed" in line for line in page.refusals())
+    assert Journals(desk.lab.store).list() == ()

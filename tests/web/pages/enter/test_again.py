@@ -149,11 +149,9 @@ def test_a_second_depth_without_a_first_one_and_what_is_no_depth_are_refused(des
     waited(page, "60", "2.7")
     button = next(each for each in page.of(ui.button) if each.text == "Store what was read after waiting")
     page.fire(button, "click", {"number": 1})
-    faults = [
-        "Depth after waiting (mm) is a number of 0 or more; 'x' stands there",
-        "the first depth under 60 N comes before it",
-    ]
-    assert page.status() == f"[status bad] Not stored: {'; '.join(faults)}."
+    faults = page.faults("Depth after waiting under 40.5 N (mm)", "Depth after waiting under 60 N (mm)")
+    assert page.status() == "[status bad] Not stored:"
+    assert page.refusals() == faults
     assert page.scripts[-1] == "lab.answered(1, false)"
     assert f"field Depth after waiting under 60 N (mm) = '2.7' numeric optional ! {faults[1]}" in page.outline()
     assert "field Depth after waiting under 20 N (mm) = '1.7' numeric optional" in page.outline()
@@ -221,7 +219,7 @@ def test_a_kept_reading_of_another_series_changes_nothing_that_is_shown(desk: De
         ({"tool": "lost"}, "the campaign has no tool 'lost'"),
         ({"load_N": "60.0"}, "a reading of 2.6 mm is there already"),
         ({"site": "B"}, "that series is at the site A"),
-        ({"depth_mm": "x"}, "depth_mm is a number of 0 or more; 'x' stands there"),
+        ({"depth_mm": "x"}, "Depth (mm): “x” is not allowed. Enter a number of 0 or more"),
     ],
 )
 def test_a_kept_reading_that_cannot_be_stored_is_said_in_full(desk: Desk, changed: dict[str, str], why: str) -> None:

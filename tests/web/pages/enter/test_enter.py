@@ -11,6 +11,7 @@ from nicegui import ui
 from skisnow.field.store import NewEntry
 from skisnow.web.entry.series import LEFT, TOLD
 from skisnow.web.local_time import minute_words
+from skisnow.web.worded import StatusLine
 
 from .shared import (
     PENETRATION,
@@ -75,8 +76,8 @@ def test_who_writes_is_told_to_the_browser(desk: Desk) -> None:
     assert place.props["data-who"] == "Ada"
     page.fill("Operator", "Bo")
     assert place.props["data-who"] == "Bo"
-    (said,) = (each for each in page.of(ui.label) if "status" in each.classes)
-    assert (said.props["role"], said.props["aria-live"]) == ("status", "polite")
+    (around,) = page.of(StatusLine)
+    assert (around.props["role"], around.props["aria-live"]) == ("status", "polite")
 
 
 def test_without_observers_anybody_may_say_a_name(desk: Desk) -> None:
@@ -175,14 +176,15 @@ def test_what_no_series_can_begin_with_is_said_at_its_fields(desk: Desk) -> None
     page.fill("Edge angle (°)", "95")
     button = next(each for each in page.of(ui.button) if each.text == "Begin the series")
     page.fire(button, "click", {"number": 1})
-    faults = ["site is blank; give it a name", "Edge angle (°) is a number from 0 to below 90; '95' stands there"]
-    assert page.status() == f"[status bad] Not begun: {'; '.join(faults)}."
-    assert page.between("field Site = '' ! " + faults[0])[2] == f"field Edge angle (°) = '95' numeric ! {faults[1]}"
+    assert page.status() == "[status bad] Not begun:"
+    assert page.refusals() == page.faults("Site", "Edge angle (°)")
+    assert "“95”" in page.refusals()[1]
     assert page.scripts[-1] == "lab.answered(1, false)"
     page.fill("Site", "A")
     page.fill("Edge angle (°)", "45")
     page.press("Begin the series")
     assert page.status() == "[status good] Series 1: enter the depth under each load."
+    assert page.refusals() == []
 
 
 def test_a_series_has_a_name_of_its_own(desk: Desk) -> None:
@@ -192,7 +194,7 @@ def test_a_series_has_a_name_of_its_own(desk: Desk) -> None:
     page.fill("Name of the test", "1")
     page.press("Begin the series")
     fault = "there is a test 1 already; give this one another name"
-    assert page.status() == f"[status bad] Not begun: {fault}."
+    assert page.refusals() == [fault]
     assert f"field Name of the test = '1' ! {fault}" in page.outline()
 
 
@@ -322,18 +324,20 @@ def test_what_is_no_depth_is_refused_at_its_field_and_said_once(desk: Desk) -> N
     page = begun_series(desk, id_)
     name = "Depth under 20 N (mm)"
     enter(page, name, "1.5.2")
-    fault = "Depth (mm) is a number of 0 or more; '1.5.2' stands there"
-    assert page.status() == f"[status bad] Not stored: {fault}."
-    assert f"field {name} = '1.5.2' numeric ! {fault}" in page.outline()
+    assert page.status() == "[status bad] Not stored:"
+    (fault,) = page.refusals()
+    assert "“1.5.2”" in fault
+    assert page.faults(name) == [fault]
     assert "refused" in reading_row(page, name).classes
     assert f"lab.refusedLast({page.field(name).id})" in page.scripts
     enter(page, "Depth under 60 N (mm)", "3")
     leave(page, name)  # it was said at Enter
     assert page.status() == "[status good] Stored: 3 mm under 60 N."
+    assert page.refusals() == []
     enter(page, name, "1.5.2")  # at another Enter it is said again
-    assert page.status() == f"[status bad] Not stored: {fault}."
+    assert page.refusals() == [fault]
     leave(page, name, "x")
-    assert page.status() == "[status bad] Not stored: Depth (mm) is a number of 0 or more; 'x' stands there."
+    assert "“x”" in page.refusals()[0]
     leave(page, name, "")
     assert "refused" not in reading_row(page, name).classes
     leave(page, name, "x")  # another time
@@ -447,16 +451,16 @@ def test_a_load_that_has_a_reading_is_refused_as_a_further_one(desk: Desk) -> No
     form = page.field("Its depth (mm)").parent_slot.parent
     page.fire(form, "keydown.enter", {"number": 4, "once": "b"})
     fault = "there is a reading under 20.0 N already; correct it in its own field"
-    assert page.status() == f"[status bad] Not stored: {fault}."
+    assert page.refusals() == [fault]
     assert f"field Further load (N) = '20.0' numeric ! {fault}" in page.outline()
     assert page.scripts[-1] == "lab.answered(4, false)"
     page.fill("Further load (N)", "")
     page.press("Store it")
-    assert page.status() == "[status bad] Not stored: Load (N) is a number above 0; it is blank."
+    assert page.refusals() == page.faults("Further load (N)")
     page.fill("Further load (N)", "80")
     page.fill("Its depth (mm)", "-1")
     page.press("Store it")
-    assert page.status() == "[status bad] Not stored: Depth (mm) is a number of 0 or more; '-1' stands there."
+    assert page.refusals() == page.faults("Its depth (mm)")
     assert len(history(desk, id_)) == 1
 
 
@@ -466,7 +470,7 @@ def test_discs_that_are_taken_off_come_after_the_loading(desk: Desk) -> None:
     name = "Depth back under 40.5 N (mm)"
     enter(page, name, "2.5")
     fault = "the depths under rising loads come first"
-    assert page.status() == f"[status bad] Not stored: {fault}."
+    assert page.refusals() == [fault]
     assert f"field {name} = '2.5' numeric ! {fault}" in page.outline()
     enter(page, name, "")
     for load, depth in (("20", "1.5"), ("40.5", "2.15"), ("60", "2.6")):
@@ -498,3 +502,20 @@ def test_a_campaign_with_one_load_has_no_way_back(desk: Desk) -> None:
     id_ = begun(desk, TOML.replace("[20, 40.5, 60]", "[20]"))
     page = begun_series(desk, id_)
     assert "Discs taken off one by one" not in page.outline()
+
+
+def test_two_rejected_fields_are_listed_in_german_each_by_its_own_sentences(desk: Desk) -> None:
+    """Typed words that other messages contain are shown as they were typed."""
+    id_ = begun(desk)
+    page = desk.open(f"/enter/{id_}?table=shear.csv", "de")
+    typed = {"Messort": "A", "Kantwinkel (°)": "90.5", "Hebelarm (mm)": "250", "Moment (N m)": "Density; it is blank"}
+    for name, text in typed.items():
+        page.fill(name, text)
+    page.press("Speichern")
+    assert page.refusals() == [
+        "Kantwinkel (°): „90.5“ ist nicht erlaubt. Eine Zahl über 0 und bis 90 eingeben.",
+        "Tiefe (mm) ist leer. Eine Zahl ab 0 eingeben.",
+        "Moment (N m): „Density; it is blank“ ist nicht erlaubt. Eine Zahl ab 0 eingeben.",
+    ]
+    assert page.refusals() == page.faults("Kantwinkel (°)", "Tiefe (mm)", "Moment (N m)")
+    assert history(desk, id_) == []
