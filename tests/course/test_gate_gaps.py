@@ -74,7 +74,7 @@ def test_other_courses_are_not_compared_and_damage_is_named(pair: tuple[Path, Pa
     with pytest.raises(ParameterError, match="did not go through the same gates"):
         gaps_of_folders(pair[0], tmp_path)
     (pair[1] / "gates.csv").write_text(f"{HEAD}\n1,left,passed,soon,,,,1,2\n", encoding="utf-8")
-    with pytest.raises(ParameterError, match=r"gates\.csv cannot be read.*soon"):
+    with pytest.raises(ParameterError, match=r"gates\.csv.*soon"):
         gate_gaps(*pair)
 
 

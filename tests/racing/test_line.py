@@ -97,9 +97,9 @@ def test_a_line_comes_back_from_its_table(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("old", "new", "words"),
     [
-        ("aside_m", "aside", "columns aside_m are missing"),
+        ("aside_m", "aside", "row 1.*aside_m"),
         ("\n2,", "\n7,", "its gates are 1, 7, 3, those of the course 1, 2, 3"),
-        ("\n2,1.2", "\n2,x", "gate 2: aside_m is 'x'"),
+        ("\n2,1.2", "\n2,x", "row 3, column aside_m: 'x'"),
     ],
 )
 def test_a_table_that_is_no_line(old: str, new: str, words: str, tmp_path: Path) -> None:

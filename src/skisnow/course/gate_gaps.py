@@ -8,9 +8,10 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Final
+from typing import Any, Final, get_args
 
-from ..errors import ParameterError
+from ..csv_rows import CsvRow, csv_rows
+from .passages import GateOutcome
 
 GATES_FILE: Final = "gates.csv"
 APART: Final = 0.05
@@ -83,14 +84,19 @@ def _same_course(one: list[dict[str, Any]], other: list[dict[str, Any]]) -> bool
 
 
 def _rows(place: Path) -> list[dict[str, Any]]:
-    try:
-        rows = list(csv.DictReader(io.StringIO(place.read_text(encoding="utf-8"))))
-        numbers = ("time_s", "x_m", "y_m")
-        return [row | {name: float(row[name]) if row[name] else None for name in numbers} for row in rows]
-    except (OSError, ValueError, KeyError, TypeError) as error:
-        raise ParameterError(
-            f"{place} cannot be read as a table of gates ({error}). Simulate the run again with --out"
-        ) from error
+    rows = csv_rows(place, ("gate", "outcome", "time_s", "x_m", "y_m"), action="simulate the run again with --out")
+    return [_row(row) for row in rows]
+
+
+def _row(row: CsvRow) -> dict[str, Any]:
+    if row.cells["outcome"] not in get_args(GateOutcome):
+        raise row.refused("outcome", f"is not one of {', '.join(get_args(GateOutcome))}")
+    return {
+        **row.cells,
+        "time_s": row.number("time_s") if row.cells["time_s"] else None,
+        "x_m": row.number("x_m"),
+        "y_m": row.number("y_m"),
+    }
 
 
 def gaps_csv(gaps: Sequence[GateGap]) -> str:

@@ -5,6 +5,7 @@ All TOML and JSON of users is read here and nowhere else: campaigns, scenarios, 
 
 from .errors import GivenError
 from .json_text import MOST_JSON_BYTES, json_value, own_json, read_json
+from .own_record import read_record
 from .plain_file import is_file, plain_bytes, plain_text
 from .toml_text import MOST_TOML_BYTES, read_toml, toml_values
 from .workbook import workbook_sheets
@@ -21,6 +22,7 @@ __all__ = [
     "plain_bytes",
     "plain_text",
     "read_json",
+    "read_record",
     "read_toml",
     "toml_values",
     "workbook_sheets",

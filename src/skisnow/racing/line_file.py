@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import csv
 import io
-import math
 from dataclasses import replace
 from pathlib import Path
 from typing import Final
 
 from ..course import Course
+from ..csv_rows import csv_rows
 from ..errors import ParameterError
 from ..files import write_file
 from .line import LineTurn, RacingLine
@@ -60,29 +60,11 @@ def read_line(path: Path, course: Course, start: tuple[float, float]) -> RacingL
     ParameterError
         It cannot be read, a column is missing, a cell is no number, or its gates are not the course's.
     """
-    try:
-        rows = list(csv.DictReader(path.read_text(encoding="utf-8-sig").splitlines()))
-    except (OSError, UnicodeDecodeError) as error:
-        raise ParameterError(f"{path} cannot be read: {error}. Check the path") from error
-    missing = [name for name in COLUMNS[:4] if not rows or name not in rows[0]]
-    if missing:
-        raise ParameterError(f"{path}: the columns {', '.join(missing)} are missing, or there is no row")
-    names, own = [row["gate"] for row in rows], [gate.name for gate in course.gates[: len(rows)]]
-    if names != own:
+    rows = csv_rows(path, COLUMNS[:4], action="write the line with `skisnow race` again")
+    names, own = [row.cells["gate"] for row in rows], [gate.name for gate in course.gates[: len(rows)]]
+    if not rows or names != own:
         raise ParameterError(f"{path}: its gates are {', '.join(names)}, those of the course {', '.join(own)}")
     turns = tuple(
-        LineTurn(aside=_number(path, row, "aside_m"), along=_number(path, row, "along"),
-                 turning=_number(path, row, "turning"))
-        for row in rows
-    )  # fmt: skip
+        LineTurn(aside=row.number("aside_m"), along=row.number("along"), turning=row.number("turning")) for row in rows
+    )
     return RacingLine(replace(course, gates=course.gates[: len(turns)]), start, turns)
-
-
-def _number(path: Path, row: dict[str, str], name: str) -> float:
-    try:
-        value = float(row[name])
-    except (TypeError, ValueError):
-        value = math.nan
-    if not math.isfinite(value):
-        raise ParameterError(f"{path}, gate {row['gate']}: {name} is {row[name]!r}; give a number")
-    return value

@@ -22,7 +22,7 @@ import numpy.typing as npt
 from ..errors import ParameterError
 from ..given import GivenError, json_value
 from .colours import COLOURS, drawn_thickness
-from .replay import Replay, ReplayBoots, ReplayGroove, ReplaySkier, ReplaySkis, ReplayTerrain, ReplayTrack
+from .replay import SKI_NAMES, Replay, ReplayBoots, ReplayGroove, ReplaySkier, ReplaySkis, ReplayTerrain, ReplayTrack
 from .skier import JOINTS
 from .skier_shapes import skier_parts
 
@@ -132,11 +132,13 @@ def replay_of_bytes(content: bytes) -> Replay:
         if header["format"] != FORMAT:
             raise ParameterError(f"the replay has format {header['format']}; this program reads format {FORMAT}")
         arrays = {name: _unpacked(content, 8 + length, each) for name, each in header["arrays"].items()}
-    except (ValueError, KeyError) as error:
+        if not np.isin(np.rint(arrays["groove_ski"]), range(len(SKI_NAMES))).all():
+            raise ParameterError("a piece of the groove belongs to no ski")
+        return _rebuilt(header, arrays)
+    except (ValueError, LookupError, TypeError, AttributeError, OverflowError, MemoryError) as error:
         if isinstance(error, ParameterError) and not isinstance(error, GivenError):
             raise
         raise ParameterError(f"the replay is damaged or cut off ({error}). Write it again") from error
-    return _rebuilt(header, arrays)
 
 
 def thinned(replay: Replay) -> Replay:
@@ -242,7 +244,8 @@ def _packed(kept: _Kept, values: FloatArray) -> tuple[bytes, dict[str, Any]]:
 def _unpacked(content: bytes, base: int, description: Mapping[str, Any]) -> FloatArray:
     count = int(np.prod(description["shape"]))
     kind = "<f4" if description["type"] == _EXACT else "<u2"
-    numbers = np.frombuffer(content, kind, count, base + description["start"]).astype(float)
+    with np.errstate(invalid="ignore"):  # a damaged number may be a signalling NaN
+        numbers = np.frombuffer(content, kind, count, base + description["start"]).astype(float)
     if description["type"] != _EXACT:
         numbers = description["lowest"] + description["step"] * numbers
     return np.asarray(numbers.reshape(description["shape"]))

@@ -14,10 +14,12 @@ from ..errors import ParameterError, SkisnowError
 from ..geometry.boot_axes import axes_of
 from ..given import GivenError, json_value
 from ..scenario import Plane, read_profile, read_terrain
+from ..scenario.keys import SCENARIO_KEYS
 from ..ski import read_ski, ski_named
 from ..skier.segments import height_of
 from ..units import DEGREE
 from .of_run import Setting, assembled, facts_of, moving_boots, skis_words
+from .run_values import needed_value, require_drawable, require_finite, scenario_value
 
 if TYPE_CHECKING:
     from ..course import Course
@@ -72,12 +74,16 @@ def replay_of_file(
             arrays, values = _arrays(content), _scenario(content)
             boots = _boots(content)
             outcome, spacing = content.outcome.decode("utf-8"), float(content.solver_line_spacing_m)
+        require_drawable(arrays)
+        if not 0.0 < spacing <= 1.0:
+            raise ParameterError(f"solver_line_spacing_m is {spacing:g}; it must be above 0 and at most 1")
         setting = _setting(path, values, outcome, spacing, ski)
         return assembled(arrays, setting, title=title or path.resolve().parent.name, track=track, boots=boots)
-    except GivenError as error:
-        raise ParameterError(f"{path} is no run.nc of skisnow: {error} Simulate it again with --out") from error
-    except SkisnowError:
-        raise
+    except SkisnowError as error:
+        if str(path.parent) in str(error) and not isinstance(error, GivenError):
+            raise
+        said = str(error).rstrip(".")
+        raise ParameterError(f"{path} is no run.nc of skisnow: {said}. Simulate it again with --out") from error
     except OSError as error:
         raise ParameterError(f"{path} cannot be read: {error.strerror or error}. Check the path") from error
     except _DAMAGE as error:
@@ -101,6 +107,7 @@ def _boots(file: Any) -> ReplayBoots | None:
         return None
     place = np.stack([_values(file, f"boot_{axis}") for axis in "xyz"], axis=-1)
     angles = np.stack([_values(file, f"boot_{name}") for name in ("edge_angle", "pitch", "heading")], axis=-1)
+    require_finite({"boots": place, "angles of boots": angles})
     axes = np.array([axes_of(*map(float, each)) for each in angles.reshape(-1, 3)])
     return moving_boots(place, axes.reshape(*angles.shape, 3))
 
@@ -121,45 +128,49 @@ def _values(file: Any, name: str) -> FloatArray:
 
 def _setting(path: Path, values: dict[str, Any], outcome: str, spacing: float, ski: Ski | None) -> Setting:
     ski, slope = ski or _ski(path, values), _slope(path, values)
-    has_skier, edge_angle = values.get("skier.steers") is not None, values["sledge.edge_angle_deg"]
+    has_skier, edge_angle = values.get("skier.steers") is not None, needed_value(values, "sledge.edge_angle_deg")
+    inertia = needed_value(values, "sledge.inertia_kg_m2")
     return Setting(
         slope=slope,
         course=_course(path, values, slope),
         ski=ski,
         edge_angle=edge_angle * DEGREE,
-        stance_width=values["sledge.stance_width_m"],
-        centre_of_mass_height=values["sledge.centre_of_mass_height_m"],
+        stance_width=needed_value(values, "sledge.stance_width_m"),
+        centre_of_mass_height=needed_value(values, "sledge.centre_of_mass_height_m"),
         line_spacing=spacing,
         facts=facts_of(
             outcome=outcome,
-            hardness=values["snow.H_V_N_per_mm3"],
-            stress=values["snow.S_f_N_per_mm2"],
-            ratio=values["snow.unloading_ratio"],
+            hardness=needed_value(values, "snow.H_V_N_per_mm3"),
+            stress=scenario_value(values, "snow.S_f_N_per_mm2"),
+            ratio=needed_value(values, "snow.unloading_ratio"),
             skis=skis_words(ski.name, None if has_skier else edge_angle),
         ),
-        skier_height=height_of(values["sledge.mass_kg"], values["sledge.inertia_kg_m2"][0]) if has_skier else None,
+        skier_height=height_of(needed_value(values, "sledge.mass_kg"), inertia[0]) if has_skier else None,
     )
 
 
 def _ski(path: Path, values: dict[str, Any]) -> Ski:
-    if values.get("ski.file") is None:
-        return ski_named(values["ski.name"])
-    return read_ski(_found(path, values["ski.file"], "ski"))
+    file = scenario_value(values, "ski.file")
+    return ski_named(needed_value(values, "ski.name")) if file is None else read_ski(_found(path, file, "ski"))
 
 
 def _slope(path: Path, values: dict[str, Any]) -> Slope:
-    if values["slope.kind"] == "plane":
-        return Plane(values["slope.angle_deg"] * DEGREE)
-    if values["slope.kind"] == "grid":
-        origin = {f"origin_{axis}": float(values.get(f"slope.origin_{axis}_m") or 0.0) for axis in "xy"}
-        smoothing = float(values.get("slope.smooth_m") or 0.0)
-        return read_terrain(_found(path, values["slope.grid"], "grid"), smoothing=smoothing, **origin)
-    return read_profile(_found(path, values["slope.profile"], "profile"), gap=values["slope.profile_gap"] or "error")
+    kind = needed_value(values, "slope.kind")
+    if kind == "plane":
+        return Plane(needed_value(values, "slope.angle_deg") * DEGREE)
+    if kind == "grid":
+        origin = {f"origin_{axis}": scenario_value(values, f"slope.origin_{axis}_m") or 0.0 for axis in "xy"}
+        smoothing = scenario_value(values, "slope.smooth_m") or 0.0
+        return read_terrain(_found(path, needed_value(values, "slope.grid"), "grid"), smoothing=smoothing, **origin)
+    profile = _found(path, needed_value(values, "slope.profile"), "profile")
+    return read_profile(profile, gap=scenario_value(values, "slope.profile_gap") or "error")
 
 
 def _course(path: Path, values: dict[str, Any], slope: Slope) -> Course | None:
     """The course in the scenario's axes; gates are there to be looked at, and one whose file is gone is not shown."""
-    said = {name.partition(".")[2]: value for name, value in values.items() if name.startswith("course.")}
+    said = {
+        name.partition(".")[2]: scenario_value(values, name) for name in SCENARIO_KEYS if name.startswith("course.")
+    }
     name, file = said.pop("name", None), said.pop("file", None)
     if name is None and file is None:
         return None

@@ -36,7 +36,7 @@ def read_geotiff(path: str | Path, *, column: str) -> PlacedValues:
             heights = _heights(path, source)
             transform, system = source.transform, _system(source)
             unit = _height_unit(path, source.units[0], system)
-    except rasterio.errors.RasterioError as error:
+    except (rasterio.errors.RasterioError, UnicodeDecodeError, MemoryError) as error:  # the second from a damaged text
         raise ParameterError(f"{path} cannot be read as a GeoTIFF: {error}. Export it again.") from error
     _require_north_up(path, transform, system)
     raster = Raster(

@@ -170,5 +170,7 @@ def _scale(system: MapSystem, x: float, y: float) -> tuple[tuple[float, float], 
         return None
     place = earth_centred(latitude, longitude, np.zeros(5))
     ground = np.linalg.norm(place[[2, 4]] - place[[1, 3]], axis=1)
+    if not ground.all():  # so far away that the steps are rounded off
+        return None
     along_x, along_y = (100.0 / ground).tolist()
     return (along_x, along_y), utm_zone(float(longitude[0]), float(latitude[0]))

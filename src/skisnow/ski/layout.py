@@ -7,6 +7,8 @@ from typing import Final
 
 from ..errors import ParameterError
 
+LONGEST: Final = 6.0
+"""Length (m) from tip to tail beyond which no ski is tabulated: the reach of the stations that a ski file may name."""
 TAIL_OVERHANG: Final = 0.020
 """Length of ski behind the rear end of the sidecut length (m). Modelling assumption: 20 mm, a short square tail."""
 
@@ -26,6 +28,11 @@ class Layout:
     sidecut_length: float
 
     def __post_init__(self) -> None:
+        if self.tip - self.tail > LONGEST:
+            raise ParameterError(
+                f"the ski is {self.tip - self.tail:.6g} m long. Allowed: at most {LONGEST:g} m. Correct the lengths or "
+                "their units."
+            )
         for name in ("running_length", "sidecut_length"):
             length = getattr(self, name)
             if not length > 0:

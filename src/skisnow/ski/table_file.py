@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import csv
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 import numpy.typing as npt
 
 from ..errors import ParameterError
+from ..given import plain_bytes
 from ..inputs import nearest
 from ..spreadsheet_text import SEPARATOR_NAMES, NoTextError, decimal_mark, decoded, is_number, named_separator
 from .file_keys import COLUMNS
@@ -20,6 +21,9 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 FloatArray = npt.NDArray[np.float64]
+
+MOST_BYTES: Final = 1 << 24
+"""Of a table: a row for each 2.5 mm of a ski takes 200 kB at most."""
 
 
 def read_table(path: Path) -> dict[str, StationTable]:
@@ -59,9 +63,7 @@ def read_table(path: Path) -> dict[str, StationTable]:
 def _lines(path: Path) -> tuple[str, list[tuple[int, list[str]]]]:
     """The separator, and the lines that are no remarks with their cells."""
     try:
-        text = decoded(path.read_bytes()).text
-    except OSError as error:
-        raise ParameterError(f"{path} cannot be read: {error.strerror or error}. Check the path.") from error
+        text = decoded(plain_bytes(path, most_bytes=MOST_BYTES)).text
     except NoTextError as error:
         raise ParameterError(f"{path} is no text ({error.place} is no {error.encoding}). Save it as UTF-8.") from error
     named = named_separator(text)

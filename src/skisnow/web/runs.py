@@ -14,17 +14,17 @@ import re
 import secrets
 import sys
 import time
+from collections.abc import Mapping
 from dataclasses import asdict, dataclass, replace
 from datetime import UTC, datetime
 from typing import TYPE_CHECKING, Final, Literal, TypeAlias
 
 from ..errors import ParameterError
 from ..files import write_file
-from ..given import GivenError, read_json
+from ..given import GivenError, read_record
 from ..language import ENGLISH
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
     from pathlib import Path
 
 Beside: TypeAlias = tuple[str, bytes]
@@ -55,6 +55,26 @@ class Job:
     language: str = ENGLISH
 
 
+@dataclass(frozen=True, slots=True)
+class FinishedRun:
+    """What the lab reports of a finished run, out of its summary.json."""
+
+    outcome: str
+    run_length_m: float
+    simulated_s: float
+    remedy: str = ""
+
+    @property
+    def outcome_in_words(self) -> str:
+        """The outcome without underscores."""
+        return self.outcome.replace("_", " ")
+
+    @property
+    def extent(self) -> str:
+        """Length and time."""
+        return f"{self.run_length_m:.1f} m in {self.simulated_s:.2f} s"
+
+
 class Runs:
     """The queue and the history.
 
@@ -82,8 +102,8 @@ class Runs:
         """All jobs, the newest first."""
         found = []
         for place in self.folder.glob(f"*/{JOB}"):
-            with contextlib.suppress(GivenError, TypeError):  # its folder is being taken away, or it is damaged
-                found.append(self.kind(**read_json(place)))
+            with contextlib.suppress(GivenError):  # its folder is being taken away, or it is damaged
+                found.append(read_record(place, self.kind))
         return sorted(found, key=lambda job: job.asked_at, reverse=True)
 
     def ask(
@@ -205,11 +225,14 @@ class Runs:
         if not summary.is_file():
             said = "Nothing was computed yet." if cancelled else last
             return replace(job, state="cancelled" if cancelled else "failed", said=said)
-        found = read_json(summary)
-        words = f"{found['outcome']}: {found['run_length_m']:.1f} m in {found['simulated_s']:.2f} s".replace("_", " ")
-        if found["outcome"] == "interrupted":  # cancelled a moment after the end it is finished all the same
+        try:
+            found = read_record(summary, FinishedRun, only_known=False)
+        except GivenError as error:
+            return replace(job, state="failed", said=str(error))
+        words = f"{found.outcome_in_words}: {found.extent}"
+        if found.outcome == "interrupted":  # cancelled a moment after the end it is finished all the same
             return replace(job, state="cancelled", said=f"{words}. What was computed until then is kept.")
-        return replace(job, state="done", said=f"{words}. {found['remedy']}".strip())
+        return replace(job, state="done", said=f"{words}. {found.remedy}".strip())
 
     def _keep(self, job: Job) -> None:
         """Write down how a job stands."""

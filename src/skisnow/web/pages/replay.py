@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 from nicegui import app, ui
 
-from ...given import read_json
+from ...given import GivenError, read_record
 from ...report.number_formatting import counted
 from ..fields import link
 from ..language import said
@@ -14,6 +14,7 @@ from ..layout import framed, heading, sentence
 from ..replay.addresses import GATES, LIST, SHOW, RunFolders, add_addresses, show_address
 from ..replay.tracks import LARGEST_BYTES, MOST_POINTS, TrackFolders
 from ..replay.uploads import UPLOAD, add_uploads
+from ..runs import FinishedRun
 from ..worded import Words, named
 
 if TYPE_CHECKING:
@@ -61,10 +62,9 @@ def _run(place: Path, name: str) -> None:
 def _in_words(place: Path) -> str:
     """What summary.json says of a run in a line; nothing where there is none."""
     try:
-        summary: dict[str, Any] = read_json(place / "summary.json")
-        length, time = float(summary["run_length_m"]), float(summary["simulated_s"])
-        return f"{length:.1f} m in {time:.2f} s, {str(summary['outcome']).replace('_', ' ')}"
-    except (ValueError, KeyError, TypeError):
+        run = read_record(place / "summary.json", FinishedRun, only_known=False)
+        return f"{run.extent}, {run.outcome_in_words}"
+    except GivenError:
         return "without a readable summary"
 
 

@@ -12,7 +12,7 @@ from typing import IO, TYPE_CHECKING, Final
 
 from ...errors import FieldDataError, ParameterError
 from ...files import cannot_write, write_file
-from ...given import read_json
+from ...given import read_record
 from ...replay.replay import measured_track
 from ...track.read import SUFFIXES, read_track
 from ...track.slope_frame import in_slope_frame
@@ -131,10 +131,13 @@ class TrackFolders:
         """
         if name not in self.names():
             raise ParameterError(f"there is no track {name!r} here. Choose one from the list")
-        placing = Placing(**read_json(self._folder / name / ABOUT))
-        (place,) = (each for each in (self._folder / name).iterdir() if each.name != ABOUT)
+        placing = read_record(self._folder / name / ABOUT, Placing)
+        _require(placing)
+        places = [each for each in (self._folder / name).iterdir() if each.name != ABOUT]
+        if len(places) != 1:
+            raise ParameterError(f"the folder of the track {name} is damaged. Remove it and upload the track again")
         angle = replay.tilt if replay.profile is None else None
-        return (read or track_on_slope)(place, placing, angle)
+        return (read or track_on_slope)(places[0], placing, angle)
 
 
 def points_of_track(place: Path, placing: Placing) -> int:
