@@ -140,6 +140,13 @@ def test_an_unknown_unit_is_an_error(tmp_path: Path, place: str, unit: str) -> N
     assert (problem.code, problem.file, problem.value) == ("unreadable_file", "pit.caaml", unit)
 
 
+@pytest.mark.parametrize("number", ["1e101", "-1e308", "1e309", "nan"])
+def test_impossible_numbers_are_refused(tmp_path: Path, number: str) -> None:
+    path = in_units(tmp_path)
+    path.write_text(path.read_text(encoding="utf-8").replace(">8200<", f">{number}<"), encoding="utf-8")
+    assert refusal(path).column == "position"
+
+
 def test_version_5_has_units_at_the_profile(tmp_path: Path) -> None:
     path = tmp_path / "pit.xml"
     path.write_text(VERSION_5, encoding="utf-8")

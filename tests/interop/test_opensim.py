@@ -76,6 +76,7 @@ def test_a_table_of_another_program(tmp_path: Path) -> None:
     [
         (MOT.replace("endheader\n", ""), "has no line endheader"),
         (MOT.replace("nRows=2", "nRows=5"), "the head says nRows=5, there are 2"),
+        (MOT.replace("nRows=2", f"nRows={'9' * 5000}"), "the head says nRows=9999"),
         (MOT.replace("nColumns=3", "nColumns=4"), "the head says nColumns=4, there are 3"),
         (MOT.replace("0.75", "O.75"), "line 11, column knee_angle_r: 'O.75' is no number"),
         (MOT.replace("0.75\t", ""), "line 11: 2 cells stand under 3 names"),
@@ -164,6 +165,9 @@ def test_markers_that_tell_no_pose_are_refused() -> None:
     unseen = markers.place.copy()
     unseen[2:, 1] = np.nan
     with pytest.raises(ParameterError, match=r"marker Ltoe was not seen in 2 frames, first at 0\.02 s"):
+        boots_of_markers(Markers(TIME, markers.names, unseen, 100.0), one, one)
+    unseen[2:, 1] = -1e308
+    with pytest.raises(ParameterError, match=r"marker Ltoe is beyond .* first at 0\.02 s"):
         boots_of_markers(Markers(TIME, markers.names, unseen, 100.0), one, one)
 
 

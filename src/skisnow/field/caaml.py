@@ -17,6 +17,7 @@ import numpy as np
 
 from ..errors import FieldDataError
 from ..given import GivenError, plain_bytes, xml_tree
+from ..inputs.quantity import LARGEST
 from .caaml_units import (
     ANGLE,
     DENSITY,
@@ -262,8 +263,8 @@ class _Profile:
         if converted is None:
             allowed, action = f"a unit among {', '.join(units.sizes)}", "Correct the unit, or convert the numbers."
             self._refuse(name, unit or "", allowed, action)
-        if not math.isfinite(converted):
-            self._refuse(name, f"{value:g} {unit}", "a finite number in SI", "Correct the number.")
+        if not abs(converted) <= LARGEST:
+            self._refuse(name, f"{value:g} {unit or ''}", f"a number to ±{LARGEST:g} in SI", "Correct the number.")
         return converted
 
     def _finite(self, element: str, text: str) -> float:

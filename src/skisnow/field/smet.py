@@ -19,6 +19,7 @@ import numpy.typing as npt
 
 from ..errors import FieldDataError
 from ..given import GivenError, plain_bytes
+from ..inputs.quantity import LARGEST
 from ..shown import Facts, Shown
 from .problems import error
 
@@ -192,11 +193,11 @@ class _Reading:
         with np.errstate(over="ignore", invalid="ignore"):
             offset_first = self._version in _OFFSET_FIRST
             values = (table + offsets) * factors if offset_first else table * factors + offsets
-        huge = ~np.isnan(table) & ~np.isfinite(values)
+        huge = ~np.isnan(table) & ~(np.abs(values) <= LARGEST)
         if huge.any():
             name = names[int(np.argmax(huge.any(axis=0)))]
-            allowed, action = "finite numbers in SI", "Correct units_offset, units_multiplier or the numbers."
-            self._refuse(self._header["fields"][0], name, "a number that is not finite", allowed, action)
+            allowed, action = f"numbers to ±{LARGEST:g} in SI", "Correct units_offset, units_multiplier or the numbers."
+            self._refuse(self._header["fields"][0], name, "a larger number", allowed, action)
         return values
 
     def _number_of(self, key: str, default: float) -> float:

@@ -11,6 +11,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 HEAD_END: Final = "endheader"
+_LONGEST_SHOWN: Final = 40
 _COUNTS: Final = ("nRows", "nColumns")
 _WORDS: Final = {"yes": True, "y": True, "no": False, "n": False}
 
@@ -63,9 +64,10 @@ def require_whole(path: str | Path, head: Mapping[str, str], *, rows: int, colum
     said = _said(head)
     for key, there in zip(_COUNTS, (rows, columns), strict=True):
         word = said.get(key.lower(), "")
-        if word.isdecimal() and int(word) != there:
+        if word.isdecimal() and word.lstrip("0") != str(there).lstrip("0"):  # int refuses 4300 digits
             raise ParameterError(
-                f"{path}: the head says {key}={word}, there are {there}; it is cut or joined, or its head wrong"
+                f"{path}: the head says {key}={word[:_LONGEST_SHOWN]}, there are {there}; it is cut or joined, or its "
+                "head wrong"
             )
 
 

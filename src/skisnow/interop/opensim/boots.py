@@ -13,7 +13,7 @@ import numpy.typing as npt
 
 from ...errors import ParameterError
 from ...geometry.boot_axes import angles_of
-from ...scenario.boots import Boots
+from ...scenario.boots import LARGEST, Boots
 from ...scenario.boots_file import ANGLES, OF_SLOPE, SIDES
 from ...units import DEGREE
 from .markers import Markers
@@ -95,6 +95,13 @@ def _seen(markers: Markers, name: str) -> FloatArray:
         first = float(markers.time[int(np.argmax(unseen))])
         raise ParameterError(
             f"marker {name} was not seen in {int(unseen.sum())} frames, first at {first:g} s; fill the gaps before"
+        )
+    far = ~(np.abs(place) <= LARGEST).all(axis=1)
+    if far.any():
+        first = float(markers.time[int(np.argmax(far))])
+        raise ParameterError(
+            f"marker {name} is beyond ±{LARGEST:g} m in {int(far.sum())} frames, first at {first:g} s. Correct the "
+            "numbers, or the unit of the file."
         )
     return place
 
