@@ -64,11 +64,20 @@ Runner Runner::of(const std::vector<double>& position, const std::vector<double>
     while (e + 2 < out.nodes() && place <= out.node[std::size_t(e + 1)]) e++;
     out.element.push_back(e);
   }
+  out.fill_element_rows();
   for (int i = 0; i <= steps; i++) {  // slopes by central differences, at the ends one-sided
     const int low = std::max(i - 1, 0), high = std::min(i + 1, steps);
     for (const int column : {0, 2}) at(i, column + 1) = (at(high, column) - at(low, column)) / ((high - low) * step);
   }
   return out;
+}
+
+void Runner::fill_element_rows() {
+  element_rows.clear();
+  for (int e = 0; e + 1 < nodes(); e++) {
+    const double front = node[std::size_t(e)], length = front - node[std::size_t(e + 1)];
+    element_rows.insert(element_rows.end(), {front, length, 1.0 / length, double(e)});
+  }
 }
 
 void rotation_matrix(const Vector3& v, double (&out)[3][3]) {
@@ -80,8 +89,8 @@ void rotation_matrix(const Vector3& v, double (&out)[3][3]) {
     for (int b = 0; b < 3; b++) out[a][b] = (a == b ? 1.0 - c * square : 0.0) + s * cross[a][b] + c * v[a] * v[b];
 }
 
-Pose between(const Pose& from, const Pose& to, double share) {
-  Pose middle = to;
+void interpolate(const Pose& from, const Pose& to, double share, Pose& middle) {
+  middle.beam = to.beam;
   double relative[3][3], step[3][3];
   for (int a = 0; a < 3; a++) {
     middle.position[a] = from.position[a] + share * (to.position[a] - from.position[a]);
@@ -101,7 +110,6 @@ Pose between(const Pose& from, const Pose& to, double share) {
     }
   const std::size_t both = std::min(from.beam.size(), to.beam.size());
   for (std::size_t i = 0; i < both; i++) middle.beam[i] = from.beam[i] + share * (to.beam[i] - from.beam[i]);
-  return middle;
 }
 
 }  // namespace skisnow

@@ -13,14 +13,16 @@ using Vector3 = std::array<double, 3>;
 // Shape of a base along the ski. Positions along the ski count from the boot, positive ahead (m).
 struct Runner {
   double tail = 0.0, tip = 0.0;
-  double reach = 0.0;         // greatest half width and height of the base (m)
-  int places = 0;             // of the table, evenly spaced from tail to tip
-  std::vector<double> table;  // (places, 4): half width, its slope, height of the base, its slope
-  std::vector<double> node;   // beam nodes, tip to tail; a rigid runner has the two ends
-  std::vector<int> element;   // (places,) the beam element of each place of the table
+  double reach = 0.0;                // greatest half width and height of the base (m)
+  int places = 0;                    // of the table, evenly spaced from tail to tip
+  std::vector<double> table;         // (places, 4): half width, its slope, height of the base, its slope
+  std::vector<double> node;          // beam nodes, tip to tail; a rigid runner has the two ends
+  std::vector<int> element;          // (places,) the beam element of each place of the table
+  std::vector<double> element_rows;  // (elements, 4): front node, length, its inverse, number
   // From positions that fall from tip to tail, half widths and heights there, and the beam's nodes.
   static Runner of(const std::vector<double>& position, const std::vector<double>& half_width,
                    const std::vector<double>& base_height, std::vector<double> node);
+  void fill_element_rows();
   double places_per_metre() const { return (places - 1) / (tip - tail); }
   int nodes() const { return int(node.size()); }
 };
@@ -42,7 +44,7 @@ struct Motion {
 
 // The pose a share (0 to 1) of the way from one to another: rotation about the axis that leads from one to the other at
 // a steady rate, along the arc that goes with it.
-Pose between(const Pose& from, const Pose& to, double share);
+void interpolate(const Pose& from, const Pose& to, double share, Pose& out);
 
 void rotation_matrix(const Vector3& v, double (&out)[3][3]);  // of a rotation vector
 

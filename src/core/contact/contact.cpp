@@ -77,6 +77,9 @@ SnowContact::SnowContact(std::shared_ptr<Snow> snow, std::vector<Runner> runners
     state_.strips.push_back(snow_->archive.new_strip());
   }
   trial_ = state_.lines;
+  std::size_t slots = 0;
+  for (const GrooveLines& each : state_.lines) slots = std::max(slots, std::size_t(each.capacity()));
+  scratch_.resize(slots), slips_.resize(slots);
   before_.resize(runners_.size());
   sections_.resize(runners_.size());
   if (snow_->rate.acts()) rated_.resize(runners_.size());
@@ -90,10 +93,10 @@ void SnowContact::set_penetration(PenetrationLaw law) {
     each.lost = [bearing = bearing_](const Ground& ground) { return bearing->lost(ground); };
 }
 
-const Wrench& SnowContact::evaluate(int k, const GrooveLines& lines, const Pose& pose, const Motion& motion,
+const Wrench& SnowContact::evaluate(int k, const GrooveLines& lines, const Pose& pose, const Motion& motion, bool grows,
                                     Sections& s) {
   kernels_->find_sections(runner(k), pose, *snow_, lines, lines.first, s);
-  kernels_->press(*snow_, lines, s);
+  kernels_->press(*snow_, lines, grows, s);
   if (bearing_) bearing_->press(lines, s);
   if (!rated_.empty()) rated_[std::size_t(k)].press(*snow_, lines, pose, motion, dt_, s);
   kernels_->slide(motion, pose, *snow_, s);
@@ -106,7 +109,7 @@ const Wrench& SnowContact::evaluate(int k, const GrooveLines& lines, const Pose&
 
 Reaction SnowContact::reaction(int k, const GrooveLines& lines, const Pose& pose, const Motion& motion) {
   Sections& s = sections_[std::size_t(k)];
-  const Wrench& wrench = evaluate(k, lines, pose, motion, s);
+  const Wrench& wrench = evaluate(k, lines, pose, motion, false, s);
   Reaction out;
   for (int a = 0; a < 3; a++)
     for (int b = 0; b < 3; b++) {
@@ -117,41 +120,43 @@ Reaction SnowContact::reaction(int k, const GrooveLines& lines, const Pose& pose
   return out;
 }
 
-const Wrench& SnowContact::look(int k, const Pose& pose, const Motion& motion) {
+const Wrench& SnowContact::look(int k, const Pose& pose, const Motion& motion, bool with_tangent) {
   Sections& s = sections_[std::size_t(k)];
-  const Wrench& wrench = evaluate(k, lines(k), pose, motion, s);
+  const Wrench& wrench = evaluate(k, lines(k), pose, motion, with_tangent, s);
   load_beam(runner(k), s, wrenches_[std::size_t(k)].beam);
   return wrench;
 }
 
-void SnowContact::differ(int k, double sense) {
-  if (bearing_)
-    bearing_->differ(*snow_, lines(k), sections(k), TANGENT_STEP, sense, differences_);
-  else if (!rated_.empty())
-    rated_[std::size_t(k)].differ(*snow_, lines(k), sections(k), TANGENT_STEP, sense, differences_);
-  else
-    kernels_->differ(*snow_, lines(k), sections(k), TANGENT_STEP, sense, differences_);
+// Derivatives of the sections; of a base whose law comes from outside or takes time all by differences.
+void SnowContact::differ(int k, double sense, bool is_level) {
+  const Sections& s = sections(k);
+  differences_.resize(s.count());
+  if (!bearing_ && rated_.empty())
+    return kernels_->differ(*snow_, lines(k), s, TANGENT_STEP, sense, is_level, differences_);
+  const auto differ = [&](double way) {
+    if (bearing_)
+      bearing_->differ(*snow_, lines(k), s, TANGENT_STEP, way, differences_);
+    else
+      rated_[std::size_t(k)].differ(*snow_, lines(k), s, TANGENT_STEP, way, differences_);
+  };
+  differ(sense);
+  if (!is_level) return;
+  const std::vector<double> one = differences_.values;
+  differ(-sense);
+  for (std::size_t i = 0; i < one.size(); i++) differences_.values[i] = 0.5 * (one[i] + differences_.values[i]);
 }
 
 void SnowContact::find_tangent(int k, const Pose& pose, double stiffness, double damping, RunnerTangent& out) {
   const Sections& s = sections(k);
-  out.clear(runner(k).nodes());
-  differences_.resize(s.count());
-  const double lean = pose.rotation[2][1], sense = lean < 0.0 ? -1.0 : 1.0;  // in the mirror the other way
-  differ(k, sense);
-  if (std::fabs(lean) < LEVEL) {  // a level base has two tangents: between them
-    const std::vector<double> one = differences_.values;
-    differ(k, -sense);
-    for (std::size_t i = 0; i < one.size(); i++) differences_.values[i] = 0.5 * (one[i] + differences_.values[i]);
-  }
   const bool bends = runner(k).nodes() > 2;
-  kernels_->add_stiffness(s, differences_, stiffness, bends, out);
+  const double lean = pose.rotation[2][1], sense = lean < 0.0 ? -1.0 : 1.0;  // in the mirror the other way
+  out.clear(runner(k).nodes());
+  differ(k, sense, std::fabs(lean) < LEVEL);  // a level base has two tangents: between them
+  kernels_->add_stiffness(s, differences_, stiffness, std::max(damping, 0.0), bends, out);
   out.add_turning(wrenches_[std::size_t(k)], stiffness);
-  if (!(damping > 0.0)) return;
-  kernels_->add_friction_damping(s, damping, bends, out);
-  if (!(snow_->rate.damping > 0.0)) return;
+  if (!(damping > 0.0 && snow_->rate.damping > 0.0)) return;
   rated_[std::size_t(k)].differ_rates(*snow_, lines(k), s, sense, differences_);
-  kernels_->add_stiffness(s, differences_, damping, bends, out);
+  kernels_->add_stiffness(s, differences_, damping, 0.0, bends, out);
 }
 
 // The lines at the end of a step, before its end is remembered: those that stand, or where that changes them a copy.
@@ -185,7 +190,7 @@ void SnowContact::begin(const Situation& foreseen) {
     GrooveLines& lines = state_.lines[std::size_t(k)];
     Before& before = before_[std::size_t(k)];
     before.first = lines.first, before.end = lines.end;
-    before.lines.clear();
+    before.lines.clear(), before.anchor.clear(), before.slipped.clear();
     prepare(k, lines, foreseen.poses[std::size_t(k)]);
   }
   for (int k = 0; k < runners(); k++) march_where_needed(k, foreseen);
@@ -193,11 +198,7 @@ void SnowContact::begin(const Situation& foreseen) {
 }
 
 void SnowContact::take_back() {
-  for (std::size_t k = 0; begun_ && k < before_.size(); k++) {
-    GrooveLines& lines = state_.lines[k];
-    lines.first = before_[k].first, lines.end = before_[k].end;
-    for (const GrooveLines::Line& line : before_[k].lines) lines.put_back(line);
-  }
+  for (std::size_t k = 0; begun_ && k < before_.size(); k++) before_[k].put_back(state_.lines[k]);
   begun_ = false;
 }
 

@@ -57,11 +57,12 @@ class SnowContact {
   void update(const Situation& to);
 
   // The same for one who tries many poses for the end of a step: `begin` lets the history advance towards an end
-  // foreseen, up to but without it; `look` gives the forces of one runner (in the ski's axes) at a pose there;
+  // foreseen, up to but without it; `look` gives the forces of one runner (in the ski's axes) at a pose there, with
+  // `with_tangent` also what `find_tangent` needs;
   // `take_back` lets the snow be as before `begin`; `accept` makes it remember the end, at the pose looked at last or
   // one next to it.
   void begin(const Situation& foreseen);
-  const Wrench& look(int k, const Pose& pose, const Motion& motion);
+  const Wrench& look(int k, const Pose& pose, const Motion& motion, bool with_tangent);
   const Wrench& wrench(int k) const { return wrenches_[std::size_t(k)]; }  // of the last look
   void take_back();
   void accept(const Situation& at);
@@ -116,30 +117,38 @@ class SnowContact {
   std::vector<RatedBase> rated_;      // of each runner, where the snow takes time
   double dt_ = 0.0;                   // since the last accepted pose, of what is looked at (s)
   std::vector<std::int64_t> needed_;  // lines, the foremost first
-  struct Before {                     // of one runner, what `begin` has changed
+  Column scratch_;                    // by slot
+  Column slips_;                      // by slot: 1 where the edge slips and nothing else is marched
+  std::optional<std::int64_t> rearmost_slip_;
+  struct Before {  // of one runner, what `begin` has changed
     std::int64_t first, end;
     std::vector<GrooveLines::Line> lines;
+    Column anchor, slipped;  // of all slots, or empty
+    void keep_anchors(const GrooveLines& lines);
+    void put_back(GrooveLines& into) const;
   };
   std::vector<Before> before_;
   bool begun_ = false;
+  Pose on_way_;  // between two poses
 
   std::uint64_t fingerprint() const;
   GrooveLines& history(int k, const Situation& at);
-  const Wrench& evaluate(int k, const GrooveLines& lines, const Pose& pose, const Motion& motion, Sections& s);
-  void differ(int k, double sense);
+  const Wrench& evaluate(int k, const GrooveLines& lines, const Pose& pose, const Motion& motion, bool grows,
+                         Sections& s);
+  void differ(int k, double sense, bool is_level);
   Reaction reaction(int k, const GrooveLines& lines, const Pose& pose, const Motion& motion);
   class Standing;
   void prepare(int k, GrooveLines& lines, const Pose& pose);
   void learn(GrooveLines& lines, int slot, double from, double to, const Standing& standing) const;
   void settle_history(int k, const Pose& pose);
-  void count_energy(int k, GrooveLines& lines) const;
+  void count_energy(int k, GrooveLines& lines);
   void follow_snow(int k, GrooveLines& lines) const;
   void stand(const std::vector<Pose>& poses);
   void pass_time(double dt);
   void lay_anew(int k, const Pose& pose);
   int parts(int k, const Situation& at) const;
   void march(int k, GrooveLines& lines, const Situation& to);
-  void find_needed(const GrooveLines& lines, double way);
+  void find_needed(const GrooveLines& lines, double way, const Runner& runner, const Pose& to);
   void march_where_needed(int k, const Situation& to);
   void remember(int k, GrooveLines& lines) const;
 };

@@ -51,13 +51,34 @@ inline void beam_rates(const Motion& motion, const Sections& s, int i, double& d
   twist = (1.0 - z) * rate[2] + z * rate[5];
 }
 
+// The same for all lanes; they are kept where the loads on the beam come later.
+template <class V>
+void find_beam_rates(const Motion& motion, Sections& s, int i) {
+  V deflection{}, twist{};
+  if (!motion.beam.empty() && any(load<V>(s[SHARE] + i) > 0.0)) {
+    Row front[WIDTH<V>], rear[WIDTH<V>];
+    for (int lane = 0; lane < WIDTH<V>; lane++) {
+      const double* rate = motion.beam.data() + 3 * int(s[SHARE][i + lane] > 0.0 ? s[ELEMENT][i + lane] : 0.0);
+      front[lane] = load<Row>(rate), rear[lane] = load<Row>(rate + 2);
+    }
+    V first[ROW], second[ROW];
+    transpose<V>(front, first), transpose<V>(rear, second);
+    const V z = load<V>(s[IN_ELEMENT] + i);
+    const Shapes<V> shape(z, load<V>(s[ELEMENT_LENGTH] + i));
+    deflection =
+        shape.front * first[0] + shape.front_slope * first[1] + shape.rear * second[1] + shape.rear_slope * second[2];
+    twist = (1.0 - z) * first[2] + z * second[3];
+  }
+  store(s[BEAM_FORCE] + i, deflection), store(s[BEAM_MOMENT] + i, twist);
+}
+
 // [slide] Speed along the edge at the centre of pressure, and the law's μ.
 template <class V>
 void slide(const Motion& motion, const Pose& pose, const Snow& snow, Sections& s) {
   const BootMotion m(motion, pose);
   const FrictionLaw& law = snow.friction;
   const double fade = law.fade_speed * law.fade_speed;
-  for (int i = 0; i < s.count(); i++) beam_rates(motion, s, i, s[BEAM_FORCE][i], s[BEAM_MOMENT][i]);
+  for (int i = 0; i < s.count(); i += WIDTH<V>) find_beam_rates<V>(motion, s, i);
   for (int i = 0; i < s.count(); i += WIDTH<V>) {
     const Cut<V> c = Cut<V>::stored(s, i);
     const Centre<V> centre(c, load<V>(s[FORCE] + i), load<V>(s[MOMENT] + i));
@@ -154,31 +175,42 @@ void push(const Motion&, const Pose&, const Snow& snow, Sections& s, Wrench& out
 }
 
 // [local_tangent] How the forces of each section change as the base there is moved to the left, off the snow, and
-// twisted: minus the derivatives by differences of one step, the laws' values held. `sense`: of the steps to the left
-// and of the twist.
+// twisted: minus the derivatives, the laws' values held. The pressure's growth is known in closed form (`press`); the
+// place of the base and the directions of forces follow by differences of one step. `sense`: of the steps to the left
+// and of the twist; a level base takes the mean of both.
 template <class V>
-void differ(const Snow& snow, const GrooveLines& lines, const Sections& s, double step, double sense,
+void differ(const Snow& snow, const GrooveLines& lines, const Sections& s, double step, double sense, bool is_level,
             SectionDifferences& out) {
+  constexpr int CHANGES = SectionDifferences::CHANGES, PARTS = Pushed<V>::PARTS;
   for_lanes<V>(s, lines, [&](int i, int j) {
-    const Cut<V> base(s, i);
+    if (!any((load<V>(s[SHARE] + i) > 0.0) & (load<V>(s[DEEPEST] + i) > 0.0))) return;
+    const Cut<V> base(s, i), here = Cut<V>::stored(s, i);
+    const PressedGrowth<V> growth(s, i);
     Acting<V> by;
     by.share = load<V>(s[SHARE] + i), by.friction = load<V>(s[FRICTION] + i);
     by.strength = load<V>(s[EDGE_STRENGTH] + i), by.thrust = load<V>(s[EDGE_THRUST] + i);
-    const bool dry = !any((by.share > 0.0) & (load<V>(s[DEEPEST] + i) > 0.0));
-    for (int change = 0; change < SectionDifferences::CHANGES; change++) {
-      const double way = change == SectionDifferences::OFF ? step : sense * step;
-      Cut<V> c = displaced(base, change, way);
-      V parts[Pushed<V>::PARTS] = {};
-      if (!dry) {
-        c.cut(snow);
-        const Pressed<V> answer(snow, lines, j, c);
-        by.force = by.share * answer.force, by.moment = by.share * answer.moment,
+    for (int change = 0; change < CHANGES; change++) {
+      const int sides = is_level && change != SectionDifferences::OFF ? 2 : 1;
+      V parts[PARTS] = {};
+      for (int side = 0; side < sides; side++) {
+        const double way = (side == 0 ? 1.0 : -1.0) * (change == SectionDifferences::OFF ? step : sense * step);
+        Cut<V> c = here;
+        V force, moment;
+        if (change == SectionDifferences::TWIST) {
+          c = displaced(base, change, way);
+          c.cut(snow);
+          growth.between(here, c, force, moment);
+        } else {
+          c.move(s, i, change == SectionDifferences::LEFT, way);
+          growth.between_moved(here, c, force, moment);
+        }
+        by.force = load<V>(s[FORCE] + i) + force, by.moment = load<V>(s[MOMENT] + i) + moment;
         by.used = shear_used(snow, lines, j, c);
         const Pushed<V> pushed(c, by, snow);
-        for (int k = 0; k < Pushed<V>::PARTS; k++)
-          parts[k] = (load<V>(s[SectionField(FORCE_0 + k)] + i) - pushed.parts[k]) / way;
+        for (int k = 0; k < PARTS; k++)
+          parts[k] += (load<V>(s[SectionField(FORCE_0 + k)] + i) - pushed.parts[k]) / (sides * way);
       }
-      for (int k = 0; k < Pushed<V>::PARTS; k++) store(out.column(change, k) + i, parts[k]);
+      for (int k = 0; k < PARTS; k++) store(out.column(change, k) + i, parts[k]);
     }
   });
 }

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "contact/force_kernels.hpp"
+#include "contact/line_kernels.hpp"
 #include "contact/tangent_kernels.hpp"
 
 namespace skisnow::SKISNOW_LANES {

@@ -1,6 +1,7 @@
 // What the lines under one runner learn of older tracks: as far across as the ski comes, when it comes there.
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "contact/contact.hpp"
 
@@ -19,25 +20,46 @@ double room_of(const Runner& runner, const Pose& pose) {
   return runner.reach + bent + SPARE;
 }
 
-// The two ends of the groove in a line that stands.
+// The two ends of the groove in a line.
 struct GrooveEnds {
   std::int64_t number;
   Vector3 ends[2];
 };
+
+// A rectangle on the map.
+struct Extent {
+  double low[2] = {1e300, 1e300}, high[2] = {-1e300, -1e300};
+
+  void add(const Vector3& place) {
+    for (std::size_t a = 0; a < 2; a++) low[a] = std::min(low[a], place[a]), high[a] = std::max(high[a], place[a]);
+  }
+  bool meets(const Extent& other) const {
+    for (std::size_t a = 0; a < 2; a++)
+      if (low[a] > other.high[a] + THIN || other.low[a] > high[a] + THIN) return false;
+    return true;
+  }
+};
+
+Vector3 along(const Vector3& origin, const Vector3& lateral, double place) {
+  return {origin[0] + place * lateral[0], origin[1] + place * lateral[1], origin[2] + place * lateral[2]};
+}
 
 std::vector<GrooveEnds> ends_of(const GrooveLines& lines) {
   std::vector<GrooveEnds> out;
   for (std::int64_t n = lines.first; n < lines.end; n++) {
     const int slot = lines.slot(n), knots = lines.knots[std::size_t(slot)];
     if (knots < 2) continue;
-    const Vector3 origin = lines.origin(slot), lateral = lines.lateral(slot);
-    GrooveEnds each{n, {origin, origin}};
-    for (int a = 0; a < 3; a++) {
-      each.ends[0][std::size_t(a)] += lines.place[std::size_t(lines.tile(slot, 0))] * lateral[std::size_t(a)];
-      each.ends[1][std::size_t(a)] += lines.place[std::size_t(lines.tile(slot, knots - 1))] * lateral[std::size_t(a)];
-    }
-    out.push_back(each);
+    const auto end = [&](int knot) {
+      return along(lines.origin(slot), lines.lateral(slot), lines.place[std::size_t(lines.tile(slot, knot))]);
+    };
+    out.push_back({n, {end(0), end(knots - 1)}});
   }
+  return out;
+}
+
+Extent extent_of(const std::vector<GrooveEnds>& grooves) {
+  Extent out;
+  for (const GrooveEnds& groove : grooves) out.add(groove.ends[0]), out.add(groove.ends[1]);
   return out;
 }
 
@@ -63,24 +85,33 @@ class SnowContact::Standing {
   Standing(const SnowContact& contact, int k) {
     now_ = contact.snow_->archive.time;
     for (int other = 0; other < contact.runners(); other++)
-      if (other != k) runners_.push_back({&contact.lines(other), ends_of(contact.lines(other))});
+      if (other != k) {
+        std::vector<GrooveEnds> grooves = ends_of(contact.lines(other));
+        const Extent extent = extent_of(grooves);
+        runners_.push_back({&contact.lines(other), extent, std::move(grooves)});
+      }
   }
 
   void recall(const Vector3& origin, const Vector3& lateral, const Vector3& ahead, double from, double to,
               Ground& ground, DelayedRecall* delayed) const {
-    for (const auto& [lines, ends] : runners_)
-      for (std::size_t i = 1; i < ends.size(); i++) {
-        const GrooveEnds &before = ends[i - 1], &after = ends[i];
+    Extent line;
+    line.add(along(origin, lateral, from)), line.add(along(origin, lateral, to));
+    for (const auto& [lines, extent, grooves] : runners_) {
+      if (!extent.meets(line)) continue;
+      for (std::size_t i = 1; i < grooves.size(); i++) {
+        const GrooveEnds &before = grooves[i - 1], &after = grooves[i];
         if (after.number == before.number + 1 && may_cross(before, after, origin, lateral, ahead, from, to))
           press_between(lines->track(before.number, 0, now_), lines->track(after.number, 0, now_), origin, lateral,
                         from, to, now_, ground, delayed);
       }
+    }
   }
 
  private:
   struct Other {
     const GrooveLines* lines;
-    std::vector<GrooveEnds> ends;
+    Extent extent;
+    std::vector<GrooveEnds> grooves;
   };
   std::vector<Other> runners_;
   double now_;
@@ -90,8 +121,10 @@ class SnowContact::Standing {
 void SnowContact::prepare(int k, GrooveLines& lines, const Pose& pose) {
   lines.lay_ahead(runner(k), pose, *snow_);
   const double room = room_of(runner(k), pose);
+  if (!kernels_->find_unknown(lines, pose, room, scratch_.data())) return;
   std::optional<Standing> standing;
   for (std::int64_t n = lines.first; n < lines.end; n++) {
+    if (scratch_[std::size_t(lines.slot(n))] == 0.0) continue;
     double from[2], to[2];
     const int slot = lines.slot(n), stretches = lines.unknown(slot, pose, room, from, to);
     if (stretches == 0) continue;

@@ -6,6 +6,19 @@
 
 namespace skisnow {
 
+void SnowContact::Before::keep_anchors(const GrooveLines& of) {
+  const auto count = std::size_t(of.capacity());
+  anchor.assign(of.values[ANCHOR], of.values[ANCHOR] + count);
+  slipped.assign(of.values[SLIPPED], of.values[SLIPPED] + count);
+}
+
+void SnowContact::Before::put_back(GrooveLines& into) const {
+  into.first = first, into.end = end;
+  std::copy(anchor.begin(), anchor.end(), into.values[ANCHOR]);
+  std::copy(slipped.begin(), slipped.end(), into.values[SLIPPED]);
+  for (const GrooveLines::Line& line : lines) into.put_back(line);
+}
+
 namespace {
 
 constexpr double MOST_PARTS = 1e4;  // of a way
@@ -149,22 +162,26 @@ void SnowContact::march(int k, GrooveLines& lines, const Situation& to) {
   if (state_.accepted.empty()) return;
   const int parts = this->parts(k, to);
   for (int part = 1; part < parts; part++) {
-    const Pose pose = between(state_.accepted[std::size_t(k)], to.poses[std::size_t(k)], double(part) / parts);
-    kernels_->find_sections(runner(k), pose, *snow_, lines, lines.first, sections_[std::size_t(k)]);
+    interpolate(state_.accepted[std::size_t(k)], to.poses[std::size_t(k)], double(part) / parts, on_way_);
+    kernels_->find_sections(runner(k), on_way_, *snow_, lines, lines.first, sections_[std::size_t(k)]);
     remember(k, lines);
   }
 }
 
-// The lines whose history hangs on the way between two poses and not on its ends alone: ahead, where the snow was not
-// touched yet, where the edge slips, and where the base passes its deepest place.
-void SnowContact::find_needed(const GrooveLines& lines, double way) {
+// The lines whose ground depends on the way between two poses and not on its ends alone: ahead, where the snow was not
+// touched yet, and where the base passes its deepest place; what lies behind that was passed before. Where an edge
+// slips, only its anchor depends on the way.
+void SnowContact::find_needed(const GrooveLines& lines, double way, const Runner& runner, const Pose& to) {
   const auto& v = lines.values;
   const auto marked = [&](std::int64_t n) {
     return n >= lines.first && n < lines.end && v[MARKED][lines.slot(n)] > 0.5;
   };
   const auto depth = [&](std::int64_t n) { return v[DEPTH_MARKED][lines.slot(n)]; };
   const auto over = std::int64_t(std::ceil(way / lines.spacing()));
+  const double reach = runner.tip + lines.spacing();  // lines that the tip does not reach stay as they are
   needed_.clear();
+  std::fill(slips_.begin(), slips_.end(), 0.0);
+  rearmost_slip_.reset();
   bool ahead = true;
   std::int64_t deepest = lines.end + over + 1;
   for (std::int64_t n = lines.end - 1; n >= lines.first; n--) {
@@ -173,9 +190,13 @@ void SnowContact::find_needed(const GrooveLines& lines, double way) {
         depth(n - over) >= depth(n - over + 1))
       deepest = n - over;
     ahead = ahead && !marked(n);
-    const double held = std::fabs(v[ANCHOR][slot] - v[EDGE_MARKED][slot]);
-    const bool slips = v[ANCHORED][slot] > 0.5 && held > SLIPPING * snow_->shear_displacement;
-    if (ahead || slips || std::llabs(n - deepest) <= over) needed_.push_back(n);
+    const double displacement = std::fabs(v[ANCHOR][slot] - v[EDGE_MARKED][slot]);
+    const bool slips = v[ANCHORED][slot] > 0.5 && displacement > SLIPPING * snow_->shear_displacement;
+    if (ahead || (n >= deepest - 1 && n <= deepest + over)) {
+      if (lines.station(n, to) <= reach) needed_.push_back(n);
+    } else if (slips) {
+      slips_[std::size_t(slot)] = 1.0, rearmost_slip_ = n;
+    }
   }
 }
 
@@ -189,13 +210,19 @@ void SnowContact::march_where_needed(int k, const Situation& to) {
   double square = 0.0;
   for (std::size_t a = 0; a < 3; a++)
     square += (end.position[a] - from.position[a]) * (end.position[a] - from.position[a]);
-  find_needed(lines, std::sqrt(square));
-  if (needed_.empty()) return;
-  for (const std::int64_t n : needed_) before_[std::size_t(k)].lines.push_back(lines.line(lines.slot(n)));
+  find_needed(lines, std::sqrt(square), runner(k), end);
+  if (needed_.empty() && !rearmost_slip_) return;
+  Before& before = before_[std::size_t(k)];
+  for (const std::int64_t n : needed_) before.lines.push_back(lines.line(lines.slot(n)));
+  if (rearmost_slip_) before.keep_anchors(lines);
+  std::int64_t first = rearmost_slip_.value_or(needed_.empty() ? lines.first : needed_.back());
+  if (!needed_.empty()) first = std::min(first, needed_.back());
   Sections& s = sections_[std::size_t(k)];
   for (int part = 1; part < parts; part++) {
-    kernels_->find_sections(runner(k), between(from, end, double(part) / parts), *snow_, lines, needed_.back(), s);
+    interpolate(from, end, double(part) / parts, on_way_);
+    kernels_->find_sections(runner(k), on_way_, *snow_, lines, first, s);
     for (const std::int64_t n : needed_) remember_section(s, s.index(n), *snow_, lines, lines.slot(n));
+    if (rearmost_slip_) kernels_->drag_anchors(*snow_, s, slips_.data(), lines);
   }
 }
 

@@ -8,18 +8,31 @@
 
 namespace skisnow::SKISNOW_LANES {
 
+// What the derivatives need besides, over the parts that bear on ground that was pressed deeper: integrals of x and x²;
+// of 1, x, x² and the ground's slope over ground from before the step; and what virgin snow's pressure has more than
+// the ground's, E lift at most, at the ends of the pieces.
+template <class V>
+struct GrowthSums {
+  V wet_from, wet_to;
+  V x1{}, x2{}, old0{}, old1{}, old2{}, slope0{}, slope1{};
+  V ends0{}, ends1{}, at_from{}, at_to{};
+};
+
 // Integrals over the wet base of one line, in x from the edge. Virgin snow bears q = H (D + f x); where the ground was
 // pressed deeper by a lift it bears q - E lift, where that pushes (E = k_u - H_V).
 template <class V>
 struct Pressure {
   V hardness, excess, depth, fall;
-  V q0{}, q1{}, l0{}, l1{}, l2{};  // of 1 and x over what bears as virgin snow less all that was pressed deeper;
-  V q2{};                          // of lift, lift x and lift² over what bears there
+  V q0{}, q1{}, l0{}, l1{}, l2{};   // of 1 and x over what bears as virgin snow less all that was pressed deeper;
+  V q2{};                           // of lift, lift x and lift² over what bears there
+  GrowthSums<V>* growth = nullptr;  // optional
 
-  // [press_piece] A straight piece of ground from a to b (within the wet base), its lift there `lift + slope x`.
-  void add(V a, V b, V lift, V slope) {
+  // [press_piece] A straight piece of ground from a to b (within the wet base), its lift there `lift + slope x`; `old`:
+  // where it is ground from before the step.
+  void add(V a, V b, V lift, V slope, MaskOf<V> old) {
     if (!any(a < b)) return;
     const auto [c, d, u, v] = pressed_part(a, b, depth, fall, lift, slope, hardness, excess, THIN);
+    if (growth != nullptr) grow(a, b, lift, slope, u, v, old);
     const V width = v - u, covered = d - c, both = v + u, ends = d + c;
     q0 += width - covered;
     q1 += width * both - covered * ends;
@@ -28,6 +41,23 @@ struct Pressure {
     l0 += 0.5 * width * (lift_u + lift_v);
     l1 += width * (1.0 / 6.0) * (lift_u * (2.0 * u + v) + lift_v * (u + 2.0 * v));
     l2 += width * (1.0 / 3.0) * (lift_u * lift_u + lift_u * lift_v + lift_v * lift_v);
+  }
+
+  void grow(V a, V b, V lift, V slope, V u, V v, MaskOf<V> old) {
+    GrowthSums<V>& g = *growth;
+    const V none{}, width = v - u, both = v + u, first = 0.5 * width * both;
+    const V second = (1.0 / 3.0) * width * (both * both - u * v), ground = slope + fall;
+    g.x1 += first, g.x2 += second;
+    g.old0 += select(old, width, none), g.old1 += select(old, first, none), g.old2 += select(old, second, none);
+    g.slope0 += select(old, ground * width, none), g.slope1 += select(old, ground * first, none);
+    const auto missing = [&](V x) {
+      return minimum(excess * maximum(lift + slope * x, none), hardness * (depth + fall * x));
+    };
+    const MaskOf<V> is_piece = a < b;
+    const V at_a = select(is_piece, missing(a), none), at_b = select(is_piece, missing(b), none);
+    g.ends0 += at_b - at_a, g.ends1 += at_b * b - at_a * a;
+    g.at_from = select(is_piece & (a == g.wet_from), at_a, g.at_from);
+    g.at_to = select(is_piece & (b == g.wet_to), at_b, g.at_to);
   }
 
   // [resultants] Force and moment about the edge for each metre of ski, and elastic energy, of a base wet from a to b.
@@ -46,10 +76,10 @@ struct Pressure {
 // when it passed. `from` to `to` in x, none where they are equal.
 template <class V>
 struct CutGround {
-  V from, to, slope;
+  V from, to, slope, before;  // before: where the edge was marked
 
   CutGround(const GrooveLines& lines, int j, V edge, V depth, V wet_from, V wet_to) {
-    const V before = load<V>(lines.values[EDGE_MARKED] + j) - edge;
+    before = load<V>(lines.values[EDGE_MARKED] + j) - edge;
     const MaskOf<V> marked = load<V>(lines.values[MARKED] + j) > 0.5;
     const MaskOf<V> to_left = marked & (before > 0.0) & (wet_from == 0.0);
     const MaskOf<V> to_right = marked & (before < 0.0) & (wet_to == 0.0);
@@ -69,8 +99,9 @@ V inside(V x, V low, V high) {
 // the cut the deeper of both.
 template <class V>
 void add_piece(const CutGround<V>& cut, V low, V high, V lift, V rise, Pressure<V>& out) {
+  const MaskOf<V> old = low == low;
   if (!any((cut.from < high) & (cut.to > low) & (cut.from < cut.to))) {
-    out.add(low, high, lift, rise);
+    out.add(low, high, lift, rise, old);
     return;
   }
   const V first = inside(cut.from, low, high), last = inside(cut.to, low, high);
@@ -79,16 +110,16 @@ void add_piece(const CutGround<V>& cut, V low, V high, V lift, V rise, Pressure<
   meet = inside(meet, first, last);
   const V at_first = 0.5 * (first + meet), at_last = 0.5 * (meet + last);
   const MaskOf<V> old_first = lift + apart * at_first > 0.0, old_last = lift + apart * at_last > 0.0;
-  out.add(low, first, lift, rise);
-  out.add(first, meet, select(old_first, lift, V{}), select(old_first, rise, cut_rise));
-  out.add(meet, last, select(old_last, lift, V{}), select(old_last, rise, cut_rise));
-  out.add(last, high, lift, rise);
+  out.add(low, first, lift, rise, old);
+  out.add(first, meet, select(old_first, lift, V{}), select(old_first, rise, cut_rise), old_first);
+  out.add(meet, last, select(old_last, lift, V{}), select(old_last, rise, cut_rise), old_last);
+  out.add(last, high, lift, rise, old);
 }
 
 // [press_line] Pressure of the ground's pieces; what was cut within the step counts where it lies deeper.
 template <class V>
-void add_ground(const GrooveLines& lines, int j, V edge, V wet_from, V wet_to, Pressure<V>& out) {
-  const CutGround<V> cut(lines, j, edge, out.depth, wet_from, wet_to);
+void add_ground(const GrooveLines& lines, int j, V edge, V wet_from, V wet_to, const CutGround<V>& cut,
+                Pressure<V>& out) {
   int most = 0;
   for (int lane = 0; lane < WIDTH<V>; lane++) most = std::max<int>(most, lines.knots[std::size_t(j + lane)]);
   const double* place = lines.place.data() + lines.tile(j, 0);
@@ -97,7 +128,7 @@ void add_ground(const GrooveLines& lines, int j, V edge, V wet_from, V wet_to, P
   // over the cut: the part before the ground's first knot, the pieces, the part behind the last one
   const auto cut_piece = [&](V a, V b) {
     const V low = inside(a, cut.from, cut.to), high = inside(b, cut.from, cut.to);
-    out.add(low, maximum(low, high), V{}, cut.slope - out.fall);
+    out.add(low, maximum(low, high), V{}, cut.slope - out.fall, low != low);
   };
   const bool cuts = any(cut.to > cut.from);
   V a = load<V>(place) - edge;
@@ -116,19 +147,81 @@ void add_ground(const GrooveLines& lines, int j, V edge, V wet_from, V wet_to, P
   if (cuts) cut_piece(a, cut.to);
 }
 
+// [pressed growth] Derivatives of force F = ∫ p and moment M = ∫ p x for each metre of ski, p = H q - E lift with
+// q = D + f x, by the depth D at the edge, the fall f, the edge's place y across the line and the ends of the wet base.
+// Where p bears on old ground, ∂lift/∂D = -1, ∂lift/∂f = -x and ∂lift/∂y is the ground's slope; the pieces' ends move
+// by -1 with y. Ground that is cut within the step rises by `cut.slope` from the edge to where it was marked, at
+// `before`: there ∂lift/∂D = -x/before and ∂lift/∂y = slope x/before.
+template <class V>
+struct PressedGrowth {
+  static constexpr int COUNT = 8;
+  V force_depth, force_fall, force_place, moment_depth, moment_fall, moment_place, force_from, force_to;
+
+  PressedGrowth(const Pressure<V>& sums, const GrowthSums<V>& g, const CutGround<V>& cut) {
+    const V none{}, from = g.wet_from, to = g.wet_to, hardness = sums.hardness, excess = sums.excess;
+    const V width = to - from, both = to + from;
+    const V m0 = sums.q0 + width, m1 = 0.5 * (sums.q1 + width * both);
+    const V m2 = (sums.q2 + width * (both * both - from * to)) * (1.0 / 3.0);
+    const MaskOf<V> cuts = cut.from < cut.to;
+    const V share = select(cuts, 1.0 / select(cuts, cut.before, all<V>(1.0)), none), steep = cut.slope * share;
+    const V cut1 = g.x1 - g.old1, cut2 = g.x2 - g.old2;
+    force_depth = hardness * m0 + excess * (g.old0 + share * cut1);
+    moment_depth = hardness * m1 + excess * (g.old1 + share * cut2);
+    force_fall = hardness * m1 + excess * g.x1;
+    moment_fall = hardness * m2 + excess * g.x2;
+    force_place = g.ends0 - g.at_to + g.at_from - excess * (g.slope0 + steep * cut1);
+    moment_place = g.ends1 - g.at_to * to + g.at_from * from - excess * (g.slope1 + steep * cut2);
+    force_to = hardness * (sums.depth + sums.fall * to) - g.at_to;
+    force_from = g.at_from - hardness * (sums.depth + sums.fall * from);
+  }
+
+  PressedGrowth(const Sections& s, int i) {
+    V* const to[COUNT] = {&force_depth, &force_fall,   &force_place, &moment_depth,
+                          &moment_fall, &moment_place, &force_from,  &force_to};
+    for (int k = 0; k < COUNT; k++) *to[k] = load<V>(s[SectionField(FORCE_BY_DEPTH + k)] + i);
+  }
+
+  void store_at(Sections& s, int i, V share) const {
+    const V* const from[COUNT] = {&force_depth, &force_fall,   &force_place, &moment_depth,
+                                  &moment_fall, &moment_place, &force_from,  &force_to};
+    for (int k = 0; k < COUNT; k++) store(s[SectionField(FORCE_BY_DEPTH + k)] + i, share * *from[k]);
+  }
+
+  // Growth of force and moment from one section to another that is close to it.
+  void between(const Cut<V>& c, const Cut<V>& other, V& force, V& moment) const {
+    const V from = c.wet_from, to = maximum(c.wet_to, from);
+    const V depth = other.edge_depth - c.edge_depth, fall = other.fall - c.fall, place = other.place - c.place;
+    const V by_from = force_from * (other.wet_from - from);
+    const V by_to = force_to * (maximum(other.wet_to, other.wet_from) - to);
+    force = force_depth * depth + force_fall * fall + force_place * place + by_from + by_to;
+    moment = moment_depth * depth + moment_fall * fall + moment_place * place + by_from * from + by_to * to;
+  }
+
+  // The same where only the depth and the place of the edge differ.
+  void between_moved(const Cut<V>& c, const Cut<V>& other, V& force, V& moment) const {
+    const V depth = other.edge_depth - c.edge_depth, place = other.place - c.place;
+    force = force_depth * depth + force_place * place, moment = moment_depth * depth + moment_place * place;
+  }
+};
+
 // What the snow answers to the base on a line: force and its moment about the edge for each metre of ski, elastic
 // energy.
 template <class V>
 struct Pressed {
   V force, moment, energy;
 
-  Pressed(const Snow& snow, const GrooveLines& lines, int j, const Cut<V>& c) {
+  // With `grows`, `keep_growth` gets the derivatives.
+  template <class Keep>
+  Pressed(const Snow& snow, const GrooveLines& lines, int j, const Cut<V>& c, bool grows, const Keep& keep_growth) {
     const V wet_to = maximum(c.wet_to, c.wet_from);
+    GrowthSums<V> more{c.wet_from, wet_to};
     Pressure<V> sums;
     sums.hardness = load<V>(lines.values[HARDNESS] + j), sums.excess = load<V>(lines.values[EXCESS] + j);
-    sums.depth = c.edge_depth, sums.fall = c.fall;
-    if (snow.unloading_ratio > 1.0) add_ground(lines, j, c.place, c.wet_from, wet_to, sums);
+    sums.depth = c.edge_depth, sums.fall = c.fall, sums.growth = grows ? &more : nullptr;
+    const CutGround<V> cut(lines, j, c.place, c.edge_depth, c.wet_from, wet_to);
+    if (snow.unloading_ratio > 1.0) add_ground(lines, j, c.place, c.wet_from, wet_to, cut, sums);
     sums.resultants(c.wet_from, wet_to, force, moment, energy);
+    if (grows) keep_growth(PressedGrowth<V>(sums, more, cut));
   }
 };
 
@@ -149,17 +242,22 @@ V strength_left(const ShearLaw& law, V slipped) {
   return 1.0 - (1.0 - law.residual_ratio) * minimum(slipped * (1.0 / law.weakening), all<V>(1.0));
 }
 
-// [press] What the snow answers to each section, and how far the shear at its edge is displaced.
+// [press] What the snow answers to each section, and how far the shear at its edge is displaced; how the answers grow,
+// where that is wanted.
 template <class V>
-void press(const Snow& snow, const GrooveLines& lines, Sections& s) {
+void press(const Snow& snow, const GrooveLines& lines, bool grows, Sections& s) {
   for_lanes<V>(s, lines, [&](int i, int j) {
     const V share = load<V>(s[SHARE] + i), none{};
+    const MaskOf<V> wet = (share > 0.0) & (load<V>(s[DEEPEST] + i) > 0.0);
+    store(s[EDGE_THRUST] + i, none);
+    if (!any(wet)) {
+      for (SectionField field : {FORCE, MOMENT, SNOW_ENERGY, SHEAR_USED, STRENGTH_LEFT, EDGE_STRENGTH})
+        store(s[field] + i, none);
+      return;
+    }
     const Cut<V> c = Cut<V>::stored(s, i);
-    const MaskOf<V> wet = (share > 0.0) & (c.deepest > 0.0);
-    for (SectionField field : {FORCE, MOMENT, SNOW_ENERGY, SHEAR_USED, STRENGTH_LEFT, EDGE_STRENGTH, EDGE_THRUST})
-      store(s[field] + i, none);
-    if (!any(wet)) return;
-    const Pressed<V> answer(snow, lines, j, c);
+    const Pressed<V> answer(snow, lines, j, c, grows,
+                            [&](const PressedGrowth<V>& growth) { growth.store_at(s, i, select(wet, share, none)); });
     store(s[FORCE] + i, select(wet, share * answer.force, none));
     store(s[MOMENT] + i, select(wet, share * answer.moment, none));
     store(s[SNOW_ENERGY] + i, select(wet, share * answer.energy, none));

@@ -7,35 +7,6 @@
 
 namespace skisnow::SKISNOW_LANES {
 
-// [take_lines] Lines in the ski's axes.
-template <class V>
-void take_lines(const Pose& pose, const GrooveLines& lines, Sections& s) {
-  const auto& R = pose.rotation;
-  const auto& c = pose.position;
-  const auto turned = [&](const Vector<V>& a) -> Vector<V> {
-    return {R[0][0] * a.x + R[1][0] * a.y + R[2][0] * a.z, R[0][1] * a.x + R[1][1] * a.y + R[2][1] * a.z,
-            R[0][2] * a.x + R[1][2] * a.y + R[2][2] * a.z};
-  };
-  const auto line3 = [&](LineField first, int j) -> Vector<V> {
-    return {load<V>(lines.values[first] + j), load<V>(lines.values[LineField(first + 1)] + j),
-            load<V>(lines.values[LineField(first + 2)] + j)};
-  };
-  for_lanes<V>(s, lines, [&](int i, int j) {
-    Vector<V> origin = line3(ORIGIN_X, j);
-    origin = {origin.x - c[0], origin.y - c[1], origin.z - c[2]};
-    const Vector<V> ahead = turned(line3(AHEAD_X, j)), normal = turned(line3(NORMAL_X, j));
-    store3(s, FROM_BOOT_0, i, turned(origin));
-    store3(s, LINE_AHEAD_0, i, ahead);
-    store3(s, LINE_NORMAL_0, i, normal);
-    store3(s, LINE_LEFT_0, i, cross(normal, ahead));
-  });
-}
-
-template <class V>
-inline void store_table_place(const Runner& runner, Sections& s, int i, V station) {
-  store(s[TABLE_PLACE] + i, within((station - runner.tail) * runner.places_per_metre(), 0.0, runner.places - 1.0));
-}
-
 // [edge_side] From the ski's middle (0) to one of its edges (1, -1) as the edge angle grows to that of the blend. Of a
 // level base it does not move as the base rolls: the hold of the snow would be drawn along, and a run straight down
 // begin to swing by itself.
@@ -45,80 +16,86 @@ inline V edge_side_of(V tilt) {
   return within_one * size * (3.0 - 2.0 * size);
 }
 
-// [cross_axis] Where along the ski's straight axis each line passes.
 template <class V>
-void cross_axis(const Runner& runner, const Snow& snow, const GrooveLines& lines, Sections& s) {
+inline V table_place(const Runner& runner, V station) {
+  return within((station - runner.tail) * runner.places_per_metre(), 0.0, runner.places - 1.0);
+}
+
+// Rows of the ski's table at the stations of all lanes, linear between its places: half width, its slope, height of the
+// base, its slope.
+template <class V>
+inline void look_up_shape(const Runner& runner, V place, V (&out)[ROW]) {
+  Row rows[WIDTH<V>];
+  for (int lane = 0; lane < WIDTH<V>; lane++) {
+    const int at = std::min(int(place[lane]), runner.places - 2);
+    const double* row = runner.table.data() + ROW * at;
+    const Row here = load<Row>(row);
+    rows[lane] = here + (place[lane] - at) * (load<Row>(row + ROW) - here);
+  }
+  transpose<V>(rows, out);
+}
+
+// [take_lines, cross_axis, cross_edge] Lines in the ski's axes, and the station at which the ski's deeper edge passes
+// each of them: from the crossing of the straight axis two fixed-point steps, whose error falls with the sidecut's
+// slope.
+template <class V>
+void cross_lines(const Runner& runner, const Pose& pose, const Snow& snow, const GrooveLines& lines, Sections& s) {
+  const auto& R = pose.rotation;
+  const auto& c = pose.position;
   const double per_blend = 1.0 / snow.edge_blend_sine;
-  for_lanes<V>(s, lines, [&](int i, int) {
-    const Vector<V> from = load3<V>(s, FROM_BOOT_0, i), ahead = load3<V>(s, LINE_AHEAD_0, i);
-    const V forwards = 1.0 / ahead.x;
-    const V crossing = from.x + (from.y * ahead.y + from.z * ahead.z) * forwards;
-    const V edge_side = edge_side_of<V>(-load<V>(s[LINE_NORMAL_1] + i) * per_blend);
-    store(s[AXIS_CROSSING] + i, crossing);
-    store(s[TOWARD_EDGE] + i, edge_side * ahead.y * forwards);
-    store(s[UPWARD] + i, ahead.z * forwards);
-    store_table_place<V>(runner, s, i, crossing);
+  const auto turned = [&](const Vector<V>& a) -> Vector<V> {
+    return {R[0][0] * a.x + R[1][0] * a.y + R[2][0] * a.z, R[0][1] * a.x + R[1][1] * a.y + R[2][1] * a.z,
+            R[0][2] * a.x + R[1][2] * a.y + R[2][2] * a.z};
+  };
+  const auto line3 = [&](LineField first, int j) -> Vector<V> {
+    return {load<V>(lines.values[first] + j), load<V>(lines.values[LineField(first + 1)] + j),
+            load<V>(lines.values[LineField(first + 2)] + j)};
+  };
+  for_lanes<V>(s, lines, [&](int i, int j) {
+    const Vector<V> origin = line3(ORIGIN_X, j), from = turned({origin.x - c[0], origin.y - c[1], origin.z - c[2]});
+    const Vector<V> ahead = turned(line3(AHEAD_X, j)), normal = turned(line3(NORMAL_X, j));
+    store3(s, FROM_BOOT_0, i, from);
+    store3(s, LINE_AHEAD_0, i, ahead);
+    store3(s, LINE_NORMAL_0, i, normal);
+    store3(s, LINE_LEFT_0, i, cross(normal, ahead));
+    const V forwards = 1.0 / ahead.x, crossing = from.x + (from.y * ahead.y + from.z * ahead.z) * forwards;
+    const V toward_edge = edge_side_of<V>(-normal.y * per_blend) * ahead.y * forwards, upward = ahead.z * forwards;
+    V station = crossing;
+    for (int step = 0; step < 2; step++) {
+      V shape[ROW];
+      look_up_shape<V>(runner, table_place(runner, station), shape);
+      station = crossing - toward_edge * shape[0] - upward * shape[2];
+    }
+    store(s[STATION] + i, station);
   });
 }
 
-inline double looked_up(const Runner& runner, const Sections& s, int i, int column) {
-  const int row = std::min(int(s[TABLE_PLACE][i]), runner.places - 2);
-  const double part = s[TABLE_PLACE][i] - row;
-  const double* table = runner.table.data() + 4 * row;
-  return table[column] + part * (table[4 + column] - table[column]);
-}
-
-// [cross_edge] Where the deeper edge passes: two steps from the axis, whose error falls with the flare of the side.
-template <class V>
-void cross_edge(const Runner& runner, const GrooveLines& lines, Sections& s) {
-  for (int step = 0; step < 2; step++) {
-    for (int i = 0; i < s.count(); i++) {
-      s[HALF_WIDTH][i] = looked_up(runner, s, i, 0);
-      s[BASE_HEIGHT][i] = looked_up(runner, s, i, 2);
-    }
-    for_lanes<V>(s, lines, [&](int i, int) {
-      const V station = load<V>(s[AXIS_CROSSING] + i) - load<V>(s[TOWARD_EDGE] + i) * load<V>(s[HALF_WIDTH] + i) -
-                        load<V>(s[UPWARD] + i) * load<V>(s[BASE_HEIGHT] + i);
-      store(s[STATION] + i, station);
-      store_table_place<V>(runner, s, i, station);
-    });
-  }
-}
-
 // [give_share] The length of ski that each line stands for: halfway to its neighbours, and no farther than tip and
-// tail.
+// tail. Lines beyond the ends lie one spacing off.
 template <class V>
 void give_share(const Runner& runner, const GrooveLines& lines, Sections& s) {
-  const double half = 0.5 * lines.spacing();
-  const double* station = s[STATION];
+  double* station = s[STATION];
   const int first = std::max(s.index(lines.first), 0), end = std::min(s.index(lines.end), s.count());
-  const auto on_ski = [&](double place) { return std::min(std::max(place, runner.tail), runner.tip); };
-  for (int i = 0; i < s.count(); i++) s[SHARE][i] = 0.0;
-  double rear = first < end ? on_ski(station[first] - half) : 0.0;
-  for (int i = first; i < end; i++) {
-    const double front = on_ski(i + 1 < end ? 0.5 * (station[i] + station[i + 1]) : station[i] + half);
-    s[SHARE][i] = std::max(front - rear, 0.0);
-    rear = front;
+  if (first >= end) {
+    std::fill_n(s[SHARE], s.count(), 0.0);
+    return;
   }
-  for_lanes<V>(s, lines,
-               [&](int i, int) { store(s[STATION] + i, within(load<V>(s[STATION] + i), runner.tail, runner.tip)); });
-}
-
-// [look_up] Shape of the base and nodes of the beam at each section.
-inline void look_up(const Runner& runner, const Pose& pose, Sections& s) {
-  constexpr SectionField shape[4] = {HALF_WIDTH, FLARE, BASE_HEIGHT, BASE_RISE};
-  const bool bends = !pose.beam.empty();
-  for (int i = 0; i < s.count(); i++) {
-    for (int column = 0; column < 4; column++) s[shape[column]][i] = looked_up(runner, s, i, column);
-    int e = runner.element[std::size_t(s[TABLE_PLACE][i])];
-    const double* node = runner.node.data();
-    if (s[STATION][i] > node[e] && e > 0) e--;
-    s[ELEMENT][i] = e;
-    s[ELEMENT_LENGTH][i] = node[e] - node[e + 1];
-    s[IN_ELEMENT][i] = (node[e] - s[STATION][i]) / (node[e] - node[e + 1]);
-    for (int k = 0; k < 6; k++)
-      s[SectionField(FRONT_DEFLECTION + k)][i] = bends ? pose.beam[std::size_t(3 * e + k)] : 0.0;
+  const auto on_ski = [&](V place) { return within(place, runner.tail, runner.tip); };
+  const double before = station[first] - lines.spacing(), behind = station[end - 1] + lines.spacing();
+  if (first > 0) station[first - 1] = before;
+  if (end < s.count()) station[end] = behind;
+  double rear = 0.5 * (before + station[first]);
+  for (int i = 0; i < s.count(); i += WIDTH<V>) {
+    const V here = load<V>(station + i);
+    const V next = i + WIDTH<V> < s.count() ? load<V>(station + i + 1) : from_lane_behind<V>(here, behind);
+    const V to = on_ski(0.5 * (here + next)), from = from_lane_before<V>(to, on_ski(all<V>(rear))[0]);
+    rear = 0.5 * (here[WIDTH<V> - 1] + next[WIDTH<V> - 1]);
+    V share = maximum(to - from, V{});
+    for (int lane = 0; lane < WIDTH<V>; lane++)
+      if (i + lane < first || i + lane >= end) share[lane] = 0.0;
+    store(s[SHARE] + i, share);
   }
+  for (int i = 0; i < s.count(); i += WIDTH<V>) store(station + i, on_ski(load<V>(station + i)));
 }
 
 // Hermite's shapes at a place z of an element of length h, from its front.
@@ -135,25 +112,48 @@ struct Shapes {
   }
 };
 
-// [bend] Height and slope of the bent base; sine and cosine of its twist.
+// The base at one station of each lane, bent with the beam.
 template <class V>
-void bend(const GrooveLines& lines, Sections& s) {
-  for_lanes<V>(s, lines, [&](int i, int) {
-    const V z = load<V>(s[IN_ELEMENT] + i), h = load<V>(s[ELEMENT_LENGTH] + i), y = 1.0 - z, per_length = 1.0 / h;
-    const V w = load<V>(s[FRONT_DEFLECTION] + i), a = load<V>(s[FRONT_SLOPE] + i), t = load<V>(s[FRONT_TWIST] + i);
-    const V v = load<V>(s[REAR_DEFLECTION] + i), b = load<V>(s[REAR_SLOPE] + i), u = load<V>(s[REAR_TWIST] + i);
-    const Shapes<V> shape(z, h);
-    const V deflection = shape.front * w + shape.front_slope * a + shape.rear * v + shape.rear_slope * b;
-    const V rise = 6.0 * z * y * per_length * (w - v) - y * (1.0 - 3.0 * z) * a - z * (3.0 * z - 2.0) * b;
+struct BentBase {
+  V shape[ROW];                     // half width, its slope, height of the base, its slope
+  V element, length, in_element;    // of the beam: its element, that element's length, place in it from the front
+  V sine{}, cosine, twist_slope{};  // of the twist
+
+  BentBase(const Runner& runner, const Pose& pose, V station) : cosine(all<V>(1.0)) {
+    const V place = table_place(runner, station);
+    const bool bends = !pose.beam.empty();
+    look_up_shape<V>(runner, place, shape);
+    Row nodes[WIDTH<V>], front[WIDTH<V>], rear[WIDTH<V>];
+    for (int lane = 0; lane < WIDTH<V>; lane++) {
+      int e = runner.element[std::size_t(place[lane])];
+      if (station[lane] > runner.node[std::size_t(e)] && e > 0) e--;
+      nodes[lane] = load<Row>(runner.element_rows.data() + ROW * e);
+      if (!bends) continue;
+      const double* beam = pose.beam.data() + 3 * e;  // rows of four overlap: twist in front, then the node behind
+      front[lane] = load<Row>(beam), rear[lane] = load<Row>(beam + 2);
+    }
+    V row[ROW];
+    transpose<V>(nodes, row);
+    length = row[1], in_element = (row[0] - station) * row[2], element = row[3];
+    if (bends) bend(front, rear, row[2]);
+  }
+
+ private:
+  // [bend] By Hermite's cubics; sine and cosine of the twist by series whose next terms are below 1e-9 at 0.3 rad.
+  void bend(const Row* front, const Row* rear, V per_length) {
+    V first[ROW], second[ROW];
+    transpose<V>(front, first), transpose<V>(rear, second);
+    const V &w = first[0], &a = first[1], &t = first[2], &v = second[1], &b = second[2], &u = second[3];
+    const V z = in_element, y = 1.0 - z;
+    const Shapes<V> by(z, length);
+    shape[2] += by.front * w + by.front_slope * a + by.rear * v + by.rear_slope * b;
+    shape[3] += 6.0 * z * y * per_length * (w - v) - y * (1.0 - 3.0 * z) * a - z * (3.0 * z - 2.0) * b;
     const V twist = y * t + z * u, q = twist * twist;
-    store(s[BASE_HEIGHT] + i, load<V>(s[BASE_HEIGHT] + i) + deflection);
-    store(s[BASE_RISE] + i, load<V>(s[BASE_RISE] + i) + rise);
-    store(s[TWIST_SLOPE] + i, (t - u) * per_length);
-    // series: the next terms are below 1e-9 at 0.3 rad
-    store(s[TWIST_COSINE] + i, 1.0 - q * (0.5 - q * (1.0 / 24.0 - q * (1.0 / 720.0))));
-    store(s[TWIST_SINE] + i, twist * (1.0 - q * (1.0 / 6.0 - q * (1.0 / 120.0 - q * (1.0 / 5040.0)))));
-  });
-}
+    twist_slope = (t - u) * per_length;
+    cosine = 1.0 - q * (0.5 - q * (1.0 / 24.0 - q * (1.0 / 720.0)));
+    sine = twist * (1.0 - q * (1.0 / 6.0 - q * (1.0 / 120.0 - q * (1.0 / 5040.0))));
+  }
+};
 
 // The section of one line through the base.
 template <class V>
@@ -194,6 +194,16 @@ struct Cut {
     store(s[EDGE_PLACE] + i, place), store(s[DEPTH_FALL] + i, fall), store(s[DEPTH_CLIMB] + i, climb);
     store(s[BASE_WIDENING] + i, widening), store(s[WET_FROM] + i, wet_from), store(s[WET_TO] + i, wet_to);
     store3(s, ACROSS_0, i, across), store3(s, ALONG_0, i, along), store(s[ALONG_SIZE] + i, size);
+    store(s[EDGE_SKEW] + i, skew_);
+  }
+
+  // A stored section after the base has moved by a small way to the left, or off the snow. The wet base ends where it
+  // did: the snow bears nothing at the water line.
+  void move(const Sections& s, int i, bool to_left, double way) {
+    const V skew = load<V>(s[EDGE_SKEW] + i), rise = to_left ? normal.y : normal.z;
+    (to_left ? edge_left : edge_up) += way;
+    deepest -= way * rise, edge_depth -= way * rise;
+    place += way * (to_left ? left.y - skew * ahead.y : left.z - skew * ahead.z);
   }
 
   // [edge] The deeper edge: where it is, how deep; the fall of the depth to the left.
@@ -216,8 +226,8 @@ struct Cut {
   // [edge_place] Where it crosses the line; beyond tip and tail it goes on along its own direction.
   void find_place() {
     const V beyond = (from.x - station) * ahead.x + (from.y - edge_left) * ahead.y + (from.z - edge_up) * ahead.z;
-    place = (station - from.x) * left.x + (edge_left - from.y) * left.y + (edge_up - from.z) * left.z +
-            beyond * dot(raw_, left) / dot(raw_, ahead);
+    skew_ = dot(raw_, left) / dot(raw_, ahead);
+    place = (station - from.x) * left.x + (edge_left - from.y) * left.y + (edge_up - from.z) * left.z + beyond * skew_;
   }
 
   // [wet_base] Where on the line the base is in the snow.
@@ -247,13 +257,23 @@ struct Cut {
  private:
   static constexpr double LEVEL = 1e-12;  // fall of the depth across below which a base is level
   Vector<V> raw_;                         // along the edge, 1 ahead
-  V normal_ahead_, steep_;
+  V normal_ahead_, steep_, skew_;         // skew: way of the edge across the line per way ahead of it
 };
 
-// [cut_base] The plane section of the base over each line: the deeper edge, directions, where the base is wet.
+// [cut_base] The bent base over each line and its plane section: the deeper edge, directions, where the base is wet.
 template <class V>
-void cut_base(const Snow& snow, const GrooveLines& lines, Sections& s) {
+void cut_base(const Runner& runner, const Pose& pose, const Snow& snow, const GrooveLines& lines, Sections& s) {
   for_lanes<V>(s, lines, [&](int i, int) {
+    if (!any(load<V>(s[SHARE] + i) > 0.0)) {
+      store(s[DEEPEST] + i, V{});
+      return;
+    }
+    const BentBase<V> base(runner, pose, load<V>(s[STATION] + i));
+    store(s[HALF_WIDTH] + i, base.shape[0]), store(s[FLARE] + i, base.shape[1]);
+    store(s[BASE_HEIGHT] + i, base.shape[2]), store(s[BASE_RISE] + i, base.shape[3]);
+    store(s[ELEMENT] + i, base.element), store(s[ELEMENT_LENGTH] + i, base.length);
+    store(s[IN_ELEMENT] + i, base.in_element), store(s[TWIST_SLOPE] + i, base.twist_slope);
+    store(s[TWIST_SINE] + i, base.sine), store(s[TWIST_COSINE] + i, base.cosine);
     Cut<V> c(s, i);
     c.cut(snow);
     c.store_at(s, i);
@@ -264,13 +284,9 @@ template <class V>
 void find_sections(const Runner& runner, const Pose& pose, const Snow& snow, const GrooveLines& lines,
                    std::int64_t first, Sections& s) {
   s.prepare(lines, first);
-  take_lines<V>(pose, lines, s);
-  cross_axis<V>(runner, snow, lines, s);
-  cross_edge<V>(runner, lines, s);
+  cross_lines<V>(runner, pose, snow, lines, s);
   give_share<V>(runner, lines, s);
-  look_up(runner, pose, s);
-  bend<V>(lines, s);
-  cut_base<V>(snow, lines, s);
+  cut_base<V>(runner, pose, snow, lines, s);
 }
 
 }  // namespace skisnow::SKISNOW_LANES

@@ -17,13 +17,9 @@ enum SectionField {
   // the line: its place from the boot, its directions ahead, out of the snow, and to the left
   FROM_BOOT_0, FROM_BOOT_1, FROM_BOOT_2, LINE_AHEAD_0, LINE_AHEAD_1, LINE_AHEAD_2,
   LINE_NORMAL_0, LINE_NORMAL_1, LINE_NORMAL_2, LINE_LEFT_0, LINE_LEFT_1, LINE_LEFT_2,
-  // where the edge crosses it along the ski: of the straight axis (m), what half width and height add; in the table
-  AXIS_CROSSING, TOWARD_EDGE, UPWARD, TABLE_PLACE,
   // the section: position along the ski, share of the spacing (m), half width and its slope, height of the base and its
   // slope, place in its beam element (from the front), that element's length
   STATION, SHARE, HALF_WIDTH, FLARE, BASE_HEIGHT, BASE_RISE, IN_ELEMENT, ELEMENT_LENGTH, ELEMENT,
-  // deflection, slope and twist of the beam's nodes in front and behind; rates at the section
-  FRONT_DEFLECTION, FRONT_SLOPE, FRONT_TWIST, REAR_DEFLECTION, REAR_SLOPE, REAR_TWIST,
   // sine and cosine of the twist, its slope; sine of the edge angle
   TWIST_SINE, TWIST_COSINE, TWIST_SLOPE, EDGE_SINE,
   // the edge that is deeper: depth of the deepest, and of this one, across from the ski's middle, to the left and
@@ -34,8 +30,12 @@ enum SectionField {
   // fall of the depth to the left; its growth along the edge; width across the base over that along the line; where the
   // wet base begins and ends
   DEPTH_FALL, DEPTH_CLIMB, BASE_WIDENING, WET_FROM, WET_TO,
+  EDGE_SKEW,  // how far the edge's place moves along the line as the line moves ahead by one
   // the answer of the snow: force (N) and its moment about the edge; elastic energy of the snow (J)
   FORCE, MOMENT, SNOW_ENERGY,
+  // on demand: growth of force and moment with the depth of the edge, its fall, its place, and the wet base's ends
+  FORCE_BY_DEPTH, FORCE_BY_FALL, FORCE_BY_PLACE, MOMENT_BY_DEPTH, MOMENT_BY_FALL, MOMENT_BY_PLACE, FORCE_BY_FROM,
+  FORCE_BY_TO,
   RATE_POWER,  // that c of snow that takes time takes (W)
   // the edge: share of the strength that is left after slip, shear strength S_f and the thrust off the snow that comes
   // with it (Pa), the share of the displacement to full strength in use
@@ -95,14 +95,20 @@ struct Kernels {
   const char* name;  // of the instruction set
   int lanes;
   void (*find_sections)(const Runner&, const Pose&, const Snow&, const GrooveLines&, std::int64_t first, Sections&);
-  void (*press)(const Snow&, const GrooveLines&, Sections&);  // pressure, strength, share of the displacement in use
+  // pressure, strength, share of the displacement in use; with `grows` the pressure's growth
+  void (*press)(const Snow&, const GrooveLines&, bool grows, Sections&);
+  // of the lines alone, see line_kernels.hpp; all by slot
+  bool (*find_unknown)(const GrooveLines&, const Pose&, double room, double* is_unknown);
+  void (*square_depths)(const GrooveLines&, double* out);
+  void (*drag_anchors)(const Snow&, const Sections&, const double* slips, GrooveLines&);
   void (*slide)(const Motion&, const Pose&, const Snow&, Sections&);  // sliding speed along the edge and μ
   void (*push)(const Motion&, const Pose&, const Snow&, Sections&, Wrench&);
-  // of sections that were looked at; a step (m, rad), and its sense to the left and of the twist
-  void (*differ)(const Snow&, const GrooveLines&, const Sections&, double step, double sense, SectionDifferences&);
-  // add to a tangent what the sections' derivatives give, and friction by its growth with the sliding speed
-  void (*add_stiffness)(const Sections&, const SectionDifferences&, double weight, bool bends, RunnerTangent&);
-  void (*add_friction_damping)(const Sections&, double weight, bool bends, RunnerTangent&);
+  // of sections whose pressure's growth is known; a step (m, rad), and its sense to the left and of the twist
+  void (*differ)(const Snow&, const GrooveLines&, const Sections&, double step, double sense, bool is_level,
+                 SectionDifferences&);
+  // add the sections' derivatives to a tangent, and friction by its growth with the sliding speed, both weighted
+  void (*add_stiffness)(const Sections&, const SectionDifferences&, double stiffness, double damping, bool bends,
+                        RunnerTangent&);
   BandKernels band;
 };
 

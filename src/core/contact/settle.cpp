@@ -31,14 +31,19 @@ void SnowContact::settle_history(int k, const Pose& pose) {
 }
 
 // A line that tip or tail passes stands for the whole spacing: what the ski presses there first is pressed for good.
-void SnowContact::count_energy(int k, GrooveLines& lines) const {
+void SnowContact::count_energy(int k, GrooveLines& lines) {
   const Sections& s = sections(k);
   const double half = 0.5 * lines.spacing(), tail = runner(k).tail + half, tip = runner(k).tip - half;
+  if (!lines.lost) kernels_->square_depths(lines, scratch_.data());
   for (std::int64_t n = lines.first; n < lines.end; n++) {
-    const int i = s.index(n);
+    const int i = s.index(n), slot = lines.slot(n);
     if (!s.touches(i)) continue;
     const bool is_whole = s[STATION][i] > tail && s[STATION][i] < tip;
-    lines.count_energy(lines.slot(n), is_whole ? s[SHARE][i] : lines.spacing());
+    const double length = is_whole ? s[SHARE][i] : lines.spacing();
+    if (lines.lost)
+      lines.count_energy(slot, length);
+    else
+      lines.count_energy(slot, length, scratch_[std::size_t(slot)]);
   }
 }
 

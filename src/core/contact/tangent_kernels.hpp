@@ -6,92 +6,112 @@
 
 namespace skisnow::SKISNOW_LANES {
 
-// Of one section: how the six unknowns of its element move the beam there (deflection, twist), and what loads there do
-// to them.
-struct ElementShapes {
-  double deflection[BORDER_ROW] = {}, twist[BORDER_ROW] = {};
-  int first;  // of the unknowns
+inline void add_to(double* row, const Eight& more) { store(row, load<Eight>(row) + more); }
 
-  ElementShapes(const Sections& s, int i) : first(3 * int(s[ELEMENT][i])) {
-    const double z = s[IN_ELEMENT][i], h = s[ELEMENT_LENGTH][i], y = 1.0 - z;
-    deflection[0] = y * y * (1.0 + 2.0 * z), deflection[1] = h * z * y * y, twist[2] = y;
-    deflection[3] = z * z * (3.0 - 2.0 * z), deflection[4] = -h * z * z * y, twist[5] = z;
+// Eight sections, a row of eight numbers for each.
+struct EightSections {
+  // [local_movement] How the clamp's six freedoms move the base there to the left and off the snow. The edge runs
+  // outwards and up: a way ahead meets the line with another place of it.
+  Eight left[BLOCK], off[BLOCK];
+  // How the six unknowns of the section's element move the beam there, and what loads there do to them.
+  Eight deflection[BLOCK], twist[BLOCK];
+  // [friction damping] A force of 1 along the edge on the clamp, and on the beam there; growth of friction with the
+  // sliding speed.
+  Eight along[BLOCK], lifted, twisted, rate;
+
+  EightSections(const Sections& s, int i, double damping) {
+    const auto column = [&](SectionField field) { return load<Eight>(s[field] + i); };
+    const Eight none{}, one = none + 1.0, station = column(STATION), aside = column(EDGE_LEFT), up = column(EDGE_UP);
+    const Eight reach = column(EDGE_REACH), sp = column(TWIST_SINE), cp = column(TWIST_COSINE);
+    const Eight twisting = reach * column(TWIST_SLOPE), outwards = column(FLARE) * reach / column(HALF_WIDTH);
+    const Eight out = outwards * cp - twisting * sp, rise = column(BASE_RISE) - outwards * sp - twisting * cp;
+    const Eight z = column(IN_ELEMENT), h = column(ELEMENT_LENGTH), y = 1.0 - z;
+    fill(left, {-out, one, none, -column(BASE_HEIGHT), -out * up, station + out * aside});
+    fill(off, {-rise, none, one, none, -station - rise * up, rise * aside});
+    fill(deflection, {y * y * (1.0 + 2.0 * z), h * z * y * y, none, z * z * (3.0 - 2.0 * z), -h * z * z * y, none});
+    fill(twist, {none, none, y, none, none, z});
+    const Eight force = column(FORCE), fall = column(DEPTH_FALL);
+    const auto presses = force > 0.0;
+    const Eight to_centre = select(presses, column(MOMENT) / select(presses, force, one), none);
+    const Eight at[3] = {station + to_centre * (column(LINE_LEFT_0) - fall * column(LINE_NORMAL_0)),
+                         aside + to_centre * (column(LINE_LEFT_1) - fall * column(LINE_NORMAL_1)),
+                         up + to_centre * (column(LINE_LEFT_2) - fall * column(LINE_NORMAL_2))};
+    const Eight t0 = column(ALONG_0), t1 = column(ALONG_1), t2 = column(ALONG_2);
+    fill(along, {t0, t1, t2, at[1] * t2 - at[2] * t1, at[2] * t0 - at[0] * t2, at[0] * t1 - at[1] * t0});
+    lifted = t2, twisted = -(reach + to_centre * column(BASE_WIDENING)) * (sp * t1 + cp * t2);
+    rate = select(presses, damping * column(FRICTION_LOAD) * column(FRICTION_SLOPE), none);
+  }
+
+ private:
+  static void fill(Eight (&rows)[BLOCK], const Eight (&columns)[BODY]) {
+    for (int c = 0; c < BODY; c++) rows[c] = columns[c];
+    rows[6] = rows[7] = Eight{};
+    transpose(rows);
   }
 };
 
-// [local_movement] How the boot's six freedoms move the base at a section: to the left, off the snow, and in twist. The
-// edge runs outwards and up: a way ahead meets the line with another place of it.
-inline void find_local_movement(const Sections& s, int i, Eight (&by)[SectionDifferences::CHANGES]) {
-  const double station = s[STATION][i], left = s[EDGE_LEFT][i], up = s[EDGE_UP][i], reach = s[EDGE_REACH][i];
-  const double sp = s[TWIST_SINE][i], cp = s[TWIST_COSINE][i], twisting = reach * s[TWIST_SLOPE][i];
-  const double outwards = s[FLARE][i] * reach / s[HALF_WIDTH][i];
-  const double out = outwards * cp - twisting * sp, rise = s[BASE_RISE][i] - outwards * sp - twisting * cp;
-  by[SectionDifferences::LEFT] = Eight{-out, 1.0, 0.0, -s[BASE_HEIGHT][i], -out * up, station + out * left};
-  by[SectionDifferences::OFF] = Eight{-rise, 0.0, 1.0, 0.0, -station - rise * up, rise * left};
-  by[SectionDifferences::TWIST] = Eight{0.0, 0.0, 0.0, -1.0, 0.0, 0.0};
-}
+// Minus the derivatives of the answers of eight sections, weighted: [change][answer], and a row of the six on the clamp
+// for each section.
+struct EightDifferences {
+  Eight by[SectionDifferences::CHANGES][SectionDifferences::ANSWERS];
+  Eight clamp_by_off[BLOCK], clamp_by_twist[BLOCK];
 
-inline void add_to(double* row, const Eight& more) { store(row, load<Eight>(row) + more); }
-
-// Loads on the beam, force and moment, by the element's six unknowns.
-inline void add_to_band(const ElementShapes& shapes, const Eight& force, const Eight& moment, RunnerTangent& out) {
-  for (int row = 0; row < 6; row++)
-    add_to(out.beam.data() + BAND_ROW * (shapes.first + row) + HALF_BAND - row,
-           shapes.deflection[row] * force + shapes.twist[row] * moment);
-}
-
-// [stiffness] Weighted, of all sections that touch.
-inline void add_stiffness(const Sections& s, const SectionDifferences& minus, double weight, bool bends,
-                          RunnerTangent& out) {
-  constexpr int CHANGES = SectionDifferences::CHANGES, ANSWERS = SectionDifferences::ANSWERS;
-  for (int i = 0; i < s.count(); i++) {
-    if (!s.touches(i)) continue;
-    double answer[CHANGES][ANSWERS];
-    for (int m = 0; m < CHANGES; m++)
-      for (int r = 0; r < ANSWERS; r++) answer[m][r] = weight * minus.column(m, r)[i];
-    Eight local[CHANGES], by_boot[ANSWERS];
-    find_local_movement(s, i, local);
-    for (int r = 0; r < ANSWERS; r++)
-      by_boot[r] = answer[0][r] * local[0] + answer[1][r] * local[1] + answer[2][r] * local[2];
-    for (int r = 0; r < BODY; r++) add_to(out.body[r], by_boot[r]);
-    if (!bends) continue;
-    const ElementShapes shapes(s, i);
-    const double *off = answer[SectionDifferences::OFF], *twist = answer[SectionDifferences::TWIST];
-    const Eight by_off = load<Eight>(off), by_twist = load<Eight>(twist);
-    for (int q = 0; q < 6; q++) {
-      add_to(out.beam_by_body.data() + BORDER_ROW * (shapes.first + q),
-             shapes.deflection[q] * by_boot[6] + shapes.twist[q] * by_boot[7]);
-      add_to(out.body_by_beam.data() + BORDER_ROW * (shapes.first + q),
-             shapes.deflection[q] * by_off + shapes.twist[q] * by_twist);
+  EightDifferences(const SectionDifferences& minus, int i, double weight) {
+    for (int change = 0; change < SectionDifferences::CHANGES; change++)
+      for (int k = 0; k < SectionDifferences::ANSWERS; k++)
+        by[change][k] = weight * load<Eight>(minus.column(change, k) + i);
+    for (int k = 0; k < BLOCK; k++) {
+      clamp_by_off[k] = k < BODY ? by[SectionDifferences::OFF][k] : Eight{};
+      clamp_by_twist[k] = k < BODY ? by[SectionDifferences::TWIST][k] : Eight{};
     }
-    const Eight deflection = load<Eight>(shapes.deflection), twisted = load<Eight>(shapes.twist);
-    add_to_band(shapes, off[6] * deflection + twist[6] * twisted, off[7] * deflection + twist[7] * twisted, out);
+    transpose(clamp_by_off), transpose(clamp_by_twist);
+  }
+};
+
+// [stiffness] Of one section: answers to its three local movements, and its friction, summed to clamp and beam.
+inline void add_section(const EightDifferences& minus, const EightSections& at, int lane, int first, bool bends,
+                        Eight (&clamp)[BODY], RunnerTangent& out) {
+  constexpr int LEFT = SectionDifferences::LEFT, OFF = SectionDifferences::OFF, TWIST = SectionDifferences::TWIST;
+  const Eight rolls{0.0, 0.0, 0.0, -1.0, 0.0, 0.0};  // a rotation of the clamp about the ski's axis is minus a twist
+  const Eight &along = at.along[lane], rubs = at.rate[lane] * along;
+  const auto by_clamp = [&](int k) {
+    return minus.by[LEFT][k][lane] * at.left[lane] + minus.by[OFF][k][lane] * at.off[lane] +
+           minus.by[TWIST][k][lane] * rolls;
+  };
+  for (int r = 0; r < BODY; r++) clamp[r] += by_clamp(r) + along[r] * rubs;
+  if (!bends) return;
+  const double lifted = at.lifted[lane], twisted = at.twisted[lane];
+  const Eight &deflection = at.deflection[lane], &twist = at.twist[lane];
+  const Eight rub = at.rate[lane] * (lifted * deflection + twisted * twist);
+  const Eight force_by_clamp = by_clamp(6) + lifted * rubs, moment_by_clamp = by_clamp(7) + twisted * rubs;
+  const Eight clamp_by_lift = minus.clamp_by_off[lane] + lifted * rubs;
+  const Eight clamp_by_twist = minus.clamp_by_twist[lane] + twisted * rubs;
+  const Eight force = minus.by[OFF][6][lane] * deflection + minus.by[TWIST][6][lane] * twist + lifted * rub;
+  const Eight moment = minus.by[OFF][7][lane] * deflection + minus.by[TWIST][7][lane] * twist + twisted * rub;
+  double* by_beam = out.body_by_beam.data() + BORDER_ROW * first;
+  double* of_beam = out.beam_by_body.data() + BORDER_ROW * first;
+  double* band = out.beam.data() + BAND_ROW * first + HALF_BAND;
+  for (int q = 0; q < 6; q++) {
+    const bool twists = q % 3 == 2;
+    const double share = twists ? twist[q] : deflection[q];
+    add_to(of_beam + BORDER_ROW * q, share * (twists ? moment_by_clamp : force_by_clamp));
+    add_to(by_beam + BORDER_ROW * q, share * (twists ? clamp_by_twist : clamp_by_lift));
+    add_to(band + (BAND_ROW - 1) * q, share * (twists ? moment : force));
   }
 }
 
-// [friction_damping] Friction grows with the sliding speed.
-inline void add_friction_damping(const Sections& s, double weight, bool bends, RunnerTangent& out) {
-  for (int i = 0; i < s.count(); i++) {
-    const double force = s[FORCE][i], rate = weight * s[FRICTION_LOAD][i] * s[FRICTION_SLOPE][i];
-    if (!s.touches(i) || !(force > 0.0) || rate == 0.0) continue;
-    const double off = s[MOMENT][i] / force, fall = s[DEPTH_FALL][i];
-    const double at[3] = {s[STATION][i] + off * (s[LINE_LEFT_0][i] - fall * s[LINE_NORMAL_0][i]),
-                          s[EDGE_LEFT][i] + off * (s[LINE_LEFT_1][i] - fall * s[LINE_NORMAL_1][i]),
-                          s[EDGE_UP][i] + off * (s[LINE_LEFT_2][i] - fall * s[LINE_NORMAL_2][i])};
-    const double arm = s[EDGE_REACH][i] + off * s[BASE_WIDENING][i];
-    const double t0 = s[ALONG_0][i], t1 = s[ALONG_1][i], t2 = s[ALONG_2][i];
-    const Eight along{t0, t1, t2, at[1] * t2 - at[2] * t1, at[2] * t0 - at[0] * t2, at[0] * t1 - at[1] * t0};
-    for (int r = 0; r < BODY; r++) add_to(out.body[r], rate * along[r] * along);
-    if (!bends) continue;
-    const ElementShapes shapes(s, i);
-    const double twisting = -arm * (s[TWIST_SINE][i] * t1 + s[TWIST_COSINE][i] * t2);
-    const Eight by_unknown = rate * (load<Eight>(shapes.deflection) * t2 + load<Eight>(shapes.twist) * twisting);
-    for (int q = 0; q < 6; q++) {
-      add_to(out.body_by_beam.data() + BORDER_ROW * (shapes.first + q), by_unknown[q] * along);
-      add_to(out.beam_by_body.data() + BORDER_ROW * (shapes.first + q), by_unknown[q] * along);
-    }
-    add_to_band(shapes, by_unknown * t2, by_unknown * twisting, out);
+// Weighted, of all sections that touch: their derivatives by pose, and friction by its growth with the sliding speed.
+inline void add_stiffness(const Sections& s, const SectionDifferences& minus, double stiffness, double damping,
+                          bool bends, RunnerTangent& out) {
+  Eight clamp[BODY] = {};
+  for (int i = 0; i < s.count(); i += BLOCK) {
+    if (!any((load<Eight>(s[SHARE] + i) > 0.0) & (load<Eight>(s[DEEPEST] + i) > 0.0))) continue;
+    const EightSections at(s, i, damping);
+    const EightDifferences weighted(minus, i, stiffness);
+    for (int lane = 0; lane < BLOCK; lane++)
+      if (s.touches(i + lane)) add_section(weighted, at, lane, 3 * int(s[ELEMENT][i + lane]), bends, clamp, out);
   }
+  for (int r = 0; r < BODY; r++) add_to(out.body[r], clamp[r]);
 }
 
 }  // namespace skisnow::SKISNOW_LANES

@@ -66,11 +66,11 @@ void Dynamics::fill_end() {
 }
 
 // Forces of the snow at the situation `end_`.
-void Dynamics::add_snow(Numbers& out) {
+void Dynamics::add_snow(Numbers& out, bool with_tangent) {
   counts_.looks++;
   for (std::size_t k = 0; k < body_.skis.size(); k++) {
     const FlexibleSki& ski = body_.skis[k];
-    const Wrench& snow = contact_->look(int(k), end_.poses[k], end_.motions[k]);
+    const Wrench& snow = contact_->look(int(k), end_.poses[k], end_.motions[k], with_tangent);
     Vector3 force{}, moment{};
     for (std::size_t c = 0; c < 3; c++)
       for (std::size_t a = 0; a < 3; a++) {
@@ -88,11 +88,11 @@ void Dynamics::add_snow(Numbers& out) {
 }
 
 // [residual] F(x, v) - K (u + c w) - M (a₁ v - (1 + ω) v₀ + a₋ v₋₁)/h at the end.
-void Dynamics::find_residual(const Formula& f) {
-  if (!motions_.empty()) return find_moving_residual(f.newest, f.now, f.before, residual_);
+void Dynamics::find_residual(const Formula& f, bool with_tangent) {
+  if (!motions_.empty()) return find_moving_residual(f.newest, f.now, f.before, with_tangent, residual_);
   std::fill(residual_.begin(), residual_.end(), 0.0);
   fill_end();
-  add_snow(residual_);
+  add_snow(residual_, with_tangent);
   add_forces(body_, layout_, next_, residual_);
   add_stiffness(body_, layout_, next_.bend, next_.rate, -1.0, residual_);
   for (std::size_t i = 0; i < difference_.size(); i++)
@@ -169,7 +169,7 @@ double Dynamics::size_of(const Numbers& rates, double reach) const {
 // [line search] Go back along the last change of the rates where it overshot. Along the change δ the work β g·δ of the
 // residual g falls from `begun` > 0 to a negative number: the snow's pressure rises with depth, so the line has one
 // zero, and the secant through both ends estimates it. `share` of the change has been made.
-void Dynamics::limit_overshoot(const Formula& f, double begun, double share) {
+void Dynamics::limit_overshoot(const Formula& f, double begun, double share, bool with_tangent) {
   for (int tries = 0; tries < MOST_BACKTRACKS; tries++) {
     double left = 0.0;
     for (std::size_t i = 0; i < residual_.size(); i++) left += f.reach * residual_[i] * change_[i];
@@ -178,7 +178,7 @@ void Dynamics::limit_overshoot(const Formula& f, double begun, double share) {
     for (std::size_t i = 0; i < residual_.size(); i++) next_.rate[i] -= (share - shorter) * change_[i];
     share = shorter;
     place(f);
-    find_residual(f);
+    find_residual(f, with_tangent);
   }
 }
 
@@ -189,8 +189,8 @@ bool Dynamics::solve_step(const Formula& f) {
   double last = std::numeric_limits<double>::infinity(), begun = 0.0, share = 1.0;
   bool renew = true;
   for (int iteration = 0; iteration < MOST_ITERATIONS; iteration++) {
-    find_residual(f);
-    if (iteration > 0) limit_overshoot(f, begun, share);
+    find_residual(f, renew);
+    if (iteration > 0) limit_overshoot(f, begun, share, renew);
     if (renew && !factor(f.reach)) return false;
     begun = find_change(f);
     const double size = size_of(change_, f.reach);
@@ -306,7 +306,7 @@ void Dynamics::begin() {
   end_.dt = 0.0;
   contact_->begin(end_);
   residual_.assign(residual_.size(), 0.0);
-  add_snow(residual_);
+  add_snow(residual_, false);
   feel_boots(0.0, 0.0, 0.0);
   for (MovingSki& each : skis_) each.begin();
   add_work(0.0);

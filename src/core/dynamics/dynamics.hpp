@@ -114,9 +114,9 @@ class Dynamics {
   void predict(const Formula& f);
   void place(const Formula& f);
   void fill_end();
-  void add_snow(Numbers& out);
-  void find_residual(const Formula& f);
-  void find_moving_residual(double newest, double now, double before, Numbers& out);
+  void add_snow(Numbers& out, bool with_tangent);
+  void find_residual(const Formula& f, bool with_tangent);
+  void find_moving_residual(double newest, double now, double before, bool with_tangent, Numbers& out);
   void place_boots(double when);
   void follow_skis();
   void feel_boots(double newest, double now, double before);
@@ -127,7 +127,7 @@ class Dynamics {
   void fill_beams(const BeamWeights& weights);
   double size_of(const Numbers& rates, double reach) const;
   double find_change(const Formula& f);
-  void limit_overshoot(const Formula& f, double begun, double share);
+  void limit_overshoot(const Formula& f, double begun, double share, bool with_tangent);
   bool solve_step(const Formula& f);
   double error(const Formula& f) const;
   void accept(const Formula& f, bool observed);

@@ -43,7 +43,7 @@ void Dynamics::follow_skis() {
 }
 
 // [moving residual] What is left of the skis' equations goes to the trunk through the boots; beams keep theirs.
-void Dynamics::find_moving_residual(double newest, double now, double before, Numbers& out) {
+void Dynamics::find_moving_residual(double newest, double now, double before, bool with_tangent, Numbers& out) {
   std::fill(out.begin(), out.end(), 0.0);
   fill_end();
   follow_skis();
@@ -51,7 +51,7 @@ void Dynamics::find_moving_residual(double newest, double now, double before, Nu
   for (std::size_t k = 0; k < skis_.size(); k++) {
     MovingSki& ski = skis_[k];
     const FlexibleSki& stage = body_.skis[k];
-    ski.find_residual(contact_->look(int(k), end_.poses[k], end_.motions[k]), newest, now, before);
+    ski.find_residual(contact_->look(int(k), end_.poses[k], end_.motions[k], with_tangent), newest, now, before);
     const Numbers& left = ski.residual();
     Vector3 force{}, moment{};
     for (std::size_t c = 0; c < 3; c++)

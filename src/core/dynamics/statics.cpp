@@ -47,10 +47,10 @@ void Dynamics::static_residual(const BodyState& at, Numbers& out) {
   std::fill(next_.rate.begin(), next_.rate.end(), 0.0);
   std::fill(out.begin(), out.end(), 0.0);
   if (!motions_.empty()) {
-    find_moving_residual(0.0, 0.0, 0.0, out);
+    find_moving_residual(0.0, 0.0, 0.0, true, out);
   } else {
     fill_end();
-    add_snow(out);
+    add_snow(out, true);
     add_forces(body_, layout_, next_, out);
     add_stiffness(body_, layout_, next_.bend, next_.rate, -1.0, out);
   }

@@ -105,6 +105,7 @@ std::vector<Runner> runners_of(const Fields& data) {
     each.node = data.at(of("runner", k, "node"));
     for (double element : data.at(of("runner", k, "element"), std::size_t(each.places)))
       each.element.push_back(int(element));
+    each.fill_element_rows();
   }
   return out;
 }

@@ -46,10 +46,10 @@ struct Both {
 };
 
 // Writes the deeper of both from left to right.
-class Deeper {
+class Merge {
  public:
   // `depth`: of the ground on the left of the place where it starts.
-  Deeper(Ground& out, double y, double depth) : out_(out), y_(y), depth_(depth) {}
+  Merge(Ground& out, double y, double depth) : out_(out), y_(y), depth_(depth) {}
 
   bool changed() const { return changed_; }
 
@@ -117,30 +117,68 @@ bool Ground::press(double a, double depth_a, double b, double depth_b) {
   return press(at, deep, 2);
 }
 
+// Where a polyline is deeper than the ground, whose knot `kept` is the first at its beginning or behind.
+Ground::Deeper Ground::compare(const double* at, const double* deep, int knots, int kept) const {
+  Reader ground(place, depth, count, kept), pressed(at, deep, knots, 0);
+  bool deeper = false, above = false;
+  for (double y = at[0]; y < at[knots - 1] && !(deeper && above);) {
+    const double here = pressed.pass(y) - ground.pass(y);
+    y = std::min(ground.next(), pressed.next());
+    const double there = pressed.before(y) - ground.before(y);
+    deeper = deeper || here > THIN || there > THIN, above = above || here < -THIN || there < -THIN;
+  }
+  if (!deeper) return Deeper::NOWHERE;
+  return above ? Deeper::SOMEWHERE : Deeper::EVERYWHERE;
+}
+
+// The ground with a polyline in place of all that lies between its ends.
+Ground Ground::replaced(const double* at, const double* deep, int knots, int kept) const {
+  const double from = at[0], to = at[knots - 1];
+  Ground out;
+  for (int j = 0; j < kept; j++) out.place[j] = place[j], out.depth[j] = depth[j];
+  out.count = kept;
+  if (kept > 0 && kept == count) out.append(last(), 0.0);  // apart: what lies between has no depth
+  if (kept > 0) out.append(from, Reader(place, depth, count, kept).before(from));
+  for (int j = 0; j < knots; j++) out.append(at[j], deep[j]);
+  int rest = kept;
+  while (rest < count && place[rest] <= to) rest++;
+  if (rest < count) out.append(to, Reader(place, depth, count, rest).before(to));
+  if (rest == 0 && count > 0) out.append(first(), 0.0);
+  for (int j = rest; j < count; j++) out.append(place[j], depth[j]);
+  return out;
+}
+
 bool Ground::press(const double* at, const double* deep, int knots) {
   const double from = at[0], to = at[knots - 1];
   if (!(to - from > THIN)) return false;
-  Ground out;
   int kept = 0;
-  for (; kept < count && place[kept] < from; kept++) out.place[kept] = place[kept], out.depth[kept] = depth[kept];
+  while (kept < count && place[kept] < from) kept++;
+  const Deeper where = compare(at, deep, knots, kept);
+  if (where == Deeper::NOWHERE) return false;
+  if (where == Deeper::EVERYWHERE) {
+    *this = replaced(at, deep, knots, kept);
+    return true;
+  }
+  Ground out;
+  for (int j = 0; j < kept; j++) out.place[j] = place[j], out.depth[j] = depth[j];
   out.count = kept;
   if (kept > 0 && kept == count) out.append(last(), 0.0);  // apart: what lies between has no depth
   Reader ground(place, depth, count, kept), pressed(at, deep, knots, 0);
-  Deeper deeper(out, from, ground.before(from));
+  Merge merge(out, from, ground.before(from));
   for (double y = from; y < to;) {
     const bool knot = ground.next() == y, pressed_knot = pressed.next() == y;
     const Both here{ground.pass(y), pressed.pass(y)};
     y = std::min(ground.next(), pressed.next());
-    deeper.advance(y, here, {ground.before(y), pressed.before(y)}, knot, pressed_knot);
+    merge.advance(y, here, {ground.before(y), pressed.before(y)}, knot, pressed_knot);
   }
-  if (!deeper.changed()) return false;
+  if (!merge.changed()) return false;
   const bool knot = ground.next() == to;
   const double right = ground.pass(to);
   const int rest = ground.knot();
   if (rest == count) {
-    deeper.end();
+    merge.end();
   } else {
-    deeper.turn(right, false, knot || rest == 0);
+    merge.turn(right, false, knot || rest == 0);
     if (rest == 0) out.append(first(), 0.0);
   }
   for (int j = rest; j < count; j++) out.append(place[j], depth[j]);

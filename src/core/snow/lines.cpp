@@ -201,16 +201,24 @@ int GrooveLines::unknown(int slot, const Pose& pose, double room, double (&from)
 }
 
 double GrooveLines::energy_per_metre(int slot, const Ground& ground) const {
-  if (lost) return lost(ground);
-  const double hardness = values[HARDNESS][slot], excess = values[EXCESS][slot];
-  return 0.5 * hardness * excess / (hardness + excess) * ground.squared();
+  return lost ? lost(ground) : energy_of(slot, ground.squared());
 }
 
-void GrooveLines::count_energy(int slot, double length) {
+double GrooveLines::energy_of(int slot, double squared) const {
+  const double hardness = values[HARDNESS][slot], excess = values[EXCESS][slot];
+  return 0.5 * hardness * excess / (hardness + excess) * squared;
+}
+
+void GrooveLines::count(int slot, double length, double energy_per_metre) {
   double& counted = counted_[std::size_t(slot)];
-  const double now = energy_per_metre(slot, ground(slot));
-  energy_[std::size_t(slot)] += (now - counted) * length;
-  counted = now;
+  energy_[std::size_t(slot)] += (energy_per_metre - counted) * length;
+  counted = energy_per_metre;
+}
+
+void GrooveLines::count_energy(int slot, double length) { count(slot, length, energy_per_metre(slot, ground(slot))); }
+
+void GrooveLines::count_energy(int slot, double length, double squared) {
+  count(slot, length, energy_of(slot, squared));
 }
 
 void GrooveLines::press_older(int slot, const Ground& older) {

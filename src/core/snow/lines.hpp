@@ -96,6 +96,8 @@ class GrooveLines {
   // length of ski that the line stands for.
   double groove_energy() const;
   void count_energy(int slot, double length);
+  // The same, where ∫ depth² over the line's ground is known (m³) and the core's own law holds.
+  void count_energy(int slot, double length, double squared);
   // Press an older track into a line's ground; its energy was counted there.
   void press_older(int slot, const Ground& older);
 
@@ -111,6 +113,8 @@ class GrooveLines {
 
   void fill(int slot, int from, int to);
   double energy_per_metre(int slot, const Ground& ground) const;
+  double energy_of(int slot, double squared) const;
+  void count(int slot, double length, double energy_per_metre);
   void lay(std::int64_t number, const Pose& pose, double station, const Snow& snow);
   void leave(std::int64_t number, Archive* archive, int strip);
   bool is_off_surface(int slot, const Pose& pose, const Snow& snow) const;

@@ -96,6 +96,69 @@ SKISNOW_INLINE bool any(M mask) {
   return found != 0;
 }
 
+// Numbers side by side in memory, one row for each lane.
+constexpr int ROW = 4;
+using Row = Lanes<ROW>;
+
+// Columns of four rows: the first number of every row, the second, …
+SKISNOW_INLINE void transpose(const Row* rows, Row (&out)[ROW]) {
+  const Row a = __builtin_shufflevector(rows[0], rows[1], 0, 4, 2, 6);
+  const Row b = __builtin_shufflevector(rows[0], rows[1], 1, 5, 3, 7);
+  const Row c = __builtin_shufflevector(rows[2], rows[3], 0, 4, 2, 6);
+  const Row d = __builtin_shufflevector(rows[2], rows[3], 1, 5, 3, 7);
+  out[0] = __builtin_shufflevector(a, c, 0, 1, 4, 5), out[1] = __builtin_shufflevector(b, d, 0, 1, 4, 5);
+  out[2] = __builtin_shufflevector(a, c, 2, 3, 6, 7), out[3] = __builtin_shufflevector(b, d, 2, 3, 6, 7);
+}
+
+// The same of as many rows as V has lanes.
+template <class V>
+SKISNOW_INLINE void transpose(const Row* rows, V (&out)[ROW]) {
+  if constexpr (WIDTH<V> == 2) {
+    for (int c = 0; c < ROW; c++) out[c] = V{rows[0][c], rows[1][c]};
+  } else if constexpr (WIDTH<V> == ROW) {
+    transpose(rows, out);
+  } else {
+    Row low[ROW], high[ROW];
+    transpose(rows, low), transpose(rows + ROW, high);
+    for (int c = 0; c < ROW; c++) out[c] = __builtin_shufflevector(low[c], high[c], 0, 1, 2, 3, 4, 5, 6, 7);
+  }
+}
+
+// Eight rows of eight in place: pairs, fours, then halves change places.
+SKISNOW_INLINE void transpose(Lanes<8> (&rows)[8]) {
+  Lanes<8> pairs[8], fours[8];
+  for (int i = 0; i < 8; i += 2) {
+    pairs[i] = __builtin_shufflevector(rows[i], rows[i + 1], 0, 8, 2, 10, 4, 12, 6, 14);
+    pairs[i + 1] = __builtin_shufflevector(rows[i], rows[i + 1], 1, 9, 3, 11, 5, 13, 7, 15);
+  }
+  for (int i = 0; i < 8; i += 4)
+    for (int j = 0; j < 2; j++) {
+      fours[i + j] = __builtin_shufflevector(pairs[i + j], pairs[i + j + 2], 0, 1, 8, 9, 4, 5, 12, 13);
+      fours[i + j + 2] = __builtin_shufflevector(pairs[i + j], pairs[i + j + 2], 2, 3, 10, 11, 6, 7, 14, 15);
+    }
+  for (int j = 0; j < 4; j++) {
+    rows[j] = __builtin_shufflevector(fours[j], fours[j + 4], 0, 1, 2, 3, 8, 9, 10, 11);
+    rows[j + 4] = __builtin_shufflevector(fours[j], fours[j + 4], 4, 5, 6, 7, 12, 13, 14, 15);
+  }
+}
+
+// Each lane has the number of the lane before it, the first lane another number; and the other way round.
+template <class V>
+SKISNOW_INLINE V from_lane_before(V value, double first) {
+  V out = value;
+  for (int lane = WIDTH<V> - 1; lane > 0; lane--) out[lane] = value[lane - 1];
+  out[0] = first;
+  return out;
+}
+
+template <class V>
+SKISNOW_INLINE V from_lane_behind(V value, double last) {
+  V out = value;
+  for (int lane = 0; lane + 1 < WIDTH<V>; lane++) out[lane] = value[lane + 1];
+  out[WIDTH<V> - 1] = last;
+  return out;
+}
+
 // Eight partial sums, added up in one order: a total does not depend on the number of lanes.
 struct Sum {
   double part[BLOCK] = {};
