@@ -347,30 +347,3 @@ def test_what_c3d_cannot_hold_is_refused(tmp_path: Path, monkeypatch: pytest.Mon
     with pytest.raises(ParameterError, match=r"does not end in \.c3d"):
         write_c3d(at(TIME), tmp_path / "a.trc")
     assert not list(tmp_path.iterdir())
-
-
-def test_what_a_c3d_file_holds_becomes_metres_and_seconds(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Whatever ezc3d reads: frames count from the first one's number; points beyond the names are no markers."""
-    (tmp_path / "a.c3d").write_bytes(b"read by another")
-    points = np.arange(24.0).reshape(4, 3, 2)
-    point: dict[str, dict[str, list[str]]] = {"LABELS": {"value": ["heel", "toe"]}, "UNITS": {"value": ["cm"]}}
-    read = {
-        "parameters": {"POINT": point},
-        "header": {"points": {"frame_rate": 50.0, "first_frame": 5}},
-        "data": {"points": points},
-    }
-    monkeypatch.setitem(sys.modules, "ezc3d", SimpleNamespace(c3d=lambda _: read))
-    found = read_c3d(tmp_path / "a.c3d")
-    assert (found.names, found.rate, found.time.tolist()) == (("heel", "toe"), 50.0, [0.1, 0.12])
-    for frame, marker, axis in np.ndindex(2, 2, 3):
-        assert found.place[frame, marker, axis] == pytest.approx(1e-2 * points[axis, marker, frame])
-    for labels, unit, words in (([], "mm", "it has no markers"), (["a"], "inch", "marker a is in 'inch'")):
-        point |= {"LABELS": {"value": labels}, "UNITS": {"value": [unit]}}
-        with pytest.raises(ParameterError, match=words):
-            read_c3d(tmp_path / "a.c3d")
-
-
-def test_without_ezc3d_a_sentence_says_so(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setitem(sys.modules, "ezc3d", None)
-    with pytest.raises(ParameterError, match=r"a \.c3d file that is to be read needs ezc3d"):
-        read_c3d(tmp_path / "a.c3d")

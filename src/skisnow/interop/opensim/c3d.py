@@ -1,9 +1,10 @@
-"""Markers of a .c3d file, and forces beside them, read and written by ezc3d."""
+"""Markers of a .c3d file are read; markers with forces are written by ezc3d."""
 
 from __future__ import annotations
 
 import re
 import tempfile
+from collections.abc import Mapping
 from itertools import count, takewhile
 from pathlib import Path
 from typing import Any, Final
@@ -12,8 +13,9 @@ import numpy as np
 
 from ...errors import OutputError, ParameterError
 from ...files import write_file
-from ...given import plain_bytes
+from ...given import GivenError, plain_bytes
 from ...optional_packages import needed
+from .c3d_content import Values, c3d_content
 from .markers import METRES, FloatArray, Markers
 from .table import MOST_BYTES, MotionTable
 
@@ -37,27 +39,25 @@ _UNITS: Final = {"_force_v": "N", "_force_p": "m", "_moment_": "Nm", "_torque_":
 
 
 def read_c3d(path: str | Path) -> Markers:
-    """Read the markers of a .c3d file; needs ezc3d (``skisnow[c3d]``).
+    """Read the markers of a .c3d file.
 
     Angles, forces, moments and powers that a program for gait stored among the points are listed in ``omitted``.
 
     Raises
     ------
     ParameterError
-        ezc3d is not installed, the file cannot be read, or it has no markers or no sound unit.
+        The file cannot be read or is damaged, or it has no markers or no sound unit.
     """
-    ezc3d = _ezc3d(path, "read")
-    plain_bytes(path, most_bytes=MOST_BYTES)
     try:
-        found: Any = ezc3d.c3d(str(path))
-        about = found["parameters"]["POINT"]
-        rate = float(found["header"]["points"]["frame_rate"])
-        first = int(found["header"]["points"]["first_frame"])
-        points = np.asarray(found["data"]["points"], float)
-        labels, units = _labels_and_units(about)
-        quantities = {name for group in _GROUPS for name in _words(about, group)}
-    except Exception as error:  # whatever a broken file makes of it
-        raise ParameterError(f"{path} cannot be read as .c3d: {error}") from error
+        content = c3d_content(plain_bytes(path, most_bytes=MOST_BYTES))
+    except GivenError:
+        raise
+    except ParameterError as error:
+        raise ParameterError(f"{path} cannot be read as .c3d: {error}. Export it again") from error
+    about = {name: values for (group, name), values in content.parameters.items() if group == "POINT"}
+    rate, first, points = content.rate, content.first_frame, content.points
+    labels, units = _labels_and_units(about)
+    quantities = {name for group in _GROUPS for name in _words(about, group)}
     names = labels[: points.shape[1]]
     place_of = {name: i for i, name in enumerate(names) if not _is_quantity(name, quantities)}
     if not place_of:
@@ -72,7 +72,7 @@ def read_c3d(path: str | Path) -> Markers:
         raise ParameterError(f"{path}: its rate is {rate:g} Hz. Allowed: above 0. Export the file again.")
     columns = list(place_of.values())
     sizes = np.array([METRES[units[i]] for i in columns])
-    place = np.moveaxis(points[:3, columns] * sizes[:, None], (0, 1, 2), (2, 1, 0))
+    place = points[:, columns] * sizes[:, None]
     time = (first + np.arange(len(place))) / rate
     omitted = tuple(name for name in names if name not in place_of)
     try:
@@ -81,7 +81,7 @@ def read_c3d(path: str | Path) -> Markers:
         raise ParameterError(f"{path}: {error}") from error
 
 
-def _labels_and_units(about: Any) -> tuple[list[str], list[str]]:
+def _labels_and_units(about: Mapping[str, Values]) -> tuple[list[str], list[str]]:
     """Name and unit of each point; further blocks of 255 names are called LABELS2, LABELS3 and so on."""
     labels: list[str] = []
     units: list[str] = []
@@ -94,8 +94,8 @@ def _labels_and_units(about: Any) -> tuple[list[str], list[str]]:
     return labels, units
 
 
-def _words(about: Any, key: str) -> list[str]:
-    return [str(each).strip() for each in about[key]["value"]] if key in about else []
+def _words(about: Mapping[str, Values], key: str) -> list[str]:
+    return [each for each in about.get(key, ()) if isinstance(each, str)]
 
 
 def _is_quantity(name: str, quantities: set[str]) -> bool:
@@ -129,7 +129,7 @@ def write_c3d(markers: Markers, path: str | Path, *, forces: MotionTable | None 
     path = Path(path)
     if path.suffix.lower() != ENDING:
         raise ParameterError(f"{path} does not end in {ENDING}; name it so")
-    ezc3d = _ezc3d(path, "written")
+    ezc3d = _ezc3d(path)
     rate, n = markers.rate, len(markers.time)
     first = round(float(markers.time[0]) * rate)
     _require_frames(path, "markers", markers.time, first / rate, rate)
@@ -194,5 +194,5 @@ def _require_names(path: Path, what: str, names: tuple[str, ...]) -> None:
         raise ParameterError(f"{path}: there are {len(names)} {what}; .c3d names 1 to {MOST_NAMES}")
 
 
-def _ezc3d(path: str | Path, done: str) -> Any:
-    return needed("ezc3d", extra="c3d", what=f"{path}: a .c3d file that is to be {done}")
+def _ezc3d(path: str | Path) -> Any:
+    return needed("ezc3d", extra="c3d", what=f"{path}: a .c3d file that is to be written")
