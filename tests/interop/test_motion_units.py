@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-import sys
 from pathlib import Path
-from types import SimpleNamespace
-from typing import Any
 
 import numpy as np
 import pytest
@@ -13,6 +10,8 @@ import pytest
 from skisnow.cli import main
 from skisnow.errors import ParameterError
 from skisnow.interop.opensim import Markers, read_c3d, read_motion, read_trc
+
+from .c3d_files import c3d_bytes
 
 CASES = Path(__file__).parents[2].parent / "shared" / "cases" / "motion"
 shared = pytest.mark.skipif(not CASES.is_dir(), reason="../shared is not beside this folder")
@@ -52,26 +51,18 @@ def test_a_head_that_leaves_it_open_is_refused(tmp_path: Path, head: str) -> Non
         degrees(tmp_path, head, "a.mot")
 
 
-def capture(
-    path: Path, monkeypatch: pytest.MonkeyPatch, parameters: dict[str, list[str]], *, rate: float = 50.0
-) -> None:
-    """A .c3d file as ezc3d gives it: point i of frame t is at (i, 10 t, 1) in its unit."""
-    count = sum(len(values) for key, values in parameters.items() if key.startswith("LABELS"))
-    points = np.ones((4, count, 2))
-    points[0], points[1] = np.arange(count)[:, None], [0.0, 10.0]
-    read: dict[str, Any] = {
-        "parameters": {"POINT": {key: {"value": values} for key, values in parameters.items()}},
-        "header": {"points": {"frame_rate": rate, "first_frame": 0}},
-        "data": {"points": points},
-    }
-    path.write_bytes(b"read by another")
-    monkeypatch.setitem(sys.modules, "ezc3d", SimpleNamespace(c3d=lambda _: read))
+def capture(path: Path, texts: dict[str, list[str]], *, rate: float = 50.0) -> None:
+    """A .c3d file whose point i of frame t is at (i, 10 t, 1) in its unit."""
+    total = sum(len(values) for key, values in texts.items() if key.startswith("LABELS"))
+    points = np.ones((2, total, 3))
+    points[:, :, 0], points[:, :, 1] = np.arange(total), [[0.0], [10.0]]
+    path.write_bytes(c3d_bytes(points, texts, rate=rate))
 
 
-def test_names_go_on_in_further_blocks(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_names_go_on_in_further_blocks(tmp_path: Path) -> None:
     names = [f"m{i}" for i in range(600)]
     blocks = {"LABELS": names[:255], "LABELS2": names[255:510], "LABELS3": names[510:], "UNITS": ["mm"]}
-    capture(tmp_path / "a.c3d", monkeypatch, blocks)
+    capture(tmp_path / "a.c3d", blocks)
     found = read_c3d(tmp_path / "a.c3d")
     assert list(found.names) == names
     assert found.of("m599")[1].tolist() == pytest.approx([0.599, 0.01, 0.001])
@@ -82,8 +73,8 @@ def test_names_go_on_in_further_blocks(tmp_path: Path, monkeypatch: pytest.Monke
     ["LAnkleAngles", "Subject:RKneeAngles", "L_HIP_ANGLE", "RAbsAnkleAngle", "LGroundReactionForce", "LNormalisedGRF",
      "RHipMoment", "LKneePower", "Torque1", "com_velocity", "HeadAcceleration"],
 )  # fmt: skip
-def test_quantities_among_the_points_are_omitted(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str) -> None:
-    capture(tmp_path / "a.c3d", monkeypatch, {"LABELS": ["LHEE", name, "LTOE"], "UNITS": ["mm"]})
+def test_quantities_among_the_points_are_omitted(tmp_path: Path, name: str) -> None:
+    capture(tmp_path / "a.c3d", {"LABELS": ["LHEE", name, "LTOE"], "UNITS": ["mm"]})
     found = read_c3d(tmp_path / "a.c3d")
     assert (found.names, found.omitted) == (("LHEE", "LTOE"), (name,))
     assert found.of("LTOE")[0].tolist() == [0.002, 0.0, 0.001]
@@ -91,35 +82,35 @@ def test_quantities_among_the_points_are_omitted(tmp_path: Path, monkeypatch: py
 
 @pytest.mark.parametrize("group", ["ANGLES", "FORCES", "MOMENTS", "POWERS", "REACTIONS", "SCALARS"])
 def test_quantities_of_the_lists_of_the_file_are_omitted(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], group: str
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], group: str
 ) -> None:
-    capture(tmp_path / "a.c3d", monkeypatch, {"LABELS": ["LHEE", "x1"], "UNITS": ["mm"], group: ["x1 "]})
+    capture(tmp_path / "a.c3d", {"LABELS": ["LHEE", "x1"], "UNITS": ["mm"], group: ["x1 "]})
     assert main(["convert", str(tmp_path / "a.c3d"), str(tmp_path / "a.trc")]) == 0
     assert "x1" in capsys.readouterr().err
     assert read_trc(tmp_path / "a.trc").names == ("LHEE",)
-    capture(tmp_path / "a.c3d", monkeypatch, {"LABELS": ["x1"], "UNITS": ["mm"], group: ["x1"]})
+    capture(tmp_path / "a.c3d", {"LABELS": ["x1"], "UNITS": ["mm"], group: ["x1"]})
     with pytest.raises(ParameterError, match="no markers"):
         read_c3d(tmp_path / "a.c3d")
 
 
 @pytest.mark.parametrize("name", ["LHEE", "MandibleAngle", "ForceShoe", "PowerPack", "*17", "CentreOfMass", "Momentum"])
-def test_markers_with_similar_names_stay(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str) -> None:
-    capture(tmp_path / "a.c3d", monkeypatch, {"LABELS": [name], "UNITS": ["mm"]})
+def test_markers_with_similar_names_stay(tmp_path: Path, name: str) -> None:
+    capture(tmp_path / "a.c3d", {"LABELS": [name], "UNITS": ["mm"]})
     assert read_c3d(tmp_path / "a.c3d").names == (name,)
 
 
-def test_each_block_and_each_point_may_have_its_unit(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_each_block_and_each_point_may_have_its_unit(tmp_path: Path) -> None:
     blocks = {"LABELS": ["a", "b"], "UNITS": ["mm", "m"], "LABELS2": ["c"], "UNITS2": ["CM "]}
-    capture(tmp_path / "a.c3d", monkeypatch, blocks)
+    capture(tmp_path / "a.c3d", blocks)
     assert [read_c3d(tmp_path / "a.c3d").of(name)[1, 1] for name in "abc"] == pytest.approx([0.01, 10.0, 0.1])
-    capture(tmp_path / "a.c3d", monkeypatch, blocks | {"UNITS2": ["deg"]})
+    capture(tmp_path / "a.c3d", blocks | {"UNITS2": ["deg"]})
     with pytest.raises(ParameterError, match="marker c"):
         read_c3d(tmp_path / "a.c3d")
 
 
 @pytest.mark.parametrize("rate", [0.0, -1.0, np.nan])
-def test_a_rate_that_is_none_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, rate: float) -> None:
-    capture(tmp_path / "a.c3d", monkeypatch, {"LABELS": ["a"], "UNITS": ["mm"]}, rate=rate)
+def test_a_rate_that_is_none_is_refused(tmp_path: Path, rate: float) -> None:
+    capture(tmp_path / "a.c3d", {"LABELS": ["a"], "UNITS": ["mm"]}, rate=rate)
     with pytest.raises(ParameterError, match=r"a\.c3d"):
         read_c3d(tmp_path / "a.c3d")
 
@@ -137,11 +128,16 @@ def test_ezc3d_gives_blocks_as_they_are_read_here(tmp_path: Path) -> None:
     assert found.of("m298")[0] == pytest.approx([0.298] * 3)
 
 
+def test_names_that_are_there_twice_are_refused(tmp_path: Path) -> None:
+    capture(tmp_path / "a.c3d", {"LABELS": ["a", "b", "a"], "UNITS": ["mm"]})
+    with pytest.raises(ParameterError, match="twice"):
+        read_c3d(tmp_path / "a.c3d")
+
+
 @shared
 def test_shared_cases(tmp_path: Path) -> None:
     assert not read_motion(CASES / "stofileadapter.sto").in_degrees
     assert "inDegrees=yes" not in converted(tmp_path, CASES / "stofileadapter.sto", "a.mot")
-    pytest.importorskip("ezc3d", reason="ezc3d is not installed: pip install 'skisnow[c3d]'")
     many: Markers = read_c3d(CASES / "many300.c3d")
     assert many.names == tuple(f"M{i}" for i in range(300))
     assert many.of("M299")[0].tolist() == pytest.approx([2.99, 0.5, 0.1])

@@ -59,22 +59,21 @@ def read_c3d(path: str | Path) -> Markers:
     labels, units = _labels_and_units(about)
     quantities = {name for group in _GROUPS for name in _words(about, group)}
     names = labels[: points.shape[1]]
-    place_of = {name: i for i, name in enumerate(names) if not _is_quantity(name, quantities)}
-    if not place_of:
+    columns = [i for i, name in enumerate(names) if not _is_quantity(name, quantities)]
+    if not columns:
         raise ParameterError(f"{path}: it has no markers. Allowed: at least one name in POINT:LABELS with a place.")
-    unknown = next((name for name, i in place_of.items() if units[i] not in METRES), None)
+    unknown = next((i for i in columns if units[i] not in METRES), None)
     if unknown is not None:
         raise ParameterError(
-            f"{path}: marker {unknown} is in {units[place_of[unknown]]!r}. Allowed: {', '.join(METRES)}. Export the "
+            f"{path}: marker {names[unknown]} is in {units[unknown]!r}. Allowed: {', '.join(METRES)}. Export the "
             "markers in one of these units."
         )
     if not (np.isfinite(rate) and rate > 0.0):
         raise ParameterError(f"{path}: its rate is {rate:g} Hz. Allowed: above 0. Export the file again.")
-    columns = list(place_of.values())
     sizes = np.array([METRES[units[i]] for i in columns])
     place = points[:, columns] * sizes[:, None]
     time = (first + np.arange(len(place))) / rate
-    omitted = tuple(name for name in names if name not in place_of)
+    omitted = tuple(name for i, name in enumerate(names) if i not in columns)
     try:
         return Markers(time, tuple(names[i] for i in columns), np.ascontiguousarray(place), rate, omitted)
     except ParameterError as error:
