@@ -8,6 +8,7 @@
 
 #include "bindings/arrays.hpp"
 #include "carve/carve.hpp"
+#include "carve/equations.hpp"
 #include "carve/strip.hpp"
 #include "linear_algebra/banded.hpp"
 
@@ -108,6 +109,27 @@ nb::tuple find(const CarvedSki& ski, CarveConditions conditions, const std::opti
                         array(std::move(found.force), {stations}));
 }
 
+// J⁻¹ r, with the Jacobian J of the equations at a state and the groove kept at these places across; for tests.
+nb::tuple carve_solution(const CarvedSki& ski, const CarveConditions& conditions, const Array& places, const Array& u,
+                         const Array& border, const Array& right, const Array& right_border) {
+  CarveGroove groove(ski.stations.size());
+  groove.edge.place.assign(places.data(), places.data() + places.size());
+  CarveState at{ski.spread(u.data()), {}}, step = at;
+  std::copy_n(border.data(), CARVE_BORDER, at.border.begin());
+  CarveEquations system(ski);
+  assemble(ski, conditions, groove, at, system);
+  const Column spread = ski.spread(right.data());
+  for (int i = 0; i < ski.size; i++) system.residual[std::size_t(i)] = -spread[std::size_t(i)];
+  for (std::size_t a = 0; a < CARVE_BORDER; a++) system.border_residual[a] = -right_border.data()[a];
+  CarveFactors factors;
+  factors.factor(ski, system);
+  if (!factors.correct(ski, system, step)) throw std::invalid_argument("the equations are singular");
+  std::vector<double> found = ski.gathered(step.u);
+  const std::size_t size = found.size();
+  return nb::make_tuple(array(std::move(found), {size}),
+                        array({step.border.begin(), step.border.end()}, {std::size_t(CARVE_BORDER)}));
+}
+
 // Behind the rows of a banded matrix, or of a right side, the zeros that loops over it need.
 Column with_room(const Array& rows, std::size_t width) {
   Column out((rows.shape(0) + BAND_HALF) * width, 0.0);
@@ -163,6 +185,7 @@ void bind_carve(nb::module_& m) {
           nb::arg("pressure").none(), nb::arg("residual").none(), nb::arg("bends"), nb::arg("strength").none());
   m.def("find_carve", &find, nb::arg("ski"), nb::arg("conditions"), nb::arg("offset").none(), nb::arg("near").none(),
         nb::arg("laws").none());
+  m.def("carve_solution", &carve_solution);
   m.def("banded_factors", &banded_factors);
   m.def("banded_solution", &banded_solution);
   m.def("strip_sums", &strip_sums);

@@ -101,8 +101,9 @@ CarveSection Pass::section(const CarveStation& s) const {
   const bool bevelled = conditions_.bevel > 0.0;
   const double strip = bevelled ? conditions_.bevel_width : 0.0;
   const double rise = bevelled ? sine - std::sin(angle - conditions_.bevel) : 0.0;
-  return {s.half_width, sine, cosine, sine / cosine, corner, corner - strip * rise, 2.0 * s.half_width * cosine,
-          strip,        rise};
+  const double rise_by_angle = bevelled ? cosine - std::cos(angle - conditions_.bevel) : 0.0;
+  return {s.half_width, sine, cosine,       sine / cosine, corner, corner - strip * rise, 2.0 * s.half_width * cosine,
+          strip,        rise, rise_by_angle};
 }
 
 // [load] The snow's force along its normal turns the section about its middle, with the lever W/2 cos at the edge and
@@ -119,7 +120,7 @@ Load Pass::load(const CarveSection& section, const StripSums& sums, const Streng
   const double held = section.depth > 0.0 ? section.depth : 0.0, bite = reacts ? sums.force : strength.share * held;
   const double growth = section.depth > 0.0 ? strength.share + strength.by_depth * held : 0.0;
   const double bite_by_depth = reacts ? by_depth : growth;
-  const double bite_by_twist = reacts ? by_twist : growth * lever + strength.by_angle * held;
+  const double bite_by_twist = reacts ? by_twist : growth * section.edge_by_angle() + strength.by_angle * held;
   const double shears = conditions_.side_force_bending ? 1.0 : 0.0;
   const double up = shears * sine_, turn = -shears * section.half * section.sine, turn_by_twist = -shears * lever;
   return {.normal = cosine_ * sums.force + up * stress * bite,

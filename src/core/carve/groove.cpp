@@ -6,6 +6,19 @@ namespace {
 
 constexpr double FAR_ABOVE = -1e3;  // depth (m) that stands for snow never touched
 
+// Growth of the pressure on a bevelled interval with the edge angle, beyond that of a straight base. `growth`: moments
+// of ∂p/∂ε over the interval; the bend of the base's own growth is straight between its ends.
+void add_bevel_growth(const CarveSection& section, double start, double length, const double (&growth)[3],
+                      StripSums& sums) {
+  const double square = 1.0 + section.tangent * section.tangent, end = start + length;
+  const double at_start = section.base_by_angle(start) + start * square;
+  const double at_end = section.base_by_angle(end) + end * square;
+  for (int n = 0; n < 2; n++) {
+    const double far = (growth[n + 1] - start * growth[n]) / length;
+    sums.by_angle[n] += at_start * (growth[n] - far) + at_end * far;
+  }
+}
+
 }  // namespace
 
 void CarveLinks::clear() {
@@ -14,7 +27,7 @@ void CarveLinks::clear() {
   pulls.clear();
 }
 
-void CarveLinks::pull(int source, double xi, double square, double force, double moment) {
+void CarveLinks::pull(int source, double by_angle, double force, double moment) {
   int& number = number_[std::size_t(source)];
   if (number < 0) {
     number = int(station.size());
@@ -24,19 +37,19 @@ void CarveLinks::pull(int source, double xi, double square, double force, double
   CarvePull& to = pulls[std::size_t(number)];
   to.force_by_depth += force;
   to.moment_by_depth += moment;
-  to.force_by_twist -= xi * square * force;
-  to.moment_by_twist -= xi * square * moment;
+  to.force_by_twist += by_angle * force;
+  to.moment_by_twist += by_angle * moment;
 }
 
 void GrooveAlongEdge::clear() {
   depth_.assign(place.size(), FAR_ABOVE);
+  by_angle_.assign(place.size(), 0.0);
   source_.assign(place.size(), 0);
 }
 
 // [across]
 void GrooveAlongEdge::across(const CarveSection& section, int, CarvePressure& pressure, StripSums& sums,
                              CarveLinks& links) const {
-  const double square = 1.0 + section.tangent * section.tangent;
   for (std::size_t k = 0; k + 1 < place.size(); k++) {
     const double start = place[k], spacing = place[k + 1] - start;
     const double length = std::min(place[k + 1], section.reach) - start;
@@ -45,13 +58,22 @@ void GrooveAlongEdge::across(const CarveSection& section, int, CarvePressure& pr
     if (depth0 <= 0.0 && depth1 <= 0.0) continue;
     const double groove0 = depth_[k], groove1 = groove0 + length / spacing * (depth_[k + 1] - groove0);
     std::fill_n(sums.by_groove, 3, 0.0);
+    double growth[3];
+    std::copy_n(sums.by_depth, 3, growth);
     pressure.add({start, length, depth0, depth1, groove0, groove1, section.sine}, sums);
+    for (int n = 0; n < 3; n++) growth[n] = sums.by_depth[n] - growth[n];
+    if (section.strip > 0.0) add_bevel_growth(section, start, length, growth, sums);
+    if (length < spacing && depth1 > 0.0) {  // the base ends in the snow, at W cos α
+      const double end = 2.0 * section.half * section.sine * pressure.at(depth1, groove1);
+      sums.by_angle[0] -= end;
+      sums.by_angle[1] -= end * section.reach;
+    }
     const double* by = sums.by_groove;
     if (by[0] == 0.0) continue;
     // the groove is a straight line between two places: each has its share
     const double far = (by[1] - start * by[0]) / spacing, far_moment = (by[2] - start * by[1]) / spacing;
-    links.pull(source_[k], start, square, by[0] - far, by[1] - far_moment);
-    links.pull(source_[k + 1], place[k + 1], square, far, far_moment);
+    links.pull(source_[k], by_angle_[k], by[0] - far, by[1] - far_moment);
+    links.pull(source_[k + 1], by_angle_[k + 1], far, far_moment);
   }
 }
 
@@ -61,6 +83,7 @@ void GrooveAlongEdge::pass(const CarveSection& section, int station) {
     const double depth = section.base_depth(place[k]);
     if (depth < depth_[k]) continue;
     depth_[k] = depth;
+    by_angle_[k] = section.base_by_angle(place[k]);
     source_[k] = station;
   }
 }
@@ -82,7 +105,7 @@ void GrooveAlongPath::across(const CarveSection& section, int station, CarvePres
     };
     add(low, std::min(high, bevel_end));
     add(std::max(low, bevel_end), high);
-    if (sums.by_groove[0] != 0.0) links.pull(steps_[k - 1].source, 0.0, 0.0, sums.by_groove[0], sums.by_groove[1]);
+    if (sums.by_groove[0] != 0.0) links.pull(steps_[k - 1].source, 0.0, sums.by_groove[0], sums.by_groove[1]);
     low = std::max(low, high);
   }
 }

@@ -17,12 +17,21 @@ struct CarveSection {
   double depth;                  // of the edge
   double reach;                  // of the base across
   double strip, rise;            // width of the bevelled strip; its rise against the base, per length
+  double rise_by_angle;          // derivative of that rise by the edge angle
 
   // Depth ε of the base: a straight line, but for the bevelled strip along the edge.
   double base_depth(double xi) const {
     const double bevel = strip > 0.0 ? std::max(0.0, strip - xi / cosine) * rise : 0.0;
     return corner - xi * tangent - bevel;
   }
+  // Derivative of that depth by the edge angle α, the corner held: -ξ/cos² α, and where ξ lies under the strip of width
+  // b also ξ sin α/cos² α · rise - (b - ξ/cos α) ∂rise/∂α.
+  double base_by_angle(double xi) const {
+    const double growth = -xi * (1.0 + tangent * tangent), left = strip > 0.0 ? strip - xi / cosine : 0.0;
+    return left > 0.0 ? growth + xi * sine / (cosine * cosine) * rise - left * rise_by_angle : growth;
+  }
+  // Derivative of the edge's depth by the edge angle, the middle of the section held.
+  double edge_by_angle() const { return half * cosine - strip * rise_by_angle; }
 };
 
 // How the force on a section and ∫p ξ grow with depth and twist of a station ahead, by the groove that it cut.
@@ -40,8 +49,8 @@ class CarveLinks {
 
   void clear();
   void next_section() { std::fill(pulls.begin(), pulls.end(), CarvePull{}); }
-  // What a deeper groove at ξ does; `square`: 1 + tan² of the section's edge angle, 0 where ξ does not count.
-  void pull(int source, double xi, double square, double force, double moment);
+  // What a deeper groove does; `by_angle`: growth of its depth with the twist of the station that left it.
+  void pull(int source, double by_angle, double force, double moment);
 
  private:
   std::vector<int> number_;  // of each station's link, or -1
@@ -57,7 +66,7 @@ struct GrooveAlongEdge {
   void pass(const CarveSection& section, int station);
 
  private:
-  std::vector<double> depth_;
+  std::vector<double> depth_, by_angle_;  // and its growth with the twist of the station that left it
   std::vector<int> source_;
 };
 

@@ -42,6 +42,10 @@ class CarvePressure {
   bool gathers() const { return share_ > 0.0; }
   void ask();
 
+  // Pressure of the core's own law at a place (Pa).
+  double at(double depth, double groove) const {
+    return std::max(0.0, hardness_ * depth - excess_ * std::max(0.0, groove - depth));
+  }
   void add(const CarveInterval& interval, StripSums& sums) {
     if (share_ > 0.0)
       add_by_law(interval, sums);

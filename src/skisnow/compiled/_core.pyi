@@ -192,6 +192,15 @@ def carved_ski(
     bent_by_height: FloatArray,
     /,
 ) -> CarvedSki: ...
+def carve_solution(
+    ski: CarvedSki,
+    conditions: CarveConditions,
+    places: FloatArray,
+    u: FloatArray,
+    border: FloatArray,
+    right: FloatArray,
+    right_border: FloatArray,
+) -> tuple[FloatArray, FloatArray]: ...
 def find_carve(
     ski: CarvedSki,
     conditions: CarveConditions,
