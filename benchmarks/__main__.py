@@ -32,6 +32,7 @@ def main() -> None:
     parser.add_argument("--tries", type=int, default=5, help="to open each page of the web lab")
     parser.add_argument("--seed", type=int, default=0, help="of the first random scenario")
     parser.add_argument("--count", type=int, default=200, help="random scenarios")
+    parser.add_argument("--any-values", action="store_true", help="scenarios with any values that the keys allow")
     parser.add_argument("--out", type=Path, help="of scenarios or frontier: what it holds is not computed again")
     options = parser.parse_args()
     if options.part == TURNS:
@@ -47,7 +48,7 @@ def main() -> None:
     elif options.part == SCENARIOS:
         from .turns import scenarios
 
-        scenarios.print_table(options.seed, options.count, options.out)
+        scenarios.print_table(options.seed, options.count, options.out, any_values=options.any_values)
     elif options.part == FRONTIER:
         from .turns import frontier
 

@@ -32,6 +32,9 @@ class Line:
     above: tuple[float, float] | None = None
     marked: tuple[float, float] | None = None
     slipped: float = 0.0
+    side: float = 0.0  # where across the base the shear acted, as a share of the half width
+    strength: float = 0.0  # of the edge that holds (Pa), and its depth
+    held_depth: float = 0.0
 
     @property
     def left(self) -> FloatArray:
@@ -112,12 +115,13 @@ class ReferenceRunner:
     def update(self, pose: Pose) -> None:
         for section in self._sections(pose):
             line = section.line
-            before, line.marked = line.marked, None
+            touch, before = section.touch, line.marked
+            held, strength = (section.anchor(), section.strength()[0]) if touch.deepest > 0.0 else (0.0, 0.0)
+            line.marked, line.strength = None, 0.0
             if section.share <= 0.0:
                 continue
-            touch = section.touch
             if touch.deepest <= 0.0:
-                line.above, line.anchor = (touch.edge, touch.deepest), None
+                line.above, line.anchor, line.side = (touch.edge, touch.deepest), None, section.side
                 continue
             if before is not None and abs(before[0] - touch.edge) > 1e-12:
                 line.pressed.append((*before, touch.edge, touch.depth))
@@ -127,19 +131,10 @@ class ReferenceRunner:
                 )
             line.marked = touch.edge, touch.depth
             reach = self.snow.shear_displacement
-            held = _anchor(line, touch)
             line.anchor = float(np.clip(held, touch.edge - reach, touch.edge + reach))
             line.slipped += abs(line.anchor - held)
-            line.above = None
-
-
-def _anchor(line: Line, touch: Touch) -> float:
-    if line.anchor is not None:
-        return line.anchor
-    if line.above is None:
-        return touch.edge
-    before, height = line.above
-    return before + (touch.edge - before) * height / (height - touch.deepest)
+            line.above, line.side = None, section.side
+            line.strength, line.held_depth = strength, touch.depth
 
 
 class _Section:
@@ -167,7 +162,7 @@ class _Section:
         self.t, self.r = math.cos(phi) * across - math.sin(phi) * up, math.cos(phi) * up + math.sin(phi) * across
         axis = s * self.x + height * up
         depth, self.sine = float((to_line - axis) @ n), float(-self.t @ n)
-        self.reach = _edge_side(self.sine / blend) * half
+        self.half, self.reach = half, _edge_side(self.sine / blend) * half
         along = self.x + slope * up + self.reach / half * flare * self.t - self.reach * self.twist_s * self.r
         missing = float((to_line - axis - self.reach * self.t) @ ahead)
         edge = float((axis + self.reach * self.t + missing / float(along @ ahead) * along - to_line) @ y)
@@ -203,6 +198,31 @@ class _Section:
         self.twists[[3 * e + 2, 3 * e + 5]] = 1.0 - z, z
         self.twists_s[[3 * e + 2, 3 * e + 5]] = 1.0 / h, -1.0 / h
 
+    @property
+    def side(self) -> float:
+        return self.reach / self.half
+
+    def anchor(self) -> float:
+        """Where the edge holds. A roll of the base that moves the place of the shear displaces no snow."""
+        line, touch = self.line, self.touch
+        moved = (self.half * line.side - self.reach) / self.wide
+        if line.anchor is not None:
+            return touch.edge + self._eased(line.anchor - moved - touch.edge)
+        if line.above is None:
+            return touch.edge
+        before, height = line.above
+        return touch.edge + (touch.edge + moved - before) * touch.deepest / (height - touch.deepest)
+
+    def _eased(self, displacement: float) -> float:
+        """A strength that rises leaves the force as it is; a cut that rises leaves its face."""
+        line = self.line
+        if not line.strength or line.anchor is None or line.marked is None:
+            return displacement
+        strength, thrust = self.strength()
+        displacement += (line.anchor - line.marked[0]) * (min(1.0, line.strength / strength) - 1.0)
+        left = max(thrust / strength * (line.held_depth - self.touch.depth), 0.0)
+        return math.copysign(max(abs(displacement) - left, 0.0), displacement)
+
     def add(self, wrench: FloatArray, loads: FloatArray) -> None:
         snow, line, touch = self.whole.snow, self.line, self.touch
         n, y = line.out, line.left
@@ -216,8 +236,8 @@ class _Section:
         sliding = float(forwards @ moves)
         by_twist = self.twist_s * moment / (1.0 - self.sine**2) * self.per_length
         resist = force * float(self.base @ forwards) + by_twist if snow.compaction_resistance else 0.0
-        used = (_anchor(line, touch) - touch.edge) / snow.shear_displacement
-        strength, thrust = self._strength()
+        used = (self.anchor() - touch.edge) / snow.shear_displacement
+        strength, thrust = self.strength()
         area = touch.deepest * self.share
         shear = strength * area * min(max(used, -1.0), 1.0) * self.u + thrust * area * min(abs(used), 1.0) * n
         # Coulomb's law on what presses square on the base: snow's normal and side force together
@@ -234,7 +254,7 @@ class _Section:
         loads += (self.deflects * float(self.up @ (push + shear))).reshape(-1, 3)
         loads -= (self.twists * float(self.r @ (arm * push + self.reach * shear))).reshape(-1, 3)
 
-    def _strength(self) -> tuple[float, float]:
+    def strength(self) -> tuple[float, float]:
         """Shear strength and thrust (N/m²), less what slip has taken."""
         snow, touch = self.whole.snow, self.touch
         left = strength_left(self.line.slipped, residual_ratio=snow.residual_ratio, slip_weakening=snow.slip_weakening)

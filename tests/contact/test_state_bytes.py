@@ -46,7 +46,7 @@ def fresh() -> SnowContact:
     return SnowContact(SnowField(2e8, 3e5, 10.0), [Runner(*SHAPE)])
 
 
-def sealed(payload: bytes, *, version: int = 2, kind: int = 1) -> bytes:
+def sealed(payload: bytes, *, version: int = 3, kind: int = 1) -> bytes:
     """A head, the payload, and FNV-1a of both."""
     body = b"skisnow\n" + struct.pack("<QQQ", version, kind, len(payload)) + payload
     digest = 14695981039346656037
@@ -172,8 +172,8 @@ def test_bytes_of_another_are_refused_in_words() -> None:
     data = small().state().to_bytes()
     payload = data[HEAD:-FOOT]
     assert sealed(payload) == data
-    with pytest.raises(ParameterError, match=r"they are of version 3; this library reads version 2"):
-        ContactState.from_bytes(sealed(payload, version=3))
+    with pytest.raises(ParameterError, match=r"they are of version 4; this library reads version 3"):
+        ContactState.from_bytes(sealed(payload, version=4))
     with pytest.raises(ParameterError, match="another kind of model"):
         ContactState.from_bytes(sealed(payload, kind=2))
     with pytest.raises(ParameterError, match="more than a state has"):

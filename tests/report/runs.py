@@ -55,7 +55,8 @@ def circle_run(
     shares = {"penetration": 0.3, "shear": 0.25, "friction": 0.25, "drag": 0.15, "damping": 0.03, "snow_damping": 0.02}
     energies = {
         "kinetic": kinetic, "potential": potential, "elastic_ski": np.full(count, 12.0),
-        "elastic_snow": np.full(count, 3.0), **{name: share * gone for name, share in shares.items()},
+        "elastic_snow": np.full(count, 3.0), "delayed_snow": np.zeros(count),
+        **{name: share * gone for name, share in shares.items()},
     }  # fmt: skip
     return Run(
         scenario=circle_scenario(duration=duration, unloading_ratio=unloading_ratio),

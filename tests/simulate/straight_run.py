@@ -54,6 +54,7 @@ def straight_run(
         "potential": -weight * math.sin(scenario.slope.angle) * path,
         "elastic_ski": none + 1.0,
         "elastic_snow": none + 2.0,
+        "delayed_snow": none,
         "penetration": none,
         "shear": none,
         "friction": scenario.contact.friction * weight * math.cos(scenario.slope.angle) * path,

@@ -54,28 +54,16 @@ def test_what_is_under_the_boot_lies_between_its_neighbours(node: list[float], a
     assert _at_boot(np.array(node), values) == pytest.approx([at_boot, 2.0 * at_boot], rel=1e-12)
 
 
-def books(*, shear: float, normal: float) -> tuple[float, ...]:
-    """What a record keeps of energies and works (J) that stand here; 1 and 2 were in the snow at the start."""
+def test_stored_and_lost_energies_are_separate() -> None:
+    """Stored: kinetic, potential, skis, snow with its edges, delayed depth; then losses and energies given."""
     dynamics: Any = SimpleNamespace(
-        snow_energies=(1.0, 2.0), energies=(100.0, 200.0, 7.0), work=(shear, 20.0, normal, 4.0, 5.0, 6.0),
-        work_given=(8.0, 9.0), contact=SimpleNamespace(delayed_energy=0.5), body=SimpleNamespace(skis=()), time=0.0,
+        snow_energies=(5.0, 3.0, 0.5), energies=(100.0, 200.0, 7.0), work=(10.0, 20.0, -30.0, 4.0, 5.0, 6.0),
+        snow_losses=(19.5, 9.0, 6.5, 0.0), work_given=(8.0, 9.0), body=SimpleNamespace(skis=()), time=0.0,
         position=np.zeros(3), rotation=np.eye(3), boots=None, boot_wrench=None, beam_dofs=np.zeros((0, 0)),
     )  # fmt: skip
     setup: Any = SimpleNamespace(dynamics=dynamics, place=np.zeros(3), attitude=np.eye(3), velocity=np.zeros(3))
-    record = Record(setup)
-    dynamics.snow_energies = (5.0, 3.0)
-    return record._present().energies
-
-
-def test_who_pays_for_what_the_snow_takes() -> None:
-    """30 J of the normal force less 4 that the snow keeps and 6.5 of its dashpot; of 10 J by shear one is kept."""
-    assert books(shear=10.0, normal=-30.0) == (100.0, 200.0, 7.0, 8.0, 19.5, 9.0, 20.0, 4.0, 5.0, 6.5, 8.0, 9.0)
-    pressed = books(shear=-2.0, normal=-30.0)  # an edge that is pressed deeper: penetration pays 3 J
-    assert pressed[4:6] == (16.5, 0.0)
-    lifted = books(shear=10.0, normal=-5.0)  # sideways motion pays for what lifts
-    assert lifted[4:6] == (0.0, 3.5)
-    both = books(shear=-2.0, normal=-5.0)
-    assert both[4:6] == (0.0, -8.5)
+    stored, lost = (100.0, 200.0, 7.0, 8.0, 0.5), (19.5, 9.0, 20.0, 4.0, 5.0, 6.5)
+    assert Record(setup)._present().energies == (*stored, *lost, 8.0, 9.0)
 
 
 def test_steps_that_cannot_go_on_are_an_outcome() -> None:

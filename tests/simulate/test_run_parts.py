@@ -111,32 +111,6 @@ def test_energy_out_of_nothing(first: tuple[float, ...], last: tuple[float, ...]
     assert cast("Any", Record.gains_energy).fget(record) is gains
 
 
-def test_where_energy_went_adds_up_and_is_no_gain() -> None:
-    """Whatever the works are: the losses are what was done less what is stored, and none of them is negative."""
-    rng = np.random.default_rng(3)
-    for _ in range(200):
-        normal_elastic, shear_elastic, n_first, s_first, shear, friction, drag, damping, dashpot, delayed = rng.uniform(
-            0.0, 5.0, 10
-        )
-        normal = -rng.uniform(0.0, 20.0)
-        dynamics = stub(
-            snow_energies=(normal_elastic, shear_elastic), energies=(1.0, 2.0, 3.0), work_given=(4.0, 5.0),
-            work=(shear, friction, normal, drag, damping, dashpot), contact=stub(delayed_energy=delayed),
-        )  # fmt: skip
-        record = stub(setup=stub(dynamics=dynamics), _snow_first=(n_first, s_first))
-        *stored, elastic, penetration, by_shear, by_friction, by_drag, by_damping, by_rate, boots, push = (
-            Record._energies(record)
-        )
-        assert (stored, boots, push) == ([1.0, 2.0, 3.0], 4.0, 5.0)
-        assert elastic == normal_elastic + shear_elastic
-        assert (by_friction, by_drag, by_damping) == (friction, drag, damping)
-        assert by_rate == pytest.approx(dashpot + delayed)
-        together = -normal + shear - (elastic - n_first - s_first) - by_rate
-        assert penetration + by_shear == pytest.approx(together)
-        if together >= 0.0:
-            assert min(penetration, by_shear) >= -1e-12
-
-
 # The state under way
 
 

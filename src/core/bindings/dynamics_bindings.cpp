@@ -118,6 +118,16 @@ nb::tuple work_of(const Dynamics& self) {
   return nb::make_tuple(w.shear, w.friction, w.normal, w.drag, w.damping, w.snow_damping, w.boots, w.push);
 }
 
+nb::tuple snow_store_of(const Dynamics& self) {
+  const SnowStore& s = self.snow_store();
+  return nb::make_tuple(s.pressure, s.shear, s.delayed);
+}
+
+nb::tuple snow_losses_of(const Dynamics& self) {
+  const SnowAccount& s = self.snow_losses();
+  return nb::make_tuple(s.penetration.total, s.shear.total, s.rate.total, s.owed());
+}
+
 nb::tuple counts_of(const Dynamics& self) {
   const Counts& c = self.counts();
   return nb::make_tuple(c.steps, c.rejected, c.looks, c.factored, c.iterations);
@@ -179,8 +189,8 @@ void bind_dynamics(nb::module_& m) {
           nb::call_guard<nb::gil_scoped_release>())
       .def_prop_ro("bend", &bend_of, nb::rv_policy::automatic)
       .def("along", &along_of)
-      .def_prop_ro("snow_energy", &Dynamics::snow_energy)
-      .def_prop_ro("held_energy", &Dynamics::held_energy)
+      .def_prop_ro("snow_store", &snow_store_of)
+      .def_prop_ro("snow_losses", &snow_losses_of)
       .def_prop_ro("touches", &Dynamics::touches)
       .def_prop_ro("next_step", &Dynamics::next_step)
       .def_prop_ro("energies", &energies_of)

@@ -39,6 +39,24 @@ void strengthen(const ShearLaw& law, Sections& s) {
   }
 }
 
+// [ease] An edge that holds stores ½ S e u_y u² for each metre of its length. A strength S that rises must not add to
+// this energy: the displacement shrinks so that the force stays. And the thrust of a cut presses on the same face as the
+// shear: an edge that rises by z along its normal leaves that face by z times thrust over shear.
+void ease(const Snow& snow, const GrooveLines& lines, Sections& s) {
+  const double reach = snow.shear_displacement;
+  for (int i = 0; i < s.count(); i++) {
+    const int slot = lines.slot(s.line(i));
+    const double before = lines.values[STRENGTH_HELD][slot], now = s[EDGE_STRENGTH][i];
+    if (!s.touches(i) || !(before > 0.0 && now > 0.0) || !(lines.values[ANCHORED][slot] > 0.5)) continue;
+    const double held = lines.values[SHEAR_HELD][slot] / reach;
+    const double eased = s[SHEAR_USED][i] + held * (std::min(1.0, before / now) - 1.0);
+    const double left = s[EDGE_THRUST][i] / now * (lines.values[DEPTH_HELD][slot] - s[EDGE_DEPTH][i]) / reach;
+    const double used = std::copysign(std::max(std::fabs(eased) - std::max(left, 0.0), 0.0), eased);
+    s[SHEAR_EASED][i] = used - s[SHEAR_USED][i];
+    s[SHEAR_USED][i] = used;
+  }
+}
+
 // The same situation with one runner moved, or its motion changed, by a small step of one of its six freedoms.
 Situation displaced(const Situation& at, int k, int freedom, double step, bool of_motion) {
   Situation out = at;
@@ -102,6 +120,7 @@ const Wrench& SnowContact::evaluate(int k, const GrooveLines& lines, const Pose&
   kernels_->slide(motion, pose, *snow_, s);
   if (snow_->shear.by_angle()) strengthen(snow_->shear, s);
   if (laws) laws(k, s);
+  if (strength_varies()) ease(*snow_, lines, s);
   Wrench& wrench = wrenches_[std::size_t(k)];
   kernels_->push(motion, pose, *snow_, s, wrench);
   return wrench;
@@ -226,7 +245,10 @@ void SnowContact::update(const Situation& to) {
     GrooveLines& lines = state_.lines[std::size_t(k)];
     const Pose& pose = to.poses[std::size_t(k)];
     march(k, lines, to);
-    kernels_->find_sections(runner(k), pose, *snow_, lines, lines.first, sections_[std::size_t(k)]);
+    if (strength_varies())
+      evaluate(k, lines, pose, to.motions[std::size_t(k)], false, sections_[std::size_t(k)]);
+    else
+      kernels_->find_sections(runner(k), pose, *snow_, lines, lines.first, sections_[std::size_t(k)]);
     settle_history(k, pose);
   }
   stand(to.poses);
@@ -326,6 +348,24 @@ double SnowContact::elastic_energy() const {
   for (const Sections& s : sections_)
     for (int i = 0; i < s.count(); i++) total += s[SNOW_ENERGY][i];
   return total;
+}
+
+double SnowContact::delayed_stored() const {
+  if (!snow_->rate.is_delayed()) return 0.0;
+  double total = 0.0;
+  for (const GrooveLines& each : state_.lines)
+    for (std::int64_t n = each.first; n < each.end; n++) {
+      const DelayedGround& delayed = each.delayed[std::size_t(each.slot(n))];
+      const double spring = each.values[HARDNESS][each.slot(n)] / snow_->rate.delayed_share;  // H₂
+      for (const double depth : delayed.depth)
+        total += 0.5 * spring * depth * depth * delayed.spacing * each.spacing();
+    }
+  return total;
+}
+
+// Whether the strength of an edge may rise while it holds.
+bool SnowContact::strength_varies() const {
+  return snow_->shear.by_angle() || laws || bearing_ || !snow_->strength.is_constant() || snow_->strength_share != 1.0;
 }
 
 SnowContact::State SnowContact::state() const {

@@ -81,6 +81,7 @@ class SnowContact {
   double groove_energy() const;   // lost in grooves, those under the runners included (J)
   double held_energy() const;     // in the displaced shear of the edges at the last situation looked at (J)
   double elastic_energy() const;  // in the snow at the last situation looked at (J)
+  double delayed_stored() const;  // in the springs of its delayed depth, under the runners (J)
   double delayed_energy() const { return state_.delayed_energy; }  // that its delayed depth has taken so far (J)
 
   // All that the contact remembers, but for the tracks of others.
@@ -140,6 +141,8 @@ class SnowContact {
   class Standing;
   void prepare(int k, GrooveLines& lines, const Pose& pose);
   void learn(GrooveLines& lines, int slot, double from, double to, const Standing& standing) const;
+  bool strength_varies() const;
+  void hold_strength(int k, GrooveLines& lines) const;
   void settle_history(int k, const Pose& pose);
   void count_energy(int k, GrooveLines& lines);
   void follow_snow(int k, GrooveLines& lines) const;

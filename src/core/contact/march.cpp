@@ -99,15 +99,24 @@ void press_base(const Sections& s, int i, const Snow& snow, GrooveLines& lines, 
   lines.keep(slot, ground);
 }
 
-// Keep where the edge holds: where it came through the surface, not farther off than its full displacement.
+// The point of the base at which the shear acts, as a share of the half width.
+double edge_side(const Sections& s, int i) {
+  return s[HALF_WIDTH][i] > 0.0 ? s[EDGE_REACH][i] / s[HALF_WIDTH][i] : 0.0;
+}
+
+// Keep where the edge holds: where it came through the surface, not farther off than its full displacement. The
+// displacement is that of the point at which the shear acted before, see [material_edge].
 void keep_anchor(const Sections& s, int i, const Snow& snow, GrooveLines& lines, int slot) {
   auto& v = lines.values;
   const double edge = s[EDGE_PLACE][i], depth = s[DEEPEST][i], reach = snow.shear_displacement;
+  const double moved = (s[HALF_WIDTH][i] * v[EDGE_SIDE][slot] - s[EDGE_REACH][i]) / s[BASE_WIDENING][i];
   double anchor = edge;
   if (v[ANCHORED][slot] > 0.5)
-    anchor = v[ANCHOR][slot];
+    anchor = v[ANCHOR][slot] - moved;
   else if (v[ABOVE][slot] > 0.5)
-    anchor = edge - depth / (depth - v[DEPTH_ABOVE][slot]) * (edge - v[EDGE_ABOVE][slot]);
+    anchor = edge - depth / (depth - v[DEPTH_ABOVE][slot]) * (edge + moved - v[EDGE_ABOVE][slot]);
+  anchor += reach * s[SHEAR_EASED][i];
+  v[EDGE_SIDE][slot] = edge_side(s, i);
   v[ANCHOR][slot] = std::clamp(anchor, edge - reach, edge + reach);
   v[SLIPPED][slot] += std::fabs(v[ANCHOR][slot] - anchor);
   v[ANCHORED][slot] = 1.0;
@@ -120,6 +129,7 @@ void remember_section(const Sections& s, int i, const Snow& snow, GrooveLines& l
     if (!(s[SHARE][i] > 0.0)) return;
     v[EDGE_ABOVE][slot] = s[EDGE_PLACE][i];
     v[DEPTH_ABOVE][slot] = s[DEEPEST][i];
+    v[EDGE_SIDE][slot] = edge_side(s, i);
     v[ANCHORED][slot] = 0.0;
     v[ABOVE][slot] = 1.0;
     return;

@@ -225,15 +225,24 @@ struct Pressed {
   }
 };
 
+// [material_edge] Place across of the point of the base at which the shear acted at the last accepted pose. While a
+// nearly level base rolls, the blend moves the shear to another point. This motion is not one of the base.
+template <class V>
+V material_edge(const GrooveLines& lines, int j, const Cut<V>& c) {
+  const V moved = c.half * load<V>(lines.values[EDGE_SIDE] + j) - c.reach;
+  return any(absolute(moved) > 0.0) ? c.place + moved / c.widening : c.place;
+}
+
 // [shear_used] The share of the way to full strength by which the edge is displaced. It holds where it did before, else
 // where it came through the surface since it was last looked at.
 template <class V>
 V shear_used(const Snow& snow, const GrooveLines& lines, int j, const Cut<V>& c) {
   const V above = load<V>(lines.values[DEPTH_ABOVE] + j), edge_above = load<V>(lines.values[EDGE_ABOVE] + j);
-  const V through = c.place - c.deepest / (c.deepest - above) * (c.place - edge_above);
+  const V place = material_edge(lines, j, c);
+  const V through = place - c.deepest / (c.deepest - above) * (place - edge_above);
   const V anchor = select(load<V>(lines.values[ANCHORED] + j) > 0.5, load<V>(lines.values[ANCHOR] + j),
-                          select(load<V>(lines.values[ABOVE] + j) > 0.5, through, c.place));
-  return (anchor - c.place) / snow.shear_displacement;
+                          select(load<V>(lines.values[ABOVE] + j) > 0.5, through, place));
+  return (anchor - place) / snow.shear_displacement;
 }
 
 // [strength_left] Of a strength, where an edge has slipped this far (m).

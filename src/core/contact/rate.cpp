@@ -196,7 +196,7 @@ Acting<double> acting(const Snow& snow, const GrooveLines& lines, const Sections
           s[FRICTION][i],
           s[EDGE_STRENGTH][i],
           s[EDGE_THRUST][i],
-          alone::shear_used(snow, lines, lines.slot(s.line(i)), c)};
+          alone::shear_used(snow, lines, lines.slot(s.line(i)), c) + s[SHEAR_EASED][i]};
 }
 
 void keep_differences(const Pushed<double>& pushed, const Sections& s, int i, int change, double way,

@@ -194,7 +194,7 @@ struct Cut {
     store(s[EDGE_PLACE] + i, place), store(s[DEPTH_FALL] + i, fall), store(s[DEPTH_CLIMB] + i, climb);
     store(s[BASE_WIDENING] + i, widening), store(s[WET_FROM] + i, wet_from), store(s[WET_TO] + i, wet_to);
     store3(s, ACROSS_0, i, across), store3(s, ALONG_0, i, along), store(s[ALONG_SIZE] + i, size);
-    store(s[EDGE_SKEW] + i, skew_);
+    store(s[EDGE_SKEW] + i, skew_), store(s[SHEAR_EASED] + i, V{});
   }
 
   // A stored section after the base has moved by a small way to the left, or off the snow. The wet base ends where it

@@ -38,8 +38,8 @@ enum SectionField {
   FORCE_BY_TO,
   RATE_POWER,  // that c of snow that takes time takes (W)
   // the edge: share of the strength that is left after slip, shear strength S_f and the thrust off the snow that comes
-  // with it (Pa), the share of the displacement to full strength in use
-  STRENGTH_LEFT, EDGE_STRENGTH, EDGE_THRUST, SHEAR_USED,
+  // with it (Pa), the share of the displacement to full strength in use, and the part of it by which the edge was eased
+  STRENGTH_LEFT, EDGE_STRENGTH, EDGE_THRUST, SHEAR_USED, SHEAR_EASED,
   // velocity of the base at the centre of pressure along the edge (m/s); μ with its sign, and its growth with it; the
   // load that friction acts on (N)
   SLIDING, FRICTION, FRICTION_SLOPE, FRICTION_LOAD,

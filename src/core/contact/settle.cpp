@@ -1,5 +1,6 @@
 // The end of a step that is taken: what it presses is counted, and lines follow the ski.
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "contact/contact.hpp"
@@ -24,10 +25,22 @@ void SnowContact::settle_history(int k, const Pose& pose) {
   GrooveLines& lines = state_.lines[std::size_t(k)];
   if (snow_->rate.is_delayed()) state_.delayed_energy += advance_delayed(*snow_, sections(k), dt_, lines);
   remember(k, lines);
+  if (strength_varies()) hold_strength(k, lines);
   count_energy(k, lines);
   if (lines.is_uneven(pose, *snow_)) lay_anew(k, pose);
   follow_snow(k, lines);
   lines.drop_left(runner(k), pose, &snow_->archive, state_.strips[std::size_t(k)]);
+}
+
+// Strength and depth of the edges that hold, against which the next step's are set: see [ease].
+void SnowContact::hold_strength(int k, GrooveLines& lines) const {
+  const Sections& s = sections(k);
+  for (std::int64_t n = lines.first; n < lines.end; n++) {
+    const int i = s.index(n), slot = lines.slot(n);
+    lines.values[STRENGTH_HELD][slot] = s.touches(i) ? s[EDGE_STRENGTH][i] : 0.0;
+    lines.values[DEPTH_HELD][slot] = s[EDGE_DEPTH][i];
+    lines.values[SHEAR_HELD][slot] = lines.values[ANCHOR][slot] - s[EDGE_PLACE][i];
+  }
 }
 
 // A line that tip or tail passes stands for the whole spacing: what the ski presses there first is pressed for good.
@@ -52,8 +65,12 @@ void SnowContact::follow_snow(int k, GrooveLines& lines) const {
   if (snow_->hardness.is_constant() && snow_->strength.is_constant()) return;
   const Sections& s = sections(k);
   for (std::int64_t n = lines.first; n < lines.end; n++) {
-    const int i = s.index(n);
-    if (s.touches(i)) lines.follow_snow(lines.slot(n), s[EDGE_PLACE][i], *snow_);
+    const int i = s.index(n), slot = lines.slot(n);
+    if (!s.touches(i)) continue;
+    const double before = lines.values[STRENGTH][slot];
+    lines.follow_snow(slot, s[EDGE_PLACE][i], *snow_);
+    // an edge that slips meets the full strength of its new place
+    if (std::fabs(s[SHEAR_USED][i]) > 1.0) lines.values[STRENGTH_HELD][slot] *= lines.values[STRENGTH][slot] / before;
   }
 }
 

@@ -22,6 +22,9 @@ constexpr double FARTHEST = 1.0;          // way (m), turn (rad), bend beyond wh
 constexpr double SAFETY = 0.85, UP = 1.35, DOWN = 0.93;  // of the step's choice
 constexpr std::chrono::milliseconds LONGEST_STAY(50);    // within the core, before it pauses to hear an interrupt
 constexpr double ROUNDING = 1e-9;                        // of a step's length
+// of the energy exchanged: the open balance from which on steps get shorter; and the energy (J) below which it is left
+constexpr double MOST_OPEN = 2e-3, LEAST_OPEN = 0.01;
+constexpr int MOST_NARROWED = 12;  // rungs by which steps get shorter: three octaves
 constexpr double MILNE = 0.35;  // error of BDF2 over its distance from the predictor, at equal steps 8/23
 
 }  // namespace
@@ -203,7 +206,7 @@ bool Dynamics::solve_step(const Formula& f) {
     place(f);
     const double contraction = iteration > 0 ? contraction_ : std::max(contraction_, UNSEEN);
     // the change that is left is small beside the step's own error, or beside the tolerance where that is smaller
-    const double own = std::clamp(error(f), LEAST_ERROR * rule_.tolerance, rule_.tolerance);
+    const double own = std::clamp(error(f), LEAST_ERROR * tolerance(), tolerance());
     if (contraction / (1.0 - contraction) * size < std::min(rule_.closeness * own, displacement)) return true;
   }
   return false;
@@ -232,30 +235,57 @@ double Dynamics::error(const Formula& f) const {
   return MILNE * worst;
 }
 
-// [powers] At the accepted end; energies by the trapezoidal rule.
-void Dynamics::add_work(double h) {
-  Work now;
+// [powers] Each work W is integrated with the formula of the motion, a₁ W₁ - (1 + ω) W₀ + a₋ W₋₁ = h P₁. The power P
+// jumps where a base meets the snow. The trapezoidal rule would count half of a jump before the motion feels it.
+void Dynamics::add_work(const Formula& f) {
+  Work power;
   for (std::size_t k = 0; k < body_.skis.size(); k++) {
     const ContactPower snow = contact_->power(int(k), end_.poses[k], end_.motions[k]);
-    now.shear -= snow.shear;
-    now.friction -= snow.friction;
-    now.normal += snow.normal;
-    now.snow_damping += snow.damping;
+    power.shear -= snow.shear;
+    power.friction -= snow.friction;
+    power.normal += snow.normal;
+    power.snow_damping += snow.damping;
   }
-  now.drag = drag_power(body_, next_);
-  now.damping = damping_power(body_, layout_, next_);
-  now.push = push_power(body_, next_);
-  for (std::size_t k = 0; k < skis_.size() && !motions_.empty(); k++) now.boots += skis_[k].power(body_.skis[k]);
-  work_.shear += 0.5 * h * (power_.shear + now.shear);
-  work_.friction += 0.5 * h * (power_.friction + now.friction);
-  work_.normal += 0.5 * h * (power_.normal + now.normal);
-  work_.drag += 0.5 * h * (power_.drag + now.drag);
-  work_.damping += 0.5 * h * (power_.damping + now.damping);
-  work_.snow_damping += 0.5 * h * (power_.snow_damping + now.snow_damping);
-  work_.boots += 0.5 * h * (power_.boots + now.boots);
-  work_.push += 0.5 * h * (power_.push + now.push);
-  power_ = now;
+  power.drag = drag_power(body_, next_);
+  power.damping = damping_power(body_, layout_, next_);
+  power.push = push_power(body_, next_);
+  for (std::size_t k = 0; k < skis_.size() && !motions_.empty(); k++) power.boots += skis_[k].power(body_.skis[k]);
+  for (double Work::* each : Work::PARTS) {
+    last_work_.*each = f.reach * power.*each + f.keep * last_work_.*each;
+    work_.*each += last_work_.*each;
+  }
 }
+
+// Losses to the snow in the step that was accepted last: what its forces took less what the snow has stored of that.
+// `pressure`, `shear`: energies (J) that are stored at its end.
+void Dynamics::add_losses(double pressure, double shear) {
+  const SnowStore now{pressure, shear, contact_->delayed_stored(), contact_->delayed_energy()}, &before = store_;
+  const double by_rate = last_work_.snow_damping + now.delayed_taken - before.delayed_taken;
+  losses_.add(-last_work_.normal - (pressure - before.pressure) - by_rate, last_work_.shear - (shear - before.shear),
+              by_rate - (now.delayed - before.delayed), pressure + shear);
+  store_ = now;
+}
+
+// [balance] BDF2 damps vibrations that its steps do not resolve. The open balance of energy shows by how much. Where it
+// exceeds its share of the energy exchanged, steps get shorter by a rung of the ladder; they get longer again where it
+// is well below.
+void Dynamics::follow_balance() {
+  const Energies now = total_energies();
+  const Work& w = work_;
+  const double taken = w.shear + w.friction - w.normal + w.drag + w.damping - w.boots - w.push;
+  const double open = std::fabs(now.kinetic + now.potential + now.elastic - start_.kinetic - start_.potential -
+                                start_.elastic + taken);
+  const double fallen = std::max(start_.potential - now.potential, 0.0);
+  const double most = MOST_OPEN * (start_.kinetic + std::max(taken, 0.0) + fallen) + LEAST_OPEN;
+  if (open > most)
+    narrowed_ = std::min(narrowed_ + 1, MOST_NARROWED);
+  else if (open < 0.5 * most)
+    narrowed_ = std::max(narrowed_ - 1, 0);
+}
+
+double Dynamics::tolerance() const { return rule_.tolerance * std::exp2(-0.75 * narrowed_); }
+
+double Dynamics::longest() const { return rule_.longest * std::exp2(-0.25 * narrowed_); }
 
 void Dynamics::observe() {
   along_.clear();
@@ -264,8 +294,6 @@ void Dynamics::observe() {
     along_.push_back(along_nodes(contact_->runner(k), contact_->sections(k)));
     touches_ = touches_ || contact_->touches(k);
   }
-  snow_energy_ = contact_->elastic_energy();
-  held_energy_ = contact_->held_energy();
 }
 
 void Dynamics::accept(const Formula& f, bool observed) {
@@ -273,10 +301,12 @@ void Dynamics::accept(const Formula& f, bool observed) {
     feel_boots(f.newest, f.now, f.before);
   else
     follow_skis();
-  add_work(f.h);
+  add_work(f);
+  const double pressure = contact_->elastic_energy(), shear = contact_->held_energy();
   if (observed) observe();
   fill_end();
   contact_->accept(end_);
+  add_losses(pressure, shear);
   rate_before_ = state.rate;
   std::swap(state, next_);
   moved_ = increment_;
@@ -285,6 +315,7 @@ void Dynamics::accept(const Formula& f, bool observed) {
   last_step_ = f.h;
   counts_.steps++;
   for (MovingSki& each : skis_) each.accept();
+  if (!rule_.fixed) follow_balance();
 }
 
 bool Dynamics::is_sound(double h) const {
@@ -309,10 +340,14 @@ void Dynamics::begin() {
   add_snow(residual_, false);
   feel_boots(0.0, 0.0, 0.0);
   for (MovingSki& each : skis_) each.begin();
-  add_work(0.0);
   observe();
+  store_ = {contact_->elastic_energy(), contact_->held_energy(), 0.0, 0.0};
   contact_->accept(end_);
-  work_ = Work();
+  store_.delayed = contact_->delayed_stored(), store_.delayed_taken = contact_->delayed_energy();
+  work_ = last_work_ = Work();
+  losses_ = SnowAccount();
+  start_ = total_energies();
+  narrowed_ = 0;
   counts_ = Counts();
   last_step_ = 0.0;
   time = 0.0;
@@ -339,16 +374,17 @@ Dynamics::Tried Dynamics::after_fixed(bool solved) {
 
 // After a step h under error control: the next one's length.
 Dynamics::Tried Dynamics::after_controlled(const Formula& f, double h, bool solved) {
-  const double wanted = solved ? SAFETY * std::cbrt(rule_.tolerance / std::max(error(f), 1e-30)) : 0.5;
+  const double wanted = solved ? SAFETY * std::cbrt(tolerance() / std::max(error(f), 1e-30)) : 0.5;
   if (!solved || wanted < SAFETY) {
     reject();
     step_ = on_ladder(h * std::clamp(wanted, 0.1, 0.8));
     return step_ < rule_.shortest ? Tried::GIVEN_UP : Tried::AGAIN;
   }
   if (h * wanted > UP * step_)
-    step_ = std::min(rule_.longest, on_ladder(step_ * 1.19));
+    step_ = std::min(longest(), on_ladder(step_ * 1.19));
   else if (h * wanted < DOWN * step_)
     step_ = on_ladder(h * wanted);
+  step_ = std::min(step_, longest());
   return Tried::TAKEN;
 }
 

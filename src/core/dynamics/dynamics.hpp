@@ -6,6 +6,7 @@
 #include "contact/contact.hpp"
 #include "dynamics/body.hpp"
 #include "dynamics/boots.hpp"
+#include "dynamics/snow_account.hpp"
 
 namespace skisnow {
 
@@ -28,6 +29,9 @@ struct Counts {
 struct Work {
   double shear = 0.0, friction = 0.0, normal = 0.0, drag = 0.0, damping = 0.0, snow_damping = 0.0;
   double boots = 0.0, push = 0.0;
+
+  static constexpr double Work::* PARTS[] = {&Work::shear,   &Work::friction,     &Work::normal, &Work::drag,
+                                             &Work::damping, &Work::snow_damping, &Work::boots,  &Work::push};
 };
 
 class Dynamics {
@@ -46,8 +50,8 @@ class Dynamics {
   double next_step() const { return step_; }
   // What the snow does along one ski at the last moment that `advance` or `begin` reached.
   const Along& along(int k) const { return along_[std::size_t(k)]; }
-  double snow_energy() const { return snow_energy_; }  // elastic (J), at that moment
-  double held_energy() const { return held_energy_; }  // in the displaced shear (J)
+  const SnowStore& snow_store() const { return store_; }    // after the last step
+  const SnowAccount& snow_losses() const { return losses_; }  // since `begin`
   bool touches() const { return touches_; }            // whether any ski is in the snow
 
   // Boots: each ski's inertia about its boot, in its own axes, (6, 6), lets what it does to its boot be known, and lets
@@ -80,13 +84,18 @@ class Dynamics {
   StepRule rule_;
   Layout layout_;
   Counts counts_;
-  Work work_, power_;
+  Work work_, last_work_;  // of the last step alone
   double step_;
 
   // the last accepted step: rates before it, its increments in the frame of its end, its length (s)
   Numbers rate_before_, moved_;
   double last_step_ = 0.0;
   double share_ = 1.0;  // of a fixed step, less than 1 where Newton's method has failed
+  // energies at the start and in the snow; rungs of the ladder by which steps are shorter for the balance of energy
+  Energies start_{0.0, 0.0, 0.0};
+  SnowStore store_;
+  SnowAccount losses_;
+  int narrowed_ = 0;
   // skis as bodies of their own; boots that move; what is left of the body without skis
   std::vector<MovingSki> skis_;
   std::vector<BootMotion> motions_;
@@ -95,7 +104,6 @@ class Dynamics {
   std::vector<std::array<Vector3, 2>> boot_;
   // what was observed at the last moment reached
   std::vector<Along> along_;
-  double snow_energy_ = 0.0, held_energy_ = 0.0;
   bool touches_ = false;
   // the step in the making
   BodyState next_;
@@ -132,7 +140,11 @@ class Dynamics {
   double error(const Formula& f) const;
   void accept(const Formula& f, bool observed);
   void observe();
-  void add_work(double h);
+  void add_work(const Formula& f);
+  void add_losses(double pressure, double shear);
+  void follow_balance();
+  double tolerance() const;
+  double longest() const;
   bool is_sound(double h) const;
   double on_ladder(double h) const;
   enum class Tried { TAKEN, AGAIN, GIVEN_UP };

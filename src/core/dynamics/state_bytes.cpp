@@ -145,7 +145,7 @@ void GrooveLines::read(ByteReader& in) {
   for (std::int64_t n = first; n < end; n++) {
     Line line{slot(n), {}, {}};
     for (int field = 0; field < LINE_FIELDS; field++) {
-      const bool of_snow = field == HARDNESS || field == EXCESS || field == STRENGTH;
+      const bool of_snow = field == HARDNESS || field == EXCESS || field == STRENGTH || field == STRENGTH_HELD;
       in.numbers(line.values + field, 1, of_snow ? MOST_STRESS : FARTHEST);
     }
     for (const int from : {AHEAD_X, NORMAL_X})
@@ -223,13 +223,6 @@ void read_body(ByteReader& in, BodyState& out) {
   read_place(in, out.position), read_rotation(in, out.rotation), in.all(out.bend, FARTHEST), in.all(out.rate, FARTHEST);
 }
 
-template <class Do, class WorkOrConst>
-void each_work(WorkOrConst& work, const Do& act) {
-  for (auto* each : {&work.shear, &work.friction, &work.normal, &work.drag, &work.damping, &work.snow_damping,
-                     &work.boots, &work.push})
-    act(*each);
-}
-
 }  // namespace
 
 void MovingSki::write(ByteWriter& out) const { write_body(state_, out), out.all(now_), out.all(before_); }
@@ -242,7 +235,13 @@ void Dynamics::write(ByteWriter& out) const {
   write_body(state, out);
   out.all(rate_before_), out.all(moved_);
   out.numbers(std::vector{time, last_step_, share_, step_, contraction_}.data(), 5);
-  for (const Work* work : {&work_, &power_}) each_work(*work, [&](double each) { out.number(each); });
+  for (const Work* work : {&work_, &last_work_})
+    for (const double Work::* each : Work::PARTS) out.number(work->*each);
+  for (const double SnowStore::* each : SnowStore::PARTS) out.number(store_.*each);
+  for (const Loss* each : {&losses_.penetration, &losses_.shear, &losses_.rate})
+    out.number(each->total), out.number(each->open);
+  out.numbers(std::vector{start_.kinetic, start_.potential, start_.elastic}.data(), 3);
+  out.whole(narrowed_);
   for (const long each : {counts_.steps, counts_.rejected, counts_.looks, counts_.factored, counts_.iterations})
     out.whole(each);
   for (const MovingSki& each : skis_) each.write(out);
@@ -253,7 +252,13 @@ void Dynamics::read(ByteReader& in) {
   in.all(rate_before_, FARTHEST), in.all(moved_, FARTHEST);
   time = in.number(), last_step_ = in.number(), share_ = in.within(0.0, 1.0), step_ = in.within(0.0, rule_.longest);
   contraction_ = in.number();
-  for (Work* work : {&work_, &power_}) each_work(*work, [&](double& each) { each = in.number(); });
+  for (Work* work : {&work_, &last_work_})
+    for (double Work::* each : Work::PARTS) work->*each = in.number();
+  for (double SnowStore::* each : SnowStore::PARTS) store_.*each = in.number();
+  for (Loss* each : {&losses_.penetration, &losses_.shear, &losses_.rate})
+    each->total = in.number(), each->open = in.number();
+  start_.kinetic = in.number(), start_.potential = in.number(), start_.elastic = in.number();
+  narrowed_ = int(in.whole(0, 64));
   for (long* each : {&counts_.steps, &counts_.rejected, &counts_.looks, &counts_.factored, &counts_.iterations})
     *each = long(in.whole(0, MOST_LINES));
   for (MovingSki& each : skis_) each.read(in);

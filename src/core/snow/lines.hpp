@@ -26,6 +26,9 @@ enum LineField {
   ABOVE, EDGE_ABOVE, DEPTH_ABOVE,     // whether the base was just above at the last accepted pose; its edge then
   MARKED, EDGE_MARKED, DEPTH_MARKED,  // whether it was in the snow then; its edge then
   SLIPPED,                            // how far an edge has slipped across here (m)
+  EDGE_SIDE,                          // share of the half width at which the shear acted at the last accepted pose
+  // where the strength varies: that of the edge then (Pa), its depth, and its displacement from the anchor (m)
+  STRENGTH_HELD, DEPTH_HELD, SHEAR_HELD,
   KNOWN_FROM, KNOWN_TO,               // where across older tracks were looked for (m)
   LINE_FIELDS
 };

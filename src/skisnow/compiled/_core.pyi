@@ -132,8 +132,8 @@ class Dynamics:
     velocity: FloatArray
     bend: FloatArray
     next_step: float
-    snow_energy: float
-    held_energy: float
+    snow_store: tuple[float, float, float]
+    snow_losses: tuple[float, float, float, float]
     touches: bool
     energies: tuple[float, float, float]
     work: tuple[float, float, float, float, float, float, float, float]

@@ -24,7 +24,7 @@ STEPS_AT_ONCE: Final = 1000
 TOLERANCE: Final = 1e-6
 """Error of position (m) that one step may make by its own estimate (modelling assumption; see the docs' frontier)."""
 LONGEST_STEP: Final = 6e-3
-"""Longest step (s) (modelling assumption: the powers are summed by the trapezoidal rule from step to step)."""
+"""Longest step (s) (modelling assumption)."""
 SHORTEST_STEP: Final = 1e-7
 """Step (s) below which a run ends."""
 CLOSENESS: Final = 0.2
@@ -255,9 +255,17 @@ class Dynamics:
         return self._core.energies
 
     @property
-    def snow_energies(self) -> tuple[float, float]:
-        """Elastic in the snow, and in the shear displacement of the edges, at the last time reached (J)."""
-        return float(self._core.snow_energy), float(self._core.held_energy)
+    def snow_energies(self) -> tuple[float, float, float]:
+        """Energies that the snow can give back: pressure, shear at the edges, delayed depth (J)."""
+        return self._core.snow_store
+
+    @property
+    def snow_losses(self) -> tuple[float, float, float, float]:
+        """Losses since `begin` (J): penetration, shear, damping with delayed depth; then the energy owed.
+
+        A loss never falls. Owed is the energy that the snow gave beyond the energy that it had stored.
+        """
+        return self._core.snow_losses
 
     @property
     def work(self) -> tuple[float, float, float, float, float, float]:

@@ -289,7 +289,7 @@ def _warned(track: Measured, row: Row) -> list[str]:
     found = []
     if row["outcome"] == "energy_open":
         found.append(
-            f"{track.name}: the balance of energy of the simulated run stays open by more than a tenth: what was found "
+            f"{track.name}: the balance of energy of the simulated run stays open by more than 0.5 %: what was found "
             "rests on a run that is not to be trusted. Take smaller steps, or the error control"
         )
     if row["reached"] < len(track.time):

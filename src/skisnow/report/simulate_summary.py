@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from ..simulate.run import WARNED_SHARE
+from ..simulate.run import OPEN_SHARE
 from .number_formatting import significant
 
 if TYPE_CHECKING:
@@ -73,7 +73,7 @@ def _radius(summary: Mapping[str, Any]) -> str:
 def _residual(error: float | None) -> str:
     if error is None:
         return "no energy was exchanged"
-    return f"{_plain(100.0 * error, 2)} % of the energy exchanged{'' if error <= WARNED_SHARE else ', too large'}"
+    return f"{_plain(100.0 * error, 2)} % of the energy exchanged{'' if error <= OPEN_SHARE else ', too large'}"
 
 
 def _computed(summary: Mapping[str, Any]) -> str:

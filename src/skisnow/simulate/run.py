@@ -43,12 +43,11 @@ Outcome: TypeAlias = Literal[
 Strength: TypeAlias = Callable[[float], float]
 """Takes the distance run (m), and gives S_f over that of the scenario, > 0."""
 
-WARNED_SHARE, OPEN_SHARE, LEAST_OPEN = 0.02, 0.1, 1.0
-"""Shares of the energy exchanged by which the balance may be open before a run warns of it, and before its end is
-`energy_open`; and the energy (J) below which neither counts."""
+OPEN_SHARE, LEAST_OPEN = 0.005, 1e-3
+"""Energy residual as a share of the energy exchanged, and in J: a run that exceeds both ends as `energy_open`."""
 STEADY_SPEED, STEADY_FROM = 1.0, 0.5
 """Speed (m/s) above which, and time (s) from which on, a run's turn radius counts: before, it is that of the start."""
-STORED: Final = ("kinetic", "potential", "elastic_ski", "elastic_snow")
+STORED: Final = ("kinetic", "potential", "elastic_ski", "elastic_snow", "delayed_snow")
 LOST: Final = ("penetration", "shear", "friction", "drag", "damping", "snow_damping")
 GIVEN: Final = ("boots", "push")
 
@@ -352,7 +351,7 @@ class Run(Shown):
         return abs(change + lost - sum(float(self._given(name)[-1]) for name in GIVEN))
 
     def has_residual_above(self, share: float) -> bool:
-        """Whether the energy residual is more than a share of the energy exchanged, and more than 1 J."""
+        """Whether the energy residual is more than a share of the energy exchanged, and more than 0.001 J."""
         error = self.energy_balance_error
         return error is not None and error > share and self.energy_residual > LEAST_OPEN
 

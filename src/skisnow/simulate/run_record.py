@@ -34,8 +34,8 @@ class Moment:
     time, place, attitude, velocity
         Of the boots' middle, in space: (), (3,), (3, 3), (3,).
     energies
-        Kinetic, potential, elastic in the skis and in the snow; lost to penetration, shear, friction, drag, damping of
-        the skis and of the snow since the start; given by boots that move and by pushes (J), (12,).
+        Kinetic, potential, elastic in the skis and in the snow, in its delayed depth; lost to penetration, shear,
+        friction, drag, damping of the skis and of the snow since the start; given by boots and by pushes (J), (13,).
     along
         Depth of the edge (m), force and shear per length (N/m) at the nodes, for each ski (3, m).
     push
@@ -68,10 +68,8 @@ class Record:
     setup: Setup
     run_length: float = 0.0
     _moments: list[Moment] = field(default_factory=list)
-    _snow_first: tuple[float, float] = field(init=False)
 
     def __post_init__(self) -> None:
-        self._snow_first = self.setup.dynamics.snow_energies
         self._moments.append(self._present())
 
     def advance(self, moment: float, *, replace: bool = False) -> Outcome | None:
@@ -100,24 +98,13 @@ class Record:
         )  # fmt: skip
 
     def _energies(self) -> tuple[float, ...]:
-        """Where the energy is, and where it went.
-
-        Penetration: what the normal force took, less what the snow gives back, and what its damping and its delayed
-        depth took. The elastic shear energy of an edge that is pressed deeper grows: the penetration pays for it. And
-        what sideways motion stressed and then lifts the skis comes from the shear, which pays for sideways motion.
-        """
+        """Stored energies, losses since the start and energies given (J)."""
         dynamics = self.setup.dynamics
-        (normal_elastic, shear_elastic), (normal_first, shear_first) = dynamics.snow_energies, self._snow_first
-        by_shear, by_friction, normal, by_drag, by_damping, by_dashpot = dynamics.work
-        by_rate = by_dashpot + dynamics.contact.delayed_energy
-        penetration, shear = (
-            -normal - (normal_elastic - normal_first) - by_rate,
-            by_shear - (shear_elastic - shear_first),
-        )
-        by_press = min(shear, 0.0)
-        lifted = min(penetration + by_press, 0.0)
-        lost = (penetration + by_press - lifted, shear - by_press + lifted, by_friction, by_drag, by_damping, by_rate)
-        return (*dynamics.energies, normal_elastic + shear_elastic, *lost, *dynamics.work_given)
+        pressure, sheared, delayed = dynamics.snow_energies
+        _, friction, _, drag, damping, _ = dynamics.work
+        penetration, shear, rate, _ = dynamics.snow_losses
+        lost = (penetration, shear, friction, drag, damping, rate)
+        return (*dynamics.energies, pressure + sheared, delayed, *lost, *dynamics.work_given)
 
     @property
     def last_interval(self) -> float:

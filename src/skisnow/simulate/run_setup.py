@@ -112,6 +112,11 @@ class Setup:
         return math.acos(min(1.0, max(-1.0, float(self.attitude[:, 2] @ self._slope_at_boots()[1]))))
 
     @property
+    def pitching(self) -> float:
+        """Angle between the sledge's axis ahead and the snow's surface (rad)."""
+        return math.asin(min(1.0, abs(float(self.attitude[:, 0] @ self._slope_at_boots()[1]))))
+
+    @property
     def height(self) -> float:
         """Of the boots' middle above the slope (m)."""
         return float(self.place[2] - self._slope_at_boots()[0])

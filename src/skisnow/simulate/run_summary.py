@@ -17,7 +17,7 @@ from ..json_number import json_number
 from ..scenario.values import in_sections, scenario_values
 from ..snow.snow_dict import snow_dict
 from ..units import DEGREE
-from .run import GIVEN, LEAST_OPEN, LOST, STORED, WARNED_SHARE, Run
+from .run import GIVEN, LEAST_OPEN, LOST, OPEN_SHARE, STORED, Run
 from .run_gates import run_gates
 
 SCHEMA_VERSION: Final = 1
@@ -109,7 +109,7 @@ def radii_dict(run: Run) -> dict[str, float | None]:
 def run_warnings(run: Run) -> tuple[str, ...]:
     """Warnings about the numbers of a run, in words: an energy residual that is too large."""
     error = run.energy_balance_error
-    if not (run.has_residual_above(WARNED_SHARE) or (error is None and run.energy_residual > LEAST_OPEN)):
+    if not (run.has_residual_above(OPEN_SHARE) or (error is None and run.energy_residual > LEAST_OPEN)):
         return ()
     share = "" if error is None else f"{100.0 * error:.2g} % of the energy exchanged, "
     return (

@@ -26,6 +26,11 @@ Progress: TypeAlias = Callable[[float, float], None]
 
 TIPPED: Final = math.radians(60.0)
 """Angle between the sledge and the snow's normal at which it has tipped over (modelling assumption)."""
+PITCHED: Final = math.radians(40.0)
+"""Angle between the length of a sledge on the snow and the surface at which it has tipped over (modelling assumption).
+
+Beyond it a ski stands on its shovel or tail: a line across the snow meets its base more than once.
+"""
 LONGEST_FLIGHT: Final = 0.3
 """Time (s) with both skis off the snow after which it is airborne (modelling assumption)."""
 SINKING_DEPTH: Final = 0.5
@@ -44,8 +49,8 @@ REMEDIES: Final[dict[Outcome, str]] = {
     "distance_reached": "The run length was reached.",
     "end_of_slope": "The tips reached the end of the profile, or a border of the grid. Give a longer or wider slope, "
     "or a shorter run.",
-    "tipped_over": "The sledge leant more than 60° from the snow's normal: it has tipped over. Lower its centre of "
-    "mass, widen the stance, or take less edge or speed.",
+    "tipped_over": "The sledge leant more than 60° from the snow's normal, or more than 40° ahead or back: it has "
+    "tipped over. Lower its centre of mass, widen the stance, or take less edge or speed.",
     "fell": "The skier leant more than 60° from the snow's normal: it fell. Take less speed, a gentler slope or "
     "shorter turns; figures/balance shows where the lean left what would be in balance.",
     "airborne": "Both skis were off the snow for 0.3 s. Flight is not what this model is for: take less speed, or a "
@@ -55,9 +60,9 @@ REMEDIES: Final[dict[Outcome, str]] = {
     "missed_gate": "Change line or start, or the course; gates.csv says of each gate what became of it.",
     "straddled": "By the rules that is no passage. Change line or start, or the course; gates.csv says of each gate "
     "what became of it.",
-    "energy_open": "The energy residual is more than a tenth of the energy exchanged: these numbers are not "
-    "those of a sledge on snow. Take smaller steps, or the error control (solver.fixed false); on "
-    "very hard snow, or at more than 50° of edge angle, a smaller tolerance.",
+    "energy_open": "The energy residual is more than 0.5 % of the energy exchanged: do not rely on these numbers. Take "
+    "smaller steps, or the error control (solver.fixed false); on very hard snow, or at more than 50° of edge angle, a "
+    "smaller tolerance.",
     "step_too_small": "The error control asked for steps below 0.1 µs: the motion is too stiff or too rough. Loosen "
     "the tolerance, or take a smaller k_u/H_V.",
     "not_finite": "The numbers diverged. Take a smaller step, or leave the error control on.",
@@ -175,7 +180,7 @@ def _loop(setup: Setup, record: Record, progress: Progress | None, strength_alon
 
 
 def _ended(setup: Setup, flying: float) -> Outcome | None:
-    if setup.leaning > TIPPED:
+    if setup.leaning > TIPPED or (setup.touches and setup.drive is None and setup.pitching > PITCHED):
         return "tipped_over" if setup.scenario.skier is None else "fell"
     if flying >= LONGEST_FLIGHT:
         return "airborne"

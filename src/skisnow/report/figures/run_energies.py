@@ -20,6 +20,7 @@ from .style import (
     ORANGE,
     PALE,
     PURPLE,
+    SAND,
     SKY,
     VERMILLION,
     legend_below,
@@ -39,6 +40,7 @@ _STYLES: Final = {
     "potential": (SKY, "potential, above its minimum"),
     "elastic_ski": (GREY, "in the bent skis"),
     "elastic_snow": (PALE, "in the pressed snow"),
+    "delayed_snow": (SAND, "in the delayed depth"),
     "penetration": (GREEN, "lost: groove"),
     "shear": (VERMILLION, "lost: side-slip"),
     "friction": (ORANGE, "lost: friction"),
@@ -46,6 +48,7 @@ _STYLES: Final = {
     "damping": (BLACK, "lost: damping"),
     "snow_damping": (BROWN, "lost: damping of the snow"),
 }
+_RATE: Final = ("delayed_snow", "snow_damping")
 
 
 def run_energies(run: Run) -> Figure:
@@ -59,7 +62,7 @@ def run_energies(run: Run) -> Figure:
     every.set_title(_closing(run), loc="left", fontsize=7.5)
     _stack(losses, run, shares, LOST)
     losses.set_title("losses alone", loc="left", fontsize=7.5)
-    drawn = [style for name, style in _STYLES.items() if name != "snow_damping" or shares[name].any()]
+    drawn = [style for name, style in _STYLES.items() if name not in _RATE or shares[name].any()]
     legend_below(figure, [Line2D([], [], color=colour, linewidth=5.0, label=label) for colour, label in drawn])
     return figure
 

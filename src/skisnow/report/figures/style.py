@@ -35,6 +35,7 @@ BLUE, VERMILLION, PURPLE = "#0072B2", "#D55E00", "#CC79A7"
 GREY: Final = "#767676"
 PALE: Final = "#B8B8B8"
 BROWN: Final = "#8C510A"
+SAND: Final = "#D8B365"
 COLOURS: Final = (BLUE, VERMILLION, GREEN, PURPLE, ORANGE, SKY, BLACK)
 """Okabe and Ito (2008), without the yellow that white paper swallows."""
 MARKERS: Final = ("o", "^", "s", "D", "v", "P", "X", "<", "p", ">", "*", "h", "d", "8")

@@ -1,0 +1,77 @@
+"""What the snow stores, what skis lose to it, and what an edge gives back."""
+
+from __future__ import annotations
+
+import warnings
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+from benchmarks.turns import allowed_keys
+
+from skisnow.errors import SkisnowError
+from skisnow.scenario import read_scenario
+from skisnow.simulate.run_setup import AT_REST, set_up
+
+FloatArray = npt.NDArray[np.float64]
+INTERVAL, SEEDS = 0.02, 6
+
+
+def moments(changes: dict[str, Any], count: int = 40) -> dict[str, FloatArray]:
+    """Works, stores and losses (J) at equal intervals of time, or until the steps end; empty: it cannot stand."""
+    rows: list[tuple[float, ...]] = []
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        try:
+            setup = set_up(read_scenario("carved-46m", changes=changes))
+        except SkisnowError:
+            return {}
+    dynamics = setup.dynamics
+    if not setup.static_residual <= AT_REST:
+        return {}
+    for n in range(count):
+        if n > 0 and dynamics.advance(INTERVAL * n) != 0:
+            break
+        shear, _, normal, *_ = dynamics.work
+        rows.append((shear, normal, *dynamics.snow_energies, *dynamics.snow_losses))
+    names = ("work", "normal", "pressure", "held", "delayed", "penetration", "shear", "rate", "owed")
+    return dict(zip(names, np.array(rows).T, strict=True))
+
+
+CASES: dict[str, dict[str, Any]] = {
+    "carve": {},
+    "elastic snow": {"snow.penetration": "elastic"},
+    "skid": {"snow.S_f_N_per_mm2": 0.1},
+    "delayed": {"snow.delayed_share": 5.0, "snow.retardation_time_ms": 2.0, "snow.S_f_N_per_mm2": 0.01},
+    "damped": {"snow.damping_N_s_per_mm3": 0.01},
+    "cut": {"shear.law": "machining"},
+    "flat": {"sledge.edge_angle_deg": 1.0},
+}
+
+
+@pytest.mark.parametrize("changes", CASES.values(), ids=CASES)
+def test_losses_never_fall_and_add_up(changes: dict[str, Any]) -> None:
+    """All work on the snow is stored or lost, but for what it owes and for less than a thousandth of what it stores."""
+    found = moments(changes)
+    losses = np.array([found[name] for name in ("penetration", "shear", "rate")])
+    assert (np.diff(losses) >= 0.0).all()
+    stored = found["pressure"] + found["held"] + found["delayed"]
+    taken = found["work"] - found["normal"] - (stored - stored[0])
+    assert (losses.sum(axis=0) - found["owed"] <= taken + 1e-9).all()
+    assert (taken - losses.sum(axis=0) + found["owed"] <= 3e-3 * np.maximum.accumulate(stored) + 1e-9).all()
+
+
+@pytest.mark.parametrize("law", allowed_keys.LAWS)
+def test_shear_gives_back_no_more_than_it_stored(law: str) -> None:
+    """With any values of the keys. A push deeper adds to what is stored: ½ S_f e u_y a metre, each time at most."""
+    counted = 0
+    for seed in range(100):
+        found = moments(allowed_keys.changes(seed, law), count=15) if counted < SEEDS else {}
+        if not found:
+            continue
+        counted += 1
+        lost = found["work"] - (found["held"] - found["held"][0])
+        fall = (np.maximum.accumulate(lost) - lost).max()
+        assert fall <= 2.0 * found["held"].max() + 1e-9, seed
+    assert counted == SEEDS
