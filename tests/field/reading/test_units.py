@@ -267,6 +267,27 @@ def test_units_that_cannot_be_are_refused(
     assert (code, file, column) in [(each.code, each.file, each.column) for each in found]
 
 
+@pytest.mark.parametrize("units", ["Nr.,,,°,kg,mm", ",,,[°],[kg],[mm]", "-,-,-,,kg,mm"])
+def test_a_row_of_units_below_the_headings_is_believed(write_campaign: WriteCampaign, units: str) -> None:
+    folder = write_campaign(campaign(f"{units}\n{LOADS}"))
+    read = read_campaign(folder)
+    assert loads_of(read) == pytest.approx([98.0665, 294.1995, 490.3325])
+    assert read.penetration is not None
+    assert read.penetration.row.tolist() == [3, 4, 5]
+    assert not problems(folder)
+
+
+def test_a_row_of_units_that_contradicts_is_refused(write_campaign: WriteCampaign) -> None:
+    for changes in ({"load": "Last [N]"}, {"load": "load_N"}, {"toml": 'units.Last = "N"'}):
+        (problem,) = problems(write_campaign(campaign(f",,,°,kg,mm\n{LOADS}", **changes)))  # type: ignore[arg-type]
+        assert (problem.code, problem.column) == ("other_unit", "load_N")
+
+
+def test_a_row_with_numbers_is_not_one_of_units(write_campaign: WriteCampaign) -> None:
+    found = problems(write_campaign(campaign(f"1,A,ski,30,kg,mm\n{LOADS}", load="Last [kg]")))
+    assert [(each.code, each.row) for each in found] == [("not_a_number", 2), ("not_a_number", 2)]
+
+
 def test_the_same_unit_twice_is_no_contradiction(write_campaign: WriteCampaign) -> None:
     folder = write_campaign(campaign(load="Last [kg]", toml='units."Last [kg]" = "kgf"'))
     assert loads_of(read_campaign(folder))[0] == pytest.approx(98.0665)

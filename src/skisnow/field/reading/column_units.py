@@ -1,4 +1,4 @@
-"""Unit of each column of numbers of a table: from its heading, or from ``[units]`` in campaign.toml."""
+"""Unit of each column of numbers: from its heading, a row of units, or ``[units]`` in campaign.toml."""
 
 from __future__ import annotations
 
@@ -46,16 +46,17 @@ def column_units(form: TableForm, header: Header, headings: Headings, found: lis
     numbers = {column.name for column in form.numbers} - set(form.further)
     conversions: dict[str, UnitConversion] = {}
     unstated: dict[str, str] = {}
-    for heading in filter(None, header.columns):
+    for place, heading in enumerate(header.columns):
         column = headings.name(form, heading)
         if not unit_of_column(column):
             continue
         named = own_unit(column) if heading == column else named_unit(heading)
-        stated = headings.unit(form, heading)
-        if named and stated and conversion(named, column) != conversion(stated, column):
+        below = header.units[place] if header.units else ""
+        stated = list(filter(None, (headings.unit(form, heading), named, below)))
+        if any(conversion(each, column) != conversion(stated[0], column) for each in stated):
             found.append(_two_units(form, heading, column, header.row))
             continue
-        unit = stated or named
+        unit = stated[0] if stated else ""
         size = conversion(unit, column) if unit else None
         if not unit:
             unstated |= {column: heading} if column in numbers else {}
@@ -100,5 +101,5 @@ def _two_units(form: TableForm, heading: str, column: str, row: int) -> Problem:
         column=column,
         value=heading,
         allowed=f"one unit among {units_for(column)}",
-        action="Correct the heading, or the unit in campaign.toml: they differ.",
+        action="Correct the heading, the row of units or campaign.toml: they state different units.",
     )

@@ -6,11 +6,11 @@ import difflib
 import json
 import re
 from collections import Counter
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from ..problems import error, warning
-from .heading_units import conversion, named_unit, unit_of_column
+from .heading_units import conversion, known_unit, named_unit, unit_of_column
 from .heading_words import proposed
 
 if TYPE_CHECKING:
@@ -22,14 +22,28 @@ if TYPE_CHECKING:
 
 
 _MOST_TITLES = 20
+_FEWEST_UNITS = 2
+_NO_UNIT = {"", "-", "–", "#", "nr", "nr.", "no", "no."}
+"""Cells of a row of units below columns without one."""
 
 
 @dataclass(frozen=True, slots=True)
 class Header:
-    """Names of the columns, stripped, and the file line at which they stand; an unnamed column is ``""``."""
+    """Headings of a table.
+
+    Attributes
+    ----------
+    columns
+        Names of the columns, stripped; ``""`` for an unnamed one.
+    row
+        Line of the file.
+    units
+        Units in a row of their own below the names, ``""`` where it names none; empty without such a row.
+    """
 
     columns: tuple[str, ...]
     row: int
+    units: tuple[str, ...] = ()
 
     @classmethod
     def from_cells(cls, cells: Sequence[str], row: int) -> Header:
@@ -58,12 +72,26 @@ class Header:
 
 
 def header_of(lines: list[int], rows: list[list[str]]) -> Header:
-    """Take the header off the first records, and what stands above it: titles of one cell."""
+    """Take the header off the first records, with titles of one cell above it and a row of units below it."""
     filled = [sum(1 for cell in cells if cell.strip()) for cells in rows[:_MOST_TITLES]]
     place = next((place for place, count in enumerate(filled) if count > 1), 0)
     header = Header.from_cells(rows[place], lines[place])
-    del rows[: place + 1], lines[: place + 1]
-    return header
+    units = _units_of(rows[place + 1]) if place + 1 < len(rows) else ()
+    taken = place + (2 if units else 1)
+    del rows[:taken], lines[:taken]
+    return replace(header, units=(*units, *[""] * len(header.columns))[: len(header.columns)] if units else ())
+
+
+def _units_of(cells: Sequence[str]) -> tuple[str, ...]:
+    """Units in a row that has nothing else, two at least; empty for any other row.
+
+    >>> _units_of(["Nr.", "°", "kg", "[mm]", ""]), _units_of(["1", "30", "kg", "mm", ""])
+    (('', '°', 'kg', 'mm', ''), ())
+    """
+    plain = [cell.strip().strip("[]()").strip() for cell in cells]
+    units = tuple(map(known_unit, plain))
+    others = {cell.casefold() for cell, unit in zip(plain, units, strict=True) if not unit}
+    return units if sum(map(bool, units)) >= _FEWEST_UNITS and others <= _NO_UNIT else ()
 
 
 def check_header(form: TableForm, header: Header) -> list[Problem]:
