@@ -12,6 +12,7 @@ from scipy.spatial.transform import Rotation
 
 from skisnow.dynamics import Ended
 from skisnow.scenario import Plane, read_scenario
+from skisnow.simulate.moving_boots import StrengthDrive
 from skisnow.simulate.run_record import Record, _at_boot
 from skisnow.simulate.run_setup import Setup, set_up
 
@@ -23,11 +24,9 @@ def chords(record: Record) -> float:
 
 def test_moments_are_kept_replaced_and_dropped() -> None:
     record = Record(set_up(read_scenario("carved-46m")))
-    assert (record.last_interval, record.run_length) == (0.0, 0.0)
+    assert record.run_length == 0.0
     assert record.advance(0.01) is None
-    assert record.last_interval == pytest.approx(0.01, abs=1e-12)
     record.advance(0.03)
-    assert record.last_interval == pytest.approx(0.02, abs=1e-12)
     assert record.run_length == pytest.approx(chords(record), rel=1e-5)
     record.advance(0.035, replace=True)
     assert record.histories()["time"] == pytest.approx([0.0, 0.01, 0.035], abs=1e-12)
@@ -75,7 +74,7 @@ def test_steps_that_cannot_go_on_are_an_outcome() -> None:
 
 def replace_advance(setup: Any, ended: Ended) -> Any:
     names = ("dynamics", "place", "attitude", "velocity")
-    return SimpleNamespace(advance=lambda *_: ended, **{name: getattr(setup, name) for name in names})
+    return SimpleNamespace(advance=lambda *_, **__: ended, **{name: getattr(setup, name) for name in names})
 
 
 def test_what_is_told_of_the_skis_is_what_the_beams_and_boots_have() -> None:
@@ -112,13 +111,40 @@ def test_the_track_of_a_ski_is_its_lower_edge_and_its_middle_where_it_is_flat() 
     assert found[:, 0] == pytest.approx(np.array([[5.0, y, 0.0] for y in aside]), abs=1e-12)
 
 
-def test_boots_are_moved_before_the_sledge_goes_on() -> None:
-    """To the time it goes to, if that is later than now."""
-    done: list[Any] = []
-    dynamics: Any = SimpleNamespace(time=1.0, advance=lambda until: done.append(("advance", until)))
-    drive: Any = SimpleNamespace(move=lambda of, until, distance: done.append((of is dynamics, until, distance)))
-    nothing: Any = SimpleNamespace()
-    setup = Setup(nothing, dynamics, nothing, np.zeros(3), {}, 0.0, drive)
-    setup.advance(1.0, 7.0)
-    setup.advance(1.5, 7.0)
-    assert done == [("advance", 1.0), (True, 1.5, 7.0), ("advance", 1.5)]
+class _Clock:
+    """Dynamics that are a time and the outputs on the way to it."""
+
+    def __init__(self) -> None:
+        self.time, self.position, self.way = 0.0, np.zeros(3), [0.0]
+
+    def advance(self, until: float) -> Ended:
+        self.time = until
+        self.way.append(until)
+        return Ended.REACHED
+
+    def state(self) -> tuple[float, list[float]]:
+        return self.time, list(self.way)
+
+    def restore(self, state: tuple[float, list[float]]) -> None:
+        self.time, self.way = state[0], list(state[1])
+
+
+def test_outputs_between_the_times_of_a_drive_leave_no_trace() -> None:
+    """Called every 10 ms, whatever the outputs; after an output in between the steps begin at the state before it."""
+    calls: list[float] = []
+
+    def share(_: float) -> float:
+        calls.append(dynamics.time)
+        return 1.0
+
+    dynamics, nothing = _Clock(), cast("Any", SimpleNamespace())
+    setup = Setup(nothing, cast("Any", dynamics), nothing, np.zeros(3), {}, 0.0)
+    snow = cast("Any", SimpleNamespace(compiled=SimpleNamespace()))
+    setup.strength = StrengthDrive(share, snow)
+    reached = []
+    for output in (0.004, 0.008, 0.01, 0.025, 0.05):
+        assert setup.advance(output, 0.0) is Ended.REACHED
+        reached.append(dynamics.time)
+    assert reached == pytest.approx([0.004, 0.008, 0.01, 0.025, 0.05])
+    assert calls == pytest.approx([0.0, 0.01, 0.02, 0.03, 0.04])
+    assert dynamics.way == pytest.approx([0.0, 0.01, 0.02, 0.03, 0.04, 0.05])

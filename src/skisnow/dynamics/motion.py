@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..compiled import core
-from ..contact import SnowContact
+from ..contact import ContactState, SnowContact
 from ..errors import ParameterError
 from ..former_names import warn_of_former_name
 from .body import Body, shaped
@@ -85,6 +85,14 @@ class StepControl:
         rule.longest, rule.shortest = self.longest, self.shortest
         rule.closeness = self.closeness
         return rule
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class DynamicsState:
+    """A moment of dynamics; `Dynamics.state` returns it, `Dynamics.restore` accepts it."""
+
+    motion: core.Dynamics
+    contact: ContactState
 
 
 class Dynamics:
@@ -208,6 +216,15 @@ class Dynamics:
                 if ended != Ended.REACHED:
                     self.contact.require_finite_laws()
                 return Ended(ended)
+
+    def state(self) -> DynamicsState:
+        """The motion and the contact's history now, for `restore`."""
+        return DynamicsState(self._core.copy(), self.contact.state())
+
+    def restore(self, state: DynamicsState) -> None:
+        """Go back to a state of these dynamics: the steps that follow have the same bits as they had from there."""
+        self.contact.restore(state.contact)
+        self._core.assign(state.motion)
 
     @property
     def time(self) -> float:

@@ -33,6 +33,11 @@ class LineSkier:
         self.skier = BalancedSkier(scenario)
         self.skier.steering = FollowedLine(line, skier_of(scenario))
 
+    @property
+    def period(self) -> float:
+        """Time from call to call (s)."""
+        return self.skier.period
+
     def __call__(self, moment: Moment) -> Any:
         """Where the boots shall be at the moment's end."""
         return self.skier(moment)

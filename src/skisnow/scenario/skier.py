@@ -33,7 +33,7 @@ class Skier:
         That it plans (rad).
     leg_gain, leg_yielding, carving_share, edge_beyond_lean, blunt_edge, edge_gain, edge_change, edge_filter,
     share_filter, load_filter, lean_more, reach, lag, correction, trusted_edge, touch, lifted_share, bearing_share,
-    foresight, foresight_step, slowest, greatest_pressed
+    foresight, foresight_step, slowest, greatest_pressed, control_period
         Of the control; the page docs/methods/skier.md has what they do.
 
     See Also
@@ -402,6 +402,17 @@ class Skier:
             origin="choice: a fifth of gravity; planes have none",
         ),
     ] = 2.0
+    control_period: Annotated[
+        float,
+        Quantity(
+            "skier.control_period_ms",
+            "time between two decisions of the control, independent of run.output_ms",
+            label="period of the control",
+            lowest=1.0,
+            highest=50.0,
+            origin="choice: 1/30 of an edge change",
+        ),
+    ] = 0.01
 
     __repr__ = declared_text
 

@@ -1,14 +1,15 @@
-"""What moves the boots of a run: a table of the scenario, or a function in Python; from one output to the next."""
+"""Control of a run: boots moved by a table, a skier or a function, and varying strength, each with its period."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import TypeAlias
+from typing import Final, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 
+from ..contact import SnowField
 from ..dynamics import BootMotion, BootPose, Dynamics
 from ..errors import ParameterError
 from ..scenario.boots import Boots
@@ -63,8 +64,16 @@ BootControl: TypeAlias = Callable[[BootMoment], Sequence[BootPose]]
 """Gives the poses of the left and the right boot against the sledge at `BootMoment.until`, with their rates.
 
 Where it has a method ``push``, that is called after it with the same moment, and gives a force (N, in space) and where
-it acts in the sledge's frame (m), until the next.
+it acts in the sledge's frame (m), until the next. Its attribute ``period`` is the time from call to call (s, default:
+0.01).
 """
+
+CONTROL_PERIOD: Final = 0.01
+"""Time between two calls of a control that has no period (s) (modelling assumption)."""
+SHORTEST_PERIOD: Final = 1e-4
+"""Shortest period of a table of boots (s), however near its rows are (modelling assumption)."""
+SAME_TIME: Final = 1e-9
+"""Difference of two times (s) that are one: a step between them would be rounding."""
 
 
 @dataclass(slots=True)
@@ -74,6 +83,17 @@ class BootDrive:
     control: BootControl
     held: bool = False
     _last: Sequence[BootPose] = ()
+    _calls: int = 0
+
+    @property
+    def period(self) -> float:
+        """Time from call to call (s)."""
+        return float(getattr(self.control, "period", CONTROL_PERIOD))
+
+    @property
+    def until(self) -> float:
+        """Time (s) to which the boots move by the last call; the next call is due there."""
+        return self._calls * self.period
 
     @property
     def described(self) -> str:
@@ -82,18 +102,19 @@ class BootDrive:
             return f"moved by {self.control.table.source}"
         return f"moved by {name_with_values(self.control)}"
 
-    def begin(self, dynamics: Dynamics, interval: float) -> None:
+    def begin(self, dynamics: Dynamics) -> None:
         """Put the boots where they are at the start."""
         if self.held:
             dynamics.hold_body()
         self._last = self._asked(dynamics, 0.0, 0.0)
-        dynamics.move_boots([BootMotion(0.0, interval, pose, pose) for pose in self._last])  # only its start is met
+        dynamics.move_boots([BootMotion(0.0, self.period, pose, pose) for pose in self._last])  # only its start is met
 
-    def move(self, dynamics: Dynamics, until: float, distance: float) -> None:
-        """Let the boots go from where they are to where they shall be at a time (s)."""
-        poses = self._asked(dynamics, until, distance)
+    def move(self, dynamics: Dynamics, distance: float) -> None:
+        """Call the control, and let the boots move to its poses within a period. `distance`: run so far (m)."""
+        self._calls += 1
+        poses = self._asked(dynamics, self.until, distance)
         pairs = zip(self._last, poses, strict=True)
-        dynamics.move_boots([BootMotion(dynamics.time, until, first, last) for first, last in pairs])
+        dynamics.move_boots([BootMotion(dynamics.time, self.until, first, last) for first, last in pairs])
         self._last = poses
 
     def _asked(self, dynamics: Dynamics, until: float, distance: float) -> Sequence[BootPose]:
@@ -111,11 +132,37 @@ class BootDrive:
         return poses
 
 
+@dataclass(slots=True)
+class StrengthDrive:
+    """Shear strength that varies along the path: its share of S_f by the distance run (m)."""
+
+    share: Callable[[float], float]
+    snow: SnowField
+    _calls: int = 0
+
+    @property
+    def until(self) -> float:
+        """Time (s) to which the last share counts."""
+        return self._calls * CONTROL_PERIOD
+
+    def move(self, _: Dynamics, distance: float) -> None:
+        """Evaluate the share at a distance run (m)."""
+        self._calls += 1
+        self.snow.compiled.strength_share = self.share(distance)
+
+
 @dataclass(frozen=True, slots=True)
 class TableControl:
     """Boots where a table has them."""
 
     table: Boots
+
+    @property
+    def period(self) -> float:
+        """Smallest spacing of rows over time, at most 10 ms (s)."""
+        if self.table.over == "distance":
+            return CONTROL_PERIOD
+        return min(CONTROL_PERIOD, max(SHORTEST_PERIOD, float(np.diff(self.table.at).min())))
 
     def __call__(self, moment: BootMoment) -> Sequence[BootPose]:
         """Poses at the time, or at the distance that will have been run then at the present speed."""

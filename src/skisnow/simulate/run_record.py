@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from typing import Any, Final, TypeAlias
 
@@ -72,12 +73,14 @@ class Record:
     def __post_init__(self) -> None:
         self._moments.append(self._present())
 
-    def advance(self, moment: float, *, replace: bool = False) -> Outcome | None:
+    def advance(
+        self, moment: float, *, replace: bool = False, is_over: Callable[[], bool] = lambda: False
+    ) -> Outcome | None:
         """Let the run go on to a moment (s) and store it, with `replace` in place of the last one.
 
-        The outcome if the steps cannot go on.
+        The outcome if the steps cannot go on. `is_over`: see `Setup.advance`.
         """
-        ended = self.setup.advance(moment, self.run_length)
+        ended = self.setup.advance(moment, self.run_length, is_over=is_over)
         last, present = self._moments[-1], self._present()
         self.run_length += _arc(last, present)
         if (replace and len(self._moments) > 1) or present.time <= last.time:
@@ -105,11 +108,6 @@ class Record:
         penetration, shear, rate, _ = dynamics.snow_losses
         lost = (penetration, shear, friction, drag, damping, rate)
         return (*dynamics.energies, pressure + sheared, delayed, *lost, *dynamics.work_given)
-
-    @property
-    def last_interval(self) -> float:
-        """Time (s) between the last two moments; 0 while there is but one."""
-        return self._moments[-1].time - self._moments[-2].time if len(self._moments) > 1 else 0.0
 
     @property
     def gains_energy(self) -> bool:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Final, TypeAlias
 
@@ -12,7 +13,7 @@ import numpy.typing as npt
 from ..contact import Laws, Runner, SnowContact, SnowField
 from ..contact.snow_field import PART_ALONG
 from ..dynamics import Dynamics, Ended, StepControl
-from ..dynamics.motion import LONGEST_STEP
+from ..dynamics.motion import LONGEST_STEP, DynamicsState
 from ..errors import ParameterError
 from ..forces.friction import LinearFriction
 from ..geometry.surfaces import Grid
@@ -21,7 +22,8 @@ from ..scenario.slope_surface import down_and_left, heights_of, normals_of, reac
 from ..ski.beam.clamped import clamped
 from ..skier import BalancedSkier
 from ..snow.measured_range import without_range_warnings
-from .moving_boots import BootControl, BootDrive, TableControl
+from .moving_boots import SAME_TIME, BootControl, BootDrive, StrengthDrive, TableControl
+from .run import Strength
 from .sledge.body import sledge_body
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
@@ -57,12 +59,48 @@ class Setup:
     numbers: dict[str, float]
     static_residual: float
     drive: BootDrive | None = None
+    strength: StrengthDrive | None = None
+    _before_output: DynamicsState | None = None
 
-    def advance(self, until: float, distance: float) -> Ended:
-        """Let the run go on to a time (s), from a distance run (m)."""
-        if self.drive is not None and until > self.time:
-            self.drive.move(self.dynamics, until, distance)
-        return self.dynamics.advance(until)
+    @property
+    def drives(self) -> tuple[BootDrive | StrengthDrive, ...]:
+        """Controls of the run, each with its own period."""
+        return tuple(each for each in (self.drive, self.strength) if each is not None)
+
+    def advance(self, until: float, distance: float, *, is_over: Callable[[], bool] = lambda: False) -> Ended:
+        """Step to a time (s).
+
+        Drives are called at their own times. An output between these leaves no trace: the steps after it begin at the
+        state before it, so that the outputs do not change the run.
+
+        Parameters
+        ----------
+        until
+            Time to reach.
+        distance
+            Distance run so far (m).
+        is_over
+            Called at each time at which a drive is due; True: stop there.
+        """
+        drives = self.drives
+        if not drives:
+            return self.dynamics.advance(until)
+        while until - self.time > SAME_TIME:
+            for each in drives:
+                if self.time > each.until - SAME_TIME:
+                    each.move(self.dynamics, distance)
+            due = min(each.until for each in drives)
+            if due > until + SAME_TIME:
+                self._before_output = self._before_output or self.dynamics.state()
+                return self.dynamics.advance(until)
+            if self._before_output is not None:
+                self.dynamics.restore(self._before_output)
+                self._before_output = None
+            before, ended = self.place, self.dynamics.advance(due)
+            if ended is not Ended.REACHED or is_over():
+                return ended
+            distance += math.dist(before, self.place)
+        return Ended.REACHED
 
     @property
     def place(self) -> FloatArray:
@@ -163,16 +201,18 @@ def set_up(
     *,
     laws: Laws | None = None,
     boots: BootControl | None = None,
+    strength_along: Strength | None = None,
 ) -> Setup:
     """Choose the solver's numbers, lay the snow out, or take this one, and set the sledge down on it."""
     setup = laid_out(scenario, snow, laws=laws)
     setup.drive = _drive(scenario, boots)
+    setup.strength = None if strength_along is None else StrengthDrive(strength_along, setup.snow)
     speed = scenario.start.speed
     if setup.drive is not None:
         if setup.drive.held:
             setup.dynamics.move_to(np.zeros(3), np.eye(3))
             speed = 0.0
-        setup.drive.begin(setup.dynamics, scenario.solver.output_interval)
+        setup.drive.begin(setup.dynamics)
     setup.static_residual = setup.dynamics.find_equilibrium()
     setup.dynamics.begin(np.array([speed, 0.0, 0.0, 0.0, 0.0, 0.0]))
     return setup

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, field, replace
 from typing import Final, TypeAlias
 
 import numpy as np
@@ -14,7 +14,7 @@ from ..contact import Laws
 from ..errors import SolverError
 from ..former_names import formerly
 from ..scenario import Scenario
-from .moving_boots import BootControl
+from .moving_boots import SAME_TIME, BootControl
 from .run import OPEN_SHARE, Groove, Outcome, Run, Strength
 from .run_gates import GatesAhead, run_gates
 from .run_record import Record
@@ -87,15 +87,15 @@ def simulate(
     progress
         Called with the simulated time and the share that is done, after every five outputs at the latest.
     strength_along
-        S_f over that of the scenario, > 0, by the distance run (m): snow that is weaker or stronger in places. Asked
-        once for each output interval, for both skis and all along them.
+        S_f over that of the scenario, > 0, by the distance run (m): snow that is weaker or stronger in places.
+        Evaluated every 10 ms, for both skis and all along them.
     laws
         In place of the scenario's: laws of `skisnow.forces`, or of your own. Run, summary.json and report name them
         with their numbers.
     boots
-        Moves the boots against the sledge, in place of the scenario's boots.file: called with a `BootMoment` before
-        each output interval, it gives the `BootPose` of the left and the right boot at its end. Its method
-        ``push``, if it has one, gives a force besides, and where on the sledge it acts.
+        Moves the boots against the sledge, in place of the scenario's boots.file: called with a `BootMoment` every
+        10 ms, or after its attribute ``period`` (s), it gives the `BootPose` of the left and the right boot at the end
+        of that time. Its method ``push``, if it has one, gives a force and its place on the sledge.
 
     Returns
     -------
@@ -123,7 +123,7 @@ def simulate(
       force-penetration relation", Scand. J. Med. Sci. Sports, doi 10.1111/sms.12035.
     * The page docs/methods/simulated-turn.md.
     """
-    setup = set_up(scenario, laws=laws, boots=boots)
+    setup = set_up(scenario, laws=laws, boots=boots, strength_along=strength_along)
     record = Record(setup)
     if setup.height < -SINKING_DEPTH or (not setup.static_residual <= AT_REST and setup.sinks):
         return replace(computed_run(setup, record, "sunk", 0.0), laws=laws, strength_along=strength_along)
@@ -132,7 +132,7 @@ def simulate(
         raise SolverError(why_no_start(setup))
     begin = time.perf_counter()
     try:
-        outcome = _loop(setup, record, progress, strength_along)
+        outcome = _loop(setup, record, progress)
     except KeyboardInterrupt:
         outcome = "interrupted"
     run = computed_run(setup, record, outcome, time.perf_counter() - begin)
@@ -142,18 +142,44 @@ def simulate(
 simulated_run = formerly("simulated_run", simulate)
 
 
-def _loop(setup: Setup, record: Record, progress: Progress | None, strength_along: Strength | None) -> Outcome:
+@dataclass(slots=True)
+class _Watch:
+    """End of a run by its motion, checked at the times of its drives, or without drives at its outputs."""
+
+    setup: Setup
+    outcome: Outcome | None = None
+    _course: GatesAhead = field(init=False)
+    _flying: float = 0.0
+    _last: float = 0.0
+
+    def __post_init__(self) -> None:
+        self._course = GatesAhead(self.setup.scenario.course)
+        self._finish_course()
+
+    def look(self) -> bool:
+        """Check the present moment; True where the run is over."""
+        setup = self.setup
+        self._flying = 0.0 if setup.touches else self._flying + setup.time - self._last
+        self._last = setup.time
+        self.outcome = _ended(setup, self._flying)
+        if self.outcome is None:
+            self._finish_course()
+        return self.outcome is not None
+
+    def _finish_course(self) -> None:
+        if self._course.is_over(self.setup.place, CLEAR):
+            self.outcome = "finished"
+
+
+def _loop(setup: Setup, record: Record, progress: Progress | None) -> Outcome:
     """Go from output to output until something ends the run."""
     stop, interval = setup.scenario.stop, setup.scenario.solver.output_interval
     duration = math.inf if stop.duration is None else stop.duration
     length = math.inf if stop.length is None else stop.length
-    flying, number, nearing = 0.0, 0, False
-    ahead = GatesAhead(setup.scenario.course)
-    while True:
+    number, nearing, watch = 0, False, _Watch(setup)
+    while watch.outcome is None:
         now = setup.time
-        if ahead.is_over(setup.place, CLEAR):
-            return "finished"
-        if now >= duration:
+        if now >= duration - SAME_TIME:
             return "finished"
         left = length - record.run_length
         if left <= _REACHED:
@@ -162,9 +188,7 @@ def _loop(setup: Setup, record: Record, progress: Progress | None, strength_alon
         was_near, nearing = nearing, setup.speed * (moment - now) > left
         if nearing:
             moment = now + max(left / setup.speed, 1e-9)
-        if strength_along is not None:
-            setup.snow.compiled.strength_share = strength_along(record.run_length)
-        ended = record.advance(moment, replace=was_near)
+        ended = record.advance(moment, replace=was_near, is_over=watch.look)
         number = math.floor(setup.time / interval + 1e-9)
         if record.gains_energy:
             record.drop()
@@ -173,10 +197,9 @@ def _loop(setup: Setup, record: Record, progress: Progress | None, strength_alon
             progress(setup.time, min(1.0, max(setup.time / duration, record.run_length / length)))
         if ended is not None:
             return ended
-        flying = 0.0 if setup.touches else flying + record.last_interval
-        ended = _ended(setup, flying)
-        if ended is not None:
-            return ended
+        if not setup.drives:
+            watch.look()
+    return watch.outcome
 
 
 def _ended(setup: Setup, flying: float) -> Outcome | None:

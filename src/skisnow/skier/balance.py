@@ -149,6 +149,11 @@ class BalancedSkier:
         return TurnsOverTime(self.skier)
 
     @property
+    def period(self) -> float:
+        """Time from call to call (s)."""
+        return self.skier.control_period
+
+    @property
     def _height(self) -> float:
         return self.scenario.sledge.centre_of_mass[1]
 
