@@ -225,9 +225,12 @@ def swing(legs: float) -> float:
 
 
 def test_loads_do_not_chatter_from_ski_to_ski() -> None:
-    """Legs that do not give way let the load go to and fro some six times a second, by 100 N and more in the mean."""
-    assert swing(0.0) > 100.0
-    assert swing(Skier().leg_yielding) < 60.0
+    """Legs that do not give way let the load go to and fro some six times a second, by 50 N and more in the mean.
+
+    The contact adds nothing to it: an edge that rolls over gives back no more than it stored.
+    """
+    assert swing(0.0) > 50.0
+    assert swing(Skier().leg_yielding) < 20.0
 
 
 def test_left_and_right_mirror() -> None:

@@ -20,7 +20,7 @@ from skisnow.report.figures.run_track import beside_track, groove_corners, run_t
 from skisnow.report.figures.runs_compared import loaded_ski, runs_compared
 from skisnow.report.figures.style import BLUE, VERMILLION, journal_style
 from skisnow.report.figures.track_band import TimedTrack, band_of, offsets, track_band
-from skisnow.simulate.run import Run
+from skisnow.simulate.run import LOST, STORED, Run
 from skisnow.track.nearest_place import distance_beside
 from skisnow.track.polyline import arc_lengths
 
@@ -130,8 +130,8 @@ def test_energies_stack_to_a_level_rim(run: Run) -> None:
     with journal_style():
         figure = run_energies(run)
     every, losses = axes_of(figure)
-    assert len(every.collections) == 10
-    assert len(losses.collections) == 6
+    assert len(every.collections) == len(STORED) + len(LOST)
+    assert len(losses.collections) == len(LOST)
     (level,) = every.lines
     assert np.asarray(level.get_ydata()) == pytest.approx(np.full(2, total[0]))
     assert losses.dataLim.y1 == pytest.approx(-run.energies["potential"][-1])
