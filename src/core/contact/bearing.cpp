@@ -154,7 +154,9 @@ void Bearing::differ(const Snow& snow, const GrooveLines& lines, const Sections&
                               s[FRICTION][i],
                               s[EDGE_STRENGTH][i],
                               s[EDGE_THRUST][i],
-                              alone::shear_used(snow, lines, lines.slot(s.line(i)), moved[next]) + s[SHEAR_EASED][i]};
+                              alone::eased<double>(snow, lines, lines.slot(s.line(i)),
+                                                   alone::shear_used(snow, lines, lines.slot(s.line(i)), moved[next]),
+                                                   s[EDGE_STRENGTH][i], s[EDGE_THRUST][i], moved[next].edge_depth)};
       const Pushed<double> pushed(moved[next], by, snow);
       for (int k = 0; k < Pushed<double>::PARTS; k++)
         out.column(change, k)[i] = (s[SectionField(FORCE_0 + k)][i] - pushed.parts[k]) / way(change);

@@ -4,6 +4,9 @@
 #include <cmath>
 #include <utility>
 
+#define SKISNOW_LANES alone
+#include "contact/pressure_kernels.hpp"
+
 namespace skisnow {
 
 namespace {
@@ -39,19 +42,12 @@ void strengthen(const ShearLaw& law, Sections& s) {
   }
 }
 
-// [ease] An edge that holds stores ½ S e u_y u² for each metre of its length. A strength S that rises must not add to
-// this energy: the displacement shrinks so that the force stays. And the thrust of a cut presses on the same face as the
-// shear: an edge that rises by z along its normal leaves that face by z times thrust over shear.
+// [ease] Strength and thrust are known: the displacement of each edge, and by how much they have eased it.
 void ease(const Snow& snow, const GrooveLines& lines, Sections& s) {
-  const double reach = snow.shear_displacement;
   for (int i = 0; i < s.count(); i++) {
-    const int slot = lines.slot(s.line(i));
-    const double before = lines.values[STRENGTH_HELD][slot], now = s[EDGE_STRENGTH][i];
-    if (!s.touches(i) || !(before > 0.0 && now > 0.0) || !(lines.values[ANCHORED][slot] > 0.5)) continue;
-    const double held = lines.values[SHEAR_HELD][slot] / reach;
-    const double eased = s[SHEAR_USED][i] + held * (std::min(1.0, before / now) - 1.0);
-    const double left = s[EDGE_THRUST][i] / now * (lines.values[DEPTH_HELD][slot] - s[EDGE_DEPTH][i]) / reach;
-    const double used = std::copysign(std::max(std::fabs(eased) - std::max(left, 0.0), 0.0), eased);
+    if (!s.touches(i)) continue;
+    const double used = alone::eased<double>(snow, lines, lines.slot(s.line(i)), s[SHEAR_USED][i], s[EDGE_STRENGTH][i],
+                                             s[EDGE_THRUST][i], s[EDGE_DEPTH][i]);
     s[SHEAR_EASED][i] = used - s[SHEAR_USED][i];
     s[SHEAR_USED][i] = used;
   }

@@ -205,7 +205,7 @@ void differ(const Snow& snow, const GrooveLines& lines, const Sections& s, doubl
           growth.between_moved(here, c, force, moment);
         }
         by.force = load<V>(s[FORCE] + i) + force, by.moment = load<V>(s[MOMENT] + i) + moment;
-        by.used = shear_used(snow, lines, j, c) + load<V>(s[SHEAR_EASED] + i);
+        by.used = eased(snow, lines, j, shear_used(snow, lines, j, c), by.strength, by.thrust, c.edge_depth);
         const Pushed<V> pushed(c, by, snow);
         for (int k = 0; k < PARTS; k++)
           parts[k] += (load<V>(s[SectionField(FORCE_0 + k)] + i) - pushed.parts[k]) / (sides * way);

@@ -245,6 +245,22 @@ V shear_used(const Snow& snow, const GrooveLines& lines, int j, const Cut<V>& c)
   return (anchor - place) / snow.shear_displacement;
 }
 
+// [eased] An edge that holds stores ½ S e u_y u² for each metre of its length. A strength S that rises must not add to
+// this energy: the share u of the displacement shrinks so that the force stays. And the thrust of a cut presses on the
+// same face as the shear: an edge that rises by z leaves that face by z times thrust over shear.
+template <class V>
+V eased(const Snow& snow, const GrooveLines& lines, int j, V used, V strength, V thrust, V edge_depth) {
+  const auto kept = [&](LineField field) { return load<V>(lines.values[field] + j); };
+  const double per_reach = 1.0 / snow.shear_displacement;
+  const V before = kept(STRENGTH_HELD), risen = kept(DEPTH_HELD) - edge_depth, none{};
+  const MaskOf<V> holds = (before > 0.0) & (strength > 0.0) & (kept(ANCHORED) > 0.5);
+  const V per_strength = 1.0 / select(strength > 0.0, strength, all<V>(1.0));
+  const V rest = used + kept(SHEAR_HELD) * per_reach * (minimum(before * per_strength, all<V>(1.0)) - 1.0);
+  const V left = maximum(V(thrust * per_strength * risen * per_reach), none);
+  const V size = maximum(V(absolute(rest) - left), none);
+  return select(holds, select(rest < 0.0, V(none - size), size), used);
+}
+
 // [strength_left] Of a strength, where an edge has slipped this far (m).
 template <class V>
 V strength_left(const ShearLaw& law, V slipped) {

@@ -190,13 +190,15 @@ struct BaseOnLine {
 Acting<double> acting(const Snow& snow, const GrooveLines& lines, const Sections& s, int i, const Section& c,
                       const Sums& sums) {
   const double share = s[SHARE][i];
+  const int slot = lines.slot(s.line(i));
   return {share,
           share * sums.force,
           share * sums.moment,
           s[FRICTION][i],
           s[EDGE_STRENGTH][i],
           s[EDGE_THRUST][i],
-          alone::shear_used(snow, lines, lines.slot(s.line(i)), c) + s[SHEAR_EASED][i]};
+          alone::eased<double>(snow, lines, slot, alone::shear_used(snow, lines, slot, c), s[EDGE_STRENGTH][i],
+                               s[EDGE_THRUST][i], c.edge_depth)};
 }
 
 void keep_differences(const Pushed<double>& pushed, const Sections& s, int i, int change, double way,
