@@ -2,13 +2,15 @@
 
 import math
 from dataclasses import replace
-from typing import Any
+from types import SimpleNamespace
+from typing import Any, cast
 
 import numpy as np
 import pytest
 from scipy import optimize
 
 import skisnow
+from skisnow.estimate.fit_warnings import fit_warnings
 from skisnow.estimate.hardness import DEFINITIONS, hardness_at_largest_load
 from skisnow.estimate.model_choice import bootstrap_intervals, compare_nested_rows
 from skisnow.estimate.models import MODELS, NESTED_PAIRS, Model, ModelFit, fit_models, select_model, why_no_choice
@@ -293,26 +295,32 @@ def test_a_law_is_chosen_from_four_series_at_two_angles_on(
     assert (why_no_choice(readings) == "") == chooses
 
 
-def test_a_law_that_is_worse_than_no_force_is_warned_of(make_campaign: MakeCampaign) -> None:
-    """Depths in the unit of the file a thousand times too small for half the readings: every law misses wildly."""
-    rows = [
-        (f"p{i}", "A", "ski", 45, load, depth)
-        for i in range(4)
-        for load, depth in ((100, 5.0), (200, 7.0), (300, 9.0), (400, 0.3))
-    ]
-    extra = "[screening]\nexclude = []\n"
-    results = skisnow.results_dict(skisnow.analyse(make_campaign(rows, extra=extra), n_resamples=100))["penetration"]
-    size = math.sqrt(np.mean([100.0**2, 200.0**2, 300.0**2, 400.0**2]))
-    worst = max(results["models"], key=lambda row: row["rmse_N"])
-    assert worst["rmse_N"] > size
-    words = Model(*(worst[key] for key in ("hardness", "a", "b"))).words
-    many = sum(row["rmse_N"] > size for row in results["models"])
-    (warning,) = (text for text in results["warnings"] if text.startswith(f"{many} of the nine candidate models "))
-    assert f" than their root mean square, {size:.4g} N; the rmse of {words} is {worst['rmse_N']:.5g} N." in warning
-    assert worst["id"] not in warning
-    german = catalogue("de").translated(warning)
-    assert german.startswith(f"{many} der neun Modelle ")
-    assert "candidate" not in german and "readings" not in german
+def _fit(rmse: float) -> ModelFit:
+    """A fit of which only the rmse counts."""
+    return cast("ModelFit", SimpleNamespace(rmse=rmse, model=SimpleNamespace(words="H_V V")))
+
+
+@pytest.mark.parametrize(
+    ("rmses", "selected", "count"),
+    [
+        ((10.0, 1e4), 10.0, 0),  # a rejected model misses wildly
+        ((60.0, 1e4), 60.0, 1),
+        ((150.0, 90.0), 150.0, 1),
+        ((150.0, 1e4), 150.0, 1),
+        ((150.0, 1e4), None, 1),
+        ((10.0, 1e4), None, 0),
+    ],
+)
+def test_only_the_selected_model_or_all_models_are_warned_of(
+    rmses: tuple[float, ...], selected: float | None, count: int
+) -> None:
+    """Loads of 100 N: half of their root mean square is 50 N."""
+    fits = tuple(map(_fit, rmses))
+    warned = fit_warnings(fits, None if selected is None else _fit(selected), np.array([100.0, -100.0]))
+    assert len(warned) == count
+    for text in warned:
+        german = catalogue("de").translated(text)
+        assert "candidate" not in german and "misses" not in german
 
 
 @pytest.mark.parametrize(

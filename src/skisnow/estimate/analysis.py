@@ -298,7 +298,7 @@ def _penetration(
         nested=compare_nested_rows(fits),
         selected=selected,
         errors_in_depth=ModelTable(depth_fits, {}),  # no intervals: a bootstrap covers b in 7 to 90 % of campaigns
-        warnings=(*filter(None, (no_choice,)), *fit_warnings(fits, selected, depth_fits, used.load)),
+        warnings=(*filter(None, (no_choice,)), *fit_warnings(fits, selected, used.load)),
     )
 
 

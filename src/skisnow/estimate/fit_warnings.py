@@ -16,32 +16,30 @@ if TYPE_CHECKING:
 POOR: Final = 0.5
 """A selected law whose rmse is above this share of the loads' rms leaves a quarter of their squares open (modelling
 assumption)."""
-_DEPTH: Final = " with errors in depth"
 _ACTION: Final = "Look for wrong units, depths or tools, and for snow that follows none of these laws."
 
 
 def fit_warnings(
-    fits: tuple[ModelFit, ...], selected: ModelFit | None, in_depth: tuple[ModelFit, ...], load: npt.NDArray[np.float64]
+    fits: tuple[ModelFit, ...], selected: ModelFit | None, load: npt.NDArray[np.float64]
 ) -> tuple[str, ...]:
-    """Sentences about rows that miss the loads (N) by more than the loads themselves, and a poor selected row."""
+    """Sentence about a selected model that misses the loads (N), or about all models where none fits them."""
     size = float(np.sqrt(np.mean(load**2)))
-    return (*_poor(selected, size), *_worse_than_nothing(fits, "", size), *_worse_than_nothing(in_depth, _DEPTH, size))
+    if fits and all(fit.rmse > size for fit in fits):
+        return tuple(_all_fail(fits, size))
+    return tuple(_poor(selected, size))
 
 
 def _poor(selected: ModelFit | None, size: float) -> Iterator[str]:
-    if selected is not None and POOR * size < selected.rmse <= size:
+    if selected is not None and selected.rmse > POOR * size:
         yield (
             f"Even the selected law misses the loads by {100.0 * selected.rmse / size:.0f} % of their root mean square "
             f"({selected.rmse:.4g} N of {size:.4g} N). {_ACTION}"
         )
 
 
-def _worse_than_nothing(fits: tuple[ModelFit, ...], how: str, size: float) -> Iterator[str]:
-    rows = [fit for fit in fits if fit.rmse > size]
-    if rows:
-        worst = max(rows, key=lambda fit: fit.rmse)
-        yield (
-            f"{len(rows)} of the nine candidate models{how} {'misses' if len(rows) == 1 else 'miss'} the loads by more "
-            f"than their root mean square, {size:.4g} N; the rmse of {worst.model.words} is {worst.rmse:.5g} N. "
-            f"No force at all would describe the readings better. {_ACTION}"
-        )
+def _all_fail(fits: tuple[ModelFit, ...], size: float) -> Iterator[str]:
+    best = min(fits, key=lambda fit: fit.rmse)
+    yield (
+        f"All candidate models miss the loads by more than their root mean square, {size:.4g} N; the smallest rmse is "
+        f"{best.rmse:.5g} N, of {best.model.words}. No force at all would describe the readings better. {_ACTION}"
+    )
