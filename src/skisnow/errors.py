@@ -58,5 +58,24 @@ class RangeWarning(UserWarning):
     """A relation is used outside the range in which it was measured: the number is computed all the same."""
 
 
+class ModelLimitWarning(UserWarning):
+    """The model is known to be wrong for an input; `code` says for which.
+
+    Parameters
+    ----------
+    text
+        The reason, and what to do.
+    code
+        One of the codes of `skisnow.scenario.model_limits`.
+    """
+
+    def __init__(self, text: str, code: str) -> None:
+        super().__init__(text, code)
+        self.code = code
+
+    def __str__(self) -> str:
+        return str(self.args[0])
+
+
 class FitWarning(UserWarning):
     """A fit has an answer of which fewer digits are known than a reader would take for granted."""

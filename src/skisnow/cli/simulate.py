@@ -6,10 +6,12 @@ import argparse
 import json
 import sys
 import time
+import warnings
 from contextlib import ExitStack
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from ..errors import ModelLimitWarning
 from .announced import announced
 from .ending import Ending, ending_is_an_interrupt
 from .out_folder import ready
@@ -95,7 +97,8 @@ def _prepare(options: argparse.Namespace, asked: ScenarioFile) -> None:
 
 
 def _computed(asked: ScenarioFile, *, verify: bool) -> tuple[Run, tuple[Refinement, ...] | None]:
-    with ExitStack() as loading, Progress() as progress:
+    with ExitStack() as loading, Progress() as progress, warnings.catch_warnings():
+        warnings.simplefilter("ignore", ModelLimitWarning)  # printed among those of the scenario
         loading.enter_context(announced(LOADING))
         from ..simulate.simulated_run import simulate
 

@@ -14,6 +14,7 @@ from ..files import require_writable, write_file
 from ..json_number import json_number
 from ..language import ENGLISH
 from ..scenario.keys import SCENARIO_KEYS
+from ..scenario.model_limits import model_limits
 from ..simulate.run_gates import run_gates
 from ..simulate.run_summary import run_warnings
 from ..units import DEGREE, MM, N_PER_MM2, N_PER_MM3
@@ -244,6 +245,7 @@ def outcome_sentences(run: Run) -> list[Markup]:
     )  # fmt: skip
     deepest = float(np.nanmax(run.skis.edge_depth)) / MM
     sentences.append(prose("Deepest place of an edge in the snow: {deepest} mm.", deepest=_number(deepest)))
+    sentences += [prose("Warning: {text}.", text=each) for each in model_limits(run.scenario).values()]
     return sentences + _balance(run)
 
 

@@ -17,6 +17,7 @@ from ..forces.measured_ranges import (
 )
 from ..snow.properties import GREATEST_LIKELY_HARDNESS
 from ..units import N_PER_MM3, in_degrees_if_radians
+from .model_limits import model_limits
 from .scenario import Scenario
 from .slope import Plane
 from .slope_surface import heights_of
@@ -25,6 +26,7 @@ from .slope_surface import heights_of
 def implausible_values(scenario: Scenario) -> tuple[str, ...]:
     """Warnings about a scenario, none of which stops it."""
     return (
+        *model_limits(scenario).values(),
         *_like_radians(scenario),
         *_like_another_unit(scenario),
         *_outside_ranges(scenario),

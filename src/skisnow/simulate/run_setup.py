@@ -222,12 +222,22 @@ def _drive(scenario: Scenario, boots: BootControl | None) -> BootDrive | None:
     if boots is not None:
         if scenario.boots is not None:
             raise ParameterError("the boots move by boots.file and by a function; give one of them")
+        if scenario.skier is not None and not _balances(boots):
+            raise ParameterError(
+                "boots: the scenario has a skier, whose control moves the boots. Give the scenario without it, "
+                "scenario.with_(skier=None), or a BalancedSkier."
+            )
         return BootDrive(boots)
     if scenario.skier is not None:
         return BootDrive(BalancedSkier(scenario))
     if scenario.boots is None:
         return None
     return BootDrive(TableControl(scenario.boots), held=scenario.boots.frame == "slope")
+
+
+def _balances(control: BootControl) -> bool:
+    """Whether a control is the balance control of a skier, or passes its moments on to one."""
+    return isinstance(control, BalancedSkier) or isinstance(getattr(control, "skier", None), BalancedSkier)
 
 
 def laid_out(scenario: Scenario, snow: SnowField | None = None, *, laws: Laws | None = None) -> Setup:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import time
+import warnings
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from typing import Final, TypeAlias
@@ -11,9 +12,10 @@ from typing import Final, TypeAlias
 import numpy as np
 
 from ..contact import Laws
-from ..errors import SolverError
+from ..errors import ModelLimitWarning, SolverError
 from ..former_names import formerly
 from ..scenario import Scenario
+from ..scenario.model_limits import model_limits
 from .moving_boots import SAME_TIME, BootControl
 from .run import OPEN_SHARE, Groove, Outcome, Run, Strength
 from .run_gates import GatesAhead, run_gates
@@ -123,6 +125,8 @@ def simulate(
       force-penetration relation", Scand. J. Med. Sci. Sports, doi 10.1111/sms.12035.
     * The page docs/methods/simulated-turn.md.
     """
+    for code, text in model_limits(scenario).items():
+        warnings.warn(ModelLimitWarning(text, code), stacklevel=2)
     setup = set_up(scenario, laws=laws, boots=boots, strength_along=strength_along)
     record = Record(setup)
     if setup.height < -SINKING_DEPTH or (not setup.static_residual <= AT_REST and setup.sinks):

@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..errors import ParameterError
+from ..inputs import nearest
 from .file_keys import COLUMNS
 from .station_table import StationTable
 
@@ -28,6 +29,8 @@ EDITED_COLUMNS: Final = {
 """Columns of a ski's table that can be edited, and what they are called in `Ski`."""
 SIDECUT: Final = "sidecut_depth"
 """Factor of how much wider than the waist the ski is: the waist's own width stays."""
+MASS: Final = "mass_per_length_kg_per_m"
+"""Factor of the mass."""
 _LARGEST_FACTOR: Final = 100.0
 _END: Final = 0.005  # m between two stations at least (modelling assumption)
 
@@ -49,6 +52,13 @@ class SkiEdit:
     station: FloatArray
     factors: Mapping[str, float] = field(default_factory=dict)
     values: Mapping[str, FloatArray] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        factors = (*EDITED_COLUMNS, MASS, SIDECUT)
+        for what, given, columns in (("factors", self.factors, factors), ("values", self.values, (*EDITED_COLUMNS,))):
+            for column in given:
+                if column not in columns:
+                    raise ParameterError(f"SkiEdit: {what} has no {column!r}. {nearest(column, columns)}")
 
 
 def edit_stations(ski: Ski, *, count: int = 9) -> FloatArray:
@@ -102,7 +112,7 @@ def edited_ski(ski: Ski, edit: SkiEdit, *, name: str, source: str) -> Ski:
     changed = {attribute: _curve(ski, edit, column) for column, attribute in EDITED_COLUMNS.items()}
     height = changed["base_height"]
     changed["base_height"] = height - np.interp(0.0, ski.station[::-1], height[::-1])  # it counts from the boot
-    mass = ski.mass_per_length * edit.factors.get("mass_per_length_kg_per_m", 1.0)
+    mass = ski.mass_per_length * edit.factors.get(MASS, 1.0)
     return replace(
         ski,
         name=name,
