@@ -311,6 +311,7 @@ namespace skisnow {
 void bind_carve(nb::module_& m);
 void bind_data(nb::module_& m);
 void bind_dynamics(nb::module_& m);
+void bind_kernels(nb::module_& m);
 }  // namespace skisnow
 
 NB_MODULE(_core, m) {
@@ -330,4 +331,5 @@ NB_MODULE(_core, m) {
   bind_carve(m);
   bind_dynamics(m);
   bind_data(m);
+  bind_kernels(m);
 }
