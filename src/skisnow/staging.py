@@ -16,13 +16,13 @@ import tempfile
 import time
 from contextlib import contextmanager
 from dataclasses import dataclass, field
-from pathlib import Path
+from pathlib import Path, PurePath
 from typing import TYPE_CHECKING, Final
 
 from .files import cannot_write, require_writable, write_file
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterable, Iterator
 
 _PREFIX: Final = ".skisnow-"
 _HIDDEN: Final = re.compile(r"\.(skisnow|report|run)-[a-z0-9_]{8}")
@@ -134,7 +134,11 @@ def _new_hidden(folder: Path) -> tuple[Path, int | None]:
 def _carry_out(hidden: Path) -> None:
     """Take all old files away, then move the new ones; where it is stopped it can be begun again."""
     folder, stage = hidden.parent, hidden / _FILES
-    last, *stale = (hidden / _PLAN).read_text(encoding="utf-8").split("\n")
+    try:
+        last, *stale = (hidden / _PLAN).read_text(encoding="utf-8").split("\n")
+        _require_inside((last, *stale))
+    except ValueError as error:
+        raise OSError(f"the plan of a killed process is damaged; remove {hidden} and write again") from error
     new = sorted(path.relative_to(stage) for path in stage.rglob("*") if path.is_file())
     if not (hidden / _CLEARED).exists():
         for name in (Path(last), *map(Path, stale), *new):
@@ -145,6 +149,14 @@ def _carry_out(hidden: Path) -> None:
         target.parent.mkdir(parents=True, exist_ok=True)
         (stage / name).replace(target)
     (hidden / _PLAN).unlink()
+
+
+def _require_inside(names: Iterable[str]) -> None:
+    """ValueError for a path that leads out of the folder or that no file can have."""
+    for name in names:
+        path = PurePath(name)
+        if not name or "\0" in name or path.is_absolute() or ".." in path.parts or not path.name:
+            raise ValueError(name)
 
 
 def _is_old(hidden: Path) -> bool:

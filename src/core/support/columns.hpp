@@ -27,16 +27,14 @@ class Columns {
  public:
   void resize(int length) {
     length_ = length;
-    stride_ = length + PAD;
-    data_.assign(std::size_t(FIELDS) * std::size_t(stride_), 0.0);
+    data_.assign(std::size_t(FIELDS) * std::size_t(length), 0.0);
   }
   int length() const { return length_; }
-  double* operator[](Field field) { return data_.data() + std::size_t(field) * std::size_t(stride_); }
-  const double* operator[](Field field) const { return data_.data() + std::size_t(field) * std::size_t(stride_); }
+  double* operator[](Field field) { return data_.data() + std::size_t(field) * std::size_t(length_); }
+  const double* operator[](Field field) const { return data_.data() + std::size_t(field) * std::size_t(length_); }
 
  private:
-  static constexpr int PAD = 8;  // a cache line: columns of 2ⁿ lines would share the same sets of the cache
-  int length_ = 0, stride_ = 0;
+  int length_ = 0;
   Column data_;
 };
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from dataclasses import dataclass, field
 from typing import Annotated, Final, Literal, NamedTuple, TypeAlias
 
@@ -19,6 +20,8 @@ Discipline: TypeAlias = Literal["slalom", "giant-slalom"]
 CourseAxes: TypeAlias = Literal["metres", "east_north_up"]
 
 FEWEST_GATES: Final = 2
+FARTHEST: Final = 1e8
+"""Coordinate (m) beyond which no gate stands, in any map system."""
 """The direction of a course comes from its gates."""
 AGAINST: Final = -0.5
 """Cosine of the angle between a gate's own direction and the course's, below which its side is the wrong one."""
@@ -126,10 +129,15 @@ class Course(Shown):
                 raise ParameterError(
                     f"the gates {before.name} and {gate.name} stand at one place; move one, or drop it"
                 )
-        names = [gate.name for gate in self.gates]
-        twice = [name for name in names if names.count(name) > 1]
-        if twice:
-            raise ParameterError(f"two gates are called {twice[0]!r}; give each a name or number of its own")
+        name, count = Counter(gate.name for gate in self.gates).most_common(1)[0]
+        if count > 1:
+            raise ParameterError(f"two gates are called {name!r}; give each a name or number of its own")
+        for gate in self.gates:
+            if not max(map(abs, (*gate.turning, *(gate.outer or ())))) <= FARTHEST:
+                raise ParameterError(
+                    f"gate {gate.name} stands at {gate.turning}. Allowed: coordinates of finite numbers, at most "
+                    f"{FARTHEST:g} m. Correct them, or their unit"
+                )
         for gate, line, along in zip(self.gates, self.lines, self._chords(), strict=True):
             if float(line.along @ along) < AGAINST:
                 other = "right" if gate.side == "left" else "left"

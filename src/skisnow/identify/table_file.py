@@ -10,7 +10,9 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
+from ..csv_rows import MOST_CSV_BYTES
 from ..errors import ParameterError
+from ..given import plain_bytes
 from ..inputs import Quantity
 from ..spreadsheet_text import number
 from ..track.readers.text import cells_of, decimal_mark_of, require_width, text_of
@@ -107,10 +109,7 @@ def read_table(path: Path) -> TableFile:
     ParameterError, FieldDataError
         The file cannot be read, is no text, or is empty.
     """
-    try:
-        data = path.read_bytes()
-    except OSError as error:
-        raise ParameterError(f"{path} cannot be read: {error.strerror or error}. Check the path") from error
+    data = plain_bytes(path, most_bytes=MOST_CSV_BYTES)
     cells = cells_of(text_of(data, str(path)), str(path))
     require_width(cells, str(path))
     mark = decimal_mark_of((cell for row in cells.rows for cell in row), cells.separator)

@@ -8,9 +8,12 @@ from typing import Final
 
 from ..errors import OutputError
 from ..files import write_file
+from ..given import GivenError, plain_text
 from ..language import ENGLISH, codes
 from .run_report import REPLAY, REPLAY_FACT
 from .translated import translated_html
+
+MOST_BYTES: Final = 1 << 26
 
 PAGE: Final = "report.html"
 _FACTS: Final = re.compile(r'(<dl class="facts">\n(?:<dt>.*</dd>\n)*)(</dl>)')
@@ -41,8 +44,8 @@ def link_replay(folder: str | Path) -> Path | None:
     if not path.is_file():
         return None
     try:
-        page = path.read_text(encoding="utf-8")
-    except (OSError, ValueError) as error:
+        page = plain_text(path, most_bytes=MOST_BYTES)
+    except GivenError as error:
         raise OutputError(f"{path} cannot be read: {error}. The replay is written; the report has no link") from error
     linked = with_link(page)
     if linked == page:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import math
+from collections import Counter
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, Final, TypeAlias
@@ -124,11 +125,11 @@ def _known(head: list[str]) -> tuple[str, ...]:
 
 
 def _require_columns(path: Path, head: list[str]) -> None:
-    known = _known(head)
+    known, counts = _known(head), Counter(head)
     for name in head:
         if _is_read(name) and name not in known:
             raise ParameterError(f"{path}: there is no column {name}. {meant(name, known)}There are {', '.join(known)}")
-        if head.count(name) > 1:
+        if counts[name] > 1:
             raise ParameterError(f"{path}: the column {name} is there twice; leave one out")
     clocks = [name for name in known[:3] if name in head]
     if len(clocks) != 1:

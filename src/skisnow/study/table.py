@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import IO, Final
 
 from ..errors import ParameterError
+from ..given import plain_bytes
 from ..inputs import Quantity
 from ..parallel.kept_rows import Row
 from ..shown import Facts, Shown
@@ -191,7 +192,7 @@ def _begins(file: IO[bytes]) -> array[int]:
 
 def _read_at_once(path: Path, keys: Mapping[str, Quantity]) -> tuple[tuple[str, ...], list[Row]]:
     try:
-        text = decoded(path.read_bytes()).text
+        text = decoded(plain_bytes(path, most_bytes=MOST_BYTES_HELD)).text
         named = named_separator(text)
         separator = named if named in SEPARATOR_NAMES else most_frequent_separator(text[:_HEAD])
         stream = io.StringIO(text, newline="")

@@ -70,7 +70,7 @@ def _advance(place: FloatArray, begins: BoolArray) -> float:
     steps = np.hypot(*np.diff(place, axis=0).T)
     known = np.isfinite(steps)
     whole = float(np.sum(steps[known]))
-    if whole == 0.0:
+    if not 0.0 < whole < np.inf:
         return 0.0
     within = known & ~begins[1:]
     return float(np.sum(steps[within])) / whole / (np.count_nonzero(within) / np.count_nonzero(known))
