@@ -86,7 +86,7 @@ def require_sound_pages(database: sqlite3.Connection) -> None:
 
 
 def primary_code(error: BaseException) -> int:
-    """SQLite's result code of an error, without its extension; 0 where there is none."""
+    """SQLite's result code of an error, without its extension; 0 if it has none."""
     code: int = getattr(error, "sqlite_errorcode", 0)
     return code & 0xFF
 
@@ -97,7 +97,7 @@ def place_reason(error: BaseException) -> str | None:
 
 
 def first_damage(database: sqlite3.Connection) -> str | None:
-    """The first finding of SQLite's integrity check, which takes a while; None if there is none, or it cannot run.
+    """First finding of SQLite's integrity check, which takes a while; None without a finding.
 
     Call it after an error, to report what is damaged.
     """

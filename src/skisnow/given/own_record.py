@@ -24,11 +24,11 @@ def read_record(path: str | Path, kind: type[T], *, only_known: bool = True) -> 
     Parameters
     ----------
     path
-        Of the file.
+        The file.
     kind
         The dataclass; keys are the names of its fields.
     only_known
-        Reject keys that are no field; False: leave them out.
+        Reject keys that are not fields; False: ignore them.
 
     Raises
     ------

@@ -14,9 +14,9 @@ from ..scenario.keys import SCENARIO_KEYS
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 
 LARGEST: Final = 1e9
-"""Of any number of a run in SI; also its squares are numbers in the single precision of a replay."""
+"""Largest number of a run in SI; also its squares are numbers in the single precision of a replay."""
 SMALLEST_RADIUS: Final = 1e-3
-"""Of a turn (m)."""
+"""Smallest radius of a turn (m)."""
 _ORTHOGONAL: Final = 1e-6
 
 
@@ -50,7 +50,7 @@ def require_finite(arrays: Mapping[str, FloatArray]) -> None:
 
 
 def scenario_value(values: Mapping[str, Any], name: str) -> Any:
-    """A value of the run's scenario by its full name; None where the scenario has none.
+    """A value of the run's scenario by its full name; None if the scenario lacks it.
 
     Raises
     ------

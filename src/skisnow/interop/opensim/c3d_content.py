@@ -25,7 +25,7 @@ BLOCK: Final = 512
 _KEY: Final = 0x50
 _DEC: Final = 85
 _ORDERS: Final = {84: "<", _DEC: "<", 86: ">"}
-"""Byte order by the processor's number: Intel, DEC (with floating-point numbers of its own), MIPS."""
+"""Byte order by the processor's number: Intel, DEC (whose floating-point numbers differ), MIPS."""
 _CODES: Final = {-1: "u1", 1: "u1", 2: "u2", 4: "f4"}
 """NumPy's codes by the type of a parameter: characters, bytes, whole numbers, floating-point numbers."""
 _MOST_DIMENSIONS: Final = 7

@@ -1,0 +1,1 @@
+"""Seeded fuzzing of every reader of files; `python -m tests.fuzzing --help` describes the long runs."""

@@ -1,0 +1,111 @@
+"""Readers of motions and of simulated runs: OpenSim, C3D, run.nc, replays."""
+
+from __future__ import annotations
+
+from functools import cache
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import numpy as np
+
+from skisnow import scenario, simulate
+from skisnow.interop.opensim.c3d import read_c3d
+from skisnow.interop.opensim.markers import read_trc
+from skisnow.interop.opensim.table import read_motion
+from skisnow.replay import replay_of_file
+from skisnow.replay.binary import replay_bytes, replay_of_bytes
+from skisnow.report.replay_link import link_replay
+from skisnow.report.run_file import write_run_file
+from skisnow.simulate.run_summary import summary_dict
+from tests.interop.c3d_files import c3d_bytes
+
+from ..binaries import BINARY
+from ..markup import XML
+from ..netcdf import NETCDF
+from ..reader import Reader
+from ..texts import TEXT
+
+_TRC = b"""PathFileType\t4\t(X/Y/Z)\ttwo.trc
+DataRate\tCameraRate\tNumFrames\tNumMarkers\tUnits\tOrigDataRate\tOrigDataStartFrame\tOrigNumFrames
+100\t100\t2\t2\tmm\t100\t1\t2
+Frame#\tTime\theel\t\t\ttoe\t\t
+\t\tX1\tY1\tZ1\tX2\tY2\tZ2
+
+1\t0.00\t1000\t200\t-30\t\t\t
+2\t0.01\t1010\t200\t-30\t1300\t200\t-30
+3\t0.02\t1020\t201\t-31\t1310\t201\t-31
+"""
+_MOT = b"""Coordinates
+version=1
+nRows=3
+nColumns=3
+inDegrees=yes
+endheader
+time\tknee\thip
+0.0\t10.5\t2e-1
+0.01\t11\t0.3
+0.02\t12\t0.4
+"""
+_PAGE = b"""<html lang="de">
+<p>skisnow</p><dl class="facts">
+<dt>Schnee</dt><dd>S</dd>
+</dl>
+<h2 id="scenario">1</h2></html>
+"""
+
+
+@cache
+def run_files() -> dict[str, bytes]:
+    """A short run's run.nc, alone in its folder."""
+    run = simulate(scenario("slalom-20-gates", changes={"run.duration_s": 0.2, "solver.method": "fast"}))
+    with TemporaryDirectory() as name:
+        write_run_file(run, summary_dict(run)["scenario"], Path(name) / "run.nc")
+        return {"run.nc": (Path(name) / "run.nc").read_bytes()}
+
+
+@cache
+def _replay() -> dict[str, bytes]:
+    with TemporaryDirectory() as name:
+        (Path(name) / "run.nc").write_bytes(run_files()["run.nc"])
+        return {"replay.bin": replay_bytes(replay_of_file(name))}
+
+
+@cache
+def _c3d() -> dict[str, bytes]:
+    place = np.random.default_rng(1).normal(0.0, 1.0, (6, 3, 3))
+    texts = {"LABELS": ("heel", "toe", "side"), "UNITS": ("m",), "ANGLES": ("knee",)}
+    return {"a.c3d": c3d_bytes(place, texts)}
+
+
+def _drawn(folder: Path) -> object:
+    replay = replay_of_file(folder)
+    return replay_of_bytes(replay_bytes(replay))
+
+
+READERS = (
+    Reader(
+        name="markers.trc", target="m.trc", files=lambda: {"m.trc": _TRC}, mutations=TEXT,
+        read=lambda folder: repr(read_trc(folder / "m.trc")), covers=("interop.opensim.markers:read_trc",),
+    ),
+    Reader(
+        name="motion.mot", target="m.mot", files=lambda: {"m.mot": _MOT}, mutations=TEXT,
+        read=lambda folder: repr(read_motion(folder / "m.mot")), covers=("interop.opensim.table:read_motion",),
+    ),
+    Reader(
+        name="markers.c3d", target="a.c3d", files=_c3d, mutations=BINARY,
+        read=lambda folder: repr(read_c3d(folder / "a.c3d")), covers=("interop.opensim.c3d:read_c3d",),
+    ),
+    Reader(
+        name="run.nc", target="run.nc", files=run_files, mutations=NETCDF, read=_drawn,
+        covers=("replay.of_file:replay_of_file",),
+    ),
+    Reader(
+        name="replay bytes", target="replay.bin", files=_replay, mutations=BINARY,
+        read=lambda folder: replay_of_bytes((folder / "replay.bin").read_bytes()),
+        covers=("replay.binary:replay_of_bytes",),
+    ),
+    Reader(
+        name="report.html", target="report.html", files=lambda: {"report.html": _PAGE}, mutations=XML,
+        read=link_replay, covers=("report.replay_link:link_replay",),
+    ),
+)  # fmt: skip

@@ -1,0 +1,88 @@
+"""The functions of skisnow that open files, found in its source, and those among them that read no file of a user."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Final
+
+import skisnow
+
+_ROOT: Final = Path(skisnow.__file__).parent
+_FUNCTIONS: Final = frozenset({
+    "plain_bytes", "plain_text", "read_toml", "read_json", "read_record", "csv_rows", "netcdf_file", "connect", "open",
+    "load_certificate", "memmap", "loadtxt", "genfromtxt",
+})  # fmt: skip
+"""Functions."""
+_METHODS: Final = frozenset({
+    "read_bytes", "read_text", "ZipFile", "ParquetFile", "load_cert_chain", "load_verify_locations", "open", "memmap",
+    "loadtxt", "genfromtxt", "fromfile", "load_workbook",
+})  # fmt: skip
+"""Methods, and functions of modules."""
+_WRITING: Final = frozenset("wxa+")
+
+NO_READERS: Final[Mapping[str, str]] = {
+    "compiled.sources:fingerprint": "sources of the core beside the package",
+    "scenario.built_in:scenario_text": "package data",
+    "samples.runs:run_samples": "package data",
+    "samples.folder:_contents": "sample files that the program has just made",
+    "cli.samples:run": "sample files that the program has just made",
+    "language.catalogue:_entries": "package data",
+    "replay.page:static_text": "package data",
+    "report.page:_frame": "package data",
+    "report.sheet:sheet": "package data",
+    "interop.fmu.writing:_write": "the library of the package",
+    "interop.fmu.writing:_licence": "package data",
+    "interop.opensim.c3d:write_c3d": "the file that it has just written",
+    "identify.fingerprint:fingerprint": "bytes for a SHA-256",
+    "identify.identification:identification_dict": "bytes for a SHA-256",
+    "identify.assembling:_require_different": "bytes for a SHA-256",
+    "simulate.run_summary:_provenance": "bytes for a SHA-256",
+    "study.computing:_hash": "bytes for a SHA-256",
+    "study.study:Study.fingerprint": "bytes for a SHA-256",
+    "field.store.folder:read_chunks": "bytes for the store, whatever they say",
+    "field.store.corrected_export:add_corrections": "a file of the campaign that it has just exported",
+    "field.store.engine:_damage": "a store that is known to be damaged, for the integrity check",
+    "study.writing:_write_database": "the table that it writes",
+    "web.lab_skis:LabSkis.texts": "the text of a ski, shown in a field",
+    "web.lab_skis:texts_of_ski": "the file that it has just written",
+    "web.unpacking:files_below": "bytes for a download",
+    "web.pages.replay:_in_words": "summary.json, by read_record as web.runs:Runs._over",
+    "web.server:Certificate.__post_init__": "a certificate, parsed by OpenSSL",
+    "certificates:load_certificate": "a certificate, parsed by OpenSSL",
+    "parallel.dask_cluster:_require_certificates": "certificates, parsed by OpenSSL",
+    "cli.serve:run": "opens the store as field.store.store:Store.open",
+    "cli.store:run": "opens the store as field.store.store:Store.open",
+    "cli.store:_sync": "opens the store as field.store.store:Store.open",
+}
+"""Why a function needs no reader in the registry."""
+
+
+def openers() -> set[str]:
+    """Functions of skisnow that open a file for reading, as ``module:qualified.name``."""
+    found: set[str] = set()
+    for path in sorted(_ROOT.rglob("*.py")):
+        module = ".".join(path.relative_to(_ROOT).with_suffix("").parts).removesuffix(".__init__")
+        if not module.startswith("given."):  # the functions that all others use
+            found.update(f"{module}:{name}" for name in _opening(ast.parse(path.read_text(encoding="utf-8")), ()))
+    return found
+
+
+def _opening(node: ast.AST, outer: tuple[str, ...]) -> Iterator[str]:
+    for child in ast.iter_child_nodes(node):
+        is_scope = isinstance(child, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef)
+        inner = (*outer, child.name) if is_scope else outer  # type: ignore[attr-defined]
+        if isinstance(child, ast.Call) and _opens(child):
+            yield ".".join(inner)
+        yield from _opening(child, inner)
+
+
+def _opens(call: ast.Call) -> bool:
+    words = {each.value for each in call.args if isinstance(each, ast.Constant) and isinstance(each.value, str)}
+    if any(set(word) & _WRITING and set(word) <= set("rwxabt+") for word in words):
+        return False
+    if isinstance(call.func, ast.Name):
+        return call.func.id in _FUNCTIONS
+    text = ast.unparse(call.func)
+    return text == "sqlite3.connect" or (text.rpartition(".")[2] in _METHODS and not text.startswith("os."))

@@ -1,0 +1,120 @@
+"""Readers of studies: STUDY.toml, tables, and the databases of finished points."""
+
+from __future__ import annotations
+
+import sqlite3
+from collections.abc import Callable
+from contextlib import closing
+from functools import cache
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from skisnow import read_study
+from skisnow.parallel.dask_cluster import scheduler_of
+from skisnow.study import merge_shards, read_table, run_shard, run_study
+from skisnow.study.table import stored_rows
+
+from ..binaries import BINARY
+from ..databases import SQLITE
+from ..reader import Files, Reader
+from ..texts import TABLE, Mutation
+from ..trees import TOML
+
+_STUDY = """out = "%s"
+[fixed]
+ski = "slalom"
+published = "race-piste"
+load_N = 800
+unloading_ratio = 10
+elements = 20
+[latin_hypercube]
+n = 6
+seed = 1
+edge_angle_deg = [30, 60]
+"""
+_SCHEDULER = b'wait_s = 5\n[slurm]\ncores = 4\nmemory = "8GB"\njobs = 3\nqueue = "x"\n[tls]\nca_file = "ca.pem"\n'
+
+
+@cache
+def _computed(out: str) -> Files:
+    with TemporaryDirectory() as name:
+        folder = Path(name)
+        (folder / "study.toml").write_text(_STUDY % out)
+        run_study(folder / "study.toml", workers=1)
+        return {out: (folder / out).read_bytes(), "study.toml": (_STUDY % out).encode()}
+
+
+@cache
+def _parts() -> Files:
+    with TemporaryDirectory() as name:
+        folder = Path(name)
+        (folder / "study.toml").write_text(_STUDY % "table.csv")
+        for number in (1, 2):
+            run_shard(folder / "study.toml", f"{number}/2", workers=1)
+        return {each.name: _one_file(each) for each in sorted(folder.glob("*shard-?-of-2"))}
+
+
+def _one_file(place: Path) -> bytes:
+    with closing(sqlite3.connect(place)) as database:
+        database.execute("pragma journal_mode = delete")
+    return place.read_bytes()
+
+
+@cache
+def _partial() -> Files:
+    """Both parts in one file, as a study that was stopped before its last point leaves it."""
+    one, other = _parts().values()
+    with TemporaryDirectory() as name:
+        place, beside = Path(name) / "one", Path(name) / "other"
+        place.write_bytes(one)
+        beside.write_bytes(other)
+        with closing(sqlite3.connect(place, isolation_level=None)) as database:
+            database.execute("attach ? as other", (str(beside),))
+            database.execute("insert into rows select * from other.rows")
+        return {"table.csv.partial": _one_file(place), "study.toml": (_STUDY % "table.csv").encode()}
+
+
+def _read_back(folder: Path, out: str) -> object:
+    study = read_study(folder / "study.toml")
+    table = read_table(folder / out, study.subject.keys, varied=study.varied)
+    found = stored_rows(folder / out, study.subject.keys)
+    rows = () if found is None else (list(found[1]), found[1][-1:])
+    return table.counts(), table.answers(), table.csv(), repr(table), rows
+
+
+def _gone_on_with(folder: Path) -> object:
+    return run_study(read_study(folder / "study.toml"), workers=1).counts()
+
+
+def _merged(folder: Path) -> object:
+    return merge_shards(folder / "merged.csv", sorted(folder.glob("*shard-?-of-2"))).counts()
+
+
+def _table(out: str, mutations: tuple[Mutation, ...], *covers: str, needs: tuple[str, ...] = ()) -> Reader:
+    return Reader(
+        name=f"study {out}", target=out, files=lambda: _computed(out), read=lambda folder: _read_back(folder, out),
+        mutations=mutations, covers=covers, needs=needs,
+    )  # fmt: skip
+
+
+def _rows(name: str, target: str, files: Callable[[], Files], read: Callable[[Path], object], *covers: str) -> Reader:
+    return Reader(name=name, target=target, files=files, read=read, mutations=SQLITE, covers=covers)
+
+
+READERS = (
+    Reader(
+        name="study.toml", target="study.toml", files=lambda: {"study.toml": (_STUDY % "table.csv").encode()},
+        read=lambda folder: repr(read_study(folder / "study.toml")), mutations=TOML,
+        covers=("study.study_file:read_study",),
+    ),
+    _table("table.csv", TABLE, "study.table:_read_at_once", "study.table:stored_rows"),
+    _table("table.sqlite", SQLITE, "study.rows:DatabaseRows.__init__"),
+    _table("table.parquet", BINARY, "study.rows:ParquetRows.__init__", needs=("pyarrow",)),
+    _rows("study .partial", "table.csv.partial", _partial, _gone_on_with, "parallel.kept_rows:KeptRows.__init__"),
+    _rows("study shard", "table.csv.shard-1-of-2", _parts, _merged, "parallel.kept_rows:KeptRows.__init__"),
+    Reader(
+        name="scheduler.toml", target="scheduler.toml", files=lambda: {"scheduler.toml": _SCHEDULER},
+        read=lambda folder: scheduler_of(folder / "scheduler.toml"), mutations=TOML,
+        covers=("parallel.dask_cluster:scheduler_of",),
+    ),
+)  # fmt: skip
