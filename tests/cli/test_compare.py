@@ -196,31 +196,98 @@ def test_a_gpx_beside_a_run_names_what_is_missing_and_has_no_digits_that_nobody_
     assert found["nearest"]["max_m"] == pytest.approx(12.34, abs=1e-3)
 
 
-@pytest.mark.parametrize("azimuth", [20.0, 130.0, 250.0])
-def test_a_run_laid_onto_a_track_of_which_only_the_compass_is_known(
-    azimuth: float, tmp_path: Path, capsys: Printed
+def written_map_track(path: Path, azimuth: float, slope: float, along: Any, aside: Any, *, heights: bool) -> Path:
+    """A track on a slope (degrees) that falls towards an azimuth, in latitude and longitude near 47° N, 11° E."""
+    down, to_left = (math.radians(azimuth + turn) for turn in (0.0, -90.0))
+    ahead = along * math.cos(math.radians(slope))
+    north = ahead * math.cos(down) + aside * math.cos(to_left)
+    east = ahead * math.sin(down) + aside * math.sin(to_left)
+    columns = [np.arange(len(along)) / 10.0, 47.0 + north / 111_177.0, 11.0 + east / 76_057.0]  # m in a degree there
+    names = "time,lat,lon"
+    if heights:
+        columns.append(2000.0 - along * math.sin(math.radians(slope)))
+        names += ",alt_m"
+    rows = [",".join(map(repr, row)) for row in np.column_stack(columns).tolist()]
+    path.write_text("\n".join([names, *rows]), encoding="utf-8")
+    return path
+
+
+@pytest.mark.parametrize(
+    ("azimuth", "slope", "side", "known"),
+    [
+        (20.0, 10.0, 1.0, "option"),
+        (130.0, 30.0, -1.0, "option"),
+        (250.0, 18.0, 1.0, "run"),
+        (310.0, 30.0, -1.0, "run"),
+        (80.0, 30.0, 1.0, "heights"),
+        (200.0, 12.0, -1.0, "heights"),
+    ],
+)
+def test_a_run_on_a_slope_is_laid_on_the_map_before_it_is_fitted(
+    azimuth: float, slope: float, side: float, known: str, tmp_path: Path, capsys: Printed
 ) -> None:
-    """The slope falls by 10 degrees towards the azimuth: from above lengths down it are 1.5 % shorter, no more."""
+    """A third of the run is not measured. Without the slope, lengths down it are up to 15 % too long for the map."""
+    along = np.linspace(0.0, 60.0, 301)
+    aside = side * (5.0 * np.sin(along / 6.0) + 3.0 * np.cos(along / 11.0))
+    file = write(tmp_path / "run" / "track.csv", np.column_stack([along, aside, 0.0 * along]))
+    there = written_map_track(
+        tmp_path / "there.csv", azimuth, slope, along[100:], aside[100:], heights=known == "heights"
+    )
+    if known == "run":
+        scenario = {"slope": {"kind": "plane", "angle_deg": slope}}
+        file.with_name("summary.json").write_text(json.dumps({"scenario": scenario}), encoding="utf-8")
+    words = [str(file.parent), str(there), "--fit-offset", "start,heading"]
+    found = answer([*words, *(["--slope-angle-deg", str(slope)] if known == "option" else [])], capsys)
+    fitted = found["fitted"]
+    assert fitted["fall_line_azimuth_deg"] == pytest.approx(azimuth, abs=0.2)  # metres of a degree are rounded
+    assert math.remainder(fitted["turned_deg"] + azimuth - 90.0, 360.0) == pytest.approx(0.0, abs=0.2)
+    assert fitted["slope_angle_deg"] == pytest.approx(slope, abs=0.2)
+    assert found["dimensions"] == (3 if known == "heights" else 2)
+    assert found["nearest"]["max_m"] < 0.05
+    assert found["nearest"]["compared_share"] > 0.99
+    [told] = [each for each in found["warnings"] if "from north" in each]
+    assert f"{fitted['fall_line_azimuth_deg']:.1f}°" in told
+
+
+def test_an_unknown_slope_and_a_slope_that_the_heights_contradict_are_warned_of(
+    tmp_path: Path, capsys: Printed
+) -> None:
     along = np.linspace(0.0, 60.0, 301)
     aside = 5.0 * np.sin(along / 6.0) + 3.0 * np.cos(along / 11.0)
     run = write(tmp_path / "run.csv", np.column_stack([along, aside, 0.0 * along]))
-    down, to_left = (np.radians(azimuth + turn) for turn in (0.0, -90.0))
-    ahead = along * math.cos(math.radians(10.0))
-    north = ahead * np.cos(down) + aside * np.cos(to_left)
-    east = ahead * np.sin(down) + aside * np.sin(to_left)
-    lat, lon = 47.0 + north / 111_177.0, 11.0 + east / 76_057.0  # m in a degree there
-    up = 2000.0 - along * math.sin(math.radians(10.0))
-    table = np.column_stack([along / 5.0, lat, lon, up])[100:]
-    rows = [",".join(map(repr, row)) for row in table.tolist()]
-    (tmp_path / "there.csv").write_text("\n".join(["time,lat,lon,ele", *rows]), encoding="utf-8")
-    found = answer([str(run), str(tmp_path / "there.csv"), "--fit-offset", "start,heading"], capsys)
-    assert found["dimensions"] == 2
-    assert found["fitted"]["turned_deg"] == pytest.approx(math.remainder(90.0 - azimuth, 360.0), abs=1.0)
-    assert found["nearest"]["max_m"] < 0.5
-    [warning] = found["warnings"]
-    told = re.search(r"points (\d+\.\d)° from north", warning)
-    assert told is not None
-    assert float(told[1]) == pytest.approx(azimuth, abs=1.0)
+    flat = written_map_track(tmp_path / "flat.csv", 20.0, 18.0, along, aside, heights=False)
+    words = ["--fit-offset", "start,heading"]
+    found = answer([str(run), str(flat), *words], capsys)
+    assert found["fitted"]["slope_angle_deg"] is None
+    assert any("slope's angle is unknown" in each for each in found["warnings"])
+    high = written_map_track(tmp_path / "high.csv", 20.0, 18.0, along, aside, heights=True)
+    found = answer([str(run), str(high), *words, "--slope-angle-deg", "8"], capsys)
+    assert any("falls by 18.0°, the slope by 8.0°" in each for each in found["warnings"])
+
+
+def test_the_slope_of_a_run_counts_with_a_known_azimuth(tmp_path: Path, capsys: Printed) -> None:
+    along = np.linspace(0.0, 60.0, 301)
+    aside = 5.0 * np.sin(along / 6.0)
+    file = write(tmp_path / "run" / "track.csv", np.column_stack([along, aside, 0.0 * along]))
+    there = written_map_track(tmp_path / "there.csv", 140.0, 25.0, along, aside, heights=True)
+    scenario = {"slope": {"kind": "plane", "angle_deg": 25.0}}
+    file.with_name("summary.json").write_text(json.dumps({"scenario": scenario}), encoding="utf-8")
+    found = answer([str(file.parent), str(there), "--fall-line-azimuth-deg", "140"], capsys)
+    assert found["nearest"]["max_m"] < 0.05
+    assert found["measured"]["length_m"] == pytest.approx(found["simulated"]["length_m"], rel=1e-3)
+
+
+CASE = Path(__file__).parents[3] / "shared" / "cases" / "compare" / "north.gpx"
+
+
+@pytest.mark.skipif(not CASE.is_file(), reason="the shared cases are not beside the repository")
+def test_the_shared_track_of_a_carved_turn_is_found(tmp_path: Path, capsys: Printed) -> None:
+    run = tmp_path / "run"
+    assert main(["simulate", "carved-46m", "--set", "run.duration_s=4", "--out", str(run)]) == 0
+    capsys.readouterr()
+    found = answer([str(run), str(CASE), "--fit-offset", "start,heading"], capsys)
+    assert found["fitted"]["fall_line_azimuth_deg"] == pytest.approx(135.0, abs=1.0)
+    assert found["nearest"]["compared_share"] > 0.95
 
 
 def test_two_tracks_in_degrees_are_put_on_one_plane(tmp_path: Path, capsys: Printed) -> None:

@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 
 from skisnow.errors import FitError
-from skisnow.track.alignment import Motion, _settled, fitted_motion, fitted_time
+from skisnow.track.alignment import Motion, _settled, fitted_motion
 from skisnow.track.nearest_place import Path
 from skisnow.track.polyline import Polyline, polyline
+from skisnow.track.time_alignment import fitted_time
 
 from .made_tracks import FloatArray, slalom, turned
 
@@ -70,14 +71,17 @@ def test_the_answer_is_a_least_square() -> None:
             assert mean_square(moved, motion.turned + sign * step[2] / 10.0) > best
 
 
-def test_straight_lines_do_not_tell_how_far_along() -> None:
-    """Across by 0.8 m, along by nothing: the 3 m along the lines cannot be known and stay."""
+def test_straight_lines_are_moved_along_only_for_the_overlap() -> None:
+    """Across by 0.8 m. Along, 3 m give the overlap of all 50 m; on a line that is long enough nothing moves."""
     measured = line_of(np.array([[0.0, 0.0], [50.0, 0.0]]))
     simulated = line_of(np.array([[3.0, 0.8], [53.0, 0.8]]))
     motion = fitted_motion(simulated, measured, start=True, heading=True)
-    assert motion.moved == pytest.approx([0.0, -0.8], abs=1e-8)
+    assert motion.moved == pytest.approx([-3.0, -0.8], abs=1e-8)
     assert motion.turned == pytest.approx(0.0, abs=1e-9)
     assert motion.undetermined == 1
+    assert motion.share == 1.0
+    longer = line_of(np.array([[-30.0, 0.8], [80.0, 0.8]]))
+    assert fitted_motion(longer, measured, start=True, heading=True).moved[1] == pytest.approx(-0.8, abs=1e-8)
 
 
 def test_a_fit_neither_scales_nor_mirrors() -> None:
@@ -111,13 +115,39 @@ def test_a_heading_is_found_where_the_measured_track_begins_later(angle: float) 
     assert motion.rival is None
 
 
-def test_the_next_turn_of_a_slalom_is_a_rival_where_noise_hides_the_difference() -> None:
+def test_the_next_turn_of_a_slalom_is_a_rival_where_both_have_the_whole_track_beside_them() -> None:
+    """Three equal turns, of which the second was measured: the first and the third are as near."""
+    along = np.linspace(0.0, 36.0 * math.pi, 900)
+    wave = np.column_stack([along, 5.0 * np.sin(along / 6.0)])
+    noise = 0.05 * np.random.default_rng(4).normal(size=(300, 2))
+    motion = fitted_motion(line_of(wave), line_of(wave[300:600] + noise), start=True, heading=True)
+    assert motion.rival is not None
+    apart = np.linalg.norm(motion.rival.moved - motion.moved) / (12.0 * math.pi)
+    assert apart == pytest.approx(round(apart), abs=0.05)
+    assert round(apart) in (1, 2)
+
+
+def test_less_overlap_is_no_advantage() -> None:
+    """The next turn fits 55 % of the track about as well; the place with all of it beside counts, without a rival."""
     simulated, measured = two_thirds_turned(0.9)
     noise = 0.06 * np.random.default_rng(4).normal(size=measured.place.shape)
     motion = fitted_motion(simulated, line_of(measured.place + noise), start=True, heading=True)
     assert motion.turned == pytest.approx(0.9, abs=0.02)
-    assert motion.rival is not None
-    assert np.linalg.norm(motion.rival.moved - motion.moved) == pytest.approx(12.0 * math.pi, rel=0.05)  # one turn
+    assert motion.share > 0.95
+    assert motion.rival is None
+
+
+def test_the_interval_of_a_heading_grows_with_noise_and_holds_the_truth() -> None:
+    inside, errors = [], []
+    for seed in range(20):
+        for size in (0.01, 0.1):
+            noise = size * np.random.default_rng(seed).normal(size=(100, 2))
+            measured = turned(slalom(ALONG[::5]), 0.4, (40.0, -7.0, 0.0))[:, :2] + noise
+            motion = fitted_motion(line_of(slalom(ALONG)[:, :2]), line_of(measured), start=True, heading=True)
+            inside.append(abs(motion.turned - 0.4) < motion.turned_error)
+            errors.append(motion.turned_error)
+    assert np.mean(inside) > 0.8
+    assert np.mean(errors[1::2]) == pytest.approx(10.0 * np.mean(errors[::2]), rel=0.3)
 
 
 def test_noise_that_lengthens_a_track_does_not_slide_it() -> None:

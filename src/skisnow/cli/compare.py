@@ -9,6 +9,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from ..units import DEGREE
 from .announced import announced
 from .out_folder import ready
 from .words import add_fall_line_azimuth, add_language, number
@@ -48,7 +49,8 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         "--slope-angle-deg",
         type=number("degrees", lowest=0, highest=75),
         metavar="DEG",
-        help="inclination of the plane slope, with --fall-line-azimuth-deg; left out: x stays horizontal",
+        help="inclination of the plane slope, with --fall-line-azimuth-deg or --fit-offset start,heading (default: "
+        "that of the run's folder; with a fit also that of the measured heights)",
     )
     parser.add_argument(
         "--known-to-m",
@@ -71,8 +73,12 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
 
 def run(options: argparse.Namespace) -> int:
     """Compare, print, write."""
-    if options.slope_angle_deg is not None and options.fall_line_azimuth_deg is None:
-        options.parser.error("--slope-angle-deg needs --fall-line-azimuth-deg: say which way the slope falls")
+    fitted = {"start", "heading"} <= set(_offsets(options))
+    if options.slope_angle_deg is not None and options.fall_line_azimuth_deg is None and not fitted:
+        options.parser.error(
+            "--slope-angle-deg needs --fall-line-azimuth-deg, the direction in which the slope falls, or --fit-offset "
+            "start,heading"
+        )
     if options.out is not None:
         ready(options.out)
     found = _compared(options)
@@ -102,7 +108,7 @@ def run(options: argparse.Namespace) -> int:
 def _compared(options: argparse.Namespace) -> Comparison:
     from ..track.alignment import require_offsets
 
-    fit = [word.strip() for word in options.fit_offset.split(",")] if options.fit_offset is not None else []
+    fit = _offsets(options)
     require_offsets(fit)
     with announced("reading the tracks and finding nearest places"):
         from ..track.comparison import compare_tracks
@@ -111,34 +117,58 @@ def _compared(options: argparse.Namespace) -> Comparison:
         simulated = _read(options.simulated)
         if simulated.origin is not None and measured.origin is not None:  # one plane for both
             simulated = _read(options.simulated, origin=measured.origin)
-        tracks = [_in_slope(track, options) for track in (simulated, measured)]
+        angle = None if options.slope_angle_deg is None else options.slope_angle_deg * DEGREE
+        pairs = ((simulated, measured), (measured, simulated))
+        tracks = [_in_slope(track, options, other.slope_angle if angle is None else angle) for track, other in pairs]
         time_from = options.time_from and options.time_from.replace("-", "_")
         return compare_tracks(
-            *tracks, fit=fit, time_from=time_from, from_above=options.from_above, known_to=options.known_to_m
+            *tracks,
+            fit=fit,
+            time_from=time_from,
+            from_above=options.from_above,
+            known_to=options.known_to_m,
+            slope_angle=angle if options.fall_line_azimuth_deg is None else None,
         )
 
 
+def _offsets(options: argparse.Namespace) -> list[str]:
+    return [word.strip() for word in options.fit_offset.split(",")] if options.fit_offset is not None else []
+
+
 def _read(path: Path, *, origin: GeodeticPoint | None = None) -> Track:
-    """A track under the name by which the user called it."""
+    """A track under the name by which the user called it; that of a run with the angle of its slope."""
     from ..track.read import read_track
 
-    track = read_track(path / "track.csv" if path.is_dir() else path, origin=origin)
-    return replace(track, name=str(path))
+    file = path / "track.csv" if path.is_dir() else path
+    track = read_track(file, origin=origin)
+    angle = _slope_angle_of_run(file) if track.axes == "file" else None
+    return replace(track, name=str(path), slope_angle=angle)
 
 
-def _in_slope(track: Track, options: argparse.Namespace) -> Track:
+def _slope_angle_of_run(file: Path) -> float | None:
+    """Inclination (rad) of x and y of a run's track.csv, 0 on a profile or grid; None for another track."""
+    from ..errors import SkisnowError
+    from ..given import is_file, read_json
+
+    summary = file.with_name("summary.json")
+    if file.name != "track.csv" or not is_file(summary):
+        return None
+    try:
+        slope = read_json(summary)["scenario"]["slope"]
+        return float(slope["angle_deg"]) * DEGREE if slope["kind"] == "plane" else 0.0
+    except (SkisnowError, KeyError, TypeError, ValueError):  # another program's summary, or a damaged one
+        return None
+
+
+def _in_slope(track: Track, options: argparse.Namespace, slope_angle: float | None) -> Track:
     """A track in east, north and up as a simulated run sees it; another one as it is."""
     from ..track.slope_frame import in_slope_frame
-    from ..units import DEGREE
 
-    azimuth, angle = options.fall_line_azimuth_deg, options.slope_angle_deg
+    azimuth = options.fall_line_azimuth_deg
     if azimuth is None or track.axes != "east_north_up":
         return track
     return in_slope_frame(
-        track,
-        fall_line_azimuth=azimuth * DEGREE,
-        slope_angle=None if angle is None else angle * DEGREE,
-        missing_height="on_slope",
+        track, fall_line_azimuth=azimuth * DEGREE, slope_angle=slope_angle or None, missing_height="on_slope"
     )
 
 

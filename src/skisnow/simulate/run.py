@@ -214,10 +214,11 @@ class Run(Shown):
     @property
     def track(self) -> Track:
         """The path of the middle between the boots, as track.csv has it: what `skisnow.compare_tracks` takes."""
+        slope = self.scenario.slope
         axes = ("x down the fall line", "z out of the snow")
-        if not isinstance(self.scenario.slope, Plane):
+        if not isinstance(slope, Plane):
             axes = ("x horizontal distance down the fall line", "z height")
-        if isinstance(self.scenario.slope, Terrain):
+        if isinstance(slope, Terrain):
             axes = ("x horizontal, along that of the grid", "z height")
         return Track(
             name="simulated run",
@@ -228,6 +229,7 @@ class Run(Shown):
             time_scale="local",
             frame=f"{axes[0]}, y to the left, {axes[1]}, in m",
             axes="slope",
+            slope_angle=slope.angle if isinstance(slope, Plane) else 0.0,
             speed_kind="along the path",
         )
 

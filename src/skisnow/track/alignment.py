@@ -1,7 +1,6 @@
-"""An offset between two tracks that nobody knows, fitted by least squares: start, heading, start time.
+"""Unknown start and heading between two tracks, fitted by least squares of the nearest distances.
 
-Start and heading come from the nearest distances, the time from those at equal time. The simulated track is moved as
-it is: no scaling, no reflection, no bending.
+The simulated track is moved as it is: no scaling, no reflection, no bending.
 """
 
 from __future__ import annotations
@@ -13,7 +12,6 @@ from typing import Final, Literal, TypeAlias, get_args
 
 import numpy as np
 import numpy.typing as npt
-from scipy.optimize import minimize_scalar
 
 from ..errors import FitError, ParameterError
 from ..units import DEGREE
@@ -33,21 +31,26 @@ ROUGHLY: Final = 8
 LEAST_SHARE: Final = 0.5
 """Of the places, or of the shorter time, that must stay in the comparison: a fit may not slide a track out of sight."""
 HEADINGS: Final = 8
-"""Directions at equal angles from which a heading is sought: fewer miss turns that look alike from near by."""
+"""Directions at equal angles that a search for a heading begins with."""
+SHIFTS: Final = 17
+"""Offsets in arc length that a search begins with: the measured track may begin later or end earlier."""
+FOLLOWED: Final = 6
+"""Best rough answers that are followed with all places."""
+CHORDS: Final = 64
+"""Chords of a track whose length counts for the overlays: noise hardly lengthens them."""
 RIVAL: Final = 2.0
-"""A second answer whose rms distance is within this factor of the best is told."""
+"""A second answer whose score is within this factor of the best is reported."""
 _ANOTHER: Final = 5.0 * DEGREE
 """Answers turned by more, or that move an end of the track by more than this times its length, are two."""
 DETERMINED: Final = 1e-3
 """Directions whose singular value is below this part of the largest are left as they are, and said."""
-_BETTER: Final = 0.99
+_BETTER: Final = 0.995
 _ROUNDS: Final = 100
 _SETTLED: Final = 1e-10
 _GOOD_ENOUGH: Final = 1e-5
 """Steps (in parts of the length) that go on below this only pass single places over the ends to and fro."""
 _TO_AND_FRO: Final = 10
 """They do where one is as long as one of so many before it."""
-_TIMES: Final = 401
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -63,15 +66,21 @@ class Motion:
     undetermined
         How many directions the tracks do not tell, such as along two straight lines; nothing was moved along them.
     rms
-        Of the nearest distances it leaves (m); infinite where it is no answer.
+        Root mean square of the remaining nearest distances (m); infinite if the steps do not settle.
+    share
+        Share of the measured track that has the simulated one beside it.
+    turned_error
+        Half of the 95 % interval of `turned` (rad), at most π; 0 if no heading was fitted.
     rival
-        The best answer that is turned otherwise, where it is about as good.
+        The best answer elsewhere, if it is about as good.
     """
 
     moved: FloatArray
     turned: float
     undetermined: int = 0
     rms: float = math.inf
+    share: float = 0.0
+    turned_error: float = 0.0
     rival: Motion | None = None
 
     def applied(self, line: Polyline) -> Polyline:
@@ -102,27 +111,30 @@ def require_offsets(fit: Collection[str]) -> None:
 def fitted_motion(simulated: Polyline, measured: Polyline, *, start: bool, heading: bool) -> Motion:
     """Least squares of the nearest distance over the measured track's length.
 
-    Gauss–Newton steps with the nearest places found anew each time. Places beyond the ends of the simulated track take
-    no part. Begun with the tracks as they lie, with the best overlay at equal arc length and, for a heading, in
-    `HEADINGS` directions. An answer counts only where it is better than those before, by mean square over the share of
-    places that take part; one in which the simulated track runs against the measured one only where there is no other.
+    Gauss–Newton steps with the nearest places found again each time. Places beyond the ends of the simulated track take
+    no part in a step. The search begins with the tracks as they are, with overlays at `SHIFTS` offsets in arc length
+    and, for a heading, in `HEADINGS` directions. The answer with the lowest `_score` counts; one in which the tracks
+    run in opposite directions counts only if there is no other.
 
     Raises
     ------
     FitError
-        No beginning leads to an answer in which half of the measured track has something beside it.
+        No beginning leads to an answer in which half of the measured track has the simulated one beside it.
     """
     path = Path(simulated.place)
     places = measured.at_arc_length(np.linspace(0.0, measured.length, PLACES + 1))
-    begins = [Motion(np.zeros(places.shape[1]), 0.0)]
-    for ends in (None, (simulated.length, measured.length)):
-        begins.append(_overlay(simulated, measured, start=start, heading=heading, ends=ends))
-    if heading:
-        angles = np.linspace(0.0, 2.0 * math.pi, HEADINGS, endpoint=False) + begins[-1].turned
-        begins += [_overlay(simulated, measured, start=start, heading=True, turned=float(each)) for each in angles[1:]]
-    settled = begins
-    for some in (places[::ROUGHLY], places):
-        settled = [_settled(path, some, each, start=start, heading=heading) for each in settled]
+
+    def score(motion: Motion) -> float:
+        return _score(motion, measured.length)
+
+    begins = beginnings(simulated, measured, start=start, heading=heading)
+    rough = [_settled(path, places[::ROUGHLY], each, start=start, heading=heading) for each in begins]
+    along = [each for each in rough if math.isfinite(each.rms) and _runs_along(path, places[::ROUGHLY], each)]
+    followed: list[Motion] = []
+    for each in sorted(along or rough, key=score):
+        if len(followed) < FOLLOWED and all(_is_another(each, other, simulated) for other in followed):
+            followed.append(each)
+    settled = [_settled(path, places, each, start=start, heading=heading) for each in followed]
     answers = [each for each in settled if math.isfinite(each.rms)]
     if not answers:
         raise FitError(
@@ -130,14 +142,26 @@ def fitted_motion(simulated: Polyline, measured: Polyline, *, start: bool, headi
             "simulated one beside it, or the steps do not settle. Look at both tracks without a fit"
         )
     answers = [each for each in answers if _runs_along(path, places, each)] or answers
-    exact = (EXACTNESS * measured.length) ** 2
     best = answers[0]
     for each in answers[1:]:
-        if each.rms**2 + exact < _BETTER * best.rms**2:
+        if score(each) < _BETTER * score(best):
             best = each
     others = [each for each in answers if _is_another(each, best, simulated)]
-    rival = min(others, key=lambda each: each.rms, default=None)
-    return replace(best, rival=rival if rival is not None and rival.rms < RIVAL * best.rms + exact**0.5 else None)
+    rival = min(others, key=score, default=None)
+    error = _turned_error(path, places, best, start=start, points=len(measured.time)) if heading else 0.0
+    near = rival is not None and score(rival) < RIVAL * score(best)
+    return replace(best, turned_error=error, rival=rival if near else None)
+
+
+def _score(motion: Motion, length: float) -> float:
+    """Geometric mean distance (m) over the whole measured track; less is better.
+
+    A place without the simulated track beside it counts as one length of the track away. This is the likelihood of
+    normal distances where both run, and of any place along the track elsewhere.
+    """
+    if not math.isfinite(motion.rms):
+        return math.inf
+    return float((motion.rms + EXACTNESS * length) ** motion.share * length ** (1.0 - motion.share))
 
 
 def _is_another(one: Motion, other: Motion, line: Polyline) -> bool:
@@ -156,21 +180,35 @@ def _runs_along(path: Path, places: FloatArray, motion: Motion) -> bool:
     return float(np.sign((step * found.direction[1:]).sum(axis=1)).mean()) >= 0.0
 
 
+def beginnings(simulated: Polyline, measured: Polyline, *, start: bool, heading: bool) -> list[Motion]:
+    """Motions from which a search begins."""
+    lines = _chords(simulated), _chords(measured)
+    kept = LEAST_SHARE * min(line.length for line in lines)
+    shifts = np.linspace(kept - lines[1].length, lines[0].length - kept, SHIFTS).tolist() if start else []
+    begins = [Motion(np.zeros(simulated.place.shape[1]), 0.0)]
+    begins += [_overlay(lines, start=start, heading=heading, shift=float(shift)) for shift in (0.0, *shifts)]
+    if heading:
+        angles = np.linspace(0.0, 2.0 * math.pi, HEADINGS, endpoint=False) + begins[1].turned
+        begins += [_overlay(lines, start=start, heading=True, turned=float(each)) for each in angles[1:]]
+    return begins
+
+
+def _chords(line: Polyline) -> Polyline:
+    """The line through places at equal shares of the length."""
+    at = np.linspace(0.0, line.length, CHORDS + 1)
+    return polyline(line.at_arc_length(at), np.interp(at, line.arc_length, line.time))
+
+
 def _overlay(
-    simulated: Polyline, measured: Polyline, *, start: bool, heading: bool, turned: float | None = None,
-    ends: tuple[float, float] | None = None,
-) -> Motion:  # fmt: skip
+    lines: tuple[Polyline, Polyline], *, start: bool, heading: bool, turned: float | None = None, shift: float = 0.0
+) -> Motion:
     """Turned and moved so that places at equal arc length are as near as they can be (Kabsch, about the vertical).
 
-    With an angle (rad) moved alone, that far turned. With ends, places at equal shares of these lengths (m): noise may
-    make one track longer than its way.
+    With an angle (rad), the heading is that angle. The measured track begins ``shift`` (m) after the simulated one.
     """
-    shorter = min(simulated.length, measured.length)
-    share, origin = np.linspace(0.0, 1.0, PLACES + 1), simulated.place[0]
-    own, other = (
-        line.at_arc_length(end * share) - origin
-        for line, end in zip((simulated, measured), ends or (shorter, shorter), strict=True)
-    )
+    first, last = max(0.0, shift), min(lines[0].length, lines[1].length + shift)
+    share, origin = np.linspace(first, last, CHORDS + 1), lines[0].place[0]
+    own, other = lines[0].at_arc_length(share) - origin, lines[1].at_arc_length(share - shift) - origin
     centre = (own.mean(axis=0), other.mean(axis=0)) if start else (np.zeros_like(origin), np.zeros_like(origin))
     a, b = (own - centre[0])[:, :2], (other - centre[1])[:, :2]
     if turned is None:
@@ -180,8 +218,8 @@ def _overlay(
 
 
 def _settled(path: Path, places: FloatArray, motion: Motion, *, start: bool, heading: bool) -> Motion:
-    """The answer from one beginning; its mean square is over the share of places, and infinite without an answer."""
-    sizes = [math.inf]
+    """The answer from one beginning, with its rms distance (infinite without an answer) and share."""
+    sizes, pace = [math.inf], 1.0
     for _ in range(_ROUNDS):
         local, found = _seen(path, places, motion)
         inside = ~found.beyond
@@ -189,19 +227,21 @@ def _settled(path: Path, places: FloatArray, motion: Motion, *, start: bool, hea
             return replace(motion, rms=math.inf)  # a beginning may be an answer among fewer places
         matrix, rest = _equations(path, local, found, inside, motion, start=start, heading=heading)
         step, undetermined = _least_norm(matrix, rest)
+        step = pace * step
         moved = step[: places.shape[1]] if start else np.zeros(places.shape[1])
         turned = float(step[-1]) / path.length if heading else 0.0
         motion = Motion(motion.moved + moved, motion.turned + turned, undetermined)
         sizes.append(float(np.linalg.norm(step)) / path.length)
-        no_shorter = sizes[-1] >= min(sizes[:-_TO_AND_FRO], default=math.inf)
-        if sizes[-1] < _SETTLED or (sizes[-1] < _GOOD_ENOUGH and no_shorter):
+        to_and_fro = sizes[-1] >= min(sizes[:-_TO_AND_FRO], default=math.inf)
+        if sizes[-1] < _SETTLED or (sizes[-1] < _GOOD_ENOUGH and to_and_fro):
             break
+        pace *= 0.5 if to_and_fro else 1.0
     if sizes[-1] > _GOOD_ENOUGH:
         return motion
     found = _seen(path, places, motion)[1]
     inside = ~found.beyond
-    square = float(np.mean(found.distance[inside] ** 2) / inside.mean()) if inside.any() else math.inf
-    return replace(motion, turned=math.remainder(motion.turned, math.tau), rms=math.sqrt(square))
+    rms = math.sqrt(float(np.mean(found.distance[inside] ** 2))) if inside.any() else math.inf
+    return replace(motion, turned=math.remainder(motion.turned, math.tau), rms=rms, share=float(inside.mean()))
 
 
 def _seen(path: Path, places: FloatArray, motion: Motion) -> tuple[FloatArray, NearestPlaces]:
@@ -229,6 +269,23 @@ def _equations(
     return across, -_across(apart, along).ravel()
 
 
+def _turned_error(path: Path, places: FloatArray, motion: Motion, *, start: bool, points: int) -> float:
+    """Half of the 95 % interval of the heading (rad), from the covariance of the linear equations.
+
+    The errors of different points of the measured track count as independent; errors that change slowly along the
+    track, as a receiver's often do, are not in it (modelling assumption).
+    """
+    local, found = _seen(path, places, motion)
+    inside = ~found.beyond
+    matrix, rest = _equations(path, local, found, inside, motion, start=start, heading=True)
+    count = int(inside.sum())
+    variance = float(rest @ rest) / (count * (places.shape[1] - 1)) * count / max(1.0, points * inside.mean())
+    _, values, right = np.linalg.svd(matrix, full_matrices=False)
+    exact = EXACTNESS * np.sqrt(count)
+    turned = math.sqrt(variance * float(((right[:, -1] / np.maximum(values, exact)) ** 2).sum())) / path.length
+    return min(1.96 * turned, math.pi)
+
+
 def _across(vectors: FloatArray, along: FloatArray) -> FloatArray:
     return vectors - (vectors * along).sum(axis=1, keepdims=True) * along
 
@@ -238,36 +295,3 @@ def _least_norm(matrix: FloatArray, rest: FloatArray) -> tuple[FloatArray, int]:
     left, values, right = np.linalg.svd(matrix, full_matrices=False)
     kept = values > DETERMINED * math.sqrt(matrix.shape[0])
     return right[kept].T @ ((left.T @ rest)[kept] / values[kept]), int((~kept).sum())
-
-
-def fitted_time(simulated: Polyline, measured: Polyline) -> float:
-    """By how much the simulated track's time is ahead of the measured one's (s): least squares at equal time.
-
-    The mean square distance over the measured track's length is looked at over all times at which at least half of the
-    shorter track has a moment in common with the other, then minimised from the best of them.
-
-    Raises
-    ------
-    FitError
-        One of the tracks has no duration.
-    """
-    shorter = min(simulated.time[-1] - simulated.time[0], measured.time[-1] - measured.time[0])
-    if not shorter > 0.0:
-        raise FitError("the start time cannot be fitted: one of the tracks has no duration")
-    least = simulated.time[0] - measured.time[-1] + LEAST_SHARE * shorter
-    most = simulated.time[-1] - measured.time[0] - LEAST_SHARE * shorter
-    arc_length = np.linspace(0.0, measured.length, PLACES + 1)
-    time, places = np.interp(arc_length, measured.arc_length, measured.time), measured.at_arc_length(arc_length)
-
-    def mean_square(later: float) -> float:
-        at = time + later
-        common = (at >= simulated.time[0]) & (at <= simulated.time[-1])
-        apart = simulated.at_time(at[common]) - places[common]
-        return float((apart**2).sum(axis=1).mean()) if common.any() else math.inf
-
-    tried = np.linspace(least, most, _TIMES)
-    best = float(tried[int(np.argmin([mean_square(float(later)) for later in tried]))])
-    step = (most - least) / (_TIMES - 1)
-    bounds = (max(least, best - step), min(most, best + step))
-    found = minimize_scalar(mean_square, bounds=bounds, method="bounded", options={"xatol": 1e-9 * max(1.0, shorter)})
-    return float(found.x)

@@ -13,14 +13,17 @@ from ..errors import ParameterError
 from ..former_names import formerly
 from ..shown import Facts, Shown, amount
 from ..units import DEGREE
-from .alignment import OFFSETS, Motion, fitted_motion, fitted_time, require_offsets
+from .alignment import OFFSETS, Motion, fitted_motion, require_offsets
 from .apart import Apart, Numbers, numbers_of
 from .common_clock import FIRST_POINTS, Clock, TimeFrom, common_clock, lacking_time
 from .known_to import known_to as place_known_to
+from .laying import Laid, lay_for_fit
 from .nearest_place import Path
 from .polyline import Polyline, compared_points, polyline_of
+from .slope_frame import STEEPEST
 from .solution import inexact_sentence
 from .three_distances import arc_length_apart, nearest_apart, time_apart
+from .time_alignment import fitted_time
 from .track import Axes, Track
 
 FARTHEST: Final = 1000.0
@@ -28,6 +31,8 @@ FARTHEST: Final = 1000.0
 _PLACED: Final = frozenset({"start", "heading"})
 MOSTLY: Final = 0.9
 """Share of the measured track below which it is said that not all of it was compared."""
+UNCERTAIN: Final = 2.0 * DEGREE
+"""Half of the 95 % interval of a fitted heading above which a warning says so."""
 DEFINITIONS: Final = {
     "nearest": "from each place of the measured track to the nearest place of the simulated one, whenever that was "
     "passed; places ahead of the simulated track's ends are left out",
@@ -87,6 +92,8 @@ class Fitted(Shown):
         Of its first point (m), (2,) or (3,).
     turned
         About the vertical through its first point (rad), positive to the left.
+    turned_error
+        Half of the 95 % interval of `turned` (rad), for independent errors of the measured points.
     later
         How much later (s) the simulated track's places are looked up than before the fit.
     undetermined
@@ -97,6 +104,10 @@ class Fitted(Shown):
         Another move that leaves the simulated track about as near; None where there is none.
     before
         The comparison without the fit.
+    slope_angle
+        Inclination (rad) by which a track was laid on the map before the fit; None if none was.
+    azimuth
+        Compass direction (rad, clockwise from north) of x of the track in the slope's axes; None without a compass.
     """
 
     what: tuple[str, ...]
@@ -107,6 +118,9 @@ class Fitted(Shown):
     rms: float | None
     rival: Motion | None
     before: Comparison
+    turned_error: float = 0.0
+    slope_angle: float | None = None
+    azimuth: float | None = None
 
     def _facts(self) -> Facts:
         turned = f"{amount(self.turned / DEGREE, '°')} turned, {amount(self.later, 's')} later"
@@ -189,6 +203,7 @@ def compare_tracks(
     time_from: TimeFrom | None = None,
     from_above: bool = False,
     known_to: float | None = None,
+    slope_angle: float | None = None,
 ) -> Comparison:
     """Hold a simulated track against a measured one.
 
@@ -205,6 +220,9 @@ def compare_tracks(
         Without the heights, even where both tracks have them. Where one lacks heights it is so anyway.
     known_to
         How exactly places are known (m), 0 or more; None: `skisnow.track.known_to` says it of each.
+    slope_angle : rad
+        Inclination of the slope that one track's x and y are on, if start and heading are fitted to a track on a map.
+        None: that of the run, else that of the other track's heights.
 
     Returns
     -------
@@ -232,23 +250,30 @@ def compare_tracks(
         raise ParameterError(f"time is counted from first_point or clock, not from {time_from!r}")
     if known_to is not None and not (math.isfinite(known_to) and known_to >= 0.0):
         raise ParameterError(f"places are known to 0 m or more, not to {known_to!r}")
-    dimensions, seen = _dimensions(simulated, measured, from_above=from_above, fit=fit)
-    lines = polyline_of(simulated, dimensions=dimensions), polyline_of(measured, dimensions=dimensions)
+    if slope_angle is not None and not 0.0 <= slope_angle <= STEEPEST:
+        raise ParameterError(f"slope_angle is {slope_angle!r} rad. Allowed: from 0 to {STEEPEST:.4g}.")
+    placed, together = set(fit) >= _PLACED, _in_one_frame(simulated, measured)
+    laid = lay_for_fit(simulated, measured, slope_angle) if placed else Laid(simulated, measured)
+    dimensions, seen = _dimensions(laid, from_above=from_above, known=together or laid.angle is not None)
+    lines = polyline_of(laid.simulated, dimensions=dimensions), polyline_of(laid.measured, dimensions=dimensions)
     clock = common_clock(simulated, measured, time_from)
     names = (simulated.name, measured.name)
-    placed = set(fit) >= _PLACED
-    warnings = _warnings(simulated, measured, dimensions)
-    together = _in_one_frame(simulated, measured)
+    warnings = [*_warnings(simulated, measured, dimensions), *laid.warnings]
     if not together and not placed:
         warnings.append(f"{_two_frames(simulated, measured)}; their coordinates are compared as they stand")
     plain = _held(lines, clock, names, seen)
     if fit:
         plain = _with_fit(plain, set(fit), clock)
     _require_near(plain.simulated, plain.measured, names)
-    if not together and plain.fitted is not None and placed:
-        warnings.append(f"{_two_frames(simulated, measured)}; {_pointing(plain.fitted, simulated, measured)}")
+    fitted = plain.fitted
+    if fitted is not None:
+        azimuth = None if together or not placed else _azimuth(fitted, measured)
+        fitted = replace(fitted, slope_angle=laid.angle, azimuth=azimuth)
+    if not together and fitted is not None and placed:
+        warnings.append(f"{_two_frames(simulated, measured)}; {_pointing(fitted, laid, simulated, measured)}")
     return replace(
         plain,
+        fitted=fitted,
         axes=measured.axes,
         warnings=(*warnings, *_short(plain), *_rivalled(plain)),
         in_one_frame=together or placed,
@@ -259,12 +284,12 @@ def compare_tracks(
 compared = formerly("compared", compare_tracks)
 
 
-def _dimensions(simulated: Track, measured: Track, *, from_above: bool, fit: Collection[str]) -> tuple[int, str]:
+def _dimensions(laid: Laid, *, from_above: bool, known: bool) -> tuple[int, str]:
     if from_above:
         return 2, "from above, as asked"
-    if set(fit) >= _PLACED and not _in_one_frame(simulated, measured):
+    if not known:
         return 2, "from above: heights in two frames are not the same"
-    for track in (simulated, measured):
+    for track in (laid.simulated, laid.measured):
         usable, flat = int(track.usable.sum()), int((track.usable & ~np.isfinite(track.place[:, 2])).sum())
         if flat:
             return 2, f"from above: {flat} of the {usable} points of {track.name} have no height"
@@ -326,6 +351,7 @@ def _with_fit(plain: Comparison, fit: set[str], clock: Clock) -> Comparison:
         rms=motion.rms if math.isfinite(motion.rms) else None,
         rival=motion.rival,
         before=plain,
+        turned_error=motion.turned_error,
     )
     return replace(found, fitted=fitted)
 
@@ -364,15 +390,18 @@ def _two_frames(simulated: Track, measured: Track) -> str:
     return f"the tracks are not in one frame ({simulated.name}: {simulated.frame}; {measured.name}: {measured.frame})"
 
 
-def _pointing(fitted: Fitted, simulated: Track, measured: Track) -> str:
-    """Which way the simulated track's x lies where it was laid onto a track that knows the compass."""
-    if measured.axes != "east_north_up" or simulated.axes == "east_north_up":
-        return "start and heading were fitted from above"
-    azimuth = (90.0 - fitted.turned / DEGREE) % 360.0
-    return (
-        f"laid onto the measured track from above, x of {simulated.name} points {azimuth:.1f}° from north. If x is "
-        "the fall line, give this azimuth and the slope's angle: then heights count, and lengths are those on the slope"
-    )
+def _azimuth(fitted: Fitted, measured: Track) -> float:
+    """Compass direction (rad) of x of the track that has no compass."""
+    turned = fitted.turned if measured.axes == "east_north_up" else -fitted.turned
+    return (0.5 * math.pi - turned) % math.tau
+
+
+def _pointing(fitted: Fitted, laid: Laid, simulated: Track, measured: Track) -> str:
+    """Direction of x of the track in the slope's axes, and the inclination by which it was laid on the map."""
+    name = (simulated if measured.axes == "east_north_up" else measured).name
+    slope = "from above" if not laid.angle else f"on a slope of {laid.angle / DEGREE:.1f}° ({laid.source})"
+    azimuth, error = (fitted.azimuth or 0.0) / DEGREE, fitted.turned_error / DEGREE
+    return f"laid on the map {slope}, x of {name} points {azimuth:.1f}° from north (± {error:.2g}°)"
 
 
 def _in_one_frame(simulated: Track, measured: Track) -> bool:
@@ -394,13 +423,23 @@ def _short(found: Comparison) -> list[str]:
 
 
 def _rivalled(found: Comparison) -> list[str]:
-    if found.fitted is None or found.fitted.rival is None:
+    """Warnings of a heading that the tracks hardly determine, and of another place at which they are about as near."""
+    fitted, warnings = found.fitted, []
+    if fitted is None:
         return []
-    fitted, rival = found.fitted, found.fitted.rival
-    other, chosen = (f"{each.turned / DEGREE:.0f}°" for each in (rival, fitted))
-    there, here = (" and ".join(f"{each:.1f}" for each in one.moved[:2]) for one in (rival, fitted))
-    return [
-        f"where the simulated track lies is not certain: moved by {there} m and turned by {other}, instead of {here} m "
-        f"and {chosen}, it is about as near (rms {amount(rival.rms, 'm')} instead of {amount(fitted.rms, 'm')}). Say "
-        "which way the slope falls, if you know, or compare a longer stretch"
-    ]
+    if fitted.turned_error > UNCERTAIN:
+        warnings.append(
+            f"the fitted heading is uncertain: ± {fitted.turned_error / DEGREE:.2g}° (95 %). Give the direction in "
+            "which the slope falls, or compare a longer stretch"
+        )
+    if fitted.rival is not None:
+        rival = fitted.rival
+        other, chosen = (f"{each.turned / DEGREE:.0f}°" for each in (rival, fitted))
+        there, here = (" and ".join(f"{each:.1f}" for each in one.moved[:2]) for one in (rival, fitted))
+        rms, own = amount(rival.rms, "m"), amount(fitted.rms, "m")
+        warnings.append(
+            f"the place of the simulated track is uncertain: moved by {there} m and turned by {other}, instead of "
+            f"{here} m and {chosen}, it is about as near (rms {rms} instead of {own}, {100 * rival.share:.0f} % "
+            "compared). Give the direction in which the slope falls, or compare a longer stretch"
+        )
+    return warnings

@@ -66,6 +66,9 @@ def _fitted(fitted: Fitted) -> Json:
         "moved_z_m": height,
         "turned_deg": fitted.turned / DEGREE,
         "later_s": fitted.later,
+        "turned_error_deg": fitted.turned_error / DEGREE,
+        "slope_angle_deg": None if fitted.slope_angle is None else fitted.slope_angle / DEGREE,
+        "fall_line_azimuth_deg": None if fitted.azimuth is None else fitted.azimuth / DEGREE,
         "undetermined": fitted.undetermined,
         "before": _three(fitted.before),
     }

@@ -100,6 +100,7 @@ def in_slope_frame(
         velocity=velocity,
         place_sd=place_sd,
         axes="slope",
+        slope_angle=angle,
         frame=_words(track, fall_line_azimuth, slope_angle, origin),
     )
 

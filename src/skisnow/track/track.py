@@ -54,6 +54,8 @@ class Track(Shown):
         CODE to (n,) bool: which points carry the quality flag. Flagged points stay.
     axes
         What x, y and z are: ``"file"`` (the file's own local metres), ``"east_north_up"``, or ``"slope"``.
+    slope_angle : rad or None
+        Inclination of the plane of x and y, if the axes are those of a slope; 0 if z is vertical; None if unknown.
     origin
         Where the axes begin on the ellipsoid; None where the file says only local metres.
     first_time : s
@@ -88,6 +90,7 @@ class Track(Shown):
     start: datetime | None = None
     flags: Mapping[str, npt.NDArray[np.bool_]] = field(default_factory=dict)
     axes: Axes = "file"
+    slope_angle: float | None = None
     origin: GeodeticPoint | None = None
     first_time: float = 0.0
     speed_kind: str = "as recorded"
