@@ -131,7 +131,7 @@ def test_a_depth_that_is_read_once_more_after_waiting_stands_beside_the_first_on
     ready(page)
     page.get_by_label("Depth after waiting under 60 N (mm)").fill("2.7")
     page.keyboard.press("Enter")
-    page.get_by_text("after waiting under 60 N: 2.8 mm becomes 2.7 mm.").wait_for()
+    page.get_by_text("After waiting under 60 N: 2.8 mm becomes 2.7 mm.").wait_for()
     ready(page)
     page.get_by_role("button", name="Correct it").press("Enter")
     page.get_by_text("Corrected; the first reading is kept.").wait_for()

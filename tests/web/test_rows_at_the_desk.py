@@ -85,8 +85,8 @@ def test_a_correction_asks_for_a_reason_and_shows_what_came_of_it(right: bool, m
     shown: list[str] = []
     written: list[Any] = []
 
-    def ask_reason(_place: Any, words: str, act: Any, **_: Any) -> None:
-        asked.append((words, act[1]))
+    def ask_reason(_place: Any, lines: list[str], act: Any, **_: Any) -> None:
+        asked.append((*lines, act[1]))
 
     def correct_it(_test: Any, *entry: Any) -> bool:
         written.append(entry)
@@ -94,7 +94,7 @@ def test_a_correction_asks_for_a_reason_and_shows_what_came_of_it(right: bool, m
 
     monkeypatch.setattr("skisnow.web.entry.single.ask_reason", ask_reason)
     made = form()
-    made._ask, made._cells = None, lambda: {"site": "A", "depth_mm": "12"}
+    made._ask, made._cells = None, lambda _: {"site": "A", "depth_mm": "12"}
     made._view.say = lambda words, *_: said.append(words)
     made._view.correct = correct_it
     made.show = shown.append
@@ -105,9 +105,9 @@ def test_a_correction_asks_for_a_reason_and_shows_what_came_of_it(right: bool, m
     assert correct("slip") is right
     assert written == [(7, {"depth_mm": "12"}, "slip")]
     assert shown == (["t"] if right else [])
-    made._cells = lambda: {"site": "A", "depth_mm": "10"}
+    made._cells = lambda _: {"site": "A", "depth_mm": "10"}
     assert made._ask_correction(of("t", before), before)
-    assert said == ["Nothing is different."]
-    made._cells = lambda: None
+    assert said[1:] == ["Nothing is different."]
+    made._cells = lambda _: None
     assert not made._ask_correction(of("t", before), before)
     assert len(asked) == 1

@@ -12,19 +12,21 @@ from ...field.reading.table_forms import BRANCH
 from ...field.store.stored_tables import cell_of
 from ..answering import asking_button, form
 from ..fields import button, field
-from ..language import said
-from ..layout import sentence
+from ..language import said, said_template
 from ..local_time import minute_words
 from ..worded import Words
 from ..words import label
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
 
     from ...field.store import JournalEntry, ReplayedTest
     from .table_view import TableView
 
 USUAL_REASON: Final = "typing error"
+ASKED: Final = "Not corrected yet. Give the reason below."
+UNANSWERED: Final = "Not corrected yet. Correct it with a reason, or leave it as it was."
+LEFT_AS_IT_WAS: Final = "It is as it was before."
 WAITED: Final = "read once more after waiting"
 """Why the row of a reading gets a second depth later than the first one."""
 _SAME: Final = ("experiment", "sample", "test", "site", "spot", "tool", "plate")
@@ -46,7 +48,7 @@ class Places:
 
 def ask_reason(
     place: ui.element,
-    words: str,
+    lines: Sequence[str],
     act: tuple[str, Callable[[str], bool]],
     *,
     usual: str = "",
@@ -59,8 +61,8 @@ def ask_reason(
     ----------
     place
         Is emptied and filled.
-    words
-        What is about to happen.
+    lines
+        What is about to happen, in the language of the page.
     act
         The word on the button, and what is called with the reason; False where it was refused.
     usual
@@ -81,7 +83,8 @@ def ask_reason(
             leave()
 
     with place, form("card ask", sends=done):
-        sentence(words)
+        for line in lines:
+            ui.label(line).classes("sentence")
         reason = field("Why", said(usual), wide=True)
         reason.on("keydown.esc", left)
         with ui.element("div").classes("acts"):
@@ -93,13 +96,24 @@ def ask_reason(
         reason.run_method("select")
 
 
+def change_said(name: str, old: str, new: str) -> str:
+    """A change of a cell in the language of the page; ``name`` is in that language, "" is an empty cell."""
+    return said_template("{}: {} becomes {}.", name, old or said("nothing"), new or said("nothing"))
+
+
 def focus_button(button: ui.button) -> None:
     """Put the focus on a button, which knows no method for it."""
     button.client.run_javascript(f"getHtmlElement({button.id}).focus()")
 
 
 def changes(
-    view: TableView, test: ReplayedTest, ask: ui.element, changed: Callable[[], object], *, cancelled: bool = False
+    view: TableView,
+    test: ReplayedTest,
+    ask: ui.element,
+    changed: Callable[[], object],
+    *,
+    is_unanswered: Callable[[], bool],
+    cancelled: bool = False,
 ) -> None:
     """The buttons and the history of a test.
 
@@ -111,13 +125,18 @@ def changes(
         Where a reason is asked for.
     changed
         Called after something was stored.
+    is_unanswered
+        Tells whether a correction is typed and not confirmed, and asks for its reason again; then nothing else is done.
     cancelled
         Whether the test is cancelled by something that is not in its history.
     """
 
-    def undo() -> None:
-        view.undo(test)
+    def undo() -> bool:
+        if is_unanswered():
+            return False
+        done = view.undo(test)
         changed()
+        return done
 
     def cancel(why: str) -> bool:
         if not view.cancel(test, why):
@@ -125,9 +144,12 @@ def changes(
         changed()
         return True
 
-    def ask_cancel() -> None:
-        words = f"Cancel {test.name}? Its readings are kept but not included."
-        ask_reason(ask, words, ("Cancel the test", cancel), leave=lambda: focus_button(asks))
+    def ask_cancel() -> bool:
+        if is_unanswered():
+            return False
+        question = said_template("Cancel {}? Its readings are kept but not included.", test.name)
+        ask_reason(ask, [question], ("Cancel the test", cancel), leave=lambda: focus_button(asks))
+        return True
 
     with ui.element("div").classes("acts"):
         if test.undoable is not None:

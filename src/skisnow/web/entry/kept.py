@@ -9,11 +9,12 @@ from nicegui import ui
 from ...field.store.stored_tables import cell_key
 from ..answering import asking_button, form
 from ..fields import choice, field, link
+from ..language import said
 from ..layout import heading, sentence
 from ..names import correcting
 from ..worded import Words
 from ..words import label
-from .changes import USUAL_REASON, Places, ask_reason, changes
+from .changes import ASKED, LEFT_AS_IT_WAS, UNANSWERED, USUAL_REASON, Places, ask_reason, change_said, changes
 from .checking import Field, checked_fields, faults
 
 if TYPE_CHECKING:
@@ -58,7 +59,14 @@ class KeptForm:
             self._ask = ui.element("div")
             asking_button("Correct", lambda: self._ask_correction(name), "main")
         with self._places.below:
-            changes(self._view, test, self._ask, lambda: self.show(name), cancelled=bool(cancelled))
+            changes(
+                self._view,
+                test,
+                self._ask,
+                lambda: self.show(name),
+                is_unanswered=lambda: self._is_unanswered(name),
+                cancelled=bool(cancelled),
+            )
         self._beside.follow(name, now.get(cell_key(min(rows), "site"), ""))  # a file may lack the column
 
     def _draw(self, lines: tuple[int, ...], now: Mapping[str, str]) -> None:
@@ -87,6 +95,13 @@ class KeptForm:
         numeric = any(rule.name == column for rule in self._view.form.numbers)
         return field(words, text, numeric=numeric, optional=not text)
 
+    def _is_unanswered(self, name: str) -> bool:
+        """Ask again if a cell is changed and the change not confirmed."""
+        changed = self._changed(self._view.test(name).rows[0].cells)
+        if changed and self._ask_correction(name):
+            self._view.say(UNANSWERED, "bad")
+        return changed is None or bool(changed)
+
     def _ask_correction(self, name: str) -> bool:
         test = self._view.test(name)
         now = test.rows[0].cells
@@ -103,13 +118,16 @@ class KeptForm:
             self.show(name)
             return True
 
-        words = "; ".join(dict.fromkeys(self._words(key, now[key], new) for key, new in changed.items()))
+        columns = {key: said(label(key.split("/", 1)[1])) for key in changed}
+        lines = list(dict.fromkeys(change_said(columns[key], now[key], new) for key, new in changed.items()))
         act = ("Correct it", correct)
-        ask_reason(self._ask, f"{words}.", act, usual=USUAL_REASON, leave=lambda: self.show(name))
+        ask_reason(self._ask, lines, act, usual=USUAL_REASON, leave=lambda: self._leave(name))
+        self._view.say(ASKED, "")
         return True
 
-    def _words(self, key: str, old: str, new: str) -> str:
-        return f"{label(key.split('/', 1)[1])}: {old or 'nothing'} becomes {new or 'nothing'}"
+    def _leave(self, name: str) -> None:
+        self._view.say(LEFT_AS_IT_WAS)
+        self.show(name)
 
     def _changed(self, now: Mapping[str, str]) -> dict[str, str] | None:
         """Cells by key that are typed anew; None where one is refused."""

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import json
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final, NamedTuple
+from typing import TYPE_CHECKING, Final
 
 from nicegui import ui
 
@@ -16,61 +15,39 @@ from ..layout import heading, sentence
 from ..names import entering
 from ..worded import Words, named
 from ..words import label
-from .changes import USUAL_REASON, Places, ask_reason, changes, focus_button
+from .changes import Places, changes, focus_button
 from .checking import Field, checked_fields, faults, refuse
+from .readings import ReadingField, Step, stored_depth
 from .resent import HEAD
+from .series_corrections import SeriesCorrections
 from .waiting import AfterWaiting
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
-    from ...field.store import ReplayedRow, ReplayedTest
+    from ...field.store import ReplayedTest
     from .beside import Beside
+    from .series_list import SeriesList
     from .table_view import TableView
 
 TOLD: Final = "(event) => lab.reading(event, emit)"
 LEFT: Final = "(event) => lab.leaving(event, emit)"
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class _Reading:
-    """The field of the depth under one load, the word beside it that says whether it is stored, what holds both."""
-
-    depth: ui.input
-    stored: ui.label
-    row: ui.element
-
-
-class _Step(NamedTuple):
-    """What tells the readings of a series apart: the load (N, as text), and whether discs were laid on or taken off."""
-
-    load: str
-    branch: str = ""
-
-    @property
-    def words(self) -> str:
-        """As a person says it."""
-        return f"{self.load} N on the way back" if self.branch else f"{self.load} N"
-
-    @property
-    def asked(self) -> str:
-        """Name of its field."""
-        return f"Depth back under {self.load} N (mm)" if self.branch else f"Depth under {self.load} N (mm)"
-
-
 class SeriesForm:
     """The form of one series at a time."""
 
-    def __init__(self, view: TableView, beside: Beside, places: Places) -> None:
+    def __init__(self, view: TableView, beside: Beside, places: Places, series_list: SeriesList) -> None:
         self._view = view
         self._beside = beside
         self._places = places
         self._head: dict[str, str] = {}
-        self._readings: dict[_Step, _Reading] = {}
-        self._asking: tuple[_Step, str] | None = None
-        self._refused: dict[_Step, str] = {}
+        self._readings: dict[Step, ReadingField] = {}
+        self._shown: str = ""
+        self._corrections = SeriesCorrections(view, self._readings, lambda: self.show(self._shown, self._head))
+        self._refused: dict[Step, str] = {}
         self._waiting: AfterWaiting | None = None
-        self._shown = ""
+        self._list = series_list
 
     # The head of a series
 
@@ -78,6 +55,7 @@ class SeriesForm:
         """Ask for what a series has once."""
         ui.navigate.history.replace(entering(self._view.session.id, table=self._view.file))
         self._shown = ""
+        self._list.show("")
         described = self._view.session.described
         before = self._view.tests()[-1].rows[0].cells if self._view.tests() else {}
         self._places.clear()
@@ -115,6 +93,7 @@ class SeriesForm:
         """Show the series anew where it has readings that came again from the browser."""
         if self._shown in series:
             self.show(self._shown, self._head)
+        self._list.show(self._shown)
 
     def show(self, name: str, head: dict[str, str] | None = None) -> None:
         """Show a series with its readings, to be gone on with."""
@@ -147,7 +126,8 @@ class SeriesForm:
         unstored = self._unstored() if self._shown == test.name else {}
         waiting = self._waiting.unstored if self._waiting is not None and self._shown == test.name else {}
         self._shown = test.name
-        self._readings, self._asking, self._refused = {}, None, {}
+        self._readings.clear()
+        self._refused = {}
         self._places.clear()
         with self._places.form:
             with ui.element("div").classes("series-head"):
@@ -156,24 +136,26 @@ class SeriesForm:
             if test.cancelled:
                 sentence(f"Cancelled: {test.cancelled}", "bad")
             loads = self._loads(test)
-            self._fields(test, map(_Step, loads), unstored)
+            self._fields(test, map(Step, loads), unstored)
             self._ask = ui.element("div")
+            self._corrections.begin(test.name, self._ask)
             self._then = asking_button("Next series", self._next, "main then")
-            self._way_back(test, [_Step(load, UNLOADING) for load in loads[-2::-1]], unstored)
+            self._way_back(test, [Step(load, UNLOADING) for load in loads[-2::-1]], unstored)
             self._waiting = AfterWaiting(self._view, test.name, lambda: self.show(test.name, self._head))
             self._waiting.draw(loads, waiting, self._ask)
         with self._places.below:
             self._changes = ui.element("div")
             self._further(test)
         self._show_changes()
+        self._corrections.ask_again()
 
-    def _fields(self, test: ReplayedTest, steps: Iterable[_Step], unstored: Mapping[_Step, str]) -> None:
+    def _fields(self, test: ReplayedTest, steps: Iterable[Step], unstored: Mapping[Step, str]) -> None:
         with ui.element("div").classes("readings") as readings:
             readings.props["data-head"] = json.dumps(self._head)
             for step in steps:
-                self._readings[step] = self._reading(test, step, unstored.get(step, ""))
+                self._readings[step] = self._reading(test, step, unstored.get(step))
 
-    def _way_back(self, test: ReplayedTest, steps: list[_Step], unstored: Mapping[_Step, str]) -> None:
+    def _way_back(self, test: ReplayedTest, steps: list[Step], unstored: Mapping[Step, str]) -> None:
         """Fields for discs that are taken off one by one; open where there is a reading already."""
         if not steps:
             return
@@ -183,20 +165,23 @@ class SeriesForm:
                 Words("Discs taken off one by one")
             self._fields(test, steps, unstored)
 
-    def _unstored(self) -> dict[_Step, str]:
-        """What is typed in fields whose reading is not stored, by step."""
-        shown = self._readings.items()
-        return {step: each.depth.value for step, each in shown if each.depth.value and not each.stored.text}
+    def _unstored(self) -> dict[Step, str]:
+        """Texts in fields that are not stored, new readings and changed ones, by step."""
+        test = self._test
+        texts = {step: each.unstored(test.row_under(*step)) for step, each in self._readings.items()}
+        return {step: text for step, text in texts.items() if text is not None}
 
     def _next(self) -> bool:
         """Begin the next series, where all that is typed in this one is stored."""
-        missing = self._unstored()
+        missing = [step for step in self._unstored() if self._test.row_under(*step) is None]
         if missing:
             loads = ", ".join(step.words for step in missing)
             self._view.say(f"Not stored yet: {loads}. Put it right or empty the field, then go on.", "bad")
-            first = self._readings[next(iter(missing))].depth
+            first = self._readings[missing[0]].depth
             first.run_method("focus")
             first.run_method("select")
+            return False
+        if self._corrections.is_unanswered():
             return False
         if self._waiting is not None and self._waiting.unstored:
             loads = ", ".join(f"{load} N after waiting" for load in self._waiting.unstored)
@@ -217,7 +202,14 @@ class SeriesForm:
         test = self._test
         self._changes.clear()
         with self._changes:
-            changes(self._view, test, self._ask, lambda: self.show(test.name, self._head))
+            changes(
+                self._view,
+                test,
+                self._ask,
+                lambda: self.show(test.name, self._head),
+                is_unanswered=self._corrections.is_unanswered,
+            )
+        self._list.show(test.name)
 
     def _loads(self, test: ReplayedTest) -> list[str]:
         """The disc set's loads, and those that were entered beyond or instead of them, rising."""
@@ -226,23 +218,25 @@ class SeriesForm:
         also = [load for load in steps if test.row_under(load) is None]
         return sorted(dict.fromkeys([*entered, *also]), key=float)
 
-    def _reading(self, test: ReplayedTest, step: _Step, typed: str) -> _Reading:
+    def _reading(self, test: ReplayedTest, step: Step, unstored: str | None) -> ReadingField:
         row = test.row_under(*step)
-        with ui.element("div").classes("reading") as made:
-            made.props["data-load"] = step.load
-            made.props["data-branch"] = step.branch
+        with ui.element("div").classes("reading") as holder:
+            holder.props["data-load"] = step.load
+            holder.props["data-branch"] = step.branch
             Words(f"{step.load} N").classes("load")
-            depth = field(label("depth_mm"), number_said(row.cells["depth_mm"]) if row else typed, numeric=True)
+            stored = number_said(stored_depth(row))
+            typed = stored if unstored is None or test.cancelled else unstored
+            depth = field(label("depth_mm"), typed, numeric=True)
             named(depth, step.asked)
             depth.props("readonly" if test.cancelled else "")
-            stored = Words("stored" if row else "").classes("stored")
+            made = ReadingField(depth, Words("").classes("stored"), holder)
             if row is not None:
-                made.props["data-stored"] = row.cells["depth_mm"]
-            if row is not None and row.cells["depth_mm"] != row.entered.cells["depth_mm"]:
-                stored.set_text(f"corrected from {row.entered.cells['depth_mm']}")
+                holder.props["data-stored"] = row.cells["depth_mm"]
+        made.show_state(row)
+        depth.on_value_change(lambda: made.show_state(self._test.row_under(*step)))
         depth.on("keydown.enter", answering(lambda: self._entered(step)), js_handler=TOLD)
         depth.on("blur", answering(lambda: self._entered(step, left=True)), js_handler=LEFT)
-        return _Reading(depth, stored, made)
+        return made
 
     def _further(self, test: ReplayedTest) -> None:
         if test.cancelled:
@@ -262,53 +256,54 @@ class SeriesForm:
                 depth = field("Its depth (mm)", numeric=True)
                 asking_button("Store it", done)
 
-    def _entered(self, step: _Step, *, left: bool = False) -> bool:
+    def _entered(self, step: Step, *, left: bool = False) -> bool:
         """Take a depth: the first one is stored, another one is a correction; ``left``: its field is left already."""
         test, made = self._test, self._readings[step]
         if (sent := asked().text) is not None and sent != str(made.depth.value or "").strip():
             made.depth.set_value(sent)  # what was typed was lost on its way, and is sent again
-        row, typed = test.row_under(*step), str(made.depth.value or "").strip()
-        if typed.replace(",", ".") == (row.cells["depth_mm"] if row is not None else ""):
+        row, typed = test.row_under(*step), made.typed
+        if not made.differs(row):
             made.row.classes(remove="refused")
             self._refused.pop(step, None)
+            self._corrections.drop(step)
             return True
         if left and typed == self._refused.get(step):  # said at its Enter; by now something else may be said
             return False
-        taken = self._ask_correction(row, step, focus=not left) if row is not None else self._store(step, made)
+        taken = self._corrections.ask(focus=not left) if row is not None else self._store(step, made)
         if not taken and self._readings.get(step) is made:  # the series was not drawn anew meanwhile
             self._refused[step] = typed
         return taken
 
-    def _store(self, step: _Step, made: _Reading) -> bool:
+    def _store(self, step: Step, made: ReadingField) -> bool:
         """Store the first depth under a load, and show whether it is stored."""
         stored = self._add(step, made.depth)
         row = self._test.row_under(*step)
         if stored and row is not None:
             cell = row.cells["depth_mm"]
-            made.stored.set_text("stored")
             made.row.props["data-stored"] = cell
             made.row.classes(remove="refused")
-            made.depth.set_value(number_said(cell, made.depth.client))
+            made.restore(row)
+            made.show_state(row)
         elif self._readings.get(step) is made:  # the series was not drawn anew meanwhile
             made.row.classes("refused")
             made.depth.client.run_javascript(f"lab.refusedLast({made.depth.id})")
         return stored
 
-    def _add(self, load: ui.input | _Step, depth: ui.input) -> bool:
+    def _add(self, load: ui.input | Step, depth: ui.input) -> bool:
         """Store a reading; what cannot be is said at its field, and stays there."""
         test = self._test
-        given = {"depth_mm": depth} if isinstance(load, _Step) else {"load_N": load, "depth_mm": depth}
+        given = {"depth_mm": depth} if isinstance(load, Step) else {"load_N": load, "depth_mm": depth}
         cells = checked_fields(self._view.form, given)
-        if cells is not None and isinstance(load, _Step) and load.branch and not test.rows:
+        if cells is not None and isinstance(load, Step) and load.branch and not test.rows:
             refuse(depth, "the depths under rising loads come first")
             cells = None
-        if cells is not None and not isinstance(load, _Step) and test.row_under(cells["load_N"]) is not None:
+        if cells is not None and not isinstance(load, Step) and test.row_under(cells["load_N"]) is not None:
             refuse(load, f"there is a reading under {cells['load_N']} N already; correct it in its own field")
             cells = None
         if cells is None:
             self._view.say("Not stored:", "bad", faults(given.values()))
             return False
-        step = load if isinstance(load, _Step) else _Step(cells["load_N"])
+        step = load if isinstance(load, Step) else Step(cells["load_N"])
         branch = {BRANCH: step.branch} if step.branch else {}
         cells = {**self._head, "load_N": step.load, **cells, **branch}
         said = f"Stored: {cells['depth_mm']} mm under {step.words}."
@@ -319,29 +314,3 @@ class SeriesForm:
         else:
             self._draw(self._test)
         return stored
-
-    def _ask_correction(self, row: ReplayedRow, step: _Step, *, focus: bool) -> bool:
-        test, entered, depth = self._test, row.entered, self._readings[step].depth
-        cells = checked_fields(self._view.form, {"depth_mm": depth})
-        if cells is None:
-            self._view.say("Not corrected:", "bad", faults([depth]))
-            return False
-        if cells["depth_mm"] == row.cells["depth_mm"]:  # the same number, with a comma
-            depth.set_value(number_said(cells["depth_mm"], depth.client))
-            return True
-
-        def correct(why: str) -> bool:
-            if not self._view.correct(test, entered.sequence, cells, why):
-                return False
-            self.show(test.name, self._head)
-            return True
-
-        if self._asking == (step, cells["depth_mm"]):  # Enter, and then the field was left: one question is enough
-            return True
-        self._asking = (step, cells["depth_mm"])
-        words = f"{step.words}: {row.cells['depth_mm']} mm becomes {cells['depth_mm']} mm."
-        act = ("Correct it", correct)
-        ask_reason(
-            self._ask, words, act, usual=USUAL_REASON, leave=lambda: self.show(test.name, self._head), focus=focus
-        )
-        return True

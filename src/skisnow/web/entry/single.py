@@ -13,8 +13,9 @@ from ..language import said
 from ..layout import heading, sentence
 from ..worded import Words, named
 from ..words import label
-from .changes import USUAL_REASON, Places, ask_reason, changes
+from .changes import ASKED, LEFT_AS_IT_WAS, UNANSWERED, USUAL_REASON, Places, ask_reason, change_said, changes
 from .checking import checked_fields, faults, refuse
+from .readings import is_other
 
 if TYPE_CHECKING:
     from ...field.store import ReplayedRow, ReplayedTest
@@ -43,10 +44,17 @@ class SingleForm:
         self._begun: dict[str, str] | None = None
         """What is typed of a new row, while another one is looked at."""
         self._is_new = False
+        self._correcting: tuple[ReplayedTest, ReplayedRow] | None = None
 
     def begin(self) -> None:
         """Ask for a new row, or go on with the one that was begun."""
         self._draw(self._begun or self._prefilled(), None)
+
+    def _leave_for_new(self) -> bool:
+        if self._is_unanswered():
+            return False
+        self.begin()
+        return True
 
     def show(self, name: str) -> None:
         """Show a test's first row, to be corrected."""
@@ -73,7 +81,7 @@ class SingleForm:
         if self._is_new and correcting is not None:
             typed = {column: str(each.value) for column, each in self._fields.items() if each.value}
             self._begun = typed if typed.items() - self._prefilled().items() else None
-        self._is_new = correcting is None
+        self._is_new, self._correcting = correcting is None, correcting
         self._places.clear()
         with self._places.form:
             heading("Correct a test" if correcting else "New test")
@@ -86,10 +94,16 @@ class SingleForm:
             with ui.element("div").classes("acts"):
                 asking_button("Store" if correcting is None else "Correct", sends, "main")
                 if correcting is not None:
-                    asking_button("New test", self.begin)
+                    asking_button("New test", self._leave_for_new)
         with self._places.below:
             if correcting is not None:
-                changes(self._view, correcting[0], self._ask, lambda: self.show(correcting[0].name))
+                changes(
+                    self._view,
+                    correcting[0],
+                    self._ask,
+                    lambda: self.show(correcting[0].name),
+                    is_unanswered=self._is_unanswered,
+                )
             self._list()
         self._focus_first()
 
@@ -113,10 +127,10 @@ class SingleForm:
         if wanted:
             wanted[0].run_method("focus")
 
-    def _cells(self) -> dict[str, str] | None:
+    def _cells(self, rejected: str = "Not stored:") -> dict[str, str] | None:
         cells = checked_fields(self._view.form, self._fields)
         if cells is None:
-            self._view.say("Not stored:", "bad", faults(self._fields.values()))
+            self._view.say(rejected, "bad", faults(self._fields.values()))
         return cells
 
     def _store(self) -> bool:
@@ -155,8 +169,20 @@ class SingleForm:
             return f"test {test.name} is at the site {test.rows[0].cells['site']}"
         return ""
 
+    def _is_unanswered(self) -> bool:
+        """Ask again if the row that is looked at is changed and the change not confirmed."""
+        if self._correcting is None:
+            return False
+        now = self._correcting[1].cells
+        typed = {column: str(each.value or "").strip() for column, each in self._fields.items()}
+        if not any(is_other(text, now.get(column, "")) for column, text in typed.items()):
+            return False
+        if self._ask_correction(*self._correcting):
+            self._view.say(UNANSWERED, "bad")
+        return True
+
     def _ask_correction(self, test: ReplayedTest, row: ReplayedRow) -> bool:
-        cells = self._cells()
+        cells = self._cells("Not corrected:")
         if cells is None:
             return False
         now = row.cells
@@ -171,12 +197,15 @@ class SingleForm:
             self.show(test.name)
             return True
 
-        parts = (
-            f"{label(column)}: {now.get(column) or 'nothing'} becomes {new or 'nothing'}"
-            for column, new in changed.items()
-        )
-        ask_reason(self._ask, f"{'; '.join(parts)}.", ("Correct it", correct), usual=USUAL_REASON, leave=lambda: None)
+        lines = [change_said(said(label(column)), now.get(column, ""), new) for column, new in changed.items()]
+        act = ("Correct it", correct)
+        ask_reason(self._ask, lines, act, usual=USUAL_REASON, leave=lambda: self._leave(test, row))
+        self._view.say(ASKED, "")
         return True
+
+    def _leave(self, test: ReplayedTest, row: ReplayedRow) -> None:
+        self._view.say(LEFT_AS_IT_WAS)
+        self._draw(row.cells, (test, row))
 
     def _list(self) -> None:
         tests = self._view.tests()
@@ -194,8 +223,11 @@ class SingleForm:
         words = [f"{said(label(column))} {row.cells[column]}" for column in given]  # no part is looked up again
         Words(" · ".join(words) + (said(f" · cancelled: {test.cancelled}") if test.cancelled else ""))
 
-        def look() -> None:
+        def look() -> bool:
+            if self._is_unanswered():
+                return False
             self._draw(row.cells, (test, row))
             self._beside.follow(test.name, row.cells["site"])
+            return True
 
         named(asking_button("Correct", look, "small"), f"Correct {' '.join(test.name.split())}")

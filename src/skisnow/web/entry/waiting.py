@@ -8,11 +8,12 @@ from nicegui import ui
 
 from ..answering import asking_button, form
 from ..fields import field
-from ..language import number_said
+from ..language import number_said, said_template
 from ..worded import Words, named
 from ..words import label
-from .changes import USUAL_REASON, WAITED, ask_reason
+from .changes import ASKED, LEFT_AS_IT_WAS, USUAL_REASON, WAITED, ask_reason
 from .checking import checked_fields, faults, refuse
+from .readings import CHANGED, is_other, show_state
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
@@ -21,6 +22,8 @@ if TYPE_CHECKING:
     from .table_view import TableView
 
 AFTER: Final = "depth_after_mm"
+BECOMES: Final = "After waiting under {} N: {} mm becomes {} mm."
+IS_EMPTIED: Final = "After waiting under {} N: {} mm becomes nothing."
 
 
 class AfterWaiting:
@@ -37,7 +40,7 @@ class AfterWaiting:
         """What is typed and not stored, by load."""
         test = self._test
         typed = {load: str(each.value or "").strip() for load, each in self._fields.items()}
-        return {load: text for load, text in typed.items() if text.replace(",", ".") != _stored(test, load)}
+        return {load: text for load, text in typed.items() if is_other(text, _stored(test, load))}
 
     @property
     def _test(self) -> ReplayedTest:
@@ -68,9 +71,16 @@ class AfterWaiting:
             depth = field(label(AFTER), text, numeric=True, optional=True)
             named(depth, f"Depth after waiting under {load} N (mm)")
             depth.props("readonly" if closed else "")
-            Words("stored" if stored else "").classes("stored")
+            state = Words("").classes("stored")
             if stored:
                 made.props["data-stored"] = stored
+
+        def show() -> None:
+            now = _stored(self._test, load)
+            show_state(state, CHANGED if now and is_other(str(depth.value or ""), now) else "stored" if now else "")
+
+        show()
+        depth.on_value_change(show)
         return depth
 
     def _store(self, ask: ui.element) -> bool:
@@ -85,6 +95,8 @@ class AfterWaiting:
             return False
         if others:
             self._ask_correction(ask, others)
+            if not new:
+                self._view.say(ASKED, "")
         elif new:
             self._shown()
         else:
@@ -122,11 +134,18 @@ class AfterWaiting:
             return True
 
         test = self._test
-        parts = (
-            f"after waiting under {load} N: {_stored(test, load)} mm becomes {f'{text} mm' if text else 'nothing'}"
+        lines = [
+            said_template(BECOMES if text else IS_EMPTIED, *map(number_said, (load, _stored(test, load), text)))
             for load, text in depths.items()
-        )
-        ask_reason(ask, f"{'; '.join(parts)}.", ("Correct it", correct), usual=USUAL_REASON, leave=self._shown)
+        ]
+
+        def leave() -> None:
+            for load in depths:
+                self._fields[load].set_value(number_said(_stored(self._test, load), self._fields[load].client))
+            self._view.say(LEFT_AS_IT_WAS)
+            self._shown()
+
+        ask_reason(ask, lines, ("Correct it", correct), usual=USUAL_REASON, leave=leave)
 
 
 def _stored(test: ReplayedTest, load: str) -> str:

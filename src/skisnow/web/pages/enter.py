@@ -12,9 +12,9 @@ from ..edit_session import EditSession
 from ..entry.frame import table_links, table_view_of
 from ..entry.resent import FILE, take_resent
 from ..entry.series import SeriesForm
+from ..entry.series_list import SeriesList
 from ..entry.single import SingleForm
-from ..fields import link
-from ..layout import framed, heading
+from ..layout import framed
 from ..names import analysis, entering, required_id
 from ..words import TABLES
 
@@ -51,16 +51,22 @@ def add_page(lab: Lab) -> None:
                 beside,
                 places,
             ):
-                _others(view, test)
+                series_list = SeriesList(view) if view.file == FILE else None
             head = {"experiment": test, "site": site, "spot": spot, "tool": tool, "edge_angle_deg": edge_angle_deg}
-            _begin(view, test, head, (beside, places))
+            _begin(view, test, head, (beside, places), series_list)
 
 
-def _begin(view: TableView, test: str, head: dict[str, str], where: tuple[Beside, Places]) -> None:
+def _begin(
+    view: TableView,
+    test: str,
+    head: dict[str, str],
+    where: tuple[Beside, Places],
+    series_list: SeriesList | None,
+) -> None:
     """Show the form of a test, or of a new one."""
     entry: SeriesForm | SingleForm
-    if view.file == FILE:
-        entry = series = SeriesForm(view, *where)
+    if series_list is not None:
+        entry = series = SeriesForm(view, *where, series_list)
         take_resent(view.session, series.follow_resent)
         if test and not view.test(test).history and _is_head(view, head):
             series.show(test, head)  # begun, and loaded anew before its first reading
@@ -80,16 +86,3 @@ def _is_head(view: TableView, head: dict[str, str]) -> bool:
     except ParameterError:
         return False
     return said == head and head["tool"] in view.session.described.tools
-
-
-def _others(view: TableView, test: str) -> None:
-    """Links to the series so far, the last ones first."""
-    if view.file != "penetration.csv" or not view.tests():
-        return
-    heading("Series so far", 3)
-    with ui.element("div").classes("acts so-far"):
-        for other in reversed(view.tests()[-40:]):
-            words = f"{other.name}{' (cancelled)' if other.cancelled else ''}"
-            made = link(words, entering(view.session.id, table=view.file, test=other.name), "small")
-            if other.name == test:
-                made.props('aria-current="page"')

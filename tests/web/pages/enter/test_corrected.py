@@ -167,8 +167,11 @@ def test_a_depth_that_is_left_with_another_number_asks_without_taking_the_focus(
     leave(page, "Depth under 40.5 N (mm)", "2.26")  # another number is another question
     assert "40.5 N: 22.5 mm becomes 2.26 mm." in page.outline()
     assert page.field("Why") is not why
-    leave(page, "Depth under 20 N (mm)", "2.26")
-    assert "20 N: 1.5 mm becomes 2.26 mm." in page.outline()
+    leave(page, "Depth under 20 N (mm)", "2.26")  # one question about both
+    lines = page.between("20 N: 1.5 mm becomes 2.26 mm.")
+    assert lines[:3] == [lines[0], "40.5 N: 22.5 mm becomes 2.26 mm.", "field Why = 'typing error'"]
+    page.press("Correct it")
+    assert depths(desk, id_) == [("20", "2.26"), ("40.5", "2.26")]
 
 
 def test_what_is_no_depth_is_no_correction(desk: Desk) -> None:
@@ -369,3 +372,105 @@ def test_what_was_typed_in_one_series_does_not_go_into_the_next(desk: Desk) -> N
     page.press("Begin the series")
     assert page.between("h2 Series 2")[1] == "[quiet] A · ski piece · 30°"
     assert page.field("Depth under 20 N (mm)").value == ""
+
+
+# What is not confirmed
+
+
+def changed_states(page: Sheet) -> list[str]:
+    return [each.text for each in page.of(ui.label) if "changed" in each.classes]
+
+
+def test_a_change_is_never_shown_as_stored(desk: Desk) -> None:
+    id_ = begun(desk)
+    page = asked_to_correct(desk, id_)
+    assert len(changed_states(page)) == 1
+    assert "good" not in page.status()
+    states = [each.text for each in page.of(ui.label) if "stored" in each.classes]
+    assert states.count("stored") == 1  # of 20 N
+    enter(page, "Depth under 40.5 N (mm)", "22.5")  # as it was: nothing is asked any more
+    assert changed_states(page) == []
+    assert not any("field Why" in line for line in page.outline())
+
+
+@pytest.mark.parametrize("act", ["Next series", "Cancel this test", "Undo: entered 22.5 mm under 40.5 N"])
+def test_an_unanswered_correction_holds_what_would_lose_it(desk: Desk, act: str) -> None:
+    id_ = begun(desk)
+    page = asked_to_correct(desk, id_)
+    button = next(each for each in page.of(ui.button) if each.text == act)
+    page.fire(button, "click", {"number": 7})
+    assert page.scripts[-1] == "lab.answered(7, false)"
+    assert page.field("Depth under 40.5 N (mm)").value == "2,25"
+    assert page.focused() is page.field("Why")
+    assert "40.5 N: 22.5 mm becomes 2.25 mm." in page.outline()
+    assert len(changed_states(page)) == 1
+    assert len(history(desk, id_)) == 2
+    page.press("Correct it")
+    assert depths(desk, id_) == [("20", "1.5"), ("40.5", "2.25")]
+    page.press("Next series")
+    assert "h2 New series" in page.outline()
+
+
+def test_a_change_that_is_no_depth_is_not_left_behind(desk: Desk) -> None:
+    id_ = begun(desk)
+    add_series(desk, id_, "1", ("20", "1.5"))
+    page = series_page(desk, id_)
+    leave(page, "Depth under 20 N (mm)", "")
+    page.press("Next series")
+    assert page.refusals() == page.faults("Depth under 20 N (mm)")
+    assert "h2 Series 1" in page.outline()
+
+
+def test_a_change_outlives_another_reading(desk: Desk) -> None:
+    id_ = begun(desk)
+    page = asked_to_correct(desk, id_)
+    enter(page, "Depth under 60 N (mm)", "3")
+    page.fill("Further load (N)", "80")
+    page.fill("Its depth (mm)", "4")
+    page.press("Store it")  # draws the series anew
+    assert page.field("Depth under 40.5 N (mm)").value == "2,25"
+    assert len(changed_states(page)) == 1
+    assert "40.5 N: 22.5 mm becomes 2.25 mm." in page.outline()
+    page.press("Leave it as it was")
+    assert page.field("Depth under 40.5 N (mm)").value == "22.5"
+    assert changed_states(page) == []
+    assert depths(desk, id_) == [("20", "1.5"), ("40.5", "22.5"), ("60", "3"), ("80", "4")]
+
+
+def test_a_changed_depth_after_waiting_is_not_shown_as_stored(desk: Desk) -> None:
+    id_ = begun(desk)
+    add_series(desk, id_, "1", ("20", "1.5"), depth_after_mm="1.7")
+    page = series_page(desk, id_)
+    assert changed_states(page) == []
+    page.fill("Depth after waiting under 20 N (mm)", "1.8")
+    assert len(changed_states(page)) == 1
+    page.fill("Depth after waiting under 20 N (mm)", "1,7")
+    assert changed_states(page) == []
+
+
+def series_listed(page: Sheet) -> list[str]:
+    """The series so far; the one in the form in brackets."""
+    links = [each for each in page.of(ui.link) if "small" in each.classes]
+    return [f"[{each.text}]" if "aria-current" in each.props else each.text for each in links]
+
+
+def test_the_series_so_far_are_listed_as_they_are(desk: Desk) -> None:
+    id_ = begun(desk)
+    page = desk.open(f"/enter/{id_}")
+    page.fill("Site", "A")
+    for number in range(1, 9):
+        page.fill("Edge angle (°)", "30")
+        page.press("Begin the series")
+        enter(page, "Depth under 20 N (mm)", f"1.{number}")
+        before = [str(each) for each in range(number - 1, 0, -1)]
+        assert series_listed(page) == [f"[{number}]", *before]
+        page.press("Next series")
+        assert series_listed(page) == [str(number), *before]
+    page = series_page(desk, id_, "8")
+    page.press("Cancel this test")
+    page.fill("Why", "slip")
+    page.press("Cancel the test")
+    assert series_listed(page)[:2] == ["[8 (cancelled)]", "7"]
+    page.press("Undo: cancelled (slip)")
+    page.press("Undo: entered 1.8 mm under 20 N")
+    assert series_listed(page)[0] == "7"

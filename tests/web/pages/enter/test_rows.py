@@ -265,16 +265,20 @@ def test_a_test_of_one_row_is_corrected_with_a_reason(desk: Desk) -> None:
     page.fill("Moment (N m)", "36")
     page.fill("Measurement point", "p")
     page.press("Correct")
-    words = "Measurement point: nothing becomes p; Moment (N m): 30 becomes 36."
-    assert page.between(words, "button New test") == [
-        words,
+    first, second = "Measurement point: nothing becomes p.", "Moment (N m): 30 becomes 36."
+    assert page.between(first, "button New test") == [
+        first,
+        second,
         "field Why = 'typing error'",
         "button[main] Correct it",
         "button Leave it as it was",
         "button[main] Correct",
     ]
     page.press("Leave it as it was")
-    assert page.field("Moment (N m)").value == "36"
+    assert (page.field("Moment (N m)").value, page.field("Measurement point").value) == ("30", "")
+    page.fill("Moment (N m)", "36")
+    page.fill("Measurement point", "p")
+    form = page.field("Site").parent_slot.parent
     page.fire(form, "keydown.enter", {"number": 2})
     assert page.scripts[-1] == "lab.answered(2, true)"
     page.fill("Why", "")
@@ -353,3 +357,36 @@ def test_the_last_thirty_tests_stand_so_far(desk: Desk) -> None:
         "Name of the sample n1 · Site A · Density (kg/m³) 350",
         30,
     ]
+
+
+@pytest.mark.parametrize(
+    ("act", "number"),
+    [("New test", 0), ("Correct 2", 0), ("Cancel this test", 0), ("Undo: entered Density (kg/m³) 350", 0)],
+)
+def test_an_unconfirmed_correction_of_a_row_is_not_lost(desk: Desk, act: str, number: int) -> None:
+    id_ = begun(desk)
+    for name in ("1", "2"):
+        add(desk, id_, DENSITY, name, sample=name, site="A", snow_density_kg_per_m3="350")
+    page = desk.open(f"/enter/{id_}?table={DENSITY}&test=1")
+    page.fill("Density (kg/m³)", "360")
+    page.press("Correct")
+    assert "good" not in page.status()
+    page.press(act, number)
+    assert page.field("Density (kg/m³)").value == "360"
+    assert page.focused() is page.field("Why")
+    assert len(history(desk, id_)) == 2
+    page.press("Correct it")
+    assert stored(desk, id_, DENSITY, "1")[0]["snow_density_kg_per_m3"] == "360"
+    page.press("New test")
+    assert "h2 New test" in page.outline()
+
+
+def test_each_change_is_asked_about_by_itself_in_german(desk: Desk) -> None:
+    id_ = begun(desk)
+    add_shear(desk, id_, "1")
+    page = desk.open(f"/enter/{id_}?table={SHEAR}&test=1", "de")
+    page.fill("Messort", "Density")
+    page.fill("Moment (N m)", "36")
+    page.press("Korrigieren")
+    lines = page.between("Messort: aus A wird Density.")
+    assert lines[1] == "Moment (N m): aus 30 wird 36."
