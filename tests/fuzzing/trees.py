@@ -30,7 +30,7 @@ def _places(value: Any, found: list[tuple[Any, Any]]) -> list[tuple[Any, Any]]:
 def _extreme(rng: Random, old: Any) -> Any:
     if isinstance(old, list) and rng.random() < 0.5:
         return _other_list(rng, old)
-    if isinstance(old, int | float) and not isinstance(old, bool) and rng.random() < 0.5:
+    if isinstance(old, int | float) and not isinstance(old, bool) and abs(old) < 1e300 and rng.random() < 0.5:
         return old * 10.0 ** rng.choice((-300, -6, -3, -1, 1, 3, 6, 150, 300)) if rng.random() < 0.7 else -old
     if rng.random() < 0.15:
         return values.word(rng)

@@ -22,6 +22,8 @@ IntArray = npt.NDArray[np.int64]
 
 SHORTEST_WINDOW: Final = 0.8
 """Default length (s) of the window where points are dense. Modelling assumption: a slalom turn takes 0.8 to 1 s."""
+MOST_IN_WINDOW: Final = 10_000
+"""Points of a window, as a receiver of 12 kHz has them; far more than any."""
 POINTS_IN_WINDOW: Final = 8.0
 """Default length of the window in intervals between points, where that is longer. Modelling assumption: five points
 to spare."""
@@ -98,6 +100,7 @@ def smoothed_track(track: Track, *, window: float | None = None, place_noise: fl
     length = max(SHORTEST_WINDOW, POINTS_IN_WINDOW * step) if window is None else window
     part = parts(track, usable)
     windows = window_bounds(track.time, part, length)
+    _require_sparse(track, windows, length)
     place, rate = _places(track, usable), _rates(track, usable)
     noises = _noises(track.time, windows, length / 2.0, place, rate)
     noises = (noises[0] if place_noise is None else place_noise, noises[1])
@@ -152,6 +155,17 @@ def window_bounds(time: FloatArray, part: IntArray, length: float) -> tuple[IntA
 
 def _interval(time: FloatArray) -> float:
     return float(np.median(np.diff(time)))
+
+
+def _require_sparse(track: Track, windows: tuple[IntArray, IntArray], length: float) -> None:
+    """Reject a window of very many points: the time of the fits grows with their number."""
+    count = windows[1] - windows[0]
+    if count.max() > MOST_IN_WINDOW:
+        at = int(np.argmax(count))
+        raise ParameterError(
+            f"{track.name}: {count[at]} points are within {length:.3g} s of {track.time[at]:.6g} s. Allowed: at most "
+            f"{MOST_IN_WINDOW}. Check the column of times, or give fewer points"
+        )
 
 
 def _require_positive(name: str, unit: str, value: float | None) -> None:
