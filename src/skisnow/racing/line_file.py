@@ -61,9 +61,11 @@ def read_line(path: Path, course: Course, start: tuple[float, float]) -> RacingL
         It cannot be read, a column is missing, a cell is no number, or its gates are not the course's.
     """
     rows = csv_rows(path, COLUMNS[:4], action="write the line with `skisnow race` again")
-    names, own = [row.cells["gate"] for row in rows], [gate.name for gate in course.gates[: len(rows)]]
-    if not rows or names != own:
-        raise ParameterError(f"{path}: its gates are {', '.join(names)}, those of the course {', '.join(own)}")
+    if not 0 < len(rows) <= len(course.gates):
+        raise ParameterError(f"{path}: it has {len(rows)} rows. Allowed: 1 to {len(course.gates)}, a row for each gate")
+    for row, gate in zip(rows, course.gates, strict=False):
+        if row.cells["gate"] != gate.name:
+            raise row.refused("gate", f"is not {gate.name!r}, the course's gate there")
     turns = tuple(
         LineTurn(aside=row.number("aside_m"), along=row.number("along"), turning=row.number("turning")) for row in rows
     )
