@@ -187,7 +187,8 @@ void bind_dynamics(nb::module_& m) {
       .def(
           "advance", [](Dynamics& self, double until, long most) { return int(self.advance(until, most)); },
           nb::call_guard<nb::gil_scoped_release>())
-      .def("copy", [](const Dynamics& self) { return Dynamics(self); }, nb::keep_alive<0, 1>())  // same contact
+      .def(
+          "copy", [](const Dynamics& self) { return Dynamics(self); }, nb::keep_alive<0, 1>())  // same contact
       .def("assign", [](Dynamics& self, const Dynamics& other) { self = other; })
       .def_prop_ro("bend", &bend_of, nb::rv_policy::automatic)
       .def("along", &along_of)

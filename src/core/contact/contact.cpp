@@ -353,8 +353,7 @@ double SnowContact::delayed_stored() const {
     for (std::int64_t n = each.first; n < each.end; n++) {
       const DelayedGround& delayed = each.delayed[std::size_t(each.slot(n))];
       const double spring = each.values[HARDNESS][each.slot(n)] / snow_->rate.delayed_share;  // H₂
-      for (const double depth : delayed.depth)
-        total += 0.5 * spring * depth * depth * delayed.spacing * each.spacing();
+      for (const double depth : delayed.depth) total += 0.5 * spring * depth * depth * delayed.spacing * each.spacing();
     }
   return total;
 }

@@ -253,6 +253,7 @@ V eased(const Snow& snow, const GrooveLines& lines, int j, V used, V strength, V
   const auto kept = [&](LineField field) { return load<V>(lines.values[field] + j); };
   const double per_reach = 1.0 / snow.shear_displacement;
   const V before = kept(STRENGTH_HELD), risen = kept(DEPTH_HELD) - edge_depth, none{};
+  if (!any(before > 0.0)) return used;
   const MaskOf<V> holds = (before > 0.0) & (strength > 0.0) & (kept(ANCHORED) > 0.5);
   const V per_strength = 1.0 / select(strength > 0.0, strength, all<V>(1.0));
   const V rest = used + kept(SHEAR_HELD) * per_reach * (minimum(before * per_strength, all<V>(1.0)) - 1.0);

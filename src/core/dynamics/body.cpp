@@ -18,15 +18,12 @@ Vector3 part(const Numbers& numbers, int first) {
   return {numbers[i], numbers[i + 1], numbers[i + 2]};
 }
 
-double quadratic(const std::vector<double>& lower, const double* x) {
-  const int n = int(lower.size()) / LOWER;
+// xᵀ A x of the numbers of one beam.
+double quadratic(const Body& body, const BeamColumns& band, const double* x) {
+  Numbers product(std::size_t(band.size() + BORDER_ROW), 0.0);
+  body.kernels->add_band(band, x, x, 0.0, 1.0, product.data());
   double total = 0.0;
-  for (int i = 0; i < n; i++) {
-    const double* a = lower.data() + LOWER * i;
-    double row = 0.5 * a[0] * x[i];
-    for (int j = 1; j <= std::min(i, HALF_BAND); j++) row += a[j] * x[i - j];
-    total += 2.0 * x[i] * row;
-  }
+  for (int i = 0; i < band.size(); i++) total += x[i] * product[std::size_t(i)];
   return total;
 }
 
@@ -222,8 +219,8 @@ Energies energies(const Body& body, const Layout& layout, const BodyState& state
     double momentum[BODY] = {}, lifted[BODY] = {};
     body.kernels->add_coupled(ski.coupling_columns, rate, momentum);
     body.kernels->add_coupled(ski.coupling_columns, bend, lifted);
-    out.kinetic += 0.5 * quadratic(ski.mass, rate);
-    out.elastic += 0.5 * quadratic(ski.stiffness, bend);
+    out.kinetic += 0.5 * quadratic(body, ski.mass_columns, rate);
+    out.elastic += 0.5 * quadratic(body, ski.stiffness_columns, bend);
     for (std::size_t a = 0; a < BODY; a++) out.kinetic += momentum[a] * state.rate[a];
     for (std::size_t a = 0; a < 3; a++) out.potential -= g[a] * lifted[a];
   }
@@ -246,7 +243,7 @@ double damping_power(const Body& body, const Layout& layout, const BodyState& st
   double total = 0.0;
   for (int k = 0; k < layout.beams(); k++) {
     const FlexibleSki& ski = body.skis[std::size_t(k)];
-    total += ski.damping * quadratic(ski.stiffness, state.rate.data() + layout.first(k));
+    total += ski.damping * quadratic(body, ski.stiffness_columns, state.rate.data() + layout.first(k));
   }
   return total;
 }

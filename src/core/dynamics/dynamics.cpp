@@ -25,7 +25,7 @@ constexpr double ROUNDING = 1e-9;                        // of a step's length
 // of the energy exchanged: the open balance from which on steps get shorter; and the energy (J) below which it is left
 constexpr double MOST_OPEN = 2e-3, LEAST_OPEN = 0.01;
 constexpr int MOST_NARROWED = 12;  // rungs by which steps get shorter: three octaves
-constexpr double MILNE = 0.35;  // error of BDF2 over its distance from the predictor, at equal steps 8/23
+constexpr double MILNE = 0.35;     // error of BDF2 over its distance from the predictor, at equal steps 8/23
 
 }  // namespace
 
@@ -273,8 +273,8 @@ void Dynamics::follow_balance() {
   const Energies now = total_energies();
   const Work& w = work_;
   const double taken = w.shear + w.friction - w.normal + w.drag + w.damping - w.boots - w.push;
-  const double open = std::fabs(now.kinetic + now.potential + now.elastic - start_.kinetic - start_.potential -
-                                start_.elastic + taken);
+  const double open =
+      std::fabs(now.kinetic + now.potential + now.elastic - start_.kinetic - start_.potential - start_.elastic + taken);
   const double fallen = std::max(start_.potential - now.potential, 0.0);
   const double most = MOST_OPEN * (start_.kinetic + std::max(taken, 0.0) + fallen) + LEAST_OPEN;
   if (open > most)

@@ -50,9 +50,9 @@ class Dynamics {
   double next_step() const { return step_; }
   // What the snow does along one ski at the last moment that `advance` or `begin` reached.
   const Along& along(int k) const { return along_[std::size_t(k)]; }
-  const SnowStore& snow_store() const { return store_; }    // after the last step
+  const SnowStore& snow_store() const { return store_; }      // after the last step
   const SnowAccount& snow_losses() const { return losses_; }  // since `begin`
-  bool touches() const { return touches_; }            // whether any ski is in the snow
+  bool touches() const { return touches_; }                   // whether any ski is in the snow
 
   // Boots: each ski's inertia about its boot, in its own axes, (6, 6), lets what it does to its boot be known, and lets
   // the boots move. Then, before each `advance`, which may not go beyond their ends, their motions may be given anew.

@@ -9,33 +9,44 @@ namespace {
 
 constexpr double BEYOND = 1e300;  // where there is no further knot
 
-// A polyline read from left to right; outside its knots it has no depth.
+// A polyline read from left to right; outside its knots it has no depth. Its mirror image has the same bits.
 class Reader {
  public:
-  Reader(const double* place, const double* depth, int count, int at)
-      : place_(place), depth_(depth), count_(count), at_(at) {}
-
-  int knot() const { return at_; }
-  double next() const { return at_ < count_ ? place_[at_] : BEYOND; }
-
-  // Depth at a place up to the next knot, there on its left side. Its mirror image has the same bits.
-  double before(double y) const {
-    if (at_ == 0 || at_ == count_) return 0.0;
-    const double a = place_[at_ - 1], b = place_[at_];
-    if (y == b) return depth_[at_];
-    return (depth_[at_ - 1] * (b - y) + depth_[at_] * (y - a)) / (b - a);
+  // From a place on; `at`: the first knot there or behind.
+  Reader(const double* place, const double* depth, int count, int at, double y)
+      : place_(place), depth_(depth), count_(count), at_(at) {
+    go_to(y);
   }
 
-  // Go past a place; the depth on its right side.
-  double pass(double y) {
-    if (!(next() <= y)) return before(y);
-    while (next() <= y) at_++;
-    return at_ < count_ ? depth_[at_ - 1] : 0.0;
+  int knot() const { return at_; }  // the next one
+  double next() const { return at_ < count_ ? place_[at_] : BEYOND; }
+  bool is_at_knot() const { return is_at_knot_; }
+  double left() const { return left_; }    // depth on the left side of the place reached
+  double right() const { return right_; }  // and on its right side
+
+  // Up to a place, not beyond the next knot.
+  void go_to(double y) {
+    is_at_knot_ = next() == y;
+    if (!is_at_knot_) {
+      left_ = right_ = between(y);
+      return;
+    }
+    left_ = at_ > 0 ? depth_[at_] : 0.0;
+    while (next() == y) at_++;
+    right_ = at_ < count_ ? depth_[at_ - 1] : 0.0;
   }
 
  private:
   const double *place_, *depth_;
   int count_, at_;
+  double left_ = 0.0, right_ = 0.0;
+  bool is_at_knot_ = false;
+
+  double between(double y) const {
+    if (at_ == 0 || at_ == count_) return 0.0;
+    const double a = place_[at_ - 1], b = place_[at_];
+    return (depth_[at_ - 1] * (b - y) + depth_[at_] * (y - a)) / (b - a);
+  }
 };
 
 // Depths of the ground and of what is pressed into it, at one side of a place.
@@ -119,13 +130,14 @@ bool Ground::press(double a, double depth_a, double b, double depth_b) {
 
 // Where a polyline is deeper than the ground, whose knot `kept` is the first at its beginning or behind.
 Ground::Deeper Ground::compare(const double* at, const double* deep, int knots, int kept) const {
-  Reader ground(place, depth, count, kept), pressed(at, deep, knots, 0);
+  Reader ground(place, depth, count, kept, at[0]), pressed(at, deep, knots, 0, at[0]);
   bool deeper = false, above = false;
+  const auto compare = [&](double over) { deeper = deeper || over > THIN, above = above || over < -THIN; };
   for (double y = at[0]; y < at[knots - 1] && !(deeper && above);) {
-    const double here = pressed.pass(y) - ground.pass(y);
+    compare(pressed.right() - ground.right());
     y = std::min(ground.next(), pressed.next());
-    const double there = pressed.before(y) - ground.before(y);
-    deeper = deeper || here > THIN || there > THIN, above = above || here < -THIN || there < -THIN;
+    ground.go_to(y), pressed.go_to(y);
+    compare(pressed.left() - ground.left());
   }
   if (!deeper) return Deeper::NOWHERE;
   return above ? Deeper::SOMEWHERE : Deeper::EVERYWHERE;
@@ -138,11 +150,11 @@ Ground Ground::replaced(const double* at, const double* deep, int knots, int kep
   for (int j = 0; j < kept; j++) out.place[j] = place[j], out.depth[j] = depth[j];
   out.count = kept;
   if (kept > 0 && kept == count) out.append(last(), 0.0);  // apart: what lies between has no depth
-  if (kept > 0) out.append(from, Reader(place, depth, count, kept).before(from));
+  if (kept > 0) out.append(from, Reader(place, depth, count, kept, from).left());
   for (int j = 0; j < knots; j++) out.append(at[j], deep[j]);
   int rest = kept;
   while (rest < count && place[rest] <= to) rest++;
-  if (rest < count) out.append(to, Reader(place, depth, count, rest).before(to));
+  if (rest < count) out.append(to, Reader(place, depth, count, rest, to).left());
   if (rest == 0 && count > 0) out.append(first(), 0.0);
   for (int j = rest; j < count; j++) out.append(place[j], depth[j]);
   return out;
@@ -163,17 +175,18 @@ bool Ground::press(const double* at, const double* deep, int knots) {
   for (int j = 0; j < kept; j++) out.place[j] = place[j], out.depth[j] = depth[j];
   out.count = kept;
   if (kept > 0 && kept == count) out.append(last(), 0.0);  // apart: what lies between has no depth
-  Reader ground(place, depth, count, kept), pressed(at, deep, knots, 0);
-  Merge merge(out, from, ground.before(from));
+  Reader ground(place, depth, count, kept, from), pressed(at, deep, knots, 0, from);
+  Merge merge(out, from, ground.left());
   for (double y = from; y < to;) {
-    const bool knot = ground.next() == y, pressed_knot = pressed.next() == y;
-    const Both here{ground.pass(y), pressed.pass(y)};
+    const Both here{ground.right(), pressed.right()};
+    const bool knot = ground.is_at_knot(), pressed_knot = pressed.is_at_knot();
     y = std::min(ground.next(), pressed.next());
-    merge.advance(y, here, {ground.before(y), pressed.before(y)}, knot, pressed_knot);
+    ground.go_to(y), pressed.go_to(y);
+    merge.advance(y, here, {ground.left(), pressed.left()}, knot, pressed_knot);
   }
   if (!merge.changed()) return false;
-  const bool knot = ground.next() == to;
-  const double right = ground.pass(to);
+  const bool knot = ground.is_at_knot();
+  const double right = ground.right();
   const int rest = ground.knot();
   if (rest == count) {
     merge.end();
@@ -189,14 +202,9 @@ bool Ground::press(const double* at, const double* deep, int knots) {
 // Two that are alike but for rounding go together, the outermost first: the mirror image is simplified as its original.
 void Ground::simplify(double area, int most) {
   double size[ROOM];
-  const auto smallest = [&] {
-    double least = size[1];
-    for (int j = 2; j + 1 < count; j++) least = std::min(least, size[j]);
-    return least;
-  };
   for (int j = 1; j + 1 < count; j++) size[j] = triangle(*this, j - 1, j, j + 1);
   while (count > 2) {
-    const double least = smallest(), alike = least * ALIKE + TINY_AREA;
+    const double least = *std::min_element(size + 1, size + count - 1), alike = least * ALIKE + TINY_AREA;
     if (least > area && count <= most) break;
     int first = 1, last = count - 2;
     while (size[first] > alike) first++;
