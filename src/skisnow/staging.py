@@ -22,7 +22,7 @@ from typing import TYPE_CHECKING, Final
 from .files import cannot_write, require_writable, write_file
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Iterator, Sequence
 
 _PREFIX: Final = ".skisnow-"
 _HIDDEN: Final = re.compile(r"\.(skisnow|report|run)-[a-z0-9_]{8}")
@@ -30,6 +30,7 @@ _FILES: Final = "files"
 _PLAN: Final = "plan"
 _CLEARED: Final = "cleared"
 _A_DAY_S: Final = 86_400.0
+_MOST_STALE: Final = 10_000
 
 
 @dataclass(slots=True)
@@ -151,8 +152,10 @@ def _carry_out(hidden: Path) -> None:
     (hidden / _PLAN).unlink()
 
 
-def _require_inside(names: Iterable[str]) -> None:
-    """ValueError for a path that leads out of the folder or that no file can have."""
+def _require_inside(names: Sequence[str]) -> None:
+    """ValueError for a path that leads out of the folder or that no file can have, and for very many."""
+    if len(names) > _MOST_STALE:
+        raise ValueError(len(names))
     for name in names:
         path = PurePath(name)
         if not name or "\0" in name or path.is_absolute() or ".." in path.parts or not path.name:

@@ -82,6 +82,19 @@ def length_unit(name: str) -> float | None:
     return LENGTHS.get(words, LENGTHS.get(words.removesuffix("s")))
 
 
+def _factor(text: str) -> float:
+    """Length of a unit (m)."""
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    if not 0.0 < value < math.inf:
+        raise ParameterError(
+            f"the description of the map system states a unit of {text[:40]!r}. Allowed: above 0, in m"
+        )
+    return value
+
+
 def map_system(text: str) -> MapSystem:
     """Parse a description: WKT, or the older lines ``Projection …``, ``Units …``, ``Zunits …``."""
     vertical = _VERTICAL.search(text)
@@ -89,7 +102,7 @@ def map_system(text: str) -> MapSystem:
     projected = _PROJECTED.search(places) is not None
     units = _UNIT.findall(places)
     old = _OLD_UNIT.search(places)
-    unit = float(units[-1][1]) if units else length_unit(old[1]) if old else None
+    unit = _factor(units[-1][1]) if units else length_unit(old[1]) if old else None
     in_degrees = not projected and _DEGREES.search(places) is not None
     return MapSystem(
         text=text,
@@ -103,7 +116,7 @@ def map_system(text: str) -> MapSystem:
 def _height_unit(text: str, heights: str) -> float | None:
     units, old = _UNIT.findall(heights), _OLD_HEIGHT_UNIT.search(text)
     if units:
-        return float(units[-1][1])
+        return _factor(units[-1][1])
     return length_unit(old[1]) if old and "[" not in text else None
 
 
