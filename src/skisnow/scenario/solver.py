@@ -88,7 +88,8 @@ class Solver:
         float,
         Quantity(
             "solver.groove_tolerance",
-            "share of a contact's depth times width by which the groove on a line may be simplified",
+            "share of a contact's depth times width by which the groove on a line may be simplified; with method = "
+            "fast three times as large",
             label="tolerance of the groove",
             lowest=1e-9,
             highest=0.1,

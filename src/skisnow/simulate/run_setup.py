@@ -36,6 +36,8 @@ FAST: Final = 10.0
 """Times the tolerance, to which the fast method controls a step's error (modelling assumption)."""
 FAST_LONGEST: Final = 10e-3
 """Longest step (s) of the fast method (modelling assumption: that of outputs)."""
+FAST_GROOVE: Final = 3.0
+"""Times the groove's tolerance, to which the fast method simplifies grooves (modelling assumption)."""
 FAST_PART: Final = 0.02
 """Path along a ski (m) over which its history is marched at once with the fast method (modelling assumption: the
 lines' spacing)."""
@@ -317,7 +319,7 @@ def _snow(scenario: Scenario, laws: Laws) -> SnowField:
         surface=surface_of(scenario.slope),
         compaction_resistance=contact.compaction_resistance,
         shear_displacement=contact.shear_displacement,
-        knot_area=scenario.solver.groove_tolerance,
+        knot_area=scenario.solver.groove_tolerance * (FAST_GROOVE if scenario.solver.method == "fast" else 1.0),
         part_along=FAST_PART if scenario.solver.method == "fast" else PART_ALONG,
     )
 
