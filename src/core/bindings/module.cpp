@@ -77,8 +77,8 @@ struct PythonLaws {
       if (mu.size() != n) throw std::invalid_argument("a friction law must give one value for each speed");
       for (std::size_t i = 0; i < n; i++) {
         const double fade = fade_speed * fade_speed, square = s[SLIDING][i] * s[SLIDING][i] + fade;
-        s[FRICTION][i] = mu.data()[i] * s[SLIDING][i] / std::sqrt(square);
-        s[FRICTION_SLOPE][i] = mu.data()[i] * fade / (square * std::sqrt(square));
+        s.sliding[FRICTION][i] = mu.data()[i] * s[SLIDING][i] / std::sqrt(square);
+        s.sliding[FRICTION_SLOPE][i] = mu.data()[i] * fade / (square * std::sqrt(square));
       }
     }
     if (!shear.is_none()) {
@@ -86,8 +86,8 @@ struct PythonLaws {
       if (found.ndim() != 2 || found.shape(0) != 2 || found.shape(1) != n)
         throw std::invalid_argument("a shear law must give strength and thrust for each section");
       for (std::size_t i = 0; i < n; i++) {
-        s[EDGE_STRENGTH][i] = s[STRENGTH_LEFT][i] * found.data()[i];
-        s[EDGE_THRUST][i] = s[STRENGTH_LEFT][i] * found.data()[n + i];
+        s.edge[EDGE_STRENGTH][i] = s[STRENGTH_LEFT][i] * found.data()[i];
+        s.edge[EDGE_THRUST][i] = s[STRENGTH_LEFT][i] * found.data()[n + i];
       }
     }
   }
@@ -118,23 +118,23 @@ nb::dict sections_of(const SnowContact& contact, int k) {
   std::vector<int> rows;
   for (int i = 0; i < s.count(); i++)
     if (s[SHARE][i] > 0.0) rows.push_back(i);
-  const std::pair<const char*, SectionField> fields[] = {{"position_along_ski", STATION},
-                                                         {"length", SHARE},
-                                                         {"depth", DEEPEST},
-                                                         {"edge_sine", EDGE_SINE},
-                                                         {"edge_place", EDGE_PLACE},
-                                                         {"normal_force", FORCE},
-                                                         {"shear", SHEAR},
-                                                         {"push", PUSH},
-                                                         {"sliding", SLIDING},
-                                                         {"friction", FRICTION},
-                                                         {"friction_load", FRICTION_LOAD},
-                                                         {"strength", EDGE_STRENGTH},
-                                                         {"shear_used", SHEAR_USED}};
+  const std::pair<const char*, const double*> fields[] = {{"position_along_ski", s[STATION]},
+                                                          {"length", s[SHARE]},
+                                                          {"depth", s[DEEPEST]},
+                                                          {"edge_sine", s[EDGE_SINE]},
+                                                          {"edge_place", s[EDGE_PLACE]},
+                                                          {"normal_force", s[FORCE]},
+                                                          {"shear", s[SHEAR]},
+                                                          {"push", s[PUSH]},
+                                                          {"sliding", s[SLIDING]},
+                                                          {"friction", s[FRICTION]},
+                                                          {"friction_load", s[FRICTION_LOAD]},
+                                                          {"strength", s[EDGE_STRENGTH]},
+                                                          {"shear_used", s[SHEAR_USED]}};
   nb::dict out;
   for (const auto& [name, field] : fields) {
     std::vector<double> values;
-    for (int i : rows) values.push_back(s[field][i]);
+    for (int i : rows) values.push_back(field[i]);
     out[name] = array(std::move(values), {rows.size()});
   }
   return out;

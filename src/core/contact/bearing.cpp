@@ -115,16 +115,16 @@ void Bearing::add_up() {
 void Bearing::press(const GrooveLines& lines, Sections& s) {
   parts_.clear(), sums_.clear();
   for (int i = 0; i < s.count(); i++)
-    if (s.touches(i)) add_base(lines, lines.slot(s.line(i)), alone::Cut<double>::stored(s, i));
+    if (s.touches(i)) add_base(lines, lines.slot(s.line(i)), alone::Cut<double>::stored(s.base, i));
   add_up();
   auto sums = sums_.begin();
   for (int i = 0; i < s.count(); i++) {
     if (!s.touches(i)) continue;
-    s[FORCE][i] = s[SHARE][i] * sums->force;
-    s[MOMENT][i] = s[SHARE][i] * sums->moment;
-    s[SNOW_ENERGY][i] = s[SHARE][i] * sums->energy;
+    s.pressure[FORCE][i] = s[SHARE][i] * sums->force;
+    s.pressure[MOMENT][i] = s[SHARE][i] * sums->moment;
+    s.pressure[SNOW_ENERGY][i] = s[SHARE][i] * sums->energy;
     if (law_.along_base_normal)
-      s[EDGE_STRENGTH][i] = s[FORCE][i] * std::fabs(s[DEPTH_FALL][i]) / (s[DEEPEST][i] * s[SHARE][i]);
+      s.edge[EDGE_STRENGTH][i] = s[FORCE][i] * std::fabs(s[DEPTH_FALL][i]) / (s[DEEPEST][i] * s[SHARE][i]);
     ++sums;
   }
 }
@@ -138,7 +138,7 @@ void Bearing::differ(const Snow& snow, const GrooveLines& lines, const Sections&
   std::vector<Cut<double>> moved;
   for (int i = 0; i < s.count(); i++)
     for (int change = 0; change < CHANGES && s.touches(i); change++) {
-      moved.push_back(alone::displaced(Cut<double>(s, i), change, way(change)));
+      moved.push_back(alone::displaced(Cut<double>(s.base, i), change, way(change)));
       moved.back().cut(snow);
       add_base(lines, lines.slot(s.line(i)), moved.back());
     }
@@ -159,7 +159,7 @@ void Bearing::differ(const Snow& snow, const GrooveLines& lines, const Sections&
                                                    s[EDGE_STRENGTH][i], s[EDGE_THRUST][i], moved[next].edge_depth)};
       const Pushed<double> pushed(moved[next], by, snow);
       for (int k = 0; k < Pushed<double>::PARTS; k++)
-        out.column(change, k)[i] = (s[SectionField(FORCE_0 + k)][i] - pushed.parts[k]) / way(change);
+        out.column(change, k)[i] = (s[ForceField(FORCE_0 + k)][i] - pushed.parts[k]) / way(change);
     }
 }
 

@@ -34,10 +34,10 @@ void strengthen(const ShearLaw& law, Sections& s) {
     const double angle = std::asin(std::min(std::fabs(s[EDGE_SINE][i]), 1.0)), strength = s[EDGE_STRENGTH][i];
     if (law.cuts) {
       const double cotangent = 1.0 / std::tan(std::max(0.5 * (angle - law.friction_angle), law.least_plane));
-      s[EDGE_STRENGTH][i] = 2.0 * cotangent * strength;
-      s[EDGE_THRUST][i] = (cotangent * cotangent - 1.0) * strength;
+      s.edge[EDGE_STRENGTH][i] = 2.0 * cotangent * strength;
+      s.edge[EDGE_THRUST][i] = (cotangent * cotangent - 1.0) * strength;
     } else {
-      s[EDGE_STRENGTH][i] = (1.0 - law.decrease * angle) * strength;
+      s.edge[EDGE_STRENGTH][i] = (1.0 - law.decrease * angle) * strength;
     }
   }
 }
@@ -48,8 +48,8 @@ void ease(const Snow& snow, const GrooveLines& lines, Sections& s) {
     if (!s.touches(i)) continue;
     const double used = alone::eased<double>(snow, lines, lines.slot(s.line(i)), s[SHEAR_USED][i], s[EDGE_STRENGTH][i],
                                              s[EDGE_THRUST][i], s[EDGE_DEPTH][i]);
-    s[SHEAR_EASED][i] = used - s[SHEAR_USED][i];
-    s[SHEAR_USED][i] = used;
+    s.edge[SHEAR_EASED][i] = used - s[SHEAR_USED][i];
+    s.edge[SHEAR_USED][i] = used;
   }
 }
 
@@ -95,7 +95,7 @@ SnowContact::SnowContact(std::shared_ptr<Snow> snow, std::vector<Runner> runners
   for (const GrooveLines& each : state_.lines) slots = std::max(slots, std::size_t(each.capacity()));
   scratch_.resize(slots), slips_.resize(slots);
   before_.resize(runners_.size());
-  sections_.resize(runners_.size());
+  for (const GrooveLines& each : state_.lines) sections_.emplace_back(each.capacity());
   if (snow_->rate.acts()) rated_.resize(runners_.size());
   state_.time = snow_->archive.time;
   wrenches_.resize(runners_.size());
@@ -109,16 +109,16 @@ void SnowContact::set_penetration(PenetrationLaw law) {
 
 const Wrench& SnowContact::evaluate(int k, const GrooveLines& lines, const Pose& pose, const Motion& motion, bool grows,
                                     Sections& s) {
-  kernels_->find_sections(runner(k), pose, *snow_, lines, lines.first, s);
-  kernels_->press(*snow_, lines, grows, s);
+  kernels_->find_sections(runner(k), pose, *snow_, lines, lines.first, s.base);
+  kernels_->press(*snow_, lines, s.base, grows, s.pressure, s.edge);
   if (bearing_) bearing_->press(lines, s);
   if (!rated_.empty()) rated_[std::size_t(k)].press(*snow_, lines, pose, motion, dt_, s);
-  kernels_->slide(motion, pose, *snow_, s);
+  kernels_->slide(motion, pose, *snow_, s.base, s.pressure, s.sliding);
   if (snow_->shear.by_angle()) strengthen(snow_->shear, s);
   if (laws) laws(k, s);
   if (strength_varies()) ease(*snow_, lines, s);
   Wrench& wrench = wrenches_[std::size_t(k)];
-  kernels_->push(motion, pose, *snow_, s, wrench);
+  kernels_->push(*snow_, s.base, s.pressure, s.edge, s.sliding, s.forces, wrench);
   return wrench;
 }
 
@@ -244,7 +244,7 @@ void SnowContact::update(const Situation& to) {
     if (strength_varies())
       evaluate(k, lines, pose, to.motions[std::size_t(k)], false, sections_[std::size_t(k)]);
     else
-      kernels_->find_sections(runner(k), pose, *snow_, lines, lines.first, sections_[std::size_t(k)]);
+      kernels_->find_sections(runner(k), pose, *snow_, lines, lines.first, sections_[std::size_t(k)].base);
     settle_history(k, pose);
   }
   stand(to.poses);

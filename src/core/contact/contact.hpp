@@ -153,7 +153,7 @@ class SnowContact {
   void march(int k, GrooveLines& lines, const Situation& to);
   void find_needed(const GrooveLines& lines, double way, const Runner& runner, const Pose& to);
   void march_where_needed(int k, const Situation& to);
-  void remember(int k, GrooveLines& lines) const;
+  void remember(int k, GrooveLines& lines, bool is_eased) const;
 };
 
 // A state of a contact sealed, and a contact taken to one. All throw std::invalid_argument, and change nothing.

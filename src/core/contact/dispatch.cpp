@@ -61,8 +61,12 @@ const Kernels& kernels() {
   return baseline::SET;
 }
 
-void Sections::prepare(const GrooveLines& lines, std::int64_t first) {
-  if (values.length() != lines.capacity()) values.resize(lines.capacity());
+Sections::Sections(int capacity) {
+  base.resize(capacity), pressure.resize(capacity), edge.resize(capacity);
+  sliding.resize(capacity), forces.resize(capacity);
+}
+
+void Base::cover(const GrooveLines& lines, std::int64_t first) {
   first_block = first >= 0 ? first / BLOCK : -((-first + BLOCK - 1) / BLOCK);
   blocks = int((lines.end - first_block * BLOCK + BLOCK - 1) / BLOCK);
 }

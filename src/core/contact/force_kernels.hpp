@@ -39,50 +39,54 @@ struct Centre {
 };
 
 // Rates of the beam at a section: of its deflection and of its twist.
-inline void beam_rates(const Motion& motion, const Sections& s, int i, double& deflection, double& twist) {
+inline void beam_rates(const Motion& motion, const Base& base, int i, double& deflection, double& twist) {
   deflection = twist = 0.0;
   if (motion.beam.empty()) return;
   typedef LaneTypes<2>::Value Pair;
-  const double z = s[IN_ELEMENT][i];
-  const double* rate = motion.beam.data() + 3 * int(s[ELEMENT][i]);
-  const Shapes<Pair> shape(all<Pair>(z), all<Pair>(s[ELEMENT_LENGTH][i]));
+  const double z = base[IN_ELEMENT][i];
+  const double* rate = motion.beam.data() + 3 * int(base[ELEMENT][i]);
+  const Shapes<Pair> shape(all<Pair>(z), all<Pair>(base[ELEMENT_LENGTH][i]));
   deflection = shape.front[0] * rate[0] + shape.front_slope[0] * rate[1] + shape.rear[0] * rate[3] +
                shape.rear_slope[0] * rate[4];
   twist = (1.0 - z) * rate[2] + z * rate[5];
 }
 
-// The same for all lanes; they are kept where the loads on the beam come later.
+// The same for all lanes.
 template <class V>
-void find_beam_rates(const Motion& motion, Sections& s, int i) {
-  V deflection{}, twist{};
-  if (!motion.beam.empty() && any(load<V>(s[SHARE] + i) > 0.0)) {
-    Row front[WIDTH<V>], rear[WIDTH<V>];
-    for (int lane = 0; lane < WIDTH<V>; lane++) {
-      const double* rate = motion.beam.data() + 3 * int(s[SHARE][i + lane] > 0.0 ? s[ELEMENT][i + lane] : 0.0);
-      front[lane] = load<Row>(rate), rear[lane] = load<Row>(rate + 2);
-    }
-    V first[ROW], second[ROW];
-    transpose<V>(front, first), transpose<V>(rear, second);
-    const V z = load<V>(s[IN_ELEMENT] + i);
-    const Shapes<V> shape(z, load<V>(s[ELEMENT_LENGTH] + i));
-    deflection =
-        shape.front * first[0] + shape.front_slope * first[1] + shape.rear * second[1] + shape.rear_slope * second[2];
-    twist = (1.0 - z) * first[2] + z * second[3];
+void find_beam_rates(const Motion& motion, const Base& base, int i, V& deflection, V& twist) {
+  deflection = twist = V{};
+  if (motion.beam.empty()) return;
+  Row front[WIDTH<V>], rear[WIDTH<V>];
+  for (int lane = 0; lane < WIDTH<V>; lane++) {
+    const double* rate = motion.beam.data() + 3 * int(base[ELEMENT][i + lane]);
+    front[lane] = load<Row>(rate), rear[lane] = load<Row>(rate + 2);
   }
-  store(s[BEAM_FORCE] + i, deflection), store(s[BEAM_MOMENT] + i, twist);
+  V first[ROW], second[ROW];
+  transpose<V>(front, first), transpose<V>(rear, second);
+  const V z = load<V>(base[IN_ELEMENT] + i);
+  const Shapes<V> shape(z, load<V>(base[ELEMENT_LENGTH] + i));
+  deflection =
+      shape.front * first[0] + shape.front_slope * first[1] + shape.rear * second[1] + shape.rear_slope * second[2];
+  twist = (1.0 - z) * first[2] + z * second[3];
 }
 
 // [slide] Speed along the edge at the centre of pressure, and the law's μ.
 template <class V>
-void slide(const Motion& motion, const Pose& pose, const Snow& snow, Sections& s) {
+void slide(const Motion& motion, const Pose& pose, const Snow& snow, const Base& base, const Pressures& pressure,
+           Sliding& out) {
   const BootMotion m(motion, pose);
   const FrictionLaw& law = snow.friction;
   const double fade = law.fade_speed * law.fade_speed;
-  for (int i = 0; i < s.count(); i += WIDTH<V>) find_beam_rates<V>(motion, s, i);
-  for (int i = 0; i < s.count(); i += WIDTH<V>) {
-    const Cut<V> c = Cut<V>::stored(s, i);
-    const Centre<V> centre(c, load<V>(s[FORCE] + i), load<V>(s[MOMENT] + i));
-    const V deflecting = load<V>(s[BEAM_FORCE] + i), turning = load<V>(s[BEAM_MOMENT] + i) * centre.arm;
+  for (int i = 0; i < base.count(); i += WIDTH<V>) {
+    if (!any(load<V>(base[SHARE] + i) > 0.0)) {  // beyond tip and tail
+      for (const SlidingField field : {SLIDING, FRICTION, FRICTION_SLOPE}) store(out[field] + i, V{});
+      continue;
+    }
+    const Cut<V> c = Cut<V>::stored(base, i);
+    const Centre<V> centre(c, load<V>(pressure[FORCE] + i), load<V>(pressure[MOMENT] + i));
+    V deflecting, turning;
+    find_beam_rates<V>(motion, base, i, deflecting, turning);
+    turning *= centre.arm;
     const Vector<V> velocity{m.v[0] + m.o[1] * centre.at.z - m.o[2] * centre.at.y,
                              m.v[1] + m.o[2] * centre.at.x - m.o[0] * centre.at.z - c.sp * turning,
                              m.v[2] + m.o[0] * centre.at.y - m.o[1] * centre.at.x + deflecting - c.cp * turning};
@@ -90,9 +94,9 @@ void slide(const Motion& motion, const Pose& pose, const Snow& snow, Sections& s
     const V film = 1.0 / (1.0 + speed / law.film_speed), size = 1.0 / root(sliding * sliding + fade);
     const V mu = law.constant + speed * (law.linear + law.square * speed) + law.film * film;
     const V growth = law.linear + 2.0 * law.square * speed - law.film / law.film_speed * film * film;
-    store(s[SLIDING] + i, sliding);
-    store(s[FRICTION] + i, mu * sliding * size);
-    store(s[FRICTION_SLOPE] + i, (growth * speed + mu * fade * size * size) * size);
+    store(out[SLIDING] + i, sliding);
+    store(out[FRICTION] + i, mu * sliding * size);
+    store(out[FRICTION_SLOPE] + i, (growth * speed + mu * fade * size * size) * size);
   }
 }
 
@@ -158,18 +162,23 @@ Cut<V> displaced(const Cut<V>& base, int change, double way) {
 
 // [push] All forces of the sections, summed to the wrench on the boot and the loads of the beam.
 template <class V>
-void push(const Motion&, const Pose&, const Snow& snow, Sections& s, Wrench& out) {
+void push(const Snow& snow, const Base& base, const Pressures& pressure, const EdgeHold& edge, const Sliding& sliding,
+          SectionForces& forces, Wrench& out) {
   Sum sums[6];
-  for (int i = 0; i < s.count(); i += WIDTH<V>) {
-    const Acting<V> by{load<V>(s[SHARE] + i),     load<V>(s[FORCE] + i),         load<V>(s[MOMENT] + i),
-                       load<V>(s[FRICTION] + i),  load<V>(s[EDGE_STRENGTH] + i), load<V>(s[EDGE_THRUST] + i),
-                       load<V>(s[SHEAR_USED] + i)};
-    const Pushed<V> pushed(Cut<V>::stored(s, i), by, snow);
-    for (int k = 0; k < Pushed<V>::PARTS; k++) store(s[SectionField(FORCE_0 + k)] + i, pushed.parts[k]);
+  for (int i = 0; i < base.count(); i += WIDTH<V>) {
+    if (!any((load<V>(base[SHARE] + i) > 0.0) & (load<V>(base[DEEPEST] + i) > 0.0))) {
+      for (int field = 0; field < FORCE_FIELDS; field++) store(forces[ForceField(field)] + i, V{});
+      continue;
+    }
+    const Acting<V> by{load<V>(base[SHARE] + i),       load<V>(pressure[FORCE] + i),     load<V>(pressure[MOMENT] + i),
+                       load<V>(sliding[FRICTION] + i), load<V>(edge[EDGE_STRENGTH] + i), load<V>(edge[EDGE_THRUST] + i),
+                       load<V>(edge[SHEAR_USED] + i)};
+    const Pushed<V> pushed(Cut<V>::stored(base, i), by, snow);
+    for (int k = 0; k < Pushed<V>::PARTS; k++) store(forces[ForceField(FORCE_0 + k)] + i, pushed.parts[k]);
     for (int k = 0; k < 6; k++) sums[k].add(i % BLOCK, pushed.parts[k]);
-    store(s[SHEAR] + i, pushed.shear);
-    store(s[PUSH] + i, pushed.along);
-    store(s[FRICTION_LOAD] + i, pushed.load);
+    store(forces[SHEAR] + i, pushed.shear);
+    store(forces[PUSH] + i, pushed.along);
+    store(forces[FRICTION_LOAD] + i, pushed.load);
   }
   for (int a = 0; a < 3; a++) out.force[a] = sums[a].total(), out.moment[a] = sums[a + 3].total();
 }
@@ -182,10 +191,10 @@ template <class V>
 void differ(const Snow& snow, const GrooveLines& lines, const Sections& s, double step, double sense, bool is_level,
             SectionDifferences& out) {
   constexpr int CHANGES = SectionDifferences::CHANGES, PARTS = Pushed<V>::PARTS;
-  for_lanes<V>(s, lines, [&](int i, int j) {
+  for_lanes<V>(s.base, lines, [&](int i, int j) {
     if (!any((load<V>(s[SHARE] + i) > 0.0) & (load<V>(s[DEEPEST] + i) > 0.0))) return;
-    const Cut<V> base(s, i), here = Cut<V>::stored(s, i);
-    const PressedGrowth<V> growth(s, i);
+    const Cut<V> base(s.base, i), here = Cut<V>::stored(s.base, i);
+    const PressedGrowth<V> growth(s.pressure, i);
     Acting<V> by;
     by.share = load<V>(s[SHARE] + i), by.friction = load<V>(s[FRICTION] + i);
     by.strength = load<V>(s[EDGE_STRENGTH] + i), by.thrust = load<V>(s[EDGE_THRUST] + i);
@@ -194,6 +203,7 @@ void differ(const Snow& snow, const GrooveLines& lines, const Sections& s, doubl
       V parts[PARTS] = {};
       for (int side = 0; side < sides; side++) {
         const double way = (side == 0 ? 1.0 : -1.0) * (change == SectionDifferences::OFF ? step : sense * step);
+        const double per_way = 1.0 / (sides * way);
         Cut<V> c = here;
         V force, moment;
         if (change == SectionDifferences::TWIST) {
@@ -201,14 +211,14 @@ void differ(const Snow& snow, const GrooveLines& lines, const Sections& s, doubl
           c.cut(snow);
           growth.between(here, c, force, moment);
         } else {
-          c.move(s, i, change == SectionDifferences::LEFT, way);
+          c.move(s.base, i, change == SectionDifferences::LEFT, way);
           growth.between_moved(here, c, force, moment);
         }
         by.force = load<V>(s[FORCE] + i) + force, by.moment = load<V>(s[MOMENT] + i) + moment;
         by.used = eased(snow, lines, j, shear_used(snow, lines, j, c), by.strength, by.thrust, c.edge_depth);
         const Pushed<V> pushed(c, by, snow);
         for (int k = 0; k < PARTS; k++)
-          parts[k] += (load<V>(s[SectionField(FORCE_0 + k)] + i) - pushed.parts[k]) / (sides * way);
+          parts[k] += per_way * (load<V>(s[ForceField(FORCE_0 + k)] + i) - pushed.parts[k]);
       }
       for (int k = 0; k < PARTS; k++) store(out.column(change, k) + i, parts[k]);
     }

@@ -8,18 +8,18 @@ namespace skisnow::SKISNOW_LANES {
 
 using Width = Lanes<SKISNOW_WIDTH>;
 
-extern const Kernels SET{SKISNOW_NAME(SKISNOW_LANES),
-                         SKISNOW_WIDTH,
-                         find_sections<Width>,
-                         press<Width>,
-                         find_unknown<Width>,
-                         square_depths<Width>,
-                         drag_anchors<Width>,
-                         slide<Width>,
-                         push<Width>,
-                         differ<Width>,
-                         add_stiffness,
-                         {eliminate, substitute_forwards, substitute_backwards, add_band, add_coupling, add_coupled,
-                          combine, add_congruent}};
+extern const Kernels SET{.name = SKISNOW_NAME(SKISNOW_LANES),
+                         .lanes = SKISNOW_WIDTH,
+                         .find_sections = find_sections<Width>,
+                         .press = press<Width>,
+                         .slide = slide<Width>,
+                         .push = push<Width>,
+                         .differ = differ<Width>,
+                         .add_stiffness = add_stiffness,
+                         .find_unknown = find_unknown<Width>,
+                         .square_depths = square_depths<Width>,
+                         .drag_anchors = drag_anchors<Width>,
+                         .band = {eliminate, substitute_forwards, substitute_backwards, add_band, add_coupling,
+                                  add_coupled, combine, add_congruent}};
 
 }  // namespace skisnow::SKISNOW_LANES

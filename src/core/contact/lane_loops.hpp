@@ -7,7 +7,7 @@ namespace skisnow::SKISNOW_LANES {
 
 // A loop over all lanes of the sections; i: place in the columns, j: slot of the line.
 template <class V, class Body>
-inline void for_lanes(const Sections& s, const GrooveLines& lines, const Body& body) {
+inline void for_lanes(const Base& s, const GrooveLines& lines, const Body& body) {
   for (int block = 0; block < s.blocks; block++) {
     const int slot = int((s.first_block + block) & (lines.blocks() - 1)) * BLOCK;
     for (int lane = 0; lane < BLOCK; lane += WIDTH<V>) body(block * BLOCK + lane, slot + lane);
@@ -20,15 +20,15 @@ struct Vector {
 };
 
 template <class V>
-inline Vector<V> load3(const Sections& s, SectionField first, int i) {
-  return {load<V>(s[first] + i), load<V>(s[SectionField(first + 1)] + i), load<V>(s[SectionField(first + 2)] + i)};
+inline Vector<V> load3(const Base& s, BaseField first, int i) {
+  return {load<V>(s[first] + i), load<V>(s[BaseField(first + 1)] + i), load<V>(s[BaseField(first + 2)] + i)};
 }
 
 template <class V>
-inline void store3(Sections& s, SectionField first, int i, const Vector<V>& v) {
+inline void store3(Base& s, BaseField first, int i, const Vector<V>& v) {
   store(s[first] + i, v.x);
-  store(s[SectionField(first + 1)] + i, v.y);
-  store(s[SectionField(first + 2)] + i, v.z);
+  store(s[BaseField(first + 1)] + i, v.y);
+  store(s[BaseField(first + 2)] + i, v.z);
 }
 
 template <class V>

@@ -65,7 +65,7 @@ void square_depths(const GrooveLines& lines, double* out) {
 // [drag_anchors] Where `slips` (by slot) is 1, the anchor follows the edge at its full displacement; its way counts as
 // slip.
 template <class V>
-void drag_anchors(const Snow& snow, const Sections& s, const double* slips, GrooveLines& lines) {
+void drag_anchors(const Snow& snow, const Base& s, const double* slips, GrooveLines& lines) {
   const double reach = snow.shear_displacement;
   for_lanes<V>(s, lines, [&](int i, int j) {
     const MaskOf<V> drags =

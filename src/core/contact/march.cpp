@@ -81,7 +81,7 @@ bool press_undelayed(const Pressing& pressing, const DelayedGround& delayed, Gro
 }
 
 // Keep the base that touches a line: the way of its edge since it was marked last, and all that lies under it.
-void press_base(const Sections& s, int i, const Snow& snow, GrooveLines& lines, int slot) {
+void press_base(const Base& s, int i, const Snow& snow, GrooveLines& lines, int slot) {
   const double edge = s[EDGE_PLACE][i], depth = s[EDGE_DEPTH][i], fall = s[DEPTH_FALL][i];
   const double from = s[WET_FROM][i], to = std::max(s[WET_TO][i], from);
   const bool marked = lines.values[MARKED][slot] > 0.5;
@@ -100,13 +100,11 @@ void press_base(const Sections& s, int i, const Snow& snow, GrooveLines& lines, 
 }
 
 // The point of the base at which the shear acts, as a share of the half width.
-double edge_side(const Sections& s, int i) {
-  return s[HALF_WIDTH][i] > 0.0 ? s[EDGE_REACH][i] / s[HALF_WIDTH][i] : 0.0;
-}
+double edge_side(const Base& s, int i) { return s[HALF_WIDTH][i] > 0.0 ? s[EDGE_REACH][i] / s[HALF_WIDTH][i] : 0.0; }
 
 // Keep where the edge holds: where it came through the surface, not farther off than its full displacement. The
 // displacement is that of the point at which the shear acted before, see [material_edge].
-void keep_anchor(const Sections& s, int i, const Snow& snow, GrooveLines& lines, int slot) {
+void keep_anchor(const Base& s, int i, double eased, const Snow& snow, GrooveLines& lines, int slot) {
   auto& v = lines.values;
   const double edge = s[EDGE_PLACE][i], depth = s[DEEPEST][i], reach = snow.shear_displacement;
   const double moved = (s[HALF_WIDTH][i] * v[EDGE_SIDE][slot] - s[EDGE_REACH][i]) / s[BASE_WIDENING][i];
@@ -115,14 +113,15 @@ void keep_anchor(const Sections& s, int i, const Snow& snow, GrooveLines& lines,
     anchor = v[ANCHOR][slot] - moved;
   else if (v[ABOVE][slot] > 0.5)
     anchor = edge - depth / (depth - v[DEPTH_ABOVE][slot]) * (edge + moved - v[EDGE_ABOVE][slot]);
-  anchor += reach * s[SHEAR_EASED][i];
+  anchor += reach * eased;
   v[EDGE_SIDE][slot] = edge_side(s, i);
   v[ANCHOR][slot] = std::clamp(anchor, edge - reach, edge + reach);
   v[SLIPPED][slot] += std::fabs(v[ANCHOR][slot] - anchor);
   v[ANCHORED][slot] = 1.0;
 }
 
-void remember_section(const Sections& s, int i, const Snow& snow, GrooveLines& lines, int slot) {
+// `eased`: share of the displacement by which the edge was eased, see [ease].
+void remember_section(const Base& s, int i, double eased, const Snow& snow, GrooveLines& lines, int slot) {
   auto& v = lines.values;
   if (!s.touches(i)) {
     v[MARKED][slot] = 0.0;
@@ -138,15 +137,18 @@ void remember_section(const Sections& s, int i, const Snow& snow, GrooveLines& l
   v[MARKED][slot] = 1.0;
   v[EDGE_MARKED][slot] = s[EDGE_PLACE][i];
   v[DEPTH_MARKED][slot] = s[EDGE_DEPTH][i];
-  keep_anchor(s, i, snow, lines, slot);
+  keep_anchor(s, i, eased, snow, lines, slot);
   v[ABOVE][slot] = 0.0;
 }
 
 }  // namespace
 
-void SnowContact::remember(int k, GrooveLines& lines) const {
+void SnowContact::remember(int k, GrooveLines& lines, bool is_eased) const {
   const Sections& s = sections(k);
-  for (std::int64_t n = lines.first; n < lines.end; n++) remember_section(s, s.index(n), *snow_, lines, lines.slot(n));
+  for (std::int64_t n = lines.first; n < lines.end; n++) {
+    const int i = s.index(n);
+    remember_section(s.base, i, is_eased ? s[SHEAR_EASED][i] : 0.0, *snow_, lines, lines.slot(n));
+  }
 }
 
 // Into how many parts the way from the accepted pose is divided; one where the runner was put there in no time.
@@ -173,8 +175,8 @@ void SnowContact::march(int k, GrooveLines& lines, const Situation& to) {
   const int parts = this->parts(k, to);
   for (int part = 1; part < parts; part++) {
     interpolate(state_.accepted[std::size_t(k)], to.poses[std::size_t(k)], double(part) / parts, on_way_);
-    kernels_->find_sections(runner(k), on_way_, *snow_, lines, lines.first, sections_[std::size_t(k)]);
-    remember(k, lines);
+    kernels_->find_sections(runner(k), on_way_, *snow_, lines, lines.first, sections_[std::size_t(k)].base);
+    remember(k, lines, false);
   }
 }
 
@@ -230,9 +232,9 @@ void SnowContact::march_where_needed(int k, const Situation& to) {
   Sections& s = sections_[std::size_t(k)];
   for (int part = 1; part < parts; part++) {
     interpolate(from, end, double(part) / parts, on_way_);
-    kernels_->find_sections(runner(k), on_way_, *snow_, lines, first, s);
-    for (const std::int64_t n : needed_) remember_section(s, s.index(n), *snow_, lines, lines.slot(n));
-    if (rearmost_slip_) kernels_->drag_anchors(*snow_, s, slips_.data(), lines);
+    kernels_->find_sections(runner(k), on_way_, *snow_, lines, first, s.base);
+    for (const std::int64_t n : needed_) remember_section(s.base, s.index(n), 0.0, *snow_, lines, lines.slot(n));
+    if (rearmost_slip_) kernels_->drag_anchors(*snow_, s.base, slips_.data(), lines);
   }
 }
 

@@ -175,16 +175,16 @@ struct PressedGrowth {
     force_from = g.at_from - hardness * (sums.depth + sums.fall * from);
   }
 
-  PressedGrowth(const Sections& s, int i) {
+  PressedGrowth(const Pressures& pressure, int i) {
     V* const to[COUNT] = {&force_depth, &force_fall,   &force_place, &moment_depth,
                           &moment_fall, &moment_place, &force_from,  &force_to};
-    for (int k = 0; k < COUNT; k++) *to[k] = load<V>(s[SectionField(FORCE_BY_DEPTH + k)] + i);
+    for (int k = 0; k < COUNT; k++) *to[k] = load<V>(pressure[PressureField(FORCE_BY_DEPTH + k)] + i);
   }
 
-  void store_at(Sections& s, int i, V share) const {
+  void store_at(Pressures& pressure, int i, V share) const {
     const V* const from[COUNT] = {&force_depth, &force_fall,   &force_place, &moment_depth,
                                   &moment_fall, &moment_place, &force_from,  &force_to};
-    for (int k = 0; k < COUNT; k++) store(s[SectionField(FORCE_BY_DEPTH + k)] + i, share * *from[k]);
+    for (int k = 0; k < COUNT; k++) store(pressure[PressureField(FORCE_BY_DEPTH + k)] + i, share * *from[k]);
   }
 
   // Growth of force and moment from one section to another that is close to it.
@@ -271,26 +271,28 @@ V strength_left(const ShearLaw& law, V slipped) {
 // [press] What the snow answers to each section, and how far the shear at its edge is displaced; how the answers grow,
 // where that is wanted.
 template <class V>
-void press(const Snow& snow, const GrooveLines& lines, bool grows, Sections& s) {
-  for_lanes<V>(s, lines, [&](int i, int j) {
-    const V share = load<V>(s[SHARE] + i), none{};
-    const MaskOf<V> wet = (share > 0.0) & (load<V>(s[DEEPEST] + i) > 0.0);
-    store(s[EDGE_THRUST] + i, none);
+void press(const Snow& snow, const GrooveLines& lines, const Base& base, bool grows, Pressures& pressure,
+           EdgeHold& edge) {
+  for_lanes<V>(base, lines, [&](int i, int j) {
+    const V share = load<V>(base[SHARE] + i), none{};
+    const MaskOf<V> wet = (share > 0.0) & (load<V>(base[DEEPEST] + i) > 0.0);
+    store(edge[EDGE_THRUST] + i, none), store(edge[SHEAR_EASED] + i, none);
     if (!any(wet)) {
-      for (SectionField field : {FORCE, MOMENT, SNOW_ENERGY, SHEAR_USED, STRENGTH_LEFT, EDGE_STRENGTH})
-        store(s[field] + i, none);
+      for (const PressureField field : {FORCE, MOMENT, SNOW_ENERGY}) store(pressure[field] + i, none);
+      for (const EdgeField field : {SHEAR_USED, STRENGTH_LEFT, EDGE_STRENGTH}) store(edge[field] + i, none);
       return;
     }
-    const Cut<V> c = Cut<V>::stored(s, i);
-    const Pressed<V> answer(snow, lines, j, c, grows,
-                            [&](const PressedGrowth<V>& growth) { growth.store_at(s, i, select(wet, share, none)); });
-    store(s[FORCE] + i, select(wet, share * answer.force, none));
-    store(s[MOMENT] + i, select(wet, share * answer.moment, none));
-    store(s[SNOW_ENERGY] + i, select(wet, share * answer.energy, none));
-    store(s[SHEAR_USED] + i, select(wet, shear_used(snow, lines, j, c), none));
+    const Cut<V> c = Cut<V>::stored(base, i);
+    const Pressed<V> answer(snow, lines, j, c, grows, [&](const PressedGrowth<V>& growth) {
+      growth.store_at(pressure, i, select(wet, share, none));
+    });
+    store(pressure[FORCE] + i, select(wet, share * answer.force, none));
+    store(pressure[MOMENT] + i, select(wet, share * answer.moment, none));
+    store(pressure[SNOW_ENERGY] + i, select(wet, share * answer.energy, none));
+    store(edge[SHEAR_USED] + i, select(wet, shear_used(snow, lines, j, c), none));
     const V left = strength_left(snow.shear, load<V>(lines.values[SLIPPED] + j));
-    store(s[STRENGTH_LEFT] + i, select(wet, left, none));
-    store(s[EDGE_STRENGTH] + i, select(wet, snow.strength_share * load<V>(lines.values[STRENGTH] + j) * left, none));
+    store(edge[STRENGTH_LEFT] + i, select(wet, left, none));
+    store(edge[EDGE_STRENGTH] + i, select(wet, snow.strength_share * load<V>(lines.values[STRENGTH] + j) * left, none));
   });
 }
 

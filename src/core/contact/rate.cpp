@@ -204,7 +204,7 @@ Acting<double> acting(const Snow& snow, const GrooveLines& lines, const Sections
 void keep_differences(const Pushed<double>& pushed, const Sections& s, int i, int change, double way,
                       SectionDifferences& out) {
   for (int k = 0; k < Pushed<double>::PARTS; k++)
-    out.column(change, k)[i] = (s[SectionField(FORCE_0 + k)][i] - pushed.parts[k]) / way;
+    out.column(change, k)[i] = (s[ForceField(FORCE_0 + k)][i] - pushed.parts[k]) / way;
 }
 
 }  // namespace
@@ -226,16 +226,16 @@ void RatedBase::press(const Snow& snow, const GrooveLines& lines, const Pose& po
   dt_ = dt;
   moving_.assign(std::size_t(s.count()), moving);
   for (int i = 0; i < s.count(); i++) {
-    s[RATE_POWER][i] = 0.0;
+    s.pressure[RATE_POWER][i] = 0.0;
     if (!s.touches(i)) continue;
     BaseMotion& here = moving_[std::size_t(i)];
-    alone::beam_rates(motion, s, i, here.deflecting, here.twisting);
-    const Section c = Section::stored(s, i);
+    alone::beam_rates(motion, s.base, i, here.deflecting, here.twisting);
+    const Section c = Section::stored(s.base, i);
     const Sums sums =
         BaseOnLine(snow, lines, lines.slot(s.line(i)), c, dt).bear(depth_rate(c, moving_[std::size_t(i)]));
     const double share = s[SHARE][i];
-    s[FORCE][i] = share * sums.force, s[MOMENT][i] = share * sums.moment;
-    s[SNOW_ENERGY][i] = share * sums.energy, s[RATE_POWER][i] = share * sums.power;
+    s.pressure[FORCE][i] = share * sums.force, s.pressure[MOMENT][i] = share * sums.moment;
+    s.pressure[SNOW_ENERGY][i] = share * sums.energy, s.pressure[RATE_POWER][i] = share * sums.power;
   }
 }
 
@@ -245,7 +245,7 @@ void RatedBase::differ(const Snow& snow, const GrooveLines& lines, const Section
   for (int i = 0; i < s.count(); i++)
     for (int change = 0; change < SectionDifferences::CHANGES && s.touches(i); change++) {
       const double way = change == SectionDifferences::OFF ? step : sense * step;
-      Section c = alone::displaced(Section(s, i), change, way);
+      Section c = alone::displaced(Section(s.base, i), change, way);
       c.cut(snow);
       const Sums sums =
           BaseOnLine(snow, lines, lines.slot(s.line(i)), c, dt_).bear(depth_rate(c, moving_[std::size_t(i)]));
@@ -258,7 +258,7 @@ void RatedBase::differ_rates(const Snow& snow, const GrooveLines& lines, const S
   std::fill(out.values.begin(), out.values.end(), 0.0);
   for (int i = 0; i < s.count(); i++) {
     if (!s.touches(i)) continue;
-    const Section c = Section::stored(s, i);
+    const Section c = Section::stored(s.base, i);
     const BaseOnLine base(snow, lines, lines.slot(s.line(i)), c, dt_);
     for (int change = 0; change < SectionDifferences::CHANGES; change++) {
       const double way = change == SectionDifferences::OFF ? RATE_STEP : sense * RATE_STEP;
@@ -277,7 +277,7 @@ double advance_delayed(const Snow& snow, const Sections& s, double dt, GrooveLin
   for (std::int64_t n = lines.first; n < lines.end; n++) {
     const int i = s.index(n), slot = lines.slot(n);
     DelayedGround& delayed = lines.delayed[std::size_t(slot)];
-    const Section c = Section::stored(s, i);
+    const Section c = Section::stored(s.base, i);
     const bool touches = s.touches(i);
     if (touches)
       delayed.cover(long(std::ceil((c.place + c.wet_from) / delayed.spacing)),

@@ -39,7 +39,7 @@ inline void look_up_shape(const Runner& runner, V place, V (&out)[ROW]) {
 // each of them: from the crossing of the straight axis two fixed-point steps, whose error falls with the sidecut's
 // slope.
 template <class V>
-void cross_lines(const Runner& runner, const Pose& pose, const Snow& snow, const GrooveLines& lines, Sections& s) {
+void cross_lines(const Runner& runner, const Pose& pose, const Snow& snow, const GrooveLines& lines, Base& s) {
   const auto& R = pose.rotation;
   const auto& c = pose.position;
   const double per_blend = 1.0 / snow.edge_blend_sine;
@@ -73,7 +73,7 @@ void cross_lines(const Runner& runner, const Pose& pose, const Snow& snow, const
 // [give_share] The length of ski that each line stands for: halfway to its neighbours, and no farther than tip and
 // tail. Lines beyond the ends lie one spacing off.
 template <class V>
-void give_share(const Runner& runner, const GrooveLines& lines, Sections& s) {
+void give_share(const Runner& runner, const GrooveLines& lines, Base& s) {
   double* station = s[STATION];
   const int first = std::max(s.index(lines.first), 0), end = std::min(s.index(lines.end), s.count());
   if (first >= end) {
@@ -168,7 +168,7 @@ struct Cut {
   V size;  // one over the length of `along` before it was made a unit
 
   // The base as it is bent, not yet cut.
-  Cut(const Sections& s, int i) {
+  Cut(const Base& s, int i) {
     station = load<V>(s[STATION] + i), half = load<V>(s[HALF_WIDTH] + i), flare = load<V>(s[FLARE] + i);
     height = load<V>(s[BASE_HEIGHT] + i), rise = load<V>(s[BASE_RISE] + i);
     sp = load<V>(s[TWIST_SINE] + i), cp = load<V>(s[TWIST_COSINE] + i), twist_slope = load<V>(s[TWIST_SLOPE] + i);
@@ -177,7 +177,7 @@ struct Cut {
   }
 
   // A section that was cut and stored.
-  static Cut stored(const Sections& s, int i) {
+  static Cut stored(const Base& s, int i) {
     Cut c(s, i);
     c.sine = load<V>(s[EDGE_SINE] + i), c.deepest = load<V>(s[DEEPEST] + i), c.reach = load<V>(s[EDGE_REACH] + i);
     c.edge_depth = load<V>(s[EDGE_DEPTH] + i), c.edge_left = load<V>(s[EDGE_LEFT] + i);
@@ -188,18 +188,18 @@ struct Cut {
     return c;
   }
 
-  void store_at(Sections& s, int i) const {
+  void store_at(Base& s, int i) const {
     store(s[EDGE_SINE] + i, sine), store(s[DEEPEST] + i, deepest), store(s[EDGE_REACH] + i, reach);
     store(s[EDGE_DEPTH] + i, edge_depth), store(s[EDGE_LEFT] + i, edge_left), store(s[EDGE_UP] + i, edge_up);
     store(s[EDGE_PLACE] + i, place), store(s[DEPTH_FALL] + i, fall), store(s[DEPTH_CLIMB] + i, climb);
     store(s[BASE_WIDENING] + i, widening), store(s[WET_FROM] + i, wet_from), store(s[WET_TO] + i, wet_to);
     store3(s, ACROSS_0, i, across), store3(s, ALONG_0, i, along), store(s[ALONG_SIZE] + i, size);
-    store(s[EDGE_SKEW] + i, skew_), store(s[SHEAR_EASED] + i, V{});
+    store(s[EDGE_SKEW] + i, skew_);
   }
 
   // A stored section after the base has moved by a small way to the left, or off the snow. The wet base ends where it
   // did: the snow bears nothing at the water line.
-  void move(const Sections& s, int i, bool to_left, double way) {
+  void move(const Base& s, int i, bool to_left, double way) {
     const V skew = load<V>(s[EDGE_SKEW] + i), rise = to_left ? normal.y : normal.z;
     (to_left ? edge_left : edge_up) += way;
     deepest -= way * rise, edge_depth -= way * rise;
@@ -262,7 +262,7 @@ struct Cut {
 
 // [cut_base] The bent base over each line and its plane section: the deeper edge, directions, where the base is wet.
 template <class V>
-void cut_base(const Runner& runner, const Pose& pose, const Snow& snow, const GrooveLines& lines, Sections& s) {
+void cut_base(const Runner& runner, const Pose& pose, const Snow& snow, const GrooveLines& lines, Base& s) {
   for_lanes<V>(s, lines, [&](int i, int) {
     if (!any(load<V>(s[SHARE] + i) > 0.0)) {
       store(s[DEEPEST] + i, V{});
@@ -282,8 +282,8 @@ void cut_base(const Runner& runner, const Pose& pose, const Snow& snow, const Gr
 
 template <class V>
 void find_sections(const Runner& runner, const Pose& pose, const Snow& snow, const GrooveLines& lines,
-                   std::int64_t first, Sections& s) {
-  s.prepare(lines, first);
+                   std::int64_t first, Base& s) {
+  s.cover(lines, first);
   cross_lines<V>(runner, pose, snow, lines, s);
   give_share<V>(runner, lines, s);
   cut_base<V>(runner, pose, snow, lines, s);

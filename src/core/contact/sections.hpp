@@ -10,10 +10,12 @@
 
 namespace skisnow {
 
-// Vectors are in the ski's axes (0 ahead, 1 left across the base, 2 off the base), from the boot. x counts across along
-// the line, to the left, from the edge that is deeper.
+// One struct of arrays for each stage of an evaluation. Vectors are in the ski's axes (0 ahead, 1 left across the base,
+// 2 off the base), from the boot. x counts across along the line, to the left, from the edge that is deeper.
 // clang-format off: fields that belong together share a row
-enum SectionField {
+
+// The base over each line (find_sections).
+enum BaseField {
   // the line: its place from the boot, its directions ahead, out of the snow, and to the left
   FROM_BOOT_0, FROM_BOOT_1, FROM_BOOT_2, LINE_AHEAD_0, LINE_AHEAD_1, LINE_AHEAD_2,
   LINE_NORMAL_0, LINE_NORMAL_1, LINE_NORMAL_2, LINE_LEFT_0, LINE_LEFT_1, LINE_LEFT_2,
@@ -31,36 +33,72 @@ enum SectionField {
   // wet base begins and ends
   DEPTH_FALL, DEPTH_CLIMB, BASE_WIDENING, WET_FROM, WET_TO,
   EDGE_SKEW,  // how far the edge's place moves along the line as the line moves ahead by one
-  // the answer of the snow: force (N) and its moment about the edge; elastic energy of the snow (J)
-  FORCE, MOMENT, SNOW_ENERGY,
+  BASE_FIELDS
+};
+
+// The pressure on each section (press, or a law from outside).
+enum PressureField {
+  FORCE, MOMENT, SNOW_ENERGY,  // force (N), its moment about the edge (N m), elastic energy of the snow (J)
+  RATE_POWER,                  // that the dashpot of snow that takes time takes (W)
   // on demand: growth of force and moment with the depth of the edge, its fall, its place, and the wet base's ends
   FORCE_BY_DEPTH, FORCE_BY_FALL, FORCE_BY_PLACE, MOMENT_BY_DEPTH, MOMENT_BY_FALL, MOMENT_BY_PLACE, FORCE_BY_FROM,
   FORCE_BY_TO,
-  RATE_POWER,  // that c of snow that takes time takes (W)
-  // the edge: share of the strength that is left after slip, shear strength S_f and the thrust off the snow that comes
-  // with it (Pa), the share of the displacement to full strength in use, and the part of it by which the edge was eased
-  STRENGTH_LEFT, EDGE_STRENGTH, EDGE_THRUST, SHEAR_USED, SHEAR_EASED,
-  // velocity of the base at the centre of pressure along the edge (m/s); μ with its sign, and its growth with it; the
-  // load that friction acts on (N)
-  SLIDING, FRICTION, FRICTION_SLOPE, FRICTION_LOAD,
-  // shear across the edge, what acts along it (N); force and moment about the boot in the ski's axes; on the beam
-  SHEAR, PUSH, FORCE_0, FORCE_1, FORCE_2, MOMENT_0, MOMENT_1, MOMENT_2, BEAM_FORCE, BEAM_MOMENT,
-  SECTION_FIELDS
+  PRESSURE_FIELDS
+};
+
+// The hold of the snow at the edge (press, or a law from outside): share of the strength that is left after slip, shear
+// strength S_f and the thrust off the snow that comes with it (Pa), share of the displacement to full strength in use,
+// and the part of it by which the edge was eased.
+enum EdgeField { STRENGTH_LEFT, EDGE_STRENGTH, EDGE_THRUST, SHEAR_USED, SHEAR_EASED, EDGE_FIELDS };
+
+// Sliding along the edge (slide, or a law from outside): velocity of the base at the centre of pressure (m/s), μ with
+// its sign, and its growth with that velocity (s/m).
+enum SlidingField { SLIDING, FRICTION, FRICTION_SLOPE, SLIDING_FIELDS };
+
+// The forces of each section (push): shear across the edge, the force along it, the load that friction acts on (N);
+// force and moment about the boot in the ski's axes; force and moment on the beam.
+enum ForceField {
+  SHEAR, PUSH, FRICTION_LOAD,
+  FORCE_0, FORCE_1, FORCE_2, MOMENT_0, MOMENT_1, MOMENT_2, BEAM_FORCE, BEAM_MOMENT,
+  FORCE_FIELDS
 };
 // clang-format on
 
-struct Sections {
-  Columns<SectionField, SECTION_FIELDS> values;
+struct Base : Columns<BaseField, BASE_FIELDS> {
   std::int64_t first_block = 0;  // of the lines
   int blocks = 0;
 
-  double* operator[](SectionField field) { return values[field]; }
-  const double* operator[](SectionField field) const { return values[field]; }
   int count() const { return blocks * BLOCK; }
   std::int64_t line(int i) const { return first_block * BLOCK + i; }
   int index(std::int64_t line) const { return int(line - first_block * BLOCK); }
   bool touches(int i) const { return (*this)[SHARE][i] > 0.0 && (*this)[DEEPEST][i] > 0.0; }
-  void prepare(const GrooveLines& lines, std::int64_t first);  // for the lines from the first one
+  void cover(const GrooveLines& lines, std::int64_t first);  // the lines from the first one
+};
+using Pressures = Columns<PressureField, PRESSURE_FIELDS>;
+using EdgeHold = Columns<EdgeField, EDGE_FIELDS>;
+using Sliding = Columns<SlidingField, SLIDING_FIELDS>;
+using SectionForces = Columns<ForceField, FORCE_FIELDS>;
+
+// All stages of one runner, for readers of more than one. A field's type tells its stage.
+struct Sections {
+  Base base;
+  Pressures pressure;
+  EdgeHold edge;
+  Sliding sliding;
+  SectionForces forces;
+
+  Sections() = default;
+  explicit Sections(int capacity);  // of the runner's lines
+
+  int count() const { return base.count(); }
+  std::int64_t line(int i) const { return base.line(i); }
+  int index(std::int64_t line) const { return base.index(line); }
+  bool touches(int i) const { return base.touches(i); }
+  const double* operator[](BaseField field) const { return base[field]; }
+  const double* operator[](PressureField field) const { return pressure[field]; }
+  const double* operator[](EdgeField field) const { return edge[field]; }
+  const double* operator[](SlidingField field) const { return sliding[field]; }
+  const double* operator[](ForceField field) const { return forces[field]; }
 };
 
 struct Wrench {
@@ -90,25 +128,26 @@ struct SectionDifferences {
 
 struct RunnerTangent;
 
-// The parts of an evaluation, each over all lines of a runner.
+// The stages of an evaluation, each over all lines of a runner: a function from structs to structs without hidden
+// state.
 struct Kernels {
   const char* name;  // of the instruction set
   int lanes;
-  void (*find_sections)(const Runner&, const Pose&, const Snow&, const GrooveLines&, std::int64_t first, Sections&);
-  // pressure, strength, share of the displacement in use; with `grows` the pressure's growth
-  void (*press)(const Snow&, const GrooveLines&, bool grows, Sections&);
-  // of the lines alone, see line_kernels.hpp; all by slot
-  bool (*find_unknown)(const GrooveLines&, const Pose&, double room, double* is_unknown);
-  void (*square_depths)(const GrooveLines&, double* out);
-  void (*drag_anchors)(const Snow&, const Sections&, const double* slips, GrooveLines&);
-  void (*slide)(const Motion&, const Pose&, const Snow&, Sections&);  // sliding speed along the edge and μ
-  void (*push)(const Motion&, const Pose&, const Snow&, Sections&, Wrench&);
+  void (*find_sections)(const Runner&, const Pose&, const Snow&, const GrooveLines&, std::int64_t first, Base&);
+  // with `grows` the pressure's growth
+  void (*press)(const Snow&, const GrooveLines&, const Base&, bool grows, Pressures&, EdgeHold&);
+  void (*slide)(const Motion&, const Pose&, const Snow&, const Base&, const Pressures&, Sliding&);
+  void (*push)(const Snow&, const Base&, const Pressures&, const EdgeHold&, const Sliding&, SectionForces&, Wrench&);
   // of sections whose pressure's growth is known; a step (m, rad), and its sense to the left and of the twist
   void (*differ)(const Snow&, const GrooveLines&, const Sections&, double step, double sense, bool is_level,
                  SectionDifferences&);
   // add the sections' derivatives to a tangent, and friction by its growth with the sliding speed, both weighted
   void (*add_stiffness)(const Sections&, const SectionDifferences&, double stiffness, double damping, bool bends,
                         RunnerTangent&);
+  // of the lines alone, see line_kernels.hpp; all by slot
+  bool (*find_unknown)(const GrooveLines&, const Pose&, double room, double* is_unknown);
+  void (*square_depths)(const GrooveLines&, double* out);
+  void (*drag_anchors)(const Snow&, const Base&, const double* slips, GrooveLines&);
   BandKernels band;
 };
 

@@ -24,7 +24,7 @@ double interpolated(const std::vector<std::pair<double, double>>& table, double 
 void SnowContact::settle_history(int k, const Pose& pose) {
   GrooveLines& lines = state_.lines[std::size_t(k)];
   if (snow_->rate.is_delayed()) state_.delayed_energy += advance_delayed(*snow_, sections(k), dt_, lines);
-  remember(k, lines);
+  remember(k, lines, strength_varies());
   if (strength_varies()) hold_strength(k, lines);
   count_energy(k, lines);
   if (lines.is_uneven(pose, *snow_)) lay_anew(k, pose);
@@ -91,8 +91,8 @@ void SnowContact::lay_anew(int k, const Pose& pose) {
   lines.leave_all(snow_->archive, state_.strips[std::size_t(k)]);
   state_.strips[std::size_t(k)] = snow_->archive.new_strip();
   prepare(k, lines, pose);
-  kernels_->find_sections(runner(k), pose, *snow_, lines, lines.first, s);
-  remember(k, lines);
+  kernels_->find_sections(runner(k), pose, *snow_, lines, lines.first, s.base);
+  remember(k, lines, false);
   for (std::int64_t n = lines.first; n < lines.end && !displaced.empty(); n++) {
     const int i = s.index(n), slot = lines.slot(n);
     if (!s.touches(i)) continue;

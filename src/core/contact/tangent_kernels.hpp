@@ -20,7 +20,7 @@ struct EightSections {
   Eight along[BLOCK], lifted, twisted, rate;
 
   EightSections(const Sections& s, int i, double damping) {
-    const auto column = [&](SectionField field) { return load<Eight>(s[field] + i); };
+    const auto column = [&](auto field) { return load<Eight>(s[field] + i); };
     const Eight none{}, one = none + 1.0, station = column(STATION), aside = column(EDGE_LEFT), up = column(EDGE_UP);
     const Eight reach = column(EDGE_REACH), sp = column(TWIST_SINE), cp = column(TWIST_COSINE);
     const Eight twisting = reach * column(TWIST_SLOPE), outwards = column(FLARE) * reach / column(HALF_WIDTH);

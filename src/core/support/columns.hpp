@@ -27,14 +27,16 @@ class Columns {
  public:
   void resize(int length) {
     length_ = length;
-    data_.assign(std::size_t(FIELDS) * std::size_t(length), 0.0);
+    stride_ = length + PAD;
+    data_.assign(std::size_t(FIELDS) * std::size_t(stride_), 0.0);
   }
   int length() const { return length_; }
-  double* operator[](Field field) { return data_.data() + std::size_t(field) * std::size_t(length_); }
-  const double* operator[](Field field) const { return data_.data() + std::size_t(field) * std::size_t(length_); }
+  double* operator[](Field field) { return data_.data() + std::size_t(field) * std::size_t(stride_); }
+  const double* operator[](Field field) const { return data_.data() + std::size_t(field) * std::size_t(stride_); }
 
  private:
-  int length_ = 0;
+  static constexpr int PAD = 8;  // a cache line: columns of 2ⁿ lines would share the same sets of the cache
+  int length_ = 0, stride_ = 0;
   Column data_;
 };
 
