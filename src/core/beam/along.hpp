@@ -1,4 +1,4 @@
-// What the snow does along a ski, brought from the lines to the nodes of its beam.
+// Depth and forces of the snow along a ski, brought from the lines to the nodes of its beam.
 #pragma once
 
 #include <vector>

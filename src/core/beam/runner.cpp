@@ -17,7 +17,7 @@ Vector3 rotation_vector(const double (&m)[3][3]) {
   return {factor * twice[0], factor * twice[1], factor * twice[2]};
 }
 
-// What turns at a steady rate and keeps its velocity in its own axes goes along an arc: how far that lies beside the
+// A body that turns at a steady rate and keeps its velocity in its own axes moves along an arc: its distance from the
 // straight way, to the second order of the turn (in the axes of the start).
 void bend_way(const Pose& from, const Pose& to, const Vector3& turn, double share, Vector3& place) {
   double way[3], axis[3];

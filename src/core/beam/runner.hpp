@@ -1,4 +1,4 @@
-// What touches the snow: the shape of a ski's base, its pose, its motion.
+// A runner in the snow: the shape of a ski's base, its pose, its motion.
 #pragma once
 
 #include <array>
@@ -46,6 +46,6 @@ struct Motion {
 // a steady rate, along the arc that goes with it.
 void interpolate(const Pose& from, const Pose& to, double share, Pose& out);
 
-void rotation_matrix(const Vector3& v, double (&out)[3][3]);  // of a rotation vector
+void rotation_matrix(const Vector3& v, double (&out)[3][3]);  // from a rotation vector
 
 }  // namespace skisnow

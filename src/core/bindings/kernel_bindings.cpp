@@ -10,7 +10,7 @@
 namespace skisnow {
 namespace {
 
-// Of the only runner: minus the derivatives of force and moment about the boot, both in the ski's moving axes, by a way
+// Minus the derivatives of the only runner's force and moment about the boot, both in the ski's moving axes, by a way
 // of the boot and a rotation about it (6, 6), weighted by pose and by motion; and the wrench there (6).
 nb::tuple runner_tangent(SnowContact& self, const Array& position, const Array& rotation, const Array& velocity,
                          double dt, double stiffness, double damping) {

@@ -12,7 +12,7 @@ namespace skisnow {
 
 using Values = std::vector<double>;
 
-// What a law answers, for many points at once.
+// The answers of a law for many points at once.
 struct PenetrationLaw {
   // depth (m) at which a place bears nothing any more, by the deepest that it was pressed to
   std::function<Values(const Values& deepest)> residual;

@@ -26,8 +26,8 @@ struct Reaction {
   std::vector<double> beam;
 };
 
-// What the snow does to a runner (W): across the edge, along it by friction, and all else of the force on the base; and
-// what of the last the snow's dashpot c takes.
+// Powers of the snow on a runner (W): across the edge, along it by friction, and of the rest of the force on the base;
+// `damping` is the part of the last that the snow's dashpot c takes.
 struct ContactPower {
   double shear, friction, normal, damping;
 };
@@ -47,8 +47,8 @@ class SnowContact {
   int strip(int k) const { return state_.strips[std::size_t(k)]; }
   const Kernels& kernels() const { return *kernels_; }
   Laws laws;
-  void set_snow(std::shared_ptr<Snow> snow) { snow_ = std::move(snow); }  // a copy of its own, tracks and all
-  void set_penetration(PenetrationLaw law);  // in place of H_V and k_u, before any snow is touched
+  void set_snow(std::shared_ptr<Snow> snow) { snow_ = std::move(snow); }  // a separate copy, with its tracks
+  void set_penetration(PenetrationLaw law);  // instead of H_V and k_u, before any snow is touched
 
   // Forces at a situation: the history advances from the last accepted pose on copies; the snow stays as it is.
   std::vector<Reaction> force(const Situation& at);
@@ -63,7 +63,7 @@ class SnowContact {
   // one next to it.
   void begin(const Situation& foreseen);
   const Wrench& look(int k, const Pose& pose, const Motion& motion, bool with_tangent);
-  const Wrench& wrench(int k) const { return wrenches_[std::size_t(k)]; }  // of the last look
+  const Wrench& wrench(int k) const { return wrenches_[std::size_t(k)]; }  // at the last look
   void take_back();
   void accept(const Situation& at);
   // Weighted sum of minus the derivatives by pose and by motion at the pose looked at last: what Newton's method needs.
@@ -96,7 +96,7 @@ class SnowContact {
   void restore(const State& state);
 
   // A state as bytes, the tracks in the snow with it, for another contact of equal runners in equal snow; `read` throws
-  // std::invalid_argument where they are none, and changes nothing; `take` goes to what was read.
+  // std::invalid_argument where they are none, and changes nothing; `take` restores the state read.
   struct Kept {
     State state;
     Archive tracks;
@@ -115,8 +115,8 @@ class SnowContact {
   std::vector<Wrench> wrenches_;
   SectionDifferences differences_;
   std::shared_ptr<Bearing> bearing_;  // null: the core's own law
-  std::vector<RatedBase> rated_;      // of each runner, where the snow takes time
-  double dt_ = 0.0;                   // since the last accepted pose, of what is looked at (s)
+  std::vector<RatedBase> rated_;      // one for each runner, if the snow takes time
+  double dt_ = 0.0;                   // from the last accepted pose to the pose that is looked at (s)
   std::vector<std::int64_t> needed_;  // lines, the foremost first
   Column scratch_;                    // by slot
   Column slips_;                      // by slot: 1 where the edge slips and nothing else is marched

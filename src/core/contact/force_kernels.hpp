@@ -1,4 +1,4 @@
-// What acts along and across the edge, and the sums on the runner.
+// Forces along and across the edge, and their sums on the runner.
 #pragma once
 
 #include "contact/pressure_kernels.hpp"
@@ -20,7 +20,7 @@ struct BootMotion {
   }
 };
 
-// Force (N) of a section below which its centre of pressure is lost in rounding: it then lies at the edge.
+// Force (N) of a section below which its centre of pressure is lost in rounding: it is then at the edge.
 constexpr double LEAST_FORCE = 1e-6;
 
 // The centre of pressure of a section: where it lies, and how far across the base from the ski's middle.
@@ -100,7 +100,7 @@ void slide(const Motion& motion, const Pose& pose, const Snow& snow, const Base&
   }
 }
 
-// What acts on a section: the snow's force and its moment about the edge, μ with its sign, shear strength, thrust and
+// The loads on a section: the snow's force and its moment about the edge, μ with its sign, shear strength, thrust and
 // the share of the displacement in use.
 template <class V>
 struct Acting {
@@ -125,7 +125,7 @@ struct Pushed {
     shear = select(wet, by.strength * area * used, none);
     const V thrust = select(wet, by.thrust * area * absolute(used), none);
     const Vector<V>& n = c.normal;
-    // what friction acts on: of the pressure, and of what acts at the edge
+    // the load of friction: a part of the pressure, and a part of the forces at the edge
     V pressing = by.force, aside = none;
     if (snow.friction_on_base) {
       const V upright = n.y * c.sp + n.z * c.cp;

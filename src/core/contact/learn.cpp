@@ -1,4 +1,4 @@
-// What the lines under one runner learn of older tracks: as far across as the ski comes, when it comes there.
+// Older tracks that the lines under one runner take over: as far across as the ski comes, when it comes there.
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -133,7 +133,7 @@ void SnowContact::prepare(int k, GrooveLines& lines, const Pose& pose) {
   }
 }
 
-// What older tracks have pressed there enters a line's ground; the energy that they took is not this runner's.
+// Grooves of older tracks enter a line's ground; the energy that they took is not this runner's.
 void SnowContact::learn(GrooveLines& lines, int slot, double from, double to, const Standing& standing) const {
   auto& v = lines.values;
   const Vector3 ahead{v[AHEAD_X][slot], v[AHEAD_Y][slot], v[AHEAD_Z][slot]};

@@ -70,7 +70,7 @@ void drag_anchors(const Snow& snow, const Base& s, const double* slips, GrooveLi
   for_lanes<V>(s, lines, [&](int i, int j) {
     const MaskOf<V> drags =
         (load<V>(slips + j) > 0.5) & (load<V>(s[SHARE] + i) > 0.0) & (load<V>(s[DEEPEST] + i) > 0.0);
-    // of the point at which the shear acted, see [material_edge]
+    // place of the point at which the shear acted, see [material_edge]
     const V moved = load<V>(s[HALF_WIDTH] + i) * load<V>(lines.values[EDGE_SIDE] + j) - load<V>(s[EDGE_REACH] + i);
     const V edge = load<V>(s[EDGE_PLACE] + i) + moved / load<V>(s[BASE_WIDENING] + i);
     const V before = load<V>(lines.values[ANCHOR] + j);

@@ -1,4 +1,4 @@
-// What the snow remembers of a runner that passes: line by line, along the way between two poses.
+// The snow's history under a runner that passes: line by line, along the way between two poses.
 #include <algorithm>
 #include <cmath>
 
@@ -21,17 +21,17 @@ void SnowContact::Before::put_back(GrooveLines& into) const {
 
 namespace {
 
-constexpr double MOST_PARTS = 1e4;  // of a way
-constexpr double SLIPPING = 0.999;  // share of the displacement from which on an edge slips
+constexpr double MOST_PARTS = 1e4;  // into which a way is divided
+constexpr double SLIPPING = 0.999;  // share of the displacement above which an edge slips
 
-// What a section presses into its line: the base where it is wet, and the way of its edge since it was marked last.
-// Both are straight and meet at the edge, so that one of them is the deeper wherever both are.
+// The polyline that a section presses into its line: the base where it is wet, and the way of its edge since it was
+// marked last. Both are straight and meet at the edge, so that one of them is the deeper wherever both are.
 struct Pressing {
   double place[5], depth[5];
   int count = 0;
 
   // Numbers across are from the edge: the base from a to b, the way from the edge to `w`; depths are `fall` and
-  // `way_fall` times them deeper than the edge. A nearly level base may be wet beside its edge alone.
+  // `way_fall` times them deeper than the edge. A nearly level base may be wet only next to its edge.
   void fill(double a, double b, double fall, double w, double way_fall) {
     if (a > 0.0 || b < 0.0) return add(a, fall * a), add(b, fall * b);
     const bool way_is_deeper = w > 0.0 && way_fall > fall;
@@ -80,7 +80,7 @@ bool press_undelayed(const Pressing& pressing, const DelayedGround& delayed, Gro
   return ground.press(place.data(), depth.data(), int(place.size()));
 }
 
-// Keep the base that touches a line: the way of its edge since it was marked last, and all that lies under it.
+// Keep the base that touches a line: the way of its edge since it was marked last, and everything under it.
 void press_base(const Base& s, int i, const Snow& snow, GrooveLines& lines, int slot) {
   const double edge = s[EDGE_PLACE][i], depth = s[EDGE_DEPTH][i], fall = s[DEPTH_FALL][i];
   const double from = s[WET_FROM][i], to = std::max(s[WET_TO][i], from);

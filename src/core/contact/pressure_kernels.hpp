@@ -1,4 +1,4 @@
-// What the ground under each section answers.
+// Pressure of the ground on each section.
 #pragma once
 
 #include <algorithm>
@@ -8,9 +8,9 @@
 
 namespace skisnow::SKISNOW_LANES {
 
-// What the derivatives need besides, over the parts that bear on ground that was pressed deeper: integrals of x and x²;
-// of 1, x, x² and the ground's slope over ground from before the step; and what virgin snow's pressure has more than
-// the ground's, E lift at most, at the ends of the pieces.
+// Additional sums for the derivatives, over the parts that bear on ground that was pressed deeper: integrals of x and
+// x²; of 1, x, x² and the ground's slope over ground from before the step; and what virgin snow's pressure has more
+// than the ground's, E lift at most, at the ends of the pieces.
 template <class V>
 struct GrowthSums {
   V wet_from, wet_to;
@@ -204,7 +204,7 @@ struct PressedGrowth {
   }
 };
 
-// What the snow answers to the base on a line: force and its moment about the edge for each metre of ski, elastic
+// Pressure of the snow on the base over a line: force and its moment about the edge for each metre of ski, elastic
 // energy.
 template <class V>
 struct Pressed {

@@ -30,7 +30,7 @@ Straight operator*(double a, const Straight& b) { return {a * b.at_edge, a * b.s
 double growth_ahead(const Section& c) { return (c.climb - dot(c.along, c.left) * c.fall) / dot(c.along, c.ahead); }
 
 // [depth_rate] How fast the base goes into the snow of a line: downwards, and along its edge where it climbs. What goes
-// across the edge shears the snow, which answers with its strength alone.
+// across the edge shears the snow, which resists only with its strength.
 Straight depth_rate(const Section& c, const BaseMotion& m) {
   const double g[3] = {c.normal.x + c.climb * c.along.x, c.normal.y + c.climb * c.along.y,
                        c.normal.z + c.climb * c.along.z};
@@ -44,7 +44,7 @@ Straight depth_rate(const Section& c, const BaseMotion& m) {
   const double reach = c.reach * m.twisting, widening = c.widening * m.twisting;
   const double edge[3] = {c.along.x, c.along.y, c.along.z};
   const double y = v[1] - c.sp * reach, z = v[2] + m.deflecting - c.cp * reach;
-  const double climbing = c.twist_slope / (1.0 - c.sine * c.sine) * c.size;  // of the climb across the base
+  const double climbing = c.twist_slope / (1.0 - c.sine * c.sine) * c.size;  // growth of the climb across the base
   return {-moved(at, g, v[0], y, z),
           -moved(out, g, 0.0, -c.sp * widening, -c.cp * widening) - climbing * moved(at, edge, v[0], y, z)};
 }
@@ -149,7 +149,7 @@ struct BaseOnLine {
     return law.step.keep * delayed.depth_at(c.place + x) + law.step.before * delayed.stress_at(c.place + x);
   }
 
-  // Of the ground before its knot of this number.
+  // Depth of the ground before its knot of this number.
   Straight deepest(int knot) const {
     if (knot == 0 || knot >= ground.count) return {0.0, 0.0};
     const double a = ground.place[knot - 1] - c.place, width = ground.place[knot] - c.place - a;

@@ -24,13 +24,13 @@ struct BaseMotion {
   double velocity[3] = {}, turning[3] = {}, deflecting = 0.0, twisting = 0.0;
 };
 
-// One runner over snow that takes time: pressure of its sections in place of the kernels', and its delayed depth.
+// One runner over snow that takes time: pressure of its sections instead of the kernels', and its delayed depth.
 class RatedBase {
  public:
   // Force, moment, elastic energy of all sections that touch, and the power (W) that c takes.
   void press(const Snow& snow, const GrooveLines& lines, const Pose& pose, const Motion& motion, double dt,
              Sections& s);
-  // As the kernel of that name; and by local rates in place of movements, what the boot's motion does.
+  // As the kernel of that name; and by local rates instead of movements, the effect of the boot's motion.
   void differ(const Snow& snow, const GrooveLines& lines, const Sections& s, double step, double sense,
               SectionDifferences& out) const;
   void differ_rates(const Snow& snow, const GrooveLines& lines, const Sections& s, double sense,

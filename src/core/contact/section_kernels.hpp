@@ -70,7 +70,7 @@ void cross_lines(const Runner& runner, const Pose& pose, const Snow& snow, const
   });
 }
 
-// [give_share] The length of ski that each line stands for: halfway to its neighbours, and no farther than tip and
+// [give_share] The length of ski that belongs to each line: halfway to its neighbours, and no farther than tip and
 // tail. Lines beyond the ends lie one spacing off.
 template <class V>
 void give_share(const Runner& runner, const GrooveLines& lines, Base& s) {

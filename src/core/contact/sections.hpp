@@ -65,7 +65,7 @@ enum ForceField {
 // clang-format on
 
 struct Base : Columns<BaseField, BASE_FIELDS> {
-  std::int64_t first_block = 0;  // of the lines
+  std::int64_t first_block = 0;  // first block of lines
   int blocks = 0;
 
   int count() const { return blocks * BLOCK; }
@@ -88,7 +88,7 @@ struct Sections {
   SectionForces forces;
 
   Sections() = default;
-  explicit Sections(int capacity);  // of the runner's lines
+  explicit Sections(int capacity);  // number of lines that the runner's ring holds
 
   int count() const { return base.count(); }
   std::int64_t line(int i) const { return base.line(i); }
@@ -131,7 +131,7 @@ struct RunnerTangent;
 // The stages of an evaluation, each over all lines of a runner: a function from structs to structs without hidden
 // state.
 struct Kernels {
-  const char* name;  // of the instruction set
+  const char* name;  // instruction set
   int lanes;
   void (*find_sections)(const Runner&, const Pose&, const Snow&, const GrooveLines&, std::int64_t first, Base&);
   // with `grows` the pressure's growth
@@ -144,7 +144,7 @@ struct Kernels {
   // add the sections' derivatives to a tangent, and friction by its growth with the sliding speed, both weighted
   void (*add_stiffness)(const Sections&, const SectionDifferences&, double stiffness, double damping, bool bends,
                         RunnerTangent&);
-  // of the lines alone, see line_kernels.hpp; all by slot
+  // loops over lines only, see line_kernels.hpp; all by slot
   bool (*find_unknown)(const GrooveLines&, const Pose&, double room, double* is_unknown);
   void (*square_depths)(const GrooveLines&, double* out);
   void (*drag_anchors)(const Snow&, const Base&, const double* slips, GrooveLines&);

@@ -43,7 +43,7 @@ void SnowContact::hold_strength(int k, GrooveLines& lines) const {
   }
 }
 
-// A line that tip or tail passes stands for the whole spacing: what the ski presses there first is pressed for good.
+// A line that tip or tail passes counts for the whole spacing: what the ski presses there first is pressed for good.
 void SnowContact::count_energy(int k, GrooveLines& lines) {
   const Sections& s = sections(k);
   const double half = 0.5 * lines.spacing(), tail = runner(k).tail + half, tip = runner(k).tip - half;

@@ -38,7 +38,7 @@ Column band_rows(const std::vector<double>& lower) {
   return out;
 }
 
-// Of the centre of pressure of the air.
+// Velocity of the centre of pressure of the air.
 Vector3 air_velocity(const Body& body, const BodyState& state) {
   const double high = body.drag_height;
   const Vector3 v = part(state.rate, 0), o = part(state.rate, 3);

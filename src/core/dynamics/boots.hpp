@@ -1,6 +1,6 @@
-// Boots that move against the body as they are told to, and what each ski does to its boot.
+// Boots with a prescribed motion against the body, and the force of each ski on its boot.
 //
-// Each ski is a body of its own, whose origin is its boot. Its velocities follow from those of the body that carries it
+// Each ski is a separate body with its origin at its boot. Its velocities follow from those of the body that carries it
 // and from the boot's own motion, which is given over time; what is left over of its equations of motion is what it
 // does to its boot.
 #pragma once
@@ -34,7 +34,7 @@ class MovingSki {
   const BodyState& state() const { return state_; }
   const Numbers& residual() const { return residual_; }
 
-  // Be where the carrier takes it; its beam's numbers stand there from `first` on.
+  // Be where the carrier takes it; its beam's numbers begin there at `first`.
   void follow(const FlexibleSki& stage, const BodyState& carrier, int first);
   // What is left over of its equations of motion under the snow's wrench; by rates of the end, the start and the start
   // before, with these weights (1/s).
@@ -43,7 +43,7 @@ class MovingSki {
   void accept();  // the next step starts where it is
   // Power (W) of whoever moves the boot against its carrier.
   double power(const FlexibleSki& stage) const;
-  // Adds the undeformed ski, as it stands on its carrier, to a body, or with -1 takes it out.
+  // Adds the undeformed ski, in its pose on its carrier, to a body, or with -1 takes it out.
   void add_to(Body& carrier, const FlexibleSki& stage, double sign) const;
   void write(ByteWriter& out) const;
   void read(ByteReader& in);

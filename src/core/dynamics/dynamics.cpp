@@ -15,15 +15,15 @@ namespace {
 constexpr int MOST_ITERATIONS = 20, MOST_OF_FIXED = 12;
 constexpr double SLOW = 0.5;         // contraction above which the matrix is made again within a step
 constexpr double UNSEEN = 0.3;       // contraction to reckon with before it was seen
-constexpr double LEAST_ERROR = 0.1;  // of the tolerance: what a step's own error is taken for at least
+constexpr double LEAST_ERROR = 0.1;  // minimum of a step's own error, as a share of the tolerance
 constexpr double OVERSHOOT = 0.3;    // work of the residual along a change, of the other sign, to go back for
-constexpr double LEAST_SHARE_BACK = 0.1, MOST_SHARE_BACK = 0.9;  // of the change
+constexpr double LEAST_SHARE_BACK = 0.1, MOST_SHARE_BACK = 0.9;  // shares of the change that may be kept
 constexpr int MOST_BACKTRACKS = 2;                               // for one change
-constexpr double LEAST_SHARE = 1.0 / 64;  // of a fixed step, into which it is divided where it is not solved
-constexpr double FARTHEST = 1.0;          // way (m), turn (rad), bend beyond which a step has diverged
-constexpr double SAFETY = 0.85, UP = 1.35, DOWN = 0.93;  // of the step's choice
+constexpr double LEAST_SHARE = 1.0 / 64;                 // smallest part of a fixed step that is not solved whole
+constexpr double FARTHEST = 1.0;                         // way (m), turn (rad), bend beyond which a step has diverged
+constexpr double SAFETY = 0.85, UP = 1.35, DOWN = 0.93;  // safety and hysteresis of the choice of steps
 constexpr std::chrono::milliseconds LONGEST_STAY(50);    // within the core, before it pauses to hear an interrupt
-constexpr double ROUNDING = 1e-9;                        // of a step's length
+constexpr double ROUNDING = 1e-9;                        // share of a step's length
 // of the energy exchanged: the open balance from which on steps get shorter; and the energy (J) below which it is left
 constexpr double MOST_OPEN = 2e-3, LEAST_OPEN = 0.01;
 constexpr int MOST_NARROWED = 12;  // rungs by which steps get shorter: three octaves
@@ -187,8 +187,8 @@ void Dynamics::limit_overshoot(const Formula& f, double begun, double share, boo
   }
 }
 
-// [newton] The rates at the step's end; returns whether they were found. Each step has a matrix of its own, and another
-// one where the iterates contract slowly.
+// [newton] The rates at the step's end; returns whether they were found. Each step has its own matrix, and another one
+// where the iterates contract slowly.
 bool Dynamics::solve_step(const Formula& f) {
   const double displacement = 0.1 * contact_->shear_displacement();
   double last = std::numeric_limits<double>::infinity(), begun = 0.0, share = 1.0;

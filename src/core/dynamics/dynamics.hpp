@@ -48,20 +48,21 @@ class Dynamics {
   const Counts& counts() const { return counts_; }
   const Work& work() const { return work_; }
   double next_step() const { return step_; }
-  // What the snow does along one ski at the last moment that `advance` or `begin` reached.
+  // Depth and forces of the snow along one ski at the last moment that `advance` or `begin` reached.
   const Along& along(int k) const { return along_[std::size_t(k)]; }
   const SnowStore& snow_store() const { return store_; }      // after the last step
   const SnowAccount& snow_losses() const { return losses_; }  // since `begin`
   bool touches() const { return touches_; }                   // whether any ski is in the snow
 
   // Boots: each ski's inertia about its boot, in its own axes, (6, 6), lets what it does to its boot be known, and lets
-  // the boots move. Then, before each `advance`, which may not go beyond their ends, their motions may be given anew.
+  // the boots move. Then, before each `advance`, which may not go beyond their ends, their motions can be set again.
   void set_skis(const std::vector<double>& inertia);
   void move_boots(std::vector<BootMotion> motions);
   // The body stays as it is; with boots that move, they alone carry the skis.
   void hold_body() { held_ = true; }
   void set_push(const Vector3& force, const Vector3& at);
-  // What a ski does to its boot, about it in its axes, at the last moment that `advance` or `begin` reached (6).
+  // Force and moment of a ski on its boot, about it in its axes, at the last moment that `advance` or `begin` reached
+  // (6).
   const Vector3* boot_wrench(int k) const { return boot_[std::size_t(k)].data(); }
   Energies total_energies() const;
   const FlexibleSki& stage(int k) const { return body_.skis[std::size_t(k)]; }
@@ -96,13 +97,13 @@ class Dynamics {
   SnowStore store_;
   SnowAccount losses_;
   int narrowed_ = 0;
-  // skis as bodies of their own; boots that move; what is left of the body without skis
+  // skis as separate bodies; boots that move; the body without skis
   std::vector<MovingSki> skis_;
   std::vector<BootMotion> motions_;
   Body trunk_;
   bool held_ = false;
   std::vector<std::array<Vector3, 2>> boot_;
-  // what was observed at the last moment reached
+  // observations at the last moment reached
   std::vector<Along> along_;
   bool touches_ = false;
   // the step in the making

@@ -1,4 +1,4 @@
-// Motion with boots that move: the skis as bodies of their own beside the trunk, and what they do to their boots.
+// Motion with boots that move: the skis as separate bodies next to the trunk, and their forces on their boots.
 #include <algorithm>
 
 #include "dynamics/dynamics.hpp"
@@ -72,7 +72,7 @@ void Dynamics::find_moving_residual(double newest, double now, double before, bo
   if (held_) std::fill(out.begin(), out.begin() + BODY, 0.0);
 }
 
-// What each ski does to its boot at the end of a step, by the snow's wrench at the last look.
+// Force and moment of each ski on its boot at the end of a step, by the snow's wrench at the last look.
 void Dynamics::feel_boots(double newest, double now, double before) {
   follow_skis();
   for (std::size_t k = 0; k < skis_.size(); k++) {

@@ -1,4 +1,4 @@
-// What contacts and bodies remember, as bytes, for another of the same in this process or a later one.
+// States of contacts and bodies as bytes, for another of the same in this process or a later one.
 #include <algorithm>
 #include <cmath>
 #include <utility>

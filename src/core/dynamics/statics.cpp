@@ -14,7 +14,7 @@ constexpr int MOST_STEPS = 300;
 constexpr double LONGEST = 0.02;       // step (m)
 constexpr double SETTLED = 1e-11;      // last step (m) that counts as equilibrium
 constexpr double ROUNDING = 1e-8;      // step (m) from which on one that does not shrink is rounding
-constexpr double FIRST_INERTIA = 1e4;  // of the mass matrix (1/s²)
+constexpr double FIRST_INERTIA = 1e4;  // factor of the mass matrix (1/s²)
 constexpr double LEAST_INERTIA = 1e-6, LITTLE_INERTIA = 1.0, MOST_INERTIA = 1e12;
 constexpr double LIFT = 1e-3, LIFT_EXACT = 1e-9;  // (m) of the search for the height at which rigid skis bear
 constexpr bool HELD[BODY] = {true, true, false, false, false, true};
@@ -134,7 +134,7 @@ void Dynamics::stand() {
 }
 
 // A step of Newton's from the forces left, with an inertia (1/s²) against it; its length (m) before it is cut to the
-// longest, infinite where the matrix cannot be factored, NaN where the step is no number.
+// longest, infinite where the matrix cannot be factored, NaN where the step is not a number.
 double Dynamics::static_step(double inertia, Numbers& left, Numbers& step) {
   if (!factor_static(inertia)) return std::numeric_limits<double>::infinity();
   step = left;

@@ -34,7 +34,7 @@ inline bool eliminate(const BeamRows& rows, double* corner) {
   return true;
 }
 
-// [solve] With L: the beam's right side in place, and what it does to the body's.
+// [solve] With L: the beam's right side in place, and its effect on the body's.
 inline void substitute_forwards(const BeamRows& rows, double* x, double* right) {
   Eight sum = load<Eight>(right);
   for (int i = 0; i < rows.size; i++) {

@@ -77,7 +77,7 @@ class BorderedSystem {
   double corner[BODY][BORDER_ROW];
   bool held[BODY] = {};  // unknowns of the body that stay as they are
 
-  // The clamp of a beam: the matrix of its own six freedoms in the ski's axes, and those freedoms by the body's.
+  // The clamp of a beam: the matrix of its six freedoms in the ski's axes, and those freedoms by the body's.
   struct Clamp {
     double own[BODY][BORDER_ROW] = {}, by_body[BODY][BORDER_ROW] = {};
   };

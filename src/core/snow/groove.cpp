@@ -7,7 +7,7 @@ namespace skisnow {
 
 namespace {
 
-constexpr double BEYOND = 1e300;  // where there is no further knot
+constexpr double BEYOND = 1e300;  // beyond the last knot
 
 // A polyline read from left to right; outside its knots it has no depth. Its mirror image has the same bits.
 class Reader {
@@ -49,7 +49,7 @@ class Reader {
   }
 };
 
-// Depths of the ground and of what is pressed into it, at one side of a place.
+// Depths of the ground and of the polyline that is pressed into it, at one side of a place.
 struct Both {
   double ground, pressed;
 
@@ -143,7 +143,7 @@ Ground::Deeper Ground::compare(const double* at, const double* deep, int knots, 
   return above ? Deeper::SOMEWHERE : Deeper::EVERYWHERE;
 }
 
-// The ground with a polyline in place of all that lies between its ends.
+// The ground with a polyline instead of everything between its ends.
 Ground Ground::replaced(const double* at, const double* deep, int knots, int kept) const {
   const double from = at[0], to = at[knots - 1];
   Ground out;

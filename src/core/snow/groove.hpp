@@ -7,7 +7,7 @@
 namespace skisnow {
 
 constexpr int KNOTS = 16;       // that a line keeps
-constexpr double THIN = 1e-12;  // width or depth (m) that is none
+constexpr double THIN = 1e-12;  // width or depth (m) that counts as zero
 
 struct Ground {
   static constexpr int ROOM = 4 * KNOTS;

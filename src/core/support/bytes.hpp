@@ -27,7 +27,7 @@ class ByteWriter {
     numbers(values.data(), values.size());
   }
 
-  // What was written, between a head that says whose it is and a digest of all before it.
+  // The bytes written, between a head with their kind and a digest of everything before it.
   Bytes sealed(std::uint64_t kind) const;
 
  private:
@@ -37,7 +37,7 @@ class ByteWriter {
 // Every function throws std::invalid_argument where the bytes end, or have a number that cannot be.
 class ByteReader {
  public:
-  // What was sealed; the bytes are to outlive it. Refuses what is damaged, of another kind or of another version.
+  // A reader of sealed bytes, which must outlive it. Refuses what is damaged, of another kind or of another version.
   static ByteReader opened(std::uint64_t kind, const unsigned char* bytes, std::size_t size);
 
   std::uint64_t take();
