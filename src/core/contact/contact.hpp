@@ -140,7 +140,7 @@ class SnowContact {
   Reaction reaction(int k, const GrooveLines& lines, const Pose& pose, const Motion& motion);
   class Standing;
   void prepare(int k, GrooveLines& lines, const Pose& pose);
-  void learn(GrooveLines& lines, int slot, double from, double to, const Standing& standing) const;
+  void learn(GrooveLines& lines, int slot, double from, double to, Standing& standing) const;
   bool strength_varies() const;
   void hold_strength(int k, GrooveLines& lines) const;
   void settle_history(int k, const Pose& pose);

@@ -1,7 +1,6 @@
 // Older tracks that the lines under one runner take over: as far across as the ski comes, when it comes there.
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "contact/contact.hpp"
 
@@ -57,9 +56,15 @@ std::vector<GrooveEnds> ends_of(const GrooveLines& lines) {
   return out;
 }
 
-Extent extent_of(const std::vector<GrooveEnds>& grooves) {
+Extent extent_of(const GrooveLines& lines) {
   Extent out;
-  for (const GrooveEnds& groove : grooves) out.add(groove.ends[0]), out.add(groove.ends[1]);
+  for (std::int64_t n = lines.first; n < lines.end; n++) {
+    const int slot = lines.slot(n), knots = lines.knots[std::size_t(slot)];
+    if (knots < 2) continue;
+    const Vector3 origin = lines.origin(slot), lateral = lines.lateral(slot);
+    for (const int knot : {0, knots - 1})
+      out.add(along(origin, lateral, lines.place[std::size_t(lines.tile(slot, knot))]));
+  }
   return out;
 }
 
@@ -85,19 +90,16 @@ class SnowContact::Standing {
   Standing(const SnowContact& contact, int k) {
     now_ = contact.snow_->archive.time;
     for (int other = 0; other < contact.runners(); other++)
-      if (other != k) {
-        std::vector<GrooveEnds> grooves = ends_of(contact.lines(other));
-        const Extent extent = extent_of(grooves);
-        runners_.push_back({&contact.lines(other), extent, std::move(grooves)});
-      }
+      if (other != k) runners_.push_back({&contact.lines(other), extent_of(contact.lines(other)), {}});
   }
 
   void recall(const Vector3& origin, const Vector3& lateral, const Vector3& ahead, double from, double to,
-              Ground& ground, DelayedRecall* delayed) const {
+              Ground& ground, DelayedRecall* delayed) {
     Extent line;
     line.add(along(origin, lateral, from)), line.add(along(origin, lateral, to));
-    for (const auto& [lines, extent, grooves] : runners_) {
+    for (auto& [lines, extent, grooves] : runners_) {
       if (!extent.meets(line)) continue;
+      if (grooves.empty()) grooves = ends_of(*lines);
       for (std::size_t i = 1; i < grooves.size(); i++) {
         const GrooveEnds &before = grooves[i - 1], &after = grooves[i];
         if (after.number == before.number + 1 && may_cross(before, after, origin, lateral, ahead, from, to))
@@ -111,7 +113,7 @@ class SnowContact::Standing {
   struct Other {
     const GrooveLines* lines;
     Extent extent;
-    std::vector<GrooveEnds> grooves;
+    std::vector<GrooveEnds> grooves;  // found when a line meets the extent
   };
   std::vector<Other> runners_;
   double now_;
@@ -134,7 +136,7 @@ void SnowContact::prepare(int k, GrooveLines& lines, const Pose& pose) {
 }
 
 // Grooves of older tracks enter a line's ground; the energy that they took is not this runner's.
-void SnowContact::learn(GrooveLines& lines, int slot, double from, double to, const Standing& standing) const {
+void SnowContact::learn(GrooveLines& lines, int slot, double from, double to, Standing& standing) const {
   auto& v = lines.values;
   const Vector3 ahead{v[AHEAD_X][slot], v[AHEAD_Y][slot], v[AHEAD_Z][slot]};
   const Vector3 origin = lines.origin(slot), lateral = lines.lateral(slot);
