@@ -42,7 +42,7 @@ def test_print_defines_its_numbers(turn: Path, capsys: Printed) -> None:
     assert main(["track", str(turn)]) == 0
     printed = capsys.readouterr().out
     assert printed.startswith("turn.csv\n")
-    for words in ("51 in 5", "length of the smoothed track", "is halved", "A run is a stretch in motion", "1 turn\n"):
+    for words in ("51 in 5", "length of the estimated path", "is halved", "A run is a stretch in motion", "1 turn\n"):
         assert words in printed
 
 

@@ -6,6 +6,8 @@ import json
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
+from markupsafe import Markup
+
 from ..course.gates_table import gates_csv
 from ..files import require_writable, write_file
 from ..language import ENGLISH
@@ -82,6 +84,21 @@ def write_track_report(
     return folder / "track.json"
 
 
+def _estimates(summary: TrackSummary) -> Markup:
+    """Highest speed and length with their intervals; nothing if the device recorded them."""
+    if summary.max_speed_interval is None or summary.distance_interval is None:
+        return Markup()
+    return prose(
+        " Highest speed: {speed} m/s (95 % interval {slow} to {fast} m/s); length: {length} m ({short} to {long} m).",
+        speed=f"{summary.max_speed:.4g}",
+        slow=f"{summary.max_speed_interval[0]:.4g}",
+        fast=f"{summary.max_speed_interval[1]:.4g}",
+        length=f"{summary.distances['places']:.5g}",
+        short=f"{summary.distance_interval[0]:.5g}",
+        long=f"{summary.distance_interval[1]:.5g}",
+    )
+
+
 def track_drawings(summary: TrackSummary, gates: CourseResult | None = None) -> Iterator[Drawing]:
     """Draw one after the other, inside the house style."""
     name = summary.track.name
@@ -99,7 +116,8 @@ def track_drawings(summary: TrackSummary, gates: CourseResult | None = None) -> 
             "the middle. The smoothing leaves half of a swing of the curvature that takes {half} s.",
             name=name,
             half=f"{summary.motion.smoothed.resolution.half_period:.2g}",
-        ),
+        )
+        + _estimates(summary),
         f"Speed, height and turn radius along {name}.",
         track_along(summary),
         wide=True,

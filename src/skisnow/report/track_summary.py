@@ -70,11 +70,20 @@ def _rows(values: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
             ", ".join(f"{count} {_SOLUTION_WORDS[name]}" for name, count in values["solutions"].items()),
         )
     yield "frame", values["frame"]
-    yield "distance", f"{_plain(values['distance_m'], 5)} m, {_DISTANCE_WORDS[values['distance_source']]}"
-    yield "highest speed", f"{_plain(values['max_speed_m_per_s'], 4)} m/s, {_SPEED_WORDS[values['speed_source']]}"
+    distance = f"{_plain(values['distance_m'], 5)} m{_interval(values['distance_interval_m'], 'm', 5)}"
+    yield "distance", f"{distance}, {_DISTANCE_WORDS[values['distance_source']]}"
+    if values["horizontal_distance_m"] not in (None, values["distance_m"]):
+        horizontal = _interval(values["horizontal_distance_interval_m"], "m", 5)
+        yield "seen from above", f"{_plain(values['horizontal_distance_m'], 5)} m{horizontal}"
+    speed = f"{_plain(values['max_speed_m_per_s'], 4)} m/s{_interval(values['max_speed_interval_m_per_s'], 'm/s', 4)}"
+    yield "highest speed", f"{speed}, {_SPEED_WORDS[values['speed_source']]}"
     yield "noise of the places", f"{_plain(smoothing['place_noise_m'], 2)} m a coordinate, about the smoothed track"
     yield "smoothing", f"cubics by least squares in windows of {_plain(smoothing['window_s'])} s"
     yield "resolution", _resolution(smoothing)
+
+
+def _interval(ends: Sequence[float | None] | None, unit: str, digits: int) -> str:
+    return "" if ends is None else f" (95 %: {_plain(ends[0], digits)} to {_plain(ends[1], digits)} {unit})"
 
 
 def _moment(start: str, time_scale: str) -> str:
@@ -87,12 +96,12 @@ def _moment(start: str, time_scale: str) -> str:
 _DISTANCE_WORDS: Final = {
     "odometer": "the device's own",
     "recorded_speed": "the integral of the recorded speed",
-    "places": "the length of the smoothed track",
+    "places": "the length of the estimated path with its heights",
 }
 _SOLUTION_WORDS: Final = {
     "fixed": "points fixed to whole cycles", "float": "float", "code": "by the code alone",
 }  # fmt: skip
-_SPEED_WORDS: Final = {"recorded": "as recorded", "fitted": "of the smoothed track: no speeds are recorded"}
+_SPEED_WORDS: Final = {"recorded": "as recorded", "fitted": "horizontal, of the estimated path: no speeds are recorded"}
 
 
 def _resolution(smoothing: Json) -> str:

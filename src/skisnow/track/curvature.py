@@ -12,6 +12,7 @@ from scipy.stats import norm
 from ..constants import CONFIDENCE
 from ..former_names import warn_of_former_name
 from ..shown import ShownFields
+from .path_estimate import PathEstimate, estimate_path
 from .smoothing import SmoothedTrack, filled, smoothed_track
 from .track import Track
 
@@ -43,7 +44,7 @@ class TrackMotion(ShownFields):
     arc_length : (n,) m
         Along the track from its first point.
     speed : (n,) m/s
-        As recorded, and where it was not, of the smoothed track.
+        As recorded; if it was not, of the estimated path.
     heading, heading_sd : (n,) rad
         From the frame's first axis, positive towards its second, without jumps; NaN at rest.
     curvature, curvature_sd : (n,) 1/m
@@ -54,6 +55,8 @@ class TrackMotion(ShownFields):
         Places, velocities and accelerations behind them, with noise and resolution.
     speed_source, arc_length_source
         Where most of the speed, and where the arc length comes from.
+    path
+        Estimate of speed and length from places, for a track without recorded speeds; else None.
     """
 
     time: FloatArray
@@ -68,6 +71,7 @@ class TrackMotion(ShownFields):
     smoothed: SmoothedTrack
     speed_source: SpeedSource
     arc_length_source: ArcLengthSource
+    path: PathEstimate | None = None
 
     @property
     def way(self) -> FloatArray:
@@ -116,8 +120,11 @@ def track_motion(track: Track, *, window: float | None = None, place_noise: floa
     """
     smoothed = smoothed_track(track, window=window, place_noise=place_noise)
     fitted = np.linalg.norm(smoothed.velocity, axis=1)
-    speed, speed_source = _speed(track, fitted)
-    arc_length, arc_length_source = _arc_length(track, smoothed, speed, speed_source)
+    recorded, speed_source = _recorded_speed(track)
+    path = _path(track, smoothed) if speed_source == "fitted" else None
+    computed = fitted if path is None else path.speed_at(np.maximum.accumulate(track.time))
+    speed = np.where(np.isfinite(recorded), recorded, computed)
+    arc_length, arc_length_source = _arc_length(track, smoothed, speed, speed_source, path)
     heading, heading_sd = _heading(smoothed, fitted)
     curvature, curvature_sd = _curvature(smoothed, fitted)
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -125,12 +132,17 @@ def track_motion(track: Track, *, window: float | None = None, place_noise: floa
         radius_sd = np.where(curvature == 0.0, np.inf, curvature_sd / curvature**2)
     return TrackMotion(
         track.time, arc_length, speed, heading, heading_sd, curvature, curvature_sd, radius, radius_sd, smoothed,
-        speed_source, arc_length_source,
+        speed_source, arc_length_source, path,
     )  # fmt: skip
 
 
-def _speed(track: Track, fitted: FloatArray) -> tuple[FloatArray, SpeedSource]:
-    """The recorded speed, else that of the recorded velocity, else the fitted one.
+def _path(track: Track, smoothed: SmoothedTrack) -> PathEstimate | None:
+    chosen = smoothed.usable
+    return estimate_path(track.time[chosen], track.place[chosen], smoothed.part[chosen], segments(track)[chosen])
+
+
+def _recorded_speed(track: Track) -> tuple[FloatArray, SpeedSource]:
+    """The recorded speed, else that of the recorded velocity, else NaN; whether most of the speeds are recorded.
 
     Speeds recorded less often than places are interpolated over at most `LONGEST_HOLE`.
     """
@@ -141,7 +153,7 @@ def _speed(track: Track, fitted: FloatArray) -> tuple[FloatArray, SpeedSource]:
         speed = np.where(np.isnan(speed) & known, whole, speed)
     placed = np.flatnonzero(np.isfinite(speed) & track.usable)
     if len(placed) < 2:
-        return np.where(np.isfinite(speed), speed, fitted), "fitted"
+        return speed, "fitted"
     time = np.maximum.accumulate(track.time)
     holes = np.diff(time[placed])
     step = np.searchsorted(time[placed], time, side="right") - 1
@@ -151,17 +163,23 @@ def _speed(track: Track, fitted: FloatArray) -> tuple[FloatArray, SpeedSource]:
     speed = np.where(np.isnan(speed) & close, np.interp(time, time[placed], speed[placed]), speed)
     recorded = np.isfinite(speed)
     source: SpeedSource = "recorded" if 2 * np.count_nonzero(recorded) >= len(track) else "fitted"
-    return np.where(recorded, speed, fitted), source
+    return speed, source
 
 
 def _arc_length(
-    track: Track, smoothed: SmoothedTrack, speed: FloatArray, speed_source: SpeedSource
+    track: Track,
+    smoothed: SmoothedTrack,
+    speed: FloatArray,
+    speed_source: SpeedSource,
+    path: PathEstimate | None,
 ) -> tuple[FloatArray, ArcLengthSource]:
-    """The device's own distance, else the integral of a recorded speed, else the length of the smoothed track."""
+    """The device's own distance, else the integral of a recorded speed, else the length of the estimated path."""
     if track.odometer is not None and np.count_nonzero(np.isfinite(track.odometer)) >= 2:
         return odometer_arc_length(track), "odometer"
     if speed_source == "recorded":
         return integrated_arc_length(track, smoothed, speed), "recorded speed"
+    if path is not None:
+        return path.arc_length_at(np.maximum.accumulate(track.time)), "places"
     return places_arc_length(track, smoothed), "places"
 
 

@@ -9,10 +9,11 @@ from typing import TYPE_CHECKING, Final, Literal, TypeAlias, get_args
 
 from ..errors import ParameterError
 from .flags import FASTEST, GAP_FACTOR
+from .readers.conversion import track_of
 from .readers.fit import read_fit
 from .readers.gpx import read_gpx
 from .readers.nmea import SENTENCE, read_nmea
-from .readers.recording import Recording, track_of
+from .readers.recording import Recording
 from .readers.refusal import refusal
 from .readers.rtklib import read_rtklib
 from .readers.rtklib_header import HEADER

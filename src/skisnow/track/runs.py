@@ -52,7 +52,9 @@ class Stretch:
     descent
         Height at the start less that at the end (m), negative for a lift; None without heights.
     max_speed
-        Highest speed (m/s); None where none is known.
+        Highest speed (m/s); None if none is known.
+    distance_interval, max_speed_interval
+        Ends of the 95 % intervals; None for what the device recorded.
     gaps
         How many gaps lie inside.
     """
@@ -65,6 +67,8 @@ class Stretch:
     descent: float | None
     max_speed: float | None
     gaps: int
+    distance_interval: tuple[float, float] | None = None
+    max_speed_interval: tuple[float, float] | None = None
 
 
 @dataclass(frozen=True, slots=True, repr=False)
@@ -199,23 +203,35 @@ def _moving_stretches(track: Track, motion: TrackMotion, height: FloatArray | No
 
 def _stretch(track: Track, motion: TrackMotion, height: FloatArray | None, first: int, last: int) -> Stretch:
     inside = slice(first, last + 1)
+    start, end = float(track.time[first]), float(track.time[last])
+    distance, distance_interval = float(motion.arc_length[last] - motion.arc_length[first]), None
+    if motion.path is not None and motion.arc_length_source == "places":
+        distance, *ends = motion.path.length(start, end)
+        distance_interval = ends[0], ends[1]
+    speed, speed_interval = max_speed(track, motion, inside)
     return Stretch(
         first,
         last,
-        float(track.time[first]),
-        float(track.time[last]),
-        float(motion.arc_length[last] - motion.arc_length[first]),
+        start,
+        end,
+        distance,
         None if height is None else float(height[first] - height[last]),
-        max_speed(track, motion, inside),
+        speed,
         int(np.count_nonzero(np.diff(motion.smoothed.part[inside]))),
+        distance_interval,
+        speed_interval,
     )
 
 
-def max_speed(track: Track, motion: TrackMotion, inside: slice) -> float | None:
-    """Highest speed (m/s) in a stretch: of the recorded ones, or without any of the smoothed track's."""
+def max_speed(track: Track, motion: TrackMotion, inside: slice) -> tuple[float | None, tuple[float, float] | None]:
+    """Highest speed (m/s) in a stretch, recorded or of the estimated path, and the ends of its 95 % interval."""
+    if motion.path is not None:
+        times = track.time[inside]
+        found = motion.path.max_speed(float(times[0]), float(times[-1]))
+        return (None, None) if found is None else (found.value, (found.low, found.high))
     speeds = motion.speed[inside][track.usable[inside]]
     speeds = speeds[np.isfinite(speeds)]
-    return float(speeds.max()) if len(speeds) else None
+    return float(speeds.max()) if len(speeds) else None, None
 
 
 def _is_run(found: Stretch) -> bool:

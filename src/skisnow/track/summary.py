@@ -13,6 +13,7 @@ from ..json_number import json_number
 from ..shown import Facts, Shown, amount
 from ..units import DEGREE
 from .curvature import TrackMotion, integrated_arc_length, places_arc_length, segments, track_motion
+from .path_estimate import Interval
 from .runs import Day, Stretch, max_speed, split_day
 from .solution import solution_counts
 from .track import Track
@@ -37,8 +38,13 @@ class TrackSummary(Shown):
         Turns within runs, in the order of time.
     distances
         Length of the whole track (m) by each method: "odometer", "recorded speed", "places".
-    max_speed
-        Over the whole track (m/s): of the recorded speeds, or without any of the smoothed track's; None if unknown.
+    max_speed, max_speed_interval
+        Highest horizontal or recorded speed of the whole track (m/s), None if unknown, and the ends of its 95 %
+        interval: of the estimated path if no speeds are recorded, otherwise None.
+    distance_interval
+        Ends of the 95 % interval of the length by places (m); None with recorded speeds.
+    horizontal_distance
+        Length of the path seen from above (m), with its 95 % interval; None with recorded speeds.
     remarks
         What is unknown, and what is doubtful, in words.
 
@@ -53,14 +59,17 @@ class TrackSummary(Shown):
     turns: tuple[Turn, ...]
     distances: dict[str, float]
     max_speed: float | None
+    max_speed_interval: tuple[float, float] | None
+    distance_interval: tuple[float, float] | None
+    horizontal_distance: Interval | None
     remarks: tuple[str, ...]
 
     def _facts(self) -> Facts:
         distances = ", ".join(f"{amount(each, 'm')} by {name}" for name, each in self.distances.items())
         rows = (
             ("points", str(len(self.track))),
-            ("distance", distances or "unknown"),
-            ("top speed", amount(self.max_speed, "m/s")),
+            ("distance", f"{distances or 'unknown'}{_shown_interval(self.distance_interval, 'm')}"),
+            ("highest speed", f"{amount(self.max_speed, 'm/s')}{_shown_interval(self.max_speed_interval, 'm/s')}"),
             ("runs", str(len(self.day.runs))),
             ("turns", str(len(self.turns))),
             ("remarks", f"{len(self.remarks)}{f': {self.remarks[0]}' if self.remarks else ''}"),
@@ -99,6 +108,8 @@ def track_summary(track: Track, *, window: float | None = None, place_noise: flo
     ----------
     * Savitzky and Golay (1964), "Smoothing and differentiation of data by simplified least squares procedures", Anal.
       Chem. 36, 1627-1639, doi 10.1021/ac60214a047.
+    * Bell (1994), "The iterated Kalman smoother as a Gauss-Newton method", SIAM J. Optim. 4, 626-636,
+      doi 10.1137/0804035.
     * The page docs/methods/tracks.md.
     """
     motion = track_motion(track, window=window, place_noise=place_noise)
@@ -110,13 +121,22 @@ def track_summary(track: Track, *, window: float | None = None, place_noise: flo
     day = split_day(track, motion)
     turns = tuple(turn for run in day.runs for turn in turns_of(motion, first=run.first, last=run.last))
     distances = _distances(track, motion)
+    length = None if motion.path is None else motion.path.length()
     return TrackSummary(
-        track, motion, day, turns, distances, max_speed(track, motion, slice(None)),
+        track, motion, day, turns, distances, *max_speed(track, motion, slice(None)),
+        None if length is None else (length.low, length.high),
+        None if motion.path is None else motion.path.length(with_heights=False),
         (*_reading_remarks(track), *_remarks(track, motion, distances), *day.remarks),
     )  # fmt: skip
 
 
+def _shown_interval(interval: tuple[float, float] | None, unit: str) -> str:
+    return "" if interval is None else f" ({interval[0]:.5g} to {interval[1]:.5g} {unit})"
+
+
 def _distances(track: Track, motion: TrackMotion) -> dict[str, float]:
+    if motion.path is not None and motion.arc_length_source == "places":
+        return {"places": motion.path.length().value}
     ways = {"places": places_arc_length(track, motion.smoothed)}
     if motion.speed_source == "recorded":
         ways["recorded speed"] = integrated_arc_length(track, motion.smoothed, motion.speed)
@@ -140,7 +160,7 @@ def _remarks(track: Track, motion: TrackMotion, distances: dict[str, float]) -> 
                 "the latter counts."
             )
     if motion.speed_source == "fitted":
-        found.append("No speeds in the track: they are those of the smoothed places.")
+        found.append("No speeds in the track: they are estimated from the places.")
     pauses = int(segments(track)[-1])
     if pauses:
         found.append(f"{pauses + 1} segments: nothing between them counts as path.")
@@ -154,6 +174,8 @@ def _remarks(track: Track, motion: TrackMotion, distances: dict[str, float]) -> 
 def summary_dict(summary: TrackSummary) -> Json:
     """The JSON of `skisnow track`; its JSON Schema is schemas/track.schema.json. Null: unknown or infinite."""
     smoothed = summary.motion.smoothed
+    horizontal = summary.horizontal_distance
+    from_places = summary.motion.arc_length_source == "places"
     return {
         "schema_version": SCHEMA_VERSION,
         "file": summary.track.name,
@@ -164,7 +186,11 @@ def summary_dict(summary: TrackSummary) -> Json:
         "distance_m": json_number(summary.distances[summary.motion.arc_length_source]),
         "distance_source": summary.motion.arc_length_source.replace(" ", "_"),
         "distances_m": {name.replace(" ", "_"): json_number(value) for name, value in summary.distances.items()},
+        "distance_interval_m": _ends(summary.distance_interval if from_places else None),
+        "horizontal_distance_m": json_number(None if horizontal is None else horizontal.value),
+        "horizontal_distance_interval_m": _ends(None if horizontal is None else (horizontal.low, horizontal.high)),
         "max_speed_m_per_s": json_number(summary.max_speed),
+        "max_speed_interval_m_per_s": _ends(summary.max_speed_interval),
         "speed_source": summary.motion.speed_source,
         "smoothing": {
             "method": "local cubic least squares",
@@ -201,9 +227,15 @@ def _stretch_dict(stretch: Stretch, height_key: str, sign: float) -> Json:
         "end_s": json_number(stretch.end),
         "distance_m": json_number(stretch.distance),
         height_key: json_number(None if stretch.descent is None else sign * stretch.descent),
+        "distance_interval_m": _ends(stretch.distance_interval),
         "max_speed_m_per_s": json_number(stretch.max_speed),
+        "max_speed_interval_m_per_s": _ends(stretch.max_speed_interval),
         "gaps": stretch.gaps,
     }
+
+
+def _ends(interval: tuple[float, float] | None) -> list[float | None] | None:
+    return None if interval is None else [json_number(end) for end in interval]
 
 
 def _turn_dict(turn: Turn) -> Json:

@@ -76,8 +76,15 @@ def _parted(summary: TrackSummary, numbers: npt.NDArray[np.int64], values: Float
 
 
 def _speed(axes: Axes, summary: TrackSummary, numbers: npt.NDArray[np.int64], arc_length: FloatArray) -> None:
-    axes.plot(arc_length[numbers], _parted(summary, numbers, summary.motion.speed), color=BLUE, linewidth=0.8)
-    axes.set_ylim(0.0, 1.1 * max(summary.max_speed or 0.0, 0.1))
+    speed = _parted(summary, numbers, summary.motion.speed)
+    path = summary.motion.path
+    if path is not None:
+        half = INTERVAL_FACTOR * path.speed_sd_at(summary.track.time[numbers])
+        low, high = np.maximum(speed - half, 0.0), speed + half
+        axes.fill_between(arc_length[numbers], low, high, color=PALE, alpha=0.7, linewidth=0.0)
+    axes.plot(arc_length[numbers], speed, color=BLUE, linewidth=0.8)
+    highest = summary.max_speed_interval[1] if summary.max_speed_interval else summary.max_speed or 0.0
+    axes.set_ylim(0.0, 1.1 * max(highest, 0.1))
     axes.set_ylabel(
         f"speed (m/s),\n{'as recorded' if summary.motion.speed_source == 'recorded' else 'from the places'}"
     )

@@ -1,26 +1,20 @@
-"""What the reader of one format hands over: the columns of a file as they are, before a projection and before flags."""
+"""The recording that the reader of one format returns: the columns of a file, before a projection and before flags."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from datetime import UTC, datetime
+from datetime import datetime
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..flags import FASTEST, GAP_FACTOR, point_flags
-from ..point import GEODETIC, LOCAL, MOTION
-from ..projection import GeodeticPoint, east_north_up, turned_to_origin
-from ..track import Axes, Track
-from .fixed_points import fixed_points
-from .refusal import refusal
-from .rounded_times import spread_times
+from ..projection import GeodeticPoint
+from ..track import Axes
 
 if TYPE_CHECKING:
     import numpy.typing as npt
 
-    from ...inputs import Quantity
     from ..solution import SolutionArray
 
     BoolArray = npt.NDArray[np.bool_]
@@ -92,174 +86,3 @@ class Recording:
     segment: IntArray | None = None
     not_finite: BoolArray | None = None
     notes: tuple[str, ...] = ()
-
-
-def track_of(
-    recording: Recording,
-    *,
-    origin: GeodeticPoint | None = None,
-    fastest: float = FASTEST,
-    gap_factor: float = GAP_FACTOR,
-) -> Track:
-    """The track of a recording: checked, projected about its origin, flagged.
-
-    Raises
-    ------
-    FieldDataError
-        There is no point, no point has a place, times run backwards, a number is out of range, or an origin is given
-        for a file that says nothing of where on earth it is.
-    """
-    _require_points(recording)
-    recording, fix = fixed_points(recording, _fix(recording))
-    _require_in_range(recording)
-    _require_time(recording)
-    place, velocity, at = _projected(recording, fix, origin)
-    speed = np.full(len(recording.time), np.nan) if recording.speed is None else recording.speed
-    negative = np.isfinite(speed) & (speed < 0.0)
-    time, rounded = spread_times(recording.time - recording.time[0], place[:, :2])
-    time = time - time[0]
-    solution = None if recording.solution is None else np.where(fix, recording.solution, "")
-    flags = point_flags(
-        time,
-        place,
-        fix,
-        negative,
-        fastest=fastest,
-        gap_factor=gap_factor,
-        solution=solution,
-        segment=recording.segment,
-        rounded=rounded,
-        not_finite=recording.not_finite,
-    )
-    return Track(
-        name=recording.name,
-        time=time,
-        place=place,
-        speed=np.where(negative, np.nan, speed),
-        time_scale=recording.time_scale,
-        frame=_frame(recording, at),
-        velocity=velocity,
-        place_sd=recording.place_sd,
-        speed_sd=recording.speed_sd,
-        solution=solution,
-        odometer=recording.odometer,
-        start=recording.start,
-        flags=flags,
-        axes="east_north_up" if recording.is_geodetic else recording.axes,
-        origin=at,
-        first_time=recording.first_time,
-        speed_kind=recording.speed_kind,
-        further_columns=recording.further_columns,
-        left_out={words: count for words, count in recording.left_out.items() if count},
-        notes=recording.notes,
-    )
-
-
-def _fix(recording: Recording) -> BoolArray:
-    """Where there is a place: latitude and longitude that are both exactly 0 are what devices write without one."""
-    horizontal = recording.place[:, :2]
-    fix = np.asarray(np.isfinite(horizontal).all(axis=1))
-    if recording.is_geodetic:
-        fix &= np.any(horizontal != 0.0, axis=1)
-    return fix if recording.fix is None else fix & recording.fix
-
-
-def _projected(
-    recording: Recording, fix: BoolArray, origin: GeodeticPoint | None
-) -> tuple[FloatArray, FloatArray | None, GeodeticPoint | None]:
-    if not recording.is_geodetic:
-        if origin is not None:
-            raise refusal(
-                "no_place_on_earth",
-                recording.name,
-                value=str(origin),
-                allowed="an origin with a file that has latitude and longitude",
-                action="The file has local metres only; leave the origin out.",
-            )
-        return recording.place, recording.velocity, None
-    at = origin or recording.default_origin or _first(recording.place[fix])
-    velocity = recording.velocity
-    if velocity is not None:
-        velocity = turned_to_origin(velocity, recording.place, origin=at)
-    return east_north_up(recording.place, origin=at), velocity, at
-
-
-def _first(points: FloatArray) -> GeodeticPoint:
-    """The first point; at the first height there is, where its own is missing."""
-    heights = points[np.isfinite(points[:, 2]), 2]
-    return GeodeticPoint(float(points[0, 0]), float(points[0, 1]), float(heights[0]) if len(heights) else 0.0)
-
-
-def _frame(recording: Recording, at: GeodeticPoint | None) -> str:
-    if at is None:
-        return recording.axes_in_words
-    return f"east, north, up in m from {at}: the plane that touches WGS84 there; heights {recording.heights}"
-
-
-def _require_points(recording: Recording) -> None:
-    if not len(recording.time):
-        raise refusal(
-            "empty_file",
-            recording.name,
-            allowed="at least one point",
-            action="The file has no point; was anything recorded?",
-        )
-    fix = _fix(recording)
-    if not np.any(fix):
-        raise refusal(
-            "no_place",
-            recording.name,
-            allowed="at least one point with a place and a fix",
-            action=f"None of the {len(fix)} points has one; was the receiver under a roof?",
-        )
-
-
-def _require_time(recording: Recording) -> None:
-    falls = np.flatnonzero(np.diff(recording.time) < 0.0)
-    if len(falls):
-        point = int(falls[0]) + 1
-        raise refusal(
-            "time_backwards",
-            recording.name,
-            place=recording.places_in_file[point],
-            column="time",
-            value=_told_time(recording, point),
-            allowed=f"a time not before the one of the point before, {_told_time(recording, point - 1)}",
-            action="Sort the points, or split the file where another recording begins.",
-        )
-
-
-def _told_time(recording: Recording, point: int) -> str:
-    seconds = float(recording.time[point] - recording.time[0])
-    if recording.start is None:
-        return f"{seconds + recording.first_time:.12g} s"
-    return datetime.fromtimestamp(
-        recording.start.replace(tzinfo=recording.start.tzinfo or UTC).timestamp() + seconds, UTC
-    ).strftime("%Y-%m-%d %H:%M:%S.%f")
-
-
-def _require_in_range(recording: Recording) -> None:
-    """Refuse numbers that are in no unit a ski run's; they would be nonsense on the way, or overflow."""
-    places = GEODETIC if recording.is_geodetic else LOCAL
-    for axis, quantity in enumerate(places):
-        column = recording.columns.get("xyz"[axis], quantity.field)
-        _require_within(recording, column, recording.place[:, axis], quantity)
-    for name, quantity in MOTION.items():
-        values = getattr(recording, name)
-        for each in [] if values is None else [values] if values.ndim == 1 else list(values.T):
-            _require_within(recording, name, each, quantity)
-
-
-def _require_within(recording: Recording, column: str, values: FloatArray, quantity: Quantity) -> None:
-    outside = np.flatnonzero(quantity.outside(values))
-    if len(outside):
-        point = int(outside[0])
-        raise refusal(
-            "out_of_range",
-            recording.name,
-            place=recording.places_in_file[point],
-            column=column,
-            value=f"{values[point]:.12g}",
-            allowed=f"a number {quantity.allowed} {quantity.unit}",
-            action="Correct the value; is it in another unit, or in another column?",
-        )

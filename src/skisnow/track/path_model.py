@@ -1,0 +1,340 @@
+"""The motion of a skier as a stochastic model: a point that runs along its heading.
+
+State at each node of time: place x, y (m), heading θ (rad), turn rate ω (rad/s) and its rate η (rad/s²), speed v (m/s),
+acceleration a (m/s²).
+
+    ẋ = v cos θ + drift,  ẏ = v sin θ + drift,  θ̇ = ω,  ω̇ = η,  η̇ = -2 ζ Ω η - Ω² ω + noise,
+    v̇ = a,  ȧ = -a / T + noise
+
+The turn rate is a damped oscillation: linked turns to the left and right. The acceleration is an Ornstein-Uhlenbeck
+process.
+
+Speed and heading vary separately, so that a turn between two points bends the path and leaves the speed: a model in x
+and y would slow down and speed up instead. The drift is that of the receiver, a random walk of the places.
+
+`PathModel.fit` finds the most probable path by Gauss-Newton steps with a banded Cholesky factor, and the evidence of
+the parameters by Laplace's approximation: Bell (1994), "The iterated Kalman smoother as a Gauss-Newton method", SIAM J.
+Optim. 4, 626-636, doi 10.1137/0804035; Rue, Martino and Chopin (2009), J. R. Stat. Soc. B 71, 319-392.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Final, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+from scipy.interpolate import make_interp_spline, make_smoothing_spline
+from scipy.linalg import LinAlgError, cho_solve_banded, cholesky_banded, expm
+
+FloatArray = npt.NDArray[np.float64]
+IntArray = npt.NDArray[np.int64]
+
+DAMPING: Final = 0.3
+"""Damping ratio ζ of the turn rate (modelling assumption: two or three linked turns resemble each other)."""
+SPEED_TIME: Final = 1.0
+"""Correlation time (s) of the acceleration along the path (modelling assumption)."""
+USUAL_SPEED: Final = (10.0, 30.0)
+"""Mean and standard deviation (m/s) of the first speed (modelling assumption: hardly any information)."""
+HEADING_PRECISION: Final = 1e-2
+"""Precision of the first heading (1/rad²): hardly any information."""
+STATES: Final = 7
+_X, _TURN, _SPEED = slice(0, 2), slice(2, 5), slice(5, 7)
+_THETA, _V = 2, 5
+_MOST_STEPS: Final = 30
+_SETTLED: Final = 1e-6
+"""Relative decrease of the misfit at which a fit ends."""
+_INITIAL_ACCELERATION: Final = 50.0
+"""Spectral density (m²/s³) of the acceleration for the initial path (modelling assumption)."""
+_ACCELERATION_AT_REST: Final = 0.05
+"""The same for a point that does not move: otherwise the path would follow the noise."""
+_RATE_AT_REST: Final = 0.7
+"""Speed over noise (1/s) below which a point does not move (modelling assumption)."""
+
+
+class MotionParameters(NamedTuple):
+    """Parameters of the model.
+
+    Attributes
+    ----------
+    place_noise
+        Standard deviation (m) of a coordinate, from point to point.
+    turn_rate
+        Standard deviation (rad/s) of the turn rate.
+    period
+        2π/Ω (s): of a turn to the left and one to the right.
+    acceleration
+        Standard deviation (m/s²) of the acceleration along the path.
+    drift
+        Random walk of the places (m/√s).
+    """
+
+    place_noise: float
+    turn_rate: float
+    period: float
+    acceleration: float
+    drift: float
+
+
+@dataclass(frozen=True, slots=True)
+class PathFit:
+    """The most probable path of one set of parameters.
+
+    Attributes
+    ----------
+    state : (n, 7)
+        At each node.
+    factor : (14, 7 n)
+        Lower banded Cholesky factor of the precision of the state.
+    log_evidence
+        Logarithm of the evidence of the parameters, up to a constant of the nodes.
+    """
+
+    state: FloatArray
+    factor: FloatArray
+    log_evidence: float
+
+
+class _Residuals(NamedTuple):
+    """Residuals of the transitions and points, the terms that their derivatives need, and half their weighted sum."""
+
+    transition: FloatArray
+    point: FloatArray
+    turn: FloatArray
+    mean_speed: FloatArray
+    shortening: FloatArray
+    cosine: FloatArray
+    sine: FloatArray
+    misfit: float
+
+
+class Chain:
+    """A linear chain of states that a white noise drives, over steps of any length.
+
+    Parameters
+    ----------
+    dynamics : (k, k)
+        Of ẋ = dynamics x + (0, …, 0, 1) noise.
+    density
+        Spectral density of the noise.
+    step : (n,) s
+    """
+
+    def __init__(self, dynamics: FloatArray, density: float, step: FloatArray) -> None:
+        size = len(dynamics)
+        lengths, which = np.unique(np.round(step, 6), return_inverse=True)
+        noise = np.zeros((size, size))
+        noise[-1, -1] = density
+        loan = np.block([[-dynamics, noise], [np.zeros((size, size)), dynamics.T]])
+        powers = expm(loan * lengths[:, None, None])  # Van Loan (1978), doi 10.1109/TAC.1978.1101743
+        transition = powers[:, size:, size:].transpose(0, 2, 1)
+        covariance = transition @ powers[:, :size, size:]
+        scale = np.sqrt(np.diagonal(covariance, axis1=1, axis2=2))
+        correlation = covariance / (scale[:, :, None] * scale[:, None, :])
+        precision = np.linalg.inv(correlation) / (scale[:, :, None] * scale[:, None, :])
+        counts = np.bincount(which, minlength=len(lengths))
+        log_determinant = np.linalg.slogdet(correlation)[1] + 2.0 * np.sum(np.log(scale), axis=1)
+        self.transition: FloatArray = transition[which]
+        self.precision: FloatArray = precision[which]
+        self.log_scale = -0.5 * float(counts @ log_determinant)
+
+
+def turn_chain(period: float, step: FloatArray) -> Chain:
+    """Heading, turn rate of unit variance, and its rate."""
+    angular = 2.0 * np.pi / period
+    dynamics = np.array([[0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [0.0, -(angular**2), -2.0 * DAMPING * angular]])
+    return Chain(dynamics, 4.0 * DAMPING * angular**3, step)
+
+
+def speed_chain(correlation_time: float, step: FloatArray) -> Chain:
+    """A speed and its acceleration, an Ornstein-Uhlenbeck process of unit variance."""
+    return Chain(np.array([[0.0, 1.0], [0.0, -1.0 / correlation_time]]), 2.0 / correlation_time, step)
+
+
+class PathModel:
+    """Points of one stretch without a gap, and nodes of time at and between them.
+
+    Parameters
+    ----------
+    time : (m,) s
+        Rising.
+    place : (m, 2) m
+    longest_step : s
+        Between nodes.
+    """
+
+    def __init__(self, time: FloatArray, place: FloatArray, longest_step: float) -> None:
+        counts = np.maximum(1, np.ceil(np.diff(time) / longest_step - 1e-9)).astype(np.int64)
+        self.points: IntArray = np.concatenate([[0], np.cumsum(counts)])
+        self.count = int(self.points[-1]) + 1
+        self.step: FloatArray = np.repeat(np.diff(time) / counts, counts)
+        self.time: FloatArray = np.interp(np.arange(self.count), self.points, time)
+        self.place = place
+        self._speed = speed_chain(SPEED_TIME, self.step)
+        self._turns: dict[float, Chain] = {}
+        self._band = _band_places(self.count)
+
+    def initial_state(self, place_noise: float) -> FloatArray:
+        """A path (n, 7) through places of this noise (m), from splines of x and y."""
+        time = self.time[self.points]
+        state = np.zeros((self.count, STATES))
+        velocity, slow_velocity = np.zeros((self.count, 2)), np.zeros((self.count, 2))
+        for axis in range(2):
+            values = self.place[:, axis]
+            if len(time) < 5:
+                spline = slow = make_interp_spline(time, values, k=1)
+            else:
+                spline, slow = (
+                    make_smoothing_spline(time, values, lam=max(place_noise**2 / density, 1e-8))
+                    for density in (_INITIAL_ACCELERATION, _ACCELERATION_AT_REST)
+                )
+            state[:, axis], velocity[:, axis] = spline(self.time), spline.derivative()(self.time)
+            slow_velocity[:, axis] = slow.derivative()(self.time)
+        at_rest = np.hypot(*slow_velocity.T) < place_noise * _RATE_AT_REST
+        velocity[at_rest] = slow_velocity[at_rest]
+        state[:, _THETA] = np.unwrap(np.arctan2(velocity[:, 1], velocity[:, 0]))
+        state[:, _THETA + 1] = np.gradient(state[:, _THETA], self.time)
+        state[:, _V] = np.hypot(*velocity.T)
+        return state
+
+    def fit(self, parameters: MotionParameters, state: FloatArray) -> PathFit | None:
+        """The most probable path, from an initial one; None if the steps fail."""
+        weight = self._weights(parameters)
+        residuals = self._residuals(state, parameters, weight)
+        damping = 0.0
+        factor = None
+        for _ in range(_MOST_STEPS):
+            band, gradient = self._normal_equations(state, residuals, parameters, weight)
+            while True:
+                damped = band.copy()
+                damped[0] *= 1.0 + damping
+                try:
+                    factor = cholesky_banded(damped, overwrite_ab=True, lower=True, check_finite=False)
+                except LinAlgError:
+                    return None
+                change = cho_solve_banded((factor, True), gradient.ravel(), check_finite=False)
+                moved = state - change.reshape(-1, STATES)
+                found = self._residuals(moved, parameters, weight)
+                if found.misfit <= residuals.misfit * (1.0 + 1e-9) + 1e-9:
+                    break
+                damping = max(5.0 * damping, 1e-4)
+                if not damping < 1e6:
+                    return None
+            decrease = residuals.misfit - found.misfit
+            state, residuals = moved, found
+            if damping == 0.0 and decrease < _SETTLED * max(1.0, residuals.misfit) and decrease < 1e-2:
+                break
+            damping = damping / 10.0 if damping > 1e-4 else 0.0
+        assert factor is not None
+        evidence = self._log_prior_scale(parameters) - residuals.misfit - float(np.sum(np.log(factor[0])))
+        return PathFit(state, factor, evidence) if np.isfinite(evidence) else None
+
+    def _weights(self, parameters: MotionParameters) -> FloatArray:
+        """Precision (n - 1, 7, 7) of each transition."""
+        weight = np.zeros((len(self.step), STATES, STATES))
+        weight[:, 0, 0] = weight[:, 1, 1] = 1.0 / (parameters.drift**2 * self.step)
+        weight[:, _TURN, _TURN] = self._turn(parameters).precision / parameters.turn_rate**2
+        weight[:, _SPEED, _SPEED] = self._speed.precision / parameters.acceleration**2
+        return weight
+
+    def _turn(self, parameters: MotionParameters) -> Chain:
+        if parameters.period not in self._turns:
+            self._turns[parameters.period] = turn_chain(parameters.period, self.step)
+        return self._turns[parameters.period]
+
+    def _log_prior_scale(self, parameters: MotionParameters) -> float:
+        """Logarithm of the scale of all densities, up to a constant."""
+        steps, points = len(self.step), len(self.points)
+        turn, speed = np.log(parameters.turn_rate), np.log(parameters.acceleration)
+        scale = -(3 * steps + 2) * turn - (2 * steps + 1) * speed - 2 * steps * np.log(parameters.drift)
+        scale += self._turn(parameters).log_scale + self._speed.log_scale + np.log(parameters.period)
+        return float(scale - 2 * points * np.log(parameters.place_noise))
+
+    def _residuals(self, state: FloatArray, parameters: MotionParameters, weight: FloatArray) -> _Residuals:
+        """Residuals; over a step with the turn Δθ the chord is shorter than the arc by 1 - Δθ²/24."""
+        heading, speed = state[:, _THETA], state[:, _V]
+        turn = np.diff(heading)
+        middle = (heading[1:] + heading[:-1]) / 2.0
+        mean_speed = (speed[1:] + speed[:-1]) / 2.0
+        shortening = 1.0 - turn**2 / 24.0
+        cosine, sine = np.cos(middle), np.sin(middle)
+        chord = self.step * mean_speed * shortening
+        transition = np.empty((len(self.step), STATES))
+        transition[:, 0] = np.diff(state[:, 0]) - chord * cosine
+        transition[:, 1] = np.diff(state[:, 1]) - chord * sine
+        transition[:, _TURN] = state[1:, _TURN] - np.einsum(
+            "nij,nj->ni", self._turn(parameters).transition, state[:-1, _TURN]
+        )
+        transition[:, _SPEED] = state[1:, _SPEED] - np.einsum("nij,nj->ni", self._speed.transition, state[:-1, _SPEED])
+        point = state[self.points, _X] - self.place
+        first = state[0]
+        misfit = np.einsum("ni,nij,nj->", transition, weight, transition) + np.sum(point**2) / parameters.place_noise**2
+        misfit += float(np.sum(_first_precision(parameters) * (first - _FIRST) ** 2))
+        return _Residuals(transition, point, turn, mean_speed, shortening, cosine, sine, 0.5 * float(misfit))
+
+    def _derivatives(self, residuals: _Residuals, parameters: MotionParameters) -> tuple[FloatArray, FloatArray]:
+        """Derivatives (n - 1, 7, 7) of the transitions by the state before and the state after."""
+        turn, cosine, sine = residuals.turn, residuals.cosine, residuals.sine
+        chord = self.step * residuals.mean_speed * residuals.shortening
+        by_turn = self.step * residuals.mean_speed * turn / 12.0
+        before = np.zeros((len(self.step), STATES, STATES))
+        after = np.zeros_like(before)
+        for axis, along, across in ((0, cosine, -sine), (1, sine, cosine)):
+            before[:, axis, axis], after[:, axis, axis] = -1.0, 1.0
+            before[:, axis, _THETA] = -(by_turn * along + 0.5 * chord * across)
+            after[:, axis, _THETA] = -(-by_turn * along + 0.5 * chord * across)
+            before[:, axis, _V] = after[:, axis, _V] = -0.5 * self.step * residuals.shortening * along
+        before[:, _TURN, _TURN] = -self._turn(parameters).transition
+        before[:, _SPEED, _SPEED] = -self._speed.transition
+        after[:, _TURN, _TURN], after[:, _SPEED, _SPEED] = np.eye(3), np.eye(2)
+        return before, after
+
+    def _normal_equations(
+        self, state: FloatArray, residuals: _Residuals, parameters: MotionParameters, weight: FloatArray
+    ) -> tuple[FloatArray, FloatArray]:
+        """Lower banded matrix (14, 7 n) and gradient (n, 7) of the misfit."""
+        before, after = self._derivatives(residuals, parameters)
+        weighted_before, weighted_after = weight @ before, weight @ after
+        pull = np.einsum("nij,nj->ni", weight, residuals.transition)
+        diagonal, gradient = np.zeros((self.count, STATES, STATES)), np.zeros((self.count, STATES))
+        diagonal[:-1] += before.transpose(0, 2, 1) @ weighted_before
+        diagonal[1:] += after.transpose(0, 2, 1) @ weighted_after
+        gradient[:-1] += np.einsum("nji,nj->ni", before, pull)
+        gradient[1:] += np.einsum("nji,nj->ni", after, pull)
+        point_weight = 1.0 / parameters.place_noise**2
+        for axis in range(2):
+            diagonal[self.points, axis, axis] += point_weight
+        gradient[self.points, _X] += point_weight * residuals.point
+        first = _first_precision(parameters)
+        diagonal[0, range(STATES), range(STATES)] += first
+        gradient[0] += first * (state[0] - _FIRST)
+        band = np.zeros((2 * STATES, self.count * STATES))
+        rows, columns, lower, upper = self._band
+        band[rows[0], columns[0]] = diagonal[:, lower, upper]
+        band[rows[1], columns[1]] = (after.transpose(0, 2, 1) @ weighted_before).reshape(len(self.step), -1)
+        return band, gradient
+
+
+_FIRST: Final = np.array([0.0, 0.0, 0.0, 0.0, 0.0, USUAL_SPEED[0], 0.0])
+"""Mean of the first state."""
+
+
+def _first_precision(parameters: MotionParameters) -> FloatArray:
+    """Precision (7,) of the first state; the place is free, the heading nearly so."""
+    turn = parameters.turn_rate**-2
+    rate = turn * (parameters.period / (2.0 * np.pi)) ** 2
+    return np.array([0.0, 0.0, HEADING_PRECISION, turn, rate, USUAL_SPEED[1] ** -2, parameters.acceleration**-2])
+
+
+def _band_places(
+    count: int,
+) -> tuple[tuple[IntArray, IntArray], tuple[IntArray, IntArray], IntArray, IntArray]:
+    """Rows and columns in the banded matrix of the lower triangles of the diagonal blocks, and of the blocks below."""
+    lower, upper = np.tril_indices(STATES)
+    begin = STATES * np.arange(count)[:, None]
+    row, column = (indices.ravel() for indices in np.indices((STATES, STATES)))
+    rows = (
+        np.broadcast_to(lower - upper, (count, len(lower))),
+        np.broadcast_to(STATES + row - column, (count - 1, len(row))),
+    )
+    return rows, (begin + upper, begin[:-1] + column), lower, upper
