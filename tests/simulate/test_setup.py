@@ -61,6 +61,7 @@ def test_a_run_begins_where_its_sledge_stands(
         "computed_run": lambda _setup, _record, said, _wall: said,
         "replace": lambda said, **_: said,
         "why_no_start": lambda _: "cannot stand",
+        "model_limits": lambda _: {},
     }
     for name, fake in fakes.items():
         monkeypatch.setattr(simulated_run, name, fake)
