@@ -181,6 +181,6 @@ def _way(run: Run) -> FloatArray:
 
 def _cut(run: Run, rows: slice) -> Run:
     """The part of a run that its grip is asked of."""
-    names = ("edge_depth", "force_per_length", "shear_per_length")
+    names = ("edge_depth", "force_per_length", "shear_per_length", "force")
     skis = replace(run.skis, **{name: getattr(run.skis, name)[rows] for name in names})
     return replace(run, time=run.time[rows], skis=skis)

@@ -93,6 +93,7 @@ def test_a_correction_asks_for_a_reason_and_shows_what_came_of_it(right: bool, m
         return right
 
     monkeypatch.setattr("skisnow.web.entry.single.ask_reason", ask_reason)
+    monkeypatch.setattr("skisnow.web.language.language_of", lambda _: "en")
     made = form()
     made._ask, made._cells = None, lambda _: {"site": "A", "depth_mm": "12"}
     made._view.say = lambda words, *_: said.append(words)

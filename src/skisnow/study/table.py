@@ -32,6 +32,8 @@ from .writing import write_csv
 MOST_ROWS_HELD: Final = 20_000
 """A table of more stays in its file, and rows are read as they are used (8 kB each in memory)."""
 MOST_BYTES_HELD: Final = 1 << 24
+MOST_BYTES_AT_ONCE: Final = 1 << 27
+"""Largest table of another program, which is read as a whole (bytes)."""
 """Of a CSV file; a larger one is not read at once."""
 _HEAD: Final = 1 << 16
 
@@ -192,7 +194,7 @@ def _begins(file: IO[bytes]) -> array[int]:
 
 def _read_at_once(path: Path, keys: Mapping[str, Quantity]) -> tuple[tuple[str, ...], list[Row]]:
     try:
-        text = decoded(plain_bytes(path, most_bytes=MOST_BYTES_HELD)).text
+        text = decoded(plain_bytes(path, most_bytes=MOST_BYTES_AT_ONCE)).text
         named = named_separator(text)
         separator = named if named in SEPARATOR_NAMES else most_frequent_separator(text[:_HEAD])
         stream = io.StringIO(text, newline="")

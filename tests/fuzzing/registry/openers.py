@@ -49,6 +49,7 @@ NO_READERS: Final[Mapping[str, str]] = {
     "web.lab_skis:texts_of_ski": "the file that it has just written",
     "web.unpacking:files_below": "bytes for a download",
     "web.pages.replay:_in_words": "summary.json, by read_record as web.runs:Runs._over",
+    "cli.compare:_slope_angle_of_run": "summary.json of a run, by read_json as other records",
     "web.server:Certificate.__post_init__": "a certificate, parsed by OpenSSL",
     "certificates:load_certificate": "a certificate, parsed by OpenSSL",
     "parallel.dask_cluster:_require_certificates": "certificates, parsed by OpenSSL",

@@ -44,7 +44,7 @@ def spread_times(time: FloatArray, place: FloatArray) -> tuple[FloatArray, BoolA
     Examples
     --------
     >>> place = np.column_stack([np.arange(6.0), np.zeros(6)])
-    >>> spread_times(np.array([0.0, 1.0, 1.0, 2.0, 2.0, 3.0]), place)[0].tolist()
+    >>> spread_times(np.array([0.0, 1.0, 1.0, 2.0, 2.0, 3.0]), place)[0].round(9).tolist()
     [0.5, 1.0, 1.5, 2.0, 2.5, 3.0]
     """
     unmoved = time, np.zeros(len(time), dtype=bool)

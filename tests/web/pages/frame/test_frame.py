@@ -137,11 +137,14 @@ def test_a_field_has_its_name_above_it_in_the_language_of_the_page(desk: Desk) -
     assert "label" not in made(desk, TypedField).props
 
 
-def test_what_is_wrong_with_a_field_is_said_in_the_language_of_the_page(desk: Desk) -> None:
+def test_a_field_shows_its_error_as_it_is_set(desk: Desk) -> None:
     typed = made(desk, lambda: field("Width (mm)"), "de")
-    desk.do(lambda: setattr(typed, "error", "a number is needed here"))
-    assert typed.error == "a number is needed here"
-    assert (typed.props["error"], typed.props["error-message"]) == (True, "hier fehlt eine Zahl")
+    desk.do(lambda: setattr(typed, "error", "Breite (mm) ist leer."))
+    assert (typed.error, typed.props["error"], typed.props["error-message"]) == (
+        "Breite (mm) ist leer.",
+        True,
+        "Breite (mm) ist leer.",
+    )
     desk.do(lambda: setattr(typed, "error", None))
     assert (typed.error, typed.props["error"], typed.props["error-message"]) == (None, None, None)
 
