@@ -1,7 +1,7 @@
-"""What can go wrong, reported so that the reader knows what to do.
+"""Errors and warnings of skisnow, one class for each kind.
 
-One base class, one subclass for each kind of trouble. Each message names where the trouble is, what is allowed and what
-to do about it.
+Each message names the place, the problem, what is allowed and how to fix it. Programs and tests use `code` instead of
+the wording.
 """
 
 from __future__ import annotations
@@ -13,7 +13,17 @@ if TYPE_CHECKING:
 
 
 class SkisnowError(Exception):
-    """Base of every error that skisnow raises on purpose."""
+    """Base class of all errors of skisnow.
+
+    Attributes
+    ----------
+    code
+        Identifier that does not change with the wording, such as ``contradiction``; empty without one.
+    """
+
+    def __init__(self, message: str = "", *, code: str = "") -> None:
+        super().__init__(message)
+        self.code = code
 
 
 class ParameterError(SkisnowError, ValueError):

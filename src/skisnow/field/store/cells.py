@@ -54,9 +54,10 @@ class CellError(ParameterError):
     """
 
     def __init__(self, code: str, column: str, value: str, fix: str, limits: tuple[float, ...] = ()) -> None:
-        self.code, self.column, self.value = code, column, value
+        self.column, self.value = column, value
         self.problem, self.fix, self.limits = _PROBLEMS[code], fix, limits
-        super().__init__(f"{self.problem.format(column, value)} {fix.format(*(f'{limit:g}' for limit in limits))}")
+        text = f"{self.problem.format(column, value)} {fix.format(*(f'{limit:g}' for limit in limits))}"
+        super().__init__(text, code=code)
 
 
 def checked_cell(form: TableForm, column: str, typed: str) -> str:
