@@ -293,7 +293,7 @@ def test_an_interrupted_rewrite_leaves_the_earlier_report_whole(
     def interrupted(*_: object, **__: object) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("skisnow.report.write.page", interrupted)
+    monkeypatch.setattr("skisnow.report.campaign.page.page", interrupted)
     words = ["analyse", str(campaign), "--out", str(out), "--resamples", "100", "--geometry", "paper", "--seed", "9"]
     assert main(words) == 130
     assert {name: (out / name).read_bytes() for name in files_below(out)} == before

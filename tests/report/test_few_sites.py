@@ -8,11 +8,10 @@ from dataclasses import replace
 import pytest
 
 from skisnow.field import Campaign
+from skisnow.report.campaign.data import ReportData
+from skisnow.report.campaign.findings import caveats, regression_sentences
+from skisnow.report.campaign.key_results import key_results
 from skisnow.report.number_formatting import interval, significant
-from skisnow.report.report_data import ReportData
-from skisnow.report.sentences.caveats import caveats
-from skisnow.report.sentences.key_results import key_results
-from skisnow.report.sentences.regressions import regression_sentences
 
 from .conftest import Reported, altered, analysis_of, first_series
 

@@ -14,7 +14,7 @@ import pytest
 
 from skisnow.field import Campaign
 from skisnow.field.records import TurningReadings
-from skisnow.report.report_data import ReportData
+from skisnow.report.campaign.data import ReportData
 
 from .conftest import Reported, analysis_of, first_series, first_shear, reported
 

@@ -7,9 +7,9 @@ import math
 import numpy as np
 import pytest
 
-from skisnow.report.report_data import ReportData
-from skisnow.report.tables.seating import (
-    offsets_that_show,
+from skisnow.report.campaign.data import ReportData
+from skisnow.report.campaign.series_tables import (
+    count_resolved_offsets,
     seating_largest_table,
     seating_quantiles_table,
     seating_table,
@@ -87,4 +87,4 @@ def test_every_series_has_a_row(data: ReportData) -> None:
 
 
 def test_an_offset_shows_where_its_interval_leaves_zero_out() -> None:
-    assert offsets_that_show([{"interval_mm": ends} for ends in ENDS]) == 2
+    assert count_resolved_offsets([{"interval_mm": ends} for ends in ENDS]) == 2

@@ -7,8 +7,8 @@ import sys
 from dataclasses import replace
 
 from skisnow.field import Campaign
+from skisnow.report.campaign.summary import summary
 from skisnow.report.number_formatting import interval, significant
-from skisnow.report.summary import summary
 
 from .conftest import Reported, first_series, results_of
 
@@ -85,5 +85,7 @@ def test_it_prints_on_a_western_terminal(reference: Reported) -> None:
 
 
 def test_it_does_not_wait_for_the_drawing_library() -> None:
-    code = "import sys, skisnow.report.summary; sys.exit('matplotlib' in sys.modules or 'jinja2' in sys.modules)"
+    code = (
+        "import sys, skisnow.report.campaign.summary; sys.exit('matplotlib' in sys.modules or 'jinja2' in sys.modules)"
+    )
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0

@@ -6,10 +6,10 @@ import csv
 import io
 from dataclasses import replace
 
-from skisnow.report.report_data import ReportData
+from skisnow.report.campaign.data import ReportData
+from skisnow.report.campaign.tables import campaign_tables
 from skisnow.report.table import Column, Table
 from skisnow.report.table_csv import table_csv
-from skisnow.report.tables import tables_of
 
 from .conftest import Reported
 
@@ -107,5 +107,5 @@ HEADS = {
 
 
 def test_columns_of_every_table_have_their_names(reference: Reported) -> None:
-    tables = tables_of(ReportData(reference.analysis))
+    tables = campaign_tables(ReportData(reference.analysis))
     assert {name: " ".join(column.key for column in table.columns) for name, table in tables.items()} == HEADS

@@ -14,12 +14,12 @@ from matplotlib.text import Text
 
 from skisnow.errors import ParameterError
 from skisnow.report import write_report
-from skisnow.report.figures import DRAWERS
+from skisnow.report.campaign.data import ReportData
+from skisnow.report.campaign.figures import DRAWERS
 from skisnow.report.figures.drawing import Drawing, Picture
 from skisnow.report.figures.style import journal_style, site_styles
 from skisnow.report.figures.track_comparison import comparison_drawing
 from skisnow.report.figures.translated import translate_figure
-from skisnow.report.report_data import ReportData
 from skisnow.report.run_drawings import run_drawings
 from skisnow.report.run_report import run_page
 from skisnow.report.symbols import figure_text

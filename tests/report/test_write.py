@@ -78,7 +78,7 @@ def test_the_same_results_give_the_same_bytes_whatever_the_user_has_set(
         written.append(path.name)
         write_file(path, content)
 
-    monkeypatch.setattr("skisnow.report.write.write_file", noting)
+    monkeypatch.setattr("skisnow.report.campaign.page.write_file", noting)
     others: Any = {"font.size": 31.0, "svg.fonttype": "path", "axes.grid": True}
     with matplotlib.rc_context(others), only_drawn("png", "svg"):
         write_report(reference.analysis, tmp_path, progress=said.append)

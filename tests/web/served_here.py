@@ -23,7 +23,7 @@ def leave_figures_empty() -> None:
     def empty(drawing: Drawing) -> Picture:
         return Picture(drawing.name, drawing.whole_caption, drawing.alt, drawing.wide, svg, svg.encode())
 
-    patch("skisnow.report.figures.pictured", empty).start()
+    patch("skisnow.report.campaign.figures.pictured", empty).start()
     patch("skisnow.web.analysing.svgs_of", lambda _: (svg, "")).start()
 
 

@@ -16,7 +16,7 @@ from skisnow.estimate import analyse
 from skisnow.field import QUALITY_FLAGS, read_campaign
 from skisnow.field.problems import Problem
 from skisnow.field.store import Journals, NewEntry, Store, export_corrected
-from skisnow.report.figures import DRAWERS
+from skisnow.report.campaign.figures import DRAWERS
 from skisnow.report.number_formatting import significant
 from skisnow.snow import snow_from_results
 from skisnow.web.analyses import Analyses, CampaignSource

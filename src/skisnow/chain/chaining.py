@@ -12,8 +12,8 @@ from ..estimate import Analysis, analyse
 from ..estimate.site_snow import site_of_campaign
 from ..field import Campaign, read_campaign
 from ..parallel.pool import workers_in_force
+from ..report.campaign.data import is_synthetic
 from ..report.figures.track_band import FEWEST
-from ..report.report_data import is_synthetic
 from ..report.turn_chain import TurnChain
 from ..scenario import Scenario, read_scenario
 from ..scenario.contact import ELASTIC

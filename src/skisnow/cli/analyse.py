@@ -59,7 +59,7 @@ def run(options: argparse.Namespace) -> int:
     if options.json:
         print(results_json(analysis.results).decode("utf-8"), end="")
         return 0
-    from ..report.summary import summary
+    from ..report.campaign.summary import summary
 
     print(summary(analysis.results))
     if options.out is not None:

@@ -14,7 +14,6 @@ import numpy.typing as npt
 from ..errors import ParameterError
 from ..field import read_campaign
 from ..field.records import Campaign
-from ..from_above import from_above
 from ..shown import Facts, Shown, amount, span
 from ..snow import SnowProperties
 from .comparisons import Comparison, OwnValue, compare_with_published, own_mean
@@ -109,8 +108,9 @@ class Analysis(Shown):
     @cached_property
     def results(self) -> dict[str, Any]:
         """The contents of results.json, see `results_dict`; not to be changed."""
-        found: dict[str, Any] = from_above("estimate.results", "results_dict")(self)
-        return found
+        from .results import results_dict
+
+        return results_dict(self)
 
     def snow(self, site: str | None = None, *, unloading_ratio: float | None = None) -> SnowProperties:
         """The snow of a site: the geometric mean of H_V and the mean of S_f over the used experiments, with intervals.

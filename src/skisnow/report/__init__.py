@@ -8,15 +8,15 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from .campaign.page import write_report
     from .turn_chain import TurnChain
-    from .write import write_report
 
 __all__ = ["TurnChain", "write_report"]
 
 
 def __getattr__(name: str) -> Any:
     if name == "write_report":
-        from .write import write_report
+        from .campaign.page import write_report
 
         return write_report
     if name == "TurnChain":

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final, Literal, TypeAlias
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterable, Mapping, Sequence
 
 Kind: TypeAlias = Literal[
     "text", "words", "codes", "yes", "tick", "count", "angle", "hundredths", "number", "p", "interval", "range",
@@ -38,6 +38,8 @@ class Column:
         What the cells hold.
     digits
         Significant digits in HTML and LaTeX; CSV has them all.
+    interval
+        Key of the 95 % interval that belongs to an estimate.
     """
 
     key: str
@@ -45,11 +47,17 @@ class Column:
     kind: Kind = "number"
     unit: str = ""
     digits: int = 3
+    interval: str = ""
 
     @property
     def numeric(self) -> bool:
         """Whether the cells are set right-aligned."""
         return self.kind in ("count", "angle", "hundredths", "number", "p", "interval", "range", "estimate")
+
+    def cell(self, record: Mapping[str, Any]) -> Any:
+        """Content of this column in the row of a record; an estimate gets its interval."""
+        value = record.get(self.key)
+        return (value, record.get(self.interval)) if self.kind == "estimate" else value
 
 
 @dataclass(frozen=True)
@@ -77,3 +85,12 @@ class Table:
     def full_caption(self) -> str:
         """The caption, with the word *synthetic* where it applies."""
         return f"{self.caption} Synthetic data." if self.synthetic else self.caption
+
+
+def record_table(
+    name: str, caption: str, columns: tuple[Column, ...], records: Iterable[Mapping[str, Any]], **options: Any
+) -> Table:
+    """A table with one row for each record, whose cells are found by the keys of the columns."""
+    return Table(
+        name, caption, columns, [tuple(column.cell(record) for column in columns) for record in records], **options
+    )

@@ -7,7 +7,6 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ..from_above import from_above
 from ..language import ENGLISH
 from ..shown import Facts, Shown, amount
 
@@ -104,13 +103,15 @@ class TurnChain(Shown):
     @property
     def sentences(self) -> list[str]:
         """What the contacts do otherwise, and where the spread of each input of the band comes from, in plain text."""
-        found = from_above("report.turn_sentences", "plain_sentences")
-        return [sentence.replace("<sub>", "_").striptags() for sentence in found(self)]
+        from .turn_sentences import plain_sentences
+
+        return [sentence.replace("<sub>", "_").striptags() for sentence in plain_sentences(self)]
 
     def report(self, folder: str | Path, *, language: str = ENGLISH) -> Path:
         """Write report.html, turn.json and figures/ of the whole chain; see `report.turn_report.write_turn_report`."""
-        page: Path = from_above("report.turn_report", "write_turn_report")(self, folder, language=language)
-        return page
+        from .turn_report import write_turn_report
+
+        return write_turn_report(self, folder, language=language)
 
     def _facts(self) -> Facts:
         runs = [(name, f"{run.outcome}, {amount(run.run_length, 'm')}") for name, run in self.runs.items()]

@@ -10,7 +10,6 @@ import numpy as np
 import numpy.typing as npt
 
 from ..former_names import warn_of_former_name
-from ..from_above import from_above
 from ..scenario import Plane, Scenario, Terrain
 from ..shown import Facts, Shown, amount, field_facts, name_with_values, span
 from ..track.track import Track
@@ -208,8 +207,9 @@ class Run(Shown):
     @property
     def balance(self) -> BalanceHistory:
         """How the body leant over its skis, and what would have been in balance; needs `boots`."""
-        found: BalanceHistory = from_above("simulate.run_balance", "balance_of")(self)
-        return found
+        from .run_balance import balance_of
+
+        return balance_of(self)
 
     @property
     def track(self) -> Track:
@@ -254,7 +254,9 @@ class Run(Shown):
         ParameterError
             There is no such figure, or the run ended before its first step.
         """
-        return from_above("report.run_drawings", "run_figure")(self, what)
+        from ..report.run_drawings import run_figure
+
+        return run_figure(self, what)
 
     def report(self, folder: str | Path) -> Path:
         """Write what ``skisnow simulate --out`` writes: summary.json, track.csv, run.nc, figures/ and report.html.
@@ -269,8 +271,9 @@ class Run(Shown):
         OutputError
             A file cannot be written.
         """
-        page: Path = from_above("report.run_folder", "write_run")(self, folder)
-        return page
+        from ..report.run_folder import write_run
+
+        return write_run(self, folder)
 
     def to_dataframe(self) -> Any:
         """The rows of track.csv with its columns, units in their names; needs pandas (``skisnow[pandas]``).
@@ -284,7 +287,9 @@ class Run(Shown):
         ParameterError
             pandas is not installed.
         """
-        return from_above("report.run_frames", "run_dataframe")(self)
+        from ..report.run_frames import run_dataframe
+
+        return run_dataframe(self)
 
     def to_xarray(self) -> Any:
         """The content of run.nc, over time and along the skis, SI; needs xarray (``skisnow[xarray]``).
@@ -298,7 +303,9 @@ class Run(Shown):
         ParameterError
             xarray is not installed.
         """
-        return from_above("report.run_frames", "run_dataset")(self)
+        from ..report.run_frames import run_dataset
+
+        return run_dataset(self)
 
     def _facts(self) -> Facts:
         error, radius = self.energy_balance_error, self.turn_radius_quantile(0.5)

@@ -14,15 +14,15 @@ from ..field import QUALITY_FLAGS, campaign_of_files
 from ..field.problems import Problem, lines_of
 from ..field.quality_flags import ALWAYS_EXCLUDE
 from ..report import write_report
-from ..report.figures import DRAWERS
+from ..report.campaign.data import ReportData
+from ..report.campaign.figures import DRAWERS
+from ..report.campaign.key_results import key_results
+from ..report.campaign.page import tables_html
+from ..report.campaign.tables import campaign_tables
 from ..report.figures.drawing import Drawing, data_uri, svgs_of
 from ..report.figures.style import journal_style, site_styles
 from ..report.figures.translated import translate_figure
-from ..report.page import tables_html
-from ..report.report_data import ReportData
-from ..report.sentences.key_results import key_results
 from ..report.symbols import figure_text
-from ..report.tables import tables_of
 
 if TYPE_CHECKING:
     from ..estimate import Analysis
@@ -106,7 +106,7 @@ def numbers_of(files: FilesInMemory, choice: Choice) -> Numbers | Refusal:
     except SkisnowError as error:
         return Refusal(str(error))
     data = ReportData(analysis)
-    html = tables_html({name: table for name, table in tables_of(data).items() if table.rows})
+    html = tables_html({name: table for name, table in campaign_tables(data).items() if table.rows})
     shown: dict[str, str] = {name: str(html[name]) for name in SHOWN_TABLES if name in html}
     return Numbers(analysis, tuple(map(str, key_results(data))), shown)
 

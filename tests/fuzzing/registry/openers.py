@@ -30,7 +30,7 @@ NO_READERS: Final[Mapping[str, str]] = {
     "cli.samples:run": "sample files that the program has just made",
     "language.catalogue:_entries": "package data",
     "replay.page:static_text": "package data",
-    "report.page:_frame": "package data",
+    "report.campaign.page:_frame": "package data",
     "report.sheet:sheet": "package data",
     "interop.fmu.writing:_write": "the library of the package",
     "interop.fmu.writing:_licence": "package data",

@@ -10,15 +10,12 @@ import numpy as np
 import pytest
 import statsmodels.api as sm
 
+from skisnow.report.campaign.data import ReportData
+from skisnow.report.campaign.model_figures import model_rmse, residuals
+from skisnow.report.campaign.penetration_figures import force_depth, shown_angles
+from skisnow.report.campaign.shear_figures import machining, regression_line, stress_angle
 from skisnow.report.figures.drawing import Drawing, LeftOut
-from skisnow.report.figures.force_depth import force_depth, shown_angles
-from skisnow.report.figures.machining import machining
-from skisnow.report.figures.model_rmse import model_rmse
-from skisnow.report.figures.regression_line import regression_line
-from skisnow.report.figures.residuals import residuals
-from skisnow.report.figures.stress_angle import stress_angle
 from skisnow.report.figures.style import SiteStyle, journal_style, site_styles, thinned
-from skisnow.report.report_data import ReportData
 
 from ..conftest import Reported
 

@@ -11,16 +11,16 @@ import pytest
 from matplotlib.axes import Axes
 from matplotlib.collections import PathCollection
 
-from skisnow.report.figures import DRAWERS
+from skisnow.report.campaign.data import ReportData
+from skisnow.report.campaign.figures import DRAWERS
+from skisnow.report.campaign.model_figures import model_rmse
+from skisnow.report.campaign.penetration_figures import seating_offsets
+from skisnow.report.campaign.shear_figures import shear_force_depth
 from skisnow.report.figures.drawing import Drawing
 from skisnow.report.figures.grip_map import grip_map
-from skisnow.report.figures.model_rmse import model_rmse
 from skisnow.report.figures.radius_map import radius_map
 from skisnow.report.figures.run_motion import run_motion
-from skisnow.report.figures.seating_offsets import seating_offsets
-from skisnow.report.figures.shear_force_depth import shear_force_depth
 from skisnow.report.figures.style import journal_style, site_styles
-from skisnow.report.report_data import ReportData
 from skisnow.track.comparison import compare_tracks
 
 from ..conftest import Reported, altered

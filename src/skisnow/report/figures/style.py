@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from matplotlib.artist import Artist
     from matplotlib.axes import Axes
 
-    from ..report_data import BoolArray, FloatArray, ReportData, TextArray
+    from ..campaign.data import BoolArray, FloatArray, ReportData, TextArray
 
 MM_PER_INCH: Final = 25.4
 SINGLE_MM: Final = 85.0
@@ -235,3 +235,31 @@ def plain_number(value: float, _place: float | None = None) -> str:
     if value != 0 and not 1e-4 <= abs(value) < 1e5:
         return f"$10^{{{np.log10(abs(value)):.0f}}}$"
     return f"{value:g}".replace("-", "−")
+
+
+@dataclass(frozen=True)
+class SitePlot:
+    """One panel of points by site, drawn in this order: lines, intervals, points, title, legend."""
+
+    figure: Figure
+    axes: Axes
+
+    @classmethod
+    def new(cls, xlabel: str, ylabel: str, *, height_mm: float) -> SitePlot:
+        """An empty panel with its labels."""
+        figure = new_figure(height_mm=height_mm)
+        axes = figure.add_subplot()
+        axes.set_xlabel(xlabel)
+        axes.set_ylabel(ylabel)
+        return cls(figure, axes)
+
+    def start_at_zero(self, which: str, values: FloatArray, margin: float) -> None:
+        """Limits from 0 to a margin above the maximum."""
+        set_limits = self.axes.set_xlim if which == "x" else self.axes.set_ylim
+        set_limits(0.0, float(values.max()) * margin or 1.0)
+
+    def finish(self, data: ReportData, handles: Sequence[Artist]) -> Figure:
+        """The figure with its legend, marked if the data are synthetic."""
+        mark_synthetic(data, self.axes)
+        legend_below(self.figure, handles)
+        return self.figure

@@ -11,7 +11,7 @@ import pytest
 from skisnow.errors import FieldDataError, ParameterError, StoreError
 from skisnow.field.reading import FilesInMemory
 from skisnow.field.store import Journals
-from skisnow.report.figures import DRAWERS
+from skisnow.report.campaign.figures import DRAWERS
 from skisnow.web import analyses as analyses_module
 from skisnow.web import analysing
 from skisnow.web.analyses import Analysed, Analyses, CampaignSource

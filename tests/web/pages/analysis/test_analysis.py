@@ -17,8 +17,8 @@ from skisnow.estimate import analyse
 from skisnow.field import read_campaign
 from skisnow.field.reading import FilesInMemory
 from skisnow.field.store import Journals
-from skisnow.report.report_data import ReportData
-from skisnow.report.sentences.key_results import key_results
+from skisnow.report.campaign.data import ReportData
+from skisnow.report.campaign.key_results import key_results
 from skisnow.web import analyses as analyses_module
 from skisnow.web import analysis_view
 from skisnow.web.analysing import Choice, Refusal, numbers_of

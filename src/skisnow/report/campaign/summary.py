@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, Final
 
-from ..estimate.comparisons import FEWEST_SITES
-from ..estimate.regressions import FEWEST_VALUES
-from .number_formatting import interval, p_equals, significant
+from ...estimate.comparisons import FEWEST_SITES
+from ...estimate.regressions import FEWEST_VALUES
+from ..number_formatting import interval, p_equals, significant
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -1,4 +1,4 @@
-"""The results in a few sentences: hardness, shear stress, law, relations."""
+"""Key results of a campaign as sentences in HTML: hardness, shear stress, law, relations."""
 
 from __future__ import annotations
 
@@ -10,25 +10,26 @@ from ...estimate.comparisons import FEWEST_SITES
 from ...estimate.regressions import FEWEST_VALUES
 from ..number_formatting import counted, interval, p_equals, significant, whole
 from ..symbols import html, prose
-from ..tables.models import law, row_name
-from ..tables.regressions import QUANTITY
+from .model_tables import formula, model_name
+from .site_tables import QUANTITY
 
 if TYPE_CHECKING:
-    from ..report_data import Json, ReportData, TextArray
+    from .data import Json, ReportData, TextArray
 
 SIGNIFICANT: Final = 0.05
 LISTED: Final = 12
 
 
 def key_results(data: ReportData) -> list[Markup]:
-    """One sentence for each result that the campaign has."""
-    found = [_hardness(data), _stress(data), _unloading(data), _displacement(data), _law(data), _relations(data)]
-    return [sentence for sentence in found if sentence is not None]
+    """One sentence for each available result."""
+    builders = (_hardness, _stress, _unloading, _displacement, _law, _relations)
+    sentences = (build(data) for build in builders)
+    return [sentence for sentence in sentences if sentence is not None]
 
 
 def headline(data: ReportData) -> Markup:
-    """The one number that people ask for first: H_V, or S_f where no hardness was measured; empty without either."""
-    for key, begins, unit in (
+    """Mean H_V with its interval, or S_f in a campaign without H_V; empty without either."""
+    for key, name, unit in (
         ("H_V_N_per_mm3", "Snow hardness H_V", "N/mm³"),
         ("S_f_N_per_mm2", "Failure shear stress S_f", "N/mm²"),
     ):
@@ -36,10 +37,10 @@ def headline(data: ReportData) -> Markup:
         if row is not None:
             ends = row["own_interval"]
             return prose(
-                "{begins} {value}, {known}, over {sites}.",
-                begins=html(begins),
+                "{name} {value}, {ends}, over {sites}.",
+                name=html(name),
                 value=Markup("<strong>{} {}</strong>").format(significant(row["own"]), unit),
-                known="without an interval" if ends is None else f"95 % interval {interval(ends)} {unit}",
+                ends="without an interval" if ends is None else f"95 % interval {interval(ends)} {unit}",
                 sites=counted(len(_sites(data, key)), "site"),
             )
     return Markup("")
@@ -50,7 +51,7 @@ def _sites(data: ReportData, key: str) -> set[str]:
 
 
 def own_value(data: ReportData, quantity: str) -> Json | None:
-    """The campaign's own mean, interval and range of a quantity, as they stand beside the published range."""
+    """Mean, interval and range of a quantity in this campaign, None without a value."""
     for row in data.results["comparisons"]:
         if row["quantity"] == quantity and row["own"] is not None:
             return row
@@ -63,19 +64,19 @@ def _hardness(data: ReportData) -> Markup | None:
 
 
 def _unloading(data: ReportData) -> Markup | None:
-    """Of all sites, or of the only one: one sentence."""
-    found = data.results["penetration"]["unloading"]
-    if not found:
+    """Unloading ratio over all sites."""
+    rows = data.results["penetration"]["unloading"]
+    if not rows:
         return None
-    row = found[-1]
+    row = rows[-1]
     if row["unloading_ratio_interval"] is None:
         upper_rebound = row["rebound_ratio_interval"] and row["rebound_ratio_interval"][1]
-        known = (
+        bound = (
             prose("above {lower}", lower=significant(1.0 / upper_rebound))
             if upper_rebound and upper_rebound > 0
             else html("not resolved")
         )
-        return prose("Unloading ratio k_u / H_V: {known}, from {n} series.", known=known, n=whole(row["n"]))
+        return prose("Unloading ratio k_u / H_V: {bound}, from {n} series.", bound=bound, n=whole(row["n"]))
     return prose(
         "Unloading ratio k_u / H_V {value} (95 % interval {ends}), from {n} series that were unloaded step by step.",
         value=_strong(row["unloading_ratio"]),
@@ -90,10 +91,10 @@ def _stress(data: ReportData) -> Markup | None:
 
 
 def _displacement(data: ReportData) -> Markup | None:
-    found = data.results["shear"]["displacement"]
-    if not found:
+    rows = data.results["shear"]["displacement"]
+    if not rows:
         return None
-    row = found[-1]
+    row = rows[-1]
     ends = row["shear_displacement_interval_mm"]
     return prose(
         "Shear displacement u_y: geometric mean {value} mm{ends}, from {n} with turning angles.",
@@ -104,9 +105,9 @@ def _displacement(data: ReportData) -> Markup | None:
 
 
 class Quantity(NamedTuple):
-    """A measured quantity: how its sentence begins, its symbol, its key, its unit, what it is measured by."""
+    """A measured quantity: name of its mean, symbol, key, unit and kind of experiment."""
 
-    begins: str
+    mean_name: str
     symbol: str
     key: str
     unit: str
@@ -124,8 +125,8 @@ def _mean(data: ReportData, quantity: Quantity, experiments: list[Json], used: i
     if 1 < sites < FEWEST_SITES:
         return _few_sites(data, quantity, row, prose("{used} of {n} used", used=whole(used), n=n))
     return prose(
-        "{begins} {value} {unit}{ends}, single experiments {low} to {high} {unit}; {used} of {n} used, at {sites}.",
-        begins=html(quantity.begins),
+        "{mean_name} {value} {unit}{ends}, single experiments {low} to {high} {unit}; {used} of {n} used, at {sites}.",
+        mean_name=html(quantity.mean_name),
         value=_strong(row["own"]),
         unit=quantity.unit,
         ends=_ends(row["own_interval"], quantity.unit, sites),
@@ -138,10 +139,10 @@ def _mean(data: ReportData, quantity: Quantity, experiments: list[Json], used: i
 
 
 def _few_sites(data: ReportData, quantity: Quantity, pooled: Json, used: Markup) -> Markup:
-    """The sites first, then how they compare, then the mean over them, without an interval."""
+    """Means of the sites, their ratios, and the mean over all sites without an interval."""
     sites = [row for row in data.results["site_means"] if row["quantity"] == quantity.key]
     pairs = [row for row in data.results["site_comparisons"] if row["quantity"] == quantity.symbol]
-    each = [
+    site_means = [
         prose(
             "{site} {value} {unit}{ends}, n = {n}",
             site=row["site"],
@@ -153,10 +154,10 @@ def _few_sites(data: ReportData, quantity: Quantity, pooled: Json, used: Markup)
         for row in sites
     ]
     return prose(
-        "{begins} of each site: {each}. {ratios}; {used}. Over the {sites} together {value} {unit}, without an "
-        "interval: {fewer} sites do not tell how sites scatter. Single experiments {low} to {high} {unit}.",
-        begins=html(quantity.begins),
-        each=html("; ").join(each),
+        "{mean_name} of each site: {site_means}. {ratios}; {used}. Over the {sites} together {value} {unit}, without "
+        "an interval: {fewer} sites do not tell how sites scatter. Single experiments {low} to {high} {unit}.",
+        mean_name=html(quantity.mean_name),
+        site_means=html("; ").join(site_means),
         ratios=html("; ").join(map(_ratio, pairs)),
         used=used,
         sites=counted(len(sites), "site"),
@@ -199,22 +200,18 @@ def _law(data: ReportData) -> Markup | None:
     same = " This is the law that the paper proposes (its Eqn 12)." if selected["id"] == "H_V:a=none,b=one" else ""
     return prose(
         "Selected law of the penetration force: {law}. {reason}{same}",
-        law=_strong_law(selected["id"]),
+        law=Markup("<strong>F = {}</strong>").format(html(formula(selected["id"]))),
         reason=_reason(data),
         same=same,
     )
 
 
 def _reason(data: ReportData) -> Markup:
-    """The reason of the results with the rows by their names in the tables."""
+    """Reason for the selection, with the names of the models instead of their ids."""
     reason: str = data.results["penetration"]["selected"]["reason"]
     for row in data.results["penetration"]["models"]:
-        reason = reason.replace(f"of {row['id']}", f"of the row {row_name(row['id'])}")
+        reason = reason.replace(f"of {row['id']}", f"of the row {model_name(row['id'])}")
     return html(reason)
-
-
-def _strong_law(model_id: str) -> Markup:
-    return Markup("<strong>F = {}</strong>").format(html(law(model_id)))
 
 
 def _relations(data: ReportData) -> Markup | None:
@@ -237,8 +234,8 @@ def _relations(data: ReportData) -> Markup | None:
     )
 
 
-def _with_sites(row: Json) -> str:
-    """What the interval that knows the sites says, where a pooled slope is significant without it."""
+def _cluster_remark(row: Json) -> str:
+    """Remark on a significant slope whose interval with sites as clusters contains zero."""
     if row["group"] != "all" or row["p"] >= SIGNIFICANT or row["interval_by_site"] is None:
         return ""
     pair = row["interval_by_site"][1]
@@ -254,7 +251,7 @@ def _listed(rows: list[Json]) -> Markup:
             response=html(QUANTITY[row["response"]][0]),
             predictor=html(QUANTITY[row["terms"][1]][0]),
             group="" if row["group"] == "all" else f" at {row['group']}",
-            p="" if row["p"] is None else f" ({p_equals(row['p'])}{_with_sites(row)})",
+            p="" if row["p"] is None else f" ({p_equals(row['p'])}{_cluster_remark(row)})",
         )
         for row in rows[:LISTED]
     ]

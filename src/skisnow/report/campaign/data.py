@@ -1,4 +1,4 @@
-"""What tables and figures are drawn from: an analysis as columns."""
+"""Columns of an analysed campaign, for its tables, figures and sentences."""
 
 from __future__ import annotations
 
@@ -10,18 +10,18 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from ..estimate.observations import DENSITY_KEY
-from ..field import QUALITY_FLAGS
-from ..units import MM, N_PER_MM2, N_PER_MM3
+from ...estimate.observations import DENSITY_KEY
+from ...field import QUALITY_FLAGS
+from ...units import MM, N_PER_MM2, N_PER_MM3
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from ..estimate import Analysis
-    from ..estimate.observations import Observations
-    from ..estimate.regressions import Source
-    from ..field.records import Campaign
-    from ..geometry import GeometryForm
+    from ...estimate import Analysis
+    from ...estimate.observations import Observations
+    from ...estimate.regressions import Source
+    from ...field.records import Campaign
+    from ...geometry import GeometryForm
 
 FloatArray = npt.NDArray[np.float64]
 BoolArray = npt.NDArray[np.bool_]
@@ -32,112 +32,113 @@ _DATE = re.compile(r"\d{4}-\d{2}-\d{2}")
 
 
 def is_synthetic(name: str) -> bool:
-    """Whether a campaign says by its name that its numbers were not measured."""
+    """True if the name of a campaign marks its numbers as synthetic."""
     return "synthetic" in name.casefold()
 
 
 def numbers(rows: Sequence[Json], key: str) -> FloatArray:
-    """A column of the results; NaN where it is null."""
+    """Values of one key, shape (n,); NaN for null."""
     return np.array([row[key] for row in rows], dtype=float)
 
 
 def pairs(rows: Sequence[Json], key: str) -> FloatArray:
-    """A column of intervals, (n, 2); NaN where it is null."""
-    nothing = (np.nan, np.nan)
-    return np.array([row[key] or nothing for row in rows], dtype=float).reshape(-1, 2)
+    """Intervals of one key, shape (n, 2); NaN for null."""
+    missing = (np.nan, np.nan)
+    return np.array([row[key] or missing for row in rows], dtype=float).reshape(-1, 2)
 
 
 def texts(rows: Sequence[Json], key: str) -> TextArray:
-    """A column of names."""
+    """Names of one key, shape (n,)."""
     return np.array([row[key] for row in rows], dtype=object).astype(str)
 
 
 @dataclass(frozen=True)
 class ReportData:
-    """An analysis with columns of its *used* experiments in the units that the report prints.
+    """An analysis with columns of its *used* experiments in the units of the report.
 
-    What is computed with comes from the analysis, in SI; what is printed as it stands comes from its results.
+    Numbers for computations come from the analysis (SI); printed numbers come from its results.
     """
 
     analysis: Analysis
 
     @property
     def campaign(self) -> Campaign:
-        """What was analysed."""
+        """The analysed campaign."""
         return self.analysis.campaign
 
     @property
     def results(self) -> Json:
-        """The contents of results.json."""
+        """Contents of results.json."""
         return self.analysis.results
 
     @property
     def geometry(self) -> GeometryForm:
-        """In which form the tools count."""
+        """Wedge form that the analysis used for the tools."""
         return self.analysis.geometry
 
     @property
     def synthetic(self) -> bool:
-        """Whether the word *synthetic* must stand wherever the numbers do."""
+        """True if every table and figure must be marked *synthetic*."""
         return is_synthetic(self.campaign.name)
 
     @cached_property
     def names(self) -> frozenset[str]:
-        """What the users of the campaign wrote, and codes: no words that another language has others for."""
+        """Names from the campaign and flag codes, which are not translated."""
         campaign = self.campaign
-        tests = [each.experiment for each in (campaign.penetration, campaign.shear) if each is not None]
-        written = (campaign.name, campaign.place, *campaign.observers, *self.sites, *campaign.tools, *campaign.plates)
-        return frozenset((*written, *QUALITY_FLAGS, *(name for each in tests for name in each)))
+        tables = [table for table in (campaign.penetration, campaign.shear) if table is not None]
+        experiments = [name for table in tables for name in table.experiment]
+        texts = (campaign.name, campaign.place, *campaign.observers, *self.sites, *campaign.tools, *campaign.plates)
+        return frozenset((*texts, *QUALITY_FLAGS, *experiments))
 
     @property
     def penetration(self) -> list[Json]:
-        """Rows of the penetration experiments, used or not."""
+        """Rows of all penetration experiments."""
         rows: list[Json] = self.results["penetration"]["experiments"]
         return rows
 
     @property
     def shear(self) -> list[Json]:
-        """Rows of the shear experiments, used or not."""
+        """Rows of all shear experiments."""
         rows: list[Json] = self.results["shear"]["experiments"]
         return rows
 
     @cached_property
     def penetration_used(self) -> BoolArray:
-        """Mask over the penetration experiments."""
-        found = self.analysis.penetration
-        return np.zeros(0, dtype=bool) if found is None else found.screened.used
+        """Mask of the used penetration experiments."""
+        analysis = self.analysis.penetration
+        return np.zeros(0, dtype=bool) if analysis is None else analysis.screened.used
 
     @cached_property
     def shear_used(self) -> BoolArray:
-        """Mask over the shear experiments."""
-        found = self.analysis.shear
-        return np.zeros(0, dtype=bool) if found is None else found.screened.used
+        """Mask of the used shear experiments."""
+        analysis = self.analysis.shear
+        return np.zeros(0, dtype=bool) if analysis is None else analysis.screened.used
 
     @cached_property
     def hardness(self) -> FloatArray:
         """H_V of the used penetration experiments (N/mm³)."""
-        found = self.analysis.penetration
-        return np.zeros(0) if found is None else found.hardness["H_V"].value[self.penetration_used] / N_PER_MM3
+        analysis = self.analysis.penetration
+        return np.zeros(0) if analysis is None else analysis.hardness["H_V"].value[self.penetration_used] / N_PER_MM3
 
     @cached_property
     def hardness_interval(self) -> FloatArray:
-        """(m, 2) N/mm³, NaN where it is not known at both ends."""
-        found = self.analysis.penetration
-        every = np.zeros((0, 2)) if found is None else found.hardness["H_V"].interval
-        return _known(every[self.penetration_used] / N_PER_MM3)
+        """95 % intervals of `hardness`, shape (n, 2); NaN unless both ends are finite."""
+        analysis = self.analysis.penetration
+        intervals = np.zeros((0, 2)) if analysis is None else analysis.hardness["H_V"].interval
+        return _complete(intervals[self.penetration_used] / N_PER_MM3)
 
     @cached_property
     def stress(self) -> FloatArray:
         """S_f of the used shear experiments (N/mm²)."""
-        found = self.analysis.shear
-        return np.zeros(0) if found is None else found.stress.value[self.shear_used] / N_PER_MM2
+        analysis = self.analysis.shear
+        return np.zeros(0) if analysis is None else analysis.stress.value[self.shear_used] / N_PER_MM2
 
     @cached_property
     def stress_interval(self) -> FloatArray:
-        """(n, 2) N/mm², NaN where it is not known at both ends."""
-        found = self.analysis.shear
-        every = np.zeros((0, 2)) if found is None else found.stress.interval
-        return _known(every[self.shear_used] / N_PER_MM2)
+        """95 % intervals of `stress`, shape (n, 2); NaN unless both ends are finite."""
+        analysis = self.analysis.shear
+        intervals = np.zeros((0, 2)) if analysis is None else analysis.stress.interval
+        return _complete(intervals[self.shear_used] / N_PER_MM2)
 
     @cached_property
     def shear_angle(self) -> FloatArray:
@@ -163,37 +164,37 @@ class ReportData:
 
     @cached_property
     def seating(self) -> list[Json]:
-        """Seating of the used penetration experiments that have one, each with its experiment's own row."""
+        """Rows of the used penetration experiments with an estimated depth offset."""
         rows = zip(self.penetration, self.results["penetration"]["seating"], strict=True)
-        return [own | found for own, found in rows if own["used"] and found["depth_offset_mm"] is not None]
+        return [test | seating for test, seating in rows if test["used"] and seating["depth_offset_mm"] is not None]
 
     @cached_property
     def unloaded(self) -> list[Json]:
-        """Rows of the penetration experiments, used or not, that were read while discs were taken off."""
+        """Rows of all penetration experiments with readings during unloading."""
         return [row for row in self.penetration if row["n_unloading"]]
 
     @property
     def observations(self) -> Mapping[Source, Observations]:
-        """Used experiments with the snow they were made on, by penetration, shear and spots."""
+        """Used experiments with the snow at their spots, by source."""
         return self.analysis.observations
 
     @property
     def penetration_density(self) -> FloatArray:
-        """Density at each used penetration experiment (kg/m³), NaN where it is not known."""
+        """Density at each used penetration experiment (kg/m³), NaN if unknown."""
         return self.observations["penetration"].columns[DENSITY_KEY]
 
     @property
     def shear_density(self) -> FloatArray:
-        """Density at each used shear experiment (kg/m³), NaN where it is not known."""
+        """Density at each used shear experiment (kg/m³), NaN if unknown."""
         return self.observations["shear"].columns[DENSITY_KEY]
 
     @cached_property
     def sites(self) -> tuple[str, ...]:
-        """All sites with an experiment, used or not, in alphabetical order."""
+        """Sites of all experiments in alphabetical order."""
         return tuple(sorted({row["site"] for row in self.penetration} | {row["site"] for row in self.shear}))
 
     def regression(self, response: str, predictor: str, group: str = "all") -> Json | None:
-        """The entry of one regression; None where there is none with data."""
+        """Result of one regression, None if it has no data."""
         for row in self.results["regressions"]:
             if row["response"] == response and row["terms"][1] == predictor and row["group"] == group:
                 return row if row["b"] is not None else None
@@ -201,14 +202,14 @@ class ReportData:
 
     @cached_property
     def dates(self) -> tuple[str, str] | None:
-        """First and last day in the columns ``time``, where they are written year first."""
-        found: set[str] = set()
+        """First and last ISO date in the columns ``time``, None without one."""
+        days: set[str] = set()
         for table in (self.campaign.penetration, self.campaign.shear, self.campaign.density, self.campaign.drop_cone):
             cells = set(table.further.get("time", ())) if table is not None else set()
-            found |= {match[0] for cell in cells if (match := _DATE.match(cell.strip()))}
-        return (min(found), max(found)) if found else None
+            days |= {match[0] for cell in cells if (match := _DATE.match(cell.strip()))}
+        return (min(days), max(days)) if days else None
 
 
-def _known(intervals: FloatArray) -> FloatArray:
-    whole = np.isfinite(intervals).all(axis=1, keepdims=True)
-    return np.where(whole, intervals, np.nan)
+def _complete(intervals: FloatArray) -> FloatArray:
+    complete = np.isfinite(intervals).all(axis=1, keepdims=True)
+    return np.where(complete, intervals, np.nan)

@@ -1,0 +1,1 @@
+"""Report of an analysed campaign: its tables, sentences and page."""

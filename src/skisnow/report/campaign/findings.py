@@ -1,0 +1,245 @@
+"""Findings of a campaign as sentences in HTML: caveats, models, seating, unloading, regressions."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+from markupsafe import Markup
+
+from ..number_formatting import counted, interval, p_equals, significant, whole
+from ..symbols import html, prose
+from .data import numbers, pairs
+from .key_results import SIGNIFICANT
+from .series_tables import count_resolved_offsets
+from .site_tables import QUANTITY
+
+if TYPE_CHECKING:
+    from .data import Json, ReportData
+
+_STEP: Final = {
+    "edge_angle_rad": (math.pi / 2.0, "from 0° to 90°"),
+    "snow_density_kg_per_m3": (100.0, "per 100 kg/m³"),
+    "drop_cone_depth_mm": (10.0, "per 10 mm"),
+    "smp_mean_force_N": (1.0, "per 1 N"),
+    "smp_snow_density_kg_per_m3": (100.0, "per 100 kg/m³"),
+    "H_V_N_per_mm3": (1.0, "per 1 N/mm³"),
+}
+"""Step of each predictor for which a sentence gives the change of the response."""
+MOST_SENTENCES: Final = 40
+
+
+def caveats(data: ReportData) -> list[Markup]:
+    """Warnings, missing uncertainties, remarks and missing data."""
+    remarks = data.results["campaign"]["remarks"]
+    warnings = data.results["penetration"]["warnings"]
+    return [html(sentence) for sentence in (*warnings, *_missing_uncertainties(data), *remarks, *_missing_data(data))]
+
+
+def _missing_uncertainties(data: ReportData) -> list[str]:
+    campaign = data.results["campaign"]
+    sentences = []
+    if campaign["gauge_resolution_mm"] is None:
+        sentences.append(
+            "The gauge's resolution is not stated: no interval carries a depth uncertainty, and no experiment could be "
+            "flagged as below the resolution. Where depths are small the intervals are then too narrow."
+        )
+    uncertainties = (
+        ("load_uncertainty_N", "uncertainty of the loads", bool(data.penetration)),
+        ("moment_uncertainty_Nm", "uncertainty of the moments", bool(data.shear)),
+        ("lever_arm_uncertainty_mm", "uncertainty of the lever arms", bool(data.shear)),
+    )
+    missing = [name for key, name, applies in uncertainties if applies and campaign[key] is None]
+    sentences += [f"The {name} is not stated; it counts as 0." for name in missing]
+    if data.shear and all(row["S_f_interval_N_per_mm2"] is None for row in data.shear):
+        sentences.append(
+            "No uncertainty that bears on a shear test is stated, so S_f has no intervals for single tests."
+        )
+    return sentences
+
+
+def _missing_data(data: ReportData) -> list[str]:
+    sentences: list[str] = []
+    if not data.penetration:
+        sentences.append("The campaign has no penetration experiments: there is no H_V and no choice between laws.")
+    if not data.shear:
+        sentences.append("The campaign has no shear experiments: there is no S_f.")
+    densities = np.concatenate((data.penetration_density, data.shear_density))
+    if not np.isfinite(densities).any():
+        sentences.append("No snow density is given at a used experiment: the regressions on density have no data.")
+    if data.campaign.drop_cone is None and not _has_drop_cone(data):
+        sentences.append("No drop-cone test is given: the regression of H_V on drop-cone depth has no data.")
+    if data.results["provenance"]["options"]["geometry"] == "paper":
+        sentences.append(
+            "The paper's plain wedge was chosen: an edged tool counts as a wedge at every depth, also where its base "
+            "is under the surface (flagged beyond_tool)."
+        )
+    return sentences
+
+
+def _has_drop_cone(data: ReportData) -> bool:
+    tests = data.campaign.penetration
+    return tests is not None and bool(np.isfinite(tests.drop_cone_depth).any())
+
+
+def readings_used(data: ReportData) -> Markup:
+    """Numbers of readings and series behind the nine candidate models."""
+    row = data.results["penetration"]["models"][0]
+    return prose(
+        "All nine candidate models are fitted to the same {n} of {m}. With b = 1 the last residual of a series is zero "
+        "by definition, because its reading defines the hardness: the RMSE without the defining reading leaves these "
+        "out and divides by n − m = {free}.",
+        n=counted(row["n"], "reading"),
+        m=counted(row["n_series"], "series", "series"),
+        free=whole(row["n"] - row["n_series"]),
+    )
+
+
+def procedure_comparison(data: ReportData) -> Markup:
+    """Ratio of H_V by the two procedures over the used series."""
+    largest_load = numbers(data.penetration, "H_V_N_per_mm3")
+    fitted = numbers(data.results["penetration"]["errors_in_depth"]["experiments"], "H_V_N_per_mm3")
+    comparable = data.penetration_used & np.isfinite(largest_load) & np.isfinite(fitted)
+    if not comparable.any():
+        return html("")
+    low, median, high = np.percentile(fitted[comparable] / largest_load[comparable], (5.0, 50.0, 95.0)).tolist()
+    return prose(
+        "H_V from all readings over H_V from the largest load: median {middle}, 90 % of the series between {low} and "
+        "{high}. Each experiment's two values stand in {file}.",
+        low=significant(low),
+        middle=significant(median),
+        high=significant(high),
+        file=_file("hardness_by_procedure", data),
+    )
+
+
+def seating_findings(data: ReportData) -> list[Markup]:
+    """Size of the depth offsets and number of those that differ from zero."""
+    rows = data.seating
+    without = int(data.penetration_used.sum()) - len(rows)
+    if not rows:
+        return [html("No used series has the readings that an offset can be estimated from.")]
+    half_widths = np.diff(pairs(rows, "interval_mm"), axis=1) / 2.0
+    sentences = [
+        prose(
+            "{shown} of {all} have an offset whose 95 % interval leaves out zero; the median half-width of the "
+            "intervals is {half} mm. Every offset stands in {file}.",
+            shown=whole(count_resolved_offsets(rows)),
+            all=counted(len(rows), "used series", "used series"),
+            half=significant(float(np.nanmedian(half_widths))),
+            file=_file("seating", data),
+        )
+    ]
+    if without:
+        sentences.append(
+            prose("For {n} no offset could be estimated.", n=counted(without, "used series", "used series"))
+        )
+    return sentences
+
+
+def unloading_findings(data: ReportData) -> list[Markup]:
+    """Number of series whose k_u / H_V has an upper end."""
+    used = [row for row in data.unloaded if row["used"]]
+    if not used:
+        return [html("No used series was unloaded.")]
+    resolved = [row for row in used if row["unloading_ratio_interval"] is not None]
+    return [
+        prose(
+            "{resolved} of {all} give both ends of k_u / H_V; of the others only the lower end is known, the "
+            "inverse of the upper end of H_V / k_u. Every series stands in {file}.",
+            resolved=whole(len(resolved)),
+            all=counted(len(used), "used series with unloading", "used series with unloading"),
+            file=_file("unloading", data),
+        )
+    ]
+
+
+def _file(name: str, data: ReportData) -> Markup:
+    return Markup("<code>tables/{}{}.csv</code>").format(name, "_synthetic" if data.synthetic else "")
+
+
+def regression_sentences(data: ReportData) -> list[Markup]:
+    """One sentence for each regression, up to `MOST_SENTENCES`."""
+    rows = data.results["regressions"]
+    sentences = [_sentence(row) for row in rows[:MOST_SENTENCES]]
+    if len(rows) > MOST_SENTENCES:
+        sentences.append(html(f"{len(rows) - MOST_SENTENCES} further regressions stand in the table alone."))
+    return sentences
+
+
+def _sentence(row: Json) -> Markup:
+    head = prose(
+        "{response} on {predictor}, {group} (n = {n}):",
+        response=html(QUANTITY[row["response"]][0]),
+        predictor=html(QUANTITY[row["terms"][1]][0]),
+        group="all sites" if row["group"] == "all" else row["group"],
+        n=row["n"],
+    )
+    if row["b"] is None:
+        reason = " no data." if row["n"] == 0 else " no slope: too few experiments, or the predictor does not vary."
+        return head + html(reason)
+    if row["withheld"]:
+        return head + _not_judged(row)
+    if row["p"] is None:
+        return head + html(" too few experiments for an interval or a test.")
+    return head + (_significant(row) if row["p"] < SIGNIFICANT else _not_significant(row))
+
+
+def _significant(row: Json) -> Markup:
+    return prose(
+        " significant ({p}); {response} changes by {change} {unit} {step}, 95 % interval {ends}.",
+        p=p_equals(row["p"]),
+        response=html(QUANTITY[row["response"]][0]),
+        change=_change(row, row["b"][1]),
+        unit=QUANTITY[row["response"]][1],
+        step=_STEP[row["terms"][1]][1],
+        ends=_changes(row, row["interval"][1]),
+    ) + _by_site(row)
+
+
+def _not_significant(row: Json) -> Markup:
+    return prose(
+        " not significant ({p}); yet {response} could still change by anything in {ends} {unit} {step} (95 % interval; "
+        "estimate {change}).",
+        p=p_equals(row["p"]),
+        response=html(QUANTITY[row["response"]][0]),
+        ends=_changes(row, row["interval"][1]),
+        unit=QUANTITY[row["response"]][1],
+        step=_STEP[row["terms"][1]][1],
+        change=_change(row, row["b"][1]),
+    ) + _by_site(row)
+
+
+def _not_judged(row: Json) -> Markup:
+    return prose(
+        " not judged: {reason}; the slope over them is {change} {unit} {step}.",
+        reason=row["withheld"],
+        change=_change(row, row["b"][1]),
+        unit=QUANTITY[row["response"]][1],
+        step=_STEP[row["terms"][1]][1],
+    )
+
+
+def _change(row: Json, slope: float) -> str:
+    return significant(slope * _STEP[row["terms"][1]][0])
+
+
+def _changes(row: Json, slopes: list[float] | None) -> str:
+    factor = _STEP[row["terms"][1]][0]
+    return interval(None if slopes is None else [end * factor for end in slopes])
+
+
+def _by_site(row: Json) -> Markup:
+    if row["interval_by_site"] is None:
+        return html("")
+    ends = row["interval_by_site"][1]
+    if ends is None:
+        return html(" The sites do not tell an interval of their own.")
+    contains_zero = ends[0] <= 0.0 <= ends[1]
+    sentence = prose(" With sites as clusters the interval is {ends}", ends=_changes(row, ends))
+    if contains_zero and row["p"] < SIGNIFICANT:
+        return sentence + html(": it contains zero, so what looks significant may be a difference between a few sites.")
+    if not contains_zero and row["p"] >= SIGNIFICANT:
+        return sentence + html(": it leaves out zero.")
+    return sentence + html(".")

@@ -1,0 +1,240 @@
+"""Report of a campaign in a folder: report.html, figures, tables and results.json."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from dataclasses import replace
+from importlib.metadata import version
+from importlib.resources import files
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
+
+from jinja2 import Environment, PackageLoader, StrictUndefined
+from markupsafe import Markup
+
+from ...errors import ParameterError
+from ...estimate import Analysis
+from ...estimate.results_text import results_json
+from ...files import write_file
+from ...language import ENGLISH, require_language
+from ...memory import paused_collector
+from ...staging import staged, tidied
+from ..dates import days_words, moment_words
+from ..number_formatting import counted, significant, whole
+from ..pictures import picture_files, write_picture
+from ..table_csv import table_csv
+from ..table_html import table_html
+from ..table_latex import table_latex
+from ..translated import translated_html
+from .data import ReportData
+from .figures import campaign_figures
+from .findings import (
+    caveats,
+    procedure_comparison,
+    readings_used,
+    regression_sentences,
+    seating_findings,
+    unloading_findings,
+)
+from .key_results import headline, key_results
+from .tables import campaign_tables
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+
+    from ..figures.drawing import LeftOut, Picture
+    from ..table import Table
+
+RESULTS: Final = "results.json"
+SECTIONS: Final = {
+    "key-results": "Key results",
+    "caveats": "Warnings, and what was not stated",
+    "law": "The law of the penetration force",
+    "seating": "Seating: offsets of the depth zero",
+    "unloading": "Unloading: the permanent depth of a groove",
+    "displacement": "Shear displacement: how far until the full shear strength",
+    "relations": "Relations between snow parameters",
+    "sites": "Sites compared",
+    "published": "Compared with published values",
+    "marks": "Quality flags of the screening",
+    "experiments": "All experiments",
+    "methods": "Methods",
+    "provenance": "Provenance",
+}
+_ONLY_WITH_PENETRATION: Final = ("law", "seating", "unloading")
+
+
+def write_report(
+    analysis: Analysis,
+    out: str | Path,
+    *,
+    language: str = ENGLISH,
+    progress: Callable[[str], None] | None = None,
+) -> Path:
+    """Write report.html, figures/, tables/ and results.json of an analysed campaign.
+
+    The files are written to a temporary folder inside ``out`` and moved into place together. An error or an
+    interruption leaves ``out`` unchanged.
+
+    Parameters
+    ----------
+    analysis
+        Result of `skisnow.analyse`.
+    out
+        Output folder, created if necessary. Tables and figures of an earlier report are removed if this campaign has
+        no data for them; other files stay.
+    language
+        Language of the page and the figures (en, de). Tables and results.json are the same in every language.
+    progress
+        Callback for progress messages.
+
+    Returns
+    -------
+    Path
+        Path of report.html.
+
+    Raises
+    ------
+    ParameterError
+        `analysis` is not an Analysis, or the language is unknown.
+    OutputError
+        A file cannot be written. results.json is moved last: a folder with it is complete.
+
+    See Also
+    --------
+    skisnow.analyse : the analysis.
+    skisnow.results_dict : its numbers.
+
+    References
+    ----------
+    The page docs/files/results.md.
+    """
+    if not isinstance(analysis, Analysis):
+        raise ParameterError(
+            "a report is written of an analysis, into a folder: write_report(analyse(campaign), folder); given is a "
+            f"{type(analysis).__name__}"
+        )
+    require_language(language)
+    report = progress or (lambda _message: None)
+    out = Path(out)
+    for message in tidied(out):
+        report(message)
+    with paused_collector(), staged(out, last=RESULTS) as stage:
+        stage.stale += _write(ReportData(analysis), stage.path, language, report)
+    return out / "report.html"
+
+
+def _write(data: ReportData, stage: Path, language: str, report: Callable[[str], None]) -> list[str]:
+    """Write all files to the stage; returns the files of an earlier report that must be removed."""
+    report("tables of the report")
+    all_tables = campaign_tables(data)
+    tables = {name: table for name, table in all_tables.items() if table.rows}
+    for table in tables.values():
+        report(f"table {table.name}")
+        write_file(stage / "tables" / f"{table.file_stem}.csv", table_csv(table))
+        write_file(stage / "tables" / f"{table.file_stem}.tex", table_latex(table))
+    pictures, missing = campaign_figures(data, language=language, progress=report)
+    for picture in pictures:
+        write_picture(picture, stage / "figures")
+    report("report.html")
+    write_file(stage / "report.html", page(data, tables, pictures, missing, language=language))
+    report("results.json")
+    write_file(stage / RESULTS, results_json(data.results))
+    stale = [f"tables/{stem}{ending}" for stem in _stale_stems(all_tables.values()) for ending in (".csv", ".tex")]
+    return stale + picture_files(left_out.name for left_out in missing)
+
+
+def _stale_stems(tables: Iterable[Table]) -> Iterator[str]:
+    """Stems of table files that only an earlier report can have written."""
+    for table in tables:
+        stems = {replace(table, synthetic=synthetic).file_stem for synthetic in (False, True)}
+        yield from sorted(stems - {table.file_stem} if table.rows else stems)
+
+
+def page(
+    data: ReportData,
+    tables: Mapping[str, Table],
+    pictures: Sequence[Picture],
+    missing: Sequence[LeftOut],
+    *,
+    language: str = ENGLISH,
+) -> str:
+    """HTML of the report, with styles, figures and tables inside."""
+    environment = Environment(
+        loader=PackageLoader("skisnow.report"), autoescape=True, undefined=StrictUndefined, trim_blocks=True
+    )
+    english = environment.get_template("report.html").render(
+        **_frame(data),
+        key_results=key_results(data),
+        caveats=caveats(data),
+        readings_used=readings_used(data),
+        procedures_compared=procedure_comparison(data),
+        seating_found=seating_findings(data),
+        unloading_found=unloading_findings(data),
+        regression_sentences=regression_sentences(data),
+        tables=defaultdict(Markup, tables_html(tables)),
+        pictures=pictures,
+        missing=missing,
+        figure_numbers={picture.name: number for number, picture in enumerate(pictures, start=1)},
+        matplotlib_version=version("matplotlib"),
+    )
+    return translated_html(english, language, names=data.names)
+
+
+def tables_html(tables: Mapping[str, Table]) -> dict[str, Markup]:
+    """HTML of the tables by name, numbered in the order of the report."""
+    in_html = [table for table in tables.values() if table.rows_in_html]
+    return {table.name: table_html(table, number=i) for i, table in enumerate(in_html, start=1)}
+
+
+def _frame(data: ReportData) -> dict[str, Any]:
+    """Values of the template apart from sentences, tables and figures."""
+    results, has_penetration = data.results, bool(data.penetration)
+    ids = [name for name in SECTIONS if has_penetration or name not in _ONLY_WITH_PENETRATION]
+    if has_penetration and not data.unloaded:
+        ids.remove("unloading")
+    if not data.results["shear"]["displacement"]:
+        ids.remove("displacement")
+    return {
+        "campaign": results["campaign"],
+        "provenance": results["provenance"],
+        "geometry": results["provenance"]["options"]["geometry"],
+        "shapes": {type(tool).__name__ for tool in data.campaign.tools.values()},
+        "stated": _uncertainties(results["campaign"]),
+        "synthetic": data.synthetic,
+        "dates": None if data.dates is None else days_words(*data.dates),
+        "analysed": moment_words(results["provenance"]["time"]),
+        "headline": headline(data),
+        "counts": _counts(data),
+        "has_penetration": has_penetration,
+        "has_unloading": bool(data.unloaded),
+        "has_displacement": bool(results["shear"]["displacement"]),
+        "selected": results["penetration"]["selected"],
+        "not_selected": next(iter(results["penetration"]["warnings"]), ""),
+        "sections": [(name, SECTIONS[name]) for name in ids],
+        "titles": SECTIONS,
+        "numbers": {name: number for number, name in enumerate(ids, start=1)},
+        "css": Markup(files("skisnow.report").joinpath("templates", "report.css").read_text(encoding="utf-8")),
+    }
+
+
+def _counts(data: ReportData) -> str:
+    return (
+        f"{counted(len(data.penetration), 'penetration experiment')} ({whole(len(data.hardness))} used), "
+        f"{counted(len(data.shear), 'shear experiment')} ({whole(len(data.stress))} used), "
+        f"{counted(len(data.sites), 'site')}"
+    )
+
+
+def _uncertainties(campaign: dict[str, Any]) -> dict[str, str]:
+    def in_words(key: str, unit: str) -> str:
+        value = campaign[key]
+        return "not stated, counted as 0" if value is None else f"{significant(value)} {unit}"
+
+    gauge = campaign["gauge_resolution_mm"]
+    return {
+        "gauge": "not stated, so that no depth uncertainty is counted" if gauge is None else f"{significant(gauge)} mm",
+        "load": in_words("load_uncertainty_N", "N"),
+        "moment": in_words("moment_uncertainty_Nm", "N m"),
+        "lever_arm": in_words("lever_arm_uncertainty_mm", "mm"),
+    }

@@ -1,0 +1,271 @@
+"""Figures of the penetration experiments: Figs 5 and 6 of the paper, seating, unloading, SnowMicroPen."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from ...estimate.observations import PEN_FORCE_KEY
+from ...geometry import in_form
+from ...units import MM
+from ..curves import law_of_series
+from ..figures.drawing import Drawing, LeftOut
+from ..figures.style import (
+    DOUBLE_MM,
+    GREY,
+    SINGLE_MM,
+    SitePlot,
+    error_bars,
+    legend_below,
+    logarithmic,
+    mark_synthetic,
+    masks,
+    new_figure,
+    plain_number,
+    scatter,
+    spans_a_decade,
+)
+from ..number_formatting import p_equals, whole
+from ..symbols import prose
+from .data import numbers, pairs, texts
+from .series_tables import count_resolved_offsets
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from markupsafe import Markup
+    from matplotlib.axes import Axes
+    from matplotlib.lines import Line2D
+
+    from ...field.records import PenetrationTests
+    from ..figures.style import SiteStyle
+    from .data import FloatArray, Json, ReportData
+
+MOST_SERIES: Final = 40
+"""Maximum number of series in one panel of Fig 5."""
+_THRESHOLD_MM: Final = 0.1
+_HARDNESS: Final = r"snow hardness $H_\mathrm{V}$ (N/mm³)"
+
+
+def force_depth(data: ReportData, styles: Sequence[SiteStyle]) -> Drawing | LeftOut:
+    """Readings of the flat and one edged tool, with F = H_V V as a line for each series (Fig 5)."""
+    name = "fig05_force_depth"
+    tests = data.campaign.penetration
+    angles = shown_angles(data)
+    if tests is None or not angles:
+        return LeftOut(name, "Load against penetration depth", "no penetration experiment is used")
+    figure = new_figure(width_mm=DOUBLE_MM if len(angles) > 1 else SINGLE_MM, height_mm=80.0)
+    panels = figure.subplots(1, len(angles), squeeze=False, sharey=True)[0]
+    handles: dict[str, Line2D] = {}
+    series = [_series_at(data, angle) for angle in angles]
+    drawn = [_evenly_spaced(indices, data) for indices in series]
+    counts = [(angle, len(some), len(all_)) for angle, some, all_ in zip(angles, drawn, series, strict=True)]
+    max_depths = [np.array([tests.series(i).penetration_depth.max() for i in some]) for some in drawn]
+    wide_range = any(spans_a_decade(depths) for depths in max_depths)
+    for panel, angle, indices in zip(panels, angles, drawn, strict=True):
+        for handle in _draw_panel(panel, data, tests, indices, styles, wide_range=wide_range):
+            handles.setdefault(str(handle.get_label()), handle)
+        panel.set_title(_angle_name(angle), loc="left")
+    panels[0].set_ylabel("load $F$ (N)")
+    mark_synthetic(data, panels[-1])
+    legend_below(figure, [handles[style.label] for style in styles if style.label in handles])
+    n_other = int(data.penetration_used.sum()) - sum(map(len, series))
+    caption = _force_caption(counts, n_other, wide_range=wide_range)
+    names = " and ".join(_angle_name(angle) for angle in angles)
+    alt = f"Scatter of load in newtons against penetration depth in millimetres, {names}, with a fitted law per series."
+    return Drawing(name, caption, alt, figure, wide=len(angles) > 1)
+
+
+def shown_angles(data: ReportData) -> list[float]:
+    """The flat tool and the most frequent edge angle (degrees) of the used experiments."""
+    angles = np.array([row["edge_angle_deg"] for row in data.penetration], dtype=float)[data.penetration_used]
+    edged, counts = np.unique(angles[angles > 0], return_counts=True)
+    # of equally frequent angles the one nearest to the paper's 45°
+    best = sorted(zip(-counts, np.abs(edged - 45.0), edged, strict=True))[:1]
+    return ([0.0] if np.any(angles == 0) else []) + [float(angle) for _, _, angle in best]
+
+
+def _angle_name(angle: float) -> str:
+    return "ϑ = 0°" if angle == 0 else f"edged, ϑ = {angle:.4g}°"
+
+
+def _series_at(data: ReportData, angle: float) -> list[int]:
+    return [i for i, row in enumerate(data.penetration) if row["used"] and row["edge_angle_deg"] == angle]
+
+
+def _evenly_spaced(indices: list[int], data: ReportData) -> list[int]:
+    """At most `MOST_SERIES` series, evenly spaced in the rank of their hardness."""
+    if len(indices) <= MOST_SERIES:
+        return indices
+    by_hardness = sorted(indices, key=lambda index: data.penetration[index]["H_V_N_per_mm3"])
+    places = np.linspace(0, len(indices) - 1, MOST_SERIES).round().astype(int)
+    return [by_hardness[place] for place in places]
+
+
+def _draw_panel(
+    panel: Axes,
+    data: ReportData,
+    tests: PenetrationTests,
+    indices: list[int],
+    styles: Sequence[SiteStyle],
+    *,
+    wide_range: bool,
+) -> list[Line2D]:
+    depth = np.concatenate([tests.series(i).penetration_depth for i in indices]) / MM
+    load = np.concatenate([tests.series(i).load for i in indices])
+    site = np.repeat([tests.site[i] for i in indices], [len(tests.series(i).load) for i in indices])
+    for style, mask in masks(styles, np.array([tests.site[i] for i in indices])):
+        for index in np.array(indices)[mask].tolist():
+            e, F = _fitted_law(data, tests, index, wide_range)
+            panel.plot(e, F, color=style.colour, linewidth=0.6, alpha=0.75, zorder=2)
+    handles = scatter(panel, depth, load, site, styles, size=3.0)
+    if wide_range:
+        logarithmic(panel, "x", depth)
+        logarithmic(panel, "y", load)
+    else:
+        panel.set_xlim(0.0, float(depth.max()) * 1.05)
+        panel.set_ylim(0.0, float(load.max()) * 1.08)
+    panel.set_xlabel("penetration depth $e$ (mm)")
+    return handles
+
+
+def _fitted_law(
+    data: ReportData, tests: PenetrationTests, index: int, wide_range: bool
+) -> tuple[FloatArray, FloatArray]:
+    """Depths and loads of F = H_V V for one series (m, N)."""
+    series, penetration = tests.series(index), data.analysis.penetration
+    assert penetration is not None  # there are tests
+    max_depth = float(series.penetration_depth.max())
+    e = np.geomspace(max_depth * 1e-3, max_depth, 60) if wide_range else np.linspace(0.0, max_depth, 60)
+    tool = in_form(data.campaign.tools[series.tool], data.geometry)
+    return law_of_series(tool, series.edge_angle, float(penetration.hardness["H_V"].value[index]), e)
+
+
+def _force_caption(counts: list[tuple[float, int, int]], n_other: int, *, wide_range: bool) -> Markup:
+    panels = "; ".join(
+        f"{whole(shown)} of {whole(total)} ({_angle_name(angle)})"
+        + (", evenly spaced in the rank of their hardness" if shown < total else "")
+        for angle, shown, total in counts
+    )
+    return prose(
+        "Load against penetration depth (the paper's Fig. 5). Symbols: readings by site; lines: F = H_V V with each "
+        "series' own H_V, which meets the reading under the largest load by definition. Series shown: "
+        "{panels}.{others}{axes}",
+        panels=panels,
+        others=f" Series at other edge angles, not shown: {whole(n_other)}." if n_other else "",
+        axes=" Both axes are logarithmic, as the depths span more than a decade: the law is a straight line there, of "
+        "slope 1 for a flat tool and 2 for a wedge; readings of depth 0 have no place on them."
+        if wide_range
+        else "",
+    )
+
+
+def seating_offsets(data: ReportData, styles: Sequence[SiteStyle]) -> Drawing | LeftOut:
+    """Offset of the depth zero of each series with its interval, against hardness."""
+    name, rows = "seating", data.seating
+    if not rows:
+        return LeftOut(name, "Offsets of the depth zero", "no used series has the three readings that an offset needs")
+    offset, intervals = numbers(rows, "depth_offset_mm"), pairs(rows, "interval_mm")
+    hardness, site = numbers(rows, "H_V_N_per_mm3"), texts(rows, "site")
+    plot = SitePlot.new(_HARDNESS, r"depth offset $\delta$ (mm)", height_mm=80.0)
+    plot.axes.axhline(0.0, color=GREY, linewidth=0.6, zorder=1)
+    error_bars(plot.axes, hardness, intervals, site, styles)
+    handles = scatter(plot.axes, hardness, offset, site, styles, size=3.0)
+    if hardness.min() > 0 and hardness.max() > 10.0 * hardness.min():
+        plot.axes.set_xscale("log")
+        plot.axes.xaxis.set_major_formatter(plain_number)
+    if np.abs(offset).max() > 10.0 * _THRESHOLD_MM:
+        plot.axes.set_yscale("symlog", linthresh=_THRESHOLD_MM, linscale=0.8)
+        plot.axes.yaxis.set_major_formatter(plain_number)
+    caption = prose(
+        "Offset δ of the depth zero of each used series with its 95 % interval, against the hardness: a positive δ is "
+        "a gauge that read δ when the tool touched. {shown} of {all} intervals leave out zero; of series without any "
+        "offset about one in twenty would.",
+        shown=whole(count_resolved_offsets(rows)),
+        all=whole(len(rows)),
+    )
+    alt = "Depth offset in millimetres with intervals against snow hardness, by site."
+    return Drawing(name, caption, alt, plot.finish(data, handles), points=len(rows))
+
+
+def unloading_ratios(data: ReportData, styles: Sequence[SiteStyle]) -> Drawing | LeftOut:
+    """k_u / H_V of each series with its interval, against hardness."""
+    name = "unloading"
+    rows = [row for row in data.unloaded if row["used"] and row["unloading_ratio_interval"] is not None]
+    if not rows:
+        return LeftOut(name, "Unloading", "no used series was read while its discs were taken off one by one")
+    ratio, intervals = numbers(rows, "unloading_ratio"), pairs(rows, "unloading_ratio_interval")
+    hardness, site = numbers(rows, "H_V_N_per_mm3"), texts(rows, "site")
+    plot = SitePlot.new(_HARDNESS, r"unloading ratio $k_\mathrm{u}/H_\mathrm{V}$", height_mm=80.0)
+    error_bars(plot.axes, hardness, intervals, site, styles)
+    handles = scatter(plot.axes, hardness, ratio, site, styles, size=3.0)
+    if hardness.max() > 10.0 * hardness.min():
+        plot.axes.set_xscale("log")
+        plot.axes.xaxis.set_major_formatter(plain_number)
+    if intervals.max() > 10.0 * intervals.min():
+        plot.axes.set_yscale("log")
+        plot.axes.yaxis.set_major_formatter(plain_number)
+    caption = prose(
+        "Unloading ratio k_u / H_V of {n} used series with its 95 % interval, against the hardness: 1 is elastic snow, "
+        "which springs back; the larger the ratio, the larger the permanent depth of the groove.",
+        n=whole(len(rows)),
+    )
+    alt = "Unloading ratio with intervals against snow hardness, by site."
+    return Drawing(name, caption, alt, plot.finish(data, handles), points=len(rows))
+
+
+def hardness_density(data: ReportData, styles: Sequence[SiteStyle]) -> Drawing | LeftOut:
+    """Snow hardness with its interval against density (Fig 6)."""
+    name, title = "fig06_hardness_density", "Snow hardness against density"
+    if len(data.hardness) == 0:
+        return LeftOut(name, title, "no penetration experiment is used")
+    if not np.isfinite(data.penetration_density).any():
+        return LeftOut(name, title, "the campaign gives no snow density at its penetration experiments")
+    plot = SitePlot.new(r"snow density $\rho$ (kg/m³)", _HARDNESS, height_mm=80.0)
+    handles, n = _draw_hardness(plot.axes, data, data.penetration_density, styles)
+    caption = prose(
+        "Snow hardness H_V against density (the paper's Fig. 6) with the 95 % interval of each experiment.{regression}",
+        regression=_p_sentence(data.regression("H_V_N_per_mm3", "snow_density_kg_per_m3")),
+    )
+    alt = "Snow hardness against snow density with intervals, by site."
+    return Drawing(name, caption, alt, plot.finish(data, handles), points=n)
+
+
+def hardness_mean_force(data: ReportData, styles: Sequence[SiteStyle]) -> Drawing | LeftOut:
+    """Snow hardness with its interval against the mean force of a SnowMicroPen at the same place."""
+    name, force = "hardness_mean_force", data.observations["penetration"].columns[PEN_FORCE_KEY]
+    if not np.isfinite(force).any():
+        reason = "no used recording is at the site of a used penetration experiment"
+        return LeftOut(name, "Snow hardness against the SnowMicroPen's mean force", reason)
+    plot = SitePlot.new("mean force of the SnowMicroPen (N)", _HARDNESS, height_mm=80.0)
+    handles, n = _draw_hardness(plot.axes, data, force, styles)
+    if spans_a_decade(force[np.isfinite(force)]):
+        logarithmic(plot.axes, "x", force)
+    settings = data.results["snow_micro_pen"]
+    caption = prose(
+        "Snow hardness H_V against the mean force of the SnowMicroPen, {first} to {last} mm below the surface, at the "
+        "same spot or else site, with the 95 % interval of each experiment.{regression}",
+        first=f"{settings['from_depth_mm']:g}",
+        last=f"{settings['to_depth_mm']:g}",
+        regression=_p_sentence(data.regression("H_V_N_per_mm3", PEN_FORCE_KEY)),
+    )
+    alt = "Snow hardness against the SnowMicroPen's mean force with intervals, by site."
+    return Drawing(name, caption, alt, plot.finish(data, handles), points=n)
+
+
+def _draw_hardness(
+    axes: Axes, data: ReportData, x: FloatArray, styles: Sequence[SiteStyle]
+) -> tuple[list[Line2D], int]:
+    """H_V with intervals against another quantity; returns the legend handles and the number of points."""
+    finite = np.isfinite(x)
+    hardness, intervals, site = data.hardness[finite], data.hardness_interval[finite], data.penetration_site[finite]
+    error_bars(axes, x[finite], intervals, site, styles)
+    handles = scatter(axes, x[finite], hardness, site, styles)
+    if spans_a_decade(hardness):
+        logarithmic(axes, "y", np.concatenate((hardness, intervals[np.isfinite(intervals)])))
+    return handles, len(hardness)
+
+
+def _p_sentence(row: Json | None) -> str:
+    return f" Linear regression over all: {p_equals(row['p'])}." if row and row["p"] is not None else ""

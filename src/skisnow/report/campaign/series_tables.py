@@ -1,0 +1,206 @@
+"""Tables with one row for each experiment: hardness, shear stress, seating, unloading, displacement."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from ...units import MM
+from ..table import Column, Table, record_table
+from .data import numbers, pairs
+
+if TYPE_CHECKING:
+    from .data import FloatArray, Json, ReportData
+
+QUANTILES: Final = (0.0, 5.0, 25.0, 50.0, 75.0, 95.0, 100.0)
+LARGEST: Final = 12
+
+EXPERIMENT: Final = Column("experiment", "Experiment", "text")
+SITE: Final = Column("site", "Site", "text")
+ANGLE: Final = Column("edge_angle_deg", "ϑ", "angle", "°")
+USED: Final = Column("used", "used", "yes")
+FLAGS: Final = Column("flags", "flags", "codes")
+HARDNESS: Final = Column("H_V_N_per_mm3", "H_V", unit="N/mm³")
+
+_OFFSET: Final = Column("depth_offset_mm", "offset δ", "estimate", "mm", interval="interval_mm")
+_CHANGE: Final = Column("H_V_change_percent", "H_V would change by", unit="%")
+_GROWTH: Final = Column("growth_percent", "growth γ", "estimate", "%", interval="growth_interval_percent")
+_UNLOADING: Final = (
+    Column("unloading_ratio", "k_u / H_V", "estimate", interval="unloading_ratio_interval"),
+    Column("rebound_ratio_interval", "H_V / k_u, 95 %", "interval"),
+    Column("k_u_N_per_mm3", "k_u", "estimate", "N/mm³", interval="k_u_interval_N_per_mm3"),
+)
+_DISPLACEMENT: Final = Column(
+    "shear_displacement_mm", "u_y", "estimate", "mm", interval="shear_displacement_interval_mm"
+)
+
+
+def penetration_table(data: ReportData) -> Table:
+    """Every penetration experiment with its three hardnesses."""
+    columns = (
+        EXPERIMENT,
+        SITE,
+        Column("tool", "Tool", "text"),
+        ANGLE,
+        Column("n_loads", "loads", "count"),
+        USED,
+        FLAGS,
+        Column("H_e_N_per_mm", "H_e", "estimate", "N/mm", interval="H_e_interval_N_per_mm"),
+        Column("H_A_N_per_mm2", "H_A", "estimate", "N/mm²", interval="H_A_interval_N_per_mm2"),
+        Column("H_V_N_per_mm3", "H_V", "estimate", "N/mm³", interval="H_V_interval_N_per_mm3"),
+    )
+    caption = "Penetration experiments: hardness from the largest load (Eqn 1) with 95 % interval."
+    return record_table("penetration_experiments", caption, columns, data.penetration)
+
+
+def shear_table(data: ReportData) -> Table:
+    """Every shear experiment with its force and failure shear stress."""
+    tests = data.campaign.shear
+    depths = [] if tests is None else (tests.penetration_depth / MM).tolist()
+    records = [row | {"depth_mm": depth} for row, depth in zip(data.shear, depths, strict=True)]
+    columns = (
+        EXPERIMENT,
+        SITE,
+        Column("plate", "Plate", "text"),
+        ANGLE,
+        Column("depth_mm", "e", unit="mm"),
+        Column("F_t_N", "F_t", unit="N"),
+        Column("S_f_N_per_mm2", "S_f", "estimate", "N/mm²", interval="S_f_interval_N_per_mm2"),
+        USED,
+        FLAGS,
+    )
+    caption = (
+        "Shear experiments: force and failure shear stress (Eqns 7 to 9) with the 95 % interval that the instruments "
+        "allow."
+    )
+    return record_table("shear_experiments", caption, columns, records)
+
+
+def count_resolved_offsets(rows: list[Json]) -> int:
+    """Number of offsets whose interval excludes zero."""
+    ends = pairs(rows, "interval_mm")
+    return int(np.sum((ends[:, 0] > 0) | (ends[:, 1] < 0)))
+
+
+def seating_quantiles_table(data: ReportData) -> Table:
+    """Quantiles of the offsets and of their effect on H_V over the used series."""
+    offsets, changes = numbers(data.seating, "depth_offset_mm"), numbers(data.seating, "H_V_change_percent")
+    names = {0.0: "minimum", 50.0: "median", 100.0: "maximum"}
+    rows = [
+        (names.get(percent, f"{percent:g} %"), _quantile(offsets, percent), _quantile(changes, percent))
+        for percent in QUANTILES
+    ]
+    return Table(
+        "seating_distribution",
+        "Offsets of the depth zero over the used series, and what taking them off would do to H_V: quantiles, each "
+        "column by itself.",
+        (
+            Column("quantile", "Quantile", "words"),
+            Column("depth_offset_mm", "offset δ", unit="mm"),
+            Column("H_V_change_percent", "H_V would change by", unit="%"),
+        ),
+        rows if data.seating else [],
+    )
+
+
+def _quantile(values: FloatArray, percent: float) -> float | None:
+    finite = values[np.isfinite(values)]
+    return float(np.percentile(finite, percent)) if finite.size else None
+
+
+def seating_largest_table(data: ReportData) -> Table:
+    """The series whose H_V changes most, by factor, without the offset."""
+    changes = numbers(data.seating, "H_V_change_percent")
+    factors = np.abs(np.log(np.maximum(1.0 + changes / 100.0, 1e-6)))
+    order = np.argsort(-factors, kind="stable")[: min(LARGEST, int(np.isfinite(factors).sum()))]
+    caption = (
+        f"The {LARGEST} used series whose H_V would change most, by factor, if their offset were taken off."
+        if len(order) == LARGEST
+        else "The used series in the order of how much H_V would change, by factor, if their offset were taken off."
+    )
+    columns = (EXPERIMENT, SITE, ANGLE, HARDNESS, _OFFSET, _CHANGE)
+    return record_table("seating_largest", caption, columns, [data.seating[index] for index in order.tolist()])
+
+
+def seating_table(data: ReportData) -> Table:
+    """Offset of the depth zero of every penetration experiment."""
+    records = _with_details(data, data.results["penetration"]["seating"])
+    caption = "Offset of the depth zero of each penetration experiment, with 95 % interval."
+    return record_table("seating", caption, (EXPERIMENT, SITE, USED, _OFFSET, _CHANGE), records, rows_in_html=0)
+
+
+def growth_table(data: ReportData) -> Table:
+    """Hardness at the surface and its growth with depth, by experiment."""
+    records = _with_details(data, data.results["penetration"]["growing_hardness"]["experiments"])
+    caption = (
+        "Hardness at the surface and its growth down to the depth of the largest load, of each penetration experiment."
+    )
+    columns = (EXPERIMENT, SITE, USED, HARDNESS, Column("H_0_N_per_mm3", "H_0", unit="N/mm³"), _GROWTH)
+    return record_table("hardness_growth", caption, columns, records, rows_in_html=0)
+
+
+def growth_sites_table(data: ReportData) -> Table:
+    """Growth of the hardness with depth, by site."""
+    return _sites_table(
+        "hardness_growth_sites",
+        "A hardness that grows linearly with depth, F = H_0 (V + γ W/e₇): its growth γ from the surface to the depth "
+        "of the largest load, by site, with 95 % intervals.",
+        (SITE, Column("n", "series", "count"), _GROWTH),
+        data.results["penetration"]["growing_hardness"]["sites"],
+        note="The mean is that of ln(1 + γ) over the used series; its interval comes from their scatter, over all "
+        "sites from the scatter between sites. An interval that contains 0 agrees with even snow.",
+    )
+
+
+def unloading_table(data: ReportData) -> Table:
+    """Every penetration experiment with readings during unloading."""
+    columns = (EXPERIMENT, SITE, ANGLE, Column("n_unloading", "readings", "count"), USED, *_UNLOADING)
+    caption = "Unloading of each penetration experiment whose discs were taken off one by one, with 95 % intervals."
+    return record_table("unloading", caption, columns, data.unloaded, rows_in_html=0)
+
+
+def unloading_sites_table(data: ReportData) -> Table:
+    """k_u / H_V and k_u, by site."""
+    return _sites_table(
+        "unloading_sites",
+        "Unloading by site: k_u / H_V and k_u with 95 % intervals.",
+        (SITE, Column("n", "series", "count"), *_UNLOADING),
+        data.results["penetration"]["unloading"],
+        note="k_u / H_V is the harmonic mean over the series, which keeps the mean rebound, with the scatter between "
+        "the series and that within each in its interval; k_u is the geometric mean. Over all sites the series count "
+        "as draws from one snow for the ratio, and k_u has an interval from four sites on.",
+    )
+
+
+def displacement_table(data: ReportData) -> Table:
+    """Every shear experiment with turning angles."""
+    records = [row for row in data.shear if row["n_turning"]]
+    columns = (EXPERIMENT, SITE, ANGLE, Column("n_turning", "rising readings", "count"), USED, _DISPLACEMENT)
+    caption = "Shear displacement u_y of each test, with 95 % intervals."
+    return record_table("shear_displacement", caption, columns, records)
+
+
+def displacement_sites_table(data: ReportData) -> Table:
+    """Shear displacement u_y, by site."""
+    return _sites_table(
+        "shear_displacement_sites",
+        "Shear displacement by site: geometric means with 95 % intervals from the scatter between the tests.",
+        (SITE, Column("n", "tests", "count"), _DISPLACEMENT),
+        data.results["shear"]["displacement"],
+    )
+
+
+def _with_details(data: ReportData, details: list[Json]) -> list[Json]:
+    """Rows of the penetration experiments, each with its row of another part of the results."""
+    return [row | detail for row, detail in zip(data.penetration, details, strict=True)]
+
+
+def _sites_table(name: str, caption: str, columns: tuple[Column, ...], rows: list[Json], note: str = "") -> Table:
+    """One row for each site, and one for all sites if there are several."""
+    records: list[dict[str, Any]] = [
+        row | {"site": "all sites" if row["site"] is None else row["site"]}
+        for row in rows
+        if row["site"] is not None or len(rows) > 2
+    ]
+    return record_table(name, caption, columns, records, note=note)

@@ -1,0 +1,249 @@
+"""Figures of the shear experiments: the paper's Figs 7 to 11, with regression lines and machining theory."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+from matplotlib.lines import Line2D
+
+from ...constants import CONFIDENCE
+from ...estimate.observations import HARDNESS_KEY, STRESS_KEY
+from ...forces.cutting import cutting_stress
+from ...statistics.combined_uncertainty import expanded_factor
+from ...units import DEGREE
+from ..figures.drawing import Drawing, LeftOut
+from ..figures.style import BLACK, SitePlot, error_bars, logarithmic, masks, scatter, spans_a_decade
+from ..number_formatting import counted, interval, p_equals, significant
+from ..symbols import prose
+from .data import numbers
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from matplotlib.axes import Axes
+
+    from ..figures.style import SiteStyle
+    from .data import FloatArray, Json, ReportData
+
+SIGNIFICANT: Final = 0.05
+MOST_SENTENCES: Final = 6
+FRICTION: Final = 0.2
+"""Transverse friction of the thin machining curve, as in the paper's figure."""
+_CURVES: Final = ((0.0, 1.6, "machining, β = 0"), (FRICTION, 0.7, "β = arctan 0.2"))
+_HEADROOM: Final = 2.5
+_ANGLE: Final = r"edge angle $\vartheta$ (°)"
+_STRESS: Final = r"failure shear stress $S_\mathrm{f}$ (N/mm²)"
+
+
+@dataclass(frozen=True)
+class RegressionLine:
+    """A regression line and the 95 % band of its mean over the range of the predictor.
+
+    The band is NaN if the regression has fewer than three values.
+    """
+
+    x: FloatArray
+    y: FloatArray
+    low: FloatArray
+    high: FloatArray
+
+
+def regression_line(row: Json, predictor: FloatArray) -> RegressionLine:
+    """b₀ + b₁ x ± t rmse_dof √(1/n + (x − x̄)²/Σ(x − x̄)²) at 61 places.
+
+    Parameters
+    ----------
+    row
+        The regression in the results.
+    predictor
+        The values of its predictor, shape (n,), in its unit.
+    """
+    x = np.linspace(float(predictor.min()), float(predictor.max()), 61)
+    y = row["b"][0] + row["b"][1] * x
+    mean, n = float(predictor.mean()), len(predictor)
+    spread = float(np.sum((predictor - mean) ** 2))
+    if n < 3 or row["rmse_dof"] is None:
+        unknown = np.full_like(x, np.nan)
+        return RegressionLine(x, y, unknown, unknown)
+    factor = float(expanded_factor(n - 2.0, CONFIDENCE))
+    half_width = factor * row["rmse_dof"] * np.sqrt(1.0 / n + (x - mean) ** 2 / spread)
+    return RegressionLine(x, y, y - half_width, y + half_width)
+
+
+def draw_line(axes: Axes, line: RegressionLine, *, colour: str, x_unit: float = 1.0, dashed: bool = False) -> None:
+    """Draw a line over its band; `x_unit` is the unit of the axis in that of the predictor."""
+    axes.fill_between(line.x / x_unit, line.low, line.high, color=colour, alpha=0.15, linewidth=0.0, zorder=1)
+    axes.plot(line.x / x_unit, line.y, color=colour, linewidth=1.1, linestyle="--" if dashed else "-", zorder=2)
+
+
+def shear_force_depth(data: ReportData, styles: Sequence[SiteStyle]) -> Drawing | LeftOut:
+    """Failure shear force against plate depth (Fig 7)."""
+    name = "fig07_shear_force_depth"
+    if len(data.stress) == 0:
+        return LeftOut(name, "Failure shear force against depth", "no shear experiment is used")
+    force = numbers(data.shear, "F_t_N")[data.shear_used]
+    plot = SitePlot.new("penetration depth $e$ (mm)", r"failure shear force $F_\mathrm{t}$ (N)", height_mm=76.0)
+    handles = scatter(plot.axes, data.shear_depth, force, data.shear_site, styles)
+    plot.start_at_zero("x", data.shear_depth, 1.06)
+    plot.start_at_zero("y", force, 1.08)
+    caption = prose(
+        "Failure shear force F_t against penetration depth of the plate (the paper's Fig. 7), by site. With one plate, "
+        "points of equal S_f lie on a straight line through the origin."
+    )
+    alt = "Failure shear force in newtons against depth in millimetres, by site."
+    return Drawing(name, caption, alt, plot.finish(data, handles), points=len(force))
+
+
+def varied_sites(data: ReportData) -> list[Json]:
+    """Regressions of S_f on edge angle at single sites."""
+    return [
+        row
+        for row in data.results["regressions"]
+        if row["terms"][1] == "edge_angle_rad" and row["group"] != "all" and row["b"] is not None
+    ]
+
+
+def stress_angle(data: ReportData, styles: Sequence[SiteStyle]) -> Drawing | LeftOut:
+    """Failure shear stress against edge angle, with lines of significant slope (Fig 8)."""
+    name, rows = "fig08_stress_angle", varied_sites(data)
+    if not rows:
+        reason = "no site has five used shear experiments at three edge angles"
+        return LeftOut(name, "Failure shear stress against edge angle", reason)
+    chosen = np.isin(data.shear_site, [row["group"] for row in rows])
+    theta, stress, site = data.shear_angle[chosen], data.stress[chosen], data.shear_site[chosen]
+    plot = SitePlot.new(_ANGLE, _STRESS, height_mm=70.0)
+    error_bars(plot.axes, theta / DEGREE, data.stress_interval[chosen], site, styles)
+    handles = scatter(plot.axes, theta / DEGREE, stress, site, styles)
+    for style, mask in masks(styles, site):
+        for row in rows:
+            if row["group"] in style.sites and _is_significant(row):
+                line = regression_line(row, theta[mask & (site == row["group"])])
+                draw_line(plot.axes, line, colour=style.colour, x_unit=DEGREE)
+    _angle_axis(plot.axes)
+    plot.start_at_zero("y", stress, 1.08)
+    judgements = (
+        f"{row['group']}: n = {row['n']}, "
+        + ("too few different angles to judge" if row["withheld"] else p_equals(row["p"]))
+        for row in rows[:MOST_SENTENCES]
+    )
+    caption = prose(
+        "Failure shear stress S_f against edge angle at the sites where the angle was varied (the paper's Fig. 8), "
+        "with the 95 % interval that the instruments allow. A regression line with the 95 % band of its mean is drawn "
+        "only where p < 0.05. {judgements}.",
+        judgements="; ".join(judgements),
+    )
+    alt = "Failure shear stress against edge angle in degrees, by site."
+    return Drawing(name, caption, alt, plot.finish(data, handles), points=len(stress))
+
+
+def _angle_axis(axes: Axes) -> None:
+    axes.set_xlim(0.0, 95.0)
+    axes.set_xticks(range(0, 91, 15))
+
+
+def _is_significant(row: Json) -> bool:
+    return row["p"] is not None and row["p"] < SIGNIFICANT
+
+
+def softest_varied(data: ReportData) -> tuple[Json, float] | None:
+    """Regression of the site with varied angle whose stress at 90° is lowest, and that stress (N/mm²)."""
+    upright = [(row["b"][0] + row["b"][1] * math.pi / 2.0, row) for row in varied_sites(data)]
+    positive = [pair for pair in upright if pair[0] > 0]
+    if not positive:
+        return None
+    stress, row = min(positive, key=lambda pair: pair[0])
+    return row, stress
+
+
+def machining(data: ReportData, styles: Sequence[SiteStyle]) -> Drawing | LeftOut:
+    """Stress of the softest site against edge angle, with machining theory for two frictions (Eqn 10, Fig 9)."""
+    name, softest = "fig09_machining", softest_varied(data)
+    if softest is None:
+        reason = "no site has five used shear experiments at three edge angles with a positive stress at 90°"
+        return LeftOut(name, "Shear stress against machining theory", reason)
+    row, upright = softest
+    at_site = data.shear_site == row["group"]
+    stress = data.stress[at_site]
+    plot = SitePlot.new(_ANGLE, r"$F_\mathrm{t}/(L\,e)$ (N/mm²)", height_mm=70.0)
+    handles = scatter(plot.axes, data.shear_angle[at_site] / DEGREE, stress, data.shear_site[at_site], styles)
+    theta = np.linspace(2.0, 90.0, 400)
+    for friction, width, label in _CURVES:
+        curve = cutting_stress(upright / 2.0, theta * DEGREE, transverse_friction=friction)
+        plot.axes.plot(theta, curve, color=BLACK, linewidth=width, zorder=2)
+        handles.append(Line2D([], [], color=BLACK, linewidth=width, label=label))
+    _angle_axis(plot.axes)
+    plot.axes.set_ylim(0.0, _HEADROOM * max(float(stress.max()), upright))
+    caption = prose(
+        "Tangential stress F_t/(L e) at {site}, the softest site of varied edge angle, against machining theory (Eqn "
+        "10; the paper's Fig. 9). S = {S} N/mm² is half of the regression's {upright} N/mm² at 90° (S_f = 2 S there "
+        "without friction): a choice that makes the thick curve, β = 0, meet the data at 90°; thin: β = arctan 0.2.",
+        site=row["group"],
+        S=significant(upright / 2.0),
+        upright=significant(upright),
+    )
+    alt = "Shear stress of one site against edge angle, with two curves of machining."
+    return Drawing(name, caption, alt, plot.finish(data, handles))
+
+
+def stress_density(data: ReportData, styles: Sequence[SiteStyle]) -> Drawing | LeftOut:
+    """Failure shear stress against density with the regression line over all sites (Fig 10)."""
+    name, title = "fig10_stress_density", "Failure shear stress against density"
+    if len(data.stress) == 0:
+        return LeftOut(name, title, "no shear experiment is used")
+    finite = np.isfinite(data.shear_density)
+    if not finite.any():
+        return LeftOut(name, title, "the campaign gives no snow density at its shear experiments")
+    density, stress = data.shear_density[finite], data.stress[finite]
+    plot = SitePlot.new(r"snow density $\rho$ (kg/m³)", _STRESS, height_mm=76.0)
+    handles = scatter(plot.axes, density, stress, data.shear_site[finite], styles)
+    row = data.regression("S_f_N_per_mm2", "snow_density_kg_per_m3")
+    if row is not None:
+        draw_line(plot.axes, regression_line(row, density), colour=BLACK, dashed=not _is_significant(row))
+    plot.start_at_zero("y", stress, 1.08)
+    caption = prose(
+        "Failure shear stress S_f against density (the paper's Fig. 10), by site.{line}",
+        line=_line_in_words(row) if row else "",
+    )
+    alt = "Failure shear stress against snow density with a regression line, by site."
+    return Drawing(name, caption, alt, plot.finish(data, handles), points=len(stress))
+
+
+def _line_in_words(row: Json) -> str:
+    judgement = p_equals(row["p"])
+    if row["withheld"]:
+        judgement = "dashed because too few different densities allow no judgement"
+    elif not _is_significant(row):
+        judgement += ", dashed because not significant"
+    text = (
+        f" Line: {significant(row['b'][0])} {'−' if row['b'][1] < 0 else '+'} {significant(abs(row['b'][1]))} ρ, "
+        f"n = {row['n']}, {judgement}; band: 95 % interval of its mean, as if all experiments were independent."
+    )
+    if row["interval_by_site"] and row["interval_by_site"][1]:
+        text += f" With sites as clusters the slope's interval is {interval(row['interval_by_site'][1])}."
+    return text
+
+
+def stress_hardness(data: ReportData, styles: Sequence[SiteStyle]) -> Drawing | LeftOut:
+    """Failure shear stress against snow hardness, one point for each spot with both (Fig 11)."""
+    name, spots = "fig11_stress_hardness", data.observations["spots"]
+    if not spots.site:
+        reason = "no spot has both a used penetration and a used shear experiment"
+        return LeftOut(name, "Failure shear stress against snow hardness", reason)
+    hardness, stress = spots.columns[HARDNESS_KEY], spots.columns[STRESS_KEY]
+    plot = SitePlot.new(r"snow hardness $H_\mathrm{V}$ (N/mm³)", _STRESS, height_mm=70.0)
+    handles = scatter(plot.axes, hardness, stress, np.array(spots.site), styles)
+    if spans_a_decade(hardness):
+        logarithmic(plot.axes, "x", hardness)
+    plot.start_at_zero("y", stress, 1.08)
+    row = data.regression("S_f_N_per_mm2", "H_V_N_per_mm3")
+    caption = prose(
+        "Failure shear stress S_f against snow hardness H_V at {spots} (the paper's Fig. 11): geometric mean of H_V "
+        "and mean of S_f over the used experiments of a spot.{regression}",
+        spots=counted(len(spots.site), "spot"),
+        regression=f" Linear regression: {p_equals(row['p'])}." if row and row["p"] is not None else "",
+    )
+    alt = "Failure shear stress against snow hardness, one point for each spot."
+    return Drawing(name, caption, alt, plot.finish(data, handles), points=len(stress))
