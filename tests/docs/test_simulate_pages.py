@@ -49,12 +49,12 @@ def test_file_of_the_page_is_the_built_in_scenario(tmp_path: Path) -> None:
 
 
 def test_commands_of_the_how_to_change_what_can_be_changed() -> None:
-    from skisnow.scenario.given import change_of
+    from skisnow.scenario.keys import parse_change
 
     lines = [line for line in HOW_TO.splitlines() if line.startswith("skisnow simulate") and "--set" in line]
     assert len(lines) == 3
     for line in lines:
-        changes = dict(change_of(part.strip()) for part in line.split("--set")[1:])
+        changes = dict(parse_change(part.strip()) for part in line.split("--set")[1:])
         read_scenario(line.split()[2], changes=changes)
 
 

@@ -23,8 +23,9 @@ from skisnow.identify.observations import keys_of_runs
 from skisnow.identify.parameter_table import parameter_table
 from skisnow.identify.track_frame import _site
 from skisnow.scenario import scenario_file, scenario_text
-from skisnow.scenario.given import change_of, given_scenario
 from skisnow.scenario.identify_section import given_parameters
+from skisnow.scenario.keys import parse_change
+from skisnow.scenario.reading import load_input
 from skisnow.ski import read_ski
 from skisnow.ski.monkeycam import monkeycam_shape
 from skisnow.snow.from_results import snow_from_results
@@ -127,7 +128,7 @@ def _campaign(path: Path) -> object:
 
 
 def _identify(path: Path) -> object:
-    given = given_scenario(path)
+    given = load_input(path)
     own = given_parameters(given.identify)
     _clock(given, None)
     _site(given.identify.get("site", {"fall_line_azimuth_deg": 0}))
@@ -141,7 +142,7 @@ def _identify(path: Path) -> object:
 
 def _changes(path: Path) -> object:
     words = [line.replace("\0", "") for line in path.read_bytes().decode("utf-8", "surrogateescape").split("\n")]
-    return scenario_file("carved-46m", changes=dict(change_of(word) for word in words if "=" in word))
+    return scenario_file("carved-46m", changes=dict(parse_change(word) for word in words if "=" in word))
 
 
 SCENARIO = scenario_text("carved-46m").encode()

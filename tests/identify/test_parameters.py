@@ -12,8 +12,8 @@ from skisnow.identify.parameter import Parameter
 from skisnow.identify.parameter_table import parameter_table
 from skisnow.scenario import scenario_file, scenario_text
 from skisnow.scenario.free_keys import FREE_KEYS, free_key, free_keys, short_name
-from skisnow.scenario.given import given_scenario
 from skisnow.scenario.identify_section import given_parameters
+from skisnow.scenario.reading import load_input
 
 VALUES = scenario_file("carved-46m").values
 
@@ -75,7 +75,7 @@ def test_start_bounds_and_prior_come_from_the_section(tmp_path: Path) -> None:
         '[identify."snow.S_f_N_per_mm2"]\nstart = 0.3\nlower = 0.1\nupper = 1.0\nprior_mean = 0.4\nprior_sd = 0.05\n'
     )
     path.write_text(scenario_text("carved-46m") + section, encoding="utf-8")
-    given = given_scenario(path)
+    given = load_input(path)
     (found,) = parameter_table(["snow.S_f_N_per_mm2"], VALUES, given_parameters(given.identify))
     assert (found.start, found.lower, found.upper, found.prior_mean, found.prior_sd) == (0.3, 0.1, 1.0, 0.4, 0.05)
     assert found.prior_residual(0.5) == pytest.approx(2.0)
@@ -87,7 +87,7 @@ def test_a_section_that_is_no_table_is_refused(tmp_path: Path) -> None:
     path = tmp_path / "mine.toml"
     path.write_text("identify = 3\n" + scenario_text("carved-46m"), encoding="utf-8")
     with pytest.raises(ParameterError, match="identify is 3; it must be a table"):
-        given_scenario(path)
+        load_input(path)
 
 
 def test_logarithmic_parameters_count_in_factors() -> None:

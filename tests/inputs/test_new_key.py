@@ -28,12 +28,12 @@ from skisnow.errors import ParameterError
 from skisnow.inputs.page_table import page_table
 from skisnow.scenario import read_scenario, scenario_file, scenario_text
 from skisnow.scenario.free_keys import free_key
-from skisnow.scenario.given import change_of
+from skisnow.scenario.keys import parse_change
 from skisnow.scenario.keys import SCENARIO_KEYS
 from skisnow.scenario.schema import scenario_schema, output_scenario_schema
 from skisnow.study.axes import Axis
 
-print(read_scenario("carved-46m", changes=dict([change_of("crust_mm=4")])).contact.crust)
+print(read_scenario("carved-46m", changes=dict([parse_change("crust_mm=4")])).contact.crust)
 print(scenario_file("carved-46m").values["snow.crust_mm"])
 contact = read_scenario("carved-46m").contact
 for refused in (lambda: scenario_file("carved-46m", changes={"crust_mm": 40}), lambda: replace(contact, crust=0.04)):

@@ -15,9 +15,9 @@ from skisnow.estimate.results_text import results_json
 from skisnow.estimate.shear_displacement import SiteDisplacement
 from skisnow.field.reference import reference_campaign
 from skisnow.scenario import Plane, Profile, read_scenario, scenario_file, scenario_text, scenario_values
-from skisnow.scenario.given import change_of, given_scenario
-from skisnow.scenario.keys import SCENARIO_KEYS
-from skisnow.scenario.reading import resolved
+from skisnow.scenario.keys import SCENARIO_KEYS, parse_change
+from skisnow.scenario.reading import build_input, load_input
+from skisnow.scenario.resolution import ContradictionError
 from skisnow.scenario.skier import Skier
 
 PROFILE = "x,y\n" + "".join(f"{x},{-0.2 * x}\n" for x in range(0, 60, 3))
@@ -72,7 +72,7 @@ def test_every_value_of_a_built_in_scenario_says_where_it_is_from(name: str) -> 
         assert comment.startswith(("ours", "default", "as published", "of the catalogue")), line
         if comment.startswith("default"):
             (full,) = [each for each in SCENARIO_KEYS if each.endswith(f".{key}")]
-            assert given_scenario(name).values[full] == SCENARIO_KEYS[full].default
+            assert load_input(name).values[full] == SCENARIO_KEYS[full].default
     left_out = {"elements", "line_spacing_mm", "cell_mm", "footprint_stiffness_N_per_mm2"}
     left_out |= {"snow_density_kg_per_m3", "dynamic_shear_strength_N_per_mm2"}  # of laws other than the default
     given = {line.split(" = ")[0] for line in lines}
@@ -117,12 +117,12 @@ def test_changes_by_full_name_and_without_section() -> None:
     ],
 )
 def test_change_on_a_command_line(word: str, change: tuple[str, object]) -> None:
-    assert change_of(word) == change
+    assert parse_change(word) == change
 
 
 def test_a_word_without_an_equals_sign_changes_nothing() -> None:
     with pytest.raises(ParameterError, match=r"^'mass_kg 90' changes nothing; write section\.key=value"):
-        change_of("mass_kg 90")
+        parse_change("mass_kg 90")
 
 
 def test_a_first_turn_that_never_comes_is_refused() -> None:
@@ -133,7 +133,7 @@ def test_a_first_turn_that_never_comes_is_refused() -> None:
 @pytest.mark.parametrize("word", ["mass_kg=90,5", "sledge.mass_kg = 90,5", "mu_0=0,04"])
 def test_a_decimal_comma_is_told_how_to_write(word: str) -> None:
     with pytest.raises(ParameterError, match=f"Write {word.replace(',', '.')}$"):
-        change_of(word)
+        parse_change(word)
 
 
 @pytest.mark.parametrize(
@@ -141,7 +141,7 @@ def test_a_decimal_comma_is_told_how_to_write(word: str) -> None:
 )
 def test_change_that_is_not_one_value_is_refused_in_a_short_sentence(word: str) -> None:
     with pytest.raises(ParameterError, match=r"^sledge\.mass_kg is .*; it must be a number$") as error:
-        read_scenario("carved-46m", changes=dict([change_of(word)]))
+        read_scenario("carved-46m", changes=dict([parse_change(word)]))
     assert len(str(error.value)) < 200
 
 
@@ -204,8 +204,8 @@ def test_snow_and_ski_of_files(tmp_path: Path) -> None:
     assert found.values["snow.S_f_N_per_mm2"] == pytest.approx(0.4, rel=1e-12)
     assert (found.values["snow.site"], found.values["ski.file"], found.values["ski.name"]) == ("A", "ski.toml", None)
     assert set(found.files) == {path, tmp_path / "results.json", tmp_path / "ski.toml"}
-    with pytest.raises(ParameterError, match="has its own S_f"):
-        read_scenario(path, changes={"S_f_N_per_mm2": 0.3})
+    snow = read_scenario(path, changes={"S_f_N_per_mm2": 0.3}).contact.snow
+    assert [snow.snow_hardness, snow.failure_shear_stress] == pytest.approx([0.2e9, 0.3e6], rel=1e-12)
 
 
 @pytest.fixture(scope="module")
@@ -261,9 +261,9 @@ def test_numbers_beside_or_after_the_results_come_before_what_was_measured(measu
     beside = with_results(folder, "C", **numbers)
     results: dict[str, object] = {"snow.results": str(folder / "results.json"), "snow.site": "C"}
     after: dict[str, object] = {"unloading_ratio": 4.0, "shear_displacement_mm": 0.1}
-    given = given_scenario("carved-46m").changed(results).changed(after)
+    given = load_input("carved-46m").changed(results).changed(after)
     by_object = read_scenario("carved-46m").with_(snow=analysis.snow("C")).with_(**after)
-    ways = [read_scenario(beside), read_scenario("carved-46m", changes=results | after), resolved(given).scenario]
+    ways = [read_scenario(beside), read_scenario("carved-46m", changes=results | after), build_input(given).scenario]
     for scenario in (*ways, by_object):
         contact = scenario.contact
         assert [contact.unloading_ratio, contact.shear_displacement] == pytest.approx([4.0, 1e-4], rel=1e-12)
@@ -282,10 +282,26 @@ def test_a_site_without_unloading_needs_a_ratio(measured: tuple[Analysis, Path])
         read_scenario(with_results(measured[1], "E"))
 
 
-def test_numbers_of_the_snow_bring_the_scenario_s_own_ratio_back(measured: tuple[Analysis, Path]) -> None:
-    given = given_scenario("carved-46m").changed({"snow.results": str(measured[1] / "results.json")})
-    contact = resolved(given.changed({"H_V_N_per_mm3": 0.3, "S_f_N_per_mm2": 0.4})).scenario.contact
-    assert [contact.unloading_ratio, contact.shear_displacement] == pytest.approx([10.0, 2e-5], rel=1e-12)
+@pytest.mark.parametrize(
+    ("changes", "keys"),
+    [
+        ({"H_V_N_per_mm3": 1, "published": "race-piste"}, ("snow.H_V_N_per_mm3", "snow.published")),
+        ({"published": "race-piste", "S_f_N_per_mm2": 0.3}, ("snow.published", "snow.S_f_N_per_mm2")),
+        ({"ski.name": "carver", "ski.file": "a.toml"}, ("ski.name", "ski.file")),
+        ({"course.name": "slalom-20-gates", "course.file": "c.csv"}, ("course.name", "course.file")),
+    ],
+)
+def test_two_keys_of_one_layer_contradict_each_other(changes: dict[str, object], keys: tuple[str, str]) -> None:
+    with pytest.raises(ContradictionError) as error:
+        read_scenario("carved-46m", changes=changes)
+    assert error.value.keys == keys
+
+
+def test_numbers_after_results_replace_only_their_own_quantity(measured: tuple[Analysis, Path]) -> None:
+    given = load_input("carved-46m").changed({"snow.results": str(measured[1] / "results.json")})
+    contact = build_input(given.changed({"H_V_N_per_mm3": 0.3, "S_f_N_per_mm2": 0.4})).scenario.contact
+    assert [contact.snow.snow_hardness, contact.snow.failure_shear_stress] == pytest.approx([0.3e9, 0.4e6], rel=1e-12)
+    assert contact.shear_displacement == pytest.approx(2.5e-4, rel=1e-12)  # measured by the campaign
 
 
 def test_values_are_those_given_and_defaults() -> None:
@@ -318,16 +334,12 @@ def test_scenario_tells_its_values_back(name: str) -> None:
         ({"slope.kind": "profile"}, "slope.profile is missing"),
         ({"site": "A"}, "snow.site goes with snow.results"),
         ({"published": "race-pist"}, "did you mean 'race-piste'"),
-        ({"H_V_N_per_mm3": 1, "published": "race-piste"}, "in two ways, snow.H_V_N_per_mm3 and snow.published"),
-        ({"published": "race-piste", "S_f_N_per_mm2": 0.3}, "has its own S_f"),
         ({"ski.name": "slalon"}, "Is slalom meant?"),
-        ({"ski.name": "carver", "ski.file": "a.toml"}, "both are there"),
         ({"ski.file": "nowhere.toml"}, "nowhere.toml cannot be read"),
         ({"stance_width_m": 0.05}, "is 0.11 m wide"),
         ({"clamp_length_m": 2}, "the ski giant-slalom allows less than 1.71 m"),
         ({"inertia_kg_m2": [1, 1, 3]}, "none more than the sum of the others"),
         ({"mu_1_s_per_m": -0.01}, "friction at the start's speed"),
-        ({"course.name": "slalom-20-gates", "course.file": "c.csv"}, "either course.name, of the catalogue, or"),
     ],
 )
 def test_bad_change_is_refused_in_a_sentence(changes: dict[str, object], told: str) -> None:

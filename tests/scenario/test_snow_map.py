@@ -148,7 +148,7 @@ def test_a_large_map_is_looked_through_as_finely() -> None:
 
 def test_given_twice_is_refused(tmp_path: Path) -> None:
     path = written(tmp_path, ALONG)
-    with pytest.raises(ParameterError, match=r"snow\.H_V_N_per_mm3 is given twice, as a number and over the place"):
+    with pytest.raises(ParameterError, match=r"snow\.map_file and snow\.H_V_N_per_mm3 both give"):
         read_scenario("carved-46m", changes={"snow.map_file": str(path), "snow.H_V_N_per_mm3": 0.3})
     turn = read_scenario("carved-46m", changes={"snow.map_file": str(path)})
     with pytest.raises(ParameterError, match=r"S_f_N_per_mm2 is given over the place by snow\.map_file"):

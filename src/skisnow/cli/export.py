@@ -60,9 +60,9 @@ def _fmu(options: argparse.Namespace) -> int:
     with announced("writing"):
         from ..interop import write_contact_fmu, write_sledge_fmu
         from ..scenario import scenario_file
-        from ..scenario.given import change_of
+        from ..scenario.keys import parse_change
 
-        asked = scenario_file(options.scenario, changes=dict(change_of(word) for word in options.changes)).scenario
+        asked = scenario_file(options.scenario, changes=dict(parse_change(word) for word in options.changes)).scenario
         if options.contact:
             written = write_contact_fmu(asked, options.out, fmi=options.fmi, skis=options.skis or 2)
         else:

@@ -106,9 +106,9 @@ def _prepared(options: argparse.Namespace) -> ScenarioFile:
 
 
 def _changes(options: argparse.Namespace) -> dict[str, object]:
-    from ..scenario.given import change_of
+    from ..scenario.keys import parse_change
 
-    return dict(change_of(word) for word in options.changes)
+    return dict(parse_change(word) for word in options.changes)
 
 
 def _identified(options: argparse.Namespace) -> Identification:

@@ -158,9 +158,9 @@ def _asked(options: argparse.Namespace) -> tuple[Scenario, dict[str, Scenario]]:
     """The scenario, and its variants by name."""
     from ..racing import worth_changes
     from ..scenario import scenario_file
-    from ..scenario.given import change_of
+    from ..scenario.keys import parse_change
 
-    asked = scenario_file(options.scenario, changes=dict(change_of(word) for word in options.changes))
+    asked = scenario_file(options.scenario, changes=dict(parse_change(word) for word in options.changes))
     for text in asked.warnings:
         print(f"warning: {text}", file=sys.stderr)
     variants = {name: asked.scenario.with_(ski=name) for name in options.against}

@@ -62,9 +62,9 @@ def run(options: argparse.Namespace) -> int:
         options.parser.error("--replay writes into the folder of --out: name one")
     with announced(LOADING):
         from ..scenario import scenario_file
-        from ..scenario.given import change_of
+        from ..scenario.keys import parse_change
 
-        asked = scenario_file(options.scenario, changes=dict(change_of(word) for word in options.changes))
+        asked = scenario_file(options.scenario, changes=dict(parse_change(word) for word in options.changes))
     _prepare(options, asked)
     with ending_is_an_interrupt() as ending:
         found, refinements = _computed(asked, verify=options.verify)

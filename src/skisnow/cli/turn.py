@@ -81,11 +81,11 @@ def run(options: argparse.Namespace) -> int:
     with announced("loading"):
         from ..chain.chaining import chain
         from ..scenario import scenario_file
-        from ..scenario.given import change_of
+        from ..scenario.keys import parse_change
         from ..scenario.prior import prior_of
 
         priors = [prior_of(word) for word in options.priors]
-        changes = dict(change_of(word) for word in options.changes)
+        changes = dict(parse_change(word) for word in options.changes)
         asked = scenario_file(options.scenario, changes=changes)
     for text in asked.warnings:
         print(f"warning: {text}", file=sys.stderr)

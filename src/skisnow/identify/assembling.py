@@ -13,8 +13,8 @@ from ..given import is_file
 from ..inputs import nearest
 from ..scenario import ScenarioFile
 from ..scenario.free_keys import EACH, free_key
-from ..scenario.given import GivenScenario
 from ..scenario.keys import SCENARIO_KEYS
+from ..scenario.resolution import ScenarioInput
 from ..track.track import Track
 from .data import Data, read_data, taken_for
 from .measured_grooves import MeasuredGrooves
@@ -63,7 +63,7 @@ class Collected:
 
 
 def collected(
-    given: GivenScenario, asked: ScenarioFile, data: Sequence[Data | str | Path], keys: Sequence[str]
+    given: ScenarioInput, asked: ScenarioFile, data: Sequence[Data | str | Path], keys: Sequence[str]
 ) -> Collected:
     """Read what are paths, turn tracks into the slope's frame, and refuse what does not go with the scenario.
 

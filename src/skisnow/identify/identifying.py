@@ -18,9 +18,9 @@ from ..parallel.executors import ExecutorLike, require_executor
 from ..parallel.kept_rows import KeptRows, forget
 from ..scenario import Scenario, ScenarioFile
 from ..scenario.free_keys import free_keys
-from ..scenario.given import GivenScenario, given_scenario
 from ..scenario.identify_section import given_parameters
-from ..scenario.reading import resolved
+from ..scenario.reading import build_input, load_input
+from ..scenario.resolution import ScenarioInput
 from .assembling import Collected, collected, values_to_begin_with
 from .bootstrap import BootstrapBy, require_bootstrap
 from .data import Data
@@ -45,7 +45,7 @@ Progress = Callable[[str], None]
 
 @with_former_keywords(kept="checkpoint", anew="restart", told="progress")
 def identify(
-    scenario: Scenario | str | Path | GivenScenario,
+    scenario: Scenario | str | Path | ScenarioInput,
     data: Sequence[Data | str | Path] | Data | str | Path,
     free: str | Sequence[str] = (),
     *,
@@ -131,8 +131,8 @@ def identify(
     begun = time.monotonic()
     require_bootstrap(bootstrap, bootstrap_by)
     require_executor(executor)
-    given = (scenario if isinstance(scenario, GivenScenario) else given_scenario(scenario)).changed(changes)
-    asked = resolved(given)
+    given = (scenario if isinstance(scenario, ScenarioInput) else load_input(scenario)).changed(changes)
+    asked = build_input(given)
     own = given_parameters(given.identify)
     keys = free_keys(free) or tuple(dict.fromkeys(key.partition("@")[0] for key in own))
     if not keys:
@@ -195,7 +195,7 @@ def _observations(
     return tuple(found)
 
 
-def _clock(given: GivenScenario, asked: bool | None) -> bool:
+def _clock(given: ScenarioInput, asked: bool | None) -> bool:
     return given.identify.get("clock", "start") == "free" if asked is None else asked
 
 

@@ -13,8 +13,8 @@ from scipy.interpolate import CubicHermiteSpline
 from ..errors import SkisnowError
 from ..parallel.kept_rows import Row
 from ..scenario import Scenario, Solver, Stop
-from ..scenario.given import GivenScenario
-from ..scenario.reading import resolved
+from ..scenario.reading import build_input
+from ..scenario.resolution import ScenarioInput
 from ..simulate.run import Run
 from ..sources import Sources
 
@@ -59,7 +59,7 @@ class RunSimulation:
         For each track the times (s) that are wanted, rising, from the start.
     """
 
-    given: GivenScenario
+    given: ScenarioInput
     times: tuple[FloatArray, ...]
     _sources: Sources = field(init=False, default_factory=Sources)
 
@@ -77,7 +77,7 @@ class RunSimulation:
         return _row(run, self.times[task.run])
 
     def _scenario(self, task: RunTask) -> Scenario:
-        asked = resolved(self.given.changed(task.values), sources=self._sources).scenario
+        asked = build_input(self.given.changed(task.values), sources=self._sources).scenario
         duration = max(float(self.times[task.run][-1]), 1e-3) + _AFTER_THE_LAST
         interval = min(asked.solver.output_interval, OUTPUT_INTERVAL) if task.final else OUTPUT_INTERVAL
         solver = replace(asked.solver, output_interval=interval)

@@ -13,7 +13,7 @@ from ..errors import ParameterError
 from ..given import toml_values
 from ..inputs import nearest
 from .keys import SCENARIO_KEYS, SECTIONS
-from .replaced import replaced
+from .resolution import COMPANIONS
 
 _FOLDER: Final = files(__package__) / "catalogue"
 _COMMENTS_FROM: Final = 40
@@ -75,11 +75,11 @@ def scenario_text(name: str) -> str:
 def _defaults(text: str) -> dict[str, str]:
     """By section, the lines of the keys that the text does not name and that have a default."""
     given = {f"{section}.{key}": value for section, table in toml_values(text).items() for key, value in table.items()}
-    every = {name: key.default for name, key in SCENARIO_KEYS.items()} | given
-    gone = {other for name, value in every.items() if value is not None for other in replaced(name, value)}
+    values = {name: key.default for name, key in SCENARIO_KEYS.items()} | given
+    unused = {name for name, (main, needed) in COMPANIONS.items() if values[main] != needed}
     lines = dict.fromkeys(SECTIONS, "")
     for name, key in SCENARIO_KEYS.items():
-        if key.default is not None and name not in given and name not in gone - given.keys():
+        if key.default is not None and name not in given and name not in unused:
             section, own = name.split(".")
             line = f"{own} = {json.dumps(key.default)}"
             lines[section] += f"{line:<{_COMMENTS_FROM}}# default, {key.origin}\n"

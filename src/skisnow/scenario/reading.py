@@ -11,14 +11,21 @@ from types import MappingProxyType
 from typing import Any, Final
 
 from ..errors import ParameterError, RangeWarning
+from ..given import MOST_TOML_BYTES, is_file, plain_text, toml_values
+from ..inputs import nearest
 from ..shown import ShownFields
 from ..sources import Sources
-from .building import built, outdone
-from .changed import changed_scenario
-from .given import GivenScenario, given_scenario
+from .building import build, changed_scenario
+from .built_in import scenario_names, scenario_text
+from .identify_section import require_known
+from .keys import PATH_KEYS, flatten_sections, validate
 from .plausibility import implausible_values
+from .resolution import ContradictionError, Layer, Resolution, ScenarioInput, resolve
 from .scenario import Scenario
 from .values import scenario_values
+
+IDENTIFY: Final = "identify"
+"""Section with the unknowns of an identification, which a run ignores."""
 
 _NOTHING: Final[Mapping[str, object]] = MappingProxyType({})
 
@@ -92,8 +99,8 @@ def read_scenario(name_or_path: str | Path, *, changes: Mapping[str, object] = _
     >>> scenario.sledge.mass, scenario.contact.snow.snow_hardness
     (90.0, 200000000.0)
     """
-    scenario, warned = _built(given_scenario(name_or_path).changed(changes), Sources())
-    for text in warned:
+    scenario, messages, _ = _built(load_input(name_or_path).changed(changes), Sources())
+    for text in messages:
         warnings.warn(text, RangeWarning, stacklevel=2)
     return scenario
 
@@ -103,57 +110,98 @@ def scenario_file(name_or_path: str | Path, *, changes: Mapping[str, object] = _
 
     Parameters, errors: as `read_scenario`.
     """
-    return resolved(given_scenario(name_or_path).changed(changes))
+    return build_input(load_input(name_or_path).changed(changes))
 
 
-def resolved(given: GivenScenario, *, sources: Sources | None = None) -> ScenarioFile:
-    """The scenario that values as given describe.
+def load_input(name_or_path: str | Path | Scenario) -> ScenarioInput:
+    """Load a built-in scenario by name or a TOML file, or wrap a scenario object, without resolving its values.
+
+    Raises
+    ------
+    ParameterError
+        Unknown name, unreadable file, no TOML, or a section, key or value that is not allowed.
+    """
+    if isinstance(name_or_path, Scenario):
+        return ScenarioInput("scenario given in Python", None, (), base=name_or_path)
+    word = str(name_or_path)
+    if word in scenario_names():
+        return _parse(word, None, scenario_text(word))
+    path = Path(name_or_path)
+    if not (isinstance(name_or_path, Path) or path.suffix.lower() == ".toml" or path.name != word or is_file(path)):
+        raise ParameterError(
+            f"there is no scenario named {word!r}. {nearest(word, scenario_names())}. Any other scenario is read from "
+            "a file ending in .toml"
+        )
+    return _parse(str(path), path, plain_text(path, most_bytes=MOST_TOML_BYTES))
+
+
+def _parse(title: str, file: Path | None, text: str) -> ScenarioInput:
+    sections = toml_values(text, title=title)
+    identify = sections.pop(IDENTIFY, {})
+    if not isinstance(identify, dict):
+        raise ParameterError(f"{title}: {IDENTIFY} is {identify!r}; it must be a table, begun by the line [{IDENTIFY}]")
+    try:
+        require_known(identify)
+        values = validate(flatten_sections(sections))
+    except ParameterError as error:
+        raise ParameterError(f"{title}: {error}") from error
+    return ScenarioInput(title, file, (Layer(values, file.parent if file else Path()),), identify)
+
+
+def build_input(given: ScenarioInput, *, sources: Sources | None = None) -> ScenarioFile:
+    """Resolve and build a scenario.
 
     Parameters
     ----------
     given
-        Values as given.
+        The scenario before resolution.
     sources
-        Keeps what was read, for many scenarios.
+        Cache of skis and snows for many scenarios.
 
     Raises
     ------
     ParameterError
         As `read_scenario`.
     """
-    scenario, warned = _built(given, sources or Sources())
-    own = _own_implausible_values(given.title) if given.file is None and given.base is None else ()
-    found = (*warned, *(each for each in implausible_values(scenario) if each not in own))
-    return ScenarioFile(given.title, _in_force(given, scenario), scenario, files_of(given), found)
+    scenario, messages, resolution = _built(given, sources or Sources())
+    expected = _warnings_of_built_in(given.title) if given.file is None and given.base is None else ()
+    messages = (*messages, *(text for text in implausible_values(scenario) if text not in expected))
+    files = (*((given.file,) if given.file is not None else ()), *resolution.files.values())
+    return ScenarioFile(given.title, _values(given, resolution, scenario), scenario, files, messages)
 
 
 @cache
-def _own_implausible_values(name: str) -> tuple[str, ...]:
-    """What a built-in scenario itself would be suspected of; its file says so, and why."""
-    return implausible_values(_built(given_scenario(name), Sources())[0])
+def _warnings_of_built_in(name: str) -> tuple[str, ...]:
+    """Warnings about a built-in scenario itself, which its file explains."""
+    return implausible_values(_built(load_input(name), Sources())[0])
 
 
-def _built(given: GivenScenario, sources: Sources) -> tuple[Scenario, tuple[str, ...]]:
+def _built(given: ScenarioInput, sources: Sources) -> tuple[Scenario, tuple[str, ...], Resolution]:
     if given.base is not None:
-        return changed_scenario(given.base, given.values), ()
+        return changed_scenario(given.base, given.values), (), Resolution(given.values, {}, None, None)
     try:
-        return built(given, sources)
+        resolution = resolve(given, sources)
+        return (*build(resolution, sources), resolution)
+    except ContradictionError as error:
+        raise ContradictionError(error.keys, f"{given.title}: {error}") from error
     except ParameterError as error:
         raise ParameterError(f"{given.title}: {error}") from error
 
 
-def _in_force(given: GivenScenario, scenario: Scenario) -> dict[str, Any]:
-    """As given where it was: there and back over the unit could change a last digit."""
-    gone = outdone(given, scenario.contact.snow, scenario.contact.snow_map)
-    left = {name: value for name, value in given.values.items() if name not in gone}
-    words = {name: list(value) if isinstance(value, tuple) else value for name, value in left.items()}
+def _values(given: ScenarioInput, resolution: Resolution, scenario: Scenario) -> dict[str, Any]:
+    """Every key with its value; a given value keeps its digits, which a conversion to SI and back could change."""
+    values = {name: list(value) if isinstance(value, tuple) else value for name, value in resolution.values.items()}
     if given.base is not None:
-        return {**scenario_values(scenario), **words}
-    of_ski = {"ski.name": words.get("ski.name"), "ski.file": words.get("ski.file")}
-    return {**scenario_values(scenario), **words, **of_ski}
+        return {**scenario_values(scenario), **values}
+    return {**scenario_values(scenario), "ski.name": None, "ski.file": None, **values}
 
 
-def files_of(given: GivenScenario) -> tuple[Path, ...]:
-    """Files that a scenario is read from."""
-    named = (given.path(name) for name in given.folders if name in given.values)
-    return (*((given.file,) if given.file is not None else ()), *named)
+def input_files(given: ScenarioInput) -> tuple[Path, ...]:
+    """The scenario's file and every file that a layer names."""
+    paths = {
+        name: layer.folder / str(layer.values[name])
+        for layer in given.layers
+        for name in PATH_KEYS
+        if name in layer.values
+    }
+    return (*((given.file,) if given.file is not None else ()), *paths.values())

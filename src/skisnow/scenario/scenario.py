@@ -11,7 +11,6 @@ from typing import Annotated, Any
 from ..constants import STANDARD_GRAVITY
 from ..course import Course
 from ..errors import ParameterError
-from ..from_above import from_above
 from ..inputs import Quantity, Search, Word, require_declared
 from ..shown import Facts, Shown, amount
 from ..ski import Ski, ski_names
@@ -223,8 +222,9 @@ class Scenario(Shown):
         >>> turn.ski.name, round(turn.contact.snow.snow_hardness / 1e9, 2), turn.stop.duration
         ('slalom', 0.21, 2.0)
         """
-        changed: Scenario = from_above("scenario.changed", "changed_scenario")(self, changes)
-        return changed
+        from .building import changed_scenario
+
+        return changed_scenario(self, changes)
 
     @property
     def flexing_ski(self) -> Ski:

@@ -15,9 +15,9 @@ from ..json_number import json_number
 from ..parallel.kept_rows import Row
 from ..scenario import ScenarioFile
 from ..scenario.built_in import scenario_names, scenario_place
-from ..scenario.given import PATH_KEYS, GivenScenario, full_name, given_scenario
-from ..scenario.keys import SCENARIO_KEYS, SECTIONS
-from ..scenario.reading import files_of, resolved
+from ..scenario.keys import PATH_KEYS, SCENARIO_KEYS, SECTIONS, full_name
+from ..scenario.reading import build_input, input_files, load_input
+from ..scenario.resolution import ScenarioInput
 from ..shown import ShownFields
 from ..simulate.run import Run
 from ..simulate.run_summary import end_dict, energies_dict, least_turn_radius, radii_dict, run_warnings
@@ -76,12 +76,12 @@ class ScenarioModel(ShownFields):
 
     folder: Path
     scenario: str
-    _base: GivenScenario = field(init=False)
+    _base: ScenarioInput = field(init=False)
     _sources: Sources = field(init=False, default_factory=Sources)
 
     def __post_init__(self) -> None:
         built_in = self.scenario in scenario_names()
-        self._base = given_scenario(self.scenario if built_in else self.folder / self.scenario)
+        self._base = load_input(self.scenario if built_in else self.folder / self.scenario)
 
     @property
     def keys(self) -> Mapping[str, Quantity]:
@@ -121,7 +121,7 @@ class ScenarioModel(ShownFields):
 
     def files(self, points: Points) -> list[Path]:
         """The scenario's file, and every file that it or a point names."""
-        own = files_of(self._base) if self._base.file else (scenario_place(self.scenario), *files_of(self._base))
+        own = input_files(self._base) if self._base.file else (scenario_place(self.scenario), *input_files(self._base))
         named = {word for name in PATH_KEYS for word in points.distinct(name)}
         return [*own, *(self.folder / word for word in sorted(named))]
 
@@ -141,7 +141,7 @@ class ScenarioModel(ShownFields):
         return _row(asked, run)
 
     def _asked(self, point: Point) -> ScenarioFile:
-        return resolved(self._base.changed(point, folder=self.folder), sources=self._sources)
+        return build_input(self._base.changed(point, folder=self.folder), sources=self._sources)
 
     def _failure(self, point: Point, reason: str) -> Row:
         given = {name: self._base.values.get(name, key.default) for name, key in SCENARIO_KEYS.items()} | point

@@ -137,9 +137,9 @@ class ScenarioField:
 
     def typed_value(self) -> object:
         """What stands there, as a file would have it."""
-        from ..scenario.given import change_of
+        from ..scenario.keys import parse_change
 
-        return change_of(f"{self.key.name}={self.text}")[1]
+        return parse_change(f"{self.key.name}={self.text}")[1]
 
     def refuse(self, fault: str) -> None:
         """Say at the field why it is refused; nothing: it is not."""

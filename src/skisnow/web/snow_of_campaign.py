@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from ..errors import ParameterError
 from ..estimate.results_text import results_json
-from ..report.write import RESULTS
+from ..report.campaign.page import RESULTS
 from ..units import MM, N_PER_MM2, N_PER_MM3
 from .analysing import Choice, Refusal, numbers_of
 from .transfer import entry_files, kept_files
@@ -37,11 +37,11 @@ def require_scenario(scenario: str, changes: Mapping[str, str], sources: Sources
     ParameterError
         A value cannot be read or is not allowed.
     """
-    from ..scenario.given import change_of, given_scenario
-    from ..scenario.reading import resolved
+    from ..scenario.keys import parse_change
+    from ..scenario.reading import build_input, load_input
 
-    given = given_scenario(scenario).changed(dict(change_of(f"{name}={text}") for name, text in changes.items()))
-    return resolved(given, sources=sources)
+    given = load_input(scenario).changed(dict(parse_change(f"{name}={text}") for name, text in changes.items()))
+    return build_input(given, sources=sources)
 
 
 def campaign_snow(lab: Lab, key: str) -> Analysis:

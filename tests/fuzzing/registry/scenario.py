@@ -17,8 +17,9 @@ from skisnow.identify.parameter_table import parameter_table
 from skisnow.identify.track_frame import _site
 from skisnow.scenario import read_profile, read_scenario, read_terrain, scenario_file, scenario_text
 from skisnow.scenario.boots_file import read_boots
-from skisnow.scenario.given import change_of, given_scenario
 from skisnow.scenario.identify_section import given_parameters
+from skisnow.scenario.keys import parse_change
+from skisnow.scenario.reading import load_input
 from skisnow.scenario.snow_map_file import read_snow_map
 
 from ..binaries import BINARY
@@ -115,7 +116,7 @@ _PLACES = np.linspace(-3.0, 30.0, 7)
 
 def _read_identify(folder: Path) -> object:
     path = folder / "identify.toml"
-    given = given_scenario(path)
+    given = load_input(path)
     own = given_parameters(given.identify)
     _clock(given, None)
     _site(given.identify.get("site", {"fall_line_azimuth_deg": 0}))
@@ -127,7 +128,7 @@ def _read_identify(folder: Path) -> object:
 
 def _read_changes(folder: Path) -> object:
     words = (folder / "changes").read_bytes().decode("utf-8", "surrogateescape").replace("\0", "").split("\n")
-    return scenario_file("carved-46m", changes=dict(change_of(word) for word in words if "=" in word))
+    return scenario_file("carved-46m", changes=dict(parse_change(word) for word in words if "=" in word))
 
 
 def _used_ski(path: Path) -> object:
@@ -190,15 +191,15 @@ _SLALOM = scenario_text("slalom-20-gates").encode()
 _TABLED = {"ski.toml": _WITH_TABLE, "table.csv": _SKI_TABLE}
 _SHAPED = {"ski.toml": _WITH_SHAPE, "ski-def.json": _DESIGN}
 READERS = (
-    _of("scenario.toml", _SLALOM, read_scenario, TOML, "scenario.given:given_scenario"),
+    _of("scenario.toml", _SLALOM, read_scenario, TOML, "scenario.reading:load_input"),
     Reader(
         name="identify.toml", target="identify.toml", read=_read_identify, mutations=TOML,
         files=lambda: {"identify.toml": scenario_text("carved-46m").encode() + _IDENTIFY, "cells.csv": _CELLS},
-        covers=("scenario.given:given_scenario",),
+        covers=("scenario.reading:load_input",),
     ),
     Reader(
         name="changes", target="changes", files=lambda: {"changes": _CHANGES}, read=_read_changes,
-        mutations=(token, *TOML), covers=("scenario.given:change_of",),
+        mutations=(token, *TOML), covers=("scenario.keys:parse_change",),
     ),
     _of("ski.toml", _SKI, _used_ski, TOML, "ski.file_values:file_values"),
     Reader(

@@ -112,7 +112,7 @@ def test_a_course_of_the_catalogue_or_of_a_file_is_read_with_the_scenario(tmp_pa
     found = read_scenario("carved-46m", changes={"course.file": str(tmp_path / "c.csv")}).course
     assert found is not None
     assert [gate.turning for gate in found.gates] == [(4.0, 1.0), (9.0, -1.0)]
-    with pytest.raises(ParameterError, match=r"has either course\.name, of the catalogue, or course\.file"):
+    with pytest.raises(ParameterError, match=r"course\.name and course\.file both give"):
         read_scenario("carved-46m", changes={"course.name": name, "course.file": str(tmp_path / "c.csv")})
 
 

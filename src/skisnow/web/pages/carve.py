@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any, Final
 from nicegui import background_tasks, run, ui
 
 from ...errors import ParameterError, SkisnowError
+from ...report.campaign.page import RESULTS
 from ...report.number_formatting import significant
-from ...report.write import RESULTS
 from ..fields import choice, link
 from ..lab_skis import NOTHING, LabSkis
 from ..language import said

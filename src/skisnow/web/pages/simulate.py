@@ -259,8 +259,7 @@ def basic(values: Mapping[str, Any]) -> list[str]:
 
 def expert(values: Mapping[str, Any]) -> list[str]:
     """All other keys that the form has for such a scenario."""
-    from ...scenario.given import PATH_KEYS
-    from ...scenario.keys import SCENARIO_KEYS
+    from ...scenario.keys import PATH_KEYS, SCENARIO_KEYS
 
     elsewhere = {*basic(values), *CHOSEN_ABOVE, *WITH_FILES, *PATH_KEYS}
     missing = ("sledge.edge_angle_deg",) if _has_skier(values) else ("skier.",)

@@ -8,7 +8,7 @@ from nicegui import app, background_tasks, run, ui
 
 from ...errors import ParameterError, SkisnowError
 from ...estimate.results_text import results_json
-from ...report.write import RESULTS
+from ...report.campaign.page import RESULTS
 from ..answering import redrawn_by
 from ..error_pages import error_sentence
 from ..fields import button, choice, link, said_options

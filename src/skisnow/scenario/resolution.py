@@ -1,0 +1,280 @@
+"""Resolution of a scenario: which value counts when several are given.
+
+Values come in layers: a built-in scenario or a file, then changes (``--set``, ``changes=``, points of a study).
+Defaults come below all layers. Two rules decide:
+
+1. The last layer that gives a quantity counts. A campaign's results, a published snow and a snow map give several
+   quantities: H_V and S_f, and the results also k_u/H_V and u_y if the campaign measured them.
+2. Within one layer, two keys that give the same quantity contradict each other. Exceptions: a snow map next to a named
+   snow, and a number for k_u/H_V or u_y next to a named snow; there the map or the number counts.
+
+A key that belongs to another one (`COMPANIONS`) is dropped together with it if a later layer replaces that one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Any, Final
+
+from ..errors import ParameterError
+from ..inputs import InputValue
+from ..shown import ShownFields
+from ..snow import SnowProperties
+from ..sources import Sources
+from .keys import PATH_KEYS, SCENARIO_KEYS, validate
+from .scenario import Scenario
+from .snow_map import SnowMap
+from .snow_map_file import read_snow_map
+
+H_V: Final = "snow.H_V_N_per_mm3"
+S_F: Final = "snow.S_f_N_per_mm2"
+UNLOADING: Final = "snow.unloading_ratio"
+DISPLACEMENT: Final = "snow.shear_displacement_mm"
+NAMED_SNOWS: Final = ("snow.results", "snow.published")
+OVERRIDES_NAMED_SNOW: Final = {
+    H_V: ("snow.map_file",),
+    S_F: ("snow.map_file",),
+    UNLOADING: (UNLOADING, "snow.penetration"),
+    DISPLACEMENT: (DISPLACEMENT,),
+}
+"""Keys by quantity that count next to a named snow in the same layer."""
+
+ALTERNATIVES: Final = {"ski.name": "ski", "ski.file": "ski", "course.name": "course", "course.file": "course"}
+"""Quantity of each key that is not a quantity itself."""
+
+KEYS_OF_KIND: Final = {
+    "plane": ("slope.angle_deg",),
+    "profile": ("slope.profile", "slope.profile_gap"),
+    "grid": ("slope.grid", "slope.smooth_m", "slope.origin_x_m", "slope.origin_y_m"),
+}
+"""Keys that only one kind of slope has."""
+
+COMPANIONS: Final = {name: ("slope.kind", kind) for kind, names in KEYS_OF_KIND.items() for name in names}
+"""Keys that need a certain value of another key."""
+
+
+class ContradictionError(ParameterError):
+    """Two keys of one layer give the same quantity, or a key needs another value of a second key.
+
+    Attributes
+    ----------
+    keys
+        The two keys.
+    """
+
+    def __init__(self, keys: tuple[str, str], message: str) -> None:
+        super().__init__(message, code="contradiction")
+        self.keys = keys
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return type(self), (self.keys, str(self))
+
+
+@dataclass(frozen=True, slots=True)
+class Layer:
+    """Validated values by full name, and the folder where relative paths among them start."""
+
+    values: Mapping[str, InputValue]
+    folder: Path = field(default_factory=Path)
+
+
+@dataclass(frozen=True, slots=True, repr=False)
+class ScenarioInput(ShownFields):
+    """A scenario as given, before resolution.
+
+    Attributes
+    ----------
+    title
+        Name of a built-in scenario, or path of the file.
+    file
+        Path of the file, None for a built-in scenario.
+    layers
+        Values of the file and of each change.
+    identify
+        Contents of the section ``[identify]``.
+    base
+        Scenario object to which the layers are changes, if the scenario was not read.
+    """
+
+    title: str
+    file: Path | None
+    layers: tuple[Layer, ...]
+    identify: Mapping[str, Any] = field(default_factory=dict)
+    base: Scenario | None = None
+
+    def changed(self, changes: Mapping[str, object], *, folder: Path | None = None) -> ScenarioInput:
+        """The same scenario with one more layer.
+
+        Parameters
+        ----------
+        changes
+            Values by key, with or without section.
+        folder
+            Folder where relative paths among the changes start (default: the current folder).
+
+        Raises
+        ------
+        ParameterError
+            Unknown key, wrong kind, or value outside its range.
+        """
+        return replace(self, layers=(*self.layers, Layer(validate(changes), folder or Path())))
+
+    @property
+    def values(self) -> dict[str, InputValue]:
+        """Last value of each key, whether it counts or not."""
+        return {name: value for layer in self.layers for name, value in layer.values.items()}
+
+
+@dataclass(frozen=True, slots=True)
+class Resolution:
+    """The values that count.
+
+    Attributes
+    ----------
+    values
+        By full name, in the units of the keys.
+    files
+        Paths of the files that the values name, by key.
+    snow
+        The named snow, None if H_V and S_f are numbers.
+    snow_map
+        The snow map, None without one.
+    """
+
+    values: Mapping[str, InputValue]
+    files: Mapping[str, Path]
+    snow: SnowProperties | None
+    snow_map: SnowMap | None
+
+
+def resolve(given: ScenarioInput, sources: Sources) -> Resolution:
+    """Decide which values count, by the two rules of this module.
+
+    Raises
+    ------
+    ContradictionError
+        Two keys of one layer give the same quantity, or a key does not go with another one.
+    ParameterError
+        A named snow or a snow map cannot be read.
+    """
+    providers: dict[str, tuple[int, str]] = {}
+    latest: dict[str, int] = {}
+    snows: dict[str, SnowProperties | SnowMap] = {}
+    files: dict[str, Path] = {}
+    for number, layer in enumerate(given.layers):
+        for name in layer.values:
+            latest[name] = number
+            if name in PATH_KEYS:
+                files[name] = layer.folder / str(layer.values[name])
+        values = {name: value for name, value in given.values.items() if latest.get(name, number + 1) <= number}
+        snows |= _read_snows(layer, values, files, sources)
+        for quantity, names in _providers_by_quantity(layer, snows).items():
+            providers[quantity] = (number, _strongest(quantity, names, layer))
+    counting = {name for _, name in providers.values()}
+    values = {name: value for name, value in given.values.items() if name in counting or not _replaceable(name)}
+    if UNLOADING in counting and values[UNLOADING] != 1.0 and values.get("snow.penetration") == "elastic":
+        del values["snow.penetration"]  # the number comes from a later layer, else the two contradict each other
+    values = dict(_without_companions(values, latest, providers))
+    _require_unmapped(providers, snows, latest)
+    snow = next((snows[name] for name in NAMED_SNOWS if name in values), None)
+    snow_map = snows["snow.map_file"] if "snow.map_file" in values else None
+    assert not isinstance(snow, SnowMap)
+    assert not isinstance(snow_map, SnowProperties)
+    return Resolution(values, {name: path for name, path in files.items() if name in values}, snow, snow_map)
+
+
+def _require_unmapped(
+    providers: Mapping[str, tuple[int, str]], snows: Mapping[str, SnowProperties | SnowMap], latest: Mapping[str, int]
+) -> None:
+    """Reject a number in a layer above the snow map that gives the same quantity over the place."""
+    for quantity in _quantities("snow.map_file", "", snows, Layer({})) if "snow.map_file" in snows else ():
+        number, name = providers[quantity]
+        if name == quantity and number > latest["snow.map_file"]:
+            raise _contradiction("snow.map_file", quantity, quantity)
+
+
+def _read_snows(
+    layer: Layer, values: Mapping[str, InputValue], files: Mapping[str, Path], sources: Sources
+) -> dict[str, SnowProperties | SnowMap]:
+    """Named snow and snow map that a layer introduces; a new site is a new snow."""
+    snows: dict[str, SnowProperties | SnowMap] = {}
+    if "snow.results" in layer.values or ("snow.site" in layer.values and "snow.results" in values):
+        words = {"results": str(files["snow.results"]), "site": values.get("snow.site")}
+        snows["snow.results"] = sources.named_snow(words)
+    if "snow.published" in layer.values:
+        snows["snow.published"] = sources.named_snow({"published": layer.values["snow.published"]})
+    if "snow.map_file" in layer.values:
+        snows["snow.map_file"] = read_snow_map(files["snow.map_file"])
+    return snows
+
+
+def _providers_by_quantity(layer: Layer, snows: Mapping[str, SnowProperties | SnowMap]) -> dict[str, list[str]]:
+    """Keys of a layer by the quantity that they give."""
+    providers: dict[str, list[str]] = {}
+    for name, value in layer.values.items():
+        for quantity in _quantities(name, value, snows, layer):
+            providers.setdefault(quantity, []).append(name)
+    return providers
+
+
+def _quantities(
+    name: str, value: InputValue, snows: Mapping[str, SnowProperties | SnowMap], layer: Layer
+) -> Iterator[str]:
+    """Quantities that one key gives."""
+    snow = snows.get(name)
+    if isinstance(snow, SnowProperties):
+        yield H_V
+        if snow.failure_shear_stress is not None or S_F not in layer.values:
+            yield S_F
+        if snow.unloading_ratio is not None:
+            yield UNLOADING
+        if snow.shear_displacement is not None:
+            yield DISPLACEMENT
+    elif isinstance(snow, SnowMap):
+        yield from (key for key, mean in ((H_V, snow.mean_hardness), (S_F, snow.mean_stress)) if mean is not None)
+    else:
+        yield ALTERNATIVES.get(name, name)
+        if name == "snow.penetration" and value == "elastic" and layer.values.get(UNLOADING) != 1.0:
+            yield UNLOADING
+
+
+def _replaceable(name: str) -> bool:
+    """True for keys that count only while they give a quantity."""
+    return name in (*OVERRIDES_NAMED_SNOW, *NAMED_SNOWS, *ALTERNATIVES, "snow.map_file")
+
+
+def _strongest(quantity: str, names: list[str], layer: Layer) -> str:
+    """The key that counts among those of one layer for one quantity."""
+    others = [name for name in names if name not in NAMED_SNOWS]
+    if len(names) == 1 or (len(others) == 1 and others[0] in OVERRIDES_NAMED_SNOW.get(quantity, ())):
+        return (others or names)[0]
+    first, second = names[:2]
+    if quantity == UNLOADING:
+        ratio = layer.values[UNLOADING]
+        raise ContradictionError(
+            (first, second), f'{UNLOADING} is {ratio:g} beside snow.penetration = "elastic", which is 1. Leave one out'
+        )
+    raise _contradiction(first, second, quantity)
+
+
+def _contradiction(first: str, second: str, quantity: str) -> ContradictionError:
+    what = SCENARIO_KEYS[quantity].label or quantity if quantity in SCENARIO_KEYS else f"the {quantity}"
+    return ContradictionError((first, second), f"{first} and {second} both give {what}. Keep one of them")
+
+
+def _without_companions(
+    values: Mapping[str, InputValue], latest: Mapping[str, int], providers: Mapping[str, tuple[int, str]]
+) -> Iterator[tuple[str, InputValue]]:
+    """Values without the keys whose main key a later layer replaced."""
+    for name, value in values.items():
+        main, needed = COMPANIONS.get(name, ("", ""))
+        actual = values.get(main, SCENARIO_KEYS[main].default) if main else needed
+        if name == "snow.site" and "snow.results" not in values:
+            main, needed, actual = H_V, "snow.results", providers.get(H_V, (-1, ""))[1]
+        if actual == needed:
+            yield name, value
+        elif latest.get(main, -1) <= latest[name] and providers.get(main, (-1, ""))[0] <= latest[name]:
+            condition = needed if name == "snow.site" else f'{main} = "{needed}"; it is "{actual}"'
+            raise ContradictionError((name, main), f"{name} goes with {condition}. Change one of them")

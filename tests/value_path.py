@@ -1,0 +1,92 @@
+"""List the source files that one value of a scenario file passes on its way to the compiled core.
+
+The scenario is read and run with an unusual number. A file counts when one of its frames holds that number, in the
+unit of the file or in SI, in a local variable or in a field of one (three levels deep).
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import sys
+import tempfile
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from types import FrameType
+from typing import Any
+
+import numpy as np
+
+FILE_VALUE = 0.2012345
+"""H_V in N/mm³; close to that of the scenario below, so that the run is sound."""
+SCENARIO = "carved-46m"
+DEPTH = 3
+
+
+def holds(value: object, numbers: tuple[float, ...], depth: int = DEPTH) -> bool:
+    """True if a value is one of the numbers, or contains it."""
+    if isinstance(value, bool):
+        return False
+    if isinstance(value, (int, float)):
+        return any(abs(value / number - 1.0) < 1e-9 for number in numbers)
+    if isinstance(value, str):
+        return str(numbers[0]) in value
+    if isinstance(value, np.ndarray):
+        floats = value.dtype.kind == "f" and value.size < 10_000
+        return floats and any(bool(np.any(np.abs(value / number - 1.0) < 1e-9)) for number in numbers)
+    return depth > 0 and any(holds(part, numbers, depth - 1) for part in parts(value))
+
+
+def parts(value: object) -> Iterator[object]:
+    """Members of a container or fields of a dataclass."""
+    if isinstance(value, Mapping):
+        yield from list(value.values())[:400]
+    elif isinstance(value, (list, tuple)):
+        yield from value[:400]
+    elif dataclasses.is_dataclass(value) and not isinstance(value, type):
+        for field in dataclasses.fields(value):
+            yield getattr(value, field.name, None)
+
+
+def files_passed(action: Any, numbers: tuple[float, ...]) -> dict[str, list[str]]:
+    """Functions by file, in the order in which the value reaches them."""
+    passed: dict[str, list[str]] = {}
+
+    def trace(frame: FrameType, event: str, _argument: object) -> None:
+        name = frame.f_code.co_filename
+        if event not in ("call", "return") or "/skisnow/" not in name:
+            return
+        short = name.rpartition("/skisnow/")[2]
+        function = frame.f_code.co_name
+        if function in passed.get(short, ()):
+            return
+        if any(holds(local, numbers) for local in list(frame.f_locals.values())):
+            passed.setdefault(short, []).append(function)
+
+    sys.setprofile(trace)
+    try:
+        action()
+    finally:
+        sys.setprofile(None)
+    return passed
+
+
+def main() -> None:
+    """Print the files that snow.H_V_N_per_mm3 passes from a scenario file to the core."""
+    import skisnow
+    from skisnow.scenario import read_scenario, scenario_text
+
+    text = scenario_text(SCENARIO)
+    lines = [
+        f"H_V_N_per_mm3 = {FILE_VALUE}" if line.startswith("H_V_N_per_mm3") else line for line in text.splitlines()
+    ]
+    lines = ["duration_s = 0.05" if line.startswith("duration_s") else line for line in lines]
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "turn.toml"
+        path.write_text("\n".join(lines), encoding="utf-8")
+        passed = files_passed(lambda: skisnow.simulate(read_scenario(path)), (FILE_VALUE, FILE_VALUE * 1e9))
+    for number, (name, functions) in enumerate(passed.items(), start=1):
+        print(f"{number:3d} {name}: {', '.join(functions)}")
+
+
+if __name__ == "__main__":
+    main()
