@@ -14,7 +14,7 @@ ACTION = "mend it"
 def rows_of(folder: Path, text: str, further: tuple[str, ...] = ("z",)) -> list[CsvRow]:
     path = folder / "table.csv"
     path.write_text(text, encoding="utf-8")
-    return csv_rows(path, ("x", "y"), further=further, action=ACTION)
+    return list(csv_rows(path, ("x", "y"), further=further, action=ACTION))
 
 
 def test_cells_stand_by_column_without_blanks_and_with_their_row(tmp_path: Path) -> None:

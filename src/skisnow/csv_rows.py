@@ -60,8 +60,8 @@ class CsvRow:
         return ParameterError(f"{place}: {self.cells[column]!r} {what}; {action or self.action}")
 
 
-def csv_rows(path: str | Path, columns: Sequence[str], *, further: Sequence[str] = (), action: str) -> list[CsvRow]:
-    """The rows of a table that are not blank.
+def csv_rows(path: str | Path, columns: Sequence[str], *, further: Sequence[str] = (), action: str) -> Iterator[CsvRow]:
+    """The rows of a table that are not blank, one after the other: a wrong row is rejected before the next is read.
 
     Parameters
     ----------
@@ -81,12 +81,15 @@ def csv_rows(path: str | Path, columns: Sequence[str], *, further: Sequence[str]
     path = Path(path)
     text = plain_text(path, most_bytes=MOST_CSV_BYTES)
     separator = most_frequent_separator(text[:_HEAD])
+    lines: Iterator[list[str]] = csv.reader(io.StringIO(text), delimiter=separator)
+    mark = "."
     try:
-        lines = list(csv.reader(io.StringIO(text), delimiter=separator))
+        if separator != ",":
+            every = list(lines)
+            mark, lines = decimal_mark([chain.from_iterable(every[1:])], separator=separator), iter(every)
+        yield from _rows(path, lines, columns, further, action, mark)
     except csv.Error as error:
         raise ParameterError(f"{path} is no CSV text ({error}); {action}") from error
-    mark = decimal_mark([chain.from_iterable(lines[1:])], separator=separator) if separator != "," else "."
-    return list(_rows(path, iter(lines), columns, further, action, mark))
 
 
 def _rows(

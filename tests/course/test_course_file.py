@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+import re
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -12,6 +14,9 @@ from skisnow.course import Course, Gate, MovingPoint, course_warnings, on_slope,
 from skisnow.course.course_file import _bends
 from skisnow.errors import ParameterError
 from skisnow.scenario import read_scenario
+from skisnow.simulate.run_gates import time_gates
+from skisnow.track.projection import GeodeticPoint
+from skisnow.track.read import read_track
 
 HEAD = "gate,x_m,y_m,side,outer_x_m,outer_y_m\n"
 ROWS = "1,10,-1,left,10,4\n2,20,1,right,20,-4\n3,30,-1,Left,,\n"
@@ -181,7 +186,6 @@ def test_rules_of_giant_slalom() -> None:
     assert near[0].startswith("gates 1 and 2 are 9.22 m apart")  # 7 m down and 6 m across
     assert len(near) == 4
     assert "4 times over 60 m of drop; FIS ICR 901.2 asks for 7 to 9" in course_warnings(giant(), drop=60.0)[0]
-    from dataclasses import replace
 
     assert course_warnings(replace(giant(width=3.0), discipline="slalom"), drop=60.0) == ()
     assert course_warnings(replace(giant(width=3.0), discipline=None), drop=60.0) == ()
@@ -203,6 +207,37 @@ def test_a_scenario_lays_degrees_on_its_slope(tmp_path: Path) -> None:
         np.testing.assert_allclose(
             [gate.turning for gate in found.gates], [(-n * stretched, e) for e, n, _ in POINTS], atol=1e-3
         )
+
+
+def test_a_course_in_degrees_is_laid_on_the_slope_of_a_scenario_that_is_changed(tmp_path: Path) -> None:
+    file = str(written(tmp_path, gpx([(e, n, f"<desc>{side}</desc>") for e, n, side in POINTS]), "course.gpx"))
+    degrees = read_course(file, latitude_deg=LATITUDE, longitude_deg=LONGITUDE, fall_line_azimuth_deg=180.0)
+    plane = read_scenario("carved-46m", changes={"slope.angle_deg": 20.0})
+    changed = plane.with_(course=degrees).course
+    assert changed is not None
+    stretched = 1.0 / math.cos(math.radians(20.0))
+    np.testing.assert_allclose(
+        [gate.turning for gate in changed.gates], [(-n * stretched, e) for e, n, _ in POINTS], atol=1e-3
+    )
+    with pytest.raises(ParameterError, match="fall_line_azimuth_deg"):
+        plane.with_(course=replace(degrees, fall_line_azimuth_deg=None))
+
+
+def test_a_track_and_a_course_in_degrees_with_their_own_origins_are_brought_together(tmp_path: Path) -> None:
+    """The track begins 20 m before the first gate: its own origin is its first point, the course's its first gate."""
+    file = written(tmp_path, gpx([(e, n, f"<desc>{side}</desc>") for e, n, side in POINTS]), "course.gpx")
+    north = 25.0 - 9.0 * np.arange(0.0, 8.0, 0.1)
+    way = gpx([(2.0, float(n), f"{i / 10.0!r}") for i, n in enumerate(north)])
+    rows = [f"{time},{lat},{lon}" for lat, lon, time in re.findall(r'lat="([^"]+)" lon="([^"]+)">([^<]+)<', way)]
+    track = read_track(written(tmp_path, "\n".join(["time,lat,lon", *rows]), "track.csv"))
+    course = read_course(file)
+    result = time_gates(course, track)
+    assert [each.outcome for each in result.passages] == ["passed"] * 4
+    shared = read_track(tmp_path / "track.csv", origin=GeodeticPoint(course.latitude_deg, course.longitude_deg))  # type: ignore[arg-type]
+    assert result.times == pytest.approx(list(time_gates(course, shared).times), abs=1e-6)
+    assert result.times[1] == pytest.approx(37.0 / 9.0, abs=1e-3)
+    with pytest.raises(ParameterError, match="local metres"):
+        time_gates(course, replace(track, origin=None))
 
 
 @pytest.mark.parametrize(

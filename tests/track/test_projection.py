@@ -14,6 +14,7 @@ from skisnow.track.projection import (
     east_north_up,
     east_north_up_axes,
     geodetic,
+    place_from_origin,
     turned_to_origin,
 )
 
@@ -22,6 +23,17 @@ from . import metres_per_degree
 
 def degrees(whole: int, minutes: int, seconds: float) -> float:
     return whole + minutes / 60 + seconds / 3600
+
+
+def test_places_from_another_origin_are_those_of_the_points() -> None:
+    points = np.array([[46.9, 11.2, 2100.0], [47.01, 11.15, 1500.0], [47.0, 11.0, np.nan]])
+    first, last = GeodeticPoint(47.0, 11.0, height=1800.0), GeodeticPoint(46.95, 11.1, height=700.0)
+    moved = place_from_origin(east_north_up(points, origin=first), first, last)
+    points[2, 2] = 1800.0  # a place without height is in the first origin's plane
+    expected = east_north_up(points, origin=last)
+    np.testing.assert_allclose(moved[:2], expected[:2], atol=1e-6)
+    np.testing.assert_allclose(moved[2, :2], expected[2, :2], atol=1e-6)
+    assert np.isnan(moved[2, 2])
 
 
 def test_matterhorn_from_zermatt() -> None:

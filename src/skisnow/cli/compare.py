@@ -17,7 +17,6 @@ from .words import add_fall_line_azimuth, add_language, number
 if TYPE_CHECKING:
     from ..course.gate_gaps import GateGap
     from ..track.comparison import Comparison
-    from ..track.projection import GeodeticPoint
     from ..track.track import Track
 
 
@@ -115,8 +114,8 @@ def _compared(options: argparse.Namespace) -> Comparison:
 
         measured = _read(options.measured)
         simulated = _read(options.simulated)
-        if simulated.origin is not None and measured.origin is not None:  # one plane for both
-            simulated = _read(options.simulated, origin=measured.origin)
+        if simulated.origin is not None and measured.origin is not None:
+            simulated = simulated.at_origin(measured.origin)
         angle = None if options.slope_angle_deg is None else options.slope_angle_deg * DEGREE
         pairs = ((simulated, measured), (measured, simulated))
         tracks = [_in_slope(track, options, other.slope_angle if angle is None else angle) for track, other in pairs]
@@ -135,12 +134,12 @@ def _offsets(options: argparse.Namespace) -> list[str]:
     return [word.strip() for word in options.fit_offset.split(",")] if options.fit_offset is not None else []
 
 
-def _read(path: Path, *, origin: GeodeticPoint | None = None) -> Track:
+def _read(path: Path) -> Track:
     """A track under the name by which the user called it; that of a run with the angle of its slope."""
     from ..track.read import read_track
 
     file = path / "track.csv" if path.is_dir() else path
-    track = read_track(file, origin=origin)
+    track = read_track(file)
     angle = _slope_angle_of_run(file) if track.axes == "file" else None
     return replace(track, name=str(path), slope_angle=angle)
 

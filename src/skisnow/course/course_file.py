@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 from typing import Any, Final, cast
@@ -88,7 +89,7 @@ def read_course(
         raise error if str(error).startswith(str(path)) else ParameterError(f"{path}: {error}") from error
 
 
-def _rows(path: Path) -> list[CsvRow]:
+def _rows(path: Path) -> Iterator[CsvRow]:
     return csv_rows(path, _COLUMNS, further=_OUTER, action=_ACTION)
 
 

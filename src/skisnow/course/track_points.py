@@ -5,18 +5,19 @@ from __future__ import annotations
 import numpy as np
 
 from ..errors import ParameterError
+from ..track.projection import GeodeticPoint
 from ..track.track import Track
 from .course import Course
 from .crossings import MovingPoint
 
 
 def track_point(track: Track, course: Course) -> MovingPoint:
-    """Its usable places from above, at rising times.
+    """Its usable places from above, at rising times, from the course's origin.
 
     Raises
     ------
     ParameterError
-        It lies in other axes than the course, or has fewer than two usable places.
+        It is in other axes than the course, or has fewer than two usable places.
     """
     degrees = track.axes == "east_north_up"
     if degrees != (course.axes == "east_north_up"):
@@ -25,6 +26,8 @@ def track_point(track: Track, course: Course) -> MovingPoint:
             f"the track {track.name} is in {own}, the course {course.source} in {other}. Give the course as the track "
             "is: GPX with waypoints, or CSV with x_m and y_m; or turn the track into the slope's frame first"
         )
+    if course.latitude_deg is not None and course.longitude_deg is not None and degrees:
+        track = track.at_origin(GeodeticPoint(course.latitude_deg, course.longitude_deg))
     good = track.usable & np.isfinite(track.place[:, :2]).all(axis=1)
     time, place = track.time[good], track.place[good, :2]
     rises = np.concatenate([[True], np.diff(np.maximum.accumulate(time)) > 0.0]) if len(time) else np.zeros(0, bool)

@@ -60,7 +60,7 @@ def read_line(path: Path, course: Course, start: tuple[float, float]) -> RacingL
     ParameterError
         It cannot be read, a column is missing, a cell is no number, or its gates are not the course's.
     """
-    rows = csv_rows(path, COLUMNS[:4], action="write the line with `skisnow race` again")
+    rows = list(csv_rows(path, COLUMNS[:4], action="write the line with `skisnow race` again"))
     if not 0 < len(rows) <= len(course.gates):
         raise ParameterError(f"{path}: it has {len(rows)} rows. Allowed: 1 to {len(course.gates)}, a row for each gate")
     for row, gate in zip(rows, course.gates, strict=False):

@@ -9,12 +9,13 @@ import numpy as np
 import numpy.typing as npt
 from scipy.io import netcdf_file
 
-from ..course import on_slope, read_course
+from ..course import read_course
 from ..errors import ParameterError, SkisnowError
 from ..geometry.boot_axes import axes_of
 from ..given import GivenError, json_value
 from ..scenario import Plane, read_profile, read_terrain
 from ..scenario.keys import SCENARIO_KEYS
+from ..scenario.scenario import course_on_slope
 from ..ski import read_ski, ski_named
 from ..skier.segments import height_of
 from ..units import DEGREE
@@ -179,7 +180,7 @@ def _course(path: Path, values: dict[str, Any], slope: Slope) -> Course | None:
         course = read_course(place, **{key: value for key, value in said.items() if value is not None})
     except ParameterError:
         return None
-    return on_slope(course, slope_angle=slope.angle if isinstance(slope, Plane) else None)
+    return course_on_slope(course, slope)
 
 
 def _found(path: Path, named: str, what: str) -> Path:

@@ -8,7 +8,7 @@ from dataclasses import fields, replace
 from pathlib import Path
 from typing import Any
 
-from ..course import Course, course_names, on_slope, read_course
+from ..course import Course, course_names, read_course
 from ..errors import ParameterError
 from ..inputs import Word, changed, made, meant, values_of
 from ..ski import Ski, read_ski, ski_names
@@ -23,7 +23,7 @@ from .contact import ELASTIC, Contact
 from .keys import SCENARIO_KEYS, full_name
 from .profile_file import read_profile
 from .resolution import DISPLACEMENT, H_V, KEYS_OF_KIND, S_F, UNLOADING, Resolution
-from .scenario import Scenario
+from .scenario import Scenario, course_on_slope
 from .slope import Plane
 from .slope_surface import Slope
 from .snow_map import SnowMap
@@ -111,7 +111,7 @@ def _course(resolution: Resolution, slope: Slope) -> Course | None:
         names = f"{meant(str(name), course_names())}There are {', '.join(course_names())}"
         raise ParameterError(f"course.name is {name!r}, no course of the catalogue. {names}. A path is course.file")
     course = read_course(name or resolution.files["course.file"], **options)
-    return on_slope(course, slope_angle=slope.angle if isinstance(slope, Plane) else None)
+    return course_on_slope(course, slope)
 
 
 def _ski(resolution: Resolution, sources: Sources) -> tuple[Ski, tuple[str, ...]]:

@@ -30,8 +30,11 @@ def read_grid_table(path: str | Path, columns: Sequence[str], *, action: str) ->
         place is listed twice or not at all, places are not evenly spaced, or x and y look like degrees; file, row,
         column and value are named.
     """
-    rows = csv_rows(path, ("x_m", "y_m", *columns), action=action)
-    numbers = {name: np.array([number_within(row, name) for row in rows]) for name in ("x_m", "y_m", *columns)}
+    names, rows, cells = ("x_m", "y_m", *columns), [], []
+    for row in csv_rows(path, names, action=action):
+        rows.append(row)
+        cells.append([number_within(row, name) for name in names])
+    numbers = dict(zip(names, np.array(cells, dtype=float).reshape(-1, len(names)).T, strict=True))
     x, i = _even(path, numbers["x_m"], rows, "x_m")
     y, j = _even(path, numbers["y_m"], rows, "y_m")
     _require_each_once(path, rows, (x, i), (y, j), action)

@@ -33,8 +33,8 @@ def read_profile(path: str | Path, *, gap: Gap = "error") -> Profile:
         The file cannot be read, a column is missing, a cell holds no finite number or an impossible one (file, row,
         column and value are named), or it is no profile: too few points, x that does not rise, a gap, a cliff.
     """
-    rows = csv_rows(path, COLUMNS, action=_ACTION)
     limits = profile_limits(COLUMNS)
+    rows = csv_rows(path, COLUMNS, action=_ACTION)
     numbers = [[number_within(row, name, limits[name]) for name in COLUMNS] for row in rows]
     table = np.array(numbers, dtype=float).reshape(-1, 2)
     try:

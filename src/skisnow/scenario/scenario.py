@@ -9,7 +9,7 @@ from dataclasses import dataclass, field, replace
 from typing import Annotated, Any
 
 from ..constants import STANDARD_GRAVITY
-from ..course import Course
+from ..course import Course, on_slope
 from ..errors import ParameterError
 from ..inputs import Quantity, Search, Word, require_declared
 from ..shown import Facts, Shown, amount
@@ -34,6 +34,17 @@ def _slope_kind(slope: Slope) -> str:
     if isinstance(slope, Plane):
         return "plane"
     return "profile" if isinstance(slope, Profile) else "grid"
+
+
+def course_on_slope(course: Course, slope: Slope) -> Course:
+    """The course in the slope's x and y.
+
+    Raises
+    ------
+    ParameterError
+        It is in degrees, and nothing says where x points.
+    """
+    return on_slope(course, slope_angle=slope.angle if isinstance(slope, Plane) else None)
 
 
 def _ski_name(ski: Ski) -> str | None:
@@ -70,7 +81,7 @@ class Scenario(Shown):
     gravity
         (m/s²), > 0.
     course
-        Gates in the slope's x and y, whose passing a run tells; None: there are none.
+        Gates whose passing a run reports; a course in degrees is laid on the slope. None: there are none.
     skier
         Who moves the boots, keeps balance and steers; None: nobody does.
 
@@ -197,6 +208,8 @@ class Scenario(Shown):
             start=self.start,
             shear=self.shear,
         )
+        if self.course is not None and self.course.axes != "metres":
+            object.__setattr__(self, "course", course_on_slope(self.course, self.slope))
         require_skier(self.skier, self.sledge, has_boots=self.boots is not None, has_course=self.course is not None)
 
     def with_(self, **changes: Any) -> Scenario:

@@ -45,12 +45,10 @@ def read_snow_map(path: str | Path) -> SnowMap:
         The file cannot be read, a column is missing, a cell holds no number above 0, or places are no grid; file, row,
         column and value are named.
     """
-    rows = csv_rows(path, ("x_m",), further=("y_m", *SIZES), action=_ACTION)
+    rows = [_positive(row) for row in csv_rows(path, ("x_m",), further=("y_m", *SIZES), action=_ACTION)]
     names = [name for name in SIZES if rows and name in rows[0].cells]
     if not names:
         raise ParameterError(f"{path}: there is no column {' and none '.join(SIZES)}, or no row; {_ACTION}")
-    for row in rows:
-        _require_positive(row, names)
     grids = _grids(path, names) if "y_m" in rows[0].cells else _along(path, rows, names)
     try:
         return SnowMap(
@@ -60,10 +58,12 @@ def read_snow_map(path: str | Path) -> SnowMap:
         raise ParameterError(f"{path}: {error}") from error
 
 
-def _require_positive(row: CsvRow, names: Sequence[str]) -> None:
-    for name in names:
-        if not number_within(row, name) > 0.0:
+def _positive(row: CsvRow) -> CsvRow:
+    """The row, if what it says of the snow is above 0."""
+    for name in SIZES:
+        if name in row.cells and not number_within(row, name) > 0.0:
             raise row.refused(name, "is not above 0")
+    return row
 
 
 def _grids(path: str | Path, names: Sequence[str]) -> dict[str, Grid]:

@@ -9,6 +9,7 @@ import numpy.typing as npt
 
 from ..course import Course, CourseResult, MovingPoint, passages
 from ..course.track_points import track_point
+from ..scenario.scenario import course_on_slope
 from ..track.track import Track
 
 if TYPE_CHECKING:
@@ -23,7 +24,8 @@ def time_gates(course: Course, moving: Run | Track) -> CourseResult:
     Parameters
     ----------
     course
-        In the coordinates of the run or track: from above, in m.
+        In the metres of the run or track. A course in degrees is laid on a run's slope by its
+        `fall_line_azimuth_deg`; a track in degrees is compared with it from the course's origin.
     moving
         A run, of which both feet and both ski tips must cross a gate's line; or a track, which is one point: that it
         straddled a pole it cannot tell.
@@ -36,7 +38,8 @@ def time_gates(course: Course, moving: Run | Track) -> CourseResult:
     Raises
     ------
     ParameterError
-        There are fewer than two places, or a track in degrees does not lie in the course's metres.
+        There are fewer than two places, a track is in degrees and the course in metres or the reverse, or nothing says
+        where x of the run points.
 
     See Also
     --------
@@ -54,6 +57,7 @@ def time_gates(course: Course, moving: Run | Track) -> CourseResult:
     """
     if isinstance(moving, Track):
         return passages(course, track_point(moving, course), {})
+    course = course_on_slope(course, moving.scenario.slope)
     middle = MovingPoint(moving.time, moving.place[:, :2], moving.velocity[:, :2])
     return passages(course, middle, racer_parts(moving))
 

@@ -210,7 +210,8 @@ def compare_tracks(
     Parameters
     ----------
     simulated, measured
-        In one frame. Points that `Track.usable` leaves out are left out, and counted in a warning.
+        In one frame; two in degrees are compared from the measured one's origin. Points that `Track.usable` leaves out
+        are left out, and counted in a warning.
     fit
         Of "start", "heading" and "time": unknown offsets of the simulated track that are fitted. Empty: none.
     time_from
@@ -252,6 +253,8 @@ def compare_tracks(
         raise ParameterError(f"places are known to 0 m or more, not to {known_to!r}")
     if slope_angle is not None and not 0.0 <= slope_angle <= STEEPEST:
         raise ParameterError(f"slope_angle is {slope_angle!r} rad. Allowed: from 0 to {STEEPEST:.4g}.")
+    if simulated.origin is not None and measured.origin is not None and simulated.origin != measured.origin:
+        simulated = simulated.at_origin(measured.origin)
     placed, together = set(fit) >= _PLACED, _in_one_frame(simulated, measured)
     laid = lay_for_fit(simulated, measured, slope_angle) if placed else Laid(simulated, measured)
     dimensions, seen = _dimensions(laid, from_above=from_above, known=together or laid.angle is not None)
@@ -405,9 +408,7 @@ def _pointing(fitted: Fitted, laid: Laid, simulated: Track, measured: Track) -> 
 
 
 def _in_one_frame(simulated: Track, measured: Track) -> bool:
-    compass = [track.axes == "east_north_up" for track in (simulated, measured)]
-    origins = {track.origin for track in (simulated, measured)} - {None}
-    return compass[0] == compass[1] and len(origins) <= 1
+    return (simulated.axes == "east_north_up") == (measured.axes == "east_north_up")
 
 
 def _short(found: Comparison) -> list[str]:

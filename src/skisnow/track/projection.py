@@ -155,6 +155,22 @@ def east_north_up(points: FloatArray, *, origin: GeodeticPoint) -> FloatArray:
     return np.asarray(place)
 
 
+def place_from_origin(place: FloatArray, before: GeodeticPoint, after: GeodeticPoint) -> FloatArray:
+    """Places (n, 3) in east, north, up (m) from one origin, as east, north, up from another one.
+
+    A rotation and a shift: no distance changes. A place without height is taken to be in the first origin's plane, and
+    its height stays NaN.
+    """
+    ends = (np.array([point.latitude_deg, point.longitude_deg, point.height]) for point in (before, after))
+    first, last = (earth_centred(at[0], at[1], at[2]) for at in ends)
+    axes = [east_north_up_axes(point.latitude_deg, point.longitude_deg) for point in (before, after)]
+    missing = np.isnan(place[:, 2])
+    level = np.column_stack([place[:, :2], np.where(missing, 0.0, place[:, 2])])
+    moved = (level @ axes[0] + first - last) @ axes[1].T
+    moved[missing, 2] = np.nan
+    return np.asarray(moved)
+
+
 def turned_to_origin(vectors: FloatArray, points: FloatArray, *, origin: GeodeticPoint) -> FloatArray:
     """Vectors (n, 3) east, north, up at their own points (n, 3) as east, north, up at the origin.
 
