@@ -11,6 +11,7 @@ pytest.importorskip("nicegui", reason="the web lab is not installed")
 
 from skisnow.field.reading.turning import TURNING
 from skisnow.web.entry.single import SingleForm
+from skisnow.web.entry.table_view import TableView
 
 SHEAR = {"site": "A", "plate": "blade", "edge_angle_deg": "30", "lever_arm_mm": "", "spot": "", "depth_mm": "10"}
 
@@ -31,6 +32,17 @@ def form(*tests: Any, repeats: bool = False) -> Any:
     )
     made._columns = ("experiment", "repeat") if repeats else ("experiment", "site")
     return made
+
+
+@pytest.mark.parametrize(
+    ("names", "expected"), [([], "1"), (["2", "9", "b"], "10"), (["3", "9" * 4300, "9" * 4301, "-5", "²"], "4")]
+)
+def test_the_next_number_is_above_all_numbers(names: list[str], expected: str) -> None:
+    made: Any = object.__new__(TableView)
+    made.file = "shear.csv"
+    tests = [SimpleNamespace(name=name) for name in names]
+    made.session = SimpleNamespace(campaign=SimpleNamespace(of_file=lambda file: tests if file == made.file else []))
+    assert made.next_name() == expected
 
 
 def test_the_first_test_has_nothing_but_a_name() -> None:

@@ -5,6 +5,7 @@ All TOML and JSON of users is read here and nowhere else: campaigns, scenarios, 
 
 from .errors import GivenError
 from .json_text import MOST_JSON_BYTES, json_value, own_json, read_json
+from .natural_number import natural_number
 from .own_record import read_record
 from .plain_file import is_file, plain_bytes, plain_text
 from .toml_text import MOST_TOML_BYTES, read_toml, toml_values
@@ -18,6 +19,7 @@ __all__ = [
     "GivenError",
     "is_file",
     "json_value",
+    "natural_number",
     "own_json",
     "plain_bytes",
     "plain_text",

@@ -17,6 +17,7 @@ from starlette.datastructures import Headers, MutableHeaders
 from starlette.requests import cookie_parser
 from starlette.responses import PlainTextResponse, Response
 
+from ..given import natural_number
 from .token_page import TOKEN_PATH, Tries, answer_to_token, token_page, too_many_tries
 
 if TYPE_CHECKING:
@@ -163,8 +164,8 @@ class Guard:
         needs_origin = scope["type"] == "websocket" or scope["method"] not in _SAFE
         if (origin is None and needs_origin) or (origin is not None and sent_by != host):
             return PlainTextResponse("Asked for by another site: refused.", 403)
-        size = headers.get("content-length", "0")
-        if not size.isdecimal() or int(size) > self.access.body_bytes:
+        size = natural_number(headers.get("content-length", "0"))
+        if size is None or size > self.access.body_bytes:
             return PlainTextResponse("This is more than the lab takes in at once.", 413)
         return None
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Final
 from nicegui import ui
 
 from ..errors import ParameterError
+from ..given import natural_number
 from .fields import choice, field
 from .language import said
 from .layout import sentence
@@ -163,8 +164,9 @@ class AxisFields:
         if not self.name:
             return 1
         text = with_point(str(self._n.value or "").strip())
-        if not text.isdecimal() or not 2 <= float(text) <= MOST_POINTS:
+        number = natural_number(text)
+        if number is None or not 2 <= number <= MOST_POINTS:
             raise ParameterError(
                 f"{called(self._keys[self.name])}: the number of values is {text!r}; it must be from 2 to {MOST_POINTS}"
             )
-        return int(text)
+        return number

@@ -12,6 +12,7 @@ from skisnow.field.store import Journals, Store
 from skisnow.field.store.engine import writing
 from skisnow.field.store.entry_sums import entry_sha256, entry_sums
 from skisnow.field.store.migrations import downgrade
+from skisnow.field.store.stored_tables import cell_of
 
 from .test_journal import TOML, campaign_with, reading
 
@@ -73,6 +74,10 @@ def as_bytes(old: str, entry: int) -> str:
         (
             "UPDATE journal_entry SET who = 'Ava' WHERE sequence = 2",
             "penetration.csv: test 1, row 1: its who is not what was written down; 'Ava' stands there",
+        ),
+        (
+            f"UPDATE journal_entry SET position = CAST('{'9' * 5000}' AS BLOB) WHERE sequence = 2",
+            "test 1: its position is not what was written down; '99",
         ),
         (
             "UPDATE journal_entry SET position = 6 WHERE sequence = 2",
@@ -176,3 +181,9 @@ def test_an_older_store_that_is_damaged_is_opened_and_told(place: Path, revision
     change(place, cells("}", "|", 3))
     found = told(place)
     assert [part in finding for part, finding in zip(said, found, strict=True)] == [True, True], found
+
+
+@pytest.mark.parametrize("key", ["", "/", "3/", "/depth_mm", "x/depth_mm", "-3/depth_mm", "9" * 5000 + "/depth_mm"])
+def test_a_key_that_names_no_cell_is_damaged(key: str) -> None:
+    with pytest.raises(StoreError, match="is damaged"):
+        cell_of(key)

@@ -8,6 +8,7 @@ from sqlalchemy import Connection, LargeBinary, cast, select
 from sqlalchemy.exc import DatabaseError
 
 from ...errors import StoreError
+from ...given import natural_number
 from .engine import is_file
 from .entry_sums import as_bytes, cells_of, differing, entry_sha256
 from .finding import Finding
@@ -93,7 +94,8 @@ def _place(row: _Row, column: str | None) -> str:
     """Test, row and column in words. The cells of a stored campaign say their line themselves."""
     test, position, line = _text(row["test"]), row["position"], ""
     if position is not None:
-        line = str(int(position) + 1) if position.isdigit() else ""
+        before = natural_number(_text(position))
+        line = "" if before is None else str(before + 1)
     elif column is not None and "/" in column:
         line, _, column = column.partition("/")
     named = (("test ", test), ("row ", line), ("column ", column))

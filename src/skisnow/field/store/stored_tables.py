@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from ...given import natural_number
 from ..reading.campaign_file import CAMPAIGN_FILE, read_campaign_file
 from ..reading.campaign_files import FilesOfFolder
 from ..reading.corrections import Corrector, corrections_by_file, header_with_status
@@ -15,6 +16,7 @@ from ..reading.raw_files import RawFiles
 from ..reading.table_forms import CORRECTIONS, TABLES
 from ..reading.tables import decimal_mark_of, read_table
 from ..reading.text import UnreadableTextError, decode, inspect_csv
+from .rows import damaged
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -67,9 +69,17 @@ def cell_of(key: str) -> tuple[int, str]:
 
     >>> cell_of("12/depth_mm")
     (12, 'depth_mm')
+
+    Raises
+    ------
+    StoreError
+        The key names no cell: the entry is damaged.
     """
-    line, column = key.split("/", 1)
-    return int(line), column
+    text, _, column = key.partition("/")
+    line = natural_number(text)
+    if line is None or not column:
+        raise damaged(f"A correction of the cell {key[:80]!r}")
+    return line, column
 
 
 def _csv_text(files: RawFiles, form: TableForm) -> CsvText | None:

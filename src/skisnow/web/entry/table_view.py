@@ -9,6 +9,7 @@ from nicegui import ui
 from ...errors import ParameterError, StoreError
 from ...field.store import NewEntry, OvertakenError
 from ...field.store.cells import FORMS
+from ...given import natural_number
 from ..answering import asked
 from ..words import in_words
 
@@ -43,8 +44,8 @@ class TableView:
 
     def next_name(self) -> str:
         """The number behind the largest one among the names."""
-        numbers = [int(test.name) for test in self.tests() if test.name.isdecimal()]
-        return str(max(numbers, default=0) + 1)
+        numbers = (natural_number(test.name) for test in self.tests())
+        return str(max((number for number in numbers if number is not None), default=0) + 1)
 
     def add(self, name: str, cells: Mapping[str, str], *, position: int, seen: int, said: str) -> bool:
         """Store a row; whether it is stored, now or when it was sent before."""
