@@ -1,6 +1,6 @@
 /* A ski along a recorded motion, from C: forces out.
  *
- *     cc contact_in_c.c -I HEADERS LIBRARY -lm -o contact_in_c
+ *     cc contact_in_c.c -I HEADERS LIBRARY -Wl,-rpath,FOLDER_OF_LIBRARY -lm -o contact_in_c
  *     ./contact_in_c MOTION FORCES
  *
  * HEADERS and LIBRARY: python -c "from skisnow.contact import c_header, c_library; print(c_header().parent, c_library())"

@@ -2,38 +2,49 @@
 
 from __future__ import annotations
 
+import importlib.util
 import re
 from dataclasses import dataclass
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 PAGES = ("README.md", *sorted(path.relative_to(ROOT).as_posix() for path in (ROOT / "docs" / "how-to").glob("*.md")))
-FIRST_WORDS = ("skisnow ", ".venv/bin/skisnow ", "python ", "make ", "pip ", "dask ", "#!/bin/bash")
+FIRST_WORDS = ("skisnow ", ".venv/bin/skisnow ", "python ", "make ", "pip ", "dask ", "cc ", "#!/bin/bash")
 BLOCK = re.compile(r"^(?P<mark><!-- [^\n]* -->\n)?```(?P<language>\w*)\n(?P<text>.*?)^```$", re.MULTILINE | re.DOTALL)
-NOT_RUN = re.compile(r"<!-- not run: (?P<reason>[\w ]+) -->")
-REASONS = {"server", "scheduler", "package index", "mujoco", "other checks"}
+MARK = re.compile(r"<!-- (?P<kind>not run|needs): (?P<reason>[\w ]+) -->")
+REASONS = {"server", "scheduler", "package index", "other checks"}
+PACKAGES = {"mujoco", "exudyn"}
+"""Reasons of a mark, and packages without which a block cannot be run."""
 
 
 @dataclass(frozen=True)
 class Block:
-    """A block of commands or a Python program, and the reason why it is not run, if any."""
+    """A block of commands, a Python program or a doctest, with its mark, if any: a reason or a package."""
 
     line: int
     language: str
     text: str
-    not_run: str | None
+    mark: str | None
+
+    @property
+    def is_run(self) -> bool:
+        """True unless it is marked; a package that it needs may be installed."""
+        return self.mark is None or (self.mark in PACKAGES and importlib.util.find_spec(self.mark) is not None)
+
+    @property
+    def is_doctest(self) -> bool:
+        """True for a Python session with its output."""
+        return self.language == "python" and ">>>" in self.text
 
 
 def blocks(page: str) -> list[Block]:
-    """All blocks of a page that a reader would run; output and doctests are not among them."""
+    """All blocks of a page that a reader would run; output is not among them."""
     text = (ROOT / page).read_text(encoding="utf-8")
     result = []
     for match in BLOCK.finditer(text):
         language, content = match["language"], match["text"]
-        program = language == "python" and ">>>" not in content
-        if not program and not (language in ("", "sh", "bash") and content.startswith(FIRST_WORDS)):
-            continue
-        reason = NOT_RUN.match(match["mark"] or "")
-        line = text.count("\n", 0, match.start("text")) + 1
-        result.append(Block(line, language, content, reason["reason"] if reason else None))
+        if language == "python" or (language in ("", "sh", "bash") and content.startswith(FIRST_WORDS)):
+            mark = MARK.match(match["mark"] or "")
+            line = text.count("\n", 0, match.start("text")) + 1
+            result.append(Block(line, language, content, mark["reason"] if mark else None))
     return result

@@ -56,6 +56,6 @@ def test_files_of_schedulers_are_read(tmp_path: Path) -> None:
 
 def test_commands_of_the_page_are_taken() -> None:
     commands = [line for block in blocks("") for line in block.splitlines() if line.startswith("skisnow ")]
-    assert len(commands) == 6
+    assert len(commands) == 5
     for line in commands:
         assert build_parser().parse_args(line.split()[1:]).run
