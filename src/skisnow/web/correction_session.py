@@ -72,6 +72,11 @@ class CorrectionSession(EditSession):
         said = JournalEntry(action="add", file=file, test=name, cells=self.standing(file, name), sequence=0, at="")
         return ReplayedTest(file, name, rows=[ReplayedRow(said)])
 
+    def unit(self, file: str, column: str) -> str:
+        """Unit of the cells of a column, if it is another one than its name states."""
+        found = self.tables[file].conversions.get(column)
+        return found.name if found is not None else ""
+
     def standing(self, file: str, name: str) -> dict[str, str]:
         """Every cell of a test as the files say it."""
         rows = self.tables[file].tests.get(name, {})

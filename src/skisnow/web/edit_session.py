@@ -70,6 +70,10 @@ class EditSession:
         assert described is not None  # it was read before it was written down
         return described
 
+    def unit(self, file: str, column: str) -> str:  # noqa: ARG002
+        """Unit of the cells of a column, if it is another one than its name states; cells entered here have none."""
+        return ""
+
     def refresh(self) -> None:
         """Replay what was written since."""
         new = self._written_since()

@@ -40,13 +40,14 @@ _CALLED: Final = {name: words for name, words in (LABELS | TABLES).items() if "_
 _KEYS: Final = re.compile("|".join(rf"(?<![\w.]){re.escape(name)}(?![\w.])" for name in sorted(_CALLED, key=len)[::-1]))
 
 
-def label(column: str) -> str:
-    """What a column is called on a page.
+def label(column: str, *, unit: str = "") -> str:
+    """Label of a column on a page; its cells may have another unit than the column (default: that of the column).
 
-    >>> label("depth_mm")
-    'Depth (mm)'
+    >>> label("depth_mm"), label("depth_mm", unit="cm")
+    ('Depth (mm)', 'Depth (cm)')
     """
-    return LABELS.get(column, column)
+    words = LABELS.get(column, column)
+    return re.sub(r" \([^)]*\)$", f" ({unit})", words) if unit else words
 
 
 def in_words(message: str) -> str:

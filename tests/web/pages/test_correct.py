@@ -450,3 +450,45 @@ def test_an_unconfirmed_correction_is_not_lost(desk: Desk, id_: str, act: str) -
     assert history(desk, id_) == before
     page.press("Leave it as it was")
     assert page.field("Site").value == "A"
+
+
+IN_KG = """Versuch,Ort,Werkzeug,Kantwinkel,Last [KG],Tiefe
+,,,°,,cm
+1,A,ski piece,30,10,"0,05"
+1,A,ski piece,30,50,"0,141"
+"""
+COLUMNS_OF_KG = 'columns = {Versuch = "experiment", Ort = "site", Werkzeug = "tool", Kantwinkel = "edge_angle_deg", '
+MAPPED = COLUMNS_OF_KG + '"Last [KG]" = "load_N", Tiefe = "depth_mm"}\n'
+
+
+def test_cells_in_another_unit_have_it_in_their_labels(desk: Desk, tmp_path: Path) -> None:
+    """50 kg are 490.3 N, and 0.141 cm are 1.41 mm: H_V = 1.424 N/mm³ at 30° on 200 mm of ski."""
+    id_ = kept(desk, tmp_path / "kg", {"campaign.toml": MAPPED + TOML, "penetration.csv": IN_KG})
+    page = opened(desk, id_)
+    labels = [each for each in page.outline() if each.startswith("field ") and "row" in each]
+    assert labels == [
+        "field Load (kg), row 3 = '10' numeric",
+        "field Depth (cm), row 3 = '0,05' numeric",
+        "field Load (kg), row 4 = '50' numeric",
+        "field Depth (cm), row 4 = '0,141' numeric",
+    ]
+    entry = correct(desk, id_, "1", {"4/load_N": "25"})
+    assert entry.cells == {"4/load_N": "25"}
+    session = CorrectionSession(desk.lab, id_)
+    row = session.quick_results("A").experiments["penetration.csv", "1"]
+    assert row["H_V_N_per_mm3"] == pytest.approx(1.424 / 2.0, rel=1e-3)
+    assert any("Load (kg) in row 4 to 25" in line for line in opened(desk, id_).outline())
+
+
+@pytest.mark.parametrize(("typed", "taken"), [("0,35", True), ("0,917", True), ("0,95", False), ("350", False)])
+def test_limits_are_those_of_the_unit_of_the_cells(desk: Desk, tmp_path: Path, typed: str, taken: bool) -> None:
+    """No snow is denser than ice, 917 kg/m³."""
+    rows = "sample,site,Dichte [g/cm3]\n1,A,0.3\n2,A,0.4\n"
+    toml = 'columns."Dichte [g/cm3]" = "snow_density_kg_per_m3"\n' + TOML
+    id_ = kept(desk, tmp_path / "dense", {"campaign.toml": toml, "density.csv": rows})
+    page = opened(desk, id_, table="density.csv")
+    page.fill("Density (g/cm³)", typed)
+    page.press("Correct")
+    error = page.field("Density (g/cm³)").error
+    assert (error is None) is taken
+    assert taken or "0.917" in error

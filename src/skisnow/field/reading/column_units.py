@@ -64,7 +64,7 @@ def column_units(form: TableForm, header: Header, headings: Headings, found: lis
             found.append(_other_unit(form, heading, column, header.row, is_number=column in numbers))
         else:
             conversions[column] = size
-            found += [_note(form, heading, column, unit)] if size.changes else []
+            found += [_note(form, heading, column, size.name)] if size.changes else []
     return ColumnUnits(conversions, unstated)
 
 

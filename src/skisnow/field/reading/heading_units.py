@@ -44,16 +44,6 @@ _OTHER: Final[dict[str, dict[tuple[str, ...], tuple[float, float]]]] = {
 """Factor and shift from other units to those of columns."""
 _ONLY_NAMED: Final = ("mn", "s", "min", "h", "%", "pa", "kpa", "mpa")
 """Units that no column is converted from."""
-_CONVERSIONS: Final = {
-    **{(unit, name.casefold()): (1.0, 0.0) for unit, names in _OWN.items() for name in names},
-    **{
-        (unit, name.casefold()): size
-        for unit, others in _OTHER.items()
-        for names, size in others.items()
-        for name in names
-    },
-}
-_KNOWN: Final = frozenset({name for _, name in _CONVERSIONS} | set(_ONLY_NAMED))
 FORM: Final = re.compile(
     r"(?P<words>[^\[(]*?)\s*(?:[\[(](?P<in>[^\])]*)[\])]?|/\s*(?P<per>\S+)|\bin\s+(?P<of>\S+))?\s*"
 )
@@ -84,6 +74,26 @@ class UnitConversion:
         [15.0]
         """
         return values * self.factor + self.shift if self.changes else values
+
+    def revert(self, value: float) -> float:
+        """A number in the unit that the heading names, from the unit of the column.
+
+        >>> conversion("cm", "depth_mm").revert(15.0)
+        1.5
+        """
+        return (value - self.shift) / self.factor if self.changes else value
+
+
+_CONVERSIONS: Final = {
+    **{(unit, name.casefold()): UnitConversion(names[0]) for unit, names in _OWN.items() for name in names},
+    **{
+        (unit, name.casefold()): UnitConversion(names[0], *size)
+        for unit, others in _OTHER.items()
+        for names, size in others.items()
+        for name in names
+    },
+}
+_KNOWN: Final = frozenset({name for _, name in _CONVERSIONS} | set(_ONLY_NAMED))
 
 
 def unit_of_column(name: str) -> str:
@@ -118,8 +128,7 @@ def known_unit(text: str) -> str:
 
 def conversion(unit: str, column: str) -> UnitConversion | None:
     """Conversion from a known unit to that of a column; None if the column has a quantity of another kind."""
-    size = _CONVERSIONS.get((unit_of_column(column), unit))
-    return None if size is None else UnitConversion(unit, *size)
+    return _CONVERSIONS.get((unit_of_column(column), unit))
 
 
 def own_unit(column: str) -> str:

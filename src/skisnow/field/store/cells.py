@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from ...errors import ParameterError
+from ..reading.heading_units import UnitConversion
 from ..reading.number_cells import number
 from ..reading.table_forms import BRANCH, BRANCHES, TABLES
 
@@ -50,7 +51,7 @@ class CellError(ParameterError):
     problem, fix
         Template of each sentence; the fields of the first are `column` and `value`, those of the second `limits`.
     limits
-        Numbers that limit what is allowed, in the unit of the column.
+        Numbers that limit what is allowed, in the unit of the text.
     """
 
     def __init__(self, code: str, column: str, value: str, fix: str, limits: tuple[float, ...] = ()) -> None:
@@ -60,8 +61,15 @@ class CellError(ParameterError):
         super().__init__(text, code=code)
 
 
-def checked_cell(form: TableForm, column: str, typed: str) -> str:
+def checked_cell(form: TableForm, column: str, typed: str, *, conversion: UnitConversion | None = None) -> str:
     """The text of a cell as a table holds it: without blanks around it, a number with a decimal point.
+
+    Parameters
+    ----------
+    form, column, typed
+        Table, name of the column, and the text.
+    conversion
+        From the unit of the text to that of the column (default: it has the unit of the column).
 
     Raises
     ------
@@ -74,7 +82,7 @@ def checked_cell(form: TableForm, column: str, typed: str) -> str:
     text = typed.strip()
     rule = next((rule for rule in form.numbers if rule.name == column), None)
     if rule is not None:
-        return _number_cell(rule, text)
+        return _number_cell(rule, text, conversion or UnitConversion(column))
     if column == BRANCH and text.casefold() not in BRANCHES:
         raise CellError("not_allowed", column, text, BRANCH_WORD)
     if not text and column in form.names:
@@ -84,13 +92,15 @@ def checked_cell(form: TableForm, column: str, typed: str) -> str:
     return text
 
 
-def _number_cell(rule: Quantity, text: str) -> str:
+def _number_cell(rule: Quantity, text: str, conversion: UnitConversion) -> str:
     if not text and not rule.needed:
         return ""
     mark = "," if "," in text and "." not in text else "."
     value = number(text, mark)
-    if math.isnan(value) or bool(rule.outside(np.array([value]))[0]):
-        raise CellError("not_allowed" if text else "empty", rule.name, text, *_number_fix(rule))
+    if math.isnan(value) or bool(rule.outside(conversion.convert(np.array([value])))[0]):
+        fix, limits = _number_fix(rule)
+        in_its_unit = tuple(conversion.revert(limit) for limit in limits)
+        raise CellError("not_allowed" if text else "empty", rule.name, text, fix, in_its_unit)
     return text.replace(",", ".")
 
 

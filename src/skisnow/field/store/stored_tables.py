@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from ...given import natural_number
 from ..reading.campaign_file import CAMPAIGN_FILE, read_campaign_file
 from ..reading.campaign_files import FilesOfFolder
+from ..reading.column_units import column_units
 from ..reading.corrections import Corrector, corrections_by_file, header_with_status
 from ..reading.header import Header, header_of
 from ..reading.headings import Headings
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
 
     from ..reading.campaign_files import CampaignFiles
     from ..reading.corrections import RowCorrections
+    from ..reading.heading_units import UnitConversion
     from ..reading.table_forms import TableForm
     from ..reading.text import CsvText
 
@@ -39,11 +41,14 @@ class StoredTable:
         Those that the file has, and ``status``, which a correction may add.
     tests
         Cells by the test's name, file line and column, corrections of the campaign's own corrections.csv applied.
+    conversions
+        From the unit of its cells, of each column that has another unit in the file than its name states.
     """
 
     form: TableForm
     columns: tuple[str, ...]
     tests: Mapping[str, Mapping[int, Mapping[str, str]]]
+    conversions: Mapping[str, UnitConversion]
 
 
 def stored_tables(campaign: CampaignFiles | Path) -> dict[str, StoredTable]:
@@ -116,11 +121,14 @@ def _stored_table(
     header: Header | None = None
     corrector: Corrector | None = None
     tests: dict[str, dict[int, dict[str, str]]] = {}
+    conversions: dict[str, UnitConversion] = {}
     try:
         for lines, rows in text.records():
             if header is None and rows:
-                written = header_of(lines, rows).renamed(form, headings)
-                header = header_with_status(form, written, corrections)
+                written = header_of(lines, rows)
+                units = column_units(form, written, headings, []).conversions
+                conversions = {column: each for column, each in units.items() if each.changes}
+                header = header_with_status(form, written.renamed(form, headings), corrections)
                 mark = decimal_mark_of(form, header, text)
                 corrector = Corrector(form, header, corrections, mark=mark, found=files.found)
             if header is None or corrector is None or form.key not in header.position:
@@ -134,4 +142,4 @@ def _stored_table(
     if header is None:
         return None
     columns = tuple(dict.fromkeys((*header.position, "status")))
-    return StoredTable(form, columns, tests)
+    return StoredTable(form, columns, tests, conversions)

@@ -153,13 +153,13 @@ def changes(
 
     with ui.element("div").classes("acts"):
         if test.undoable is not None:
-            asking_button(f"Undo: {_done(test.undoable)}", undo)
+            asking_button(f"Undo: {_done(test.undoable, view)}", undo)
         if not test.cancelled and not cancelled and test.rows:
             asks = asking_button("Cancel this test", ask_cancel)
-    _history(test)
+    _history(test, view)
 
 
-def _history(test: ReplayedTest) -> None:
+def _history(test: ReplayedTest, view: TableView) -> None:
     if not test.history:
         return
     with ui.element("details"):
@@ -170,20 +170,20 @@ def _history(test: ReplayedTest) -> None:
                 with ui.element("li"):
                     undone = " (undone)" if entry.sequence in test.undone else ""
                     who = f" · {entry.who}" if entry.who else ""
-                    Words(f"{minute_words(entry.at)}{who} · {_done(entry)}{undone}")
+                    Words(f"{minute_words(entry.at)}{who} · {_done(entry, view)}{undone}")
 
 
-def _cell_words(key: str, text: str) -> str:
+def _cell_words(key: str, text: str, view: TableView) -> str:
     line, column = cell_of(key)
-    return f"{label(column)} in row {line} to {text or 'nothing'}"
+    return f"{view.label(column)} in row {line} to {text or 'nothing'}"
 
 
-def _done(entry: JournalEntry) -> str:
+def _done(entry: JournalEntry, view: TableView) -> str:
     cells = entry.cells
     if entry.is_from_file:
         return entry.why
     if entry.action == "correct" and all("/" in key for key in cells):
-        what = ", ".join(_cell_words(key, text) for key, text in cells.items())
+        what = ", ".join(_cell_words(key, text, view) for key, text in cells.items())
     elif entry.action == "correct" and entry.why == WAITED:
         return f"{WAITED}: {', '.join(cells.values())} mm"
     elif entry.action == "add" and "load_N" in cells:

@@ -14,18 +14,25 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
     from ...errors import SkisnowError
+    from ...field.reading.heading_units import UnitConversion
     from ...field.reading.table_forms import TableForm
 
 Field: TypeAlias = ui.input | ui.select
 
 
-def checked_fields(form: TableForm, fields: Mapping[str, Field]) -> dict[str, str] | None:
-    """The cells of a row as they are typed, by column; None if one is rejected: its field then shows the problem."""
+def checked_fields(
+    form: TableForm, fields: Mapping[str, Field], *, conversions: Mapping[str, UnitConversion] | None = None
+) -> dict[str, str] | None:
+    """The cells of a row as they are typed, by column; None if one is rejected: its field then shows the problem.
+
+    ``conversions`` from the units of fields to those of their columns (default: they are the same).
+    """
     cells: dict[str, str] = {}
+    known = conversions or {}
     for column, each in fields.items():
         each.error = None
         try:
-            cells[column] = checked_cell(form, column, str(each.value or ""))
+            cells[column] = checked_cell(form, column, str(each.value or ""), conversion=known.get(column))
         except CellError as error:
             each.error = problem_said(error, name=_name_said(each))
     return cells if len(cells) == len(fields) else None

@@ -13,7 +13,6 @@ from ..language import said
 from ..layout import heading, sentence
 from ..names import correcting
 from ..worded import Words
-from ..words import label
 from .changes import ASKED, LEFT_AS_IT_WAS, UNANSWERED, USUAL_REASON, Places, ask_reason, change_said, changes
 from .checking import Field, checked_fields, faults
 
@@ -87,7 +86,7 @@ class KeptForm:
         return len({now[cell_key(line, column)] for line in lines}) == 1
 
     def _field(self, column: str, text: str, *, row: int | None = None) -> Field:
-        words = label(column) + (f", row {row}" if row is not None else "")
+        words = self._view.label(column) + (f", row {row}" if row is not None else "")
         described = self._desk.described
         if column in ("tool", "plate"):
             names = sorted({text, *(described.tools if column == "tool" else described.plates)})
@@ -118,7 +117,7 @@ class KeptForm:
             self.show(name)
             return True
 
-        columns = {key: said(label(key.split("/", 1)[1])) for key in changed}
+        columns = {key: said(self._view.label(key.split("/", 1)[1])) for key in changed}
         lines = list(dict.fromkeys(change_said(columns[key], now[key], new) for key, new in changed.items()))
         act = ("Correct it", correct)
         ask_reason(self._ask, lines, act, usual=USUAL_REASON, leave=lambda: self._leave(name))
@@ -139,7 +138,7 @@ class KeptForm:
                 for column, each in fields.items()
                 if str(each.value or "").strip() != now[cell_key(lines[0], column)]
             }
-            cells = checked_fields(self._view.form, typed)
+            cells = checked_fields(self._view.form, typed, conversions=self._table.conversions)
             refused += faults(typed.values())
             changed |= {cell_key(line, column): text for column, text in (cells or {}).items() for line in lines}
         if refused:

@@ -11,7 +11,7 @@ from ...field.store import NewEntry, OvertakenError
 from ...field.store.cells import FORMS
 from ...given import natural_number
 from ..answering import asked
-from ..words import in_words
+from ..words import in_words, label
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -37,6 +37,10 @@ class TableView:
     def test(self, name: str) -> ReplayedTest:
         """A test as it was at the last look."""
         return self.session.test(self.file, name)
+
+    def label(self, column: str) -> str:
+        """Label of a column, with the unit of its cells."""
+        return label(column, unit=self.session.unit(self.file, column))
 
     def tests(self) -> list[ReplayedTest]:
         """All tests of the table, in the order of entry."""
