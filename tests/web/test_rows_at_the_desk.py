@@ -94,7 +94,7 @@ def test_a_second_row_that_does_not_go_with_the_first(
 def test_a_correction_asks_for_a_reason_and_shows_what_came_of_it(right: bool, monkeypatch: pytest.MonkeyPatch) -> None:
     asked: list[Any] = []
     said: list[str] = []
-    shown: list[str] = []
+    shown: list[tuple[str, str]] = []
     written: list[Any] = []
 
     def ask_reason(_place: Any, lines: list[str], act: Any, **_: Any) -> None:
@@ -110,14 +110,14 @@ def test_a_correction_asks_for_a_reason_and_shows_what_came_of_it(right: bool, m
     made._ask, made._cells = None, lambda _: {"site": "A", "depth_mm": "12"}
     made._view.say = lambda words, *_: said.append(words)
     made._view.correct = correct_it
-    made.show = shown.append
+    made.show = lambda name, row: shown.append((name, row))
     before = SimpleNamespace(cells={"site": "A", "depth_mm": "10"}, entered=SimpleNamespace(sequence=7))
     assert made._ask_correction(of("t", before), before)
     ((words, correct),) = asked
     assert words.endswith("10 becomes 12.")
     assert correct("slip") is right
     assert written == [(7, {"depth_mm": "12"}, "slip")]
-    assert shown == (["t"] if right else [])
+    assert shown == ([("t", "7")] if right else [])
     made._cells = lambda _: {"site": "A", "depth_mm": "10"}
     assert made._ask_correction(of("t", before), before)
     assert said[1:] == ["Nothing is different."]

@@ -270,6 +270,21 @@ def test_half_typed_text_outlives_a_reload_and_a_restart(page: Page, served: Ser
     assert depths(served) == {"1": ["1.5", "2.15"]}
 
 
+def test_a_half_typed_correction_stays_with_its_row(page: Page, served: Served) -> None:
+    opened(page, served, "?table=shear.csv")
+    fill(page, {"Site": "B", "Edge angle (°)": "90", "Depth (mm)": "6", "Lever arm (mm)": "250", "Moment (N m)": "30"})
+    page.get_by_role("button", name="Store").click()
+    page.get_by_text("Stored: test 1.").wait_for()
+    page.get_by_role("button", name="Correct 1").click()
+    page.get_by_role("heading", name="Correct a test").wait_for()
+    fill(page, {"Moment (N m)": "36"})
+    page.reload()
+    ready(page)
+    page.get_by_role("heading", name="Correct a test").wait_for()
+    has_text(page.get_by_label("Moment (N m)", exact=True), "36")
+    has_text(page.get_by_label("Depth (mm)", exact=True), "6")
+
+
 @pytest.mark.slow
 def test_a_campaign_that_is_described_while_the_lab_is_killed_is_begun_once(page: Page, served: Served) -> None:
     page.goto(f"{served.address}describe")

@@ -11,6 +11,7 @@ from ..answering import asking_button, form
 from ..fields import choice, field
 from ..language import said
 from ..layout import heading, sentence
+from ..names import entering
 from ..worded import Words, named
 from ..words import label
 from .changes import ASKED, LEFT_AS_IT_WAS, UNANSWERED, USUAL_REASON, Places, ask_reason, change_said, changes
@@ -56,14 +57,15 @@ class SingleForm:
         self.begin()
         return True
 
-    def show(self, name: str) -> None:
-        """Show a test's first row, to be corrected."""
+    def show(self, name: str, *, row: str = "") -> None:
+        """Show the row of a test with the number of an entry (default: its first row), to be corrected."""
         test = self._view.test(name)
-        if test.rows:
-            self._draw(test.rows[0].cells, (test, test.rows[0]))
-            self._beside.follow(name, test.rows[0].cells["site"])
-        else:
+        if not test.rows:
             self.begin()
+            return
+        chosen = next((each for each in test.rows if _number(each) == row), test.rows[0])
+        self._draw(chosen.cells, (test, chosen))
+        self._beside.follow(name, chosen.cells["site"])
 
     def _prefilled(self) -> dict[str, str]:
         tests, key = self._view.tests(), self._view.form.key
@@ -82,6 +84,7 @@ class SingleForm:
             typed = {column: str(each.value) for column, each in self._fields.items() if each.value}
             self._begun = typed if typed.items() - self._prefilled().items() else None
         self._is_new, self._correcting = correcting is None, correcting
+        ui.navigate.history.replace(self._address())  # typed text is kept by the address: each row has its own
         self._places.clear()
         with self._places.form:
             heading("Correct a test" if correcting else "New test")
@@ -101,11 +104,16 @@ class SingleForm:
                     self._view,
                     correcting[0],
                     self._ask,
-                    lambda: self.show(correcting[0].name),
+                    lambda: self.show(correcting[0].name, row=_number(correcting[1])),
                     is_unanswered=self._is_unanswered,
                 )
             self._list()
         self._focus_first()
+
+    def _address(self) -> str:
+        test, row = self._correcting or (None, None)
+        head = {"row": _number(row)} if row is not None else {}
+        return entering(self._view.session.id, table=self._view.file, test=test.name if test else "", head=head)
 
     def _field(self, column: str, cells: dict[str, str], *, fixed: bool) -> ui.input | ui.select:
         if column == "plate":
@@ -194,7 +202,7 @@ class SingleForm:
         def correct(why: str) -> bool:
             if not self._view.correct(test, row.entered.sequence, changed, why):
                 return False
-            self.show(test.name)
+            self.show(test.name, row=_number(row))
             return True
 
         lines = [change_said(said(label(column)), now.get(column, ""), new) for column, new in changed.items()]
@@ -226,8 +234,11 @@ class SingleForm:
         def look() -> bool:
             if self._is_unanswered():
                 return False
-            self._draw(row.cells, (test, row))
-            self._beside.follow(test.name, row.cells["site"])
+            self.show(test.name, row=_number(row))
             return True
 
         named(asking_button("Correct", look, "small"), f"Correct {' '.join(test.name.split())}")
+
+
+def _number(row: ReplayedRow) -> str:
+    return str(row.entered.sequence)

@@ -39,6 +39,7 @@ def add_page(lab: Lab) -> None:
         spot: str = "",
         tool: str = "",
         edge_angle_deg: str = "",
+        row: str = "",
     ) -> None:
         if table not in TABLES:
             raise ParameterError("this address names no table of a campaign")
@@ -53,31 +54,34 @@ def add_page(lab: Lab) -> None:
             ):
                 series_list = SeriesList(view) if view.file == FILE else None
             head = {"experiment": test, "site": site, "spot": spot, "tool": tool, "edge_angle_deg": edge_angle_deg}
-            _begin(view, test, head, (beside, places), series_list)
+            _begin(view, (test, row), head, (beside, places), series_list)
 
 
 def _begin(
     view: TableView,
-    test: str,
+    shown: tuple[str, str],
     head: dict[str, str],
     where: tuple[Beside, Places],
     series_list: SeriesList | None,
 ) -> None:
-    """Show the form of a test, or of a new one."""
-    entry: SeriesForm | SingleForm
+    """Show the form of a test and of its row, or of a new one."""
+    test, row = shown
     if series_list is not None:
-        entry = series = SeriesForm(view, *where, series_list)
+        series = SeriesForm(view, *where, series_list)
         take_resent(view.session, series.follow_resent)
         if test and not view.test(test).history and _is_head(view, head):
             series.show(test, head)  # begun, and loaded anew before its first reading
-            return
+        elif test and view.test(test).rows:
+            series.show(test)
+        else:
+            series.begin()
     else:
-        entry = SingleForm(view, *where)
+        single = SingleForm(view, *where)
         take_resent(view.session, lambda _: None)
-    if test and view.test(test).rows:
-        entry.show(test)
-    else:
-        entry.begin()
+        if test:
+            single.show(test, row=row)
+        else:
+            single.begin()
 
 
 def _is_head(view: TableView, head: dict[str, str]) -> bool:

@@ -381,6 +381,23 @@ def test_an_unconfirmed_correction_of_a_row_is_not_lost(desk: Desk, act: str, nu
     assert "h2 New test" in page.outline()
 
 
+def test_each_row_of_a_test_has_an_address(desk: Desk) -> None:
+    id_ = begun(desk)
+    for repeat, depth in (("1", "20"), ("2", "30")):
+        add(desk, id_, DROP_CONE, "1", test="1", repeat=repeat, site="A", drop_cone_depth_mm=depth)
+    numbers = [entry.sequence for entry in history(desk, id_) if entry.action == "add"]
+    address = f"/enter/{id_}?table={DROP_CONE}"
+    for number, depth in zip(numbers, ("20", "30"), strict=True):
+        page = desk.open(f"{address}&test=1&row={number}")
+        assert page.field("Drop-cone depth (mm)").value == depth
+        assert [each for each in page.at_first if "replaceState" in each] == [
+            f'history.replaceState({{}}, "", "{address}&test=1&row={number}");'
+        ]
+    page.press("New test")
+    assert f'history.replaceState({{}}, "", "{address}");' in page.scripts
+    assert desk.open(f"{address}&test=1&row=x").field("Drop-cone depth (mm)").value == "20"
+
+
 def test_each_change_is_asked_about_by_itself_in_german(desk: Desk) -> None:
     id_ = begun(desk)
     add_shear(desk, id_, "1")
