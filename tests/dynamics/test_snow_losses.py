@@ -75,3 +75,16 @@ def test_shear_gives_back_no_more_than_it_stored(law: str) -> None:
         fall = (np.maximum.accumulate(lost) - lost).max()
         assert fall <= 2.0 * found["held"].max() + 1e-9, seed
     assert counted == SEEDS
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("law", allowed_keys.LAWS)
+def test_shear_pushes_no_ski_beyond_what_it_stored(law: str) -> None:
+    """In 200 runs with any values of the keys. Skis that plough with their shovels are among them."""
+    counted, seed = 0, 30_000
+    while counted < 200:
+        found = moments(allowed_keys.changes(seed, law), count=12)
+        if found and len(found["work"]) > 1:
+            assert (-found["work"]).max() <= found["held"].max() + 1e-9, seed
+            counted += 1
+        seed += 1

@@ -176,6 +176,14 @@ struct Cut {
     normal = load3<V>(s, LINE_NORMAL_0, i), left = load3<V>(s, LINE_LEFT_0, i);
   }
 
+  // The bent base at a place, not yet cut.
+  Cut(const BentBase<V>& bent, V place_along, const Base& s, int i) {
+    station = place_along, half = bent.shape[0], flare = bent.shape[1], height = bent.shape[2], rise = bent.shape[3];
+    sp = bent.sine, cp = bent.cosine, twist_slope = bent.twist_slope;
+    from = load3<V>(s, FROM_BOOT_0, i), ahead = load3<V>(s, LINE_AHEAD_0, i);
+    normal = load3<V>(s, LINE_NORMAL_0, i), left = load3<V>(s, LINE_LEFT_0, i);
+  }
+
   // A section that was cut and stored.
   static Cut stored(const Base& s, int i) {
     Cut c(s, i);
@@ -247,6 +255,12 @@ struct Cut {
     climb = (normal_ahead_ * along.x + sp * along.y + cp * along.z) * steep_;
   }
 
+  // How far the edge's crossing with the line lies ahead of the section, along the ski.
+  V way_to_line() const {
+    const V beyond = (from.x - station) * ahead.x + (from.y - edge_left) * ahead.y + (from.z - edge_up) * ahead.z;
+    return beyond / dot(raw_, ahead);
+  }
+
   void cut(const Snow& snow) {
     find_edge(1.0 / snow.edge_blend_sine);
     find_place();
@@ -259,6 +273,30 @@ struct Cut {
   Vector<V> raw_;                         // along the edge, 1 ahead
   V normal_ahead_, steep_, skew_;         // skew: way of the edge across the line per way ahead of it
 };
+
+// [cross_bent_edge] The straight ski's stations, which `cross_lines` gives, miss the lines under a bent ski that is
+// pitched against the surface: by its deflection times `ahead.z / ahead.x`. What is missed, m, leaves the place of a
+// curved edge wrong by ½ κ m², and its rate by m dκ/dt: a shovel that ploughs would gain energy from the shear. Newton's
+// method on the bent edge corrects the stations. At a slope below STEEP both are lost in the other errors of a place.
+template <class V>
+void cross_bent_edge(const Runner& runner, const Pose& pose, const Snow& snow, const GrooveLines& lines, Base& s) {
+  constexpr double STEEP = 0.25, FULLY = 0.35, LONGEST = 0.1;  // LONGEST: of a correction (m)
+  constexpr int STEPS = 3;
+  if (pose.beam.empty()) return;
+  for_lanes<V>(s, lines, [&](int i, int) {
+    const V slope = absolute(load<V>(s[LINE_AHEAD_2] + i) / load<V>(s[LINE_AHEAD_0] + i));
+    if (!any(slope > STEEP)) return;
+    const V straight = load<V>(s[STATION] + i), weight = within((slope - STEEP) / (FULLY - STEEP), 0.0, 1.0);
+    V station = straight;
+    for (int step = 0; step < STEPS; step++) {
+      const V on_ski = within(station, runner.tail, runner.tip);
+      Cut<V> c(BentBase<V>(runner, pose, on_ski), on_ski, s, i);
+      c.find_edge(1.0 / snow.edge_blend_sine);
+      station = on_ski + within(c.way_to_line(), -LONGEST, LONGEST);
+    }
+    store(s[STATION] + i, straight + weight * (station - straight));
+  });
+}
 
 // [cut_base] The bent base over each line and its plane section: the deeper edge, directions, where the base is wet.
 template <class V>
@@ -285,6 +323,7 @@ void find_sections(const Runner& runner, const Pose& pose, const Snow& snow, con
                    std::int64_t first, Base& s) {
   s.cover(lines, first);
   cross_lines<V>(runner, pose, snow, lines, s);
+  cross_bent_edge<V>(runner, pose, snow, lines, s);
   give_share<V>(runner, lines, s);
   cut_base<V>(runner, pose, snow, lines, s);
 }
