@@ -37,6 +37,13 @@ def test_decimal_commas_where_the_separator_is_none(tmp_path: Path, text: str, x
     assert (row.number("x"), row.number("y"), row.mark) == (x, 2.0, mark)
 
 
+def test_the_case_of_headings_does_not_matter(tmp_path: Path) -> None:
+    (row,) = rows_of(tmp_path, "X,Y,Z\n1,2,3\n")
+    assert row.cells == {"x": "1", "y": "2", "z": "3"}
+    with pytest.raises(ParameterError, match="column x stands there twice"):
+        rows_of(tmp_path, "X,y,x\n1,2,3\n")
+
+
 @pytest.mark.parametrize("cell", ["a", "", "inf", "nan", "1e999"])
 def test_a_cell_without_a_finite_number_is_refused_with_its_place(tmp_path: Path, cell: str) -> None:
     (row,) = rows_of(tmp_path, f"x,y\n{cell},1\n")

@@ -13,7 +13,7 @@ from typing import Final
 
 from .errors import ParameterError
 from .given import plain_text
-from .spreadsheet_text import decimal_mark, most_frequent_separator, number
+from .spreadsheet_text import column_names, decimal_mark, most_frequent_separator, number
 
 MOST_CSV_BYTES: Final = 1 << 26
 _HEAD: Final = 1 << 16
@@ -69,7 +69,7 @@ def csv_rows(path: str | Path, columns: Sequence[str], *, further: Sequence[str]
         UTF-8 text with a first line of the names of the columns; comma, semicolon or tab, and with the last two a
         decimal point or comma.
     columns, further
-        Columns that must be there, and those that may be; others are not read.
+        Columns that must be there, and those that may be, in any case of letters; others are not read.
     action
         What to do where it is refused.
 
@@ -95,7 +95,7 @@ def csv_rows(path: str | Path, columns: Sequence[str], *, further: Sequence[str]
 def _rows(
     path: Path, lines: Iterator[list[str]], columns: Sequence[str], further: Sequence[str], action: str, mark: str
 ) -> Iterator[CsvRow]:
-    head = [cell.strip() for cell in next(lines, [])]
+    head = column_names(next(lines, []), (*columns, *further))
     missing = [name for name in columns if name not in head]
     if missing:
         raise ParameterError(f"{path}, row 1: there is no column {missing[0]} among {', '.join(head)}; {action}")

@@ -145,6 +145,25 @@ def _count(cells: Iterable[str], mark: str) -> int:
     return sum(mark in cell and is_number(cell.strip(), mark) for cell in cells)
 
 
+def with_decimal_point(cell: str) -> str:
+    """A number with a decimal comma as one with a point; a cell with a point becomes no number: it could be a thousand.
+
+    >>> with_decimal_point("1,5"), with_decimal_point("1.500,5")
+    ('1.5', '1·500.5')
+    """
+    return cell if is_number(cell, ".") and "." not in cell else cell.replace(".", "·").replace(",", ".")
+
+
+def column_names(cells: Iterable[str], known: Iterable[str]) -> list[str]:
+    """Names of a header, the known ones as they are written; the case of letters does not matter.
+
+    >>> column_names([" X_M", "Gate", "Colour"], ["gate", "x_m"])
+    ['x_m', 'gate', 'Colour']
+    """
+    names = {name.casefold(): name for name in known}
+    return [names.get(cell.strip().casefold(), cell.strip()) for cell in cells]
+
+
 _FORMULA: Final = "=+-@\t\r＝＋－＠"
 _AS_FORMULA: Final = re.compile(f"'*[{re.escape(_FORMULA)}]")
 

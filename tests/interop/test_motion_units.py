@@ -71,7 +71,8 @@ def test_names_go_on_in_further_blocks(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     "name",
     ["LAnkleAngles", "Subject:RKneeAngles", "L_HIP_ANGLE", "RAbsAnkleAngle", "LGroundReactionForce", "LNormalisedGRF",
-     "RHipMoment", "LKneePower", "Torque1", "com_velocity", "HeadAcceleration"],
+     "RHipMoment", "LKneePower", "Torque1", "com_velocity", "HeadAcceleration",
+     "HipMoment_R", "RKneeForce.X", "Force.Fx1"],
 )  # fmt: skip
 def test_quantities_among_the_points_are_omitted(tmp_path: Path, name: str) -> None:
     capture(tmp_path / "a.c3d", {"LABELS": ["LHEE", name, "LTOE"], "UNITS": ["mm"]})

@@ -70,6 +70,23 @@ def test_what_a_table_does_not_say_is_the_sledges(tmp_path: Path) -> None:
     assert read_boots(path).place[2, 1].tolist() == [0.0, 0.0, 0.0]
 
 
+@pytest.mark.parametrize(("separator", "mark"), [(",", "."), (";", "."), (";", ","), ("\t", "."), ("\t", ",")])
+@pytest.mark.parametrize("capitals", [False, True])
+def test_separators_decimal_marks_and_capitals(tmp_path: Path, separator: str, mark: str, capitals: bool) -> None:
+    head = "distance_m,left_edge_angle_deg,right_edge_angle_deg".replace(",", separator)
+    rows = "".join(f"{d},{1.5 * d:.1f},-0.5\n".replace(",", separator).replace(".", mark) for d in range(4))
+    found = read_boots(table(tmp_path, f"{head.upper() if capitals else head}\n{rows}"))
+    assert found.at.tolist() == [0.0, 1.0, 2.0, 3.0]
+    left, right = angles_of(found.axes)[3]
+    assert (left[0], right[0]) == pytest.approx((math.radians(4.5), math.radians(-0.5)), abs=1e-12)
+
+
+def test_a_point_among_decimal_commas_could_be_a_thousand(tmp_path: Path) -> None:
+    rows = "0;0,5\n1;1,5\n2;2,5\n3;1.500\n"
+    with pytest.raises(ParameterError, match="row 5, column left_edge_angle_deg"):
+        read_boots(table(tmp_path, f"distance_m;left_edge_angle_deg\n{rows}"))
+
+
 CASES = Path(__file__).parents[2].parent / "shared" / "cases" / "boots"
 EDGES = "time_s,left_edge_angle_deg,left_up_m\n0,0,0\n0.1,1,0\n0.2,2,0\n0.3,3,0\n"
 

@@ -75,6 +75,13 @@ def test_a_table_of_one_column_leaves_the_rest_to_the_keys(with_table: Written) 
     assert float(ski.at(0.0).bending_stiffness) == pytest.approx(400.0)
 
 
+def test_the_case_of_headings_does_not_matter(with_table: Written) -> None:
+    head, rows = ROWS.split("\n", 1)
+    at, again = (read_ski(with_table(text)).at([0.5, -0.5]) for text in (ROWS, f"{head.upper()}\n{rows}"))
+    assert np.array_equal(at.width, again.width)
+    assert np.array_equal(at.bending_stiffness, again.bending_stiffness)
+
+
 @pytest.mark.parametrize("separator", [";", "\t"])
 def test_other_separators_remarks_and_byte_order_mark(with_table: Written, separator: str) -> None:
     text = "\ufeff# measured on a table\n" + ROWS.replace(",", separator) + "\n"

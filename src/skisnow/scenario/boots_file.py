@@ -18,6 +18,7 @@ from ..geometry.boot_axes import axes_of
 from ..given import plain_text
 from ..given.motion_head import HEAD_END, degrees_stated, head_of_motion, require_whole
 from ..inputs import meant
+from ..spreadsheet_text import column_names, decimal_mark, most_frequent_separator, with_decimal_point
 from ..units import DEGREE
 from .boots import FEWEST_POSES, LARGEST, SHORTEST_STEP, Boots
 
@@ -25,12 +26,15 @@ SIDES: Final = ("left", "right")
 ANGLES: Final = ("edge_angle_deg", "pitch_deg", "heading_deg")
 OF_SLEDGE: Final = ("forward_m", "aside_m", "up_m")
 OF_SLOPE: Final = ("x_m", "y_m", "z_m")
+CLOCKS: Final = ("time_s", "time", "distance_m")
+_OF_A_BOOT: Final = (*OF_SLEDGE, *OF_SLOPE, *ANGLES)
 _RESULTS: Final = ("_N", "_N_m", "_vx", "_vy", "_vz", "_px", "_py", "_pz", "_mx", "_my", "_mz")
 """Ends of names of what a run's own boots hold besides: forces and moments, which are not read."""
 _EDGE: Final = "_edge_angle_deg"
 _ON_ITS_SIDE: Final = 90.0
 """Edge angle (°) of a ski that stands on its edge: beyond it the base looks up."""
 _MOST_BYTES: Final = 1 << 28
+_HEAD: Final = 1 << 16
 _OF_OPENSIM: Final = (".mot", ".sto")
 
 Row: TypeAlias = tuple[int, list[str]]
@@ -55,10 +59,11 @@ def read_boots(path: str | Path, *, edge_angle: float = 0.0, stance_width: float
     """
     path = Path(path)
     (_, names), *rows = _rows(path, plain_text(path, most_bytes=_MOST_BYTES))
-    head = [name.strip() for name in names]
+    stripped = [name.strip() for name in names]
+    head = column_names(stripped, (*CLOCKS, *(f"{side}_{name}" for side in SIDES for name in _OF_A_BOOT)))
     _require_columns(path, head)
     table = {name: _column(path, rows, head, place) for place, name in enumerate(head) if _is_read(name)}
-    clock = next(name for name in ("time_s", "time", "distance_m") if name in table)
+    clock = next(name for name in CLOCKS if name in table)
     if len(rows) < FEWEST_POSES:
         raise ParameterError(f"{path}: {len(rows)} rows with poses; boots need {FEWEST_POSES} rows or more")
     _require_rising(path, clock, rows, table[clock])
@@ -98,11 +103,17 @@ def _rows(path: Path, text: str) -> list[Row]:
 
 
 def _of_csv(path: Path, text: str) -> list[Row]:
-    table = csv.reader(io.StringIO(text))
+    """Rows of a table with commas, semicolons or tabs; numbers with a decimal comma get a point."""
+    separator = most_frequent_separator(text[:_HEAD])
+    table = csv.reader(io.StringIO(text), delimiter=separator)
     try:
-        return [(table.line_num, row) for row in table if any(cell.strip() for cell in row)]
+        rows = [(table.line_num, row) for row in table if any(cell.strip() for cell in row)]
     except csv.Error as error:
         raise ParameterError(f"{path} is no CSV text ({error})") from error
+    cells = (cell for _, row in rows[1:] for cell in row)
+    if separator == "," or decimal_mark([cells], separator=separator) == ".":
+        return rows
+    return [*rows[:1], *((line, [with_decimal_point(cell.strip()) for cell in row]) for line, row in rows[1:])]
 
 
 def _behind_head(path: Path, lines: list[str]) -> tuple[list[Row], dict[str, str]]:
@@ -121,7 +132,7 @@ def _is_read(name: str) -> bool:
 
 def _known(head: list[str]) -> tuple[str, ...]:
     places = OF_SLOPE if "left_x_m" in head else OF_SLEDGE
-    return ("time_s", "time", "distance_m", *(f"{side}_{name}" for side in SIDES for name in (*places, *ANGLES)))
+    return (*CLOCKS, *(f"{side}_{name}" for side in SIDES for name in (*places, *ANGLES)))
 
 
 def _require_columns(path: Path, head: list[str]) -> None:
@@ -131,7 +142,7 @@ def _require_columns(path: Path, head: list[str]) -> None:
             raise ParameterError(f"{path}: there is no column {name}. {meant(name, known)}There are {', '.join(known)}")
         if counts[name] > 1:
             raise ParameterError(f"{path}: the column {name} is there twice; leave one out")
-    clocks = [name for name in known[:3] if name in head]
+    clocks = [name for name in CLOCKS if name in head]
     if len(clocks) != 1:
         raise ParameterError(f"{path}: it needs one of the columns time_s (time in .mot) and distance_m")
     if not any(_is_read(name) and name not in clocks for name in head):

@@ -12,7 +12,15 @@ import numpy.typing as npt
 from ..errors import ParameterError
 from ..given import plain_bytes
 from ..inputs import nearest
-from ..spreadsheet_text import SEPARATOR_NAMES, NoTextError, decimal_mark, decoded, is_number, named_separator
+from ..spreadsheet_text import (
+    SEPARATOR_NAMES,
+    NoTextError,
+    column_names,
+    decimal_mark,
+    decoded,
+    named_separator,
+    with_decimal_point,
+)
 from .file_keys import COLUMNS
 from .file_values import checked, refuse, warn_of_unusual
 from .station_table import StationTable
@@ -40,7 +48,8 @@ def read_table(path: Path) -> dict[str, StationTable]:
         stations do not fall. Line numbers are those of the file.
     """
     separator, lines = _lines(path)
-    first, header = lines[0]
+    first, cells = lines[0]
+    header = column_names(cells, COLUMNS)
     for place, name in enumerate(header):
         if name not in COLUMNS:
             raise ParameterError(f"{path}, line {first}: the column {name!r} is not known. {nearest(name, COLUMNS)}.")
@@ -89,17 +98,12 @@ def _row(path: Path, line: int, header: list[str], cells: list[str], mark: str) 
 def _cell(path: Path, line: int, name: str, cell: str, mark: str) -> float:
     column = replace(COLUMNS[name], name=f"line {line}, {name}")
     try:
-        value: object = float(cell if mark == "." else _with_point(cell))
+        value: object = float(cell if mark == "." else with_decimal_point(cell))
     except ValueError:
         value = cell
     number = checked(path, value, column)
     assert isinstance(number, float)
     return number
-
-
-def _with_point(cell: str) -> str:
-    """A number with a decimal comma as one with a point; what has a point stays no number: it could be a thousand."""
-    return cell if is_number(cell, ".") and "." not in cell else cell.replace(".", "·").replace(",", ".")
 
 
 def _require_falling(path: Path, station: FloatArray, lines: list[int]) -> None:

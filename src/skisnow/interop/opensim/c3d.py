@@ -31,7 +31,8 @@ _GROUPS: Final = ("ANGLES", "FORCES", "MOMENTS", "POWERS", "REACTIONS", "SCALARS
 """Lists of points that are not places, as gait programs write them."""
 _JOINT: Final = "ankle|knee|hip|pelvis|trunk|spine|thorax|waist|neck|head|shoulder|elbow|wrist|foot|toe|progress(ion)?"
 _QUANTITY: Final = re.compile(
-    rf"(angles|({_JOINT})[ _]?angle|forces?|moments?|torques?|powers?|GRF|velocit(y|ies)|accelerations?)[ _]?\d*$",
+    rf"(angles|({_JOINT})[ _]?angle|forces?|moments?|torques?|powers?|GRF|velocit(y|ies)|accelerations?)"
+    r"([ _.]?([fm]?[xyz]|[lr]|left|right))?[ _]?\d*$",
     re.IGNORECASE,
 )
 """Ends of the names that these programs give to such points, for files without the lists."""
