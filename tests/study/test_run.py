@@ -43,6 +43,7 @@ def test_rows_are_the_equilibria_in_the_order_of_the_grid(study_file: Path) -> N
     )
     assert row["turn_radius_boot_m"] == alone.turn_radius_boot
     assert row["side_force_limit_N"] == alone.side_force_limit
+    assert row["total_force_N"] == pytest.approx(math.hypot(800.0, row["side_force_N"]), rel=1e-12)
     assert alone.edge_depth is not None
     assert row["greatest_edge_depth_mm"] == pytest.approx(1e3 * float(alone.edge_depth.max()), rel=1e-12)
     assert row["H_V_N_per_mm3"] == pytest.approx(0.2067, rel=1e-3)  # 2A/cos² 55° of the publication

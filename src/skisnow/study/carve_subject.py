@@ -30,6 +30,7 @@ RESULTS: Final = (
     "holds",
     "side_force_N",
     "side_force_limit_N",
+    "total_force_N",
     "turn_radius_boot_m",
     "turn_radius_boot_other_spread_m",
     "turn_radius_chord_m",

@@ -39,6 +39,7 @@ OF_CARVES: Final = {
     "turn_radius_boot_m": "Carved radius (m)",
     "side_force_N": "Side force (N)",
     "side_force_limit_N": "Shear capacity of the snow (N)",
+    "total_force_N": "Total force of the snow (N)",
     "contact_length_m": "Contact length (m)",
     "greatest_edge_depth_mm": "Greatest depth of the edge (mm)",
 }
