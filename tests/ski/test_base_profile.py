@@ -68,7 +68,8 @@ def test_boot_away_from_the_middle_is_still_at_zero() -> None:
 @pytest.mark.parametrize(
     ("shape", "named"),
     [
-        (BaseShape(tip_rocker_length=0.9, tail_rocker_length=0.6), "leave nothing of the running length of 1396.0 mm"),
+        (BaseShape(tip_rocker_length=0.9, tail_rocker_length=0.6), "of the running length of 1396.0 mm"),
+        (BaseShape(tip_rocker_length=0.9, tail_rocker_length=0.4959), "of the running length of 1396.0 mm"),
         (BaseShape(tip_rocker_height=0.01), "shovel has a height of 10.0 mm but no length"),
         (BaseShape(tip_rocker_length=0.1, tip_rocker_height=0.03, shovel_height=0.05), "already"),
     ],

@@ -20,6 +20,9 @@ FloatArray = npt.NDArray[np.float64]
 SHOVEL_HEIGHT: Final = 0.050
 """Height of the tip over the contact points (m). Modelling assumption: 50 mm, a usual alpine ski."""
 
+LEAST_CONTACT: Final = 1e-3
+"""Length of base that rockers must leave in contact (m)."""
+
 ROUNDING: Final = 0.100
 """Length before a contact point over which the camber is rounded off (m). Modelling assumption: 100 mm."""
 
@@ -119,10 +122,11 @@ class BaseShape:
     def _over_contact(self, station: FloatArray, layout: Layout) -> FloatArray:
         front, rear = layout.contact_points
         foremost, hindmost = front - self.tip_rocker_length, rear + self.tail_rocker_length
-        if foremost <= hindmost:
+        if foremost - hindmost < LEAST_CONTACT:
             raise ParameterError(
                 f"the rockers, {self.tip_rocker_length * 1e3:.1f} and {self.tail_rocker_length * 1e3:.1f} mm long, "
-                f"leave nothing of the running length of {layout.running_length * 1e3:.1f} mm. Shorten them."
+                f"leave less than {LEAST_CONTACT * 1e3:g} mm of the running length of "
+                f"{layout.running_length * 1e3:.1f} mm. Shorten them."
             )
         shovel = _End("shovel", self.tip_rocker_length, self.tip_rocker_height, layout.tip - front, self.shovel_height)
         tail = _End("tail", self.tail_rocker_length, self.tail_rocker_height, rear - layout.tail, self.tail_height)

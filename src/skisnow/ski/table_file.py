@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
 FloatArray = npt.NDArray[np.float64]
 
-MOST_BYTES: Final = 1 << 24
+MOST_BYTES: Final = 1 << 20
 """Of a table: a row for each 2.5 mm of a ski takes 200 kB at most."""
 
 

@@ -170,3 +170,21 @@ def test_a_hundred_thousand_columns(write_campaign: WriteCampaign, small_campaig
     small_campaign[DENSITY] = ",".join(f"column {place}" for place in range(100_000)) + "\n1\n"
     problems = [problem for problem in check_campaign(write_campaign(small_campaign)) if problem.severity == "error"]
     assert [where(problem) for problem in problems] == [("unreadable_file", DENSITY, 1, None, None, "100000 cells")]
+
+
+def test_reading_ends_after_many_errors(write_campaign: WriteCampaign, small_campaign: dict[str, str]) -> None:
+    """100,000 wrong rows; the last problem names the row at which reading ended."""
+    small_campaign[CONE] += "9\n" * 100_000
+    problems = [each for each in check_campaign(write_campaign(small_campaign)) if each.file == CONE]
+    assert 10_000 < len(problems) < 30_000
+    (last,) = (each for each in problems if each.code == "unreadable_file")
+    assert last.row is not None
+    assert last.row < 15_000
+
+
+def test_repeated_rows_are_listed_up_to_a_number(write_campaign: WriteCampaign, small_campaign: dict[str, str]) -> None:
+    *_, row = small_campaign[DENSITY].splitlines()
+    small_campaign[DENSITY] += f"{row}\n" * 5000
+    problems = [each for each in check_campaign(write_campaign(small_campaign)) if each.code == "repeated_row"]
+    assert len(problems) == 1001
+    assert sum(each.row is None and "4000" in str(each.value) for each in problems) == 1

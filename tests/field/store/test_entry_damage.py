@@ -85,6 +85,10 @@ def as_bytes(old: str, entry: int) -> str:
         ),
         ("UPDATE journal_entry SET file = 'x.csv' WHERE sequence = 2", "x.csv: test 1, row 1: its file is not what"),
         (
+            "UPDATE journal_entry SET sums = replace(sums, '\"who\"', '\"hwo\"'), who = 'Ava' WHERE sequence = 3",
+            "test 1, row 2: neither what it says nor its checksums are as they were written down",
+        ),
+        (
             "UPDATE journal_entry SET sums = replace(sums, 'depth', 'death') WHERE sequence = 3",
             "test 1, row 2: its checksum is damaged, what it says is sound",
         ),

@@ -266,3 +266,16 @@ def test_threads_share_a_store(tmp_path: Path, place: Path) -> None:
             thread.join()
         assert sorted(stored.name for stored in store.list()) == [str(number) for number in range(8)]
         assert store.verify() == ()
+
+
+@pytest.mark.parametrize("data", ["3", "9223372036854775807", "'text'"])
+def test_a_content_that_is_not_bytes_is_damage(data: str, folder: Path, place: Path, tmp_path: Path) -> None:
+    """Python would make three zeros of a 3, and no memory is enough for the largest number."""
+    with Store.open(place) as store:
+        added = store.add(folder)
+    change(place, f"PRAGMA ignore_check_constraints = 1; UPDATE chunk SET data = {data}")
+    with Store.open(place) as store:
+        with pytest.raises(StoreError):
+            store.export(added.id, tmp_path / "out")
+        assert not (tmp_path / "out").exists()
+        assert {finding.campaign for finding in store.verify()} == {added.id}

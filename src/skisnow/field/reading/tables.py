@@ -34,6 +34,8 @@ OWN_NAMES: Final = Headings()
 """Columns are called by their names."""
 DATES: Final = ("time", "when")
 """Columns of days and times."""
+MOST_ERRORS: Final = 10_000
+"""Errors of a table after which the rest of it is not read."""
 
 
 def read_table(
@@ -68,8 +70,13 @@ def read_table(
     """
     reading: _TableReading | None = None
     readable = True
+    errors = counted = 0
     try:
         for lines, rows in text.records():
+            errors += sum(problem.severity == "error" for problem in files.found[counted:])
+            counted = len(files.found)
+            if errors > MOST_ERRORS and rows:
+                raise _too_many_errors(lines[0], errors)
             if reading is None and rows:
                 header = header_of(lines, rows)
                 units = column_units(form, header, headings, files.found)
@@ -83,6 +90,15 @@ def read_table(
         files.report_unreadable(form.file, failure)
         readable = False
     return _table_or_empty(form, reading, files.found, readable=readable)
+
+
+def _too_many_errors(line: int, errors: int) -> UnreadableTextError:
+    return UnreadableTextError(
+        row=line,
+        value=f"{errors} errors above it",
+        allowed=f"at most {MOST_ERRORS} errors in a table",
+        action="The rest was not read. Correct the rows above, or check that this is the right file.",
+    )
 
 
 def _table_or_empty(

@@ -197,12 +197,19 @@ def number_of(value: object) -> int:
     return value
 
 
+def bytes_of(value: object) -> bytes:
+    """Bytes as they must be; of a number `bytes` would make so many zeros."""
+    if not isinstance(value, bytes):
+        raise TypeError(f"{value!r} is not bytes")
+    return value
+
+
 def stored_chunks(connection: Connection, sha256: str) -> Iterator[bytes]:
     """Give a content's bytes piece by piece."""
     pieces = select(chunk.c.data).where(chunk.c.sha256 == sha256).order_by(chunk.c.position)
     try:
         for piece in connection.execute(pieces, execution_options={"yield_per": 1}).scalars():
-            yield bytes(piece)
+            yield bytes_of(piece)
     except TypeError as error:
         raise damaged(f"The content {sha256}") from error
 

@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING
 from alembic import command
 from alembic.config import Config
 from alembic.script import ScriptDirectory
-from alembic.util import CommandError
 
 if TYPE_CHECKING:
     from sqlalchemy import Connection
@@ -31,10 +30,7 @@ def alembic_config(connection: Connection | None = None) -> Config:
 
 def knows(revision: str) -> bool:
     """Tell whether a store's revision is one of ours; an unknown one comes from a newer program."""
-    try:
-        return ScriptDirectory.from_config(alembic_config()).get_revision(revision) is not None
-    except CommandError:
-        return False
+    return revision in {each.revision for each in ScriptDirectory.from_config(alembic_config()).walk_revisions()}
 
 
 def upgrade(connection: Connection, revision: str = "head") -> None:
