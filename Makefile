@@ -113,7 +113,7 @@ tidy: $(VENV)/.skisnow-dev $(TOOLS)/.tools
 # The core built with sanitizers, and the tests of its own run under them: SANITIZE=thread finds races.
 SANITIZE ?= address,undefined
 SANITIZED := build/sanitize-$(SANITIZE)
-SANITIZED_TESTS ?= tests/compiled tests/contact tests/dynamics tests/ski/beam tests/carve
+SANITIZED_TESTS ?= tests/compiled tests/contact tests/dynamics tests/ski/beam tests/carving
 RUNTIMES := $(if $(findstring thread,$(SANITIZE)),tsan,asan ubsan) stdc++
 PRELOAD = $(foreach each,$(RUNTIMES),$(shell c++ -print-file-name=lib$(each).so))
 sanitize: $(VENV)/.skisnow-dev

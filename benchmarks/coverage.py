@@ -18,15 +18,15 @@ from functools import partial
 import numpy as np
 import numpy.typing as npt
 
-from skisnow.estimate.errors_in_depth import fit_models_with_depth_errors, fitted_hardness
-from skisnow.estimate.hardness import DEFINITIONS, ReadingUncertainty, hardness, hardness_of_all_readings
-from skisnow.estimate.model_choice import bootstrap_intervals
-from skisnow.estimate.models import Model, ModelFit, fit_models
-from skisnow.estimate.readings import readings_of
-from skisnow.estimate.screening import screened_penetration
-from skisnow.estimate.seating import seating
-from skisnow.field import ReferenceNoise, reference_campaign
-from skisnow.field.reference import design
+from skisnow.campaign import ReferenceNoise, reference_campaign
+from skisnow.campaign.reference import design
+from skisnow.estimation.errors_in_depth import fit_models_with_depth_errors, fitted_hardness
+from skisnow.estimation.hardness import DEFINITIONS, ReadingUncertainty, hardness, hardness_of_all_readings
+from skisnow.estimation.model_choice import bootstrap_intervals
+from skisnow.estimation.models import Model, ModelFit, fit_models
+from skisnow.estimation.readings import readings_of
+from skisnow.estimation.screening import screened_penetration
+from skisnow.estimation.seating import seating
 
 FloatArray = npt.NDArray[np.float64]
 HALF_AS_MUCH_AGAIN = 2.0 * math.log(1.5) / (math.log(design.LOADS[-1] / design.LOADS[0]) - math.log(1.5))

@@ -10,8 +10,8 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from functools import partial
 
-from skisnow.carve.equilibrium import carve, rest
-from skisnow.parallel.batch import run_batch
+from skisnow._support.processes.batch import run_batch
+from skisnow.carving.equilibrium import carve, rest
 from skisnow.ski import Ski, read_ski
 from skisnow.snow.properties import SnowProperties
 

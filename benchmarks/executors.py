@@ -13,10 +13,10 @@ from typing import Any, Final
 
 import numpy as np
 
-from skisnow.parallel.batch import compute_missing
-from skisnow.parallel.kept_rows import KeptRows
-from skisnow.study import read_study
-from skisnow.study.computing import StudyRows
+from skisnow._support.processes.batch import compute_missing
+from skisnow._support.processes.kept_rows import KeptRows
+from skisnow.studies import read_study
+from skisnow.studies.computing import StudyRows
 
 TASK_S: Final = 0.05
 WORKERS: Final = 2

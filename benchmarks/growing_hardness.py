@@ -11,9 +11,9 @@ from itertools import product
 
 import numpy as np
 
-from skisnow.estimate.growing_hardness import growing_hardness, site_growth
-from skisnow.estimate.hardness import DEFINITIONS, ReadingUncertainty, hardness_at_largest_load
-from skisnow.estimate.readings import Readings
+from skisnow.estimation.growing_hardness import growing_hardness, site_growth
+from skisnow.estimation.hardness import DEFINITIONS, ReadingUncertainty, hardness_at_largest_load
+from skisnow.estimation.readings import Readings
 from skisnow.geometry import SkiPiece
 
 LOADS = np.linspace(12.0, 492.0, 7)

@@ -11,12 +11,12 @@ import numpy as np
 import scipy.optimize
 import statsmodels.api as sm
 
-from skisnow.estimate.hardness import DEFINITIONS, hardness_at_largest_load
-from skisnow.estimate.model_choice import bootstrap_intervals
-from skisnow.estimate.models import MODELS, end_basis, fit_models
-from skisnow.estimate.readings import Readings, readings_of
-from skisnow.estimate.screening import screened_penetration
-from skisnow.field import read_campaign, write_reference
+from skisnow.campaign import read_campaign, write_reference
+from skisnow.estimation.hardness import DEFINITIONS, hardness_at_largest_load
+from skisnow.estimation.model_choice import bootstrap_intervals
+from skisnow.estimation.models import MODELS, end_basis, fit_models
+from skisnow.estimation.readings import Readings, readings_of
+from skisnow.estimation.screening import screened_penetration
 
 from .timing import Measurement, in_turn, timed
 

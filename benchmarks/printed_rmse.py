@@ -17,10 +17,10 @@ from typing import Final
 import numpy as np
 import numpy.typing as npt
 
-from skisnow.estimate.hardness import DEFINITIONS, hardness_at_largest_load
-from skisnow.estimate.models import MODELS, fit_models
-from skisnow.estimate.readings import readings_of
-from skisnow.field import ReferenceNoise, reference_campaign
+from skisnow.campaign import ReferenceNoise, reference_campaign
+from skisnow.estimation.hardness import DEFINITIONS, hardness_at_largest_load
+from skisnow.estimation.models import MODELS, fit_models
+from skisnow.estimation.readings import readings_of
 from skisnow.snow.published.moessner_2013 import PRINTED_RMSE_N
 
 FloatArray = npt.NDArray[np.float64]

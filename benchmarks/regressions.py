@@ -9,13 +9,13 @@ from __future__ import annotations
 import argparse
 from dataclasses import dataclass
 
-from skisnow.estimate.hardness import DEFINITIONS, hardness_at_largest_load
-from skisnow.estimate.observations import penetration_observations, shear_observations, spot_observations
-from skisnow.estimate.readings import readings_of
-from skisnow.estimate.regressions import Regression, regressions
-from skisnow.estimate.screening import screened_penetration, screened_shear
-from skisnow.estimate.shear_stress import shear_stress
-from skisnow.field import reference_campaign
+from skisnow.campaign import reference_campaign
+from skisnow.estimation.hardness import DEFINITIONS, hardness_at_largest_load
+from skisnow.estimation.observations import penetration_observations, shear_observations, spot_observations
+from skisnow.estimation.readings import readings_of
+from skisnow.estimation.regressions import Regression, regressions
+from skisnow.estimation.screening import screened_penetration, screened_shear
+from skisnow.estimation.shear_stress import shear_stress
 
 LEVELS = (0.05, 0.01)
 """The usual one, and the paper's: it prints p < 0.01 for Eqns 13 and 14."""

@@ -15,8 +15,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from skisnow.replay import replay_bytes, replay_of_run, write_replay
-from skisnow.scenario import read_scenario
-from skisnow.simulate.simulated_run import simulate
+from skisnow.scenario import load_scenario
+from skisnow.simulation.simulated_run import simulate
 
 if TYPE_CHECKING:
     from skisnow.replay import Replay
@@ -47,7 +47,7 @@ def runs(duration: float) -> tuple[Replay, Replay]:
     """The run and its ghost."""
     changes = {"run.duration_s": duration}
     found = [
-        simulate(read_scenario("carved-46m", changes=changes | {"snow.penetration": kind}))
+        simulate(load_scenario("carved-46m", changes=changes | {"snow.penetration": kind}))
         for kind in ("hypoplastic", "elastic")
     ]
     return replay_of_run(found[0], title="carved-46m"), replay_of_run(found[1], title="elastic snow")

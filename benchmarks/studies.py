@@ -17,14 +17,14 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
 
-from skisnow.carve.keys import CARVE_KEYS
-from skisnow.inputs import Quantity
-from skisnow.parallel.batch import compute_missing
-from skisnow.study import Study, read_study, run_study
-from skisnow.study.carve_subject import RESULTS, CarveModel
-from skisnow.study.computing import StudyRows
-from skisnow.study.points import Point, Points
-from skisnow.study.run import kept_rows
+from skisnow._support.processes.batch import compute_missing
+from skisnow.carving.keys import CARVE_KEYS
+from skisnow.parameters import Quantity
+from skisnow.studies import Study, read_study, run_study
+from skisnow.studies.carve_subject import RESULTS, CarveModel
+from skisnow.studies.computing import StudyRows
+from skisnow.studies.points import Point, Points
+from skisnow.studies.run import kept_rows
 
 TEXT: Final = """
 out = "table.csv"

@@ -12,12 +12,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from skisnow.estimate.hardness import DEFINITIONS, ReadingUncertainty, hardness
-from skisnow.estimate.readings import readings_of
-from skisnow.estimate.unloading import site_unloading, unloading
-from skisnow.field import ReferenceNoise, reference_campaign
-from skisnow.field.reference import design
-from skisnow.units import MM
+from skisnow._support.units import MM
+from skisnow.campaign import ReferenceNoise, reference_campaign
+from skisnow.campaign.reference import design
+from skisnow.estimation.hardness import DEFINITIONS, ReadingUncertainty, hardness
+from skisnow.estimation.readings import readings_of
+from skisnow.estimation.unloading import site_unloading, unloading
 
 CASES = {
     "all stated errors": ReferenceNoise(),

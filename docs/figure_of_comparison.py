@@ -9,10 +9,10 @@ import tempfile
 from dataclasses import replace
 from pathlib import Path
 
-from skisnow import compare_tracks, scenario, simulate
+from skisnow import compare_tracks, load_scenario, simulate
 from skisnow.report.figures.figure_file import write_figure
 from skisnow.report.figures.track_comparison import track_comparison
-from skisnow.simulate.track_table import write_track
+from skisnow.simulation.track_table import write_track
 from skisnow.track.read import read_track
 from skisnow.track.track import Track
 
@@ -21,7 +21,7 @@ PLACE = Path(__file__).resolve().parent / "_static" / "track-comparison.png"
 
 def track(penetration: str, folder: Path) -> Track:
     """The track of a run on snow of that kind, by way of its file."""
-    found = simulate(scenario("carver-42m", changes={"snow.penetration": penetration}))
+    found = simulate(load_scenario("carver-42m", changes={"snow.penetration": penetration}))
     write_track(found, folder / "track.csv")
     return replace(read_track(folder / "track.csv"), name=f"{penetration} snow", axes="slope")
 

@@ -17,45 +17,44 @@ PICTURE = Path(__file__).parent / "_static" / "architecture" / "house.svg"
 INSIDE = {
     "cli": "the commands",
     "web": "the lab in a browser",
-    "chain": "campaign, snow, turn and report in one call",
+    "pipeline": "campaign, snow, turn and report in one call",
     "report": "tables, figures, pages, run.nc",
     "interop": "FMUs, MuJoCo, OpenSim, CAAML",
     "replay": "a run in three dimensions",
-    "identify": "friction, drag and snow from tracks",
-    "study": "grids and samples of carves and runs",
+    "identification": "friction, drag and snow from tracks",
+    "studies": "grids and samples of carves and runs",
     "racing": "the quickest line",
-    "simulate": "the run of a sledge on two skis, and how exact it is",
+    "simulation": "the run of a sledge on two skis, and how exact it is",
     "skier": "plans of turns, balance",
-    "carve": "a ski in equilibrium",
+    "carving": "a ski in equilibrium",
     "scenario": "what a run is",
     "dynamics": "bodies, steps, static start",
-    "estimate": "hardness, strength, models, intervals",
-    "sources": "named skis, snows",
+    "estimation": "hardness, strength, models, intervals",
     "contact": "history-dependent snow, any runners",
-    "field": "campaign files, records, store",
-    "course": "gates, passed or missed",
-    "parallel": "processes, stored rows",
+    "campaign": "campaign files, records, store",
+    "samples": "sample files of every format",
     "ski": "shape, stiffness, beam",
-    "track": "readers, curvature, turns, comparison of two tracks",
+    "track": "readers, curvature, turns, gates, comparison of two tracks",
     "statistics": "least squares, tests, resampling",
     "forces": "one law a file",
     "snow": "SnowProperties, published values",
     "geometry": "tools pressed into snow, slope surfaces",
-    "inputs": "a quantity, declared once: name, unit, range, default, origin",
+    "parameters": "a quantity, declared once: name, unit, range, default, origin",
+    "_support": "files, texts, errors, units, display, processes",
     "compiled": "the C++ core",
 }
-"""Packages with a box of their own; all others are the lowest layer."""
+"""Each package, with what it holds."""
 MEASURED, COMPUTED, BOTH = "#dcebf7", "#fde8d3", "#eef0ee"
 COLOURS = {
-    **dict.fromkeys(("field", "estimate", "statistics"), MEASURED),
+    **dict.fromkeys(("campaign", "estimation", "statistics"), MEASURED),
     **dict.fromkeys(
-        ("carve", "contact", "dynamics", "forces", "scenario", "simulate", "ski", "skier", "compiled"), COMPUTED
+        ("carving", "contact", "dynamics", "forces", "scenario", "simulation", "ski", "skier", "compiled"), COMPUTED
     ),
 }
-READING = ("cli", "field", "estimate", "snow", "report")
-TURN = ("cli", "scenario", "sources", "simulate", "contact", "dynamics", "compiled", "track", "report", "replay")
+READING = ("cli", "campaign", "estimation", "snow", "report")
+TURN = ("cli", "scenario", "ski", "simulation", "contact", "dynamics", "compiled", "track", "report", "replay")
 """The packages that a reading and a turn come through, in this order."""
-LEFT_TO_RIGHT = ("field", "estimate", "statistics", "identify", "report")
+LEFT_TO_RIGHT = ("campaign", "estimation", "statistics", "identification", "report")
 """Packages that stand left of the others in their layer: what was measured."""
 
 WIDTH, EDGE, FLOOR, ROOF, GAP = 960, 30, 46, 96, 6
@@ -73,14 +72,12 @@ def floors() -> list[list[str]]:
 
 def picture() -> str:
     """The SVG."""
-    above = [floor for floor in floors() if set(floor) <= set(INSIDE)]
-    ground = [package for floor in floors() for package in floor if not set(floor) <= set(INSIDE)]
+    above = floors()
     parts, y = [], ROOF
     for floor in above[1:]:
         parts.append(_floor(sorted(floor, key=lambda package: (package not in LEFT_TO_RIGHT, package)), y))
         y += FLOOR + GAP
-    parts.append(_ground(ground, y))
-    height = y + FLOOR + 72
+    height = y + 54
     return "\n".join(
         [
             f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {height}" role="img" aria-labelledby="t" '
@@ -108,33 +105,6 @@ def _floor(packages: list[str], y: float) -> str:
         parts.append(_steps(package, x + width - 14, y + 15))
         x += width + GAP
     return "\n".join(parts)
-
-
-def _ground(packages: list[str], y: float) -> str:
-    """The small files that everything stands on, with the compiled core among them."""
-    core = 170
-    others = ", ".join(package for package in packages if package != "compiled")
-    words, lines = others.split(", "), [""]
-    for word in words:
-        if len(lines[-1]) + len(word) > 105:
-            lines.append("")
-        lines[-1] += (", " if lines[-1] else "") + word
-    height = FLOOR + 18
-    left = WIDTH - 2 * EDGE - core - GAP
-    text = "\n".join(
-        f'<text x="{EDGE + 12}" y="{y + 20 + 16 * i}" font-size="12.5" fill="{INK}">{escape(line)}</text>'
-        for i, line in enumerate(lines)
-    )
-    x = EDGE + left + GAP
-    return "\n".join(
-        [
-            _box(EDGE, y, left, height, BOTH),
-            text,
-            _box(x, y, core, height, COMPUTED),
-            _name(x + 12, y + 22, "compiled", INSIDE["compiled"]),
-            _steps("compiled", x + core - 14, y + 17),
-        ]
-    )
 
 
 def _box(x: float, y: float, width: float, height: float, colour: str) -> str:

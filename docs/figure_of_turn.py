@@ -9,7 +9,7 @@ import numpy as np
 from fewer_colours import write_fewer_colours
 from matplotlib.lines import Line2D
 
-from skisnow import scenario, simulate
+from skisnow import load_scenario, simulate
 from skisnow.report.figures.figure_file import write_figure
 from skisnow.report.figures.run_along_ski import along_ski_map, highest
 from skisnow.report.figures.run_track import SKI_COLOURS, draw_plan, track_limits
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from skisnow.simulate.run import Run
+    from skisnow.simulation.run import Run
 
 PICTURE = Path(__file__).resolve().parent / "_static" / "carved-turn.png"
 SCENARIO = "carved-46m"
@@ -67,7 +67,7 @@ def _draw_depth(figure: Figure, axes: Axes, run: Run) -> None:
 def main() -> None:
     """Simulate and draw."""
     run, elastic = (
-        simulate(scenario(SCENARIO, changes={"snow.penetration": kind})) for kind in ("hypoplastic", "elastic")
+        simulate(load_scenario(SCENARIO, changes={"snow.penetration": kind})) for kind in ("hypoplastic", "elastic")
     )
     write_figure(PICTURE, lambda: turn(run, elastic))
     write_fewer_colours(PICTURE, colours=128)

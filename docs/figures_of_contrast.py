@@ -18,7 +18,7 @@ import numpy.typing as npt
 from fewer_colours import write_fewer_colours
 from matplotlib.lines import Line2D
 
-from skisnow import scenario, simulate
+from skisnow import load_scenario, simulate
 from skisnow.report.figures.figure_file import write_figure
 from skisnow.report.figures.runs_compared import LINE_STYLES, runs_compared
 from skisnow.report.figures.style import COLOURS, DOUBLE_MM, GREY, legend_below, new_figure
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from skisnow.simulate.run import Run
+    from skisnow.simulation.run import Run
 
 FloatArray = npt.NDArray[np.float64]
 Runs = Mapping[tuple[str, str, float], "Run"]
@@ -102,7 +102,7 @@ def apart(run: Run, other: Run) -> float:
 
 
 def _computed(asked: tuple[str, dict[str, Any]]) -> Run:
-    return simulate(scenario(asked[0], changes=asked[1]))
+    return simulate(load_scenario(asked[0], changes=asked[1]))
 
 
 def all_runs() -> dict[tuple[str, str, float], Run]:
@@ -113,7 +113,7 @@ def all_runs() -> dict[tuple[str, str, float], Run]:
         for name in SCENARIOS
         for ratio in RATIOS
     }
-    hardness = scenario(SCENARIOS[0]).contact.snow.snow_hardness / 1e9
+    hardness = load_scenario(SCENARIOS[0]).contact.snow.snow_hardness / 1e9
     for strength in STRENGTHS:
         keys = {"snow.H_V_N_per_mm3": hardness, "snow.S_f_N_per_mm2": strength}
         for name in SCENARIOS:

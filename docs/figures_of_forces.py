@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from skisnow._support.units import DEGREE, MM, N_PER_MM2, N_PER_MM3
 from skisnow.forces.drag import AirDrag
 from skisnow.forces.friction import (
     ConstantFriction,
@@ -39,7 +40,6 @@ from skisnow.geometry import SkiPiece
 from skisnow.report.figures.style import BLACK, BLUE, GREEN, GREY, ORANGE, PALE, VERMILLION, journal_style, new_figure
 from skisnow.snow import published_snow
 from skisnow.snow.published import domine_2011, federolf_2006, moessner_2013
-from skisnow.units import DEGREE, MM, N_PER_MM2, N_PER_MM3
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -246,7 +246,7 @@ def _quiet_machining(strength: float, friction: float) -> MachiningShear:
     """The law of Fig. 9, whose 2 S of 0.034 N/mm² lies below the range of S_f: the page says so."""
     import warnings
 
-    from skisnow.errors import RangeWarning
+    from skisnow._support.errors import RangeWarning
 
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RangeWarning)

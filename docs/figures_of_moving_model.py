@@ -15,7 +15,7 @@ from typing import Any
 
 from PIL import Image
 
-from skisnow import scenario, simulate
+from skisnow import load_scenario, simulate
 from skisnow.replay import moving_replay_model, replay_of_run
 
 PLACE = Path(__file__).resolve().parent / "_static" / "replay" / "moving-model.webp"
@@ -91,7 +91,7 @@ def pictures(model: bytes) -> list[Image.Image]:
 
 def main() -> None:
     """Simulate, make the model, look at it, four moments in one picture."""
-    run = simulate(scenario("carved-46m"))
+    run = simulate(load_scenario("carved-46m"))
     taken = pictures(moving_replay_model(replay_of_run(run, title="carved-46m"), exaggeration=5.0))
     whole = Image.new("RGB", (2 * 560 + 8, 2 * 350 + 8), "white")
     for number, each in enumerate(taken):

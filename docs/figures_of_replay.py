@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 from PIL import Image
 
-from skisnow import scenario, simulate
+from skisnow import load_scenario, simulate
 from skisnow.replay import replay_of_run, write_replay
 
 if TYPE_CHECKING:
@@ -38,7 +38,7 @@ VIEWS = (
 def replays() -> tuple[Replay, Replay]:
     """The turn on snow that keeps its groove, and on snow that springs back."""
     run, elastic = (
-        simulate(scenario(SCENARIO, changes={"snow.penetration": kind})) for kind in ("hypoplastic", "elastic")
+        simulate(load_scenario(SCENARIO, changes={"snow.penetration": kind})) for kind in ("hypoplastic", "elastic")
     )
     return replay_of_run(run, title=SCENARIO), replay_of_run(elastic, title="elastic snow")
 

@@ -11,7 +11,7 @@ from typing import TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from skisnow import Course, Gate, Run, scenario, simulate
+from skisnow import Course, Gate, Run, load_scenario, simulate
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 BAND = (5.0, 12.0)
@@ -24,7 +24,7 @@ AVERAGED = 0.2
 def run_of(name: str, *changes: tuple[str, object]) -> Run:
     """A run of a built-in scenario with changes, in the fast mode."""
     print(name, *changes, file=sys.stderr)
-    return simulate(scenario(name, changes={"solver.method": "fast", **dict(changes)}))
+    return simulate(load_scenario(name, changes={"solver.method": "fast", **dict(changes)}))
 
 
 def in_a_long_turn(time: float) -> tuple[FloatArray, FloatArray]:
@@ -133,7 +133,7 @@ def spaced(distance: float, across: float, edge: float, angle: float) -> Run:
     found = tuple(
         Gate(name=str(i), turning=place, side="left" if place[1] > 0.0 else "right") for i, place in enumerate(poles, 1)
     )
-    base = scenario("slalom-20-gates", changes={"solver.method": "fast", "slope.angle_deg": angle})
+    base = load_scenario("slalom-20-gates", changes={"solver.method": "fast", "slope.angle_deg": angle})
     assert base.skier is not None
     skier = replace(base.skier, greatest_edge=math.radians(edge))
     print("spaced", distance, angle, file=sys.stderr)

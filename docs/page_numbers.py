@@ -14,12 +14,12 @@ from pathlib import Path
 from typing import Any
 
 from skisnow import snow_from_results
+from skisnow.campaign import reference_campaign as drawn_campaign
 from skisnow.cli import main
-from skisnow.estimate.hardness import DEFINITIONS, hardness_at_largest_load
-from skisnow.estimate.models import ModelFit, fit_models
-from skisnow.estimate.readings import readings_of
-from skisnow.estimate.screening import screened_penetration
-from skisnow.field import reference_campaign as drawn_campaign
+from skisnow.estimation.hardness import DEFINITIONS, hardness_at_largest_load
+from skisnow.estimation.models import ModelFit, fit_models
+from skisnow.estimation.readings import readings_of
+from skisnow.estimation.screening import screened_penetration
 from skisnow.report.number_formatting import significant
 
 DOCS = Path(__file__).resolve().parent

@@ -8,11 +8,11 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from unittest.mock import patch
 
-from skisnow.estimate.snow_micro_pen import EvaluatedRecording, evaluate_profile
-from skisnow.field import SnowMicroPenProfile, read_snow_micro_pen
-from skisnow.field.snow_micro_pen_records import SnowMicroPenSettings
-from skisnow.inputs import made
-from skisnow.units import MM
+from skisnow._support.units import MM
+from skisnow.campaign import SnowMicroPenProfile, read_snow_micro_pen
+from skisnow.campaign.snow_micro_pen_records import SnowMicroPenSettings
+from skisnow.estimation.snow_micro_pen import EvaluatedRecording, evaluate_profile
+from skisnow.parameters import made
 
 CASES = {
     "as it is": {},
@@ -29,12 +29,12 @@ CASES = {
 
 
 CONSTANTS = {
-    "block of 0.25 mm": ("field.snow_surface.BLOCK", 0.25 * MM),
-    "block of 1 mm": ("field.snow_surface.BLOCK", 1.0 * MM),
-    "air over 10 mm": ("field.snow_surface.AIR", 10.0 * MM),
-    "air over 40 mm": ("field.snow_surface.AIR", 40.0 * MM),
-    "windows overlap by 25 %": ("estimate.snow_micro_pen.OVERLAP", 0.25),
-    "windows overlap by 75 %": ("estimate.snow_micro_pen.OVERLAP", 0.75),
+    "block of 0.25 mm": ("campaign.snow_surface.BLOCK", 0.25 * MM),
+    "block of 1 mm": ("campaign.snow_surface.BLOCK", 1.0 * MM),
+    "air over 10 mm": ("campaign.snow_surface.AIR", 10.0 * MM),
+    "air over 40 mm": ("campaign.snow_surface.AIR", 40.0 * MM),
+    "windows overlap by 25 %": ("estimation.snow_micro_pen.OVERLAP", 0.25),
+    "windows overlap by 75 %": ("estimation.snow_micro_pen.OVERLAP", 0.75),
 }
 
 

@@ -15,7 +15,7 @@ from pathlib import Path
 
 import numpy as np
 
-from skisnow import Run, scenario, simulate
+from skisnow import Run, load_scenario, simulate
 
 DOCS = Path(__file__).resolve().parent
 LAWS: dict[str, dict[str, object]] = {
@@ -37,7 +37,7 @@ DISPLACEMENTS = (1.0, 0.5, 0.25, 0.1, 0.05, 0.02, 0.01)
 def turn(name: str, *changes: tuple[str, object]) -> Run:
     """A run of a built-in scenario with changes."""
     print(name, *changes, file=sys.stderr)
-    return simulate(scenario(name, changes=dict(changes)))
+    return simulate(load_scenario(name, changes=dict(changes)))
 
 
 def on_snow(hardness: float, strength: float) -> tuple[tuple[str, object], ...]:

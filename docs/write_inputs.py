@@ -15,15 +15,15 @@ from functools import reduce
 from pathlib import Path
 
 import skisnow
-from skisnow.carve.keys import CARVE_KEYS
-from skisnow.field.reading import campaign_schema
-from skisnow.field.reading.campaign_file import CAMPAIGN_KEYS
-from skisnow.field.reading.table_forms import PENETRATION, SHEAR
-from skisnow.field.snow_micro_pen_records import SnowMicroPenSettings
-from skisnow.field.weather_records import WeatherSettings
-from skisnow.inputs import own_quantities
-from skisnow.inputs.json_schema import Schema, output_schema, schema_text
-from skisnow.inputs.page_table import page_table
+from skisnow.campaign.reading import campaign_schema
+from skisnow.campaign.reading.campaign_file import CAMPAIGN_KEYS
+from skisnow.campaign.reading.table_forms import PENETRATION, SHEAR
+from skisnow.campaign.snow_micro_pen_records import SnowMicroPenSettings
+from skisnow.campaign.weather_records import WeatherSettings
+from skisnow.carving.keys import CARVE_KEYS
+from skisnow.parameters import own_quantities
+from skisnow.parameters.json_schema import Schema, output_schema, schema_text
+from skisnow.parameters.page_table import page_table
 from skisnow.scenario import schema as scenario
 from skisnow.scenario.free_keys import FREE_KEYS
 from skisnow.scenario.keys import SCENARIO_KEYS
@@ -31,7 +31,7 @@ from skisnow.ski.file_keys import COLUMNS, SKI_KEYS
 
 DOCS = Path(__file__).resolve().parent
 PACKAGE = Path(skisnow.__file__).resolve().parent
-SUMMARY, CARVE = "simulate/schemas/summary.schema.json", "carve/schemas/carve.schema.json"
+SUMMARY, CARVE = "simulation/schemas/summary.schema.json", "carving/schemas/carve.schema.json"
 
 
 def with_inputs(file: str, place: Sequence[str], told: Schema) -> Schema:

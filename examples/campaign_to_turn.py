@@ -23,8 +23,8 @@ def main() -> None:
     parser.add_argument("--site", default="C")
     parser.add_argument("--runs", type=int, default=64)
     asked = parser.parse_args()
-    turn = skisnow.scenario("carved-46m").with_(angle_deg=5, speed_m_per_s=4.5, edge_angle_deg=40)
-    chain = skisnow.chain(
+    turn = skisnow.load_scenario("carved-46m").with_(angle_deg=5, speed_m_per_s=4.5, edge_angle_deg=40)
+    chain = skisnow.turn(
         asked.campaign, asked.site, turn, runs=asked.runs, progress=lambda text: print(text, file=sys.stderr)
     )
     print(*chain.sentences, f"The whole chain: {chain.report(asked.out)}", sep="\n")

@@ -20,9 +20,9 @@ import numpy as np
 import numpy.typing as npt
 from scipy.signal import savgol_filter
 
-from skisnow import Run, scenario, simulate
+from skisnow import Run, load_scenario, simulate
 from skisnow.interop.opensim import BootMarkers, Markers, boots_of_markers, boots_text, read_trc, write_trc
-from skisnow.simulate.boots_table import write_boots
+from skisnow.simulation.boots_table import write_boots
 
 FloatArray = npt.NDArray[np.float64]
 SLOPE, DURATION, FRAME_MS, SMOOTHED_S = math.radians(10.0), 3.0, 5.0, 0.15
@@ -39,7 +39,7 @@ def run_of(folder: Path, edges: str) -> Run:
     (folder / "edges.csv").write_text(edges, encoding="utf-8")
     changes = {"boots.file": str(folder / "edges.csv"), "sledge.edge_angle_deg": 0.0, "start.heading_deg": 0.0}
     changes |= {"run.duration_s": DURATION, "run.output_ms": FRAME_MS}
-    return simulate(scenario("carved-46m", changes=changes))
+    return simulate(load_scenario("carved-46m", changes=changes))
 
 
 def capture(run: Run, noise: float) -> Markers:

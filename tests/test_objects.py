@@ -16,10 +16,10 @@ from scipy.io import netcdf_file
 
 import skisnow
 from skisnow import Analysis, Run, SnowProperties
-from skisnow.errors import ParameterError
-from skisnow.estimate.results_text import results_json
-from skisnow.field import Campaign
-from skisnow.field.reference import reference_campaign
+from skisnow._support.errors import ParameterError
+from skisnow.campaign import Campaign
+from skisnow.campaign.reference import reference_campaign
+from skisnow.estimation.results_text import results_json
 
 from .conftest import without_png
 from .report.runs import RADIUS, SPEED, circle_run
@@ -76,7 +76,7 @@ def test_a_dozen_lines_without_the_disk(campaign_folder: Path) -> None:
     analysis = skisnow.analyse(campaign, n_resamples=100)
     snow = analysis.snow("C", unloading_ratio=10)
     ski = skisnow.read_ski("carver")
-    turn = skisnow.scenario("carved-46m").with_(snow=snow, ski=ski, speed_m_per_s=4.5, duration_s=0.1)
+    turn = skisnow.load_scenario("carved-46m").with_(snow=snow, ski=ski, speed_m_per_s=4.5, duration_s=0.1)
     run = skisnow.simulate(turn)
     assert run.outcome == "finished"
     assert run.scenario.contact.snow is snow
@@ -128,7 +128,7 @@ def test_a_report_takes_one_object(campaign: Campaign, analysis: Analysis, tmp_p
 
 
 def test_with_changes_by_part_and_by_key() -> None:
-    turn = skisnow.scenario("carved-46m")
+    turn = skisnow.load_scenario("carved-46m")
     other = turn.with_(H_V_N_per_mm3=0.4, edge_angle_deg=35, mu_0=0.02, centre_of_mass_forward_m=0.1, step_ms=0.25)
     snow, sledge = other.contact.snow, other.sledge
     assert (snow.snow_hardness, snow.failure_shear_stress) == (0.4e9, turn.contact.snow.failure_shear_stress)
@@ -141,14 +141,14 @@ def test_with_changes_by_part_and_by_key() -> None:
 
 
 def test_a_number_for_the_snow_takes_the_interval_of_the_measured_one_away(analysis: Analysis) -> None:
-    turn = skisnow.scenario("carved-46m").with_(snow=analysis.snow("C"))
+    turn = skisnow.load_scenario("carved-46m").with_(snow=analysis.snow("C"))
     other = turn.with_(S_f_N_per_mm2=0.3).contact.snow
     assert (other.failure_shear_stress, other.failure_shear_stress_interval) == (0.3e6, None)
     assert other.snow_hardness_interval == turn.contact.snow.snow_hardness_interval
 
 
 def test_a_snow_takes_its_unloading_ratio_along_only_where_it_has_one() -> None:
-    turn = skisnow.scenario("carved-46m")
+    turn = skisnow.load_scenario("carved-46m")
     soft = SnowProperties(1e8, 2e5, source="mine")
     assert turn.with_(snow=soft).contact.unloading_ratio == turn.contact.unloading_ratio == 10.0
     assert turn.with_(snow=replace(soft, unloading_ratio=3.0)).contact.unloading_ratio == 3.0
@@ -172,7 +172,7 @@ def test_a_snow_takes_its_unloading_ratio_along_only_where_it_has_one() -> None:
 )
 def test_a_change_that_cannot_be_is_refused(changes: dict[str, Any], told: str) -> None:
     with pytest.raises(ParameterError, match=told):
-        skisnow.scenario("carved-46m").with_(**changes)
+        skisnow.load_scenario("carved-46m").with_(**changes)
 
 
 @pytest.fixture(scope="module")

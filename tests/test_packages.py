@@ -31,14 +31,14 @@ def imported(path: Path, modules: set[str]) -> Iterator[str]:
 
 
 UPWARD = {
-    ("skisnow.estimate.analysis", "skisnow.estimate.results"),
+    ("skisnow.estimation.analysis", "skisnow.estimation.results"),
     ("skisnow.report.turn_chain", "skisnow.report.turn_report"),
     ("skisnow.report.turn_chain", "skisnow.report.turn_sentences"),
     ("skisnow.scenario.scenario", "skisnow.scenario.building"),
-    ("skisnow.simulate.run", "skisnow.report.run_drawings"),
-    ("skisnow.simulate.run", "skisnow.report.run_folder"),
-    ("skisnow.simulate.run", "skisnow.report.run_frames"),
-    ("skisnow.simulate.run", "skisnow.simulate.run_balance"),
+    ("skisnow.simulation.run", "skisnow.report.run_drawings"),
+    ("skisnow.simulation.run", "skisnow.report.run_folder"),
+    ("skisnow.simulation.run", "skisnow.report.run_frames"),
+    ("skisnow.simulation.run", "skisnow.simulation.run_balance"),
 }
 """Files that a method of a lower file imports when it is called."""
 

@@ -73,7 +73,7 @@ def files_passed(action: Any, numbers: tuple[float, ...]) -> dict[str, list[str]
 def main() -> None:
     """Print the files that snow.H_V_N_per_mm3 passes from a scenario file to the core."""
     import skisnow
-    from skisnow.scenario import read_scenario, scenario_text
+    from skisnow.scenario import load_scenario, scenario_text
 
     text = scenario_text(SCENARIO)
     lines = [
@@ -83,7 +83,7 @@ def main() -> None:
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "turn.toml"
         path.write_text("\n".join(lines), encoding="utf-8")
-        passed = files_passed(lambda: skisnow.simulate(read_scenario(path)), (FILE_VALUE, FILE_VALUE * 1e9))
+        passed = files_passed(lambda: skisnow.simulate(load_scenario(path)), (FILE_VALUE, FILE_VALUE * 1e9))
     for number, (name, functions) in enumerate(passed.items(), start=1):
         print(f"{number:3d} {name}: {', '.join(functions)}")
 

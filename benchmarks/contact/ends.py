@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from skisnow.scenario import read_scenario
-from skisnow.simulate.run_setup import set_up
+from skisnow.scenario import load_scenario
+from skisnow.simulation.run_setup import set_up
 
 from ..turns.cases import SCENARIO, SKID
 
@@ -33,7 +33,7 @@ def all_ends() -> dict[str, End]:
     """Of the turns, with the default solver."""
     ends = {}
     for name, changes in TURNS.items():
-        dynamics = set_up(read_scenario(SCENARIO, changes=changes)).dynamics
+        dynamics = set_up(load_scenario(SCENARIO, changes=changes)).dynamics
         for hundredths in range(1, 100 * SECONDS + 1):
             dynamics.advance(0.01 * hundredths)
         ends[name] = End([float(each) for each in dynamics.position], dynamics.counts[2])

@@ -7,7 +7,7 @@ import sys
 import time
 from pathlib import Path
 
-from skisnow.study import Study, run_study
+from skisnow.studies import Study, run_study
 
 from .pairs import SCENARIOS, Pairs
 from .unknowns import POINTS, UNKNOWNS, design

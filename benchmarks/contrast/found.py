@@ -13,11 +13,11 @@ import numpy as np
 import numpy.typing as npt
 from scipy.stats import binomtest
 
-from skisnow.parallel.kept_rows import Row
-from skisnow.scenario import Scenario, read_scenario
+from skisnow._support.processes.kept_rows import Row
+from skisnow._support.units import DEGREE, N_PER_MM2, N_PER_MM3
+from skisnow.scenario import Scenario, load_scenario
 from skisnow.statistics import VarianceShares, variance_shares
-from skisnow.study import read_table
-from skisnow.units import DEGREE, N_PER_MM2, N_PER_MM3
+from skisnow.studies import read_table
 
 from .pairs import CONTACTS, PARTED, SCENARIOS, Pairs, varied_ski
 from .unknowns import UNKNOWNS
@@ -106,7 +106,7 @@ def read_rows(folder: Path) -> list[Row]:
 
 @functools.cache
 def _scenario(name: str) -> Scenario:
-    return read_scenario(name)
+    return load_scenario(name)
 
 
 def demand_and_strength(row: Row) -> tuple[float, float]:

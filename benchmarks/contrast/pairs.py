@@ -10,14 +10,14 @@ from typing import Any, Final
 import numpy as np
 import numpy.typing as npt
 
-from skisnow.errors import SkisnowError
-from skisnow.inputs import Quantity
-from skisnow.json_number import json_number
+from skisnow._support.errors import SkisnowError
+from skisnow._support.json_number import json_number
+from skisnow.parameters import Quantity
 from skisnow.report.turn_numbers import afterbody_depth_ratio, median_radius, used_grip
-from skisnow.scenario import Scenario, read_scenario
-from skisnow.simulate.run import Run
-from skisnow.simulate.run_setup import laid_out
-from skisnow.simulate.simulated_run import simulate
+from skisnow.scenario import Scenario, load_scenario
+from skisnow.simulation.run import Run
+from skisnow.simulation.run_setup import laid_out
+from skisnow.simulation.simulated_run import simulate
 from skisnow.ski import Ski
 from skisnow.track.nearest_place import distance_beside
 
@@ -93,7 +93,7 @@ class Pairs:
 
 def turn(point: Point, *, fast: bool) -> Scenario:
     """The scenario of a point."""
-    base = read_scenario(point["scenario"])
+    base = load_scenario(point["scenario"])
     values = {name: value for name, value in point.items() if "." in name}
     inertia = tuple(each * point["inertia_factor"] for each in base.sledge.inertia)
     made = base.with_(

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy.stats import qmc
 
-from skisnow.inputs import Quantity
+from skisnow.parameters import Quantity
 
 FloatArray = npt.NDArray[np.float64]
 

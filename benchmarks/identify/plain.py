@@ -8,8 +8,8 @@ import numpy as np
 from scipy.interpolate import CubicHermiteSpline
 from scipy.optimize import least_squares
 
-from skisnow.scenario import Stop, read_scenario, scenario_file
-from skisnow.simulate.simulated_run import simulate
+from skisnow.scenario import Stop, load_scenario, scenario_file
+from skisnow.simulation.simulated_run import simulate
 from skisnow.track.track import Track
 
 from .twin import NOISE, SCENARIO, Case
@@ -36,7 +36,7 @@ def plainly_identified(case: Case, track: Track) -> Plain:
         nonlocal runs
         runs += 1
         values = {key: float(value) for key, value in zip(keys, scaled * scale, strict=True)}
-        scenario = replace(read_scenario(SCENARIO, changes=values), stop=Stop(duration=float(track.time[-1]) + 1e-9))
+        scenario = replace(load_scenario(SCENARIO, changes=values), stop=Stop(duration=float(track.time[-1]) + 1e-9))
         run = simulate(scenario)
         within = np.minimum(track.time, run.time[-1])
         place = CubicHermiteSpline(run.time, run.place[:, :2], run.velocity[:, :2])(within)

@@ -10,8 +10,8 @@ from datetime import UTC, datetime
 
 import numpy as np
 
-from skisnow.identify import identify
-from skisnow.parallel.pool import available_cores
+from skisnow._support.processes.pool import available_cores
+from skisnow.identification import identify
 from skisnow.track.track import Track
 
 from .plain import plainly_identified

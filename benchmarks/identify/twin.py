@@ -8,8 +8,8 @@ from typing import Final
 
 import numpy as np
 
-from skisnow.scenario import read_scenario
-from skisnow.simulate.simulated_run import simulate
+from skisnow.scenario import load_scenario
+from skisnow.simulation.simulated_run import simulate
 from skisnow.track.track import Track
 
 SCENARIO: Final = "carved-46m"
@@ -58,7 +58,7 @@ SIX: Final = Case(
 
 def twin(case: Case, *, seed: int = 1, duration_s: float = 5.0) -> Track:
     """The track of the truth with noise."""
-    run = simulate(read_scenario(SCENARIO, changes={**case.truth, "run.duration_s": duration_s}))
+    run = simulate(load_scenario(SCENARIO, changes={**case.truth, "run.duration_s": duration_s}))
     at = np.searchsorted(run.time, np.arange(0.0, duration_s, INTERVAL) + 1e-9) - 1
     at = np.maximum(at, 0)
     place = run.place[at] + NOISE * np.random.default_rng(seed).standard_normal((len(at), 3))

@@ -7,9 +7,9 @@ from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import Final
 
-from skisnow.scenario import read_scenario
-from skisnow.simulate.run import Run
-from skisnow.simulate.simulated_run import simulate
+from skisnow.scenario import load_scenario
+from skisnow.simulation.run import Run
+from skisnow.simulation.simulated_run import simulate
 
 SCENARIO: Final = "carved-46m"
 HARD_SNOW: Final = {"snow.H_V_N_per_mm3": 90, "snow.S_f_N_per_mm2": 10}
@@ -90,7 +90,7 @@ class Runs:
 
     def of(self, changes: Mapping[str, object]) -> Run:
         """The turn with these keys changed."""
-        return simulate(read_scenario(SCENARIO, changes={**changes, "run.duration_s": self.duration_s}))
+        return simulate(load_scenario(SCENARIO, changes={**changes, "run.duration_s": self.duration_s}))
 
     def reference(self, changes: Mapping[str, object]) -> Run:
         """The same, kept."""

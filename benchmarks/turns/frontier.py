@@ -13,10 +13,10 @@ from dataclasses import asdict, dataclass, fields
 from pathlib import Path
 from typing import Final
 
-from skisnow.errors import SkisnowError
-from skisnow.scenario.reading import read_scenario
-from skisnow.simulate.run import Run
-from skisnow.simulate.simulated_run import simulate
+from skisnow._support.errors import SkisnowError
+from skisnow.scenario.reading import load_scenario
+from skisnow.simulation.run import Run
+from skisnow.simulation.simulated_run import simulate
 
 from .cases import FINE, FIRM, HARD_SNOW, SCENARIO, SKID, SOFT
 from .speed import end_distance, told
@@ -111,7 +111,7 @@ def _point(snow: str, method: str, key: str, value: float, repeats: int, referen
 
 def _run(changes: Mapping[str, object]) -> tuple[Run, float]:
     """The turn, and the processor time (s) that it took."""
-    scenario = read_scenario(SCENARIO, changes=dict(changes))
+    scenario = load_scenario(SCENARIO, changes=dict(changes))
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         start = time.process_time()

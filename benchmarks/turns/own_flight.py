@@ -7,9 +7,9 @@ from typing import TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from skisnow.scenario import read_scenario
-from skisnow.simulate.run_record import Record
-from skisnow.simulate.run_setup import laid_out
+from skisnow.scenario import load_scenario
+from skisnow.simulation.run_record import Record
+from skisnow.simulation.run_setup import laid_out
 
 from .cases import SCENARIO, fixed
 
@@ -21,7 +21,7 @@ LIFTED_M = 100.0
 
 def released(step_ms: float, lifted_m: float = LIFTED_M) -> Record:
     """The sledge with skis bent as they rest in the snow, lifted off it."""
-    setup = laid_out(read_scenario(SCENARIO, changes=fixed(step_ms)))
+    setup = laid_out(load_scenario(SCENARIO, changes=fixed(step_ms)))
     dynamics = setup.dynamics
     dynamics.find_equilibrium()
     dynamics.move_to(dynamics.position + np.array([0.0, 0.0, lifted_m]), dynamics.rotation)

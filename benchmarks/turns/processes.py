@@ -12,8 +12,8 @@ from typing import Any
 
 import numpy as np
 
-from skisnow.parallel.batch import run_batch
-from skisnow.parallel.pool import available_cores
+from skisnow._support.processes.batch import run_batch
+from skisnow._support.processes.pool import available_cores
 
 from ..timing import timed
 from .cases import SCENARIO, Case, Runs

@@ -19,10 +19,10 @@ from typing import Any, Final
 
 import numpy as np
 
-from skisnow.errors import SkisnowError
-from skisnow.scenario import Scenario, read_scenario
-from skisnow.simulate.run import LOST, OPEN_SHARE, Run
-from skisnow.simulate.simulated_run import simulate
+from skisnow._support.errors import SkisnowError
+from skisnow.scenario import Scenario, load_scenario
+from skisnow.simulation.run import LOST, OPEN_SHARE, Run
+from skisnow.simulation.simulated_run import simulate
 
 from . import allowed_keys
 
@@ -61,7 +61,7 @@ def changes(seed: int) -> dict[str, Any]:
 
 
 def scenario(seed: int, *, any_values: bool = False) -> Scenario:
-    return read_scenario("carved-46m", changes=allowed_keys.changes(seed) if any_values else changes(seed))
+    return load_scenario("carved-46m", changes=allowed_keys.changes(seed) if any_values else changes(seed))
 
 
 def greatest_fall(run: Run) -> float:

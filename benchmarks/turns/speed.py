@@ -8,10 +8,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from skisnow.errors import SkisnowError
-from skisnow.simulate.run import Run
-from skisnow.simulate.simulated_run import simulate
-from skisnow.simulate.verification import refined_solvers
+from skisnow._support.errors import SkisnowError
+from skisnow.simulation.run import Run
+from skisnow.simulation.simulated_run import simulate
+from skisnow.simulation.verification import refined_solvers
 
 from .cases import CASES, Case, Runs
 

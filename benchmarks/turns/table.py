@@ -7,8 +7,8 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from datetime import UTC, datetime
 
-from skisnow.errors import SkisnowError
-from skisnow.parallel.pool import available_cores
+from skisnow._support.errors import SkisnowError
+from skisnow._support.processes.pool import available_cores
 
 from . import peers, processes, speed
 from .cases import DEFAULT, FAST, HARD_SNOW, SCENARIO, Runs

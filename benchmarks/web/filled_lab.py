@@ -12,9 +12,9 @@ from tempfile import TemporaryDirectory
 
 import numpy as np
 
-from skisnow.field import write_reference
-from skisnow.field.store import Journals, NewEntry, Store
-from skisnow.field.store.description import Description, Value, description_text
+from skisnow.campaign import write_reference
+from skisnow.campaign.store import Journals, NewEntry, Store
+from skisnow.campaign.store.description import Description, Value, description_text
 
 LOADS_N = (12, 32, 72, 132, 212, 332, 492)
 SITES, SEED = 20, 1

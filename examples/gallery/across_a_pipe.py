@@ -19,7 +19,7 @@ import skisnow
 x, y = np.arange(0.0, 41.0, 0.5), np.arange(-7.0, 7.5, 0.5)
 rollers = -0.15 * x + 0.25 * np.cos(2 * np.pi * x / 14.0)
 height = np.add.outer(rollers, 0.02 * y**2)
-turn = skisnow.scenario("carved-46m").with_(
+turn = skisnow.load_scenario("carved-46m").with_(
     slope=skisnow.Terrain(x, y, height),
     x_m=3.0,
     y_m=-2.0,

@@ -14,7 +14,7 @@ import matplotlib.pyplot as plt
 
 import skisnow
 
-run = skisnow.simulate(skisnow.scenario("carved-46m"))
+run = skisnow.simulate(skisnow.load_scenario("carved-46m"))
 
 height = -(run.energies["potential"] - run.energies["potential"][0])
 gained = run.energies["kinetic"] - run.energies["kinetic"][0]

@@ -16,7 +16,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 import skisnow
-from skisnow.identify import PhotoCellRun, PhotoCells
+from skisnow.identification import PhotoCellRun, PhotoCells
 
 START, SLOPE = 3.0, math.radians(12.0)
 

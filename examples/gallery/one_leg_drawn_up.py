@@ -33,7 +33,7 @@ def legs(moment: skisnow.BootMoment) -> list[skisnow.BootPose]:
 
 
 level = dict.fromkeys(("angle_deg", "heading_deg", "edge_angle_deg", "mu_0"), 0.0)
-glide = skisnow.scenario("carved-46m").with_(
+glide = skisnow.load_scenario("carved-46m").with_(
     **level, drag_area_m2=0.0, centre_of_mass_height_m=HEIGHT, duration_s=2.0
 )
 run = skisnow.simulate(glide, boots=legs)

@@ -16,7 +16,7 @@ import skisnow
 
 x = np.arange(0.0, 61.0, 0.5)
 height = -0.1 * x + 0.4 * np.cos(2 * np.pi * x / 30.0)
-turn = skisnow.scenario("carved-46m").with_(
+turn = skisnow.load_scenario("carved-46m").with_(
     slope=skisnow.Profile(x, height),
     x_m=3.0,
     speed_m_per_s=5.0,

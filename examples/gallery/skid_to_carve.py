@@ -21,7 +21,7 @@ EDGE = 30.0
 snow = skisnow.SnowProperties(
     0.2e9, 0.05e6, source="weak in shear", unloading_ratio=10.0
 )
-turn = skisnow.scenario("carved-46m").with_(
+turn = skisnow.load_scenario("carved-46m").with_(
     snow=snow,
     angle_deg=0.0,
     heading_deg=0.0,

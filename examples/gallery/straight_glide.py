@@ -16,7 +16,7 @@ import numpy as np
 
 import skisnow
 
-turn = skisnow.scenario("carved-46m").with_(
+turn = skisnow.load_scenario("carved-46m").with_(
     heading_deg=0.0,
     edge_angle_deg=0.0,
     mu_0=0.05,

@@ -17,7 +17,7 @@ The public names, loaded when first used. Verbs act, nouns are what comes out of
     A ski from its file or from the catalogue.
 ``carve``, ``rest``, ``Equilibrium``
     A ski in snow under a load, carving steadily or at rest.
-``scenario``, ``scenario_names``, ``Scenario``
+``load_scenario``, ``scenario_names``, ``Scenario``
     What a run is: a built-in scenario by its name or any other from its file; `Scenario.with_` makes another of it.
 ``Plane``, ``Profile``, ``Terrain``, ``Contact``, ``SnowMap``, ``Air``, ``RigidSledge``, ``Start``, ``Stop``, ``Solver``
     The parts of a scenario: slope, how snow and skis meet, snow over the place, drag, sledge, where it begins and ends,
@@ -28,7 +28,7 @@ The public names, loaded when first used. Verbs act, nouns are what comes out of
     Gates from a file, and who passed them when: a run or a measured track.
 ``simulate``, ``Run``, ``verify``, ``Refinement``
     A sledge on two flexible skis: the run that comes out of a scenario, and how exact it is.
-``chain``, ``TurnChain``
+``turn``, ``TurnChain``
     From a campaign to a turn in one call, with a band over what is not known of it.
 ``read_track``, ``Track``, ``GeodeticPoint``, ``in_slope_frame``, ``track_summary``, ``TrackSummary``
     Where something was on a slope, and when: from the files of receivers and watches, into the slope's frame; what a
@@ -45,6 +45,10 @@ The public names, loaded when first used. Verbs act, nouns are what comes out of
     History-dependent snow, and any body of one's own in it.
 ``regress``
     Linear regression with the arguments and results of MATLAB's and Octave's ``regress``.
+``SkisnowError``, ``ParameterError``, ``FieldDataError``, ``FitError``, ``SolverError``, ``StoreError``, ``OutputError``
+    What can go wrong; all derive from `SkisnowError`, each has a `code`.
+``RangeWarning``, ``FitWarning``, ``ModelLimitWarning``
+    A relation outside its range, a fit with few certain digits, an input for which the model is known to be wrong.
 """
 
 from __future__ import annotations
@@ -53,18 +57,29 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from .carve import Equilibrium, rest
-    from .carve.equilibrium import carve
-    from .chain.chaining import chain
+    from ._support.errors import (
+        FieldDataError,
+        FitError,
+        FitWarning,
+        ModelLimitWarning,
+        OutputError,
+        ParameterError,
+        RangeWarning,
+        SkisnowError,
+        SolverError,
+        StoreError,
+    )
+    from ._support.processes.batch import run_batch
+    from .campaign import Campaign, check_campaign, read_campaign, write_reference
+    from .campaign.store import Store
+    from .carving import Equilibrium, rest
+    from .carving.equilibrium import carve
     from .contact import ContactForces, Runner, SnowContact, SnowField
-    from .course import Course, CourseResult, Gate, course_names, read_course
     from .dynamics import BootPose
-    from .estimate import Analysis, analyse, results_dict
-    from .field import Campaign, check_campaign, read_campaign, write_reference
-    from .field.store import Store
-    from .identify import Identification
-    from .identify.identifying import identify
-    from .parallel.batch import run_batch
+    from .estimation import Analysis, analyse, results_dict
+    from .identification import Identification
+    from .identification.identifying import identify
+    from .pipeline.turn import turn
     from .racing import QuickestLine, quickest_line
     from .report import TurnChain, write_report
     from .scenario import (
@@ -80,20 +95,21 @@ if TYPE_CHECKING:
         Start,
         Stop,
         Terrain,
+        load_scenario,
         scenario_names,
     )
-    from .scenario import read_scenario as scenario
-    from .simulate import Run
-    from .simulate.moving_boots import BootMoment
-    from .simulate.run_gates import time_gates
-    from .simulate.simulated_run import simulate
-    from .simulate.verification import Refinement, verify
+    from .simulation import Run
+    from .simulation.moving_boots import BootMoment
+    from .simulation.run_gates import time_gates
+    from .simulation.simulated_run import simulate
+    from .simulation.verification import Refinement, verify
     from .ski import Ski, read_ski, ski_names
     from .snow import SnowProperties, published_names, published_snow, snow_from_results
     from .statistics import regress
-    from .study import Study, StudyTable, read_study
-    from .study import run_study as study
+    from .studies import Study, StudyTable, read_study
+    from .studies import run_study as study
     from .track.comparison import Comparison, compare_tracks
+    from .track.course import Course, CourseResult, Gate, course_names, read_course
     from .track.projection import GeodeticPoint
     from .track.read import read_track
     from .track.slope_frame import in_slope_frame
@@ -113,26 +129,36 @@ __all__ = [
     "Course",
     "CourseResult",
     "Equilibrium",
+    "FieldDataError",
+    "FitError",
+    "FitWarning",
     "Gate",
     "GeodeticPoint",
     "Identification",
+    "ModelLimitWarning",
+    "OutputError",
+    "ParameterError",
     "Plane",
     "Profile",
     "QuickestLine",
+    "RangeWarning",
     "Refinement",
     "RigidSledge",
     "Run",
     "Runner",
     "Scenario",
     "Ski",
+    "SkisnowError",
     "SnowContact",
     "SnowField",
     "SnowMap",
     "SnowProperties",
     "Solver",
+    "SolverError",
     "Start",
     "Stop",
     "Store",
+    "StoreError",
     "Study",
     "StudyTable",
     "Terrain",
@@ -141,12 +167,12 @@ __all__ = [
     "TurnChain",
     "analyse",
     "carve",
-    "chain",
     "check_campaign",
     "compare_tracks",
     "course_names",
     "identify",
     "in_slope_frame",
+    "load_scenario",
     "published_names",
     "published_snow",
     "quickest_line",
@@ -159,7 +185,6 @@ __all__ = [
     "rest",
     "results_dict",
     "run_batch",
-    "scenario",
     "scenario_names",
     "simulate",
     "ski_names",
@@ -167,21 +192,35 @@ __all__ = [
     "study",
     "time_gates",
     "track_summary",
+    "turn",
     "verify",
     "write_reference",
     "write_report",
 ]
 
 _PACKAGES = {
-    "carve": ("Equilibrium", "rest"),
+    "_support.errors": (
+        "FieldDataError",
+        "FitError",
+        "FitWarning",
+        "ModelLimitWarning",
+        "OutputError",
+        "ParameterError",
+        "RangeWarning",
+        "SkisnowError",
+        "SolverError",
+        "StoreError",
+    ),
+    "_support.processes.batch": ("run_batch",),
+    "campaign": ("Campaign", "check_campaign", "read_campaign", "write_reference"),
+    "campaign.store": ("Store",),
+    "carving": ("Equilibrium", "rest"),
+    "carving.equilibrium": ("carve",),
     "contact": ("ContactForces", "Runner", "SnowContact", "SnowField"),
-    "course": ("Course", "CourseResult", "Gate", "course_names", "read_course"),
     "dynamics": ("BootPose",),
-    "estimate": ("Analysis", "analyse", "results_dict"),
-    "field": ("Campaign", "check_campaign", "read_campaign", "write_reference"),
-    "field.store": ("Store",),
-    "identify": ("Identification",),
-    "parallel.batch": ("run_batch",),
+    "estimation": ("Analysis", "analyse", "results_dict"),
+    "identification": ("Identification", "identify"),
+    "pipeline.turn": ("turn",),
     "racing": ("QuickestLine", "quickest_line"),
     "report": ("TurnChain", "write_report"),
     "scenario": (
@@ -197,17 +236,20 @@ _PACKAGES = {
         "Start",
         "Stop",
         "Terrain",
+        "load_scenario",
         "scenario_names",
     ),
-    "simulate": ("Run",),
-    "simulate.moving_boots": ("BootMoment",),
-    "simulate.run_gates": ("time_gates",),
-    "simulate.verification": ("Refinement", "verify"),
+    "simulation": ("Run",),
+    "simulation.moving_boots": ("BootMoment",),
+    "simulation.run_gates": ("time_gates",),
+    "simulation.simulated_run": ("simulate",),
+    "simulation.verification": ("Refinement", "verify"),
     "ski": ("Ski", "read_ski", "ski_names"),
     "snow": ("SnowProperties", "published_names", "published_snow", "snow_from_results"),
     "statistics": ("regress",),
-    "study": ("Study", "StudyTable", "read_study"),
+    "studies": ("Study", "StudyTable", "read_study", "run_study"),
     "track.comparison": ("Comparison", "compare_tracks"),
+    "track.course": ("Course", "CourseResult", "Gate", "course_names", "read_course"),
     "track.projection": ("GeodeticPoint",),
     "track.read": ("read_track",),
     "track.slope_frame": ("in_slope_frame",),
@@ -215,19 +257,10 @@ _PACKAGES = {
     "track.track": ("Track",),
 }
 _PLACES = {name: (package, name) for package, names in _PACKAGES.items() for name in names}
-_CALLABLE_PACKAGES = ("carve", "chain", "identify", "scenario", "simulate", "study")
-"""Packages whose name is a verb: they can be called, see `skisnow.callable_packages`."""
-_FORMER_NAMES = {"read_scenario": "scenario", "simulated_run": "simulate"}
+_PLACES["study"] = _PLACES.pop("run_study")
 
 
 def __getattr__(name: str) -> Any:
-    if name in _CALLABLE_PACKAGES:
-        return import_module(f".{name}", __name__)
-    if name in _FORMER_NAMES:
-        from .former_names import warn_of_former_name
-
-        warn_of_former_name(f"skisnow.{name}", f"skisnow.{_FORMER_NAMES[name]}")
-        return __getattr__(_FORMER_NAMES[name])
     if name not in _PLACES:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     package, own_name = _PLACES[name]

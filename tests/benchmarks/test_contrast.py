@@ -19,7 +19,7 @@ from benchmarks.contrast.unknowns import POINTS, UNKNOWNS, design
 from skisnow import Run
 from skisnow.scenario import Scenario
 from skisnow.ski import read_ski
-from skisnow.study import run_study
+from skisnow.studies import run_study
 
 from ..report.runs import RADIUS, circle_run
 

@@ -14,7 +14,7 @@ import pytest
 import skisnow
 from skisnow.cli import main
 
-SCHEMA = json.loads((Path(skisnow.__file__).parent / "carve/schemas/carve.schema.json").read_text("utf-8"))
+SCHEMA = json.loads((Path(skisnow.__file__).parent / "carving/schemas/carve.schema.json").read_text("utf-8"))
 CONTRACT = [
     "outcome",
     "holds",

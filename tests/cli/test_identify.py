@@ -15,10 +15,12 @@ import pytest
 from skisnow.cli import main
 from skisnow.report.figures.drawing import FORMS
 
-from ..identify import straight_tracks
-from ..identify.test_photo_cell_times import AREA, CHANGES, MU, STATION, truth
+from ..identification import straight_tracks
+from ..identification.test_photo_cell_times import AREA, CHANGES, MU, STATION, truth
 
-SCHEMA = json.loads((files("skisnow.identify") / "schemas" / "identification.schema.json").read_text(encoding="utf-8"))
+SCHEMA = json.loads(
+    (files("skisnow.identification") / "schemas" / "identification.schema.json").read_text(encoding="utf-8")
+)
 SETS = [word for key, value in CHANGES.items() for word in ("--set", f"{key}={value}")]
 Printed = pytest.CaptureFixture[str]
 
@@ -81,7 +83,7 @@ def test_asked_to_end_before_the_first_point_it_says_so(cells: Path, monkeypatch
         os.kill(os.getpid(), signal.SIGTERM)
         signal.pause()
 
-    monkeypatch.setattr("skisnow.identify.identify", ended)
+    monkeypatch.setattr("skisnow.identification.identify", ended)
     assert main(["identify", "carved-46m", str(cells), "--free", "mu_0", *SETS]) == 143
 
 
@@ -123,7 +125,7 @@ def test_an_interrupted_search_is_kept_and_gone_on_with(
     path.write_text("time_s,x_m,y_m\n" + "\n".join(rows) + "\n", encoding="utf-8")
     sets = [word for key, value in straight_tracks.SCENARIO.items() for word in ("--set", f"{key}={value}")]
     words = ["carved-46m", str(path), "--free", "mu_0,speed", "--workers", "1", "--out", str(tmp_path / "out"), *sets]
-    module = sys.modules["skisnow.simulate.simulated_run"]
+    module = sys.modules["skisnow.simulation.simulated_run"]
     simulate, calls = module.simulate, []
 
     def stopping(scenario: Any) -> Any:
@@ -147,6 +149,6 @@ def test_the_strength_alone_from_marks(tmp_path: Path, capsys: Printed) -> None:
     printed = capsys.readouterr()
     assert f"{path}: measured grooves (places: 3)\n" in printed.out
     assert "bounded from below" in printed.err
-    found = json.loads((tmp_path / "found" / "identification.json").read_text(encoding="utf-8"))
+    found = json.loads((tmp_path / "found" / "identification.json").read_text("utf-8"))
     jsonschema.validate(found, SCHEMA)
     assert found["data"] == [{"name": str(path), "taken_for": "measured grooves (places: 3)"}]

@@ -13,7 +13,7 @@ import pytest
 import skisnow
 from skisnow.cli import main
 
-CHECK_SCHEMA = json.loads((Path(skisnow.__file__).parent / "field/schemas/check.schema.json").read_text("utf-8"))
+CHECK_SCHEMA = json.loads((Path(skisnow.__file__).parent / "campaign/schemas/check.schema.json").read_text("utf-8"))
 
 
 @pytest.fixture

@@ -18,11 +18,11 @@ import pytest
 from skisnow import Run, Scenario
 from skisnow.cli import main
 from skisnow.cli.progress import Progress
-from skisnow.simulate.track_table import write_track
+from skisnow.simulation.track_table import write_track
 
-from ..simulate.straight_run import STRAIGHT, straight_run
+from ..simulation.straight_run import STRAIGHT, straight_run
 
-SCHEMA = json.loads((files("skisnow.simulate") / "schemas" / "summary.schema.json").read_text(encoding="utf-8"))
+SCHEMA = json.loads((files("skisnow.simulation") / "schemas" / "summary.schema.json").read_text(encoding="utf-8"))
 ASKED = ["carved-46m", *(word for key, value in STRAIGHT.items() for word in ("--set", f"{key}={value}"))]
 LENGTH = 10.0 + 2.0 * 9.81 * (0.17364817766693033 - 0.05 * 0.984807753012208)  # 2 s from 5 m/s down 10°, μ = 0.05
 Printed = pytest.CaptureFixture[str]
@@ -33,9 +33,9 @@ Replaced = Callable[[Simulate], None]
 @pytest.fixture
 def replaced(monkeypatch: pytest.MonkeyPatch) -> Replaced:
     def put(simulate: Simulate) -> None:
-        module = ModuleType("skisnow.simulate.simulated_run")
+        module = ModuleType("skisnow.simulation.simulated_run")
         vars(module)["simulate"] = simulate
-        monkeypatch.setitem(sys.modules, "skisnow.simulate.simulated_run", module)
+        monkeypatch.setitem(sys.modules, "skisnow.simulation.simulated_run", module)
 
     put(straight_run)
     return put

@@ -12,12 +12,12 @@ import pytest
 from sqlalchemy import insert
 
 from skisnow import read_campaign
+from skisnow._support.errors import StoreError
+from skisnow.campaign.reading.campaign import check_campaign
+from skisnow.campaign.store import JournalHead, Journals, NewEntry, Store, StoredCampaign, find_campaign
+from skisnow.campaign.store.engine import writing
+from skisnow.campaign.store.schema import journal
 from skisnow.cli import main
-from skisnow.errors import StoreError
-from skisnow.field.reading.campaign import check_campaign
-from skisnow.field.store import JournalHead, Journals, NewEntry, Store, StoredCampaign, find_campaign
-from skisnow.field.store.engine import writing
-from skisnow.field.store.schema import journal
 
 RAW = b"experiment;site\r\nP1;Gr\xf6den\r\n"
 
@@ -164,7 +164,7 @@ def test_a_check_that_breaks_is_told(shell: Shell, folder: Path, monkeypatch: py
     def breaks(_: Path) -> None:
         raise ZeroDivisionError("by zero")
 
-    monkeypatch.setattr("skisnow.field.reading.campaign.check_campaign", breaks)
+    monkeypatch.setattr("skisnow.campaign.reading.campaign.check_campaign", breaks)
     out, told = shell.text("add", folder, "--json")
     assert json.loads(out)["n_errors"] is None
     assert "could not be checked: ZeroDivisionError: by zero" in told

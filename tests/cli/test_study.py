@@ -11,9 +11,9 @@ from pathlib import Path
 
 import pytest
 
+from skisnow._support.errors import SkisnowError
+from skisnow._support.processes.kept_rows import KeptRows
 from skisnow.cli import main
-from skisnow.errors import SkisnowError
-from skisnow.parallel.kept_rows import KeptRows
 
 TEXT = """
 out = "tables/table.csv"

@@ -12,9 +12,9 @@ import numpy.typing as npt
 import pytest
 
 from skisnow import read_ski
+from skisnow._support.errors import ParameterError
 from skisnow.compiled import core
 from skisnow.contact import Runner, SnowContact, SnowField
-from skisnow.errors import ParameterError
 from skisnow.forces.friction import ConstantFriction, FrictionLaw, LinearFriction, QuadraticFriction, WaterFilmFriction
 from skisnow.forces.shear import AngleShear, MachiningShear, ShearLaw
 from skisnow.geometry.surfaces import Grid

@@ -10,8 +10,8 @@ import numpy.typing as npt
 import pytest
 
 from skisnow import read_ski
+from skisnow._support.errors import ParameterError
 from skisnow.contact import Runner, SnowContact, SnowField
-from skisnow.errors import ParameterError
 from skisnow.forces.penetration import ElasticPoint, HypoplasticPoint, MeanPressurePoint, PointLaw, VolumeWithAnglePoint
 
 from .conftest import edged, straight

@@ -8,8 +8,8 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
+from skisnow._support.errors import ParameterError
 from skisnow.contact import SnowContact, SnowField
-from skisnow.errors import ParameterError
 from skisnow.forces.penetration import MeanPressurePoint
 from skisnow.forces.penetration.rate import creep_depth
 

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from skisnow import read_ski
+from skisnow._support.errors import RangeWarning
 from skisnow.contact import Runner, SnowContact, SnowField
-from skisnow.errors import RangeWarning
 from skisnow.forces.friction import WaterFilmFriction
 from skisnow.forces.shear import AngleShear, MachiningShear, ShearLaw
 

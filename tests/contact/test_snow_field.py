@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 import pytest
 
+from skisnow._support.errors import ParameterError
 from skisnow.contact import SnowContact, SnowField
-from skisnow.errors import ParameterError
 from skisnow.forces.friction import ConstantFriction, FrictionLaw, LinearFriction, QuadraticFriction, WaterFilmFriction
 from skisnow.forces.penetration import HypoplasticPoint
 from skisnow.forces.shear import AngleShear, ConstantShear, MachiningShear

@@ -10,8 +10,8 @@ import struct
 import numpy as np
 import pytest
 
+from skisnow._support.errors import ParameterError
 from skisnow.contact import ContactState, Runner, SnowContact, SnowField
-from skisnow.errors import ParameterError
 from skisnow.geometry.surfaces import Grid
 
 from .conftest import FloatArray, straight

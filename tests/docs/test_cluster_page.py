@@ -9,9 +9,9 @@ from pathlib import Path
 
 import pytest
 
+from skisnow._support.processes.dask_cluster import scheduler_of
 from skisnow.cli import build_parser
-from skisnow.parallel.dask_cluster import scheduler_of
-from skisnow.study import Shard
+from skisnow.studies import Shard
 
 PAGE = (Path(__file__).resolve().parents[2] / "docs" / "how-to" / "cluster.md").read_text(encoding="utf-8")
 

@@ -8,11 +8,11 @@ from typing import Any
 import pytest
 
 import skisnow
+from skisnow.campaign.problems import ERROR_CODES, WARNING_CODES
+from skisnow.campaign.quality_flags import ALWAYS_EXCLUDE, QUALITY_FLAGS
+from skisnow.campaign.reading.table_forms import CORRECTIONS, TABLES
+from skisnow.campaign.reading.tool_shapes import SHAPES
 from skisnow.cli import build_parser
-from skisnow.field.problems import ERROR_CODES, WARNING_CODES
-from skisnow.field.quality_flags import ALWAYS_EXCLUDE, QUALITY_FLAGS
-from skisnow.field.reading.table_forms import CORRECTIONS, TABLES
-from skisnow.field.reading.tool_shapes import SHAPES
 
 ROOT = Path(__file__).resolve().parents[2]
 CAMPAIGN, RESULTS, COMMANDS = (
@@ -60,13 +60,13 @@ def keys_of(schema: Any) -> Iterator[str]:
 
 
 def test_every_key_of_the_results_is_told() -> None:
-    schema = json.loads((PACKAGE / "estimate/schemas/results.schema.json").read_text(encoding="utf-8"))
+    schema = json.loads((PACKAGE / "estimation/schemas/results.schema.json").read_text(encoding="utf-8"))
     missing = {key for key in keys_of(schema) if key not in RESULTS + BESIDE}
     assert not missing
 
 
 def test_every_key_of_campaign_toml_is_told() -> None:
-    schema = json.loads((PACKAGE / "field/schemas/campaign.schema.json").read_text(encoding="utf-8"))
+    schema = json.loads((PACKAGE / "campaign/schemas/campaign.schema.json").read_text(encoding="utf-8"))
     missing = {key for key in keys_of(schema) if key not in CAMPAIGN + BESIDE}
     assert not missing
 

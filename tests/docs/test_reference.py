@@ -58,7 +58,7 @@ def test_every_function(name: str) -> None:
 
 @pytest.mark.parametrize("name", CLASSES)
 def test_every_class(name: str) -> None:
-    assert "See Also" in sections(CLASSES[name])
+    assert "See Also" in sections(CLASSES[name]) or issubclass(CLASSES[name], Exception)
 
 
 @pytest.mark.parametrize("law", LAWS, ids=lambda law: law.__name__)

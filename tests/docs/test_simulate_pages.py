@@ -9,11 +9,11 @@ from typing import Any, get_args
 import pytest
 
 import skisnow
-from skisnow.scenario import read_scenario, scenario_file
-from skisnow.simulate.run import Outcome
-from skisnow.simulate.track_table import COLUMNS
-from skisnow.study import read_study
-from skisnow.study.scenario_subject import RESULTS
+from skisnow.scenario import load_scenario, scenario_file
+from skisnow.simulation.run import Outcome
+from skisnow.simulation.track_table import COLUMNS
+from skisnow.studies import read_study
+from skisnow.studies.scenario_subject import RESULTS
 
 DOCS = Path(__file__).resolve().parents[2] / "docs"
 PAGE = (DOCS / "files" / "scenario.md").read_text(encoding="utf-8")
@@ -29,7 +29,7 @@ def keys_of(schema: Any) -> Iterator[str]:
 
 
 def test_every_key_of_the_summary_and_every_column_is_told() -> None:
-    path = Path(skisnow.__file__).parent / "simulate/schemas/summary.schema.json"
+    path = Path(skisnow.__file__).parent / "simulation/schemas/summary.schema.json"
     schema = json.loads(path.read_text(encoding="utf-8"))
     del schema["properties"]["scenario"]["properties"]  # the table's
     keys = {key.replace("_start_J", "_J") for key in keys_of(schema)}  # the page says how the start is named
@@ -55,7 +55,7 @@ def test_commands_of_the_how_to_change_what_can_be_changed() -> None:
     assert len(lines) == 3
     for line in lines:
         changes = dict(parse_change(part.strip()) for part in line.split("--set")[1:])
-        read_scenario(line.split()[2], changes=changes)
+        load_scenario(line.split()[2], changes=changes)
 
 
 def test_study_of_the_how_to_can_be_read(tmp_path: Path) -> None:

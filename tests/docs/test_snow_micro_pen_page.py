@@ -6,9 +6,9 @@ import importlib
 from pathlib import Path
 from typing import Any
 
-from skisnow.field import read_snow_micro_pen
+from skisnow.campaign import read_snow_micro_pen
 
-from ..field.recordings import LONG, SHORT, recording
+from ..campaign.recordings import LONG, SHORT, recording
 
 DOCS = Path(__file__).resolve().parents[2] / "docs"
 

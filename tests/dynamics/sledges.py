@@ -11,8 +11,8 @@ from skisnow import Scenario
 from skisnow.contact import Runner, SnowContact, SnowField
 from skisnow.dynamics import Body, Dynamics, Ended, StepControl
 from skisnow.forces.friction import FrictionLaw
-from skisnow.scenario import Plane, RigidSledge, read_scenario
-from skisnow.simulate.sledge.body import sledge_body
+from skisnow.scenario import Plane, RigidSledge, load_scenario
+from skisnow.simulation.sledge.body import sledge_body
 from skisnow.ski.beam.clamped import ClampedSki, clamped
 
 FloatArray = npt.NDArray[np.float64]
@@ -21,7 +21,7 @@ CARVE = "carved-46m"
 
 def given(name: str = CARVE, /, **changes: float) -> Scenario:
     """A built-in scenario; ``snow__H_V_N_per_mm3`` changes snow.H_V_N_per_mm3."""
-    return read_scenario(name, changes={key.replace("__", "."): value for key, value in changes.items()})
+    return load_scenario(name, changes={key.replace("__", "."): value for key, value in changes.items()})
 
 
 def fixed(step: float) -> StepControl:

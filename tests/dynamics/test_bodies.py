@@ -56,11 +56,3 @@ def test_glides_straight(skis: int, body_on: Callable[[Scenario], Body]) -> None
     assert normal < 0.0
     sums = [-np.trapezoid(dynamics.along(k)[1], dynamics.contact.runners[k].nodes) for k in range(skis)]
     assert sum(sums) == pytest.approx(-body.mass * body.gravity[2], rel=0.2)
-
-
-def test_former_names_give_the_same_and_warn() -> None:
-    dynamics = sledge(FLAT, body=on_one_ski(FLAT))
-    with pytest.warns(DeprecationWarning, match=r"Dynamics\.settle is called find_equilibrium now"):
-        assert dynamics.settle() < 1e-9
-    with pytest.warns(DeprecationWarning, match=r"Dynamics\.bend is called beam_dofs now"):
-        assert np.array_equal(dynamics.bend, dynamics.beam_dofs)

@@ -10,9 +10,9 @@ from typing import Any
 import numpy as np
 import pytest
 
+from skisnow._support.errors import ParameterError
 from skisnow.contact import Runner, SnowContact
 from skisnow.dynamics import Body, Dynamics, Ended, StepControl
-from skisnow.errors import ParameterError
 
 from .sledges import ahead, body_of, clamped_ski, given, placed, sledge, snow_of, started
 

@@ -10,9 +10,9 @@ import numpy.typing as npt
 import pytest
 from benchmarks.turns import allowed_keys
 
-from skisnow.errors import SkisnowError
-from skisnow.scenario import read_scenario
-from skisnow.simulate.run_setup import AT_REST, set_up
+from skisnow._support.errors import SkisnowError
+from skisnow.scenario import load_scenario
+from skisnow.simulation.run_setup import AT_REST, set_up
 
 FloatArray = npt.NDArray[np.float64]
 INTERVAL, SEEDS = 0.02, 6
@@ -24,7 +24,7 @@ def moments(changes: dict[str, Any], count: int = 40) -> dict[str, FloatArray]:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         try:
-            setup = set_up(read_scenario("carved-46m", changes=changes))
+            setup = set_up(load_scenario("carved-46m", changes=changes))
         except SkisnowError:
             return {}
     dynamics = setup.dynamics

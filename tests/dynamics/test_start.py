@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from skisnow.errors import ParameterError
-from skisnow.scenario import read_scenario
+from skisnow._support.errors import ParameterError
+from skisnow.scenario import load_scenario
 
 from .balance import left_over
 from .sledges import advanced, given, sledge
@@ -31,7 +31,7 @@ def test_the_start_is_that_of_the_former_solver(former: dict[str, Any]) -> None:
     was set down: at 70° that moves tips by 0.7 µm and boots by 0.1 µm, in built-in scenarios a tenth of it. Each line
     stands for the ski halfway to its neighbours, formerly for one spacing: that turns the ski by 5e-8, in built-in
     scenarios a tenth of what lines four times as close do."""
-    scenario = read_scenario(former["scenario"], changes=former["changes"])
+    scenario = load_scenario(former["scenario"], changes=former["changes"])
     dynamics = sledge(scenario, elements=former["elements"], spacing=former["line_spacing"])
     assert dynamics.find_equilibrium() < 1e-9
     within = 1e-6 if former["changes"] else 1e-7

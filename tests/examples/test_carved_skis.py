@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from skisnow import read_ski
-from skisnow.study import read_study
+from skisnow.studies import read_study
 
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
 

@@ -11,7 +11,7 @@ import skisnow
 
 from .gallery import builder
 
-PUBLIC_PACKAGES = ("skisnow.forces", "skisnow.geometry", "skisnow.identify")
+PUBLIC_PACKAGES = ("skisnow.forces", "skisnow.geometry", "skisnow.identification")
 """Packages whose names docs/api.md shows beside those of `skisnow`."""
 NAMES = tuple(builder().names())
 

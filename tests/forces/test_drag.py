@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from skisnow.errors import ParameterError, RangeWarning
+from skisnow._support.errors import ParameterError, RangeWarning
 from skisnow.forces.drag import AirDrag
 from skisnow.forces.friction import ConstantFriction
 

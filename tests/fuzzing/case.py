@@ -14,8 +14,8 @@ from tempfile import TemporaryDirectory
 from typing import Any, Final
 
 import skisnow
-from skisnow import errors
-from skisnow.errors import SkisnowError
+from skisnow._support import errors
+from skisnow._support.errors import SkisnowError
 
 from .reader import Reader
 

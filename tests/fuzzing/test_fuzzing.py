@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from skisnow.errors import ParameterError, RangeWarning
+from skisnow._support.errors import ParameterError, RangeWarning
 
 from .case import Fault, run_case
 from .reader import Reader

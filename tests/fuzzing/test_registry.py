@@ -10,7 +10,7 @@ from types import FrameType
 
 import pytest
 
-from skisnow.errors import SkisnowError
+from skisnow._support.errors import SkisnowError
 
 from .reader import Reader
 from .registry import READERS
@@ -25,7 +25,7 @@ def test_every_function_that_opens_files_is_in_the_registry() -> None:
     found = openers()
     assert found - COVERED - NO_READERS.keys() == set()
     assert NO_READERS.keys() - found == set()
-    assert {"track.read:_bytes", "ski.file_values:file_values", "sqlite_file:connect"} <= found
+    assert {"track.read:_bytes", "ski.file_values:file_values", "_support.sqlite_file:connect"} <= found
 
 
 def test_a_function_has_a_reader_or_a_reason_and_not_both() -> None:

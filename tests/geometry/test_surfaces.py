@@ -5,8 +5,8 @@ import math
 import numpy as np
 import pytest
 
+from skisnow._support.errors import ParameterError
 from skisnow.compiled import core
-from skisnow.errors import ParameterError
 from skisnow.geometry.surfaces import Grid
 
 

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from skisnow.errors import ParameterError
+from skisnow._support.errors import ParameterError
 from skisnow.geometry import Disc, LyingCylinder, PlainWedge, SkiPiece, Tool, in_form
 
 PAPER_TOOL = SkiPiece(length=0.200, width=0.062)

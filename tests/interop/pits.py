@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from skisnow.field.snow_pit import DepthTemperature, ForceProfile, LayerDensity, PlateValue, SnowLayer, SnowPit
+from skisnow.campaign.snow_pit import DepthTemperature, ForceProfile, LayerDensity, PlateValue, SnowLayer, SnowPit
 
 
 def full_pit() -> SnowPit:

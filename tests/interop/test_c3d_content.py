@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from skisnow.errors import ParameterError
+from skisnow._support.errors import ParameterError
 from skisnow.interop.opensim import read_c3d
 
 from .c3d_files import BLOCK, DEC, INTEL, MIPS, c3d_bytes

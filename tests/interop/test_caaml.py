@@ -8,9 +8,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from skisnow.errors import FieldDataError, ParameterError
-from skisnow.field.caaml import read_caaml
-from skisnow.field.snow_pit import DepthTemperature, SnowLayer, SnowPit
+from skisnow._support.errors import FieldDataError, ParameterError
+from skisnow.campaign.caaml import read_caaml
+from skisnow.campaign.snow_pit import DepthTemperature, SnowLayer, SnowPit
 from skisnow.interop.caaml import caaml_text, write_caaml
 
 from .pits import full_pit

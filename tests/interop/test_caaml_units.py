@@ -9,10 +9,10 @@ from pathlib import Path
 
 import pytest
 
-from skisnow.errors import FieldDataError
-from skisnow.field import Problem
-from skisnow.field.caaml import read_caaml
-from skisnow.field.snow_pit import SnowPit
+from skisnow._support.errors import FieldDataError
+from skisnow.campaign import Problem
+from skisnow.campaign.caaml import read_caaml
+from skisnow.campaign.snow_pit import SnowPit
 
 CASES = Path(__file__).parents[2].parent / "shared" / "cases" / "pits"
 VERSION_6 = """<?xml version="1.0" encoding="UTF-8"?>

@@ -8,15 +8,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from skisnow import scenario
-from skisnow.errors import ParameterError
+from skisnow import load_scenario
+from skisnow._support.errors import ParameterError
 from skisnow.geometry.surfaces import Grid
 from skisnow.interop.chrono import write_chrono_terrain
 from skisnow.scenario.snow_map import SnowMap
 
 
 def test_a_terrain_has_the_snow_of_the_scenario(tmp_path: Path) -> None:
-    path = write_chrono_terrain(scenario("carved-46m"), tmp_path / "chrono", size=(4.0, 2.0), spacing=0.05)
+    path = write_chrono_terrain(load_scenario("carved-46m"), tmp_path / "chrono", size=(4.0, 2.0), spacing=0.05)
     terrain = json.loads(path.read_text(encoding="utf-8"))
     assert terrain["Template"] == "SCMDeformableTerrain"
     assert terrain["Geometry"] == {"Height": 0.0, "Size": [4.0, 2.0], "Divisions": [80, 40]}
@@ -34,12 +34,12 @@ def test_a_terrain_has_the_snow_of_the_scenario(tmp_path: Path) -> None:
 
 
 def test_snow_that_does_not_fit_is_refused(tmp_path: Path) -> None:
-    elastic = scenario("carved-46m", changes={"snow.unloading_ratio": 1.0})
+    elastic = load_scenario("carved-46m", changes={"snow.unloading_ratio": 1.0})
     with pytest.raises(ParameterError, match="unloading_ratio is 1"):
         write_chrono_terrain(elastic, tmp_path)
     over = SnowMap(hardness=Grid.along(np.arange(4.0), np.full(4, 2e8)))
     with pytest.raises(ParameterError, match="the scenario's snow varies, or has no S_f"):
-        write_chrono_terrain(scenario("carved-46m").with_(snow_map=over), tmp_path)
+        write_chrono_terrain(load_scenario("carved-46m").with_(snow_map=over), tmp_path)
     with pytest.raises(ParameterError, match="must be above 0"):
-        write_chrono_terrain(scenario("carved-46m"), tmp_path, spacing=0.0)
+        write_chrono_terrain(load_scenario("carved-46m"), tmp_path, spacing=0.0)
     assert not list(tmp_path.iterdir())

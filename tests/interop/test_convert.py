@@ -8,12 +8,12 @@ from pathlib import Path
 import pytest
 
 from skisnow import analyse, read_campaign
+from skisnow.campaign.caaml import read_caaml
 from skisnow.cli import main
-from skisnow.field.caaml import read_caaml
 from skisnow.interop.caaml import write_caaml
 from skisnow.interop.site_pit import site_pit
 
-from ..field.recordings import plain_snow
+from ..campaign.recordings import plain_snow
 from .pits import full_pit
 
 TOML = """

@@ -18,17 +18,17 @@ from typing import cast
 import numpy as np
 import pytest
 
-from skisnow import scenario, simulate
+from skisnow import load_scenario, simulate
+from skisnow._support.errors import ParameterError
 from skisnow.contact import Runner, SnowContact, SnowField
-from skisnow.errors import ParameterError
 from skisnow.geometry.surfaces import Grid
 from skisnow.interop import write_contact_fmu, write_sledge_fmu
 from skisnow.interop.fmu.description import Version
 from skisnow.interop.fmu.models import _require_own_laws, _snow_parameters, contact_model, sledge_model
 from skisnow.interop.fmu.variables import UNITS
 from skisnow.scenario.snow_map import SnowMap
-from skisnow.simulate.run_setup import laid_out
-from skisnow.simulate.sledge.frames import rotation
+from skisnow.simulation.run_setup import laid_out
+from skisnow.simulation.sledge.frames import rotation
 
 from .fmi import Fmu, Instance
 
@@ -37,7 +37,7 @@ pytestmark = pytest.mark.skipif(
     reason="FMUs hold a library for Linux on x86-64 alone",
 )
 
-SCENARIO = scenario("carved-46m").with_(duration_s=0.1)
+SCENARIO = load_scenario("carved-46m").with_(duration_s=0.1)
 STEP = 0.01
 SIDES = ("left", "right")
 SLEDGE_OUTPUTS = tuple(
@@ -409,5 +409,5 @@ def test_wrong_names_numbers_and_scenarios_are_refused(tmp_path: Path) -> None:
     with pytest.raises(ParameterError, match="skis is 3"):
         write_contact_fmu(SCENARIO, tmp_path / "contact.fmu", skis=3)
     with pytest.raises(ParameterError, match="skier: an FMU holds a sledge"):
-        write_sledge_fmu(scenario("skier-10deg"), tmp_path / "skier.fmu")
+        write_sledge_fmu(load_scenario("skier-10deg"), tmp_path / "skier.fmu")
     assert not list(tmp_path.iterdir())

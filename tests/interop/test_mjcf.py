@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 from skisnow import read_ski
+from skisnow._support.errors import ParameterError
 from skisnow.cli import main
-from skisnow.errors import ParameterError
 from skisnow.interop.mujoco import rigid_ski_geoms, ski_mjcf
 
 

@@ -7,8 +7,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from skisnow._support.errors import ParameterError
 from skisnow.cli import main
-from skisnow.errors import ParameterError
 from skisnow.interop.opensim import Markers, read_c3d, read_motion, read_trc
 
 from .c3d_files import c3d_bytes

@@ -10,8 +10,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from skisnow._support.errors import ParameterError
 from skisnow.cli import main
-from skisnow.errors import ParameterError
 from skisnow.geometry.boot_axes import axes_of
 from skisnow.interop.opensim import (
     BootMarkers,

@@ -8,16 +8,16 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from skisnow.errors import ParameterError
-from skisnow.field import read_snow_micro_pen
-from skisnow.field.caaml import read_caaml
-from skisnow.field.smet import StationSeries
-from skisnow.field.snow_pit import DepthTemperature, LayerDensity, PlateValue, SnowLayer, SnowPit
+from skisnow._support.errors import ParameterError
+from skisnow.campaign import read_snow_micro_pen
+from skisnow.campaign.caaml import read_caaml
+from skisnow.campaign.smet import StationSeries
+from skisnow.campaign.snow_pit import DepthTemperature, LayerDensity, PlateValue, SnowLayer, SnowPit
 from skisnow.interop.caaml import caaml_text, write_caaml
 from skisnow.interop.smet import write_smet, write_weather_csv
 from skisnow.interop.snowex import write_snowex_force, write_snowex_pit
 
-from ..field.recordings import plain_snow
+from ..campaign.recordings import plain_snow
 from .pits import full_pit
 
 

@@ -36,15 +36,21 @@ EQUIVALENTS: Final = Path(__file__).with_name("equivalents.toml")
 
 def files_of(package: str, *, root: Path = ROOT) -> list[Path]:
     """Python files of a package, or the one file that a package is, from the tree's top."""
-    found = sorted((root / SOURCE / package).rglob("*.py")) or sorted((root / SOURCE).glob(f"{package}.py"))
+    found = sorted((root / SOURCE / package).rglob("*.py")) or sorted(root.glob(f"{SOURCE}/{package}.py"))
     if not found:
-        sys.exit(f"no package {package!r}: give a folder or file of {SOURCE}, such as track, field/store or units")
+        sys.exit(f"no package {package!r}: give a folder or file of {SOURCE}, such as track or campaign/store")
     return [path.relative_to(root) for path in found]
 
 
 def package_tests(package: str, *, root: Path = ROOT) -> tuple[str, ...]:
     """The package's tests and the examples in its docstrings."""
-    named = [f"tests/{package}", f"tests/test_{package}.py", f"{SOURCE}/{package}", f"{SOURCE}/{package}.py"]
+    tests = package.replace("_support", "support")
+    named = [
+        f"tests/{tests}",
+        f"tests/{Path(tests).parent / f'test_{Path(tests).name}.py'}",
+        f"{SOURCE}/{package}",
+        f"{SOURCE}/{package}.py",
+    ]
     return tuple(name for name in named if (root / name).exists())
 
 
@@ -57,6 +63,7 @@ def left_out_tests(parts: Iterable[str]) -> tuple[str, ...]:
     """The tests and doctests of these folders and files of the program, whether there are any or not."""
     places = [Path(part) for part in parts]
     tests = [f"tests/{place.parent / f'test_{place.name}' if place.suffix else place}" for place in places]
+    tests = [test.replace("_support", "support") for test in tests]
     return (*tests, *(str(SOURCE / place) for place in places))
 
 

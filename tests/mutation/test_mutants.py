@@ -66,7 +66,7 @@ def test_what_is_planted(source: str, kind: str, expected: set[str]) -> None:
 
 
 def test_errors_of_a_real_room_are_small_and_drawn_by_seed() -> None:
-    files = files_of("units")
+    files = files_of("_support/units")
     few = drawn(files, 12, 3)
     assert few == drawn(files, 12, 3) != drawn(files, 12, 4)
     for path, mutant in few:
@@ -79,11 +79,11 @@ def test_parts_that_are_left_out_have_no_tests_either() -> None:
     left = files_beside(["track/flags.py"], files)
     assert [path for path in files if path not in left] == [Path("src/skisnow/track/flags.py")]
     assert files_beside(["track"], files) == []
-    assert left_out_tests(["simulate/motion", "parallel/batch.py"]) == (
-        "tests/simulate/motion",
-        "tests/parallel/test_batch.py",
-        "src/skisnow/simulate/motion",
-        "src/skisnow/parallel/batch.py",
+    assert left_out_tests(["simulation/motion", "_support/processes/batch.py"]) == (
+        "tests/simulation/motion",
+        "tests/support/processes/test_batch.py",
+        "src/skisnow/simulation/motion",
+        "src/skisnow/_support/processes/batch.py",
     )
 
 

@@ -11,12 +11,12 @@ from typing import Any, Final
 import numpy as np
 
 from skisnow import carve, read_ski
-from skisnow.carve.result import Equilibrium
-from skisnow.files import write_file
+from skisnow._support.files import write_file
+from skisnow.carving.result import Equilibrium
 from skisnow.ski import Ski
 from skisnow.snow import published_snow
 
-from ..carve.synthetic import circular_sidecut, plain_ski, snow
+from ..carving.synthetic import circular_sidecut, plain_ski, snow
 
 PAGE: Final = Path(__file__).parents[2] / "docs" / "validation" / "measured.md"
 RACE_PISTE: Final = published_snow("race-piste")

@@ -7,7 +7,7 @@ import math
 import pytest
 from scipy.stats import chi2
 
-from ..carve.synthetic import snow
+from ..carving.synthetic import snow
 from . import measured
 
 

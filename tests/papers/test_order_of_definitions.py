@@ -2,11 +2,11 @@
 
 import pytest
 
-from skisnow.estimate.hardness import DEFINITIONS, hardness_at_largest_load
-from skisnow.estimate.models import fit_models, select_model
-from skisnow.estimate.readings import readings_of
-from skisnow.estimate.screening import screened_penetration
-from skisnow.field import reference_campaign
+from skisnow.campaign import reference_campaign
+from skisnow.estimation.hardness import DEFINITIONS, hardness_at_largest_load
+from skisnow.estimation.models import fit_models, select_model
+from skisnow.estimation.readings import readings_of
+from skisnow.estimation.screening import screened_penetration
 from skisnow.snow.published.moessner_2013 import PRINTED_RMSE_N
 
 

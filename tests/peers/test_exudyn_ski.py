@@ -7,10 +7,10 @@ import math
 import numpy as np
 import pytest
 
-from skisnow.carve.equilibrium import carve, rest
+from skisnow.carving.equilibrium import carve, rest
 from skisnow.ski import read_ski
 
-from ..carve.synthetic import FloatArray, boot_pose, snow, weights
+from ..carving.synthetic import FloatArray, boot_pose, snow, weights
 
 pytest.importorskip("exudyn", reason="Exudyn is not installed: pip install 'skisnow[peers]'")
 

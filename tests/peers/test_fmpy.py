@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from skisnow import scenario, simulate
+from skisnow import load_scenario, simulate
 from skisnow.interop import write_contact_fmu, write_sledge_fmu
 
 from .with_fmpy import DURATION
@@ -20,7 +20,7 @@ fmpy = pytest.importorskip("fmpy", reason="FMPy is not installed: pip install 's
 
 
 def test_fmpy_runs_them_in_an_empty_environment(tmp_path: Path) -> None:
-    asked = scenario("carved-46m").with_(duration_s=DURATION)
+    asked = load_scenario("carved-46m").with_(duration_s=DURATION)
     paths = [
         *(write_sledge_fmu(asked, tmp_path / f"sledge{fmi}.fmu", fmi=fmi) for fmi in (2, 3)),
         *(write_contact_fmu(asked, tmp_path / f"contact{fmi}.fmu", fmi=fmi, skis=4 - fmi) for fmi in (2, 3)),

@@ -18,9 +18,9 @@ from benchmarks.turns.clamped_modes import first_frequencies, first_frequency
 from scipy.spatial.transform import Rotation
 
 from skisnow import read_ski
+from skisnow._support.errors import ParameterError
 from skisnow.contact import Runner, SnowContact, SnowField, c_header, c_library
 from skisnow.dynamics import Body, Dynamics, Ended, FlexibleSki, StepControl
-from skisnow.errors import ParameterError
 from skisnow.geometry.boot_axes import axes_of
 from skisnow.interop.mujoco import SnowForces, ski_mjcf
 

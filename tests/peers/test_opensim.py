@@ -11,10 +11,10 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from skisnow import scenario, simulate
-from skisnow.errors import ParameterError
+from skisnow import load_scenario, simulate
+from skisnow._support.errors import ParameterError
 from skisnow.interop.opensim import Markers, MotionTable, read_motion, read_trc, write_motion, write_trc
-from skisnow.simulate.boots_table import write_boots
+from skisnow.simulation.boots_table import write_boots
 
 with tempfile.TemporaryDirectory() as folder, contextlib.chdir(folder):  # where it begins a log
     opensim: Any = pytest.importorskip("opensim", reason="OpenSim is not installed: pip install 'skisnow[peers]'")
@@ -70,7 +70,7 @@ def test_angles_are_in_degrees_where_opensim_reads_degrees(tmp_path: Path, head:
 
 
 def test_forces_of_a_run_are_external_loads(tmp_path: Path) -> None:
-    run = simulate(scenario("carved-46m").with_(duration_s=0.05))
+    run = simulate(load_scenario("carved-46m").with_(duration_s=0.05))
     write_boots(run, tmp_path / "forces.sto")
     loads = opensim.Storage(str(tmp_path / "forces.sto"))
     assert loads.getSize() == len(run.time)

@@ -13,11 +13,10 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from skisnow import read_ski, scenario
-from skisnow.course import MovingPoint, passages
-from skisnow.errors import ParameterError
-from skisnow.parallel.kept_rows import KeptRows
-from skisnow.parallel.pool import Pool
+from skisnow import load_scenario, read_ski
+from skisnow._support.errors import ParameterError
+from skisnow._support.processes.kept_rows import KeptRows
+from skisnow._support.processes.pool import Pool
 from skisnow.racing import LineTurn, RacingLine, by_surrogate, follower_line, quickest_line
 from skisnow.racing.by_surrogate import BATCH, Daring, SurrogateSearch, _best_within
 from skisnow.racing.line import cut, ways
@@ -26,12 +25,13 @@ from skisnow.racing.racers import Racer, run_score, skied
 from skisnow.racing.score import score_of
 from skisnow.racing.search import Evaluations, optimiser_within
 from skisnow.racing.worth import wider
+from skisnow.track.course import MovingPoint, passages
 
 from .test_point import WAY, straight_course
 from .test_search import Polyline, batches
 
 FloatArray = npt.NDArray[np.float64]
-SLALOM = scenario("slalom-20-gates")
+SLALOM = load_scenario("slalom-20-gates")
 FOLLOWED = follower_line(SLALOM)
 
 

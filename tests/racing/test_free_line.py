@@ -12,11 +12,11 @@ import pytest
 from scipy.interpolate import CubicSpline
 from scipy.optimize import minimize
 
-from skisnow import quickest_line, scenario
+from skisnow import load_scenario, quickest_line
 from skisnow.racing import PointRacer, follower_line
 from skisnow.racing.line import cut
 
-SLALOM = scenario("slalom-20-gates")
+SLALOM = load_scenario("slalom-20-gates")
 FOUR = cut(follower_line(SLALOM), 4)
 NODES = 6
 """Of each way from gate to gate."""

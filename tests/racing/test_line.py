@@ -9,13 +9,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from skisnow import scenario
-from skisnow.errors import ParameterError
+from skisnow import load_scenario
+from skisnow._support.errors import ParameterError
 from skisnow.racing import LineTurn, RacingLine, follower_line, read_line, write_line
 from skisnow.racing.line import FollowedLine, cut, with_numbers
 from skisnow.skier.steering import LineThroughGates, Underway
 
-SLALOM = scenario("slalom-20-gates")
+SLALOM = load_scenario("slalom-20-gates")
 FOLLOWED = follower_line(SLALOM)
 
 

@@ -9,8 +9,8 @@ from typing import Literal
 import numpy as np
 import pytest
 
-from skisnow import Course, Gate, Profile, scenario
-from skisnow.errors import ParameterError
+from skisnow import Course, Gate, Profile, load_scenario
+from skisnow._support.errors import ParameterError
 from skisnow.racing import LineTurn, PointRacer, RacingLine, follower_line
 from skisnow.racing.line import cut
 
@@ -80,7 +80,7 @@ def test_a_turn_on_level_snow_slows_down_as_the_load_grows() -> None:
 
 def test_without_losses_the_speed_is_that_of_the_height_whatever_the_line() -> None:
     free = replace(RACER, friction=0.0, drag=0.0)
-    line = follower_line(scenario("slalom-20-gates"))
+    line = follower_line(load_scenario("slalom-20-gates"))
     x, square, _ = free.motion(line, line.breaks)
     assert square == pytest.approx(16.0 + 2.0 * 9.81 * math.sin(free.slope_angle) * x, rel=1e-6)
 
@@ -92,7 +92,7 @@ def test_it_stops_where_friction_is_greater_than_the_slope() -> None:
 
 
 def test_it_converges_with_the_fourth_power_of_the_step(monkeypatch: pytest.MonkeyPatch) -> None:
-    line = follower_line(scenario("slalom-20-gates"))
+    line = follower_line(load_scenario("slalom-20-gates"))
     times = []
     for step in (2.0, 1.0, 0.5, 0.05):
         monkeypatch.setattr("skisnow.racing.point.STEP", step)
@@ -135,14 +135,14 @@ def test_gates_are_passed_by_both_sides_of_the_racer() -> None:
 
 
 def test_a_line_tighter_than_the_ski_fails_by_how_much() -> None:
-    line = cut(follower_line(scenario("slalom-20-gates")), 4)
+    line = cut(follower_line(load_scenario("slalom-20-gates")), 4)
     assert replace(RACER, least_radius=4.0).score(line).time is not None
     found = [replace(RACER, least_radius=radius).score(line).value for radius in (5.0, 6.0)]
     assert 1000.0 < found[0] < found[1]
 
 
 def test_of_a_scenario() -> None:
-    slalom = scenario("slalom-20-gates")
+    slalom = load_scenario("slalom-20-gates")
     racer = PointRacer.of(slalom)
     assert racer.mass == pytest.approx(75.0 + 2.0 * slalom.ski.mass)
     assert racer.least_radius == pytest.approx(slalom.ski.sidecut_radius_of_edge_line * math.cos(math.radians(66.0)))

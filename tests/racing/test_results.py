@@ -10,9 +10,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from skisnow import scenario
-from skisnow.course.gate_gaps import GateGap
-from skisnow.errors import ParameterError
+from skisnow import load_scenario
+from skisnow._support.errors import ParameterError
 from skisnow.racing import (
     LineTurn,
     PointRacer,
@@ -28,6 +27,7 @@ from skisnow.racing.line import cut
 from skisnow.racing.quickest import _fingerprint
 from skisnow.racing.racers import Racer
 from skisnow.racing.worth import AS_IT_IS, compared
+from skisnow.track.course.gate_gaps import GateGap
 
 from .test_point import straight_course
 from .test_search import EASY, SLALOM, raced
@@ -180,7 +180,7 @@ def test_gaps_at_gates_are_those_on_the_own_snow() -> None:
 def test_a_comparison_is_told_and_kept(tmp_path: Path) -> None:
     line = RacingLine(straight_course(), (0.0, 0.0), (LineTurn(aside=1.0),) * 3)
     told: list[str] = []
-    base, kept = scenario("slalom-20-gates"), tmp_path / "kept"
+    base, kept = load_scenario("slalom-20-gates"), tmp_path / "kept"
 
     def worth(**named: Any) -> tuple[Worth, ...]:
         usual: dict[str, Any] = {"model": "point", "workers": 1, "checkpoint": kept, "progress": told.append}

@@ -12,15 +12,15 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from skisnow import QuickestLine, Scenario, quickest_line, scenario
-from skisnow.errors import ParameterError
-from skisnow.parallel.kept_rows import KeptRows
-from skisnow.parallel.pool import Pool
+from skisnow import QuickestLine, Scenario, load_scenario, quickest_line
+from skisnow._support.errors import ParameterError
+from skisnow._support.processes.kept_rows import KeptRows
+from skisnow._support.processes.pool import Pool
 from skisnow.racing.search import Batches, Evaluations, least_of
 
 from .test_point import WAY, glide, straight_course
 
-SLALOM = scenario("slalom-20-gates")
+SLALOM = load_scenario("slalom-20-gates")
 EASY = SLALOM.with_(greatest_edge_deg=75.0)
 """A point may turn there as the follower does."""
 

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import pytest
 
-from skisnow import quickest_line, scenario, simulate, time_gates
+from skisnow import load_scenario, quickest_line, simulate, time_gates
 from skisnow.racing import LineTurn, RacingLine, follower_line
 from skisnow.racing.line import cut
 from skisnow.racing.racers import Racer, run_score, skied
 
-SLALOM = scenario("slalom-20-gates").with_(method="fast")
+SLALOM = load_scenario("slalom-20-gates").with_(method="fast")
 FOUR = cut(follower_line(SLALOM), 4)
 MARGIN = 0.3
 """Time (s) by which four gates are quicker than the path follower."""

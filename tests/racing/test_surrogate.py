@@ -9,8 +9,8 @@ import numpy.typing as npt
 import pytest
 from scipy.optimize import minimize
 
-from skisnow.parallel.kept_rows import KeptRows
-from skisnow.parallel.pool import Pool
+from skisnow._support.processes.kept_rows import KeptRows
+from skisnow._support.processes.pool import Pool
 from skisnow.racing.by_surrogate import SurrogateSearch
 from skisnow.racing.search import Evaluations
 from skisnow.racing.surrogate import Surrogate

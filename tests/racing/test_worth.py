@@ -8,14 +8,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from skisnow import read_ski, scenario
-from skisnow.errors import ParameterError
+from skisnow import load_scenario, read_ski
+from skisnow._support.errors import ParameterError
 from skisnow.racing import LineTurn, PointRacer, RacingLine, compared, drawn_for_race, worth_changes
 from skisnow.racing.worth import wider
 
 from .test_point import WAY, glide, straight_course
 
-SLALOM = scenario("slalom-20-gates").with_(course=straight_course())
+SLALOM = load_scenario("slalom-20-gates").with_(course=straight_course())
 LINE = RacingLine(straight_course(), (0.0, 0.0), (LineTurn(aside=1.0),) * 3)
 
 

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from skisnow.errors import ParameterError
+from skisnow._support.errors import ParameterError
 from skisnow.replay import Replay, ReplayTrack, replay_bytes, replay_of_bytes, replay_of_run
 
 from ..report.runs import circle_run

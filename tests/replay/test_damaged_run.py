@@ -10,16 +10,16 @@ import numpy as np
 import pytest
 from scipy.io import netcdf_file
 
-from skisnow import scenario, simulate
-from skisnow.errors import ParameterError
+from skisnow import load_scenario, simulate
+from skisnow._support.errors import ParameterError
 from skisnow.replay import replay_bytes, replay_of_file
 from skisnow.report.run_file import write_run_file
-from skisnow.simulate.run_summary import summary_dict
+from skisnow.simulation.run_summary import summary_dict
 
 
 @pytest.fixture(scope="module")
 def sound(tmp_path_factory: pytest.TempPathFactory) -> bytes:
-    run = simulate(scenario("slalom-20-gates", changes={"run.duration_s": 0.1, "solver.method": "fast"}))
+    run = simulate(load_scenario("slalom-20-gates", changes={"run.duration_s": 0.1, "solver.method": "fast"}))
     place = tmp_path_factory.mktemp("run") / "run.nc"
     write_run_file(run, summary_dict(run)["scenario"], place)
     return place.read_bytes()

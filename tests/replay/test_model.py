@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
+from skisnow._support.units import DEGREE
 from skisnow.replay import Replay, replay_model, replay_of_run, ski_edges, write_replay_model
 from skisnow.replay.colours import linear, round_above
-from skisnow.units import DEGREE
 
 from ..report.runs import circle_run
 from .glb_files import GlbFile

@@ -9,12 +9,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from skisnow._support.units import DEGREE
 from skisnow.replay import Replay, moving_replay_model, replay_of_run, ski_edges, write_moving_replay_model
 from skisnow.replay.binary import at_moments
-from skisnow.scenario import Profile, read_scenario
-from skisnow.simulate.run import Run
-from skisnow.simulate.simulated_run import simulate
-from skisnow.units import DEGREE
+from skisnow.scenario import Profile, load_scenario
+from skisnow.simulation.run import Run
+from skisnow.simulation.simulated_run import simulate
 
 from ..report.runs import RADIUS, SPEED, STANCE, circle_run
 from .glb_files import INDICES, VERTICES, GlbFile, Playing
@@ -35,7 +35,7 @@ def model(replay: Replay) -> GlbFile:
 @pytest.fixture(scope="module")
 def simulated() -> Run:
     """Half a second told every 2 ms, five times as fine as a model's keys."""
-    return simulate(read_scenario("carved-46m", changes={"run.duration_s": 0.5, "run.output_ms": 2.0}))
+    return simulate(load_scenario("carved-46m", changes={"run.duration_s": 0.5, "run.output_ms": 2.0}))
 
 
 def to_run(world: np.ndarray, tilt: float) -> np.ndarray:

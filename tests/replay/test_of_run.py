@@ -12,18 +12,18 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from skisnow.course import Course, Gate, read_course
-from skisnow.errors import ParameterError, SkisnowError
+from skisnow._support.errors import ParameterError, SkisnowError
+from skisnow._support.units import DEGREE
 from skisnow.replay import measured_track, replay_bytes, replay_of_file, replay_of_run
 from skisnow.replay.of_run import facts_of
 from skisnow.report.run_file import write_run_file
 from skisnow.scenario import Profile, scenario_values
 from skisnow.scenario.values import in_sections
-from skisnow.simulate.run import Run
-from skisnow.simulate.run_gates import run_gates
+from skisnow.simulation.run import Run
+from skisnow.simulation.run_gates import run_gates
 from skisnow.ski import ski_named, write_ski
+from skisnow.track.course import Course, Gate, read_course
 from skisnow.track.track import Track
-from skisnow.units import DEGREE
 
 from ..report.runs import RADIUS, SPEED, STANCE, circle_run
 

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from skisnow.errors import ParameterError
+from skisnow._support.errors import ParameterError
 from skisnow.replay import replay_bytes, replay_of_run, replay_page, write_replay
 from skisnow.replay.page import MODULES, static_text
 

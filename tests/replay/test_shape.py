@@ -8,11 +8,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from skisnow._support.units import DEGREE
 from skisnow.replay import Replay, replay_of_run, ski_edges
 from skisnow.replay.shape import nearest_frame
-from skisnow.scenario import read_scenario
-from skisnow.simulate.simulated_run import simulate
-from skisnow.units import DEGREE
+from skisnow.scenario import load_scenario
+from skisnow.simulation.simulated_run import simulate
 
 from ..report.runs import circle_run
 
@@ -82,7 +82,7 @@ def test_twist_adds_to_the_edge_angle() -> None:
 
 def test_the_edges_lie_as_deep_as_the_simulator_says() -> None:
     """On the plane z = 0 the depth of the left edge, down in a left turn, is minus its z."""
-    run = simulate(read_scenario("carved-46m", changes={"run.duration_s": 0.2}))
+    run = simulate(load_scenario("carved-46m", changes={"run.duration_s": 0.2}))
     replay = replay_of_run(run)
     frame = len(run.time) - 1
     depth = -ski_edges(replay, frame)[:, :, 0, 2]

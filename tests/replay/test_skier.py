@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from skisnow.course import Course, Gate
+from skisnow._support.units import DEGREE
 from skisnow.geometry.boot_axes import axes_of
 from skisnow.replay import (
     Replay,
@@ -23,12 +23,12 @@ from skisnow.replay import (
 from skisnow.replay.skier import ANKLE_BEHIND, JOINTS, STAND_HEIGHT, centre_of_mass, two_bones
 from skisnow.replay.skier_shapes import AROUND, _round, part_poses, skier_mesh, skier_parts
 from skisnow.scenario.skier import Skier
-from skisnow.simulate.boot_history import BootHistory
-from skisnow.simulate.run import Run
-from skisnow.simulate.run_gates import run_gates
+from skisnow.simulation.boot_history import BootHistory
+from skisnow.simulation.run import Run
+from skisnow.simulation.run_gates import run_gates
 from skisnow.skier import body_of
 from skisnow.skier.segments import FOOT, FOREARM, SHANK, THIGH, TRUNK, UPPER_ARM
-from skisnow.units import DEGREE
+from skisnow.track.course import Course, Gate
 
 from ..report.runs import circle_run
 from .glb_files import GlbFile, Playing

@@ -8,9 +8,9 @@ from typing import Any
 
 import pytest
 
-from skisnow.estimate import Analysis, analyse
-from skisnow.field import Campaign, PenetrationTests, ShearTests
-from skisnow.field.reference import reference_campaign
+from skisnow.campaign import Campaign, PenetrationTests, ShearTests
+from skisnow.campaign.reference import reference_campaign
+from skisnow.estimation import Analysis, analyse
 from skisnow.report import write_report
 
 from ..conftest import only_drawn

@@ -6,13 +6,13 @@ import math
 
 import numpy as np
 
+from skisnow._support.units import DEGREE, N_PER_MM2, N_PER_MM3
 from skisnow.scenario import Air, Contact, Plane, RigidSledge, Scenario, Solver, Start, Stop
-from skisnow.simulate.boot_history import BootHistory
-from skisnow.simulate.run import Groove, Run, SkiHistory
-from skisnow.simulate.snow_forces import node_lengths
+from skisnow.simulation.boot_history import BootHistory
+from skisnow.simulation.run import Groove, Run, SkiHistory
+from skisnow.simulation.snow_forces import node_lengths
 from skisnow.ski import ski_named
 from skisnow.snow import SnowProperties
-from skisnow.units import DEGREE, N_PER_MM2, N_PER_MM3
 
 SPEED, RADIUS, DURATION, STANCE = 8.0, 12.0, 4.0, 0.5
 DEPTH = 0.02

@@ -5,8 +5,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from skisnow.estimate.quick_results import experiment_hardness, experiment_results
-from skisnow.field import read_campaign
+from skisnow.campaign import read_campaign
+from skisnow.estimation.quick_results import experiment_hardness, experiment_results
 from skisnow.report.curves import series_curves
 
 

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import pytest
 
-from skisnow.field import Campaign
+from skisnow.campaign import Campaign
 from skisnow.report.campaign.data import ReportData
 from skisnow.report.campaign.findings import caveats, regression_sentences
 from skisnow.report.campaign.key_results import key_results

@@ -12,8 +12,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from skisnow.field import Campaign
-from skisnow.field.records import TurningReadings
+from skisnow.campaign import Campaign
+from skisnow.campaign.records import TurningReadings
 from skisnow.report.campaign.data import ReportData
 
 from .conftest import Reported, analysis_of, first_series, first_shear, reported

@@ -13,7 +13,7 @@ from scipy.io import netcdf_file
 
 from skisnow.report.run_file import MISSING, write_run_file
 from skisnow.report.run_variables import RUN_VARIABLES
-from skisnow.simulate.run import LOST, STORED, Run
+from skisnow.simulation.run import LOST, STORED, Run
 
 from .runs import RADIUS, SPEED, STANCE, circle_run
 

@@ -10,14 +10,14 @@ from typing import Any
 import numpy as np
 import pytest
 
+from skisnow._support.units import DEGREE
 from skisnow.report.figures.drawing import FORMS
 from skisnow.report.run_drawings import _FIGURES
 from skisnow.report.run_report import FIGURES, FURTHER, write_run_report
 from skisnow.report.tables.run import energies_table, scenario_table
 from skisnow.scenario.keys import SCENARIO_KEYS
 from skisnow.scenario.values import in_sections, scenario_values
-from skisnow.simulate.run import LOST, STORED, Run, SkiHistory
-from skisnow.units import DEGREE
+from skisnow.simulation.run import LOST, STORED, Run, SkiHistory
 
 from ..conftest import without_png
 from .runs import circle_run

@@ -6,7 +6,7 @@ import subprocess
 import sys
 from dataclasses import replace
 
-from skisnow.field import Campaign
+from skisnow.campaign import Campaign
 from skisnow.report.campaign.summary import summary
 from skisnow.report.number_formatting import interval, significant
 

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from matplotlib.text import Text
 
-from skisnow.errors import ParameterError
+from skisnow._support.errors import ParameterError
 from skisnow.report import write_report
 from skisnow.report.campaign.data import ReportData
 from skisnow.report.campaign.figures import DRAWERS

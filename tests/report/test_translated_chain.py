@@ -8,11 +8,10 @@ from pathlib import Path
 
 import pytest
 
-from skisnow.course.gate_gaps import GateGap
-from skisnow.errors import ParameterError
-from skisnow.identify import words
-from skisnow.identify.identification import Identification
-from skisnow.language import catalogue
+from skisnow._support.errors import ParameterError
+from skisnow._support.language import catalogue
+from skisnow.identification import words
+from skisnow.identification.identification import Identification
 from skisnow.report import gaps_report, identify_report, turn_report
 from skisnow.report.figures.drawing import Drawing, Picture
 from skisnow.report.figures.style import journal_style
@@ -20,6 +19,7 @@ from skisnow.report.figures.translated import translate_figure
 from skisnow.report.symbols import figure_text
 from skisnow.report.turn_chain import TurnChain
 from skisnow.scenario.keys import SCENARIO_KEYS
+from skisnow.track.course.gate_gaps import GateGap
 
 from . import test_identify_report, test_turn_report
 from .test_translated import ENGLISH, VERSION, texts, written

@@ -10,7 +10,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from skisnow.errors import ParameterError
+from skisnow._support.errors import ParameterError
+from skisnow._support.units import N_PER_MM2, N_PER_MM3
 from skisnow.report.figures.track_band import TimedTrack
 from skisnow.report.tables.turn import contacts_table, ensemble_table, parameters_table, shares_table
 from skisnow.report.turn_chain import EnsembleRun, TurnChain
@@ -27,9 +28,8 @@ from skisnow.report.turn_report import FIGURES, write_turn_report
 from skisnow.report.turn_sentences import contrast, ensemble_sentence, key_sentences, meaning
 from skisnow.scenario.measured import measured_of
 from skisnow.scenario.prior import Prior
-from skisnow.simulate.run import Run
+from skisnow.simulation.run import Run
 from skisnow.snow import SnowProperties
-from skisnow.units import N_PER_MM2, N_PER_MM3
 
 from ..conftest import without_png
 from .runs import RADIUS, circle_run

@@ -10,10 +10,10 @@ from typing import Any
 import matplotlib
 import pytest
 
-from skisnow.errors import OutputError
-from skisnow.estimate.results_text import results_json
-from skisnow.field import Campaign
-from skisnow.files import write_file
+from skisnow._support.errors import OutputError
+from skisnow._support.files import write_file
+from skisnow.campaign import Campaign
+from skisnow.estimation.results_text import results_json
 from skisnow.report import write_report
 from skisnow.report.figures.drawing import FORMS
 

@@ -13,13 +13,13 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from skisnow import check_campaign, read_track, track_summary
+from skisnow._support.errors import OutputError
+from skisnow.campaign import read_density_layers, read_snow_micro_pen
+from skisnow.campaign.caaml import read_caaml
+from skisnow.campaign.smet import read_smet
 from skisnow.cli import main
-from skisnow.errors import OutputError
-from skisnow.field import read_density_layers, read_snow_micro_pen
-from skisnow.field.caaml import read_caaml
-from skisnow.field.smet import read_smet
-from skisnow.identify import read_measured_grooves
-from skisnow.identify.photo_cells import read_photo_cells
+from skisnow.identification import read_measured_grooves
+from skisnow.identification.photo_cells import read_photo_cells
 from skisnow.samples import write_samples
 from skisnow.samples.glides import glide_time
 

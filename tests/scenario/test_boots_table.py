@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from skisnow.errors import ParameterError
+from skisnow._support.errors import ParameterError
 from skisnow.geometry.boot_axes import angles_of, axes_of
-from skisnow.scenario import read_scenario, scenario_file
+from skisnow.scenario import load_scenario, scenario_file
 from skisnow.scenario.boots import Boots
 from skisnow.scenario.boots_file import ANGLES, OF_SLOPE, SIDES, read_boots
 from skisnow.scenario.plausibility import implausible_values
@@ -186,8 +186,8 @@ def test_a_table_of_opensim_is_read_behind_its_head(tmp_path: Path) -> None:
 
 def test_a_scenario_with_boots_shows_them(tmp_path: Path) -> None:
     path = table(tmp_path, "time_s,left_up_m\n" + "".join(f"{t},0\n" for t in range(4)))
-    assert "Boots 4 poses of each" in repr(read_scenario("carved-46m", changes={"boots.file": str(path)}))
-    assert "Boots" not in repr(read_scenario("carved-46m"))
+    assert "Boots 4 poses of each" in repr(load_scenario("carved-46m", changes={"boots.file": str(path)}))
+    assert "Boots" not in repr(load_scenario("carved-46m"))
 
 
 def test_places_alone_have_no_degrees(tmp_path: Path) -> None:
@@ -196,7 +196,7 @@ def test_places_alone_have_no_degrees(tmp_path: Path) -> None:
 
 
 def test_a_scenario_given_in_python_is_changed_as_a_file() -> None:
-    base = read_scenario("carved-46m")
+    base = load_scenario("carved-46m")
     found = scenario_file(base, changes={"start.speed_m_per_s": 3.0})  # type: ignore[arg-type]
     assert (found.scenario.start.speed, found.values["start.speed_m_per_s"], found.files) == (3.0, 3.0, ())
     assert found.scenario.sledge == base.sledge
@@ -217,7 +217,7 @@ def test_boots_that_rest_in_a_run_are_told(
     tmp_path: Path, clock: str, rows: tuple[float, ...], end: dict[str, float], said: str
 ) -> None:
     path = table(tmp_path, f"{clock},left_up_m\n" + "".join(f"{at},0\n" for at in rows))
-    asked = read_scenario("carved-46m", changes={"boots.file": str(path), **end})
+    asked = load_scenario("carved-46m", changes={"boots.file": str(path), **end})
     told = [each for each in implausible_values(asked) if "boots" in each]
     assert len(told) == bool(said)
     assert all(said in each and str(path) in each for each in told)

@@ -6,12 +6,12 @@ from typing import Any
 import numpy as np
 import pytest
 
-from skisnow.errors import ParameterError
-from skisnow.scenario import Profile, Scenario, Solver, read_scenario
+from skisnow._support.errors import ParameterError
+from skisnow.scenario import Profile, Scenario, load_scenario
 
 
 def changed(part: str, **values: Any) -> Scenario:
-    scenario = read_scenario("carved-46m")
+    scenario = load_scenario("carved-46m")
     return replace(scenario, **{part: replace(getattr(scenario, part), **values)})
 
 
@@ -52,18 +52,10 @@ def test_part_out_of_its_limits_is_refused(part: str, values: dict[str, Any], to
 )
 def test_scenario_out_of_its_limits_is_refused(values: dict[str, Any], told: str) -> None:
     with pytest.raises(ParameterError, match=told):
-        replace(read_scenario("carved-46m"), **values)
+        replace(load_scenario("carved-46m"), **values)
 
 
 def test_limits_themselves_are_allowed() -> None:
     assert changed("solver", step=5e-3).solver.step == 5e-3
     assert changed("sledge", stance_width=0.11).sledge.stance_width == 0.11
     assert changed("sledge", edge_angle=-np.radians(85.0)).sledge.edge_angle < 0.0
-
-
-def test_the_former_word_of_the_method_is_told_where_it_is_written() -> None:
-    """Python shows it to whoever wrote the line, at a prompt or in a test, and to nobody else."""
-    with pytest.warns(DeprecationWarning, match="now called") as warned:
-        solver = Solver(method="ros2")  # type: ignore[arg-type]
-    assert solver == Solver()
-    assert [each.filename for each in warned] == [__file__]

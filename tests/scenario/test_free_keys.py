@@ -6,7 +6,7 @@ import re
 
 import pytest
 
-from skisnow.errors import ParameterError
+from skisnow._support.errors import ParameterError
 from skisnow.scenario.free_keys import FREE_KEYS, free_key, free_keys, short_name
 
 

@@ -9,8 +9,8 @@ from typing import Any
 import jsonschema
 import pytest
 
-from skisnow.errors import ParameterError
-from skisnow.scenario import Solver, free_keys, read_scenario, scenario_names, scenario_text
+from skisnow._support.errors import ParameterError
+from skisnow.scenario import Solver, free_keys, load_scenario, scenario_names, scenario_text
 from skisnow.scenario.keys import SCENARIO_KEYS
 from skisnow.scenario.schema import scenario_schema
 
@@ -147,4 +147,4 @@ def test_schema_refuses_what_the_reader_refuses(changes: dict[str, dict[str, Any
 )
 def test_values_outside_their_range_are_refused_by_the_key(key: str, value: object) -> None:
     with pytest.raises(ParameterError, match=rf"\.{key} is "):
-        read_scenario("carved-46m", changes={key: value})
+        load_scenario("carved-46m", changes={key: value})

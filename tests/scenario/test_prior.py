@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from skisnow.errors import ParameterError
+from skisnow._support.errors import ParameterError
 from skisnow.scenario.prior import Prior, prior_of
 
 SHARES = np.array([0.0, 0.5, 1.0])

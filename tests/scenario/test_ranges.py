@@ -7,8 +7,8 @@ from typing import Any
 
 import pytest
 
-from skisnow.errors import ParameterError
-from skisnow.scenario import read_scenario
+from skisnow._support.errors import ParameterError
+from skisnow.scenario import load_scenario
 from skisnow.snow import SnowProperties
 
 OUT_OF_RANGE: list[tuple[str, str, object, str, object]] = [
@@ -43,9 +43,9 @@ def said(error: pytest.ExceptionInfo[ParameterError]) -> str:
 
 @pytest.mark.parametrize(("part", "field", "value", "key", "given"), OUT_OF_RANGE)
 def test_python_refuses_what_a_file_refuses(part: str, field: str, value: object, key: str, given: object) -> None:
-    scenario = read_scenario("carved-46m")
+    scenario = load_scenario("carved-46m")
     with pytest.raises(ParameterError, match=rf"{re.escape(key)} is ") as in_file:
-        read_scenario("carved-46m", changes={key: given})
+        load_scenario("carved-46m", changes={key: given})
     with pytest.raises(ParameterError, match=rf"^{re.escape(key)} is ") as in_python:
         replace(getattr(scenario, part), **{field: value})
     assert said(in_file) == said(in_python)
@@ -69,5 +69,5 @@ def test_snow_that_is_none_is_refused(values: tuple[float, float]) -> None:
 )
 def test_ends_of_ranges_are_allowed_in_python(part: str, values: dict[str, Any]) -> None:
     """However the units round: 75 degrees in radians are not 75 times a degree."""
-    changed = replace(getattr(read_scenario("carved-46m"), part), **values)
+    changed = replace(getattr(load_scenario("carved-46m"), part), **values)
     assert all(getattr(changed, name) == value for name, value in values.items())

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from skisnow.errors import ParameterError
+from skisnow._support.errors import ParameterError
 from skisnow.scenario import read_snow_map, read_terrain
 from skisnow.scenario.map_system import length_unit, map_system
 from skisnow.scenario.raster import Raster, placed_heights

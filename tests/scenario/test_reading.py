@@ -10,11 +10,11 @@ import pytest
 
 import skisnow
 from skisnow import Analysis, scenario_names
-from skisnow.errors import ParameterError
-from skisnow.estimate.results_text import results_json
-from skisnow.estimate.shear_displacement import SiteDisplacement
-from skisnow.field.reference import reference_campaign
-from skisnow.scenario import Plane, Profile, read_scenario, scenario_file, scenario_text, scenario_values
+from skisnow._support.errors import ParameterError
+from skisnow.campaign.reference import reference_campaign
+from skisnow.estimation.results_text import results_json
+from skisnow.estimation.shear_displacement import SiteDisplacement
+from skisnow.scenario import Plane, Profile, load_scenario, scenario_file, scenario_text, scenario_values
 from skisnow.scenario.keys import SCENARIO_KEYS, parse_change
 from skisnow.scenario.reading import build_input, load_input
 from skisnow.scenario.resolution import ContradictionError
@@ -36,7 +36,7 @@ def written(folder: Path, *, replaced: dict[str, str] | None = None) -> Path:
 
 def test_built_in_scenario_in_si() -> None:
     """The contract's numbers of carved-46m, converted by hand."""
-    scenario = read_scenario("carved-46m")
+    scenario = load_scenario("carved-46m")
     assert isinstance(scenario.slope, Plane)
     assert scenario.slope.angle == pytest.approx(0.17453292519943295, rel=1e-15)
     assert scenario.contact.snow.snow_hardness == 2e8
@@ -60,7 +60,7 @@ def test_built_in_scenario_in_si() -> None:
     ("name", "length", "ski"), [("giant-slalom-67m", 67.0, "giant-slalom"), ("carver-42m", 42.0, "carver")]
 )
 def test_runs_named_after_the_paper_have_its_lengths_and_kinds_of_ski(name: str, length: float, ski: str) -> None:
-    scenario = read_scenario(name)
+    scenario = load_scenario(name)
     assert (scenario.stop.length, scenario.stop.duration, scenario.ski.name) == (length, None, ski)
 
 
@@ -98,7 +98,7 @@ def test_every_value_of_a_built_in_scenario_says_where_it_is_from(name: str) -> 
 
 
 def test_changes_by_full_name_and_without_section() -> None:
-    scenario = read_scenario("carved-46m", changes={"sledge.mass_kg": 90, "inertia_kg_m2": [5, 6, 7]})
+    scenario = load_scenario("carved-46m", changes={"sledge.mass_kg": 90, "inertia_kg_m2": [5, 6, 7]})
     assert (scenario.sledge.mass, scenario.sledge.inertia) == (90.0, (5.0, 6.0, 7.0))
 
 
@@ -141,33 +141,33 @@ def test_a_decimal_comma_is_told_how_to_write(word: str) -> None:
 )
 def test_change_that_is_not_one_value_is_refused_in_a_short_sentence(word: str) -> None:
     with pytest.raises(ParameterError, match=r"^sledge\.mass_kg is .*; it must be a number$") as error:
-        read_scenario("carved-46m", changes=dict([parse_change(word)]))
+        load_scenario("carved-46m", changes=dict([parse_change(word)]))
     assert len(str(error.value)) < 200
 
 
 def test_named_snow_takes_the_place_of_numbers_and_back() -> None:
-    named = read_scenario("carved-46m", changes={"published": "spring-snow"})
+    named = load_scenario("carved-46m", changes={"published": "spring-snow"})
     assert "spring snow" in named.contact.snow.source
     # 2 × 0.0036/cos² 55° and 0.063/sin² 55°, by hand
     assert named.contact.snow.snow_hardness == pytest.approx(0.0218852e9, rel=1e-5)
     assert named.contact.snow.failure_shear_stress == pytest.approx(0.0938885e6, rel=1e-5)
     numbers = {"H_V_N_per_mm3": 1.0, "S_f_N_per_mm2": 0.1}
-    assert read_scenario("carver-42m", changes=numbers).contact.snow.snow_hardness == 1e9
+    assert load_scenario("carver-42m", changes=numbers).contact.snow.snow_hardness == 1e9
 
 
 def test_elastic_snow_needs_no_unloading_ratio_and_takes_no_other() -> None:
     elastic = {"penetration": "elastic"}
-    assert read_scenario("carved-46m", changes=elastic).contact.unloading_ratio == 1.0
-    assert read_scenario("carved-46m", changes={**elastic, "unloading_ratio": 1}).contact.unloading_ratio == 1.0
+    assert load_scenario("carved-46m", changes=elastic).contact.unloading_ratio == 1.0
+    assert load_scenario("carved-46m", changes={**elastic, "unloading_ratio": 1}).contact.unloading_ratio == 1.0
     with pytest.raises(ParameterError, match=r'unloading_ratio is 2 beside snow\.penetration = "elastic"'):
-        read_scenario("carved-46m", changes={**elastic, "unloading_ratio": 2})
+        load_scenario("carved-46m", changes={**elastic, "unloading_ratio": 2})
 
 
 def test_drag_acts_at_the_centre_of_mass_where_nothing_else_is_said(tmp_path: Path) -> None:
     path = written(
         tmp_path, replaced={"centre_of_pressure": "", "centre_of_mass_height": "centre_of_mass_height_m = 0.2"}
     )
-    assert read_scenario(path).air.centre_of_pressure_height == 0.2
+    assert load_scenario(path).air.centre_of_pressure_height == 0.2
 
 
 def test_paths_start_at_the_files_folder_and_those_of_changes_at_the_current_one(
@@ -176,7 +176,7 @@ def test_paths_start_at_the_files_folder_and_those_of_changes_at_the_current_one
     (tmp_path / "slope").mkdir()
     (tmp_path / "slope" / "down.csv").write_text(PROFILE, encoding="utf-8")
     path = written(tmp_path, replaced={"kind": 'kind = "profile"', "angle_deg": 'profile = "slope/down.csv"'})
-    scenario = read_scenario(path)
+    scenario = load_scenario(path)
     assert isinstance(scenario.slope, Profile)
     assert scenario.slope.gradients(20.0) == pytest.approx(-0.2, abs=1e-12)
     monkeypatch.chdir(tmp_path / "slope")
@@ -204,7 +204,7 @@ def test_snow_and_ski_of_files(tmp_path: Path) -> None:
     assert found.values["snow.S_f_N_per_mm2"] == pytest.approx(0.4, rel=1e-12)
     assert (found.values["snow.site"], found.values["ski.file"], found.values["ski.name"]) == ("A", "ski.toml", None)
     assert set(found.files) == {path, tmp_path / "results.json", tmp_path / "ski.toml"}
-    snow = read_scenario(path, changes={"S_f_N_per_mm2": 0.3}).contact.snow
+    snow = load_scenario(path, changes={"S_f_N_per_mm2": 0.3}).contact.snow
     assert [snow.snow_hardness, snow.failure_shear_stress] == pytest.approx([0.2e9, 0.3e6], rel=1e-12)
 
 
@@ -243,12 +243,12 @@ def test_results_give_what_the_site_measured_by_every_way(measured: tuple[Analys
     analysis, folder = measured
     snow = analysis.snow(site)
     assert (snow.unloading_ratio is None, snow.shear_displacement is None) == (site == "E", site == "E")
-    by_object = read_scenario("carved-46m").with_(snow=snow).contact
+    by_object = load_scenario("carved-46m").with_(snow=snow).contact
     changes = {"snow.results": str(folder / "results.json"), "snow.site": site}
     changed = scenario_file("carved-46m", changes=changes)
     found = [changed.scenario.contact]
     if site == "C":
-        found.append(read_scenario(with_results(folder, site)).contact)
+        found.append(load_scenario(with_results(folder, site)).contact)
         assert changed.values["snow.unloading_ratio"] == snow.unloading_ratio
         assert changed.values["snow.shear_displacement_mm"] == pytest.approx(0.25, rel=1e-12)
     for contact in found:
@@ -262,8 +262,8 @@ def test_numbers_beside_or_after_the_results_come_before_what_was_measured(measu
     results: dict[str, object] = {"snow.results": str(folder / "results.json"), "snow.site": "C"}
     after: dict[str, object] = {"unloading_ratio": 4.0, "shear_displacement_mm": 0.1}
     given = load_input("carved-46m").changed(results).changed(after)
-    by_object = read_scenario("carved-46m").with_(snow=analysis.snow("C")).with_(**after)
-    ways = [read_scenario(beside), read_scenario("carved-46m", changes=results | after), build_input(given).scenario]
+    by_object = load_scenario("carved-46m").with_(snow=analysis.snow("C")).with_(**after)
+    ways = [load_scenario(beside), load_scenario("carved-46m", changes=results | after), build_input(given).scenario]
     for scenario in (*ways, by_object):
         contact = scenario.contact
         assert [contact.unloading_ratio, contact.shear_displacement] == pytest.approx([4.0, 1e-4], rel=1e-12)
@@ -274,12 +274,12 @@ def test_numbers_beside_or_after_the_results_come_before_what_was_measured(measu
 
 def test_elastic_snow_stays_elastic_on_measured_snow(measured: tuple[Analysis, Path]) -> None:
     path = with_results(measured[1], "C", penetration='penetration = "elastic"')
-    assert read_scenario(path).contact.unloading_ratio == 1.0
+    assert load_scenario(path).contact.unloading_ratio == 1.0
 
 
 def test_a_site_without_unloading_needs_a_ratio(measured: tuple[Analysis, Path]) -> None:
     with pytest.raises(ParameterError, match=r"unloading_ratio is missing.*site E: .* has none that was measured"):
-        read_scenario(with_results(measured[1], "E"))
+        load_scenario(with_results(measured[1], "E"))
 
 
 @pytest.mark.parametrize(
@@ -293,7 +293,7 @@ def test_a_site_without_unloading_needs_a_ratio(measured: tuple[Analysis, Path])
 )
 def test_two_keys_of_one_layer_contradict_each_other(changes: dict[str, object], keys: tuple[str, str]) -> None:
     with pytest.raises(ContradictionError) as error:
-        read_scenario("carved-46m", changes=changes)
+        load_scenario("carved-46m", changes=changes)
     assert error.value.keys == keys
 
 
@@ -344,7 +344,7 @@ def test_scenario_tells_its_values_back(name: str) -> None:
 )
 def test_bad_change_is_refused_in_a_sentence(changes: dict[str, object], told: str) -> None:
     with pytest.raises(ParameterError, match=re.escape(told)):
-        read_scenario("carved-46m", changes=changes)
+        load_scenario("carved-46m", changes=changes)
 
 
 @pytest.mark.parametrize(
@@ -367,7 +367,7 @@ def test_bad_change_is_refused_in_a_sentence(changes: dict[str, object], told: s
 def test_bad_file_is_refused_with_its_name(tmp_path: Path, replaced: dict[str, str], told: str) -> None:
     path = written(tmp_path, replaced=replaced)
     with pytest.raises(ParameterError, match=re.escape(told)) as error:
-        read_scenario(path)
+        load_scenario(path)
     assert str(error.value).startswith(str(path))
 
 
@@ -375,29 +375,29 @@ def test_value_in_place_of_a_section_is_refused(tmp_path: Path) -> None:
     path = tmp_path / "flat.toml"
     path.write_text("slope = 10\n", encoding="utf-8")
     with pytest.raises(ParameterError, match=re.escape("must be a table, begun by the line [slope]")):
-        read_scenario(path)
+        load_scenario(path)
 
 
 def test_scenario_that_is_not_there_is_told_with_the_nearest(tmp_path: Path) -> None:
     with pytest.raises(ParameterError, match="Is carved-46m meant"):
-        read_scenario("carved-46")
+        load_scenario("carved-46")
     with pytest.raises(ParameterError, match=r"nowhere\.toml cannot be read"):
-        read_scenario(tmp_path / "nowhere.toml")
+        load_scenario(tmp_path / "nowhere.toml")
     (tmp_path / "latin.toml").write_bytes("# Häng\n".encode("latin-1"))
     with pytest.raises(ParameterError, match="not UTF-8"):
-        read_scenario(tmp_path / "latin.toml")
+        load_scenario(tmp_path / "latin.toml")
 
 
 @pytest.mark.parametrize("place", [Path("nowhere"), "nowhere.toml", "nowhere.TOML", "folder/nowhere"])
 def test_what_names_a_file_is_looked_for_as_a_file(place: str | Path) -> None:
     with pytest.raises(ParameterError, match=f"{re.escape(str(place))} cannot be read"):
-        read_scenario(place)
+        load_scenario(place)
 
 
 def test_a_file_of_the_current_folder_needs_no_ending(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     written(tmp_path, replaced={"mass_kg": "mass_kg = 71"}).rename(tmp_path / "mine")
     monkeypatch.chdir(tmp_path)
-    assert read_scenario("mine").sledge.mass == 71.0
+    assert load_scenario("mine").sledge.mass == 71.0
 
 
 def test_the_text_of_a_scenario_that_is_not_built_in_is_refused() -> None:
@@ -409,8 +409,8 @@ def test_start_off_the_profile_is_refused(tmp_path: Path) -> None:
     (tmp_path / "down.csv").write_text(PROFILE, encoding="utf-8")
     changes = {"slope.kind": "profile", "slope.profile": str(tmp_path / "down.csv")}
     with pytest.raises(ParameterError, match="x = 58 m, is off the slope, which reaches from 0 to 57 m"):
-        read_scenario("carved-46m", changes={**changes, "x_m": 58})
-    assert read_scenario("carved-46m", changes={**changes, "x_m": 57}).start.x == 57.0
+        load_scenario("carved-46m", changes={**changes, "x_m": 58})
+    assert load_scenario("carved-46m", changes={**changes, "x_m": 57}).start.x == 57.0
 
 
 @pytest.mark.parametrize(
@@ -438,7 +438,7 @@ def test_nothing_is_warned_of_where_friction_and_drag_are_off() -> None:
 
 def test_angles_are_not_radians() -> None:
     """An edge angle of 90 degrees is refused, not one of 1.57."""
-    assert read_scenario("carved-46m", changes={"edge_angle_deg": 85}).sledge.edge_angle == math.radians(85.0)
+    assert load_scenario("carved-46m", changes={"edge_angle_deg": 85}).sledge.edge_angle == math.radians(85.0)
 
 
 @pytest.mark.parametrize("name", scenario_names())
@@ -476,7 +476,7 @@ def test_what_nobody_would_read_under_identify(tmp_path: Path, section: str, tol
     path = tmp_path / "mine.toml"
     path.write_text(f"{scenario_text('carved-46m')}\n{section}\n", encoding="utf-8")
     with pytest.raises(ParameterError, match=told) as refused:
-        read_scenario(path)
+        load_scenario(path)
     assert str(path) in str(refused.value)
 
 
@@ -487,4 +487,4 @@ def test_what_a_run_does_not_heed_may_stand_under_identify(tmp_path: Path) -> No
         '[identify."mu_0@each"]\nlower = 0.01\n[identify."snow.S_f_N_per_mm2"]\nprior_mean = 0.4\nprior_sd = 0.1\n'
     )
     path.write_text(f"{scenario_text('carved-46m')}\n{section}", encoding="utf-8")
-    assert read_scenario(path).sledge.mass == 80.0
+    assert load_scenario(path).sledge.mass == 80.0

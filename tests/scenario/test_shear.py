@@ -2,7 +2,7 @@
 
 import pytest
 
-from skisnow.errors import ParameterError
+from skisnow._support.errors import ParameterError
 from skisnow.forces.shear import AngleShear, DensityShear, MachiningShear
 from skisnow.scenario.shear import Shear
 from skisnow.scenario.start import Start
@@ -10,7 +10,7 @@ from skisnow.scenario.start import Start
 S_F = 0.4e6
 
 
-@pytest.mark.filterwarnings("ignore::skisnow.errors.RangeWarning")
+@pytest.mark.filterwarnings("ignore::skisnow._support.errors.RangeWarning")
 def test_each_word_is_its_law_with_the_numbers_given() -> None:
     assert Shear().of(S_F) is None
     assert Shear(law="by-angle", relative_decrease=0.3).of(S_F) == AngleShear(

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from skisnow.errors import ParameterError
+from skisnow._support.errors import ParameterError
 from skisnow.scenario import Plane, Profile, read_profile
 
 MEASURED = Path(__file__).resolve().parents[3] / "shared" / "data" / "slope-profiles"

@@ -8,12 +8,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from skisnow.errors import ParameterError
+from skisnow._support.errors import ParameterError
+from skisnow._support.units import N_PER_MM2, N_PER_MM3
 from skisnow.geometry.surfaces import Grid
-from skisnow.scenario import SnowMap, read_scenario, read_snow_map, scenario_file
-from skisnow.simulate.run_setup import laid_out
+from skisnow.scenario import SnowMap, load_scenario, read_snow_map, scenario_file
+from skisnow.simulation.run_setup import laid_out
 from skisnow.snow import published_snow
-from skisnow.units import N_PER_MM2, N_PER_MM3
 
 ALONG = "x_m,H_V_N_per_mm3,S_f_N_per_mm2\n0,0.1,0.3\n10,0.4,0.5\n40,0.4,0.4\n"
 OVER = "x_m,y_m,S_f_N_per_mm2\n0,-5,0.2\n0,5,0.4\n20,-5,0.2\n20,5,0.4\n"
@@ -59,11 +59,11 @@ def test_means_stand_for_the_snow(tmp_path: Path) -> None:
 
 def test_what_the_map_has_not_comes_from_the_snow(tmp_path: Path) -> None:
     path = written(tmp_path, OVER)
-    contact = read_scenario("carved-46m", changes={"snow.map_file": str(path)}).contact
+    contact = load_scenario("carved-46m", changes={"snow.map_file": str(path)}).contact
     assert contact.snow.snow_hardness == 0.2 * N_PER_MM3
     assert contact.snow.failure_shear_stress == pytest.approx(0.3 * N_PER_MM2)
     assert contact.hardness_at(0.0, 0.0) == contact.greatest_hardness == 0.2 * N_PER_MM3
-    named = read_scenario("carved-46m", changes={"snow.published": "race-piste"})
+    named = load_scenario("carved-46m", changes={"snow.published": "race-piste"})
     named = named.with_(snow_map=read_snow_map(path))
     assert named.contact.snow.failure_shear_stress == pytest.approx(0.3 * N_PER_MM2)
     assert named.with_(snow="race-piste").contact.snow_map is None
@@ -71,7 +71,7 @@ def test_what_the_map_has_not_comes_from_the_snow(tmp_path: Path) -> None:
 
 def test_hardness_of_the_map_comes_before_that_of_a_named_snow(tmp_path: Path) -> None:
     path = written(tmp_path, "x_m,H_V_N_per_mm3\n0,0.1\n10,0.4\n")
-    snow = read_scenario(
+    snow = load_scenario(
         "carved-46m", changes={"snow.map_file": str(path), "snow.published": "race-piste"}
     ).contact.snow
     assert snow.snow_hardness == read_snow_map(path).mean_hardness
@@ -82,7 +82,7 @@ def test_hardness_where_it_matters(tmp_path: Path) -> None:
     path = written(tmp_path, ALONG)
     changed = {"snow.map_file": str(path), "start.x_m": 10}
     soft, hard = (
-        laid_out(read_scenario("carved-46m", changes=each)) for each in ({"snow.map_file": str(path)}, changed)
+        laid_out(load_scenario("carved-46m", changes=each)) for each in ({"snow.map_file": str(path)}, changed)
     )
     assert soft.scenario.contact.hardness_at(0.0, 0.0) == pytest.approx(0.1 * N_PER_MM3)
     assert soft.scenario.contact.greatest_hardness == pytest.approx(0.4 * N_PER_MM3, rel=1e-3)
@@ -149,8 +149,8 @@ def test_a_large_map_is_looked_through_as_finely() -> None:
 def test_given_twice_is_refused(tmp_path: Path) -> None:
     path = written(tmp_path, ALONG)
     with pytest.raises(ParameterError, match=r"snow\.map_file and snow\.H_V_N_per_mm3 both give"):
-        read_scenario("carved-46m", changes={"snow.map_file": str(path), "snow.H_V_N_per_mm3": 0.3})
-    turn = read_scenario("carved-46m", changes={"snow.map_file": str(path)})
+        load_scenario("carved-46m", changes={"snow.map_file": str(path), "snow.H_V_N_per_mm3": 0.3})
+    turn = load_scenario("carved-46m", changes={"snow.map_file": str(path)})
     with pytest.raises(ParameterError, match=r"S_f_N_per_mm2 is given over the place by snow\.map_file"):
         turn.with_(S_f_N_per_mm2=0.3)
     assert turn.with_(snow_map=None, S_f_N_per_mm2=0.3).contact.snow.failure_shear_stress == 0.3 * N_PER_MM2

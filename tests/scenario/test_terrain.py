@@ -8,9 +8,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from skisnow.errors import ParameterError
+from skisnow._support.errors import ParameterError
 from skisnow.geometry.surfaces import Grid
-from skisnow.scenario import Plane, Profile, Terrain, read_scenario, read_terrain
+from skisnow.scenario import Plane, Profile, Terrain, load_scenario, read_terrain
 from skisnow.scenario.slope_surface import down_and_left, normals_of, surface_of
 
 ASC = """ncols 3
@@ -95,25 +95,25 @@ def test_surface_has_the_slope_of_its_plane_in_every_direction() -> None:
 def test_scenario_reads_its_grid_from_its_folder_and_shows_its_keys(tmp_path: Path) -> None:
     written(tmp_path, ASC, "heights.asc")
     text = '[slope]\nkind = "grid"\ngrid = "heights.asc"\norigin_x_m = 103\norigin_y_m = 52\nsmooth_m = 4\n'
-    rest = read_scenario("carved-46m")
+    rest = load_scenario("carved-46m")
     file = written(tmp_path, text + _without_slope(), "turn.toml")
-    terrain = read_scenario(file).slope
+    terrain = load_scenario(file).slope
     assert isinstance(terrain, Terrain)
     assert (terrain.smoothing, terrain.origin_x, terrain.origin_y) == (4.0, 103.0, 52.0)
-    smoother = read_scenario(file, changes={"slope.smooth_m": 0}).slope
+    smoother = load_scenario(file, changes={"slope.smooth_m": 0}).slope
     assert isinstance(smoother, Terrain)
     assert smoother.surface.values.tolist() == smoother.height.tolist()
-    assert read_scenario(file).with_(smooth_m=0.0).slope.surface.values.tolist() == smoother.height.tolist()  # type: ignore[union-attr]
-    assert isinstance(read_scenario(file, changes={"slope.kind": "plane", "slope.angle_deg": 9}).slope, Plane)
+    assert load_scenario(file).with_(smooth_m=0.0).slope.surface.values.tolist() == smoother.height.tolist()  # type: ignore[union-attr]
+    assert isinstance(load_scenario(file, changes={"slope.kind": "plane", "slope.angle_deg": 9}).slope, Plane)
     changed = {"slope.kind": "grid", "slope.grid": str(tmp_path / "heights.asc"), "start.x_m": 102, "start.y_m": 52}
-    assert isinstance(read_scenario("carved-46m", changes=changed).slope, Terrain)
+    assert isinstance(load_scenario("carved-46m", changes=changed).slope, Terrain)
     assert isinstance(rest.slope, Plane)
     with pytest.raises(ParameterError, match=r'slope\.smooth_m goes with slope.kind = "grid"; it is "plane"'):
-        read_scenario("carved-46m", changes={"slope.smooth_m": 3})
+        load_scenario("carved-46m", changes={"slope.smooth_m": 3})
     with pytest.raises(ParameterError, match=r"slope\.grid is missing"):
-        read_scenario("carved-46m", changes={"slope.kind": "grid"})
+        load_scenario("carved-46m", changes={"slope.kind": "grid"})
     with pytest.raises(ParameterError, match="the start, y = 9 m, is off the slope, which reaches from -1 to 1 m"):
-        read_scenario(file, changes={"start.y_m": 9})
+        load_scenario(file, changes={"start.y_m": 9})
 
 
 def _without_slope() -> str:

@@ -3,7 +3,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from skisnow.errors import ParameterError
+from skisnow._support.errors import ParameterError
 from skisnow.ski.base_profile import BaseShape
 from skisnow.ski.layout import layout_of_lengths
 

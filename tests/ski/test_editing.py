@@ -5,10 +5,10 @@ import math
 import numpy as np
 import pytest
 
-from skisnow.errors import ParameterError
+from skisnow._support.errors import ParameterError
+from skisnow._support.units import MM
 from skisnow.ski import Ski, ski_named, ski_names
 from skisnow.ski.editing import EDITED_COLUMNS, SIDECUT, SkiEdit, edit_stations, edited_ski, values_at
-from skisnow.units import MM
 
 NAN = math.nan
 

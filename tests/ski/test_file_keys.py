@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from skisnow.errors import ParameterError
+from skisnow._support.errors import ParameterError
 from skisnow.ski.base_profile import BaseShape
 from skisnow.ski.file_keys import BASE, COLUMNS, SKI_KEYS, SkiFile
 

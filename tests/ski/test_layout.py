@@ -2,7 +2,7 @@ from __future__ import annotations
 
 import pytest
 
-from skisnow.errors import ParameterError
+from skisnow._support.errors import ParameterError
 from skisnow.ski.layout import layout_of_lengths
 
 

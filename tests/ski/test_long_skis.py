@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from skisnow import read_ski
-from skisnow.errors import ParameterError
+from skisnow._support.errors import ParameterError
 from skisnow.ski.layout import LONGEST, layout_of_lengths
 
 DESIGN = """{"board": {"name": "flat", "nose length": 20, "effective edge length": "%s", "tail length": 18.5,

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from skisnow.errors import ParameterError
+from skisnow._support.errors import ParameterError
 from skisnow.ski import BaseShape, Ski, read_monkeycam, read_ski
 
 if TYPE_CHECKING:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pytest
 
-from skisnow.errors import ParameterError, RangeWarning
+from skisnow._support.errors import ParameterError, RangeWarning
 from skisnow.ski import read_ski, ski_named, ski_names
 from skisnow.ski.file_keys import RIGID
 
@@ -102,7 +102,7 @@ def test_one_stiffness_holds_everywhere(ski_file: Written) -> None:
     assert np.all(read_ski(ski_file(EI_N_m2=[300])).bending_stiffness == 300.0)
 
 
-@pytest.mark.filterwarnings("ignore::skisnow.errors.RangeWarning")
+@pytest.mark.filterwarnings("ignore::skisnow._support.errors.RangeWarning")
 @pytest.mark.parametrize(
     ("changes", "named"),
     [
@@ -147,7 +147,7 @@ def test_bad_files_name_file_key_value_and_remedy(ski_file: Written, changes: di
     assert str(raised.value).count(str(path)) <= 1
 
 
-@pytest.mark.filterwarnings("ignore::skisnow.errors.RangeWarning")
+@pytest.mark.filterwarnings("ignore::skisnow._support.errors.RangeWarning")
 def test_lengths_in_centimetres_are_refused(ski_file: Written) -> None:
     path = ski_file(length_mm=159.3, running_length_mm=139.6, sidecut_length_mm=145.8)
     with pytest.raises(ParameterError, match=r"length_mm is 159\.3; allowed is at least 290, .*centimetres"):
@@ -167,7 +167,7 @@ def test_lengths_in_centimetres_are_refused(ski_file: Written) -> None:
         ({"running_length_mm": 400}, "running_length_mm is 400, the ski 1593 mm long"),
     ],
 )
-@pytest.mark.filterwarnings("ignore::skisnow.errors.RangeWarning")
+@pytest.mark.filterwarnings("ignore::skisnow._support.errors.RangeWarning")
 def test_unusual_numbers_are_used_and_warned_of(ski_file: Written, changes: dict[str, object], named: str) -> None:
     path = ski_file(**changes)
     with pytest.warns(RangeWarning, match=named) as warned:

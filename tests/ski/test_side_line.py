@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pytest
 
-from skisnow.carve.equilibrium import carve
-from skisnow.errors import ParameterError
+from skisnow._support.errors import ParameterError
+from skisnow.carving.equilibrium import carve
 from skisnow.ski import read_ski
 from skisnow.ski.layout import layout_of_lengths
 from skisnow.ski.outline import ArcOutline

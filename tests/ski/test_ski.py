@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from skisnow.errors import ParameterError
+from skisnow._support.errors import ParameterError
 from skisnow.ski import Ski
 
 N = 801

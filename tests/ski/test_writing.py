@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from skisnow.errors import OutputError, RangeWarning
+from skisnow._support.errors import OutputError, RangeWarning
 from skisnow.ski import Ski, read_ski, ski_named, ski_names, write_ski
 
 if TYPE_CHECKING:

@@ -10,8 +10,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from skisnow import BootMoment, BootPose, Run, Scenario, scenario, simulate, time_gates
-from skisnow.errors import ParameterError
+from skisnow import BootMoment, BootPose, Run, Scenario, load_scenario, simulate, time_gates
+from skisnow._support.errors import ParameterError
 from skisnow.scenario import Skier
 from skisnow.skier import BalancedSkier
 from skisnow.skier.seen import Moment
@@ -19,7 +19,7 @@ from skisnow.skier.seen import Moment
 
 def tall(skier: Skier | None = None, **changes: object) -> Scenario:
     """The built-in skier on 10°, fast, with other values."""
-    found = scenario("skier-10deg").with_(**{"method": "fast"} | changes)
+    found = load_scenario("skier-10deg").with_(**{"method": "fast"} | changes)
     return found if skier is None else found.with_(skier=skier)
 
 
@@ -80,7 +80,7 @@ def test_the_slope_formula_holds_in_a_long_turn_and_less_in_a_short_one() -> Non
 
 
 def linked(name: str, speed: float) -> Run:
-    run = simulate(scenario(name).with_(method="fast", speed_m_per_s=speed))
+    run = simulate(load_scenario(name).with_(method="fast", speed_m_per_s=speed))
     assert run.outcome == "finished", speed
     assert run.energy_balance_error == pytest.approx(0.0, abs=2e-3)
     edge = np.degrees(run.balance.lean + run.balance.angulation)
@@ -153,7 +153,7 @@ def test_on_a_race_piste_the_last_turn_carves_too() -> None:
     ("name", "share"), [("leg_gain", 0.5), ("edge_gain", 0.7), ("lag", 0.5), ("correction", 0.5), ("lean_more", 1.1)]
 )
 def test_numbers_of_the_control_are_not_fine_tuned(name: str, share: float) -> None:
-    found = scenario("skier-10deg")
+    found = load_scenario("skier-10deg")
     assert found.skier is not None
     other = replace(found.skier, **{name: share * getattr(found.skier, name)})
     assert simulate(found.with_(skier=other, method="fast")).outcome == "finished"
@@ -162,7 +162,7 @@ def test_numbers_of_the_control_are_not_fine_tuned(name: str, share: float) -> N
 @pytest.mark.slow
 @pytest.mark.parametrize("name", ["slalom-20-gates", "giant-slalom-20-gates"])
 def test_twenty_gates(name: str) -> None:
-    run = simulate(scenario(name).with_(method="fast"))
+    run = simulate(load_scenario(name).with_(method="fast"))
     assert run.outcome == "finished"
     course = run.scenario.course
     assert course is not None
@@ -181,7 +181,7 @@ def test_gates_on_a_rolling_profile(tmp_path: Path) -> None:
     profile = tmp_path / "rolls.csv"
     np.savetxt(profile, np.column_stack([x, height]), delimiter=",", header="x,y", comments="")
     changes = {"slope.kind": "profile", "slope.profile": str(profile), "solver.method": "fast"}
-    assert simulate(scenario("giant-slalom-20-gates", changes=changes)).outcome == "finished"
+    assert simulate(load_scenario("giant-slalom-20-gates", changes=changes)).outcome == "finished"
 
 
 @pytest.mark.slow
@@ -256,4 +256,4 @@ def test_who_carves_too_fast_falls() -> None:
 
 def test_without_a_skier_there_is_no_control() -> None:
     with pytest.raises(ParameterError, match="has no skier"):
-        BalancedSkier(scenario("carved-46m"))
+        BalancedSkier(load_scenario("carved-46m"))

@@ -7,15 +7,15 @@ from typing import Any
 import numpy as np
 import pytest
 
-from skisnow import Run, scenario, simulate
-from skisnow.simulate.run_gates import run_gates
+from skisnow import Run, load_scenario, simulate
+from skisnow.simulation.run_gates import run_gates
 
 STATED_ERROR = {"fast": 15e-3, "default": 7e-3}
 """Of an end by each method (m)."""
 
 
 def run_with(output_ms: float, name: Any = "skier-12deg", **changes: object) -> Run:
-    return simulate(scenario(name, changes={"run.output_ms": output_ms} | changes))
+    return simulate(load_scenario(name, changes={"run.output_ms": output_ms} | changes))
 
 
 def moments(run: Run, times: np.ndarray) -> np.ndarray:

@@ -7,8 +7,8 @@ import math
 import numpy as np
 import pytest
 
-from skisnow import Course, Gate, scenario
-from skisnow.errors import ParameterError
+from skisnow import Course, Gate, load_scenario
+from skisnow._support.errors import ParameterError
 from skisnow.scenario import Skier, scenario_values
 from skisnow.skier import body_of, segments
 from skisnow.skier.edges import Edges
@@ -54,7 +54,7 @@ def test_who_is_on_the_line_turns_as_it_does_and_who_is_beside_it_goes_back() ->
 
 
 def edges() -> Edges:
-    return Edges.of(scenario("skier-10deg"), STEEP, Skier())
+    return Edges.of(load_scenario("skier-10deg"), STEEP, Skier())
 
 
 def test_more_acceleration_takes_more_edge_and_left_is_as_right() -> None:
@@ -84,7 +84,7 @@ def test_a_carve_in_balance_leans_as_it_must() -> None:
 
 def test_what_the_snow_holds_bounds_what_a_carve_gets() -> None:
     """A wedge in balance, tan ϑ = grip, holds 4 S_f² L/(H_V N) times the load of both skis; slope counts."""
-    turn, load = scenario("skier-12deg"), 736.0
+    turn, load = load_scenario("skier-12deg"), 736.0
     found = Edges.of(turn, STEEP, Skier(edge_beyond_lean=0.0))
     snow = turn.contact.snow
     most = 4.0 * (snow.failure_shear_stress or 0.0) ** 2 * turn.ski.running_length / (snow.snow_hardness * load)
@@ -122,7 +122,7 @@ def test_a_body_scales() -> None:
     one, other = body_of(75.0, 1.76), body_of(150.0, 1.76)
     assert other.inertia == pytest.approx([2.0 * each for each in one.inertia])
     assert 0.54 < one.standing_height / 1.76 < 0.58
-    assert scenario("skier-10deg").sledge.inertia == pytest.approx(one.inertia, abs=0.06)
+    assert load_scenario("skier-10deg").sledge.inertia == pytest.approx(one.inertia, abs=0.06)
     with pytest.raises(ParameterError, match="from 20 to 200"):
         body_of(7.0, 1.76)
 
@@ -163,12 +163,12 @@ def test_heights_by_roll_inertia_are_kept_within_people() -> None:
 
 
 def test_keys_of_a_skier() -> None:
-    found = scenario("skier-10deg", changes={"skier.turn_time_s": 1.5})
+    found = load_scenario("skier-10deg", changes={"skier.turn_time_s": 1.5})
     assert found.skier is not None
     assert found.skier.turn_time == 1.5
     assert scenario_values(found)["skier.steers"] == "turns"
-    assert scenario("carved-46m").skier is None
-    assert scenario_values(scenario("carved-46m"))["skier.steers"] is None
+    assert load_scenario("carved-46m").skier is None
+    assert scenario_values(load_scenario("carved-46m"))["skier.steers"] is None
 
 
 @pytest.mark.parametrize(
@@ -183,4 +183,4 @@ def test_keys_of_a_skier() -> None:
 )
 def test_what_a_skier_cannot_do_is_refused(changes: dict[str, object], words: str) -> None:
     with pytest.raises(ParameterError, match=words):
-        scenario("skier-10deg", changes=changes)
+        load_scenario("skier-10deg", changes=changes)

@@ -4,15 +4,15 @@ from __future__ import annotations
 
 from markupsafe import Markup
 
-from skisnow import scenario, simulate
+from skisnow import load_scenario, simulate
 from skisnow.report.figures.drawing import Picture
 from skisnow.report.run_drawings import run_drawings
 from skisnow.report.run_report import FIGURES, FURTHER, run_page
-from skisnow.simulate.run_summary import summary_dict
+from skisnow.simulation.run_summary import summary_dict
 
 
 def test_the_page_has_every_figure_of_a_skier_and_calls_nobody_a_sledge() -> None:
-    run = simulate(scenario("skier-10deg").with_(duration_s=0.05, method="fast"))
+    run = simulate(load_scenario("skier-10deg").with_(duration_s=0.05, method="fast"))
     pictures = [
         Picture(each.name, Markup(""), f"the figure {each.name}", True, "<svg/>", b"") for each in run_drawings(run)
     ]

@@ -11,14 +11,14 @@ import numpy as np
 import pytest
 from scipy.integrate import quad, solve_ivp
 
-from skisnow import Profile, scenario
+from skisnow import Profile, load_scenario
 from skisnow.scenario import Skier
 from skisnow.skier.balance import BalancedSkier, BalanceRecord
 from skisnow.skier.edges import Edges
 from skisnow.skier.seen import Seen, seen_at
 from skisnow.skier.steering import LineThroughGates, TurnsOverTime, Underway, pursued
 
-TURNS = scenario("skier-10deg")
+TURNS = load_scenario("skier-10deg")
 HEIGHT, MASS = 0.6, 75.0
 NORMAL, DOWNHILL = 9.81 * math.cos(math.radians(10.0)), 9.81 * math.sin(math.radians(10.0))
 """Acceleration along the normal and down the slope (m/s²)."""
@@ -386,7 +386,7 @@ def test_a_carve_leans_no_more_than_the_greatest_edge() -> None:
 
 
 def test_who_turns_over_time_looks_at_no_gates() -> None:
-    slalom = scenario("slalom-20-gates")
+    slalom = load_scenario("slalom-20-gates")
     assert slalom.skier is not None
     assert isinstance(BalancedSkier(slalom).steering, LineThroughGates)
     assert isinstance(BalancedSkier(slalom.with_(skier=replace(slalom.skier, steers="turns"))).steering, TurnsOverTime)

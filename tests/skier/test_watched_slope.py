@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from skisnow import scenario, simulate, time_gates
+from skisnow import load_scenario, simulate, time_gates
 
 watched_slope: Any = importlib.import_module("watched_slope")
 
@@ -42,7 +42,7 @@ def test_twenty_gates_on_a_measured_profile(tmp_path: Path, name: str, begins: f
     profile = tmp_path / "profile.csv"
     watched_slope.write_profile(profile, begins, length)
     changes = {"slope.kind": "profile", "slope.profile": str(profile), "solver.method": "fast"}
-    run = simulate(scenario(name, changes=changes))
+    run = simulate(load_scenario(name, changes=changes))
     assert run.outcome == "finished"
     course = run.scenario.course
     assert course is not None

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from skisnow.errors import ParameterError
+from skisnow._support.errors import ParameterError
 from skisnow.snow import SnowProperties
 from skisnow.snow.drawn import drawn_snows, log_normal
 

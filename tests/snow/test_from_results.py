@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from skisnow.errors import ParameterError
+from skisnow._support.errors import ParameterError
 from skisnow.snow import snow_from_results
 
 Row = dict[str, Any]

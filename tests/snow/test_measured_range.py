@@ -5,7 +5,7 @@ import warnings
 import numpy as np
 import pytest
 
-from skisnow.errors import RangeWarning
+from skisnow._support.errors import RangeWarning
 from skisnow.snow import MeasuredRange
 
 RANGE = MeasuredRange("edge angle", 0.0, 2.0, "°", 0.5, "Somebody 1999")

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from skisnow.errors import ParameterError
+from skisnow._support.errors import ParameterError
 from skisnow.snow import SnowProperties
 from skisnow.snow.published import domine_2011, federolf_2006, moessner_2013
 

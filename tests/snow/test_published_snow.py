@@ -2,9 +2,9 @@
 
 import pytest
 
-from skisnow.errors import ParameterError
+from skisnow._support.errors import ParameterError
+from skisnow._support.units import N_PER_MM2, N_PER_MM3
 from skisnow.snow import published_names, published_snow
-from skisnow.units import N_PER_MM2, N_PER_MM3
 
 
 @pytest.mark.parametrize(

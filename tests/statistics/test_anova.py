@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from skisnow.errors import ParameterError
+from skisnow._support.errors import ParameterError
 from skisnow.statistics import one_way_anova
 
 

@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.optimize import nnls
 
-from skisnow.errors import ParameterError
+from skisnow._support.errors import ParameterError
 from skisnow.statistics import linear_fit, non_negative_fit, non_negative_fits
 
 FloatArray = npt.NDArray[np.float64]

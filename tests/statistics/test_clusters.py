@@ -6,7 +6,7 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from skisnow.errors import FitError, ParameterError
+from skisnow._support.errors import FitError, ParameterError
 from skisnow.statistics import cluster_intervals, linear_fit
 
 FloatArray = npt.NDArray[np.float64]

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from skisnow.errors import ParameterError
+from skisnow._support.errors import ParameterError
 from skisnow.statistics import expanded_factor, welch_satterthwaite
 
 from ..versions import EXACT_QUANTILES

@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from skisnow.errors import FitError, ParameterError
+from skisnow._support.errors import FitError, ParameterError
 from skisnow.statistics import linear_fit, polynomial_fit
 
 from ..versions import EXACT_QUANTILES

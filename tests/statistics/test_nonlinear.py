@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from skisnow.errors import FitError, FitWarning, ParameterError
+from skisnow._support.errors import FitError, FitWarning, ParameterError
 from skisnow.statistics import linear_fit, nonlinear_fit
 
 from .nist_models import MODELS

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from skisnow.errors import FitError, ParameterError
+from skisnow._support.errors import FitError, ParameterError
 from skisnow.statistics import linear_fit, regress
 
 from ..versions import EXACT_QUANTILES

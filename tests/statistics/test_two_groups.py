@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from skisnow.errors import FitError, ParameterError
+from skisnow._support.errors import FitError, ParameterError
 from skisnow.statistics import ratio_of_means, two_groups
 
 needed = two_groups.tests_per_group  # under its own name pytest would take it for a test

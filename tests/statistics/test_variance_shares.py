@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from skisnow.errors import FitError
+from skisnow._support.errors import FitError
 from skisnow.statistics import variance_shares
 
 

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from skisnow.errors import FitError
+from skisnow._support.errors import FitError
 from skisnow.track.alignment import Motion, _settled, fitted_motion
 from skisnow.track.nearest_place import Path
 from skisnow.track.polyline import Polyline, polyline

@@ -7,7 +7,7 @@ from datetime import UTC, datetime, timedelta
 import numpy as np
 import pytest
 
-from skisnow.errors import ParameterError
+from skisnow._support.errors import ParameterError
 from skisnow.track.apart import Numbers
 from skisnow.track.comparison import Comparison, Distances, compare_tracks
 from skisnow.track.comparison_dict import comparison_dict

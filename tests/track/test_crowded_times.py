@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from skisnow import read_track, track_summary
-from skisnow.errors import ParameterError
+from skisnow._support.errors import ParameterError
 from skisnow.track.smoothing import MOST_IN_WINDOW
 
 

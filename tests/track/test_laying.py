@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from skisnow.errors import ParameterError
+from skisnow._support.errors import ParameterError
 from skisnow.track.comparison import Comparison, compare_tracks
 from skisnow.track.laying import inclination, lay_on_slope
 from skisnow.track.slope_frame import in_slope_frame

@@ -7,7 +7,7 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from skisnow.errors import ParameterError
+from skisnow._support.errors import ParameterError
 from skisnow.track.nearest_place import Path, distance_beside
 
 FloatArray = npt.NDArray[np.float64]

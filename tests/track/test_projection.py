@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from skisnow.errors import ParameterError
+from skisnow._support.errors import ParameterError
 from skisnow.track.projection import (
     GeodeticPoint,
     earth_centred,

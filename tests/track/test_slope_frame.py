@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from skisnow.errors import ParameterError
+from skisnow._support.errors import ParameterError
 from skisnow.track.slope_frame import in_slope_frame, slope_axes
 from skisnow.track.track import Track
 

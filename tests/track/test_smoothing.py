@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.signal import savgol_filter
 
-from skisnow.errors import ParameterError
+from skisnow._support.errors import ParameterError
 from skisnow.track.smoothing import parts, smoothed_track, window_bounds
 from skisnow.track.track import Track
 

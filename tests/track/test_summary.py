@@ -11,8 +11,7 @@ import numpy as np
 import pytest
 
 import skisnow.track
-from skisnow.errors import ParameterError
-from skisnow.track.comparison import compare_tracks
+from skisnow._support.errors import ParameterError
 from skisnow.track.read import read_track
 from skisnow.track.summary import TrackSummary, half_wavelength, summary_dict, track_summary
 from skisnow.track.track import Track
@@ -134,19 +133,3 @@ def test_too_few_points(points: int) -> None:
 def test_window_without_points() -> None:
     with pytest.raises(ParameterError, match=r"no window of 0\.2 s holds six usable points"):
         track_summary(track(circle(15.0, 8.0)), window=0.2)
-
-
-def test_former_names_of_a_track_and_its_motion_still_serve_and_warn() -> None:
-    place = np.column_stack([np.arange(20.0), np.zeros(20), np.zeros(20)])
-    walked = Track("a run", np.arange(20.0), place, np.full(20, np.nan), "local", "x, y, z")
-    summary = track_summary(walked)
-    named = [
-        (walked, "Track", "marks", "flags"),
-        (walked, "Track", "marked", "flagged"),
-        (summary.motion, "TrackMotion", "way", "arc_length"),
-        (summary.motion, "TrackMotion", "way_source", "arc_length_source"),
-        (compare_tracks(walked, walked).nearest.apart, "Apart", "way", "arc_length"),
-    ]
-    for thing, kind, former, name in named:
-        with pytest.warns(DeprecationWarning, match=f"{kind}.{former} is called {name} now"):
-            assert getattr(thing, former) is getattr(thing, name) or former == "marked"

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
+from skisnow._support.units import DEGREE
 from skisnow.track.curvature import track_motion
 from skisnow.track.turns import turns_of
-from skisnow.units import DEGREE
 
 from .paths import NOISE, FloatArray, along, track
 

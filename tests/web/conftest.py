@@ -18,9 +18,9 @@ from urllib.parse import urlsplit
 
 import pytest
 
-from skisnow.field.store import Store
-from skisnow.field.store.engine import writing
-from skisnow.field.store.schema import metadata
+from skisnow.campaign.store import Store
+from skisnow.campaign.store.engine import writing
+from skisnow.campaign.store.schema import metadata
 
 if TYPE_CHECKING:
     from multiprocessing.process import BaseProcess

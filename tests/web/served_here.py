@@ -30,7 +30,7 @@ def leave_figures_empty() -> None:
 if __name__ == "__main__":
     from pathlib import Path
 
-    from skisnow.field.store import Store
+    from skisnow.campaign.store import Store
     from skisnow.web import runs
     from skisnow.web.server import serve
     from skisnow.web.settings import Lab

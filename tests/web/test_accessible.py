@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from skisnow.cli import main
-from skisnow.study import run_study
+from skisnow.studies import run_study
 
 from ..report.runs import circle_run
 from .conftest import Served, follow, ready, settled

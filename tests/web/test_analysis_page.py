@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from skisnow.estimate import analyse, results_dict
-from skisnow.field import read_campaign, write_reference
-from skisnow.field.store import Journals, NewEntry, Store
+from skisnow.campaign import read_campaign, write_reference
+from skisnow.campaign.store import Journals, NewEntry, Store
+from skisnow.estimation import analyse, results_dict
 from skisnow.web.analyses import MOST_CAMPAIGNS
 from skisnow.web.analysing import choosable_flags
 

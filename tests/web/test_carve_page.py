@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from skisnow.carve.answer import answered
-from skisnow.carve.answer_dict import answer_dict
-from skisnow.carve.keys import CARVE_KEYS
-from skisnow.carve.question import carve_question
+from skisnow.carving.answer import answered
+from skisnow.carving.answer_dict import answer_dict
+from skisnow.carving.keys import CARVE_KEYS
+from skisnow.carving.question import carve_question
 from skisnow.report.number_formatting import significant
 from skisnow.web.pages.carve import RATIOS, SLIDERS
 

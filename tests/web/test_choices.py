@@ -11,8 +11,8 @@ import pytest
 pytest.importorskip("nicegui", reason="the web lab is not installed")
 
 from skisnow import analyse, read_campaign
-from skisnow.errors import ParameterError
-from skisnow.inputs import Quantity
+from skisnow._support.errors import ParameterError
+from skisnow.parameters import Quantity
 from skisnow.snow import published_snow
 from skisnow.web.entry.kept import KeptForm
 from skisnow.web.line_chart import BEHIND

@@ -9,7 +9,7 @@ import time
 
 import pytest
 
-from skisnow.errors import FieldDataError, ParameterError
+from skisnow._support.errors import FieldDataError, ParameterError
 from skisnow.web.confined import BOUNDS, Bounds, confined
 
 

@@ -13,12 +13,12 @@ pytest.importorskip("nicegui", reason="the web lab is not installed: pip install
 
 from fastapi import FastAPI
 
-from skisnow.course import course_names
-from skisnow.errors import ParameterError
+from skisnow._support.errors import ParameterError
+from skisnow.track.course import course_names
 from skisnow.web.lab_courses import LARGEST_BYTES, LabCourses
 from skisnow.web.replay.addresses import RunFolders, add_addresses
 
-from ..course.test_gate_gaps import folder_of
+from ..track.course.test_gate_gaps import folder_of
 from .replay.test_addresses import Client
 
 if TYPE_CHECKING:

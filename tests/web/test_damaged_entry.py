@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from skisnow.field.store import Journals, Store
+from skisnow.campaign.store import Journals, Store
 
 if TYPE_CHECKING:
     from .conftest import Served

@@ -13,12 +13,12 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from skisnow.carve.answer import answered
-from skisnow.carve.answer_dict import answer_dict
-from skisnow.carve.question import carve_question
+from skisnow.campaign.store import Journals, Store, replayed
+from skisnow.campaign.store.description import Description, description_text
+from skisnow.carving.answer import answered
+from skisnow.carving.answer_dict import answer_dict
+from skisnow.carving.question import carve_question
 from skisnow.cli import main
-from skisnow.field.store import Journals, Store, replayed
-from skisnow.field.store.description import Description, description_text
 from skisnow.report.number_formatting import significant
 
 from .conftest import Served, downloaded_results, fill, follow, has_text, killed_and_started_again, ready

@@ -12,7 +12,7 @@ pytest.importorskip("nicegui", reason="the web lab is not installed")
 
 from starlette.requests import Request
 
-from skisnow.errors import StoreError
+from skisnow._support.errors import StoreError
 from skisnow.web.error_pages import LOG, _notified, error_sentence, log_to, plain_page
 
 

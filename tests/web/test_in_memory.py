@@ -11,11 +11,11 @@ from typing import TYPE_CHECKING, Any, cast
 import pytest
 
 import skisnow
-from skisnow.errors import ParameterError, StoreError
-from skisnow.estimate import analyse
-from skisnow.field import QUALITY_FLAGS, read_campaign
-from skisnow.field.problems import Problem
-from skisnow.field.store import Journals, NewEntry, Store, export_corrected
+from skisnow._support.errors import ParameterError, StoreError
+from skisnow.campaign import QUALITY_FLAGS, read_campaign
+from skisnow.campaign.problems import Problem
+from skisnow.campaign.store import Journals, NewEntry, Store, export_corrected
+from skisnow.estimation import analyse
 from skisnow.report.campaign.figures import DRAWERS
 from skisnow.report.number_formatting import significant
 from skisnow.snow import snow_from_results
@@ -28,8 +28,8 @@ from skisnow.web.snow_of_campaign import campaign_snow, results_with
 from skisnow.web.transfer import entry_files, kept_files, write_entry
 from skisnow.web.uploaded import add_uploaded
 
-from ..field.recordings import plain_snow
-from ..given.test_workbook import packed
+from ..campaign.recordings import plain_snow
+from ..support.user_files.test_workbook import packed
 from .campaign_texts import DESK
 from .finished import finished
 

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 
 import pytest
 
+from skisnow.campaign.store import Store
 from skisnow.cli import main
-from skisnow.field.store import Store
 
 from .conftest import Served, downloaded_results, follow, has_text, killed_and_started_again, ready
 

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pytest
 
-from skisnow.field.store import Journals, Store, replayed
+from skisnow.campaign.store import Journals, Store, replayed
 
 from .conftest import Served, fill
 from .test_day import create

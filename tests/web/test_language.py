@@ -14,15 +14,15 @@ from .conftest import MISSING, PATIENCE_MS, Served, Watched, fill, has_text, rea
 if "nicegui" in MISSING:
     pytest.skip("the web lab is not installed", allow_module_level=True)
 
-from skisnow.carve.result import REMEDIES
-from skisnow.errors import FieldDataError, ParameterError
-from skisnow.field import QUALITY_FLAGS, Problem, campaign_of_files
-from skisnow.field.problems import lines_of
-from skisnow.field.store import Journals, NewEntry, Store
-from skisnow.field.store.description import Description, description_text
-from skisnow.language import Catalogue, catalogue, languages
-from skisnow.language.catalogue import DECIMAL, read_catalogue
-from skisnow.language.known import FOLDER
+from skisnow._support.errors import FieldDataError, ParameterError
+from skisnow._support.language import Catalogue, catalogue, languages
+from skisnow._support.language.catalogue import DECIMAL, read_catalogue
+from skisnow._support.language.known import FOLDER
+from skisnow.campaign import QUALITY_FLAGS, Problem, campaign_of_files
+from skisnow.campaign.problems import lines_of
+from skisnow.campaign.store import Journals, NewEntry, Store
+from skisnow.campaign.store.description import Description, description_text
+from skisnow.carving.result import REMEDIES
 from skisnow.report.ski_drawing import ski_drawing
 from skisnow.scenario.keys import SCENARIO_KEYS
 from skisnow.ski import read_ski
@@ -133,7 +133,7 @@ def test_what_is_wrong_in_files_is_said_with_their_own_names(table: str, german:
 
 def test_a_further_language_is_one_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "it.po").write_text('msgid "English"\nmsgstr "Italiano"\n', encoding="utf-8")
-    monkeypatch.setattr("skisnow.language.known.FOLDER", tmp_path)
+    monkeypatch.setattr("skisnow._support.language.known.FOLDER", tmp_path)
     for each in (languages, catalogue):
         each.cache_clear()
     assert languages() == {"en": "English", "it": "Italiano"}

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from skisnow.errors import ParameterError
+from skisnow._support.errors import ParameterError
 from skisnow.ski import read_ski
 from skisnow.web.lab_skis import LabSkis
 from skisnow.web.settings import Limits
@@ -19,7 +19,7 @@ from .conftest import Served, fill
 
 pytest.importorskip("nicegui", reason="the web lab is not installed")
 
-from skisnow.language import catalogue
+from skisnow._support.language import catalogue
 from skisnow.web.measured_ski import add_ski, measured_text, read_ski_files, ski_of_uploads
 
 if TYPE_CHECKING:

@@ -2,7 +2,7 @@
 
 import pytest
 
-from skisnow.errors import StoreError
+from skisnow._support.errors import StoreError
 from skisnow.web.names import analysis, carving, correcting, entering, export, plain_stem, required_id
 
 

@@ -15,10 +15,10 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from skisnow.field.store import Journals, Store, campaign_files, replayed
-from skisnow.field.store.description import Description, description_text
+from skisnow.campaign.store import Journals, Store, campaign_files, replayed
+from skisnow.campaign.store.description import Description, description_text
 
-from ..field.store.postgresql_server import Server, run, started, why_there_is_none
+from ..campaign.store.postgresql_server import Server, run, started, why_there_is_none
 from .conftest import Served, killed_and_started_again
 from .test_day import PLATE, SERIES, TOOL, VALUES, enter_series
 
@@ -109,7 +109,7 @@ def test_what_was_entered_in_a_lab_on_a_server_outlives_the_lab(
 def test_nobody_comes_in_unencrypted_or_with_another_password(
     group_server: Server, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    from skisnow.errors import StoreError
+    from skisnow._support.errors import StoreError
 
     monkeypatch.setenv("PGPASSFILE", str(password_file(tmp_path, group_server)))
     address = f"postgresql://snow@127.0.0.1:{group_server.port}/campaigns"

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 import pytest
 from PIL import Image
 
-from skisnow.estimate import analyse
-from skisnow.field.reference import reference_campaign
+from skisnow.campaign.reference import reference_campaign
+from skisnow.estimation import analyse
 from skisnow.report import write_report
 from skisnow.report.run_folder import write_run
 

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from skisnow.field.store import Journals, Store, replayed
+from skisnow.campaign.store import Journals, Store, replayed
 from skisnow.ski import read_ski
 
 from .conftest import Served, fill, has_text, ready

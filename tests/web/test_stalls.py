@@ -15,7 +15,7 @@ from urllib.parse import urlsplit
 
 import pytest
 
-from skisnow.field.store import Journals, Store, replayed
+from skisnow.campaign.store import Journals, Store, replayed
 
 from .conftest import Served, fill, has_text, ready
 from .test_typing import begun, depths

@@ -9,9 +9,9 @@ import pytest
 
 pytest.importorskip("nicegui", reason="the web lab is not installed")
 
+from skisnow._support.errors import ParameterError
 from skisnow.cli import main
-from skisnow.errors import ParameterError
-from skisnow.study import read_study
+from skisnow.studies import read_study
 from skisnow.web.run_estimate import duration_words
 from skisnow.web.studies import Studies, StudyJob
 from skisnow.web.study_asked import CARVE, MOST_POINTS, Range, StudyAsked, study_keys

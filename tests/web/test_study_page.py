@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from skisnow.study import read_study, run_study
+from skisnow.studies import read_study, run_study
 
 from .conftest import PATIENCE_MS, Served, fill, has_text, killed_and_started_again, ready, settled
 from .test_runs import choose
@@ -140,7 +140,7 @@ def test_a_study_in_german(chromium: Browser, served: Served) -> None:
 def with_scheduler(tmp_path: Path) -> Iterator[tuple[Served, list[str]]]:
     """A lab that sends its studies to a Dask scheduler, and the log of its worker."""
     pytest.importorskip("distributed", reason="Dask is not installed: skisnow[dask]")
-    from tests.parallel.test_dask import Cluster
+    from tests.support.processes.test_dask import Cluster
 
     cluster = Cluster(tmp_path)
     try:

@@ -12,8 +12,8 @@ pytest.importorskip("nicegui", reason="the web lab is not installed")
 import httpx
 from fastapi import FastAPI
 
-from skisnow.errors import FieldDataError, ParameterError
-from skisnow.field.store import Store
+from skisnow._support.errors import FieldDataError, ParameterError
+from skisnow.campaign.store import Store
 from skisnow.ski import read_ski
 from skisnow.web import error_pages
 from skisnow.web.lab_skis import LabSkis

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from skisnow.errors import ParameterError
+from skisnow._support.errors import ParameterError
 from skisnow.web.typed import typed_number
 
 

@@ -13,10 +13,10 @@ from pathlib import Path
 
 import pytest
 
-from skisnow.errors import ParameterError
+from skisnow._support.errors import ParameterError
 from skisnow.web.settings import Limits
 from skisnow.web.unpacking import Unpacking, campaign_folder, files_below, shown, write_zip
-from tests.given.fuzz import damaged
+from tests.support.user_files.fuzz import damaged
 
 LIMITS = Limits(upload_bytes=10_000, unpacked_bytes=5_000, files=4)
 

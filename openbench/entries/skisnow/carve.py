@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from skisnow import Ski, SnowProperties
-from skisnow.carve.equilibrium import carve
+from skisnow.carving.equilibrium import carve
 
 from .effort import Effort
 

@@ -8,7 +8,7 @@ import os
 import sys
 from typing import TYPE_CHECKING, Final
 
-from ..errors import FieldDataError, SkisnowError
+from .._support.errors import FieldDataError, SkisnowError
 from .ending import Ended
 
 if TYPE_CHECKING:
@@ -99,7 +99,7 @@ def _ended(error: Exception | KeyboardInterrupt) -> int:
 
 def _print_error(error: SkisnowError | MemoryError) -> None:
     if isinstance(error, FieldDataError):
-        from ..field.problems import Problem, lines_of
+        from ..campaign.problems import Problem, lines_of
 
         of_campaign = [problem for problem in error.problems if isinstance(problem, Problem)]
         others = [str(problem) for problem in error.problems if not isinstance(problem, Problem)]

@@ -36,10 +36,10 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
 
 def run(options: argparse.Namespace) -> int:
     """Analyse, write what was asked for, print the summary."""
-    from ..estimate import analyse
-    from ..estimate.results_text import results_json
-    from ..field import read_campaign
-    from ..memory import paused_collector
+    from .._support.memory import paused_collector
+    from ..campaign import read_campaign
+    from ..estimation import analyse
+    from ..estimation.results_text import results_json
     from .progress import Progress
 
     chosen: dict[str, Any] = {}

@@ -13,7 +13,7 @@ from .first_figure import fonts_listed
 from .words import add_language, number, whole_number
 
 if TYPE_CHECKING:
-    from ..carve.answer import CarveAnswer
+    from ..carving.answer import CarveAnswer
 
 
 def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -82,7 +82,7 @@ def _add_choices(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Answer for each ski, print, draw; 1 where an equilibrium was not found, 0 with every other outcome."""
-    from ..carve.answer_dict import answers_dict
+    from ..carving.answer_dict import answers_dict
 
     if options.figure is not None:
         from ..report.figures.figure_file import require_drawable
@@ -121,9 +121,9 @@ def _status(answers: list[CarveAnswer]) -> int:
 
 def _answers(options: argparse.Namespace) -> list[CarveAnswer]:
     with announced("loading"):
-        from ..carve.answer import answered
-        from ..carve.keys import CARVE_KEYS
-        from ..carve.question import carve_question
+        from ..carving.answer import answered
+        from ..carving.keys import CARVE_KEYS
+        from ..carving.question import carve_question
 
         given = {name: value for name, value in vars(options).items() if name in CARVE_KEYS and value is not None}
         return [answered(carve_question(given | {"ski": ski})) for ski in options.ski]

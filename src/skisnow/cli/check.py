@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from ..field import Problem
+    from ..campaign import Problem
 
 
 def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -27,7 +27,7 @@ def run(options: argparse.Namespace) -> int:
         entries = [problem.as_dict() for problem in problems]
         print(json.dumps({"errors": errors, "warnings": warnings, "problems": entries}, ensure_ascii=False))
     else:
-        from ..field.problems import lines_of
+        from ..campaign.problems import lines_of
 
         for line in lines_of(problems):
             print(line)
@@ -39,9 +39,9 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _problems(folder: Path) -> tuple[list[Problem], tuple[str, ...]]:
-    from ..errors import FieldDataError
-    from ..estimate import campaign_notes, quality_flags
-    from ..field import Problem, read_campaign
+    from .._support.errors import FieldDataError
+    from ..campaign import Problem, read_campaign
+    from ..estimation import campaign_notes, quality_flags
     from .progress import Progress
 
     with Progress() as progress:

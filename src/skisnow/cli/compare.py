@@ -9,14 +9,14 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ..units import DEGREE
+from .._support.units import DEGREE
 from .announced import announced
 from .out_folder import ready
 from .words import add_fall_line_azimuth, add_language, number
 
 if TYPE_CHECKING:
-    from ..course.gate_gaps import GateGap
     from ..track.comparison import Comparison
+    from ..track.course.gate_gaps import GateGap
     from ..track.track import Track
 
 
@@ -81,8 +81,8 @@ def run(options: argparse.Namespace) -> int:
     if options.out is not None:
         ready(options.out)
     found = _compared(options)
-    from ..course.gate_gaps import gap_rows, gate_gaps
     from ..track.comparison_dict import comparison_dict
+    from ..track.course.gate_gaps import gap_rows, gate_gaps
 
     gaps = gate_gaps(options.simulated, options.measured)
     answer = comparison_dict(found) | ({} if gaps is None else {"gates": gap_rows(gaps)})
@@ -146,8 +146,8 @@ def _read(path: Path) -> Track:
 
 def _slope_angle_of_run(file: Path) -> float | None:
     """Inclination (rad) of x and y of a run's track.csv, 0 on a profile or grid; None for another track."""
-    from ..errors import SkisnowError
-    from ..given import is_file, read_json
+    from .._support.errors import SkisnowError
+    from .._support.user_files import is_file, read_json
 
     summary = file.with_name("summary.json")
     if file.name != "track.csv" or not is_file(summary):
@@ -172,11 +172,11 @@ def _in_slope(track: Track, options: argparse.Namespace, slope_angle: float | No
 
 
 def _write(folder: Path, found: Comparison, text: str, language: str, gaps: tuple[GateGap, ...] | None) -> None:
-    from ..files import write_file
+    from .._support.files import write_file
+    from .._support.staging import staged
     from ..report.figures.track_comparison import comparison_drawing
     from ..report.gaps_report import FILES, write_gaps
     from ..report.pictures import write_pictures
-    from ..staging import staged
 
     with staged(folder, last="compare.json") as stage:
         stage.stale += FILES

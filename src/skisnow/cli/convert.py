@@ -40,7 +40,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
 
 def run(options: argparse.Namespace) -> int:
     """Convert, and print the files that were written."""
-    from ..units import CM
+    from .._support.units import CM
 
     with announced(f"reading {options.source}"):
         from ..interop.convert import ConvertOptions, convert

@@ -18,7 +18,7 @@ from .words import MOST_RESAMPLES, MOST_WORKERS, add_language, seed_number, whol
 MOST_SAMPLES, MOST_STARTS = 1_000_000, 1_000
 
 if TYPE_CHECKING:
-    from ..identify import Identification
+    from ..identification import Identification
     from ..scenario import ScenarioFile
 
 KEPT = "simulations.partial"
@@ -90,8 +90,8 @@ def run(options: argparse.Namespace) -> int:
 def _prepared(options: argparse.Namespace) -> ScenarioFile:
     """What can be refused is refused before the work."""
     with announced("loading"):
-        from ..identify.bootstrap import require_bootstrap
-        from ..identify.posterior import require_emcee
+        from ..identification.bootstrap import require_bootstrap
+        from ..identification.posterior import require_emcee
         from ..scenario import scenario_file
 
         require_bootstrap(options.bootstrap, options.bootstrap_by)
@@ -114,7 +114,7 @@ def _changes(options: argparse.Namespace) -> dict[str, object]:
 def _identified(options: argparse.Namespace) -> Identification:
     import numpy as np
 
-    from ..identify import identify
+    from ..identification import identify
 
     with Progress() as progress:
         return identify(
@@ -138,7 +138,7 @@ def _identified(options: argparse.Namespace) -> Identification:
 
 
 def _tell(options: argparse.Namespace, found: Identification, asked: ScenarioFile) -> None:
-    from ..identify import identification_dict
+    from ..identification import identification_dict
 
     contents = identification_dict(found, files=(*asked.files, *options.data))
     for text in found.warnings:

@@ -32,7 +32,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
 
 def run(options: argparse.Namespace) -> int:
     """Write the templates and say where."""
-    from ..field.templates import write_new_campaign
+    from ..campaign.templates import write_new_campaign
 
     written = write_new_campaign(options.folder, xlsx=options.xlsx)
     print(f"Fill in: {', '.join(map(str, written))}")

@@ -16,7 +16,7 @@ def ready(folder: Path) -> None:
     OutputError
         It cannot be made or written.
     """
-    from ..staging import tidied
+    from .._support.staging import tidied
 
     for sentence in tidied(folder):
         print(sentence, file=sys.stderr)

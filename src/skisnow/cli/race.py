@@ -19,7 +19,7 @@ from .words import MOST_WORKERS, add_changes, number, seed_number, whole_number
 if TYPE_CHECKING:
     from ..racing import QuickestLine, RacingLine, Score, Worth
     from ..scenario import Scenario
-    from ..simulate.run import Run
+    from ..simulation.run import Run
 
 KEPT, KEPT_WORTH = "evaluations.partial", "worth.partial"
 MOST_EVALUATIONS, MOST_GATES, MOST_SNOWS = 1_000_000, 1_000, 10_000

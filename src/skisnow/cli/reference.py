@@ -26,7 +26,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
 
 def run(options: argparse.Namespace) -> int:
     """Write the campaign."""
-    from ..field import write_reference
+    from ..campaign import write_reference
 
     write_reference(options.folder, seed=options.seed, turning_angles=options.turning_angles, creep=options.creep)
     print(f"Synthetic reference campaign, seed {options.seed}: {options.folder}")

@@ -80,11 +80,11 @@ def run(options: argparse.Namespace) -> int:
 
 def _beside(options: argparse.Namespace, shown: Replay) -> ReplayTrack:
     """The measured track in the axes of the run."""
-    from ..errors import ParameterError
+    from .._support.errors import ParameterError
+    from .._support.units import DEGREE
     from ..replay import measured_track
     from ..track.read import read_track
     from ..track.slope_frame import in_slope_frame
-    from ..units import DEGREE
 
     track = replace(read_track(options.track), name=options.track.name)
     azimuth = options.fall_line_azimuth_deg

@@ -24,7 +24,7 @@ def scheduler_of(options: argparse.Namespace) -> str | None:
     """
     asked: str | None = options.scheduler
     if asked is not None and asked not in LOCAL and options.workers is not None:
-        from ..errors import ParameterError
+        from .._support.errors import ParameterError
 
         raise ParameterError(
             "--workers counts processes of this computer; a scheduler has its own. Leave one of them out"
@@ -42,7 +42,7 @@ def checked_scheduler(asked: str | None) -> str | None:
     """
     if asked is None or asked in LOCAL:
         return asked
-    from ..parallel.dask_cluster import is_plain, require_scheduler
+    from .._support.processes.dask_cluster import is_plain, require_scheduler
 
     require_scheduler(asked)
     if is_plain(asked):

@@ -6,7 +6,7 @@ import argparse
 import sys
 from pathlib import Path
 
-from ..errors import ParameterError
+from .._support.errors import ParameterError
 from .scheduler import add_scheduler, checked_scheduler
 from .words import whole_number
 
@@ -50,7 +50,7 @@ def run(options: argparse.Namespace) -> int:
         text = f"skisnow: the web lab needs {missing.name}; install it with: pip install 'skisnow[web]'"
         print(text, file=sys.stderr)
         return 1
-    from ..field.store import ServerAddress, Store, default_path, store_place
+    from ..campaign.store import ServerAddress, Store, default_path, store_place
     from ..web.settings import Lab
 
     require_allowed(options.host, options.token)

@@ -11,7 +11,7 @@ from contextlib import ExitStack
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ..errors import ModelLimitWarning
+from .._support.errors import ModelLimitWarning
 from .announced import announced
 from .ending import Ending, ending_is_an_interrupt
 from .out_folder import ready
@@ -22,8 +22,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from ..scenario import Scenario, ScenarioFile
-    from ..simulate.run import Run
-    from ..simulate.verification import Refinement
+    from ..simulation.run import Run
+    from ..simulation.verification import Refinement
 
 LOADING = "loading"
 
@@ -87,7 +87,7 @@ def _list(name: str | None) -> int:
 def _prepare(options: argparse.Namespace, asked: ScenarioFile) -> None:
     """What can be refused is refused before the work."""
     if options.boots_out is not None:
-        from ..simulate.boots_table import require_ending
+        from ..simulation.boots_table import require_ending
 
         require_ending(options.boots_out)
     if options.out is not None:
@@ -100,7 +100,7 @@ def _computed(asked: ScenarioFile, *, verify: bool) -> tuple[Run, tuple[Refineme
     with ExitStack() as loading, Progress() as progress, warnings.catch_warnings():
         warnings.simplefilter("ignore", ModelLimitWarning)  # printed among those of the scenario
         loading.enter_context(announced(LOADING))
-        from ..simulate.simulated_run import simulate
+        from ..simulation.simulated_run import simulate
 
         found = simulate(asked.scenario, progress=_Pace(progress, begun=loading.close))
         loading.close()
@@ -110,8 +110,8 @@ def _computed(asked: ScenarioFile, *, verify: bool) -> tuple[Run, tuple[Refineme
 
 
 def _verified(found: Run, progress: Progress) -> tuple[Refinement, ...]:
-    from ..simulate.simulated_run import simulate
-    from ..simulate.verification import repetitions, verify
+    from ..simulation.simulated_run import simulate
+    from ..simulation.verification import repetitions, verify
 
     keys = iter(repetitions(found))
 
@@ -124,8 +124,8 @@ def _verified(found: Run, progress: Progress) -> tuple[Refinement, ...]:
 def _tell(
     options: argparse.Namespace, asked: ScenarioFile, found: Run, refinements: tuple[Refinement, ...] | None
 ) -> None:
-    from ..simulate.run_summary import run_warnings, summary_dict
-    from ..simulate.verification import limit_warnings, verification_dict
+    from ..simulation.run_summary import run_warnings, summary_dict
+    from ..simulation.verification import limit_warnings, verification_dict
 
     verification = None if refinements is None else verification_dict(refinements)
     near = limit_warnings(found, refinements or ())
@@ -140,7 +140,7 @@ def _tell(
     for text in (*near, *run_warnings(found)):
         print(f"warning: {text}", file=sys.stderr)
     if options.boots_out is not None:
-        from ..simulate.boots_table import write_boots
+        from ..simulation.boots_table import write_boots
 
         write_boots(found, options.boots_out)
         print(f"Boots: {options.boots_out}", file=sys.stderr)

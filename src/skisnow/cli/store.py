@@ -10,13 +10,13 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias
 
-from ..errors import StoreError
+from .._support.errors import StoreError
 from .progress import Progress
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
-    from ..field.store import JournalHead, Side, Store, StoredCampaign, StorePlace
+    from ..campaign.store import JournalHead, Side, Store, StoredCampaign, StorePlace
 
 Json: TypeAlias = dict[str, object]
 Answer: TypeAlias = tuple[Json, str, int]
@@ -76,7 +76,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
 
 def run(args: argparse.Namespace) -> int:
     """Do what was asked; 1 if verify found damage, else 0."""
-    from ..field.store import Store
+    from ..campaign.store import Store
 
     act = {"add": _add, "list": _list, "show": _show, "export": _export, "verify": _verify, "sync": _sync}
     with Store.open(args.store, create=args.action in ("add", "sync")) as store:
@@ -101,7 +101,7 @@ def _add(store: Store, args: argparse.Namespace) -> Answer:
 
 
 def _list(store: Store, _: argparse.Namespace) -> Answer:
-    from ..field.store import Journals
+    from ..campaign.store import Journals
 
     stored, entered = store.list(), Journals(store).list()
     lines = [*map(_line, stored), *map(_entered_line, entered)] or ["The store holds no campaign."]
@@ -110,7 +110,7 @@ def _list(store: Store, _: argparse.Namespace) -> Answer:
 
 
 def _show(store: Store, args: argparse.Namespace) -> Answer:
-    from ..field.store import JournalHead, entered_files, find_campaign
+    from ..campaign.store import JournalHead, entered_files, find_campaign
 
     found = find_campaign(store, args.id)
     if isinstance(found, JournalHead):
@@ -122,7 +122,7 @@ def _show(store: Store, args: argparse.Namespace) -> Answer:
 
 
 def _export(store: Store, args: argparse.Namespace) -> Answer:
-    from ..field.store import ExportedCampaign, JournalHead, export_corrected, find_campaign
+    from ..campaign.store import ExportedCampaign, JournalHead, export_corrected, find_campaign
 
     found = find_campaign(store, args.id)
     if isinstance(found, JournalHead):
@@ -139,7 +139,7 @@ def _export(store: Store, args: argparse.Namespace) -> Answer:
 
 
 def _export_entered(store: Store, head: JournalHead, args: argparse.Namespace) -> Answer:
-    from ..field.store import export_entered
+    from ..campaign.store import export_entered
 
     if args.as_added:
         raise StoreError(f"The campaign {head.id} consists of lab entries and has no stored files. Omit --as-added.")
@@ -155,7 +155,7 @@ def _verify(store: Store, _: argparse.Namespace) -> Answer:
 
 
 def _sync(store: Store, args: argparse.Namespace) -> Answer:
-    from ..field.store import Store, sync
+    from ..campaign.store import Store, sync
 
     with Store.open(_group_place(args.group)) as group, _share_shown("synchronising") as progress:
         done = sync(store, group, keep=dict(args.keep), who=args.who, progress=progress)
@@ -174,7 +174,7 @@ def _sync(store: Store, args: argparse.Namespace) -> Answer:
 
 def _group_place(given: str) -> StorePlace:
     """Where the group's store is; a file is made in a folder that exists, not where a stick is not plugged in."""
-    from ..field.store import store_place
+    from ..campaign.store import store_place
 
     place = store_place(given)
     if isinstance(place, Path) and not place.parent.is_dir():

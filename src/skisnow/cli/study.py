@@ -8,14 +8,14 @@ import time
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ..errors import ParameterError
+from .._support.errors import ParameterError
 from .ending import Ended, ending_is_an_interrupt
 from .progress import Progress
 from .scheduler import add_scheduler, scheduler_of
 from .words import MOST_WORKERS, add_language, whole_number
 
 if TYPE_CHECKING:
-    from ..study import Study, StudyTable
+    from ..studies import Study, StudyTable
 
 
 def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -54,7 +54,7 @@ def run(options: argparse.Namespace) -> int:
         from ..report.figures.figure_file import require_drawable
 
         require_drawable(options.figure)
-    from ..study import read_study
+    from ..studies import read_study
 
     study = read_study(file)
     if options.shard is not None:
@@ -63,7 +63,7 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _whole(options: argparse.Namespace, study: Study) -> int:
-    from ..study import run_study
+    from ..studies import run_study
 
     if options.figure is not None and "turn_radius_boot_m" not in study.columns:
         raise ParameterError("--figure draws maps of carved turns; for simulated runs leave it out and use the table")
@@ -83,7 +83,7 @@ def _whole(options: argparse.Namespace, study: Study) -> int:
 
 
 def _shard(options: argparse.Namespace, study: Study) -> int:
-    from ..study import Shard, run_shard
+    from ..studies import Shard, run_shard
 
     if options.figure is not None:
         raise ParameterError("--figure needs the whole table; draw it when the parts are put together")
@@ -99,7 +99,7 @@ def _shard(options: argparse.Namespace, study: Study) -> int:
 
 
 def _merge(options: argparse.Namespace) -> int:
-    from ..study import merge_shards
+    from ..studies import merge_shards
 
     if options.figure is not None or options.scheduler is not None:
         options.parser.error("--merge computes nothing: it takes a table and the files that --shard left, and no more")
@@ -123,7 +123,7 @@ def _none_was_asked(place: Path, table: StudyTable) -> bool:
 
 
 def _tell_state(study: Study) -> None:
-    from ..study import StudyState, study_state
+    from ..studies import StudyState, study_state
 
     state = study_state(study)
     if state is StudyState.ANOTHER:

@@ -15,7 +15,7 @@ from .words import add_language, number
 if TYPE_CHECKING:
     import argparse
 
-    from ..course import Course, CourseResult
+    from ..track.course import Course, CourseResult
     from ..track.projection import GeodeticPoint
     from ..track.track import Track
 
@@ -99,7 +99,7 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _course(options: argparse.Namespace) -> Course:
-    from ..course import course_warnings, read_course
+    from ..track.course import course_warnings, read_course
 
     course = read_course(options.course, discipline=options.discipline)
     for text in (*course.warnings, *course_warnings(course)):
@@ -117,13 +117,13 @@ def _origin(course: Course) -> GeodeticPoint | None:
 
 
 def _timed(course: Course, track: Track) -> CourseResult:
-    from ..simulate.run_gates import time_gates
+    from ..simulation.run_gates import time_gates
 
     return time_gates(course, track)
 
 
 def _told(result: CourseResult) -> dict[str, Any]:
-    from ..course.gates_table import gates_dict, time_warnings
+    from ..track.course.gates_table import gates_dict, time_warnings
 
     for text in time_warnings(result):
         print(f"warning: {text}", file=sys.stderr)

@@ -79,7 +79,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
 def run(options: argparse.Namespace) -> int:
     """Compute the chain, print what the contacts do otherwise or the JSON, write the report."""
     with announced("loading"):
-        from ..chain.chaining import chain
+        from ..pipeline.turn import turn
         from ..scenario import scenario_file
         from ..scenario.keys import parse_change
         from ..scenario.prior import prior_of
@@ -95,7 +95,7 @@ def run(options: argparse.Namespace) -> int:
     given = _given(changes, asked.scenario.contact)
     chosen = given | {name: getattr(options, name) for name in names if getattr(options, name) is not None}
     with Progress() as progress:
-        found = chain(options.campaign, options.site, asked.scenario, priors=priors, progress=progress, **chosen)
+        found = turn(options.campaign, options.site, asked.scenario, priors=priors, progress=progress, **chosen)
         page = None if options.out is None else found.report(options.out, language=options.language)
     if options.json:
         from ..report.turn_dict import turn_dict

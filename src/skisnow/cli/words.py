@@ -8,7 +8,7 @@ import math
 import re
 from typing import TYPE_CHECKING, Any, Final
 
-from ..language import ENGLISH, codes
+from .._support.language import ENGLISH, codes
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable

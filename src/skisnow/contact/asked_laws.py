@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from ..errors import ParameterError
+from .._support.errors import ParameterError
 
 if TYPE_CHECKING:
     from ..forces.friction import FrictionLaw

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+from .._support.display import Facts, Shown
+from .._support.errors import ParameterError
 from ..compiled import core
-from ..errors import ParameterError
-from ..shown import Facts, Shown
 
 
 class ContactState(Shown):

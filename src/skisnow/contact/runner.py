@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
+from .._support.display import Facts, Shown, amount, ends
+from .._support.errors import ParameterError
+from .._support.units import MM
 from ..compiled import core
-from ..errors import ParameterError
-from ..shown import Facts, Shown, amount, ends
-from ..units import MM
 
 if TYPE_CHECKING:
     from ..ski import Ski

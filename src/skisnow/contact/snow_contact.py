@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Final, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
+from .._support.display import Facts, Shown, field_facts
+from .._support.errors import ParameterError
 from ..compiled import core
-from ..errors import ParameterError
-from ..shown import Facts, Shown, field_facts
 from .asked_laws import AskedFriction, AskedPressure, AskedStrength
 from .contact_state import ContactState
 

@@ -9,8 +9,10 @@ from typing import Final, TypeAlias, get_args
 import numpy as np
 import numpy.typing as npt
 
+from .._support.display import Facts, Shown, amount
+from .._support.errors import ParameterError
+from .._support.units import N_PER_MM2, N_PER_MM3
 from ..compiled import core
-from ..errors import ParameterError
 from ..forces.friction import ConstantFriction, FrictionLaw, LinearFriction, QuadraticFriction, WaterFilmFriction
 from ..forces.friction.load import ActsOn
 from ..forces.penetration import PointLaw
@@ -19,8 +21,6 @@ from ..forces.shear import AngleShear, ConstantShear, DensityShear, MachiningShe
 from ..forces.shear.displacement import SHEAR_DISPLACEMENT
 from ..forces.shear.slip import RESIDUAL_RATIO, SLIP_WEAKENING
 from ..geometry.surfaces import Grid, Plane
-from ..shown import Facts, Shown, amount
-from ..units import N_PER_MM2, N_PER_MM3
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 

@@ -8,9 +8,9 @@ from typing import TypeAlias
 import numpy as np
 import numpy.typing as npt
 
+from .._support.display import ShownFields
+from .._support.errors import ParameterError
 from ..compiled import core
-from ..errors import ParameterError
-from ..shown import ShownFields
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 

@@ -9,10 +9,10 @@ from typing import Any, Final, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from ..errors import ParameterError
+from .._support.display import Facts, Shown, ShownFields, amount
+from .._support.errors import ParameterError
+from .._support.units import DEGREE
 from ..geometry.boot_axes import angles_of, axes_of
-from ..shown import Facts, Shown, ShownFields, amount
-from ..units import DEGREE
 from .body import shaped
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]

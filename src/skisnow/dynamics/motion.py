@@ -10,10 +10,9 @@ from typing import Final, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
+from .._support.errors import ParameterError
 from ..compiled import core
 from ..contact import ContactState, SnowContact
-from ..errors import ParameterError
-from ..former_names import warn_of_former_name
 from .body import Body, shaped
 from .boots import BootMotion
 
@@ -188,11 +187,6 @@ class Dynamics:
         """
         return float(self._core.settle())
 
-    def settle(self) -> float:
-        """Former name of `find_equilibrium`."""
-        warn_of_former_name("Dynamics.settle", "find_equilibrium")
-        return self.find_equilibrium()
-
     def move_to(self, position: FloatArray, rotation: FloatArray) -> None:
         """Put the body elsewhere before it begins, its skis bent as they are."""
         self._core.set_pose(shaped("position", position, (3,)), shaped("rotation", rotation, (3, 3)))
@@ -250,12 +244,6 @@ class Dynamics:
     def beam_dofs(self) -> FloatArray:
         """Degrees of freedom of the beams, (skis, n): deflection (m), its slope and twist (rad) at each free node."""
         return self._core.bend.reshape(len(self.body.skis), -1)
-
-    @property
-    def bend(self) -> FloatArray:
-        """Former name of `beam_dofs`."""
-        warn_of_former_name("Dynamics.bend", "beam_dofs")
-        return self.beam_dofs
 
     def along(self, ski: int) -> FloatArray:
         """At the last time reached: depth of the edge (m), force and shear per length (N/m) at the nodes, (3, m)."""

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
-from ..errors import ParameterError
+from .._support.errors import ParameterError
 
 if TYPE_CHECKING:
     FloatArray = npt.NDArray[np.float64]

@@ -8,8 +8,8 @@ from typing import TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from ..errors import ParameterError
-from ..shown import ShownFields
+from .._support.display import ShownFields
+from .._support.errors import ParameterError
 from .patches import patched
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]

@@ -16,7 +16,7 @@ from typing import Annotated, Final, Literal, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from ..inputs import Quantity, require_declared
+from ..parameters import Quantity, require_declared
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 GeometryForm: TypeAlias = Literal["extended", "paper"]

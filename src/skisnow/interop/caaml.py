@@ -7,15 +7,15 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final
 from xml.sax.saxutils import escape, quoteattr
 
-from ..errors import ParameterError
-from ..field.caaml import OWN_NAMESPACE
-from ..files import write_file
-from ..units import CM, MM
+from .._support.errors import ParameterError
+from .._support.files import write_file
+from .._support.units import CM, MM
+from ..campaign.caaml import OWN_NAMESPACE
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from ..field.snow_pit import DepthTemperature, ForceProfile, LayerDensity, PlateValue, SnowLayer, SnowPit
+    from ..campaign.snow_pit import DepthTemperature, ForceProfile, LayerDensity, PlateValue, SnowLayer, SnowPit
 
 VERSION: Final = "6.0.3"
 HAND_HARDNESSES: Final = (

@@ -9,8 +9,8 @@ import json
 from pathlib import Path
 from typing import Any, Final
 
-from ..errors import ParameterError
-from ..files import require_writable, write_file
+from .._support.errors import ParameterError
+from .._support.files import require_writable, write_file
 from ..scenario import Plane, Scenario
 
 SOIL: Final = "snow.json"

@@ -9,12 +9,12 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
-from ..errors import OutputError, ParameterError
-from ..field import read_campaign, read_snow_micro_pen
-from ..field.caaml import read_caaml
-from ..field.smet import read_smet
-from ..field.snow_pit import ForceProfile, SnowPit
-from ..inputs import meant
+from .._support.errors import OutputError, ParameterError
+from ..campaign import read_campaign, read_snow_micro_pen
+from ..campaign.caaml import read_caaml
+from ..campaign.smet import read_smet
+from ..campaign.snow_pit import ForceProfile, SnowPit
+from ..parameters import meant
 from .caaml import write_caaml
 from .opensim import read_c3d, read_motion, read_trc, write_c3d, write_motion, write_trc
 from .site_pit import site_pit, sites_of
@@ -115,7 +115,7 @@ def _kind(path: Path) -> str:
 
 
 def _pit_of_campaign(source: Path, options: ConvertOptions) -> SnowPit:
-    from ..estimate.analysis import FEWEST_RESAMPLES, analyse
+    from ..estimation.analysis import FEWEST_RESAMPLES, analyse
 
     campaign = read_campaign(source)
     sites = sites_of(campaign)

@@ -5,18 +5,18 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Final
 
-from ..errors import ParameterError
-from ..estimate.observations import HARDNESS_KEY, STRESS_KEY
-from ..field.snow_pit import DepthTemperature, ForceProfile, LayerDensity, PlateValue, SnowPit
-from ..units import MM
+from .._support.errors import ParameterError
+from .._support.units import MM
+from ..campaign.snow_pit import DepthTemperature, ForceProfile, LayerDensity, PlateValue, SnowPit
+from ..estimation.observations import HARDNESS_KEY, STRESS_KEY
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
-    from ..estimate import Analysis
-    from ..estimate.snow_micro_pen import EvaluatedRecording
-    from ..field.records import Campaign
-    from ..field.snow_micro_pen import SnowMicroPenProfile
+    from ..campaign.records import Campaign
+    from ..campaign.snow_micro_pen import SnowMicroPenProfile
+    from ..estimation import Analysis
+    from ..estimation.snow_micro_pen import EvaluatedRecording
 
 BLOCK: Final = 1.0 * MM
 """Forces of a SnowMicroPen are given as means over it (modelling assumption): a pit holds hundreds, not thousands."""

@@ -8,14 +8,14 @@ from datetime import UTC, datetime, timedelta, timezone
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
-from ..errors import ParameterError
-from ..estimate.weather import QUANTITIES
-from ..files import write_file
+from .._support.errors import ParameterError
+from .._support.files import write_file
+from ..estimation.weather import QUANTITIES
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from ..field.smet import StationSeries
+    from ..campaign.smet import StationSeries
 
 NO_DATA: Final = -999.0
 

@@ -10,15 +10,15 @@ import io
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
-from ..errors import ParameterError
-from ..files import write_file
-from ..units import CM, MM
+from .._support.errors import ParameterError
+from .._support.files import write_file
+from .._support.units import CM, MM
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
-    from ..field.snow_micro_pen import SnowMicroPenProfile
-    from ..field.snow_pit import SnowPit
+    from ..campaign.snow_micro_pen import SnowMicroPenProfile
+    from ..campaign.snow_pit import SnowPit
 
 NO_DATA: Final = "-9999"
 DENSITY: Final = ("# Top (cm)", "Bottom (cm)", "Density A (kg/m3)", "Density B (kg/m3)", "Density C (kg/m3)")

@@ -9,11 +9,11 @@ from dataclasses import dataclass, field, fields, replace
 from itertools import pairwise
 from typing import Final
 
-from ..course import Course
-from ..errors import ParameterError
+from .._support.display import Facts, Shown, ShownFields, amount
+from .._support.errors import ParameterError
 from ..scenario import Scenario, Skier
-from ..shown import Facts, Shown, ShownFields, amount
 from ..skier.steering import Underway, pursued
+from ..track.course import Course
 
 LEAST_TURNING: Final = 0.2
 """Least share of the way over which a turn may last: below, its curvature grows beyond any ski's."""

@@ -8,10 +8,10 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Final
 
-from ..course import Course
-from ..csv_rows import csv_rows
-from ..errors import ParameterError
-from ..files import write_file
+from .._support.csv_rows import csv_rows
+from .._support.errors import ParameterError
+from .._support.files import write_file
+from ..track.course import Course
 from .line import LineTurn, RacingLine
 
 COLUMNS: Final = ("gate", "aside_m", "along", "turning", "apex_x_m", "apex_y_m", "edging_from_x_m", "edging_to_x_m")

@@ -11,10 +11,10 @@ from typing import Final, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from ..course import CourseResult, MovingPoint, passages
-from ..errors import ParameterError
+from .._support.errors import ParameterError
 from ..scenario import Plane, Scenario
 from ..skier.steering import Line
+from ..track.course import CourseResult, MovingPoint, passages
 from .line import RacingLine, skier_of
 from .score import NOT_PASSED, Score, score_of
 

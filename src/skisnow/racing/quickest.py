@@ -9,13 +9,13 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import get_args
 
-from ..content import pieces_of
-from ..errors import ParameterError
-from ..parallel.executors import ExecutorLike, require_executor
-from ..parallel.kept_rows import KeptRows
-from ..parallel.pool import Pool, workers_in_force
+from .._support.content import pieces_of
+from .._support.display import Facts, Shown, amount
+from .._support.errors import ParameterError
+from .._support.processes.executors import ExecutorLike, require_executor
+from .._support.processes.kept_rows import KeptRows
+from .._support.processes.pool import Pool, workers_in_force
 from ..scenario import Scenario
-from ..shown import Facts, Shown, amount
 from .line import RacingLine, course_of, cut, follower_line
 from .racers import Racer, RacerModel, ScoredLine, score_in, turns_in
 from .score import NOT_PASSED, Score

@@ -6,9 +6,9 @@ from dataclasses import dataclass, replace
 from typing import Any, Literal, TypeAlias
 
 from ..scenario import Scenario
-from ..simulate.run import Run
-from ..simulate.run_gates import run_gates
-from ..simulate.simulated_run import Progress, simulate
+from ..simulation.run import Run
+from ..simulation.run_gates import run_gates
+from ..simulation.simulated_run import Progress, simulate
 from ..skier import BalancedSkier
 from ..skier.seen import Moment
 from .line import FollowedLine, LineTurn, RacingLine, skier_of

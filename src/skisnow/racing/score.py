@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import Final
 
-from ..course import CourseResult, Passage
-from ..shown import ShownFields
+from .._support.display import ShownFields
+from ..track.course import CourseResult, Passage
 
 NOT_PASSED: Final = 1000.0
 """What a gate that is not passed adds, so that any way that passes more gates is better (it moves no time)."""

@@ -9,10 +9,10 @@ from typing import Any, Final, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from ..errors import ParameterError
-from ..optional_packages import needed
-from ..parallel.kept_rows import KeptRows, Row
-from ..parallel.pool import Pool
+from .._support.errors import ParameterError
+from .._support.optional_packages import needed
+from .._support.processes.kept_rows import KeptRows, Row
+from .._support.processes.pool import Pool
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 Told: TypeAlias = Callable[[int, float], None]

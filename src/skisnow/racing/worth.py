@@ -13,17 +13,17 @@ import numpy as np
 import numpy.typing as npt
 from scipy.stats import qmc
 
-from ..content import pieces_of
-from ..course.gate_gaps import GateGap, gaps_of
-from ..errors import ParameterError
-from ..parallel.batch import run_batch
-from ..parallel.executors import ExecutorLike
-from ..parallel.kept_rows import KeptRows
+from .._support.content import pieces_of
+from .._support.display import Facts, Shown, amount
+from .._support.errors import ParameterError
+from .._support.processes.batch import run_batch
+from .._support.processes.executors import ExecutorLike
+from .._support.processes.kept_rows import KeptRows
 from ..scenario import Scenario
-from ..shown import Facts, Shown, amount
 from ..ski import Ski
 from ..snow import SnowProperties
 from ..snow.drawn import drawn_snows
+from ..track.course.gate_gaps import GateGap, gaps_of
 from .line import RacingLine
 from .racers import LinePoint, Racer, RacerModel, ScoredLine, score_in
 from .score import Score

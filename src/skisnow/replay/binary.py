@@ -19,8 +19,8 @@ from typing import TYPE_CHECKING, Any, Final, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from ..errors import ParameterError
-from ..given import GivenError, json_value
+from .._support.errors import ParameterError
+from .._support.user_files import GivenError, json_value
 from .colours import COLOURS, drawn_thickness
 from .replay import SKI_NAMES, Replay, ReplayBoots, ReplayGroove, ReplaySkier, ReplaySkis, ReplayTerrain, ReplayTrack
 from .skier import JOINTS

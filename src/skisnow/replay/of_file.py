@@ -9,22 +9,22 @@ import numpy as np
 import numpy.typing as npt
 from scipy.io import netcdf_file
 
-from ..course import read_course
-from ..errors import ParameterError, SkisnowError
+from .._support.errors import ParameterError, SkisnowError
+from .._support.units import DEGREE
+from .._support.user_files import GivenError, json_value
 from ..geometry.boot_axes import axes_of
-from ..given import GivenError, json_value
 from ..scenario import Plane, read_profile, read_terrain
 from ..scenario.keys import SCENARIO_KEYS
 from ..scenario.scenario import course_on_slope
 from ..ski import read_ski, ski_named
 from ..skier.segments import height_of
-from ..units import DEGREE
+from ..track.course import read_course
 from .of_run import Setting, assembled, facts_of, moving_boots, skis_words
 from .run_values import needed_value, require_drawable, require_finite, scenario_value
 
 if TYPE_CHECKING:
-    from ..course import Course
     from ..ski import Ski
+    from ..track.course import Course
     from .of_run import Slope
     from .replay import Replay, ReplayBoots, ReplayTrack
 

@@ -9,12 +9,12 @@ import numpy as np
 import numpy.typing as npt
 from scipy.spatial.transform import Rotation
 
-from ..course import MovingPoint, passages
-from ..errors import ParameterError
+from .._support.errors import ParameterError
+from .._support.units import DEGREE, N_PER_MM2, N_PER_MM3
 from ..scenario import Plane, Profile, Terrain
-from ..simulate.run_gates import feet_and_tips
+from ..simulation.run_gates import feet_and_tips
 from ..skier.segments import height_of
-from ..units import DEGREE, N_PER_MM2, N_PER_MM3
+from ..track.course import MovingPoint, passages
 from .groove_times import groove_times
 from .quaternions import quaternions
 from .replay import Replay, ReplayBoots, ReplayGroove, ReplaySkier, ReplaySkis, ReplayTerrain, ReplayTrack
@@ -23,9 +23,9 @@ from .skier import replay_skier
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from ..course import Course
-    from ..simulate.run import Run
+    from ..simulation.run import Run
     from ..ski import Ski
+    from ..track.course import Course
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 Slope: TypeAlias = Plane | Profile | Terrain

@@ -13,10 +13,10 @@ from typing import TYPE_CHECKING, Any, Final
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 
-from ..errors import ParameterError
-from ..files import write_file
-from ..language import ENGLISH, catalogue, require_language
-from ..simulate.run import Run
+from .._support.errors import ParameterError
+from .._support.files import write_file
+from .._support.language import ENGLISH, catalogue, require_language
+from ..simulation.run import Run
 from .binary import replay_bytes
 from .of_file import replay_of_file
 from .of_run import replay_of_run

@@ -8,7 +8,7 @@ from typing import Any, Final, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from ..errors import ParameterError
+from .._support.errors import ParameterError
 from ..scenario.keys import SCENARIO_KEYS
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]

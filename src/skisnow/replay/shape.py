@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from ..simulate.sledge.frames import base_lateral, base_normal, rotation
+from ..simulation.sledge.frames import base_lateral, base_normal, rotation
 
 if TYPE_CHECKING:
     from .replay import Replay

@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING, Final, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
+from .._support.units import DEGREE
 from ..skier.segments import FOOT, FOREARM, HIP_WIDTH, SHANK, SHOULDER_WIDTH, THIGH, TRUNK, UPPER_ARM
-from ..units import DEGREE
 from .replay import ReplaySkier
 
 if TYPE_CHECKING:

@@ -31,7 +31,7 @@ def carve_summary(found: Json) -> str:
     Parameters
     ----------
     found
-        What `skisnow.carve.answer_dict.answers_dict` gives.
+        What `skisnow.carving.answer_dict.answers_dict` gives.
     """
     return "\n".join(_lines(answers_of(found)))
 

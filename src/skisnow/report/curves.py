@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from .._support.units import MM
 from ..geometry import in_form
-from ..units import MM
 
 if TYPE_CHECKING:
     import numpy.typing as npt
 
-    from ..field.records import Campaign, PenetrationTests
+    from ..campaign.records import Campaign, PenetrationTests
     from ..geometry import GeometryForm, Tool
 
     FloatArray = npt.NDArray[np.float64]

@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING, Final
 
 from markupsafe import Markup
 
-from ..course.gate_gaps import COLUMNS, gap_rows, gaps_csv, gate_gaps
-from ..errors import ParameterError
-from ..files import write_file
-from ..language import ENGLISH
+from .._support.errors import ParameterError
+from .._support.files import write_file
+from .._support.language import ENGLISH
+from ..track.course.gate_gaps import COLUMNS, gap_rows, gaps_csv, gate_gaps
 from .figures.drawing import FORMS, pictured
 from .figures.gate_gaps import gate_gaps_drawing, last_words
 from .figures.style import journal_style
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
     from pathlib import Path
 
-    from ..course.gate_gaps import GateGap
+    from ..track.course.gate_gaps import GateGap
     from .figures.drawing import Drawing, Picture
 
 GAPS_CSV: Final = "gate_gaps.csv"

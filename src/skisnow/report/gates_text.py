@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from ..course.gates_table import gate_rows
+from ..track.course.gates_table import gate_rows
 from .number_formatting import significant
 
 if TYPE_CHECKING:
-    from ..course import CourseResult
+    from ..track.course import CourseResult
 
 
 def gates_text(result: CourseResult) -> str:

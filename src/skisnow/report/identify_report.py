@@ -12,10 +12,10 @@ from typing import TYPE_CHECKING, Any, Final
 
 from markupsafe import Markup
 
-from ..files import require_writable, write_file
-from ..language import ENGLISH, require_language
-from ..spreadsheet_text import guarded
-from ..staging import staged
+from .._support.files import require_writable, write_file
+from .._support.language import ENGLISH, require_language
+from .._support.spreadsheet_text import guarded
+from .._support.staging import staged
 from .figures.drawing import Drawing
 from .figures.identify_fits import residuals_along, tracks_above
 from .figures.identify_profiles import profiles_drawn
@@ -28,7 +28,7 @@ from .tables.identified import correlation_table, parameters_table
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
 
-    from ..identify.identification import Identification
+    from ..identification.identification import Identification
     from .figures.drawing import Picture
 
 ANSWER: Final = "identification.json"

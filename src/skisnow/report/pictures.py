@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from ..files import write_file
-from ..language import ENGLISH
+from .._support.files import write_file
+from .._support.language import ENGLISH
 from .figures.drawing import FORMS, pictured
 from .figures.style import journal_style
 from .figures.translated import translate_figure

@@ -6,9 +6,9 @@ import json
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ..course.gate_gaps import gaps_csv
-from ..files import write_file
+from .._support.files import write_file
 from ..racing import write_line
+from ..track.course.gate_gaps import gaps_csv
 from .figures.figure_file import write_figure
 from .figures.gate_gaps import gate_gaps_figure
 from .figures.race_lines import race_lines
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from ..racing import QuickestLine, Score, Worth
-    from ..simulate.run import Run
+    from ..simulation.run import Run
 
 SUMMARY = "race.json"
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Final
 
-from ..errors import ParameterError
-from ..inputs import nearest
-from ..units import DEGREE
+from .._support.errors import ParameterError
+from .._support.units import DEGREE
+from ..parameters import nearest
 from .figures.drawing import Drawing
 from .figures.run_along_ski import run_along_ski
 from .figures.run_balance import run_balance
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from markupsafe import Markup
     from matplotlib.figure import Figure
 
-    from ..simulate.run import Run
+    from ..simulation.run import Run
 
 
 def run_drawings(run: Run) -> Iterator[Drawing]:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 from scipy.io import netcdf_file
 
-from ..files import write_file
+from .._support.files import write_file
 from ..scenario.keys import SCENARIO_KEYS
 from .run_variables import PIECE, SKI, STATION, TIME, variables_of
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
     from pathlib import Path
 
-    from ..simulate.run import Run
+    from ..simulation.run import Run
     from .run_variables import RunVariable
 
 CONVENTIONS: Final = "CF-1.11"

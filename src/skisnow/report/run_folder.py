@@ -6,21 +6,21 @@ import json
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
-from ..course.gates_table import gates_csv
-from ..files import write_file
-from ..language import ENGLISH, require_language
+from .._support.files import write_file
+from .._support.language import ENGLISH, require_language
+from .._support.staging import staged, tidied
 from ..scenario.plausibility import implausible_values
-from ..simulate.run_gates import run_gates
-from ..simulate.run_summary import summary_dict
-from ..simulate.track_table import write_track
-from ..staging import staged, tidied
+from ..simulation.run_gates import run_gates
+from ..simulation.run_summary import summary_dict
+from ..simulation.track_table import write_track
+from ..track.course.gates_table import gates_csv
 from .pictures import picture_files
 from .run_report import FIGURES, FURTHER, REPLAY, write_run_report
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
-    from ..simulate.run import Run
+    from ..simulation.run import Run
 
 SUMMARY, GATES = "summary.json", "gates.csv"
 _STALE: Final = (*picture_files((*FIGURES, *FURTHER)), GATES, REPLAY, "replay.glb")

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..optional_packages import needed
+from .._support.optional_packages import needed
 from ..scenario.values import in_sections, scenario_values
-from ..simulate.track_table import track_columns, track_table
+from ..simulation.track_table import track_columns, track_table
 from .run_file import SKI_NAMES
 from .run_variables import SKI, variables_of
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from pandas import DataFrame
     from xarray import Dataset
 
-    from ..simulate.run import Run
+    from ..simulation.run import Run
     from .run_variables import RunVariable
 
 

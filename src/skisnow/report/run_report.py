@@ -9,15 +9,15 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 from markupsafe import Markup
 
-from ..course.gates_table import time_warnings
-from ..files import require_writable, write_file
-from ..json_number import json_number
-from ..language import ENGLISH
+from .._support.files import require_writable, write_file
+from .._support.json_number import json_number
+from .._support.language import ENGLISH
+from .._support.units import DEGREE, MM, N_PER_MM2, N_PER_MM3
 from ..scenario.keys import SCENARIO_KEYS
 from ..scenario.model_limits import model_limits
-from ..simulate.run_gates import run_gates
-from ..simulate.run_summary import run_warnings
-from ..units import DEGREE, MM, N_PER_MM2, N_PER_MM3
+from ..simulation.run_gates import run_gates
+from ..simulation.run_summary import run_warnings
+from ..track.course.gates_table import time_warnings
 from .figures.run_course import edge_angles_of_skis
 from .number_formatting import counted, significant, whole
 from .pictures import write_pictures
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
 
     from ..geometry.surfaces import Grid
-    from ..simulate.run import Run
+    from ..simulation.run import Run
     from .figures.drawing import Picture
 
 Json = dict[str, Any]

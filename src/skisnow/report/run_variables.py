@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Final, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from ..simulate.run import GIVEN, LOST, STORED
+from ..simulation.run import GIVEN, LOST, STORED
 
 if TYPE_CHECKING:
-    from ..simulate.run import Run
+    from ..simulation.run import Run
 
 Values: TypeAlias = Callable[["Run"], npt.ArrayLike]
 

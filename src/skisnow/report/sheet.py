@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Final
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 
-from ..language import ENGLISH
+from .._support.language import ENGLISH
 from .table_html import table_html
 from .translated import translated_html
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from ..simulate.run import OPEN_SHARE
+from ..simulation.run import OPEN_SHARE
 from .number_formatting import significant
 
 if TYPE_CHECKING:
@@ -19,7 +19,7 @@ def simulate_summary(summary: Mapping[str, Any], *, title: str) -> str:
     Parameters
     ----------
     summary
-        What `skisnow.simulate.run_summary.summary_dict` gives.
+        What `skisnow.simulation.run_summary.summary_dict` gives.
     title
         What the scenario is called.
     """

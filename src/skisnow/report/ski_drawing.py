@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..units import MM
+from .._support.units import MM
 from .number_formatting import significant
 
 if TYPE_CHECKING:

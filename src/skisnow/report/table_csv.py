@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import orjson
 
-from ..spreadsheet_text import guarded
+from .._support.spreadsheet_text import guarded
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence

@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Any, Final
 
 from markupsafe import Markup
 
-from ..course.gates_table import gates_csv
-from ..files import require_writable, write_file
-from ..language import ENGLISH
-from ..staging import staged
+from .._support.files import require_writable, write_file
+from .._support.language import ENGLISH
+from .._support.staging import staged
+from ..track.course.gates_table import gates_csv
 from ..track.summary import summary_dict
 from .figures.course_line import course_line
 from .figures.drawing import Drawing
@@ -23,7 +23,7 @@ from .symbols import figure_text, prose
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
 
-    from ..course import CourseResult
+    from ..track.course import CourseResult
     from ..track.summary import TrackSummary
 
 FIGURES: Final = ("map", "along")

@@ -7,14 +7,14 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ..language import ENGLISH
-from ..shown import Facts, Shown, amount
+from .._support.display import Facts, Shown, amount
+from .._support.language import ENGLISH
 
 if TYPE_CHECKING:
-    from ..estimate import Analysis
+    from ..estimation import Analysis
     from ..scenario.measured import Measured
     from ..scenario.prior import Prior
-    from ..simulate.run import Run
+    from ..simulation.run import Run
     from ..snow import SnowProperties
     from .figures.track_band import TimedTrack
 
@@ -79,7 +79,7 @@ class TurnChain(Shown):
 
     See Also
     --------
-    skisnow.chain
+    skisnow.turn
     """
 
     campaign: str

@@ -4,16 +4,16 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, Final
 
-from ..json_number import json_number
+from .._support.json_number import json_number
+from .._support.units import MM, N_PER_MM2, N_PER_MM3
 from ..scenario.plausibility import implausible_values
-from ..simulate.run_summary import summary_dict
+from ..simulation.run_summary import summary_dict
 from ..snow.snow_dict import snow_dict
-from ..units import MM, N_PER_MM2, N_PER_MM3
 from .turn_inputs import band_inputs
 from .turn_numbers import afterbody_depth_ratio, band_width, maximum_distance, middle_track, used_grip
 
 if TYPE_CHECKING:
-    from ..simulate.run import Run
+    from ..simulation.run import Run
     from ..snow import SnowProperties
     from .turn_chain import EnsembleRun, TurnChain
 

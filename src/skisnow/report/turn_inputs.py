@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from ..inputs import values_of
+from ..parameters import values_of
 
 if TYPE_CHECKING:
     from .turn_chain import TurnChain

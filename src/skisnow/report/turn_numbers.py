@@ -15,7 +15,7 @@ from .figures.run_grip import used_share_of_skis
 from .figures.track_band import FEWEST, TimedTrack, band_of, offsets
 
 if TYPE_CHECKING:
-    from ..simulate.run import Run
+    from ..simulation.run import Run
     from .turn_chain import EnsembleRun
 
 FloatArray = npt.NDArray[np.float64]

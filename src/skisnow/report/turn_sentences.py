@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 from markupsafe import Markup
 
-from ..units import MM, N_PER_MM2, N_PER_MM3
+from .._support.units import MM, N_PER_MM2, N_PER_MM3
 from .number_formatting import counted, interval, significant
 from .symbols import html, prose
 from .turn_inputs import band_inputs
@@ -25,7 +25,7 @@ from .turn_numbers import (
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from ..simulate.run import Run
+    from ..simulation.run import Run
     from .turn_chain import TurnChain
 
 ALIKE: Final = 0.002

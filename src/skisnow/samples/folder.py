@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from ..errors import OutputError
-from ..field import write_reference
-from ..files import require_writable, write_file
-from ..staging import staged
+from .._support.errors import OutputError
+from .._support.files import require_writable, write_file
+from .._support.staging import staged
+from ..campaign import write_reference
 from .glides import photo_cell_times
 from .runs import run_samples
 from .snow import snow_samples

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from ..constants import STANDARD_GRAVITY
-from ..units import DEGREE
+from .._support.constants import STANDARD_GRAVITY
+from .._support.units import DEGREE
 
 if TYPE_CHECKING:
     import numpy.typing as npt

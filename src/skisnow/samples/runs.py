@@ -8,17 +8,17 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from ..carve.equilibrium import carve
-from ..scenario import Plane, read_scenario
-from ..simulate.simulated_run import simulate
-from ..units import MM
+from .._support.units import MM
+from ..carving.equilibrium import carve
+from ..scenario import Plane, load_scenario
+from ..simulation.simulated_run import simulate
 from .tracks import AZIMUTH_DEG, ORIGIN, gpx_track
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from ..scenario import Scenario
-    from ..simulate import Run
+    from ..simulation import Run
 
 SCENARIO: Final = "carved-46m"
 _NOISE_M: Final = 0.02
@@ -55,7 +55,7 @@ def run_samples(random: np.random.Generator) -> Iterator[tuple[str, str]]:
 
 
 def _run(**changes: float) -> Run:
-    return simulate(read_scenario(SCENARIO, changes={"solver.method": "fast"}).with_(**changes))
+    return simulate(load_scenario(SCENARIO, changes={"solver.method": "fast"}).with_(**changes))
 
 
 def _table(run: Run, random: np.random.Generator) -> str:

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from ..field.smet import StationSeries
-from ..field.snow_pit import DepthTemperature, LayerDensity, SnowLayer, SnowPit
+from ..campaign.smet import StationSeries
+from ..campaign.snow_pit import DepthTemperature, LayerDensity, SnowLayer, SnowPit
 from ..interop.caaml import caaml_text
 from ..interop.smet import smet_text
 from .tracks import ORIGIN, START

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from .._support.units import DEGREE
 from ..track.projection import GeodeticPoint, earth_centred, geodetic
 from ..track.slope_frame import slope_axes
-from ..units import DEGREE
 
 if TYPE_CHECKING:
     import numpy.typing as npt

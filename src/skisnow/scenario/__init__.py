@@ -1,17 +1,13 @@
-"""What a run starts from: slope, snow, sledge, skis, start, and how it is computed.
-
-The package can be called: `skisnow.scenario("carved-46m")` is `skisnow.scenario.reading.read_scenario`.
-"""
+"""What a run starts from: slope, snow, sledge, skis, start, and how it is computed."""
 
 from __future__ import annotations
 
-from ..callable_packages import make_callable
 from .air import Air
 from .boots import Boots
 from .built_in import scenario_names, scenario_text
 from .contact import Contact
 from .profile_file import read_profile
-from .reading import ScenarioFile, read_scenario, scenario_file
+from .reading import ScenarioFile, load_scenario, scenario_file
 from .scenario import Scenario
 from .skier import Skier
 from .sledge import RigidSledge
@@ -41,8 +37,8 @@ __all__ = [
     "Start",
     "Stop",
     "Terrain",
+    "load_scenario",
     "read_profile",
-    "read_scenario",
     "read_snow_map",
     "read_terrain",
     "scenario_file",
@@ -50,5 +46,3 @@ __all__ = [
     "scenario_text",
     "scenario_values",
 ]
-
-make_callable(__name__, ".reading", "read_scenario")

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Final, Literal, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from ..errors import ParameterError
-from ..shown import Facts, Shown, ends
+from .._support.display import Facts, Shown, ends
+from .._support.errors import ParameterError
 
 if TYPE_CHECKING:
     from scipy.interpolate import CubicSpline

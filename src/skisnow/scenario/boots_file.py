@@ -13,13 +13,13 @@ from typing import Any, Final, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from ..errors import ParameterError
+from .._support.errors import ParameterError
+from .._support.spreadsheet_text import column_names, decimal_mark, most_frequent_separator, with_decimal_point
+from .._support.units import DEGREE
+from .._support.user_files import plain_text
+from .._support.user_files.motion_head import HEAD_END, degrees_stated, head_of_motion, require_whole
 from ..geometry.boot_axes import axes_of
-from ..given import plain_text
-from ..given.motion_head import HEAD_END, degrees_stated, head_of_motion, require_whole
-from ..inputs import meant
-from ..spreadsheet_text import column_names, decimal_mark, most_frequent_separator, with_decimal_point
-from ..units import DEGREE
+from ..parameters import meant
 from .boots import FEWEST_POSES, LARGEST, SHORTEST_STEP, Boots
 
 SIDES: Final = ("left", "right")

@@ -8,15 +8,15 @@ from dataclasses import fields, replace
 from pathlib import Path
 from typing import Any
 
-from ..course import Course, course_names, read_course
-from ..errors import ParameterError
-from ..inputs import Word, changed, made, meant, values_of
+from .._support.errors import ParameterError
+from .._support.units import N_PER_MM2, N_PER_MM3
+from ..parameters import Word, changed, made, meant, values_of
 from ..ski import Ski, read_ski, ski_names
+from ..ski.sources import Sources
 from ..snow import SnowProperties, published_snow
 from ..snow.given_stress import require_stress
 from ..snow.mean_snow import without_measured
-from ..sources import Sources
-from ..units import N_PER_MM2, N_PER_MM3
+from ..track.course import Course, course_names, read_course
 from .boots import Boots
 from .boots_file import read_boots
 from .contact import ELASTIC, Contact
@@ -181,7 +181,7 @@ def changed_scenario(scenario: Scenario, changes: Mapping[str, object]) -> Scena
         if isinstance(SCENARIO_KEYS[name], Word):
             raise ParameterError(
                 f"{name} is a word of a scenario's file; in Python give the part itself, such as snow=, ski= or "
-                "slope=, or read the scenario with it: skisnow.scenario(…, changes={…})"
+                "slope=, or read the scenario with it: skisnow.load_scenario(…, changes={…})"
             )
     if isinstance(parts.get("ski"), str | Path):
         parts["ski"] = read_ski(parts["ski"])

@@ -9,9 +9,9 @@ from importlib.resources import files
 from pathlib import Path
 from typing import Final
 
-from ..errors import ParameterError
-from ..given import toml_values
-from ..inputs import nearest
+from .._support.errors import ParameterError
+from .._support.user_files import toml_values
+from ..parameters import nearest
 from .keys import SCENARIO_KEYS, SECTIONS
 from .resolution import COMPANIONS
 

@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from ..errors import ParameterError
+from .._support.errors import ParameterError
 from .slope_surface import reach_of
 
 if TYPE_CHECKING:

@@ -8,7 +8,7 @@ from typing import Annotated, Final, Literal, TypeAlias, get_args
 from ..forces.friction.load import ActsOn
 from ..forces.penetration.rate import DAMPING, DELAYED_SHARE, RETARDATION_TIME
 from ..forces.shear.displacement import SHEAR_DISPLACEMENT
-from ..inputs import Quantity, Search, Section, Word, declared_text, require_declared
+from ..parameters import Quantity, Search, Section, Word, declared_text, require_declared
 from ..snow import SnowProperties
 from .snow_map import SnowMap
 

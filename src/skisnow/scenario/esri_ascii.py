@@ -10,8 +10,8 @@ from typing import Final, NoReturn
 
 import numpy as np
 
-from ..errors import ParameterError
-from ..given import is_file, plain_text
+from .._support.errors import ParameterError
+from .._support.user_files import is_file, plain_text
 from .map_system import MapSystem, map_system
 from .raster import FloatArray, PlacedValues, Raster, placed_heights, require_size
 

@@ -6,8 +6,8 @@ import difflib
 from collections.abc import Iterable, Mapping
 from typing import Final
 
-from ..errors import ParameterError
-from ..units import without_unit
+from .._support.errors import ParameterError
+from .._support.units import without_unit
 from .keys import SCENARIO_KEYS
 
 _HOW_IT_IS_COMPUTED: Final = ("run.", "solver.", "course.")

@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 
-from ..errors import ParameterError
-from ..given import is_file
-from ..optional_packages import needed
+from .._support.errors import ParameterError
+from .._support.optional_packages import needed
+from .._support.user_files import is_file
 from .map_system import LENGTHS, MapSystem, length_unit, map_system
 from .raster import FloatArray, PlacedValues, Raster, placed_heights, require_size
 

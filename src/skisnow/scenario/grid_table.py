@@ -9,8 +9,8 @@ from typing import Final
 import numpy as np
 import numpy.typing as npt
 
-from ..csv_rows import CsvRow, csv_rows
-from ..errors import ParameterError
+from .._support.csv_rows import CsvRow, csv_rows
+from .._support.errors import ParameterError
 from .raster import FloatArray, PlacedValues, number_within, require_places
 
 ROUNDED: Final = 0.01

@@ -7,8 +7,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Annotated, Any, Final
 
-from ..errors import ParameterError
-from ..inputs import Quantity, checked_table, nearest, quantities
+from .._support.errors import ParameterError
+from ..parameters import Quantity, checked_table, nearest, quantities
 from .free_keys import free_key
 
 

@@ -5,12 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import Any, Final
 
-from ..errors import ParameterError
-from ..given import GivenError, toml_values
-from ..inputs import InputValue, Word, meant, quantities
-from ..spreadsheet_text import is_number
+from .._support.errors import ParameterError
+from .._support.spreadsheet_text import is_number
+from .._support.user_files import GivenError, toml_values
+from ..parameters import InputValue, Word, meant, quantities
 from .scenario import Scenario
-from .solver import present_method
 
 SCENARIO_KEYS: Final = {key.name: key for key in quantities(Scenario)}
 """Quantities by full name (section.key), in the order of tables."""
@@ -76,10 +75,7 @@ def validate(values: Mapping[str, object]) -> dict[str, InputValue]:
         Unknown key, wrong kind, or value outside its range.
     """
     named = {full_name(name): value for name, value in values.items()}
-    return {
-        name: SCENARIO_KEYS[name].in_range(present_method(value) if name == "solver.method" else value)
-        for name, value in named.items()
-    }
+    return {name: SCENARIO_KEYS[name].in_range(value) for name, value in named.items()}
 
 
 def parse_change(text: str) -> tuple[str, object]:

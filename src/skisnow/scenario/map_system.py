@@ -12,7 +12,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from ..errors import ParameterError
+from .._support.errors import ParameterError
 from ..track.projection import earth_centred
 
 TRUE_LENGTHS: Final = 0.005

@@ -8,9 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from .._support.units import MM, N_PER_MM2, N_PER_MM3
 from ..snow import SnowProperties
 from ..snow.drawn import log_normal
-from ..units import MM, N_PER_MM2, N_PER_MM3
 from .keys import SCENARIO_KEYS
 
 

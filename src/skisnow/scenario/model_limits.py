@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Final
 
-from ..units import DEGREE
+from .._support.units import DEGREE
 
 if TYPE_CHECKING:
     from .scenario import Scenario

@@ -6,8 +6,8 @@ import math
 import warnings
 from typing import Final
 
-from ..course import course_warnings
-from ..errors import RangeWarning
+from .._support.errors import RangeWarning
+from .._support.units import N_PER_MM3, in_degrees_if_radians
 from ..forces.measured_ranges import (
     DRAG_AREA,
     FAILURE_SHEAR_STRESS,
@@ -16,7 +16,7 @@ from ..forces.measured_ranges import (
     SNOW_HARDNESS,
 )
 from ..snow.properties import GREATEST_LIKELY_HARDNESS
-from ..units import N_PER_MM3, in_degrees_if_radians
+from ..track.course import course_warnings
 from .model_limits import model_limits
 from .scenario import Scenario
 from .slope import Plane

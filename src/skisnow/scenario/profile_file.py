@@ -7,8 +7,8 @@ from typing import Final
 
 import numpy as np
 
-from ..csv_rows import csv_rows
-from ..errors import ParameterError
+from .._support.csv_rows import csv_rows
+from .._support.errors import ParameterError
 from .raster import number_within, profile_limits
 from .slope import Gap, Profile
 

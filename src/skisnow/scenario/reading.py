@@ -10,11 +10,11 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any, Final
 
-from ..errors import ParameterError, RangeWarning
-from ..given import MOST_TOML_BYTES, is_file, plain_text, toml_values
-from ..inputs import nearest
-from ..shown import ShownFields
-from ..sources import Sources
+from .._support.display import ShownFields
+from .._support.errors import ParameterError, RangeWarning
+from .._support.user_files import MOST_TOML_BYTES, is_file, plain_text, toml_values
+from ..parameters import nearest
+from ..ski.sources import Sources
 from .building import build, changed_scenario
 from .built_in import scenario_names, scenario_text
 from .identify_section import require_known
@@ -56,7 +56,7 @@ class ScenarioFile(ShownFields):
     warnings: tuple[str, ...]
 
 
-def read_scenario(name_or_path: str | Path, *, changes: Mapping[str, object] = _NOTHING) -> Scenario:
+def load_scenario(name_or_path: str | Path, *, changes: Mapping[str, object] = _NOTHING) -> Scenario:
     """Read a scenario: a built-in one by its name, any other from its TOML file.
 
     Parameters
@@ -95,7 +95,7 @@ def read_scenario(name_or_path: str | Path, *, changes: Mapping[str, object] = _
 
     Examples
     --------
-    >>> scenario = read_scenario("carved-46m", changes={"sledge.mass_kg": 90})
+    >>> scenario = load_scenario("carved-46m", changes={"sledge.mass_kg": 90})
     >>> scenario.sledge.mass, scenario.contact.snow.snow_hardness
     (90.0, 200000000.0)
     """
@@ -108,7 +108,7 @@ def read_scenario(name_or_path: str | Path, *, changes: Mapping[str, object] = _
 def scenario_file(name_or_path: str | Path, *, changes: Mapping[str, object] = _NOTHING) -> ScenarioFile:
     """Read a scenario together with the words that it was given in, and all warnings.
 
-    Parameters, errors: as `read_scenario`.
+    Parameters, errors: as `load_scenario`.
     """
     return build_input(load_input(name_or_path).changed(changes))
 
@@ -161,7 +161,7 @@ def build_input(given: ScenarioInput, *, sources: Sources | None = None) -> Scen
     Raises
     ------
     ParameterError
-        As `read_scenario`.
+        As `load_scenario`.
     """
     scenario, messages, resolution = _built(given, sources or Sources())
     expected = _warnings_of_built_in(given.title) if given.file is None and given.base is None else ()

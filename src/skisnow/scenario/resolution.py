@@ -18,11 +18,11 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, Final
 
-from ..errors import ParameterError
-from ..inputs import InputValue
-from ..shown import ShownFields
+from .._support.display import ShownFields
+from .._support.errors import ParameterError
+from ..parameters import InputValue
+from ..ski.sources import Sources
 from ..snow import SnowProperties
-from ..sources import Sources
 from .keys import PATH_KEYS, SCENARIO_KEYS, validate
 from .scenario import Scenario
 from .snow_map import SnowMap

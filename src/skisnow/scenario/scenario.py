@@ -8,14 +8,14 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 from typing import Annotated, Any
 
-from ..constants import STANDARD_GRAVITY
-from ..course import Course, on_slope
-from ..errors import ParameterError
-from ..inputs import Quantity, Search, Word, require_declared
-from ..shown import Facts, Shown, amount
+from .._support.constants import STANDARD_GRAVITY
+from .._support.display import Facts, Shown, amount
+from .._support.errors import ParameterError
+from .._support.units import DEGREE
+from ..parameters import Quantity, Search, Word, require_declared
 from ..ski import Ski, ski_names
 from ..ski.beam.clamped import CLAMP_LENGTH
-from ..units import DEGREE
+from ..track.course import Course, on_slope
 from .air import Air
 from .boots import Boots
 from .checks import require_skier, require_sound
@@ -230,8 +230,8 @@ class Scenario(Shown):
 
         Examples
         --------
-        >>> from skisnow import scenario
-        >>> turn = scenario("carved-46m").with_(ski="slalom", snow="race-piste", edge_angle_deg=35, duration_s=2.0)
+        >>> from skisnow import load_scenario
+        >>> turn = load_scenario("carved-46m").with_(ski="slalom", snow="race-piste", edge_angle_deg=35, duration_s=2.0)
         >>> turn.ski.name, round(turn.contact.snow.snow_hardness / 1e9, 2), turn.stop.duration
         ('slalom', 0.21, 2.0)
         """

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Any, Final
 
-from ..inputs import Quantity, quantities
-from ..inputs.json_schema import DRAFT, Schema, output_schema, table_schema
+from ..parameters import Quantity, quantities
+from ..parameters.json_schema import DRAFT, Schema, output_schema, table_schema
 from .identify_section import CLOCKS, Site, Sought
 from .keys import SCENARIO_KEYS, SECTIONS
 

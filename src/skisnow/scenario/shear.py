@@ -7,12 +7,12 @@ import warnings
 from dataclasses import dataclass
 from typing import Annotated, Final, Literal, TypeAlias
 
-from ..errors import ParameterError, RangeWarning
+from .._support.errors import ParameterError, RangeWarning
+from .._support.units import DEGREE
 from ..forces.shear import AngleShear, DensityShear, MachiningShear, ShearLaw
 from ..forces.shear.slip import RESIDUAL_RATIO, SLIP_WEAKENING
-from ..inputs import Quantity, declared_text, require_declared
+from ..parameters import Quantity, declared_text, require_declared
 from ..snow.published.moessner_2013 import STRESS_BY_ANGLE
-from ..units import DEGREE
 
 Law: TypeAlias = Literal["constant", "by-angle", "by-density", "machining"]
 UPRIGHT: Final = 2.0

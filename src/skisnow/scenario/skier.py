@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Annotated, Literal, TypeAlias
 
-from ..inputs import Quantity, declared_text, require_declared
-from ..units import DEGREE
+from .._support.units import DEGREE
+from ..parameters import Quantity, declared_text, require_declared
 
 Steers: TypeAlias = Literal["turns", "gates"]
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Annotated
 
-from ..errors import ParameterError
-from ..inputs import Quantity, Search, declared_text, require_declared
+from .._support.errors import ParameterError
+from ..parameters import Quantity, Search, declared_text, require_declared
 
 
 @dataclass(frozen=True, slots=True, repr=False)

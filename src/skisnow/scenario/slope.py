@@ -12,9 +12,9 @@ from typing import TYPE_CHECKING, Annotated, Final, Literal, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from ..errors import ParameterError
-from ..inputs import Quantity, Search, Word, declared_text, require_declared
-from ..shown import Facts, Shown, ends
+from .._support.display import Facts, Shown, ends
+from .._support.errors import ParameterError
+from ..parameters import Quantity, Search, Word, declared_text, require_declared
 
 if TYPE_CHECKING:
     from scipy.interpolate import PchipInterpolator

@@ -8,11 +8,11 @@ from typing import Final, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from ..errors import ParameterError
+from .._support.display import Facts, Shown, span
+from .._support.errors import ParameterError
+from .._support.units import N_PER_MM2, N_PER_MM3
 from ..geometry.surfaces import Grid
-from ..shown import Facts, Shown, span
 from ..snow import SnowProperties
-from ..units import N_PER_MM2, N_PER_MM3
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 

@@ -9,10 +9,10 @@ from typing import Final
 
 import numpy as np
 
-from ..csv_rows import CsvRow, csv_rows
-from ..errors import ParameterError
+from .._support.csv_rows import CsvRow, csv_rows
+from .._support.errors import ParameterError
+from .._support.units import N_PER_MM2, N_PER_MM3
 from ..geometry.surfaces import Grid
-from ..units import N_PER_MM2, N_PER_MM3
 from .grid_table import read_grid_table
 from .raster import number_within
 from .snow_map import SnowMap

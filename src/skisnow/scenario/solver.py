@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-import warnings
 from dataclasses import dataclass
-from typing import Annotated, Final, Literal, TypeAlias
+from typing import Annotated, Literal, TypeAlias
 
 from ..forces.penetration.rate import DELAYED_SPACING
-from ..inputs import Quantity, declared_text, require_declared
+from ..parameters import Quantity, declared_text, require_declared
 from ..ski.beam.clamped import MOST_ELEMENTS
 
-FORMER_METHOD: Final = "ros2"
 Method: TypeAlias = Literal["default", "fast"]
 
 
@@ -132,20 +130,4 @@ class Solver:
     __repr__ = declared_text
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "method", present_method(self.method))
         require_declared(self)
-
-
-def present_method(word: object) -> object:
-    """The word of today for a method that has had another.
-
-    Warns
-    -----
-    DeprecationWarning
-        For that other.
-    """
-    if word != FORMER_METHOD:
-        return word
-    # 4: where a Solver is made, behind this function and its own two
-    warnings.warn(f'solver.method = "{FORMER_METHOD}" is now called "default"', DeprecationWarning, stacklevel=4)
-    return "default"

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Annotated
 
-from ..inputs import Quantity, Search, declared_text, require_declared
+from ..parameters import Quantity, Search, declared_text, require_declared
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)

@@ -9,11 +9,11 @@ from typing import Annotated, Final, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from ..errors import ParameterError
+from .._support.display import Facts, Shown, amount, ends
+from .._support.errors import ParameterError
 from ..geometry.smoothing import smoothed
 from ..geometry.surfaces import Grid
-from ..inputs import Quantity, Word, require_declared
-from ..shown import Facts, Shown, amount, ends
+from ..parameters import Quantity, Word, require_declared
 from .slope import STEEPEST_DEG
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Final
 
-from ..errors import ParameterError
+from .._support.errors import ParameterError
 from .esri_ascii import read_esri_ascii
 from .geotiff import read_geotiff
 from .grid_table import read_grid_table

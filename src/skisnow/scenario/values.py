@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from ..inputs import values_of
+from ..parameters import values_of
 from .keys import SCENARIO_KEYS
 from .scenario import Scenario
 

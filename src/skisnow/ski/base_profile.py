@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Annotated, Final
 import numpy as np
 import numpy.typing as npt
 
-from ..errors import ParameterError
-from ..inputs import require_declared
+from .._support.errors import ParameterError
+from ..parameters import require_declared
 from .ski_quantity import ski_quantity
 
 if TYPE_CHECKING:

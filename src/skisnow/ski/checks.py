@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from ..errors import ParameterError
+from .._support.errors import ParameterError
 
 if TYPE_CHECKING:
     from .sections import FloatArray, SkiSections

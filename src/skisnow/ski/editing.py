@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 import numpy.typing as npt
 
-from ..errors import ParameterError
-from ..inputs import nearest
+from .._support.errors import ParameterError
+from ..parameters import nearest
 from .file_keys import COLUMNS
 from .station_table import StationTable
 

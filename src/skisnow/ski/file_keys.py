@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Annotated, Final
 
-from ..inputs import Quantity, quantities
+from ..parameters import Quantity, quantities
 from .base_profile import BaseShape
 from .layout import TAIL_OVERHANG
 from .ski_quantity import ski_quantity

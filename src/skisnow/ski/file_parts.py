@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..errors import ParameterError, RangeWarning
+from .._support.errors import ParameterError, RangeWarning
 from .assembling import SkiParts, stiffness_table
 from .file_keys import BASE, LISTS, RIGID, STIFFNESSES, WIDTHS
 from .layout import Layout, layout_of_lengths

@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING, Any, Final, NoReturn
 import numpy as np
 import numpy.typing as npt
 
-from ..errors import ParameterError, RangeWarning
-from ..given import read_toml
-from ..inputs import InputValue, Quantity, made, nearest
-from ..units import DEGREE
+from .._support.errors import ParameterError, RangeWarning
+from .._support.units import DEGREE
+from .._support.user_files import read_toml
+from ..parameters import InputValue, Quantity, made, nearest
 from .file_keys import SKI_KEYS, SkiFile
 
 if TYPE_CHECKING:

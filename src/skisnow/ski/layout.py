@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Final
 
-from ..errors import ParameterError
+from .._support.errors import ParameterError
 
 LONGEST: Final = 6.0
 """Length (m) from tip to tail beyond which no ski is tabulated: the reach of the stations that a ski file may name."""

@@ -13,9 +13,9 @@ import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final
 
-from ..errors import ParameterError
-from ..given import read_json
-from ..units import CM, MM
+from .._support.errors import ParameterError
+from .._support.units import CM, MM
+from .._support.user_files import read_json
 from .assembling import SkiParts, stiffness_table
 from .base_profile import BaseShape
 from .file_values import refuse

@@ -6,9 +6,9 @@ from importlib.resources import as_file, files
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ..errors import ParameterError
-from ..given import is_file
-from ..inputs import nearest
+from .._support.errors import ParameterError
+from .._support.user_files import is_file
+from ..parameters import nearest
 from .file_parts import FileParts
 from .file_values import file_values
 from .table_file import read_table

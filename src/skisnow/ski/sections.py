@@ -8,7 +8,7 @@ from typing import TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from ..shown import ShownFields
+from .._support.display import ShownFields
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 

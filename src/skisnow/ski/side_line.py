@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 import numpy.typing as npt
 
-from ..errors import ParameterError
+from .._support.errors import ParameterError
 from .checks import GREATEST_SPACING
 from .station_table import StationTable
 

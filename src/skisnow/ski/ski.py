@@ -8,7 +8,7 @@ from typing import TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from ..shown import Facts, Shown
+from .._support.display import Facts, Shown
 from .checks import (
     STRAIGHT,
     require_base_at_boot,

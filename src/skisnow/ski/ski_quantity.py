@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ..inputs import Quantity
+from ..parameters import Quantity
 
 
 def ski_quantity(

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from ..errors import ParameterError
+from .._support.errors import ParameterError
 
 FloatArray = npt.NDArray[np.float64]
 

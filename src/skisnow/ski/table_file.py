@@ -9,10 +9,8 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 import numpy.typing as npt
 
-from ..errors import ParameterError
-from ..given import plain_bytes
-from ..inputs import nearest
-from ..spreadsheet_text import (
+from .._support.errors import ParameterError
+from .._support.spreadsheet_text import (
     SEPARATOR_NAMES,
     NoTextError,
     column_names,
@@ -21,6 +19,8 @@ from ..spreadsheet_text import (
     named_separator,
     with_decimal_point,
 )
+from .._support.user_files import plain_bytes
+from ..parameters import nearest
 from .file_keys import COLUMNS
 from .file_values import checked, refuse, warn_of_unusual
 from .station_table import StationTable

@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..errors import OutputError
-from ..files import write_file
-from ..inputs import SMALLEST
-from ..units import DEGREE, MM
+from .._support.errors import OutputError
+from .._support.files import write_file
+from .._support.units import DEGREE, MM
+from ..parameters import SMALLEST
 from .file_keys import COLUMNS, RIGID
 
 if TYPE_CHECKING:

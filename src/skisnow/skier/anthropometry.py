@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Final
 
-from ..errors import ParameterError
+from .._support.errors import ParameterError
 
 POUND_INCH: Final = 0.112985
 """kg m² in 1 lb in s² (pounds of force)."""

@@ -14,8 +14,8 @@ from typing import TypeAlias
 import numpy as np
 import numpy.typing as npt
 
+from .._support.errors import ParameterError
 from ..dynamics import BootPose
-from ..errors import ParameterError
 from ..scenario import Plane, Scenario
 from ..scenario.skier import Skier
 from ..scenario.slope_surface import down_and_left, normals_of

@@ -9,8 +9,8 @@ from typing import Protocol, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from ..course import Course
 from ..scenario.skier import Skier
+from ..track.course import Course
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 

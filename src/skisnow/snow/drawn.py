@@ -8,8 +8,8 @@ import numpy as np
 import numpy.typing as npt
 from scipy.special import ndtri
 
-from ..constants import CONFIDENCE
-from ..errors import ParameterError
+from .._support.constants import CONFIDENCE
+from .._support.errors import ParameterError
 from .properties import Interval, SnowProperties
 
 

@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from ..errors import ParameterError
-from ..given import GivenError, read_json
+from .._support.errors import ParameterError
+from .._support.user_files import GivenError, read_json
 from .mean_snow import (
     known_sites,
     mean_snow,

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from ..errors import ParameterError
-from ..units import N_PER_MM2
+from .._support.errors import ParameterError
+from .._support.units import N_PER_MM2
 from .properties import SnowProperties
 
 

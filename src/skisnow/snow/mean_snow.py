@@ -9,9 +9,9 @@ from dataclasses import replace
 import numpy as np
 import numpy.typing as npt
 
-from ..constants import CONFIDENCE
-from ..errors import ParameterError
-from ..units import MM, N_PER_MM2, N_PER_MM3
+from .._support.constants import CONFIDENCE
+from .._support.errors import ParameterError
+from .._support.units import MM, N_PER_MM2, N_PER_MM3
 from .properties import Interval, SnowProperties
 
 FloatArray = npt.NDArray[np.float64]

@@ -15,7 +15,7 @@ from typing import Final, TypeVar
 import numpy as np
 import numpy.typing as npt
 
-from ..errors import RangeWarning
+from .._support.errors import RangeWarning
 
 T = TypeVar("T")
 _ONE_AT_A_TIME: Final = threading.RLock()

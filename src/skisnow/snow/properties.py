@@ -5,10 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Annotated, Final, TypeAlias
 
-from ..errors import ParameterError
-from ..inputs import Quantity, Search, Word, require_declared
-from ..shown import Facts, Shown, amount, span
-from ..units import MM, N_PER_MM2, N_PER_MM3
+from .._support.display import Facts, Shown, amount, span
+from .._support.errors import ParameterError
+from .._support.units import MM, N_PER_MM2, N_PER_MM3
+from ..parameters import Quantity, Search, Word, require_declared
 
 Interval: TypeAlias = tuple[float, float]
 
@@ -49,7 +49,7 @@ class SnowProperties(Shown):
     --------
     A snow with numbers of one's own: 0.2 N/mm³ and 0.35 N/mm².
 
-    >>> from skisnow.units import N_PER_MM2, N_PER_MM3
+    >>> from skisnow._support.units import N_PER_MM2, N_PER_MM3
     >>> snow = SnowProperties(0.2 * N_PER_MM3, 0.35 * N_PER_MM2, source="given as numbers")
     >>> snow.snow_hardness
     200000000.0

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from difflib import get_close_matches
 
-from ..errors import ParameterError
+from .._support.errors import ParameterError
 from .properties import SnowProperties
 from .published import federolf_2006, moessner_2013
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from ..units import MM, N_PER_MM2, N_PER_MM3
+from .._support.units import MM, N_PER_MM2, N_PER_MM3
 from .properties import SnowProperties
 
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..errors import ParameterError
+from .._support.errors import ParameterError
 from .least_squares import require_finite
 from .nested import f_ratio, f_tail
 

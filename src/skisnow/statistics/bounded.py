@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from ..errors import ParameterError
+from .._support.errors import ParameterError
 from .least_squares import BoolArray, FloatArray, as_predictors, as_response
 
 if TYPE_CHECKING:

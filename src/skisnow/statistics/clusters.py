@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..errors import ParameterError
+from .._support.errors import ParameterError
 from .combined_uncertainty import expanded_factor, require_confidence
 from .least_squares import Factorisation, as_predictors, as_response, centre, factorise, standardised
 

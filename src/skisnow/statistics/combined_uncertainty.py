@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.special import ndtri, stdtrit
 
-from ..errors import ParameterError
+from .._support.errors import ParameterError
 
 if TYPE_CHECKING:
     import numpy.typing as npt

@@ -13,7 +13,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy.linalg import qr, solve_triangular
 
-from ..errors import FitError, ParameterError
+from .._support.errors import FitError, ParameterError
 from .combined_uncertainty import expanded_factor
 
 if TYPE_CHECKING:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..shown import ShownFields
+from .._support.display import ShownFields
 from .combined_uncertainty import require_confidence
 from .least_squares import Columns, as_predictors, as_response, centre, factorise, spread, standardised
 from .nested import f_ratio, f_tail

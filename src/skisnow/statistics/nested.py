@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.special import fdtrc
 
-from ..errors import ParameterError
+from .._support.errors import ParameterError
 
 
 class NestedTest(NamedTuple):

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from ..errors import FitError, FitWarning, ParameterError
+from .._support.errors import FitError, FitWarning, ParameterError
 from .combined_uncertainty import require_confidence
 from .derivatives import Jacobian, coarse_jacobian, jacobian
 from .least_squares import Columns, Factorisation, FloatArray, as_response, factorise, require_finite, spread

@@ -7,7 +7,7 @@ from fractions import Fraction
 
 import numpy as np
 
-from ..errors import ParameterError
+from .._support.errors import ParameterError
 from .least_squares import Columns, FloatArray
 
 Polynomial = list[Fraction]

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from ..errors import FitError, ParameterError
+from .._support.errors import FitError, ParameterError
 from .combined_uncertainty import expanded_factor, require_confidence
 from .least_squares import Columns, Factorisation, factorise, independent_columns, require_finite, standardised
 from .nested import f_ratio, f_tail

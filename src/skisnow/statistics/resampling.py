@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..errors import ParameterError
+from .._support.errors import ParameterError
 from .combined_uncertainty import require_confidence
 
 if TYPE_CHECKING:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from scipy.special import nctdtr, ndtr, ndtri, stdtr, stdtrit
 
-from ..errors import FitError, ParameterError
+from .._support.errors import FitError, ParameterError
 from .combined_uncertainty import expanded_factor, require_confidence, welch_satterthwaite
 
 if TYPE_CHECKING:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..shown import ShownFields
+from .._support.display import ShownFields
 from .linear import linear_fit
 
 if TYPE_CHECKING:

@@ -13,8 +13,8 @@ from typing import Final, Literal, TypeAlias, get_args
 import numpy as np
 import numpy.typing as npt
 
-from ..errors import FitError, ParameterError
-from ..units import DEGREE
+from .._support.errors import FitError, ParameterError
+from .._support.units import DEGREE
 from .nearest_place import NearestPlaces, Path
 from .polyline import Polyline, polyline
 from .three_distances import EXACTNESS

@@ -8,8 +8,7 @@ from typing import Final
 import numpy as np
 import numpy.typing as npt
 
-from ..former_names import warn_of_former_name
-from ..shown import ShownFields
+from .._support.display import ShownFields
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -33,12 +32,6 @@ class Apart(ShownFields):
 
     arc_length: FloatArray
     offset: FloatArray
-
-    @property
-    def way(self) -> FloatArray:
-        """Former name of `arc_length`."""
-        warn_of_former_name("Apart.way", "arc_length")
-        return self.arc_length
 
     @property
     def distance(self) -> FloatArray:

@@ -9,10 +9,9 @@ from typing import Final, get_args
 
 import numpy as np
 
-from ..errors import ParameterError
-from ..former_names import formerly
-from ..shown import Facts, Shown, amount
-from ..units import DEGREE
+from .._support.display import Facts, Shown, amount
+from .._support.errors import ParameterError
+from .._support.units import DEGREE
 from .alignment import OFFSETS, Motion, fitted_motion, require_offsets
 from .apart import Apart, Numbers, numbers_of
 from .common_clock import FIRST_POINTS, Clock, TimeFrom, common_clock, lacking_time
@@ -282,9 +281,6 @@ def compare_tracks(
         in_one_frame=together or placed,
         known_to=max(map(place_known_to, (simulated, measured))) if known_to is None else known_to,
     )
-
-
-compared = formerly("compared", compare_tracks)
 
 
 def _dimensions(laid: Laid, *, from_above: bool, known: bool) -> tuple[int, str]:

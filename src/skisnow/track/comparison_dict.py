@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any, Final
 
-from ..units import DEGREE
+from .._support.units import DEGREE
 from .comparison import MEANS, Comparison, Distances, Fitted
 
 Json = dict[str, Any]

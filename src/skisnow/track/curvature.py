@@ -9,9 +9,8 @@ import numpy as np
 import numpy.typing as npt
 from scipy.stats import norm
 
-from ..constants import CONFIDENCE
-from ..former_names import warn_of_former_name
-from ..shown import ShownFields
+from .._support.constants import CONFIDENCE
+from .._support.display import ShownFields
 from .path_estimate import PathEstimate, estimate_path
 from .smoothing import SmoothedTrack, filled, smoothed_track
 from .track import Track
@@ -72,18 +71,6 @@ class TrackMotion(ShownFields):
     speed_source: SpeedSource
     arc_length_source: ArcLengthSource
     path: PathEstimate | None = None
-
-    @property
-    def way(self) -> FloatArray:
-        """Former name of `arc_length`."""
-        warn_of_former_name("TrackMotion.way", "arc_length")
-        return self.arc_length
-
-    @property
-    def way_source(self) -> ArcLengthSource:
-        """Former name of `arc_length_source`."""
-        warn_of_former_name("TrackMotion.way_source", "arc_length_source")
-        return self.arc_length_source
 
     def curvature_interval(self) -> tuple[FloatArray, FloatArray]:
         """Ends (n,), (n,) of the 95 % intervals of the curvature (1/m), from the noise alone."""

@@ -12,7 +12,7 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from ..units import DEGREE
+from .._support.units import DEGREE
 from .track import Track
 
 CLEARLY: Final = 3.0

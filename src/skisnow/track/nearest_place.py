@@ -8,7 +8,7 @@ from typing import Final
 import numpy as np
 import numpy.typing as npt
 
-from ..errors import ParameterError
+from .._support.errors import ParameterError
 from .piece_tree import PieceTree
 
 FloatArray = npt.NDArray[np.float64]

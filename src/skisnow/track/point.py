@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Annotated, Final
 
-from ..inputs import Quantity, own_quantities
+from ..parameters import Quantity, own_quantities
 from .projection import HIGHEST
 
 FARTHEST: Final = 1e8

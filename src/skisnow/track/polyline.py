@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from ..errors import ParameterError
-from ..shown import ShownFields
+from .._support.display import ShownFields
+from .._support.errors import ParameterError
 from .track import Track
 
 FloatArray = npt.NDArray[np.float64]

@@ -17,9 +17,9 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from ..errors import ParameterError
-from ..shown import Facts, Shown
-from ..units import DEGREE
+from .._support.display import Facts, Shown
+from .._support.errors import ParameterError
+from .._support.units import DEGREE
 
 if TYPE_CHECKING:
     import numpy.typing as npt

@@ -7,7 +7,7 @@ import stat
 from pathlib import Path
 from typing import TYPE_CHECKING, Final, Literal, TypeAlias, get_args
 
-from ..errors import ParameterError
+from .._support.errors import ParameterError
 from .flags import FASTEST, GAP_FACTOR
 from .readers.conversion import track_of
 from .readers.fit import read_fit

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Final, Literal
 
 import numpy as np
 
-from ..errors import ParameterError
-from ..units import DEGREE
+from .._support.errors import ParameterError
+from .._support.units import DEGREE
 from .track import Track
 
 if TYPE_CHECKING:

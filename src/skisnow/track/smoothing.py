@@ -9,8 +9,8 @@ import numpy as np
 import numpy.typing as npt
 from scipy.stats import chi2
 
-from ..errors import ParameterError
-from ..shown import ShownFields
+from .._support.display import ShownFields
+from .._support.errors import ParameterError
 from .flags import GAP_FACTOR
 from .local_cubic import FEWEST_POINTS, TERMS, LocalCubic, Observed, local_cubic
 from .resolution import Resolution

@@ -8,7 +8,7 @@ from typing import Final
 import numpy as np
 from scipy.optimize import minimize_scalar
 
-from ..errors import FitError
+from .._support.errors import FitError
 from .alignment import LEAST_SHARE, PLACES
 from .polyline import Polyline
 

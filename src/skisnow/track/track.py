@@ -10,9 +10,8 @@ from typing import Literal, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from ..errors import ParameterError
-from ..former_names import warn_of_former_name
-from ..shown import Facts, Shown, amount, ends
+from .._support.display import Facts, Shown, amount, ends
+from .._support.errors import ParameterError
 from .flags import FLAGS
 from .projection import GeodeticPoint, place_from_origin
 from .solution import SolutionArray
@@ -113,18 +112,6 @@ class Track(Shown):
             ("frame", self.frame),
         )
         return Facts(repr(self.name), rows)
-
-    @property
-    def marks(self) -> Mapping[str, npt.NDArray[np.bool_]]:
-        """Former name of `flags`."""
-        warn_of_former_name("Track.marks", "flags")
-        return self.flags
-
-    @property
-    def marked(self) -> dict[str, int]:
-        """Former name of `flagged`."""
-        warn_of_former_name("Track.marked", "flagged")
-        return self.flagged
 
     @property
     def flagged(self) -> dict[str, int]:

@@ -10,7 +10,7 @@ from typing import Final, Literal
 import numpy as np
 import numpy.typing as npt
 
-from ..units import DEGREE
+from .._support.units import DEGREE
 from .curvature import INTERVAL_FACTOR, TrackMotion
 
 FloatArray = npt.NDArray[np.float64]

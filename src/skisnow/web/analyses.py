@@ -15,8 +15,8 @@ from typing import TYPE_CHECKING, Final
 
 from nicegui import run
 
-from ..errors import StoreError
-from ..field.store import Journals
+from .._support.errors import StoreError
+from ..campaign.store import Journals
 from .analysing import N_FIGURES, Choice, Numbers, Refusal, figure, numbers_of
 from .transfer import entry_files, kept_files
 

@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from ..errors import FieldDataError, SkisnowError
-from ..estimate import analyse
-from ..field import QUALITY_FLAGS, campaign_of_files
-from ..field.problems import Problem, lines_of
-from ..field.quality_flags import ALWAYS_EXCLUDE
+from .._support.errors import FieldDataError, SkisnowError
+from ..campaign import QUALITY_FLAGS, campaign_of_files
+from ..campaign.problems import Problem, lines_of
+from ..campaign.quality_flags import ALWAYS_EXCLUDE
+from ..estimation import analyse
 from ..report import write_report
 from ..report.campaign.data import ReportData
 from ..report.campaign.figures import DRAWERS
@@ -25,9 +25,9 @@ from ..report.figures.translated import translate_figure
 from ..report.symbols import figure_text
 
 if TYPE_CHECKING:
-    from ..estimate import Analysis
-    from ..field.reading import FilesInMemory
-    from ..field.records import Campaign, PenetrationTests, ShearTests
+    from ..campaign.reading import FilesInMemory
+    from ..campaign.records import Campaign, PenetrationTests, ShearTests
+    from ..estimation import Analysis
 
 LEFT_OUT: Final = "left out by choice in the lab"
 N_FIGURES: Final = len(DRAWERS)

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any, Final
 
 from nicegui import ui
 
-from ..field.reading.campaign_file import TOP_KEYS
-from ..field.reading.table_forms import TABLES
+from ..campaign.reading.campaign_file import TOP_KEYS
+from ..campaign.reading.table_forms import TABLES
 from ..report.number_formatting import counted
 from .analysing import Choice, Numbers, Refusal, choosable_flags
 from .error_pages import error_sentence

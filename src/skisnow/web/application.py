@@ -11,7 +11,7 @@ from nicegui import app as pages_app
 from nicegui import ui
 from starlette.responses import FileResponse, RedirectResponse, Response
 
-from ..language import languages
+from .._support.language import languages
 from .error_pages import add_error_pages, log_to
 from .guard import Access, Guard
 from .language import COOKIE

@@ -10,7 +10,7 @@ import traceback
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final, ParamSpec, TypeVar
 
-from ..errors import FieldDataError, OutputError, ParameterError, SkisnowError, StoreError
+from .._support.errors import FieldDataError, OutputError, ParameterError, SkisnowError, StoreError
 from .worker import end_with_the_server
 
 if TYPE_CHECKING:

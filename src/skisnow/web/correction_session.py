@@ -4,23 +4,23 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Final
 
-from ..errors import FieldDataError, StoreError
-from ..field import campaign_of_files
-from ..field.reading import READ_FILES, FilesInMemory, unfolded
-from ..field.reading.campaign_file import CAMPAIGN_FILE, read_campaign_file
-from ..field.reading.table_forms import CORRECTIONS
-from ..field.reading.text import UnreadableTextError, decode
-from ..field.store import corrected_files, stored_tables
-from ..field.store.journal_entry import JournalEntry
-from ..field.store.replayed import ReplayedRow, ReplayedTest
-from ..field.store.stored_tables import cell_key
+from .._support.errors import FieldDataError, StoreError
+from ..campaign import campaign_of_files
+from ..campaign.reading import READ_FILES, FilesInMemory, unfolded
+from ..campaign.reading.campaign_file import CAMPAIGN_FILE, read_campaign_file
+from ..campaign.reading.table_forms import CORRECTIONS
+from ..campaign.reading.text import UnreadableTextError, decode
+from ..campaign.store import corrected_files, stored_tables
+from ..campaign.store.journal_entry import JournalEntry
+from ..campaign.store.replayed import ReplayedRow, ReplayedTest
+from ..campaign.store.stored_tables import cell_key
 from .edit_session import EditSession, QuickResults, quick_results
 from .words import TABLES
 
 if TYPE_CHECKING:
-    from ..field.problems import Problem
-    from ..field.reading.campaign_file import CampaignFile
-    from ..field.store import NewEntry, StoredTable
+    from ..campaign.problems import Problem
+    from ..campaign.reading.campaign_file import CampaignFile
+    from ..campaign.store import NewEntry, StoredTable
     from .settings import Lab
 
 OWN_SHEET: Final = (

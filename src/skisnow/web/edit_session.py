@@ -5,21 +5,21 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, TypeAlias
 
-from ..estimate import quality_flags
-from ..estimate.quick_results import experiment_hardness, experiment_results
-from ..estimate.screening import screened_both
-from ..field import QUALITY_FLAGS, campaign_of_files
-from ..field.reading.campaign_file import read_campaign_file
-from ..field.reading.table_forms import PENETRATION, SHEAR
-from ..field.store import Journals, replayed
+from ..campaign import QUALITY_FLAGS, campaign_of_files
+from ..campaign.reading.campaign_file import read_campaign_file
+from ..campaign.reading.table_forms import PENETRATION, SHEAR
+from ..campaign.store import Journals, replayed
+from ..estimation import quality_flags
+from ..estimation.quick_results import experiment_hardness, experiment_results
+from ..estimation.screening import screened_both
 from ..report.curves import SeriesCurve, series_curves
 from .transfer import replayed_in_memory
 
 if TYPE_CHECKING:
-    from ..field import Campaign
-    from ..field.problems import Problem
-    from ..field.reading.campaign_file import CampaignFile
-    from ..field.store import JournalEntry, NewEntry, ReplayedCampaign, ReplayedTest
+    from ..campaign import Campaign
+    from ..campaign.problems import Problem
+    from ..campaign.reading.campaign_file import CampaignFile
+    from ..campaign.store import JournalEntry, NewEntry, ReplayedCampaign, ReplayedTest
     from .settings import Lab
 
 

@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Final
 from nicegui import app, ui
 from starlette.responses import HTMLResponse, Response
 
-from ..errors import FieldDataError, ParameterError, SkisnowError, StoreError
-from ..language import catalogue
+from .._support.errors import FieldDataError, ParameterError, SkisnowError, StoreError
+from .._support.language import catalogue
 from .guard import STATUS
 from .language import language_of_request, said
 from .layout import framed, sentence

@@ -17,7 +17,7 @@ from starlette.datastructures import Headers, MutableHeaders
 from starlette.requests import cookie_parser
 from starlette.responses import PlainTextResponse, Response
 
-from ..given import natural_number
+from .._support.user_files import natural_number
 from .token_page import TOKEN_PATH, Tries, answer_to_token, token_page, too_many_tries
 
 if TYPE_CHECKING:

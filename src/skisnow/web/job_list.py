@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, Final, Protocol
 
 from nicegui import ui
 
-from ..errors import ParameterError
+from .._support.errors import ParameterError
 from .error_pages import error_sentence
 from .language import said
 from .layout import heading, sentence

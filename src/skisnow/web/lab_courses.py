@@ -13,9 +13,9 @@ from starlette.exceptions import HTTPException
 from starlette.requests import Request
 from starlette.responses import RedirectResponse, Response
 
-from ..course import course_names, read_course
-from ..errors import ParameterError, SkisnowError
-from ..files import cannot_write, write_file
+from .._support.errors import ParameterError, SkisnowError
+from .._support.files import cannot_write, write_file
+from ..track.course import course_names, read_course
 from .confined import BOUNDS, confined
 from .error_pages import error_sentence, plain_page
 from .names import plain_stem

@@ -9,9 +9,9 @@ from pathlib import Path
 from tempfile import TemporaryDirectory, mkdtemp
 from typing import TYPE_CHECKING, Final
 
-from ..errors import OutputError, ParameterError
-from ..files import cannot_write, write_file
-from ..given import GivenError, toml_values
+from .._support.errors import OutputError, ParameterError
+from .._support.files import cannot_write, write_file
+from .._support.user_files import GivenError, toml_values
 from ..ski import read_ski, ski_names, write_ski
 from ..snow.measured_range import with_range_warnings
 

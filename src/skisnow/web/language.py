@@ -7,8 +7,8 @@ from weakref import WeakKeyDictionary
 
 from nicegui import Client, ui
 
-from ..language import ENGLISH, catalogue, languages
-from ..language.catalogue import DECIMAL
+from .._support.language import ENGLISH, catalogue, languages
+from .._support.language.catalogue import DECIMAL
 
 if TYPE_CHECKING:
     from collections.abc import Set

@@ -11,7 +11,7 @@ from urllib.parse import quote
 
 from nicegui import ui
 
-from ..language import languages
+from .._support.language import languages
 from .language import language_of, said
 from .pages import PAGES
 from .worded import Words, named

@@ -10,8 +10,8 @@ from pathlib import Path, PurePosixPath
 from tempfile import TemporaryDirectory
 from typing import IO, TYPE_CHECKING, Final
 
-from ..errors import ParameterError
-from ..given import toml_values
+from .._support.errors import ParameterError
+from .._support.user_files import toml_values
 from ..ski import read_ski
 from .confined import OF_A_SKI, confined
 from .lab_skis import FILE, texts_of_ski

@@ -7,7 +7,7 @@ from pathlib import PurePosixPath
 from typing import TYPE_CHECKING, Final
 from urllib.parse import quote
 
-from ..errors import StoreError
+from .._support.errors import StoreError
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

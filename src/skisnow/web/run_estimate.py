@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
-from ..given import GivenError, read_json
+from .._support.user_files import GivenError, read_json
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

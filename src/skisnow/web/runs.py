@@ -19,10 +19,10 @@ from dataclasses import asdict, dataclass, replace
 from datetime import UTC, datetime
 from typing import TYPE_CHECKING, Final, Literal, TypeAlias
 
-from ..errors import ParameterError
-from ..files import write_file
-from ..given import GivenError, read_record
-from ..language import ENGLISH
+from .._support.errors import ParameterError
+from .._support.files import write_file
+from .._support.language import ENGLISH
+from .._support.user_files import GivenError, read_record
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 from nicegui import ui
 
-from ..errors import ParameterError
+from .._support.errors import ParameterError
 from .fields import choice, field
 from .language import said
 from .layout import sentence
@@ -16,7 +16,7 @@ from .worded import named
 if TYPE_CHECKING:
     from typing import TypeAlias
 
-    from ..inputs import InputValue, Quantity
+    from ..parameters import InputValue, Quantity
     from .worded import TypedField
 
     InputField: TypeAlias = TypedField | ui.select | ui.switch

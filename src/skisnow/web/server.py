@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 
 import uvicorn
 
-from ..certificates import load_certificate
-from ..errors import ParameterError
+from .._support.certificates import load_certificate
+from .._support.errors import ParameterError
 from .addresses import for_others, lab_addresses
 from .application import lab_application
 from .guard import is_loopback

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Final
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from ..field.store import Store
+    from ..campaign.store import Store
 
 MEGABYTE: Final = 1_000_000
 

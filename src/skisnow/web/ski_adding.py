@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Final
 
 from nicegui import run, ui
 
-from ..errors import SkisnowError
+from .._support.errors import SkisnowError
 from .confined import OF_A_SKI, confined
 from .error_pages import error_sentence
 from .fields import button, field

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Final
 
 from nicegui import ui
 
-from ..errors import ParameterError
+from .._support.errors import ParameterError
 from .fields import button, field
 from .language import said
 from .layout import heading, sentence

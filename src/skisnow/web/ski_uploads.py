@@ -11,7 +11,7 @@ from starlette.exceptions import HTTPException
 from starlette.requests import Request
 from starlette.responses import RedirectResponse, Response
 
-from ..errors import ParameterError, SkisnowError
+from .._support.errors import ParameterError, SkisnowError
 from .error_pages import error_sentence, plain_page
 from .lab_skis import LabSkis
 from .measured_ski import NAME, STIFFNESS, add_ski, ski_of_uploads

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Final
 
 from nicegui import run
 
-from ..errors import ParameterError, SkisnowError
-from ..field.store import Journals
+from .._support.errors import ParameterError, SkisnowError
+from ..campaign.store import Journals
 from ..snow import published_names, published_snow
 from .edit_session import EditSession
 from .error_pages import error_sentence
@@ -19,7 +19,7 @@ from .worded import Words
 if TYPE_CHECKING:
     from collections.abc import Awaitable, Callable
 
-    from ..estimate import Analysis
+    from ..estimation import Analysis
     from ..snow import SnowProperties
     from .settings import Lab
 

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from ..errors import ParameterError
-from ..estimate.results_text import results_json
+from .._support.errors import ParameterError
+from .._support.units import MM, N_PER_MM2, N_PER_MM3
+from ..estimation.results_text import results_json
 from ..report.campaign.page import RESULTS
-from ..units import MM, N_PER_MM2, N_PER_MM3
 from .analysing import Choice, Refusal, numbers_of
 from .transfer import entry_files, kept_files
 from .words import estimate_words
@@ -15,10 +15,10 @@ from .words import estimate_words
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
-    from ..estimate import Analysis
+    from ..estimation import Analysis
     from ..scenario.reading import ScenarioFile
+    from ..ski.sources import Sources
     from ..snow import SnowProperties
-    from ..sources import Sources
     from .settings import Lab
 
 
@@ -86,7 +86,7 @@ def results_with(analysis: Analysis, scenario: str, changes: Mapping[str, str]) 
     ParameterError
         A value cannot be read or is not allowed.
     """
-    from ..sources import Sources
+    from ..ski.sources import Sources
 
     sources, site = Sources(), changes.get("snow.site") or None
     sources.take_snow(analysis.snow(site), results=RESULTS, site=site)

@@ -16,18 +16,18 @@ from pathlib import Path
 from tempfile import mkdtemp
 from typing import TYPE_CHECKING, Final
 
-from ..errors import ParameterError, SkisnowError
-from ..files import write_file
-from ..language import ENGLISH
-from ..parallel.executors import LOCAL
-from ..parallel.kept_rows import KeptRows
-from ..parallel.pool import available_cores
+from .._support.errors import ParameterError, SkisnowError
+from .._support.files import write_file
+from .._support.language import ENGLISH
+from .._support.processes.executors import LOCAL
+from .._support.processes.kept_rows import KeptRows
+from .._support.processes.pool import available_cores
 from .runs import JOB, Job, Runs, new_name
 from .study_asked import CARVE, STUDY, TABLE, most_points_refused
 from .unpacking import files_below
 
 if TYPE_CHECKING:
-    from ..study import Study, StudyTable
+    from ..studies import Study, StudyTable
     from .study_asked import StudyAsked
 
 FOLDER: Final = "studies"
@@ -93,7 +93,7 @@ class Studies(Runs):
         ParameterError
             It cannot be a study: what the command would say of its file.
         """
-        from ..study import read_study
+        from ..studies import read_study
 
         now = datetime.now(UTC)
         name = new_name(asked.of, now)
@@ -157,7 +157,7 @@ class Studies(Runs):
         ParameterError
             There is none yet.
         """
-        from ..study import read_study, read_table
+        from ..studies import read_study, read_table
 
         study = read_study(self.file(name, STUDY))
         return study, read_table(self.file(name, TABLE), study.subject.keys, varied=study.varied)

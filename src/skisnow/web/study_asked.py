@@ -7,14 +7,14 @@ from dataclasses import dataclass, field, replace
 from functools import cache
 from typing import TYPE_CHECKING, Any, Final
 
-from ..carve.keys import CARVE_KEYS
-from ..errors import ParameterError
+from .._support.errors import ParameterError
+from ..carving.keys import CARVE_KEYS
 from .scenario_fields import called, written
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from ..inputs import Quantity
+    from ..parameters import Quantity
 
 CARVE: Final = "carved-turn"
 """What stands for the study of carved turns where else a scenario's name stands."""

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Final
 
 from nicegui import ui
 
-from ..errors import ParameterError
-from ..given import natural_number
+from .._support.errors import ParameterError
+from .._support.user_files import natural_number
 from .fields import choice, field
 from .language import said
 from .layout import sentence
@@ -20,7 +20,7 @@ from .worded import named
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
-    from ..inputs import Quantity
+    from ..parameters import Quantity
 
 NOTHING: Final = "nothing"
 FROM: Final = "From"
@@ -48,7 +48,7 @@ skier on groomed snow)."""
 def begins(key: Quantity) -> tuple[float, float] | None:
     """Ends that an input goes through at first; of one with a default from its half to its double, as far as allowed.
 
-    >>> from skisnow.inputs import Quantity
+    >>> from skisnow.parameters import Quantity
     >>> begins(Quantity("load_N", "")), begins(Quantity("w_m", "", default=0.8, highest=1.0))
     ((400.0, 1200.0), (0.4, 1.0))
     """

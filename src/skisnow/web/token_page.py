@@ -13,7 +13,7 @@ from urllib.parse import parse_qs
 from starlette.requests import ClientDisconnect, Request
 from starlette.responses import HTMLResponse, RedirectResponse, Response
 
-from ..language import catalogue
+from .._support.language import catalogue
 from .language import language_of_request
 
 if TYPE_CHECKING:

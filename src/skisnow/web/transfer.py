@@ -14,9 +14,9 @@ from starlette.exceptions import HTTPException
 from starlette.requests import Request
 from starlette.responses import RedirectResponse, Response
 
-from ..errors import ParameterError, SkisnowError, StoreError
-from ..field.reading import READ_FILES, FilesInMemory
-from ..field.store import Journals, campaign_files, corrected_files, export_corrected, export_entered, replayed
+from .._support.errors import ParameterError, SkisnowError, StoreError
+from ..campaign.reading import READ_FILES, FilesInMemory
+from ..campaign.store import Journals, campaign_files, corrected_files, export_corrected, export_entered, replayed
 from .confined import BOUNDS, confined
 from .error_pages import error_sentence, plain_page
 from .names import required_id
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
     from fastapi import FastAPI
 
-    from ..field.store import ReplayedCampaign, ReplayedTest
+    from ..campaign.store import ReplayedCampaign, ReplayedTest
     from .settings import Lab
 
 IMPORT: Final = "/import"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from ..errors import ParameterError
+from .._support.errors import ParameterError
 
 
 def typed_number(what: str, text: str) -> float:

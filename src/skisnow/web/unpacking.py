@@ -10,8 +10,8 @@ from contextlib import contextmanager
 from pathlib import PurePosixPath
 from typing import IO, TYPE_CHECKING, Final
 
-from ..errors import ParameterError
-from ..field.store.folder import unsafe_because
+from .._support.errors import ParameterError
+from ..campaign.store.folder import unsafe_because
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence

@@ -6,17 +6,17 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
-from ..errors import ParameterError
-from ..field.reading import unfolded
-from ..field.reading.campaign_file import CAMPAIGN_FILE
-from ..field.reading.campaign_files import FilesOfFolder
-from ..field.store import Store
+from .._support.errors import ParameterError
+from ..campaign.reading import unfolded
+from ..campaign.reading.campaign_file import CAMPAIGN_FILE
+from ..campaign.reading.campaign_files import FilesOfFolder
+from ..campaign.store import Store
 from .unpacking import Unpacking, campaign_folder
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from ..field.store.address import StorePlace
+    from ..campaign.store.address import StorePlace
     from .settings import Limits
 
 UNDESCRIBED: Final = (

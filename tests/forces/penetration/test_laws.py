@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from skisnow.errors import ParameterError, RangeWarning
+from skisnow._support.errors import ParameterError, RangeWarning
 from skisnow.forces.penetration import (
     AreaLaw,
     BilinearLaw,
@@ -151,7 +151,7 @@ def test_what_no_snow_can_have_is_refused(make: Callable[[], object]) -> None:
         make()
 
 
-@pytest.mark.filterwarnings("error::skisnow.errors.RangeWarning")
+@pytest.mark.filterwarnings("error::skisnow._support.errors.RangeWarning")
 @pytest.mark.parametrize("name", federolf_2006.PRESSURE_LAWS)
 def test_the_pressure_laws_of_the_paper_lie_in_its_range(name: str) -> None:
     """The slopes go from 0.0036 to 0.034 N/mm³, the offsets from 0.058 to 0.35 N/mm²; beyond is warned of."""

@@ -15,7 +15,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from skisnow.errors import ParameterError, RangeWarning
+from skisnow._support.errors import ParameterError, RangeWarning
 from skisnow.forces.penetration import (
     LAWS,
     AreaLaw,

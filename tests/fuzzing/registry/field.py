@@ -13,14 +13,14 @@ from tempfile import TemporaryDirectory
 import numpy as np
 
 from skisnow import read_campaign, write_reference
-from skisnow.errors import FieldDataError
-from skisnow.field.caaml import read_caaml
-from skisnow.field.density_records import read_density_layers
-from skisnow.field.smet import read_smet
-from skisnow.field.snow_micro_pen import read_snow_micro_pen
-from skisnow.field.templates.workbook import workbook_bytes
+from skisnow._support.errors import FieldDataError
+from skisnow.campaign.caaml import read_caaml
+from skisnow.campaign.density_records import read_density_layers
+from skisnow.campaign.smet import read_smet
+from skisnow.campaign.snow_micro_pen import read_snow_micro_pen
+from skisnow.campaign.templates.workbook import workbook_bytes
 from skisnow.interop.caaml import write_caaml
-from tests.field.recordings import built
+from tests.campaign.recordings import built
 from tests.interop.pits import full_pit
 
 from ..archives import archive
@@ -143,7 +143,7 @@ def _of_campaign(file: str, mutations: tuple[Mutation, ...], *covers: str) -> Re
         files=lambda: _below("campaign", _campaign()),
         read=_read_campaign,
         mutations=mutations,
-        covers=("field.reading.campaign_files:FilesOfFolder.read", *covers),
+        covers=("campaign.reading.campaign_files:FilesOfFolder.read", *covers),
     )
 
 
@@ -178,10 +178,12 @@ READERS = (
         files=_workbook,
         read=_read_workbook,
         mutations=archive(_member),
-        covers=("field.reading.campaign:_read_folder", "given.workbook:workbook_sheets"),
+        covers=("campaign.reading.campaign:_read_folder", "_support.user_files.workbook:workbook_sheets"),
     ),
-    _single("pit.caaml", lambda: _pit()["pit.caaml"], read_caaml, XML, "field.caaml:read_caaml"),
-    _single("station.smet", lambda: _SMET, lambda path: repr(read_smet(path)), TEXT, "field.smet:read_smet"),
-    _single("20260203.pnt", _recording, read_snow_micro_pen, BINARY, "field.snow_micro_pen:read_snow_micro_pen"),
-    _single("densities.csv", lambda: _DENSITY, read_density_layers, TABLE, "field.density_records:read_density_layers"),
+    _single("pit.caaml", lambda: _pit()["pit.caaml"], read_caaml, XML, "campaign.caaml:read_caaml"),
+    _single("station.smet", lambda: _SMET, lambda path: repr(read_smet(path)), TEXT, "campaign.smet:read_smet"),
+    _single("20260203.pnt", _recording, read_snow_micro_pen, BINARY, "campaign.snow_micro_pen:read_snow_micro_pen"),
+    _single(
+        "densities.csv", lambda: _DENSITY, read_density_layers, TABLE, "campaign.density_records:read_density_layers"
+    ),
 )

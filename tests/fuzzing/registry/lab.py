@@ -11,9 +11,9 @@ from pathlib import Path
 from random import Random
 from tempfile import TemporaryDirectory
 
-from skisnow.errors import SkisnowError
-from skisnow.field.store import Journals, Store, export_corrected, replayed, sync, write_campaign
-from skisnow.staging import tidied
+from skisnow._support.errors import SkisnowError
+from skisnow._support.staging import tidied
+from skisnow.campaign.store import Journals, Store, export_corrected, replayed, sync, write_campaign
 from skisnow.web.measured_ski import read_ski_files
 from skisnow.web.replay.addresses import RunFolders, _ski_of_job
 from skisnow.web.replay.tracks import Placing, TrackFolders
@@ -21,8 +21,8 @@ from skisnow.web.run_estimate import _told
 from skisnow.web.runs import Job, Runs
 from skisnow.web.settings import Limits
 from skisnow.web.uploaded import add_uploaded
-from tests.field.store.test_journal import TOML as _ENTERED
-from tests.field.store.test_journal import campaign_with
+from tests.campaign.store.test_journal import TOML as _ENTERED
+from tests.campaign.store.test_journal import campaign_with
 
 from ..archives import archive
 from ..databases import SQLITE
@@ -149,21 +149,21 @@ _PLAN = {f"run/{_HIDDEN}/plan": b"summary.json\ntrack.csv\nfigures/a.svg", f"run
 READERS = (
     Reader(
         name="plan of a killed process", target=f"run/{_HIDDEN}/plan", files=lambda: _PLAN, mutations=TEXT,
-        read=lambda folder: tidied(folder / "run"), covers=("staging:_carry_out",),
+        read=lambda folder: tidied(folder / "run"), covers=("_support.staging:_carry_out",),
     ),
     Reader(
         name="store.sqlite3", target="store.sqlite3", files=_store, read=_every_use, mutations=SQLITE,
-        covers=("field.store.engine:_engine.open_file", "sqlite_file:connect"),
+        covers=("campaign.store.engine:_engine.open_file", "_support.sqlite_file:connect"),
     ),
     Reader(
         name="store sync", target="group.sqlite3", files=_two_stores, read=_synchronised, mutations=SQLITE,
-        covers=("field.store.engine:_engine.open_file",),
+        covers=("campaign.store.engine:_engine.open_file",),
     ),
     Reader(
         name="upload.zip", target="0", files=_zipped, read=_uploaded, mutations=archive(_member),
         covers=(
             "web.unpacking:Unpacking.take_zip", "web.unpacking:_unpacked", "web.uploaded:add_uploaded",
-            "field.store.folder:_description",
+            "campaign.store.folder:_description",
         ),
     ),
     Reader(

@@ -8,7 +8,7 @@ from tempfile import TemporaryDirectory
 
 import numpy as np
 
-from skisnow import scenario, simulate
+from skisnow import load_scenario, simulate
 from skisnow.interop.opensim.c3d import read_c3d
 from skisnow.interop.opensim.markers import read_trc
 from skisnow.interop.opensim.table import read_motion
@@ -16,7 +16,7 @@ from skisnow.replay import replay_of_file
 from skisnow.replay.binary import replay_bytes, replay_of_bytes
 from skisnow.report.replay_link import link_replay
 from skisnow.report.run_file import write_run_file
-from skisnow.simulate.run_summary import summary_dict
+from skisnow.simulation.run_summary import summary_dict
 from tests.interop.c3d_files import c3d_bytes
 
 from ..binaries import BINARY
@@ -57,7 +57,7 @@ _PAGE = b"""<html lang="de">
 @cache
 def run_files() -> dict[str, bytes]:
     """A short run's run.nc, alone in its folder."""
-    run = simulate(scenario("slalom-20-gates", changes={"run.duration_s": 0.2, "solver.method": "fast"}))
+    run = simulate(load_scenario("slalom-20-gates", changes={"run.duration_s": 0.2, "solver.method": "fast"}))
     with TemporaryDirectory() as name:
         write_run_file(run, summary_dict(run)["scenario"], Path(name) / "run.nc")
         return {"run.nc": (Path(name) / "run.nc").read_bytes()}

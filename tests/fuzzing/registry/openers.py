@@ -28,34 +28,34 @@ NO_READERS: Final[Mapping[str, str]] = {
     "samples.runs:run_samples": "package data",
     "samples.folder:_contents": "sample files that the program has just made",
     "cli.samples:run": "sample files that the program has just made",
-    "language.catalogue:_entries": "package data",
+    "_support.language.catalogue:_entries": "package data",
     "replay.page:static_text": "package data",
     "report.campaign.page:_frame": "package data",
     "report.sheet:sheet": "package data",
     "interop.fmu.writing:_write": "the library of the package",
     "interop.fmu.writing:_licence": "package data",
     "interop.opensim.c3d:write_c3d": "the file that it has just written",
-    "identify.fingerprint:fingerprint": "bytes for a SHA-256",
-    "identify.identification:identification_dict": "bytes for a SHA-256",
-    "identify.assembling:_require_different": "bytes for a SHA-256",
-    "simulate.run_summary:_provenance": "bytes for a SHA-256",
-    "study.computing:_hash": "bytes for a SHA-256",
-    "study.study:Study.fingerprint": "bytes for a SHA-256",
-    "field.store.folder:read_chunks": "bytes for the store, whatever they say",
-    "field.store.corrected_export:add_corrections": "a file of the campaign that it has just exported",
-    "field.store.engine:_damage": "a store that is known to be damaged, for the integrity check",
-    "study.writing:_write_database": "the table that it writes",
+    "identification.fingerprint:fingerprint": "bytes for a SHA-256",
+    "identification.identification:identification_dict": "bytes for a SHA-256",
+    "identification.assembling:_require_different": "bytes for a SHA-256",
+    "simulation.run_summary:_provenance": "bytes for a SHA-256",
+    "studies.computing:_hash": "bytes for a SHA-256",
+    "studies.study:Study.fingerprint": "bytes for a SHA-256",
+    "campaign.store.folder:read_chunks": "bytes for the store, whatever they say",
+    "campaign.store.corrected_export:add_corrections": "a file of the campaign that it has just exported",
+    "campaign.store.engine:_damage": "a store that is known to be damaged, for the integrity check",
+    "studies.writing:_write_database": "the table that it writes",
     "web.lab_skis:LabSkis.texts": "the text of a ski, shown in a field",
     "web.lab_skis:texts_of_ski": "the file that it has just written",
     "web.unpacking:files_below": "bytes for a download",
     "web.pages.replay:_in_words": "summary.json, by read_record as web.runs:Runs._over",
     "cli.compare:_slope_angle_of_run": "summary.json of a run, by read_json as other records",
     "web.server:Certificate.__post_init__": "a certificate, parsed by OpenSSL",
-    "certificates:load_certificate": "a certificate, parsed by OpenSSL",
-    "parallel.dask_cluster:_require_certificates": "certificates, parsed by OpenSSL",
-    "cli.serve:run": "opens the store as field.store.store:Store.open",
-    "cli.store:run": "opens the store as field.store.store:Store.open",
-    "cli.store:_sync": "opens the store as field.store.store:Store.open",
+    "_support.certificates:load_certificate": "a certificate, parsed by OpenSSL",
+    "_support.processes.dask_cluster:_require_certificates": "certificates, parsed by OpenSSL",
+    "cli.serve:run": "opens the store as campaign.store.store:Store.open",
+    "cli.store:run": "opens the store as campaign.store.store:Store.open",
+    "cli.store:_sync": "opens the store as campaign.store.store:Store.open",
 }
 """Why a function needs no reader in the registry."""
 
@@ -65,7 +65,7 @@ def openers() -> set[str]:
     found: set[str] = set()
     for path in sorted(_ROOT.rglob("*.py")):
         module = ".".join(path.relative_to(_ROOT).with_suffix("").parts).removesuffix(".__init__")
-        if not module.startswith("given."):  # the functions that all others use
+        if not module.startswith("_support.user_files."):  # the functions that all others use
             found.update(f"{module}:{name}" for name in _opening(ast.parse(path.read_text(encoding="utf-8")), ()))
     return found
 

@@ -10,12 +10,12 @@ from tempfile import TemporaryDirectory
 import numpy as np
 
 from skisnow import read_ski, snow_from_results
-from skisnow.identify.assembling import collected, values_to_begin_with
-from skisnow.identify.identifying import _clock
-from skisnow.identify.observations import keys_of_runs
-from skisnow.identify.parameter_table import parameter_table
-from skisnow.identify.track_frame import _site
-from skisnow.scenario import read_profile, read_scenario, read_terrain, scenario_file, scenario_text
+from skisnow.identification.assembling import collected, values_to_begin_with
+from skisnow.identification.identifying import _clock
+from skisnow.identification.observations import keys_of_runs
+from skisnow.identification.parameter_table import parameter_table
+from skisnow.identification.track_frame import _site
+from skisnow.scenario import load_scenario, read_profile, read_terrain, scenario_file, scenario_text
 from skisnow.scenario.boots_file import read_boots
 from skisnow.scenario.identify_section import given_parameters
 from skisnow.scenario.keys import parse_change
@@ -191,7 +191,7 @@ _SLALOM = scenario_text("slalom-20-gates").encode()
 _TABLED = {"ski.toml": _WITH_TABLE, "table.csv": _SKI_TABLE}
 _SHAPED = {"ski.toml": _WITH_SHAPE, "ski-def.json": _DESIGN}
 READERS = (
-    _of("scenario.toml", _SLALOM, read_scenario, TOML, "scenario.reading:load_input"),
+    _of("scenario.toml", _SLALOM, load_scenario, TOML, "scenario.reading:load_input"),
     Reader(
         name="identify.toml", target="identify.toml", read=_read_identify, mutations=TOML,
         files=lambda: {"identify.toml": scenario_text("carved-46m").encode() + _IDENTIFY, "cells.csv": _CELLS},

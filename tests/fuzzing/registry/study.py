@@ -10,9 +10,9 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from skisnow import read_study
-from skisnow.parallel.dask_cluster import scheduler_of
-from skisnow.study import merge_shards, read_table, run_shard, run_study
-from skisnow.study.table import stored_rows
+from skisnow._support.processes.dask_cluster import scheduler_of
+from skisnow.studies import merge_shards, read_table, run_shard, run_study
+from skisnow.studies.table import stored_rows
 
 from ..binaries import BINARY
 from ..databases import SQLITE
@@ -105,16 +105,17 @@ READERS = (
     Reader(
         name="study.toml", target="study.toml", files=lambda: {"study.toml": (_STUDY % "table.csv").encode()},
         read=lambda folder: repr(read_study(folder / "study.toml")), mutations=TOML,
-        covers=("study.study_file:read_study",),
+        covers=("studies.study_file:read_study",),
     ),
-    _table("table.csv", TABLE, "study.table:_read_at_once", "study.table:stored_rows"),
-    _table("table.sqlite", SQLITE, "study.rows:DatabaseRows.__init__"),
-    _table("table.parquet", BINARY, "study.rows:ParquetRows.__init__", needs=("pyarrow",)),
-    _rows("study .partial", "table.csv.partial", _partial, _gone_on_with, "parallel.kept_rows:KeptRows.__init__"),
-    _rows("study shard", "table.csv.shard-1-of-2", _parts, _merged, "parallel.kept_rows:KeptRows.__init__"),
+    _table("table.csv", TABLE, "studies.table:_read_at_once", "studies.table:stored_rows"),
+    _table("table.sqlite", SQLITE, "studies.rows:DatabaseRows.__init__"),
+    _table("table.parquet", BINARY, "studies.rows:ParquetRows.__init__", needs=("pyarrow",)),
+    _rows("study .partial", "table.csv.partial", _partial, _gone_on_with,
+          "_support.processes.kept_rows:KeptRows.__init__"),
+    _rows("study shard", "table.csv.shard-1-of-2", _parts, _merged, "_support.processes.kept_rows:KeptRows.__init__"),
     Reader(
         name="scheduler.toml", target="scheduler.toml", files=lambda: {"scheduler.toml": _SCHEDULER},
         read=lambda folder: scheduler_of(folder / "scheduler.toml"), mutations=TOML,
-        covers=("parallel.dask_cluster:scheduler_of",),
+        covers=("_support.processes.dask_cluster:scheduler_of",),
     ),
 )  # fmt: skip

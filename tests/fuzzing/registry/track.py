@@ -6,9 +6,9 @@ from functools import cache
 from pathlib import Path
 
 from skisnow import read_course, read_track, track_summary
-from skisnow.course.gate_gaps import gate_gaps
-from skisnow.identify.data import read_data
+from skisnow.identification.data import read_data
 from skisnow.racing.line_file import read_line
+from skisnow.track.course.gate_gaps import gate_gaps
 
 from ..binaries import BINARY, sealed_fit, sealed_nmea, sealed_ubx
 from ..markup import XML
@@ -74,22 +74,22 @@ READERS = (
     Reader(
         name="photo cells", target="cells.csv", files=lambda: {"cells.csv": _CELLS},
         read=lambda folder: read_data(folder / "cells.csv"), mutations=TABLE,
-        covers=("identify.data:_head", "identify.table_file:read_table"),
+        covers=("identification.data:_head", "identification.table_file:read_table"),
     ),
     Reader(
         name="grooves", target="grooves.csv", files=lambda: {"grooves.csv": _GROOVES},
         read=lambda folder: read_data(folder / "grooves.csv"), mutations=TABLE,
-        covers=("identify.data:_head", "identify.table_file:read_table"),
+        covers=("identification.data:_head", "identification.table_file:read_table"),
     ),
     Reader(
         name="course.csv", target="course.csv", files=_course_folder,
         read=lambda folder: repr(read_course(folder / "course.csv")), mutations=TABLE,
-        covers=("course.course_file:_rows", "csv_rows:csv_rows"),
+        covers=("track.course.course_file:_rows", "_support.csv_rows:csv_rows"),
     ),
     Reader(
         name="course.gpx", target="course.gpx", files=_course_folder,
         read=lambda folder: repr(read_course(folder / "course.gpx")), mutations=XML,
-        covers=("course.gpx_course:read_waypoints",),
+        covers=("track.course.gpx_course:read_waypoints",),
     ),
     Reader(
         name="line.csv", target="line.csv", files=_course_folder, read=_read_line, mutations=TABLE,
@@ -98,6 +98,6 @@ READERS = (
     Reader(
         name="gates.csv", target="one/gates.csv", files=lambda: {"one/gates.csv": _GATES, "other/gates.csv": _GATES},
         read=lambda folder: gate_gaps(folder / "one", folder / "other"), mutations=TABLE,
-        covers=("course.gate_gaps:_rows",),
+        covers=("track.course.gate_gaps:_rows",),
     ),
 )  # fmt: skip

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from matplotlib.text import Text
 
-    from skisnow.simulate.run import Run
+    from skisnow.simulation.run import Run
 
 
 def words_of(axes: Axes) -> list[Text]:

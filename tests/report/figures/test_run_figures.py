@@ -20,7 +20,7 @@ from skisnow.report.figures.run_track import beside_track, groove_corners, run_t
 from skisnow.report.figures.runs_compared import loaded_ski, runs_compared
 from skisnow.report.figures.style import BLUE, VERMILLION, journal_style
 from skisnow.report.figures.track_band import TimedTrack, band_of, offsets, track_band
-from skisnow.simulate.run import LOST, STORED, Run
+from skisnow.simulation.run import LOST, STORED, Run
 from skisnow.track.nearest_place import distance_beside
 from skisnow.track.polyline import arc_lengths
 

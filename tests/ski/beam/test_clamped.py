@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from skisnow.errors import ParameterError
+from skisnow._support.errors import ParameterError
 from skisnow.ski import Ski, read_ski
 from skisnow.ski.beam.banded import dense
 from skisnow.ski.beam.clamped import beam_at, clamped

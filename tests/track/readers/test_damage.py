@@ -10,7 +10,7 @@ import pytest
 from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
 
-from skisnow.errors import FieldDataError
+from skisnow._support.errors import FieldDataError
 from skisnow.track.flags import FLAGS
 from skisnow.track.read import read_track
 

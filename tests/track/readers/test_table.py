@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from skisnow.errors import FieldDataError, ParameterError
+from skisnow._support.errors import FieldDataError, ParameterError
 from skisnow.track.projection import GeodeticPoint
 from skisnow.track.read import read_track
 from skisnow.track.track import Track

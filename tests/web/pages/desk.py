@@ -25,9 +25,9 @@ from nicegui.app.app import State
 from nicegui.element import Element
 from nicegui.nicegui import _on_handshake
 
-from skisnow.field.store import Store
-from skisnow.field.store.engine import writing
-from skisnow.field.store.schema import metadata
+from skisnow.campaign.store import Store
+from skisnow.campaign.store.engine import writing
+from skisnow.campaign.store.schema import metadata
 from skisnow.web.application import lab_application
 from skisnow.web.line_chart import LineChart
 from skisnow.web.settings import Lab

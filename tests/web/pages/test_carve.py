@@ -10,12 +10,12 @@ from unittest.mock import Mock
 
 import pytest
 
-from skisnow.carve.answer import answered
-from skisnow.carve.answer_dict import answer_dict
-from skisnow.carve.question import carve_question
-from skisnow.estimate import analyse, results_dict
-from skisnow.estimate.results_text import results_json
-from skisnow.field import read_campaign
+from skisnow.campaign import read_campaign
+from skisnow.carving.answer import answered
+from skisnow.carving.answer_dict import answer_dict
+from skisnow.carving.question import carve_question
+from skisnow.estimation import analyse, results_dict
+from skisnow.estimation.results_text import results_json
 from skisnow.report.number_formatting import significant
 from skisnow.ski import ski_names
 from skisnow.snow import published_names

@@ -9,16 +9,16 @@ import pytest
 from nicegui import ui
 
 from skisnow import analyse, read_campaign
-from skisnow.errors import FieldDataError, StoreError
-from skisnow.field.store import Journals, NewEntry, export_corrected
+from skisnow._support.errors import FieldDataError, StoreError
+from skisnow.campaign.store import Journals, NewEntry, export_corrected
 from skisnow.web.correction_session import OWN_SHEET, CorrectionSession
 from skisnow.web.local_time import minute_words
 from skisnow.web.words import hardness_words
 
-from ...given.test_workbook import packed
+from ...support.user_files.test_workbook import packed
 
 if TYPE_CHECKING:
-    from skisnow.field.store import JournalEntry
+    from skisnow.campaign.store import JournalEntry
 
     from .desk import Desk, Sheet
 

@@ -14,7 +14,7 @@ pytest.importorskip("httpx", reason="requests of the test need httpx")
 import httpx
 from fastapi import FastAPI
 
-from skisnow.errors import ParameterError
+from skisnow._support.errors import ParameterError
 from skisnow.replay import moving_replay_model, replay_bytes, replay_model, replay_of_file
 from skisnow.report.run_file import write_run_file
 from skisnow.scenario import scenario_values

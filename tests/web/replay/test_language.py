@@ -7,9 +7,9 @@ from typing import Any
 
 import pytest
 
-from skisnow.errors import ParameterError
-from skisnow.language.catalogue import read_catalogue
-from skisnow.language.known import FOLDER
+from skisnow._support.errors import ParameterError
+from skisnow._support.language.catalogue import read_catalogue
+from skisnow._support.language.known import FOLDER
 from skisnow.replay import replay_of_run, write_replay
 from skisnow.replay.page import page_words
 

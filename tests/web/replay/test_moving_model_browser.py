@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 import pytest
 
+from skisnow._support.units import DEGREE
 from skisnow.replay import Replay, moving_replay_model, replay_of_run
-from skisnow.units import DEGREE
 
 from ...replay.test_moving_model import SKIS, by_hand, to_run
 from ...report.runs import circle_run

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from skisnow.errors import SkisnowError
+from skisnow._support.errors import SkisnowError
 from skisnow.replay import replay_of_run
 from skisnow.web.replay.tracks import LARGEST_BYTES, LONGEST_WAIT_S, MOST_POINTS, Placing, TrackFolders, number_of
 

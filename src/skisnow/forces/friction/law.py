@@ -9,7 +9,7 @@ from typing import Final
 import numpy as np
 import numpy.typing as npt
 
-from ...errors import ParameterError
+from ..._support.errors import ParameterError
 from ..measured_ranges import GLIDE_FRICTION
 
 FloatArray = npt.NDArray[np.float64]

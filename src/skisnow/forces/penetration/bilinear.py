@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...errors import ParameterError
+from ..._support.errors import ParameterError
 from ...geometry import Tool
 from ..parameter_checks import require_above_zero, require_finite
 from .law import FloatArray, PenetrationLaw

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from ...errors import ParameterError
+from ..._support.errors import ParameterError
 from ..measured_ranges import SNOW_HARDNESS
 from ..parameter_checks import require_above_zero
 from .point_law import FloatArray, PointLaw

@@ -8,7 +8,7 @@ from typing import ClassVar, Final
 import numpy as np
 import numpy.typing as npt
 
-from ...errors import ParameterError
+from ..._support.errors import ParameterError
 from ..measured_ranges import PRESSURE_OFFSET, PRESSURE_SLOPE
 from ..parameter_checks import require_above_zero, require_not_below_zero
 from .point_law import FloatArray, PointLaw

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from ...errors import ParameterError
+from ..._support.errors import ParameterError
+from ..._support.units import N_PER_MM2
 from ...snow.published.moessner_2013 import STRESS_BY_ANGLE
-from ...units import N_PER_MM2
 from ..measured_ranges import FAILURE_SHEAR_STRESS
 from ..parameter_checks import RIGHT_ANGLE, require_above_zero, require_finite
 from .law import FloatArray, ShearLaw

@@ -8,7 +8,7 @@ from typing import ClassVar
 import numpy as np
 import numpy.typing as npt
 
-from ...errors import ParameterError
+from ..._support.errors import ParameterError
 from ...snow import MeasuredRange
 from ...snow.published.lieu_mote_1985 import SNOW_OVER_ICE
 from ..measured_ranges import ICE_CUTTING_DEPTH, ICE_CUTTING_EDGE_ANGLE

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 import numpy.typing as npt
 
-from ...errors import ParameterError
+from ..._support.errors import ParameterError
 from ..cutting import cutting_stress, cutting_thrust
 from ..measured_ranges import FAILURE_SHEAR_STRESS
 from ..parameter_checks import RIGHT_ANGLE, edge_angles, require_above_zero, require_not_below_zero

@@ -9,12 +9,12 @@ import numpy as np
 import numpy.typing as npt
 from scipy.spatial.transform import Rotation
 
+from ..._support.errors import ParameterError
 from ...compiled import core
 from ...contact import Runner, SnowContact, SnowField
-from ...errors import ParameterError
 from ...geometry.surfaces import Grid
 from ...scenario import Plane, Scenario
-from ...simulate.run_setup import AT_REST, Setup, laid_out
+from ...simulation.run_setup import AT_REST, Setup, laid_out
 from .variables import TIME, Variable, vector
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]

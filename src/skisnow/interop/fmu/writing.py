@@ -11,9 +11,9 @@ from importlib.metadata import PackageNotFoundError, distribution
 from pathlib import Path
 from typing import Final
 
+from ..._support.errors import ParameterError
+from ..._support.files import write_file
 from ...contact import c_library
-from ...errors import ParameterError
-from ...files import write_file
 from ...scenario import Scenario
 from .description import IDENTIFIER, Version, description
 from .models import Model, contact_model, sledge_model

@@ -9,8 +9,8 @@ from typing import Final, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from ...errors import ParameterError
-from ...files import write_file
+from ..._support.errors import ParameterError
+from ..._support.files import write_file
 from ...ski import Ski
 from ...ski.beam.clamped import CLAMP_LENGTH
 

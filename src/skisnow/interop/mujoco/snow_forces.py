@@ -9,8 +9,8 @@ from typing import Any, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
+from ..._support.errors import ParameterError
 from ...contact import SnowContact
-from ...errors import ParameterError
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 

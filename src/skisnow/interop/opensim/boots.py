@@ -11,11 +11,11 @@ from typing import Final, Literal, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from ...errors import ParameterError
+from ..._support.errors import ParameterError
+from ..._support.units import DEGREE
 from ...geometry.boot_axes import angles_of
 from ...scenario.boots import LARGEST, Boots
 from ...scenario.boots_file import ANGLES, OF_SLOPE, SIDES
-from ...units import DEGREE
 from .markers import Markers
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]

@@ -11,10 +11,10 @@ from typing import Any, Final
 
 import numpy as np
 
-from ...errors import OutputError, ParameterError
-from ...files import write_file
-from ...given import GivenError, plain_bytes
-from ...optional_packages import needed
+from ..._support.errors import OutputError, ParameterError
+from ..._support.files import write_file
+from ..._support.optional_packages import needed
+from ..._support.user_files import GivenError, plain_bytes
 from .c3d_content import Values, c3d_content
 from .markers import METRES, FloatArray, Markers
 from .table import MOST_BYTES, MotionTable

@@ -16,7 +16,7 @@ from typing import Final, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from ...errors import ParameterError
+from ..._support.errors import ParameterError
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 Values: TypeAlias = Sequence[str] | Sequence[float]

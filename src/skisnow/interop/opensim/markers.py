@@ -9,10 +9,10 @@ from typing import Final, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from ...errors import ParameterError
-from ...files import write_file
-from ...given import plain_text
-from ...shown import Facts, Shown, amount
+from ..._support.display import Facts, Shown, amount
+from ..._support.errors import ParameterError
+from ..._support.files import write_file
+from ..._support.user_files import plain_text
 from .table import MOST_BYTES, number_of, require_rising
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]

@@ -10,11 +10,11 @@ from typing import Final, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from ...errors import ParameterError
-from ...files import write_file
-from ...given import plain_text
-from ...given.motion_head import HEAD_END, head_of_motion, is_in_degrees, require_whole
-from ...shown import Facts, Shown, amount
+from ..._support.display import Facts, Shown, amount
+from ..._support.errors import ParameterError
+from ..._support.files import write_file
+from ..._support.user_files import plain_text
+from ..._support.user_files.motion_head import HEAD_END, head_of_motion, is_in_degrees, require_whole
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 

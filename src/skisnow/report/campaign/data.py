@@ -10,17 +10,17 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from ...estimate.observations import DENSITY_KEY
-from ...field import QUALITY_FLAGS
-from ...units import MM, N_PER_MM2, N_PER_MM3
+from ..._support.units import MM, N_PER_MM2, N_PER_MM3
+from ...campaign import QUALITY_FLAGS
+from ...estimation.observations import DENSITY_KEY
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from ...estimate import Analysis
-    from ...estimate.observations import Observations
-    from ...estimate.regressions import Source
-    from ...field.records import Campaign
+    from ...campaign.records import Campaign
+    from ...estimation import Analysis
+    from ...estimation.observations import Observations
+    from ...estimation.regressions import Source
     from ...geometry import GeometryForm
 
 FloatArray = npt.NDArray[np.float64]

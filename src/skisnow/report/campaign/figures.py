@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Final
 
-from ...language import ENGLISH
+from ..._support.language import ENGLISH
 from ..figures.drawing import Drawing, LeftOut, Picture, pictured
 from ..figures.style import journal_style, site_styles
 from ..figures.translated import translate_figure

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 
 from markupsafe import Markup
 
-from ...estimate.comparisons import FEWEST_SITES
-from ...estimate.regressions import FEWEST_VALUES
+from ...estimation.comparisons import FEWEST_SITES
+from ...estimation.regressions import FEWEST_VALUES
 from ..number_formatting import counted, interval, p_equals, significant, whole
 from ..symbols import html, prose
 from .model_tables import formula, model_name

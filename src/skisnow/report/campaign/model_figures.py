@@ -30,8 +30,8 @@ if TYPE_CHECKING:
 
     from matplotlib.axes import Axes
 
-    from ...estimate.models import ModelFit
-    from ...estimate.readings import Readings
+    from ...estimation.models import ModelFit
+    from ...estimation.readings import Readings
     from ..figures.style import SiteStyle
     from .data import FloatArray, Json, ReportData
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, Final
 
-from ...estimate.models import MODELS
+from ...estimation.models import MODELS
 from ...snow.published.moessner_2013 import PRINTED_RMSE_N
 from ..table import ROWS_IN_HTML, Column, Table, record_table
 from .series_tables import EXPERIMENT, SITE, USED

@@ -12,13 +12,13 @@ from typing import TYPE_CHECKING, Any, Final
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 
-from ...errors import ParameterError
-from ...estimate import Analysis
-from ...estimate.results_text import results_json
-from ...files import write_file
-from ...language import ENGLISH, require_language
-from ...memory import paused_collector
-from ...staging import staged, tidied
+from ..._support.errors import ParameterError
+from ..._support.files import write_file
+from ..._support.language import ENGLISH, require_language
+from ..._support.memory import paused_collector
+from ..._support.staging import staged, tidied
+from ...estimation import Analysis
+from ...estimation.results_text import results_json
 from ..dates import days_words, moment_words
 from ..number_formatting import counted, significant, whole
 from ..pictures import picture_files, write_picture

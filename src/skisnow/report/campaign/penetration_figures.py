@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from ...estimate.observations import PEN_FORCE_KEY
+from ..._support.units import MM
+from ...estimation.observations import PEN_FORCE_KEY
 from ...geometry import in_form
-from ...units import MM
 from ..curves import law_of_series
 from ..figures.drawing import Drawing, LeftOut
 from ..figures.style import (
@@ -38,7 +38,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.lines import Line2D
 
-    from ...field.records import PenetrationTests
+    from ...campaign.records import PenetrationTests
     from ..figures.style import SiteStyle
     from .data import FloatArray, Json, ReportData
 

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from ...units import MM
+from ..._support.units import MM
 from ..table import Column, Table, record_table
 from .data import numbers, pairs
 

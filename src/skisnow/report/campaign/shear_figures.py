@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 from matplotlib.lines import Line2D
 
-from ...constants import CONFIDENCE
-from ...estimate.observations import HARDNESS_KEY, STRESS_KEY
+from ..._support.constants import CONFIDENCE
+from ..._support.units import DEGREE
+from ...estimation.observations import HARDNESS_KEY, STRESS_KEY
 from ...forces.cutting import cutting_stress
 from ...statistics.combined_uncertainty import expanded_factor
-from ...units import DEGREE
 from ..figures.drawing import Drawing, LeftOut
 from ..figures.style import BLACK, SitePlot, error_bars, logarithmic, masks, scatter, spans_a_decade
 from ..number_formatting import counted, interval, p_equals, significant

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from ...estimate.comparisons import own_mean
+from ...estimation.comparisons import own_mean
 from ..table import Column, Table, record_table
 
 if TYPE_CHECKING:

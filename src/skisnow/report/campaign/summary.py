@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, Final
 
-from ...estimate.comparisons import FEWEST_SITES
-from ...estimate.regressions import FEWEST_VALUES
+from ...estimation.comparisons import FEWEST_SITES
+from ...estimation.regressions import FEWEST_VALUES
 from ..number_formatting import interval, p_equals, significant
 
 if TYPE_CHECKING:
@@ -23,7 +23,7 @@ def summary(results: Json) -> str:
     Parameters
     ----------
     results
-        What `skisnow.estimate.results_dict` gives.
+        What `skisnow.estimation.results_dict` gives.
     """
     return "\n".join(_lines(results))
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING, Final
 
-from ...field import QUALITY_FLAGS
+from ...campaign import QUALITY_FLAGS
 from ..table import Column, Table, record_table
 from .model_tables import errors_in_depth_table, fitted_hardness_table, models_table, nested_table
 from .series_tables import (

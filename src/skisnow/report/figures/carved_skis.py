@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 from matplotlib.lines import Line2D
 
-from ...units import MM
+from ..._support.units import MM
 from ..carve_summary import answers_of, ski_titles
 from ..number_formatting import significant
 from ..symbols import figure_text
@@ -40,7 +40,7 @@ def carved_skis(found: Json) -> Figure:
     Parameters
     ----------
     found
-        What `skisnow.carve.answer_dict.answers_dict` gives.
+        What `skisnow.carving.answer_dict.answers_dict` gives.
     """
     answers = answers_of(found)
     figure = new_figure(width_mm=DOUBLE_MM, height_mm=150.0)

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from ...course import CourseResult
+    from ...track.course import CourseResult
 
 FloatArray = npt.NDArray[np.float64]
 

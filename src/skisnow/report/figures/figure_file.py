@@ -7,9 +7,9 @@ import warnings
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
-from ...errors import ParameterError
-from ...files import require_writable, write_file
-from ...language import ENGLISH
+from ..._support.errors import ParameterError
+from ..._support.files import require_writable, write_file
+from ..._support.language import ENGLISH
 from .style import journal_style
 from .translated import translate_figure
 

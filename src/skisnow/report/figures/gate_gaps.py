@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from ...course.gate_gaps import GateGap
+    from ...track.course.gate_gaps import GateGap
 
 MOST_NAMES = 26
 """Gates above which only some have their names on the axis."""

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from ...study import StudyTable
+    from ...studies import StudyTable
     from .map_layout import MapLayout
 
 Json = dict[str, Any]

@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 import numpy.typing as npt
 
-from ...carve.keys import CARVE_KEYS
-from ...errors import ParameterError
-from ...study import StudyTable
+from ..._support.errors import ParameterError
+from ...carving.keys import CARVE_KEYS
+from ...studies import StudyTable
 from ..symbols import figure_text
 
 if TYPE_CHECKING:

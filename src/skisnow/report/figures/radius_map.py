@@ -10,7 +10,7 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Normalize
 from matplotlib.lines import Line2D
 
-from ...units import DEGREE
+from ..._support.units import DEGREE
 from .map_layout import (
     MOST_LINES,
     axes_of_panels,
@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from ...study import StudyTable
+    from ...studies import StudyTable
     from .map_layout import MapLayout
 
 Json = dict[str, Any]

@@ -6,14 +6,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ...units import DEGREE
+from ..._support.units import DEGREE
 from .style import BLUE, DOUBLE_MM, GREY, ORANGE, PALE, new_figure
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from ...simulate.run import Run
+    from ...simulation.run import Run
 
 
 def run_balance(run: Run) -> Figure:

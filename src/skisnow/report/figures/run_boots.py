@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from ...units import DEGREE
+from ..._support.units import DEGREE
 from .run_balance import draw_both
 from .run_course import edge_angles_of_skis
 from .style import DOUBLE_MM, PALE, new_figure
@@ -12,7 +12,7 @@ from .style import DOUBLE_MM, PALE, new_figure
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from ...simulate.run import Run
+    from ...simulation.run import Run
 
 
 def run_boots(run: Run) -> Figure:

@@ -7,17 +7,17 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
-from ...errors import ParameterError
+from ..._support.errors import ParameterError
+from ..._support.units import DEGREE
 from ...scenario import Plane
 from ...scenario.slope_surface import normals_of
-from ...simulate.run_gates import run_gates
-from ...units import DEGREE
+from ...simulation.run_gates import run_gates
 from .course_line import course_line
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from ...simulate.run import Run
+    from ...simulation.run import Run
 
 FloatArray = npt.NDArray[np.float64]
 

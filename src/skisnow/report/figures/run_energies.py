@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 from matplotlib.lines import Line2D
 
-from ...simulate.run import LOST, STORED
+from ...simulation.run import LOST, STORED
 from ..number_formatting import significant
 from .style import (
     BLACK,
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from ...simulate.run import Run
+    from ...simulation.run import Run
 
 FloatArray = npt.NDArray[np.float64]
 

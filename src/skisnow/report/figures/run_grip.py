@@ -15,7 +15,7 @@ from .style import DOUBLE_MM, GREY, legend_below, new_figure
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from ...simulate.run import Run
+    from ...simulation.run import Run
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -8,14 +8,14 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 import numpy.typing as npt
 
-from ...units import DEGREE
+from ..._support.units import DEGREE
 from .style import BLUE, DOUBLE_MM, GREY, PALE, new_figure
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from ...simulate.run import Run
+    from ...simulation.run import Run
 
 FloatArray = npt.NDArray[np.float64]
 _TIMES_MEDIAN: Final = 3.0

@@ -9,10 +9,10 @@ import numpy as np
 import numpy.typing as npt
 from matplotlib.lines import Line2D
 
+from ..._support.units import MM
 from ...scenario import Plane
 from ...track.nearest_place import distance_beside
 from ...track.polyline import arc_lengths
-from ...units import MM
 from ..symbols import figure_text
 from .run_track import plan_axes, plan_height_mm, track_limits
 from .style import COLOURS, DOUBLE_MM, GREY, PALE, legend_below, new_figure
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from ...simulate.run import Run
+    from ...simulation.run import Run
 
 FloatArray = npt.NDArray[np.float64]
 _SYMBOL: Final = re.compile(r"(?<!\w)([A-Za-z])_([A-Za-z0-9])(?!\w)")

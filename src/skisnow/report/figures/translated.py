@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any, Final
 from matplotlib.text import Text
 from matplotlib.ticker import Formatter
 
-from ...language import ENGLISH, catalogue
-from ...language.catalogue import FIRST, LAST
+from ..._support.language import ENGLISH, catalogue
+from ..._support.language.catalogue import FIRST, LAST
 from .narrowed import legends_again
 
 if TYPE_CHECKING:

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from ...course.gates_table import COLUMNS, gate_rows
+from ...track.course.gates_table import COLUMNS, gate_rows
 from ..table import Column, Table
 
 if TYPE_CHECKING:
-    from ...course import CourseResult
+    from ...track.course import CourseResult
 
 
 def gates_table(result: CourseResult) -> Table:

@@ -9,13 +9,13 @@ import numpy as np
 import numpy.typing as npt
 
 from ...scenario.keys import SCENARIO_KEYS
-from ...simulate.run import OPEN_SHARE
+from ...simulation.run import OPEN_SHARE
 from ..figures.run_grip import used_share_of_skis
 from ..number_formatting import significant
 from ..table import Column, Table
 
 if TYPE_CHECKING:
-    from ...simulate.run import Run
+    from ...simulation.run import Run
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 
@@ -167,7 +167,7 @@ def verification_table(verification: Json) -> Table:
     Parameters
     ----------
     verification
-        What `skisnow.simulate.verification.verification_dict` gives.
+        What `skisnow.simulation.verification.verification_dict` gives.
     """
     return Table(
         "verification",

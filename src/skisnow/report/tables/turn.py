@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...units import DEGREE, MM, N_PER_MM2, N_PER_MM3
+from ..._support.units import DEGREE, MM, N_PER_MM2, N_PER_MM3
 from ..table import Column, Table
 from ..turn_inputs import band_inputs
 from ..turn_numbers import BandShares, afterbody_depth_ratio, band_shares, median_radius, middle_track, used_grip
 
 if TYPE_CHECKING:
-    from ...simulate.run import Run
+    from ...simulation.run import Run
     from ...snow import SnowProperties
     from ..turn_chain import EnsembleRun, TurnChain
 

@@ -9,7 +9,7 @@ from typing import Final, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from ...errors import ParameterError
+from ..._support.errors import ParameterError
 from ..ski import Ski
 from .banded import assembled
 from .elements import (

@@ -14,7 +14,7 @@ from __future__ import annotations
 import math
 from typing import Final
 
-from ...units import N_PER_MM2, N_PER_MM3
+from ..._support.units import N_PER_MM2, N_PER_MM3
 from ..properties import SnowProperties
 
 SOURCE: Final = "Federolf and others 2006, converted as in Mössner and others 2013 at 55°"

@@ -18,7 +18,7 @@ from typing import Final
 import numpy as np
 import numpy.typing as npt
 
-from ...units import MM
+from ..._support.units import MM
 from .proksch_2015 import density_of_form
 
 FloatArray = npt.NDArray[np.float64]

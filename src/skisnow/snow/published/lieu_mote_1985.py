@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from typing import Final
 
-from ...units import DEGREE, MM
+from ..._support.units import DEGREE, MM
 
 SOURCE: Final = "Lieu and Mote 1984, 1985"
 SNOW_OVER_ICE: Final = 0.02

@@ -12,7 +12,7 @@ from typing import Final
 import numpy as np
 import numpy.typing as npt
 
-from ...units import DEGREE, N_PER_MM2, N_PER_MM3
+from ..._support.units import DEGREE, N_PER_MM2, N_PER_MM3
 from ..properties import SnowProperties
 
 FloatArray = npt.NDArray[np.float64]

@@ -18,8 +18,8 @@ from typing import Final
 import numpy as np
 import numpy.typing as npt
 
-from ...constants import ICE_DENSITY
-from ...units import MM
+from ..._support.constants import ICE_DENSITY
+from ..._support.units import MM
 
 FloatArray = npt.NDArray[np.float64]
 

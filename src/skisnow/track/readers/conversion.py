@@ -19,7 +19,7 @@ from .rounded_times import spread_times
 if TYPE_CHECKING:
     import numpy.typing as npt
 
-    from ...inputs import Quantity
+    from ...parameters import Quantity
 
     BoolArray = npt.NDArray[np.bool_]
     FloatArray = npt.NDArray[np.float64]

@@ -15,7 +15,7 @@ from xml.parsers import expat
 
 import numpy as np
 
-from ...spreadsheet_text import number
+from ..._support.spreadsheet_text import number
 from .not_finite import is_not_finite
 from .recording import Recording
 from .refusal import refusal

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from ...errors import FieldDataError
+from ..._support.errors import FieldDataError
 
 
 @dataclass(frozen=True, slots=True)

@@ -14,7 +14,7 @@ from typing import Final
 import numpy as np
 import numpy.typing as npt
 
-from ...spreadsheet_text import number
+from ..._support.spreadsheet_text import number
 from ..point import FARTHEST, FASTEST_NUMBER
 from ..projection import GeodeticPoint, earth_centred, east_north_up_axes, geodetic
 from ..solution import Solution, solution_array

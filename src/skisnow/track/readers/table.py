@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from ...spreadsheet_text import number
+from ..._support.spreadsheet_text import number
 from ..point import FARTHEST
 from .likely_columns import likely_columns
 from .not_finite import is_not_finite

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from datetime import UTC, datetime
 from typing import TYPE_CHECKING, Final
 
-from ...spreadsheet_text import (
+from ..._support.spreadsheet_text import (
     LONGEST_CELL,
     MOST_COLUMNS,
     SEPARATOR_NAMES,

@@ -18,7 +18,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from ...units import MM
+from ..._support.units import MM
 from ..solution import Solution, solution_array
 from .nmea_sentences import SENTENCE
 from .recording import Recording

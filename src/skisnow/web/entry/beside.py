@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any, Final, TypeAlias
 
 from nicegui import background_tasks, run, ui
 
-from ...errors import FieldDataError, StoreError
-from ...field.reading.table_forms import PENETRATION
+from ..._support.errors import FieldDataError, StoreError
+from ...campaign.reading.table_forms import PENETRATION
 from ..error_pages import error_sentence
 from ..line_chart import BEHIND, ChartLine, LineChart
 from ..worded import Words, named

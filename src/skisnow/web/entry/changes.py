@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Final
 
 from nicegui import ui
 
-from ...field.reading.branches import is_unloading_cell
-from ...field.reading.table_forms import BRANCH
-from ...field.store.stored_tables import cell_of
+from ...campaign.reading.branches import is_unloading_cell
+from ...campaign.reading.table_forms import BRANCH
+from ...campaign.store.stored_tables import cell_of
 from ..answering import asking_button, form
 from ..fields import button, field
 from ..language import said, said_template
@@ -20,7 +20,7 @@ from ..words import label
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from ...field.store import JournalEntry, ReplayedTest
+    from ...campaign.store import JournalEntry, ReplayedTest
     from .table_view import TableView
 
 USUAL_REASON: Final = "typing error"

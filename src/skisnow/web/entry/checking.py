@@ -6,16 +6,16 @@ from typing import TYPE_CHECKING, TypeAlias
 
 from nicegui import ui
 
-from ...field.store.cells import CellError, checked_cell
+from ...campaign.store.cells import CellError, checked_cell
 from ..language import number_said, said, said_template
 from ..words import in_words, label
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
-    from ...errors import SkisnowError
-    from ...field.reading.heading_units import UnitConversion
-    from ...field.reading.table_forms import TableForm
+    from ..._support.errors import SkisnowError
+    from ...campaign.reading.heading_units import UnitConversion
+    from ...campaign.reading.table_forms import TableForm
 
 Field: TypeAlias = ui.input | ui.select
 

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Final
 
 from nicegui import ui
 
-from ...field.store.stored_tables import cell_key
+from ...campaign.store.stored_tables import cell_key
 from ..answering import asking_button, form
 from ..fields import choice, field, link
 from ..language import said
@@ -19,7 +19,7 @@ from .checking import Field, checked_fields, faults
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
-    from ...field.store import ReplayedTest
+    from ...campaign.store import ReplayedTest
     from ..correction_session import CorrectionSession
     from .beside import Beside
     from .table_view import TableView

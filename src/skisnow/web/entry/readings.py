@@ -10,7 +10,7 @@ from ..language import number_said
 if TYPE_CHECKING:
     from nicegui import ui
 
-    from ...field.store import ReplayedRow
+    from ...campaign.store import ReplayedRow
 
 CHANGED: Final = "changed, not stored"
 

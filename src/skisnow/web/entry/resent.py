@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING, Any, Final
 
 from nicegui import ui
 
-from ...errors import ParameterError, StoreError
-from ...field.reading.table_forms import BRANCH
-from ...field.store import NewEntry
-from ...field.store.cells import FORMS, checked_cell
+from ..._support.errors import ParameterError, StoreError
+from ...campaign.reading.table_forms import BRANCH
+from ...campaign.store import NewEntry
+from ...campaign.store.cells import FORMS, checked_cell
 from ..answering import LONGEST
 from ..language import number_said, said, said_template
 from .checking import problem_said

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Final
 
 from nicegui import ui
 
-from ...field.reading.table_forms import BRANCH, UNLOADING
+from ...campaign.reading.table_forms import BRANCH, UNLOADING
 from ..answering import answering, asked, asking_button, form
 from ..fields import choice, field
 from ..language import number_said
@@ -25,7 +25,7 @@ from .waiting import AfterWaiting
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
-    from ...field.store import ReplayedTest
+    from ...campaign.store import ReplayedTest
     from .beside import Beside
     from .series_list import SeriesList
     from .table_view import TableView

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
     from nicegui import ui
 
-    from ...field.store import ReplayedTest
+    from ...campaign.store import ReplayedTest
     from .readings import ReadingField, Step
     from .table_view import TableView
 

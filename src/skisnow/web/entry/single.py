@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Final
 
 from nicegui import ui
 
-from ...field.reading.turning import TURNING
+from ...campaign.reading.turning import TURNING
 from ..answering import asking_button, form
 from ..fields import choice, field
 from ..language import said
@@ -19,7 +19,7 @@ from .checking import checked_fields, faults, refuse
 from .readings import is_other
 
 if TYPE_CHECKING:
-    from ...field.store import ReplayedRow, ReplayedTest
+    from ...campaign.store import ReplayedRow, ReplayedTest
     from .beside import Beside
     from .table_view import TableView
 

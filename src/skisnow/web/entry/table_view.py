@@ -6,18 +6,18 @@ from typing import TYPE_CHECKING, Final
 
 from nicegui import ui
 
-from ...errors import ParameterError, StoreError
-from ...field.store import NewEntry, OvertakenError
-from ...field.store.cells import FORMS
-from ...given import natural_number
+from ..._support.errors import ParameterError, StoreError
+from ..._support.user_files import natural_number
+from ...campaign.store import NewEntry, OvertakenError
+from ...campaign.store.cells import FORMS
 from ..answering import asked
 from ..words import in_words, label
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from ...field.reading.table_forms import TableForm
-    from ...field.store import ReplayedTest
+    from ...campaign.reading.table_forms import TableForm
+    from ...campaign.store import ReplayedTest
     from ..edit_session import EditSession
     from ..worded import StatusLine
 

@@ -18,7 +18,7 @@ from .readings import CHANGED, is_other, show_state
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
 
-    from ...field.store import ReplayedTest
+    from ...campaign.store import ReplayedTest
     from .table_view import TableView
 
 AFTER: Final = "depth_after_mm"

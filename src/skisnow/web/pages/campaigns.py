@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Final
 
 from nicegui import run, ui
 
-from ...errors import StoreError
-from ...field import write_reference
-from ...field.store import Journals
+from ..._support.errors import StoreError
+from ...campaign import write_reference
+from ...campaign.store import Journals
 from ...report.number_formatting import counted
 from ..edit_session import EditSession
 from ..fields import button, link
@@ -21,7 +21,7 @@ from ..transfer import IMPORT
 from ..worded import Words
 
 if TYPE_CHECKING:
-    from ...field.store import StoredCampaign
+    from ...campaign.store import StoredCampaign
     from ..settings import Lab
 
 PATH: Final = "/"

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 from nicegui import background_tasks, run, ui
 
-from ...errors import ParameterError, SkisnowError
+from ..._support.errors import ParameterError, SkisnowError
 from ...report.campaign.page import RESULTS
 from ...report.number_formatting import significant
 from ..fields import choice, link
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
     from nicegui.events import GenericEventArguments
 
-    from ...sources import Sources
+    from ...ski.sources import Sources
     from ..settings import Lab
     from ..snow_choice import ChosenSnow
 
@@ -105,10 +105,10 @@ class _Solver:
 
         ``snow`` is that of a campaign, where the questions name its results.
         """
-        from ...carve.answer import answered
-        from ...carve.answer_dict import answer_dict
-        from ...carve.question import carve_question
-        from ...sources import Sources
+        from ...carving.answer import answered
+        from ...carving.answer_dict import answer_dict
+        from ...carving.question import carve_question
+        from ...ski.sources import Sources
 
         with self._lock:
             self._sources = self._sources or Sources()

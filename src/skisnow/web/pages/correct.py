@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from nicegui import run, ui
 
-from ...errors import ParameterError
+from ..._support.errors import ParameterError
 from ..correction_session import CorrectionSession
 from ..entry.frame import table_links, table_view_of
 from ..entry.kept import KeptForm, list_tests

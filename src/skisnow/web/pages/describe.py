@@ -6,13 +6,13 @@ from typing import TYPE_CHECKING, Any, Final
 
 from nicegui import ui
 
-from ...errors import FieldDataError, ParameterError, SkisnowError
-from ...field.problems import Problem
-from ...field.reading.tool_shapes import SHAPES
-from ...field.store import Journals, NewEntry, OvertakenError
-from ...field.store.description import Description, description_text
-from ...field.store.journal_entry import DESCRIPTION
-from ...given import toml_values
+from ..._support.errors import FieldDataError, ParameterError, SkisnowError
+from ..._support.user_files import toml_values
+from ...campaign.problems import Problem
+from ...campaign.reading.tool_shapes import SHAPES
+from ...campaign.store import Journals, NewEntry, OvertakenError
+from ...campaign.store.description import Description, description_text
+from ...campaign.store.journal_entry import DESCRIPTION
 from ..answering import asked, asking_button, form, go_on, row_button
 from ..edit_session import EditSession
 from ..fields import choice, field

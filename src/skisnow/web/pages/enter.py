@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 from nicegui import ui
 
-from ...errors import ParameterError
-from ...field.store.cells import checked_cell
+from ..._support.errors import ParameterError
+from ...campaign.store.cells import checked_cell
 from ..edit_session import EditSession
 from ..entry.frame import table_links, table_view_of
 from ..entry.resent import FILE, take_resent

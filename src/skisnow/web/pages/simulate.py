@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 from nicegui import app, background_tasks, run, ui
 
-from ...errors import ParameterError, SkisnowError
+from ..._support.errors import ParameterError, SkisnowError
 from ...replay.of_file import RUN_FILE
 from ..answering import redrawn_by
 from ..error_pages import error_sentence

@@ -7,7 +7,7 @@ from urllib.parse import quote
 
 from nicegui import run, ui
 
-from ...errors import SkisnowError
+from ..._support.errors import SkisnowError
 from ...report.ski_drawing import SkiDrawing, ski_drawing
 from ..confined import OF_A_SKI, confined
 from ..error_pages import error_sentence

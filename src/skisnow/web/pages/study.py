@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Any, Final
 
 from nicegui import app, background_tasks, run, ui
 
-from ...errors import ParameterError, SkisnowError
-from ...estimate.results_text import results_json
+from ..._support.errors import ParameterError, SkisnowError
+from ...estimation.results_text import results_json
 from ...report.campaign.page import RESULTS
 from ..answering import redrawn_by
 from ..error_pages import error_sentence
@@ -32,7 +32,7 @@ from .simulate import OF_SNOW as SCENARIO_SNOW
 from .study_table import table_address
 
 if TYPE_CHECKING:
-    from ...inputs import InputValue
+    from ...parameters import InputValue
     from ..job_list import Act
     from ..settings import Lab
 

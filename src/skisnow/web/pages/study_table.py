@@ -11,8 +11,8 @@ from starlette.concurrency import run_in_threadpool
 from starlette.requests import Request
 from starlette.responses import FileResponse, Response
 
-from ...errors import ParameterError
-from ...language import ENGLISH
+from ..._support.errors import ParameterError
+from ..._support.language import ENGLISH
 from ...report.number_formatting import significant
 from ..error_pages import error_sentence, plain_page
 from ..fields import choice, link
@@ -26,7 +26,7 @@ from ..unpacking import write_zip
 from ..worded import Words, named
 
 if TYPE_CHECKING:
-    from ...study import Study, StudyTable
+    from ...studies import Study, StudyTable
     from ..runs import Job
     from ..settings import Lab
 

@@ -11,9 +11,9 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 from starlette.requests import Request
 from starlette.responses import HTMLResponse, PlainTextResponse, Response
 
-from ...errors import ParameterError
-from ...given import read_json
-from ...language import ENGLISH, catalogue
+from ..._support.errors import ParameterError
+from ..._support.language import ENGLISH, catalogue
+from ..._support.user_files import read_json
 from ...replay.binary import replay_bytes
 from ...replay.model import replay_model
 from ...replay.moving_model import moving_replay_model

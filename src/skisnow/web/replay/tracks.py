@@ -10,13 +10,13 @@ from pathlib import Path, PurePosixPath
 from tempfile import mkdtemp
 from typing import IO, TYPE_CHECKING, Final
 
-from ...errors import FieldDataError, ParameterError
-from ...files import cannot_write, write_file
-from ...given import read_record
+from ..._support.errors import FieldDataError, ParameterError
+from ..._support.files import cannot_write, write_file
+from ..._support.units import DEGREE
+from ..._support.user_files import read_record
 from ...replay.replay import measured_track
 from ...track.read import SUFFIXES, read_track
 from ...track.slope_frame import in_slope_frame
-from ...units import DEGREE
 from ..names import plain_stem
 from ..typed import typed_number
 

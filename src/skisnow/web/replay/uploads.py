@@ -11,7 +11,7 @@ from starlette.exceptions import HTTPException
 from starlette.requests import Request
 from starlette.responses import RedirectResponse, Response
 
-from ...errors import ParameterError, SkisnowError
+from ..._support.errors import ParameterError, SkisnowError
 from ..confined import BOUNDS, confined
 from ..error_pages import error_sentence, plain_page
 from .tracks import Placing, number_of, points_of_track

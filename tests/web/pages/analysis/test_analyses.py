@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from skisnow.errors import FieldDataError, ParameterError, StoreError
-from skisnow.field.reading import FilesInMemory
-from skisnow.field.store import Journals
+from skisnow._support.errors import FieldDataError, ParameterError, StoreError
+from skisnow.campaign.reading import FilesInMemory
+from skisnow.campaign.store import Journals
 from skisnow.report.campaign.figures import DRAWERS
 from skisnow.web import analyses as analyses_module
 from skisnow.web import analysing

@@ -12,11 +12,11 @@ from typing import TYPE_CHECKING, Any
 import pytest
 from nicegui import ui
 
-from skisnow.errors import StoreError
-from skisnow.estimate import analyse
-from skisnow.field import read_campaign
-from skisnow.field.reading import FilesInMemory
-from skisnow.field.store import Journals
+from skisnow._support.errors import StoreError
+from skisnow.campaign import read_campaign
+from skisnow.campaign.reading import FilesInMemory
+from skisnow.campaign.store import Journals
+from skisnow.estimation import analyse
 from skisnow.report.campaign.data import ReportData
 from skisnow.report.campaign.key_results import key_results
 from skisnow.web import analyses as analyses_module

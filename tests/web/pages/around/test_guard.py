@@ -15,7 +15,7 @@ import pytest
 from starlette.datastructures import Headers
 from starlette.requests import Request
 
-from skisnow.errors import FieldDataError, OutputError, ParameterError, StoreError
+from skisnow._support.errors import FieldDataError, OutputError, ParameterError, StoreError
 from skisnow.web import error_pages
 from skisnow.web.analyses import Analyses
 from skisnow.web.error_pages import _failed, _notified, error_sentence, log_to, plain_page, reported

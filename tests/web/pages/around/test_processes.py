@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, cast
 import pytest
 import uvicorn
 
-from skisnow.errors import FieldDataError, OutputError, ParameterError, SkisnowError, StoreError
+from skisnow._support.errors import FieldDataError, OutputError, ParameterError, SkisnowError, StoreError
 from skisnow.web import addresses, confined, server, worker
 from skisnow.web.addresses import ENCRYPTED, IN_CLEAR, for_others, lab_addresses
 from skisnow.web.confined import Bounds

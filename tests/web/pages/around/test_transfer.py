@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from skisnow.errors import ParameterError
-from skisnow.field.store import Journals, NewEntry, Store, campaign_files, replayed
+from skisnow._support.errors import ParameterError
+from skisnow.campaign.store import Journals, NewEntry, Store, campaign_files, replayed
 from skisnow.web import transfer
 from skisnow.web.settings import Limits
 from skisnow.web.unpacking import Unpacking, campaign_folder, files_below, shown, write_zip

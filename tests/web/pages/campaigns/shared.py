@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from skisnow.field.store import Journals, NewEntry
+from skisnow.campaign.store import Journals, NewEntry
 
 if TYPE_CHECKING:
     from ..desk import Desk, Sheet

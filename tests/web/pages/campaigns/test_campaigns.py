@@ -5,8 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from skisnow.field import write_reference
-from skisnow.field.store import Journals, NewEntry
+from skisnow.campaign import write_reference
+from skisnow.campaign.store import Journals, NewEntry
 from skisnow.web.fields import FIRST
 from skisnow.web.local_time import minute_words
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 from nicegui import ui
 
-from skisnow.field.store import Journals, NewEntry
+from skisnow.campaign.store import Journals, NewEntry
 from skisnow.web.answering import ASK, ASK_FOR_ROW, ONWARD
 from skisnow.web.edit_session import EditSession
 from skisnow.web.worded import StatusLine

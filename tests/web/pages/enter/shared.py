@@ -6,12 +6,12 @@ from typing import TYPE_CHECKING, Any
 
 from nicegui import ui
 
-from skisnow.field.store import Journals, NewEntry
+from skisnow.campaign.store import Journals, NewEntry
 from skisnow.report.curves import SeriesCurve
 from skisnow.web.edit_session import EditSession, QuickResults
 
 if TYPE_CHECKING:
-    from skisnow.field.store import JournalEntry
+    from skisnow.campaign.store import JournalEntry
 
     from ..desk import Desk, Sheet
 

@@ -11,8 +11,8 @@ from unittest.mock import Mock
 import pytest
 from nicegui import ui
 
-from skisnow.errors import StoreError
-from skisnow.field.store import Journals, NewEntry, Store, sync
+from skisnow._support.errors import StoreError
+from skisnow.campaign.store import Journals, NewEntry, Store, sync
 from skisnow.report.curves import SeriesCurve
 from skisnow.web import answering
 from skisnow.web.answering import PageRequest

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import pytest
 from nicegui import ui
 
-from skisnow.field.store import NewEntry, ReplayedTest
+from skisnow.campaign.store import NewEntry, ReplayedTest
 from skisnow.report.number_formatting import significant
 from skisnow.web.edit_session import EditSession
 from skisnow.web.entry.table_view import TableView

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import pytest
 from nicegui import ui
 
-from skisnow.field.store import NewEntry
+from skisnow.campaign.store import NewEntry
 from skisnow.web.entry.series import LEFT, TOLD
 from skisnow.web.local_time import minute_words
 from skisnow.web.worded import StatusLine

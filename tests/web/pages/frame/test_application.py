@@ -16,7 +16,7 @@ from nicegui import core
 from uvicorn.server import ServerState
 
 import skisnow.web
-from skisnow.language import languages
+from skisnow._support.language import languages
 from skisnow.web.application import _chosen
 from skisnow.web.patience import RECONNECT_S, use_heartbeat
 from skisnow.web.slow_requests import PatientToAPoint

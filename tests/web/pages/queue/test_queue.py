@@ -15,8 +15,8 @@ from typing import Any
 
 import pytest
 
-from skisnow.errors import ParameterError
-from skisnow.parallel.kept_rows import KeptRows
+from skisnow._support.errors import ParameterError
+from skisnow._support.processes.kept_rows import KeptRows
 from skisnow.web import runs as runs_module
 from skisnow.web import studies as studies_module
 from skisnow.web.runs import Job, Runs, new_name

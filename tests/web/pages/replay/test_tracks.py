@@ -13,14 +13,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pytest
 
-from skisnow import replay as library
-from skisnow.errors import OutputError, ParameterError
+from skisnow._support.errors import OutputError, ParameterError
 from skisnow.replay import moving_replay_model, replay_bytes, replay_model, replay_of_file, replay_of_run
 from skisnow.replay.page import in_language, static_text
 from skisnow.report.gaps_report import gaps_of_folders
 from skisnow.ski import read_ski
 from skisnow.track.read import read_track
-from skisnow.web import replay as former
 from skisnow.web.lab_skis import LabSkis
 from skisnow.web.replay import addresses, tracks
 from skisnow.web.replay.addresses import RunFolders, program_file, show_address, show_page
@@ -280,12 +278,3 @@ def test_files_of_the_program_are_given_out_as_they_are() -> None:
         assert (answer.headers["content-type"], answer.headers["cache-control"]) == (kind, "no-cache")
     refused = program_file("show.html")
     assert (refused.status_code, bytes(refused.body)) == (404, b"The replay has no such file.")
-
-
-def test_the_replays_former_place_leads_to_the_library_and_warns() -> None:
-    told = "skisnow.web.replay.replay_bytes is called skisnow.replay.replay_bytes now"
-    with pytest.warns(DeprecationWarning, match=told) as warned:
-        assert former.replay_bytes is library.replay_bytes
-    assert warned[0].filename == __file__
-    with pytest.raises(AttributeError, match=r"^module 'skisnow\.web\.replay' has no attribute 'nothing'$"):
-        former.nothing  # noqa: B018

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from skisnow.course import course_names
-from skisnow.errors import OutputError, ParameterError
+from skisnow._support.errors import OutputError, ParameterError
+from skisnow.track.course import course_names
 from skisnow.web import lab_courses
 from skisnow.web.lab_courses import LabCourses, gates_of
 

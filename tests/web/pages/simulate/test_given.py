@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from skisnow.field.store import Journals, NewEntry
+from skisnow.campaign.store import Journals, NewEntry
 from skisnow.snow import snow_from_results
 from skisnow.web import snow_choice
 from skisnow.web.lab_skis import LabSkis

@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from skisnow.course import course_names
-from skisnow.errors import ParameterError
-from skisnow.inputs import Quantity
+from skisnow._support.errors import ParameterError
+from skisnow.parameters import Quantity
 from skisnow.scenario import scenario_names
 from skisnow.scenario.keys import SCENARIO_KEYS
 from skisnow.ski import ski_names
 from skisnow.snow import published_names
+from skisnow.track.course import course_names
 from skisnow.web.lab_skis import LabSkis
 from skisnow.web.scenario_fields import ScenarioField, called, in_labels, range_words
 

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 from nicegui import ui
 
-from skisnow.errors import ParameterError
+from skisnow._support.errors import ParameterError
 from skisnow.ski import read_ski, ski_names
 from skisnow.ski.editing import SkiEdit, edit_stations, edited_ski
 from skisnow.web.confined import OF_A_SKI

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pytest
 
-from skisnow.errors import OutputError, ParameterError, RangeWarning, SkisnowError
+from skisnow._support.errors import OutputError, ParameterError, RangeWarning, SkisnowError
 from skisnow.ski import read_ski, ski_names
 from skisnow.ski.editing import SkiEdit, edit_stations, edited_ski
 from skisnow.web import measured_ski

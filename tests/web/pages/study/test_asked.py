@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from skisnow.estimate import analyse, results_dict
-from skisnow.estimate.results_text import results_json
-from skisnow.field import read_campaign
-from skisnow.inputs import Quantity
+from skisnow.campaign import read_campaign
+from skisnow.estimation import analyse, results_dict
+from skisnow.estimation.results_text import results_json
+from skisnow.parameters import Quantity
 from skisnow.scenario.keys import SCENARIO_KEYS
 from skisnow.ski import read_ski
 from skisnow.web.lab_skis import LabSkis

@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from skisnow.errors import ParameterError
+from skisnow._support.errors import ParameterError
 from skisnow.scenario import scenario_names
 from skisnow.ski import ski_names
-from skisnow.study import read_study
+from skisnow.studies import read_study
 from skisnow.web.lab_skis import LabSkis
 from skisnow.web.study_asked import CARVE, most_points_refused
 

@@ -1,0 +1,1 @@
+"""What every package uses: files, texts, errors, units, processes; it knows no snow and no ski."""

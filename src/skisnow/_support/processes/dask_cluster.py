@@ -1,0 +1,298 @@
+"""Workers on other computers, by Dask: a scheduler that runs, or a batch system that is asked for workers."""
+
+from __future__ import annotations
+
+import ssl
+import time
+from collections.abc import Callable, Mapping
+from contextlib import suppress
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Final
+
+from ..certificates import load_certificate
+from ..errors import ParameterError, SkisnowError
+from ..nearest import nearest
+from ..optional_packages import needed
+from ..user_files import read_toml
+from .chunk import PointFunction
+from .crews import LOST, Crew, GivenCrew
+
+BATCH_SYSTEMS: Final = {
+    "slurm": "SLURMCluster",
+    "pbs": "PBSCluster",
+    "sge": "SGECluster",
+    "lsf": "LSFCluster",
+    "oar": "OARCluster",
+    "moab": "MoabCluster",
+    "htcondor": "HTCondorCluster",
+}
+"""By the name of their table: the class of dask-jobqueue."""
+TLS_KEYS: Final = ("ca_file", "cert", "key", "ciphers")
+_NOT_LOADED: Final = ("Can't get attribute", "deserializ")
+"""What Python and Dask say where a function is not there."""
+WAIT_S: Final = 30.0
+"""How long (s) a scheduler may take to answer, where the file does not say."""
+AWAY_S: Final = 10.0
+"""How long (s) a scheduler may be away in the middle of the work (modelling assumption)."""
+CHUNK_S: Final = 1.0
+"""Work (s) that is handed over at once (modelling assumption: from one piece to the next a worker takes some 10 ms, and
+some 50 where its cores are wanted by others)."""
+COUNTED_EVERY_S: Final = 1.0
+"""Workers come and go; how many there are is asked for so often (modelling assumption: asking takes milliseconds)."""
+
+
+@dataclass(frozen=True, slots=True)
+class SchedulerFile:
+    """What a TOML file says of a scheduler.
+
+    Attributes
+    ----------
+    address
+        Of one that runs; None: a batch system is asked for workers.
+    wait_s
+        How long it may take to answer.
+    tls
+        Files of certificates.
+    system, options
+        The batch system, and what its class of dask-jobqueue takes.
+    jobs
+        How many jobs are asked for.
+    """
+
+    address: str | None = None
+    wait_s: float = WAIT_S
+    tls: Mapping[str, str] | None = None
+    system: str | None = None
+    options: Mapping[str, Any] | None = None
+    jobs: int = 1
+
+
+def require_scheduler(scheduler: str | Path) -> None:
+    """Refuse what cannot be a scheduler, before the work begins.
+
+    Raises
+    ------
+    ParameterError
+        Dask is not installed, or the address, the file or a certificate cannot be read.
+    """
+    asked = scheduler_of(scheduler)
+    _distributed()
+    _require_certificates(asked.tls or {})
+    if asked.system is not None:
+        _jobqueue()
+
+
+def is_plain(scheduler: str | Path) -> bool:
+    """Whether what is sent there travels unencrypted, and anybody who reaches it may run programs."""
+    return not _is_encrypted(scheduler_of(scheduler))
+
+
+def _is_encrypted(asked: SchedulerFile) -> bool:
+    return bool(asked.tls) or (asked.address or "").startswith(("tls://", "wss://"))
+
+
+def scheduler_of(scheduler: str | Path) -> SchedulerFile:
+    """What an address or a TOML file says.
+
+    Raises
+    ------
+    ParameterError
+        It is none, or a key in it is unknown or of the wrong kind.
+    """
+    if isinstance(scheduler, str) and "://" in scheduler:
+        return SchedulerFile(address=scheduler)
+    if Path(scheduler).suffix.lower() != ".toml":
+        raise ParameterError(
+            f"the scheduler is {str(scheduler)!r}; it must be an address such as tcp://host:8786, a file that ends in "
+            ".toml, threads or processes"
+        )
+    try:
+        return _of_table(read_toml(scheduler), Path(scheduler).parent)
+    except ParameterError as error:
+        raise ParameterError(f"{scheduler}: {error}" if str(scheduler) not in str(error) else str(error)) from error
+
+
+def _of_table(table: Mapping[str, Any], folder: Path) -> SchedulerFile:
+    known = ("address", "wait_s", "tls", *BATCH_SYSTEMS)
+    for key in table:
+        if key not in known:
+            raise ParameterError(f"{key} is no key of a scheduler. {nearest(key, known)}")
+    places = [key for key in table if key == "address" or key in BATCH_SYSTEMS]
+    if len(places) != 1:
+        found = f"{' and '.join(places)} are there" if places else "none is there"
+        raise ParameterError(f"a scheduler has either an address or one of [{'], ['.join(BATCH_SYSTEMS)}]; {found}")
+    (place,) = places
+    wait = table.get("wait_s", WAIT_S)
+    if isinstance(wait, bool) or not isinstance(wait, int | float) or not wait > 0:
+        raise ParameterError(f"wait_s is {wait!r}; it must be a number above 0")
+    tls = _tls(table.get("tls"), folder)
+    if place == "address":
+        if not isinstance(table[place], str) or "://" not in table[place]:
+            raise ParameterError(f'address is {table[place]!r}; it must be a text such as "tcp://host:8786"')
+        return SchedulerFile(table[place], wait, tls)
+    return _of_batch_system(place, table[place], wait, tls)
+
+
+def _of_batch_system(system: str, given: object, wait: float, tls: Mapping[str, str] | None) -> SchedulerFile:
+    if not isinstance(given, dict):
+        raise ParameterError(f"{system} is {given!r}; it must be a table, begun by the line [{system}]")
+    options = dict(given)
+    jobs = options.pop("jobs", 1)
+    if isinstance(jobs, bool) or not isinstance(jobs, int) or jobs < 1:
+        raise ParameterError(f"{system}.jobs is {jobs!r}; it must be a whole number from 1 on")
+    for name in ("cores", "memory"):
+        if name not in options:
+            raise ParameterError(f'{system}.{name} is missing: what one job has, such as cores = 16, memory = "32GB"')
+    # one process for each core: see docs/decisions/studies.md
+    return SchedulerFile(None, wait, tls, system, {"processes": options["cores"], **options}, jobs)
+
+
+def _tls(given: object, folder: Path) -> Mapping[str, str] | None:
+    """The table of certificates, its paths from the folder that they start at."""
+    if given is None:
+        return None
+    if not isinstance(given, dict):
+        raise ParameterError(f"tls is {given!r}; it must be a table, begun by the line [tls]")
+    for key, value in given.items():
+        if key not in TLS_KEYS:
+            raise ParameterError(f"tls.{key} is no key of a scheduler. {nearest(key, TLS_KEYS)}")
+        if not isinstance(value, str):
+            raise ParameterError(f"tls.{key} is {value!r}; it must be {_meaning(key)}")
+    return {key: value if key == "ciphers" else str(folder / value) for key, value in given.items()}
+
+
+def _meaning(key: str) -> str:
+    return "a text, as OpenSSL writes ciphers" if key == "ciphers" else "the path of a PEM file"
+
+
+def crew_of_scheduler(scheduler: str | Path, function: PointFunction) -> Crew:
+    """Workers of a scheduler, whose connection is closed at the end; jobs that were asked for are ended then.
+
+    Raises
+    ------
+    ParameterError
+        As of `require_scheduler`.
+    SkisnowError
+        It does not answer.
+    """
+    require_scheduler(scheduler)
+    asked = scheduler_of(scheduler)
+    distributed = _distributed()
+    if asked.system is not None:
+        cluster = batch_cluster(asked)
+        cluster.scale(jobs=asked.jobs)
+        client = distributed.Client(cluster)
+        return crew_of_client(client, function, close=lambda: _closed(client, cluster))
+    try:
+        client = distributed.Client(asked.address, timeout=asked.wait_s, security=_security(asked.tls), name="skisnow")
+    except (OSError, ValueError, TypeError) as error:
+        raise SkisnowError(_unanswered(asked, error)) from error
+    return crew_of_client(client, function, close=lambda: _closed(client))
+
+
+def _require_certificates(tls: Mapping[str, str]) -> None:
+    context = ssl.SSLContext(ssl.PROTOCOL_TLS_CLIENT)
+    what = ""
+    try:
+        if what := tls.get("ca_file", ""):
+            context.load_verify_locations(what)
+        if what := tls.get("cert", ""):
+            load_certificate(context, what, tls.get("key"))
+    except (OSError, ssl.SSLError, ValueError) as error:
+        raise ParameterError(
+            f"{what}: no certificate can be read ({error}). [tls] needs PEM files: ca_file, the authority; cert and "
+            "key, a certificate that it signed and its private key"
+        ) from error
+
+
+def _unanswered(asked: SchedulerFile, error: Exception) -> str:
+    if _is_encrypted(asked):
+        return (
+            f"no connection to the scheduler at {asked.address} ({error}). It runs with certificates: is it there, is "
+            "its certificate signed by ca_file, and does it accept cert and key of [tls]"
+        )
+    return (
+        f"no scheduler answers at {asked.address} ({error}). Start one with `dask scheduler`, and workers with "
+        "`dask worker`; both print their address"
+    )
+
+
+def batch_cluster(asked: SchedulerFile) -> Any:
+    """A cluster of dask-jobqueue, which has no workers yet.
+
+    Raises
+    ------
+    ParameterError
+        An option is none of its class.
+    """
+    jobqueue = _jobqueue()
+    security = _security(asked.tls)
+    options = {**(asked.options or {}), **({} if security is None else {"security": security, "protocol": "tls://"})}
+    try:
+        return getattr(jobqueue, BATCH_SYSTEMS[asked.system or ""])(**options)
+    except (TypeError, ValueError) as error:
+        raise ParameterError(f"[{asked.system}]: dask-jobqueue refuses it: {error}") from error
+
+
+def crew_of_client(client: Any, function: PointFunction, close: Callable[[], None] | None = None) -> Crew:
+    """Workers of a Dask client."""
+    return _DaskCrew(function, client, close)
+
+
+class _DaskCrew(GivenCrew):
+    """The scheduler gives a chunk of a worker that was lost to another one."""
+
+    chunk_s = CHUNK_S
+
+    def __init__(self, function: PointFunction, client: Any, close: Callable[[], None] | None) -> None:
+        super().__init__(function, client.get_executor(pure=False), self._threads, close)
+        self._client = client
+        self._counted, self._at, self._last_seen = 1, -COUNTED_EVERY_S, time.monotonic()
+
+    def _threads(self) -> int:
+        if time.monotonic() - self._at > COUNTED_EVERY_S:
+            with suppress(Exception):  # it does not answer: `require_alive` says so after a while
+                self._counted = sum(self._client.nthreads(callback_timeout=COUNTED_EVERY_S).values())
+            self._at = time.monotonic()
+        return self._counted
+
+    def require_alive(self) -> None:
+        """Refuse to wait for a scheduler that has been away for long; one that breaks for a moment comes back."""
+        if self._client.status == "running":
+            self._last_seen = time.monotonic()
+        elif time.monotonic() - self._last_seen > AWAY_S or self._client.status == "closed":
+            raise SkisnowError(LOST)
+
+    def told(self, error: Exception) -> str | None:
+        """What an error of Dask means."""
+        if isinstance(error, ImportError) or any(word in str(error) for word in _NOT_LOADED):
+            return f"a worker cannot load what it is to compute ({error}). Install the same skisnow there"
+        if type(error).__module__.startswith("distributed"):
+            return f"Dask gave up: {type(error).__name__}: {error}"
+        return super().told(error)
+
+
+def _closed(client: Any, cluster: Any = None) -> None:
+    client.close()
+    if cluster is not None:
+        cluster.close()
+
+
+def _security(tls: Mapping[str, str] | None) -> Any:
+    """Certificates for all three parts; None: what Dask's own configuration says."""
+    if not tls:
+        return None
+    named = {"tls_ca_file": tls.get("ca_file"), "tls_ciphers": tls.get("ciphers")}
+    for part in ("client", "scheduler", "worker"):
+        named |= {f"tls_{part}_cert": tls.get("cert"), f"tls_{part}_key": tls.get("key")}
+    given = {name: value for name, value in named.items() if value is not None}
+    return _distributed().Security(require_encryption=True, **given)
+
+
+def _distributed() -> Any:
+    return needed("distributed", extra="dask", what="a scheduler")
+
+
+def _jobqueue() -> Any:
+    return needed("dask_jobqueue", extra="dask", what="a batch system")

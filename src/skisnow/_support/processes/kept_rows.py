@@ -1,0 +1,301 @@
+"""Rows of a batch on disk: kept as they come, so that an interruption at any moment keeps what was finished."""
+
+from __future__ import annotations
+
+import json
+import sqlite3
+import weakref
+import zlib
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import AbstractContextManager, contextmanager
+from pathlib import Path
+from typing import Any, Final, Self, TypeAlias
+
+from ..errors import OutputError, ParameterError
+from ..files import cannot_write
+from ..sqlite_file import connect, first_damage, place_reason, primary_code, require_schema, require_sound_pages
+from ..user_files import own_json
+
+Row: TypeAlias = dict[str, Any]
+NumberedText: TypeAlias = tuple[int, str]
+"""A point's number and its row as JSON text on one line."""
+
+_TABLES: Final = """
+create table about (name text primary key, value text not null) without rowid;
+create table rows (number integer primary key, row text not null, checksum integer not null);
+"""
+_SCHEMA: Final = {"about": ("name", "value"), "rows": ("number", "row", "checksum")}
+_FORM: Final = "skisnow rows 3"
+_CHECKSUM: Final = "checksum"
+"""Name in the table `about` of the checksum of all its other rows."""
+_BUSY: Final = (sqlite3.SQLITE_BUSY, sqlite3.SQLITE_LOCKED)
+
+
+class KeptRows:
+    """The finished rows of one batch, in an SQLite file. Without a path they are only remembered.
+
+    A row is written as soon as it is finished, and a kill at any moment loses none that `add` has taken. One process at
+    a time has the file. What a computer that lost its power had not yet on its disk is computed again.
+
+    Every row has a checksum. The schema and the pages are checked at each opening, a checksum when its row is read: a
+    damaged file is an error that names it, whatever is damaged in it.
+
+    Attributes
+    ----------
+    path
+        The file, None: in memory.
+    columns
+        Where they are given a row is kept as the list of their values, half as long; what it has besides is left out.
+    """
+
+    def __init__(self, path: Path | None = None, *, columns: Sequence[str] | None = None) -> None:
+        self.path = path
+        self.columns = None if columns is None else tuple(columns)
+        self._database = connect(path)
+        weakref.finalize(self, self._database.close)
+        if path is None:
+            self._database.executescript(_TABLES)
+
+    @classmethod
+    def opened(
+        cls,
+        path: Path,
+        fingerprint: str,
+        *,
+        columns: Sequence[str] | None = None,
+        about: Mapping[str, str] | None = None,
+    ) -> Self:
+        """Open the file of a batch, or begin it.
+
+        Parameters
+        ----------
+        path
+            The file; its folder is made where it is missing.
+        fingerprint
+            Changes with anything that the rows follow from.
+        columns
+            As the attribute.
+        about
+            What else is kept of the batch with a new file.
+
+        Raises
+        ------
+        ParameterError
+            The file belongs to another batch: its fingerprint differs. Or it is damaged, or not a file of rows.
+        OutputError
+            It cannot be written, or another run is writing it.
+        """
+        try:
+            path.parent.mkdir(parents=True, exist_ok=True)
+        except OSError as error:
+            raise cannot_write(path, error) from error
+        kept = {"form": _FORM, "fingerprint": fingerprint, **(about or {})}
+        if columns is not None:
+            kept["columns"] = json.dumps(list(columns))
+        return cls._begun(path, kept, columns)
+
+    @classmethod
+    def read(cls, path: Path) -> Self:
+        """Open the file of a batch as it is, whatever its fingerprint.
+
+        Raises
+        ------
+        ParameterError
+            There is none, or it is damaged, or not a file of rows.
+        OutputError
+            It cannot be opened, or another run is writing it.
+        """
+        if not path.is_file():
+            raise ParameterError(f"{path} cannot be read: there is no such file. Check the path")
+        with _errors(path):
+            found = cls(path)
+        try:
+            with found._told():
+                found._take()
+                columns = found.about().get("columns")
+            found.columns = None if columns is None else tuple(own_json(columns))
+        except BaseException:
+            found.close()
+            raise
+        return found
+
+    @classmethod
+    def _begun(cls, path: Path, about: Mapping[str, str], columns: Sequence[str] | None) -> Self:
+        with _errors(path):
+            found = cls(path, columns=columns)
+        try:
+            with found._told():
+                found._take(about)
+                kept = found.about()
+            if kept["fingerprint"] != about["fingerprint"]:
+                raise _another(path)
+        except BaseException:
+            found.close()
+            raise
+        return found
+
+    def _take(self, about: Mapping[str, str] | None = None) -> None:
+        """Take the file for this process alone, and begin it where it is new."""
+        run = self._database.execute
+        run("pragma locking_mode = exclusive")  # before the log: it then needs no memory shared with other processes
+        run("pragma journal_mode = wal")
+        run("pragma synchronous = normal")
+        run("begin exclusive")
+        with self._database:  # which commits, or rolls back
+            if about is not None and not run("select count(*) from sqlite_master").fetchone()[0]:
+                for statement in _TABLES.split(";\n"):
+                    run(statement)
+                whole = {**about, _CHECKSUM: _checksum_of(about)}
+                self._database.executemany("insert into about values (?, ?)", whole.items())
+            require_schema(self._database, _SCHEMA)
+            if self.about().get("form") != _FORM:
+                raise sqlite3.DatabaseError("it has another form")
+            require_sound_pages(self._database)
+
+    def about(self) -> dict[str, str]:
+        """What was kept of the batch when it was begun."""
+        found = dict(self._selected("select name, value from about"))
+        if found.pop(_CHECKSUM, None) != _checksum_of(found):
+            raise _damaged(self.path, "the description of the batch has changed")
+        return found
+
+    def add(self, rows: Iterable[NumberedText]) -> int:
+        """Keep rows, all of them or none: after this call a kill does not lose them. Gives their number.
+
+        Raises
+        ------
+        OutputError
+            The file cannot be written.
+        """
+        new = list(rows)
+        with self._told():
+            self._database.execute("begin")
+            with self._database:
+                self._database.executemany(
+                    "insert into rows values (?, ?, ?)",
+                    ((number, text, _checksum(number, text)) for number, text in new),
+                )
+        return len(new)
+
+    def form(self, text: str) -> str:
+        """The row of a JSON object as it is kept."""
+        return text if self.columns is None else json_text([own_json(text).get(name) for name in self.columns])
+
+    def __len__(self) -> int:
+        """How many rows are finished."""
+        ((count,),) = self._selected("select count(*) from rows")
+        return int(count)
+
+    def __contains__(self, number: object) -> bool:
+        """Whether the row of a point is finished."""
+        return bool(list(self._selected("select 1 from rows where number = ?", number)))
+
+    def numbers(self) -> Iterator[int]:
+        """The finished points, in rising order."""
+        return (number for (number,) in self._selected("select number from rows order by number"))
+
+    def row(self, number: int) -> Row:
+        """The row of a finished point."""
+        ((_, text),) = self._checked("where number = ?", number)
+        return self._row(text)
+
+    def rows(self) -> Iterator[tuple[int, Row]]:
+        """Points with their rows, in rising order."""
+        return ((number, self._row(text)) for number, text in self.texts())
+
+    def values(self) -> Iterator[list[Any]]:
+        """The values of the columns of every finished point, in rising order."""
+        return (own_json(text) for _, text in self.texts())
+
+    def texts(self) -> Iterator[NumberedText]:
+        """Points with their rows as they are kept, in rising order.
+
+        Raises
+        ------
+        ParameterError
+            A row, or the file, is damaged.
+        """
+        return self._checked("order by number")
+
+    def _checked(self, which: str, *parameters: object) -> Iterator[NumberedText]:
+        for number, text, checksum in self._selected(f"select number, row, checksum from rows {which}", *parameters):
+            if not isinstance(text, str) or checksum != _checksum(number, text):
+                raise _damaged(self.path, f"the row of point {number + 1} has changed")
+            yield number, text
+
+    def _told(self) -> AbstractContextManager[None]:
+        return _errors(self.path, self._database)
+
+    def _selected(self, query: str, *parameters: object) -> Iterator[tuple[Any, ...]]:
+        with self._told():
+            # `yield from` closes the cursor, which fails behind a closed database
+            for found in self._database.execute(query, parameters):  # noqa: UP028
+                yield found
+
+    def _row(self, text: str) -> Row:
+        found = own_json(text)
+        return found if self.columns is None else dict(zip(self.columns, found, strict=True))
+
+    def close(self) -> None:
+        """Leave the file for a later start."""
+        self._database.close()
+
+    def remove(self) -> None:
+        """The batch is done and its rows stand elsewhere."""
+        if self.path is not None:
+            self.path.unlink(missing_ok=True)  # while nobody else has it
+        self.close()
+        if self.path is not None:
+            forget(self.path)
+
+
+def forget(path: Path) -> None:
+    """Remove the file of a batch, and the log of what a killed run had not yet brought into it."""
+    for name in (path.name, f"{path.name}-wal", f"{path.name}-shm"):
+        path.with_name(name).unlink(missing_ok=True)
+
+
+def row_text(row: Row | list[Any]) -> str:
+    """A row as JSON on one line."""
+    return json_text(row)
+
+
+def json_text(value: Any) -> str:
+    """JSON on one line."""
+    return json.dumps(value, ensure_ascii=True, separators=(",", ":"))
+
+
+def _checksum(number: int, text: str) -> int:
+    return zlib.crc32(f"{number} {text}".encode("utf-8", "surrogatepass"))
+
+
+def _checksum_of(about: Mapping[str, object]) -> str:
+    return str(zlib.crc32(repr(sorted(about.items(), key=str)).encode("utf-8", "surrogatepass")))
+
+
+@contextmanager
+def _errors(path: Path | None, database: sqlite3.Connection | None = None) -> Iterator[None]:
+    """Turn an error of the database into one that names the file and the remedy."""
+    try:
+        yield
+    except (sqlite3.DatabaseError, UnicodeDecodeError) as error:  # the latter where a name in the schema is no text
+        if primary_code(error) in (sqlite3.SQLITE_BUSY, sqlite3.SQLITE_LOCKED):
+            raise OutputError(f"{path} is being written by another run of this study. Wait for it or stop it") from None
+        if place_reason(error) is not None:
+            raise cannot_write(path or Path("memory"), OSError(str(error))) from error
+        found = None if database is None else first_damage(database)
+        raise _damaged(path, found or str(error)) from error
+
+
+def _another(path: Path) -> ParameterError:
+    return ParameterError(
+        f"{path} holds the finished points of another study, or of this one before its inputs, one of its files or "
+        "skisnow changed. Undo the change to go on with them, or remove that file to begin anew"
+    )
+
+
+def _damaged(path: Path | None, why: str) -> ParameterError:
+    return ParameterError(
+        f"{path} is damaged, or it is not a file of finished points: {why}. Remove it to compute its points again, or "
+        "move it away"
+    )

@@ -1,0 +1,45 @@
+"""Field campaigns: records, files, screening, store, reference campaign."""
+
+from .applied_correction import AppliedCorrection
+from .density_records import DensityLayers, read_density_layers
+from .problems import Problem
+from .quality_flags import QUALITY_FLAGS, QualityFlag
+from .reading import campaign_of_files, check_campaign, read_campaign
+from .records import (
+    Campaign,
+    DensitySamples,
+    DropConeTests,
+    PenetrationSeries,
+    PenetrationTests,
+    ShearTests,
+)
+from .reference import ReferenceCampaign, ReferenceNoise, reference_campaign, write_reference
+from .screening import flag_problems, screen_penetration, screen_shear
+from .snow_micro_pen import SnowMicroPenProfile, read_snow_micro_pen
+
+__all__ = [
+    "QUALITY_FLAGS",
+    "AppliedCorrection",
+    "Campaign",
+    "DensityLayers",
+    "DensitySamples",
+    "DropConeTests",
+    "PenetrationSeries",
+    "PenetrationTests",
+    "Problem",
+    "QualityFlag",
+    "ReferenceCampaign",
+    "ReferenceNoise",
+    "ShearTests",
+    "SnowMicroPenProfile",
+    "campaign_of_files",
+    "check_campaign",
+    "flag_problems",
+    "read_campaign",
+    "read_density_layers",
+    "read_snow_micro_pen",
+    "reference_campaign",
+    "screen_penetration",
+    "screen_shear",
+    "write_reference",
+]

@@ -1,0 +1,280 @@
+"""Snow pits from CAAML 5 and 6, the exchange format of avalanche services: ``.caaml``, ``.caaml.xml``.
+
+Read are place, time, observer, layers with hand hardness and grains, densities, temperatures, penetrometer forces, and
+H_V and S_f where skisnow wrote them. Everything else in a file is passed over. Each quantity is converted from the unit
+in its ``uom``; an unknown unit is an error. Version 5 gives units at the profile (``uomDensity``), version 6 at each
+value, and some quantities have another place.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from pathlib import Path
+from typing import TYPE_CHECKING, Final, NoReturn
+
+import numpy as np
+
+from .._support.errors import FieldDataError
+from .._support.user_files import GivenError, plain_bytes, xml_tree
+from ..parameters.quantity import LARGEST
+from .caaml_units import (
+    ANGLE,
+    DENSITY,
+    ELEVATION,
+    FORCE,
+    GRAIN_SIZE,
+    LENGTH,
+    SHEAR_STRESS,
+    SNOW_HARDNESS,
+    TEMPERATURE,
+)
+from .problems import error
+from .snow_pit import DepthTemperature, ForceProfile, LayerDensity, PlateValue, SnowLayer, SnowPit
+
+if TYPE_CHECKING:
+    from .._support.user_files import Element
+    from .caaml_units import CaamlUnits
+
+MOST_BYTES: Final = 32 * 2**20
+NAMESPACE: Final = re.compile(
+    r"http://(www\.)?caaml\.org/"
+    r"(Schemas/SnowProfileIACS/v6\.\d+(\.\d+)?|Schemas/V5\.0/Profiles/Snow[Pp]rofileIACS|v5\.0/Snow[Pp]rofile/IACS)"
+)
+OWN_NAMESPACE: Final = "urn:skisnow:caaml:1"
+"""Of H_V and S_f in ``customData``."""
+NIL: Final = ("", "inapplicable", "missing", "template", "unknown", "withheld", "n/a", "none")
+"""Words for a value that is not there, which the standard allows in the place of any number."""
+_UNIT_OF_PROFILE: Final = {"snowTemp": "uomTemp"}
+"""Attributes of a profile with the unit of its values, if they are not called ``uom`` and the value's name."""
+
+
+def read_caaml(path: str | Path) -> SnowPit:
+    """Read a snow profile in CAAML 5.0 or 6.0 to 6.0.6.
+
+    Returns
+    -------
+    SnowPit
+        With depths from the surface down.
+
+    Raises
+    ------
+    FieldDataError
+        The file cannot be read, is not CAAML 5 or 6, declares entities, counts from the ground up without the height
+        of the snow, or has a number or unit that cannot be read.
+    """
+    path = Path(path)
+    try:
+        root = xml_tree(plain_bytes(path, most_bytes=MOST_BYTES))
+    except GivenError as failure:
+        problem = error(
+            "unreadable_file",
+            path.name,
+            row=failure.line,
+            value=failure.what,
+            allowed="a snow profile in CAAML 5 or 6",
+            action="Export it again from the program that wrote it.",
+        )
+        raise FieldDataError([problem]) from failure
+    return _Profile(path.name, root).pit()
+
+
+class _Profile:
+    """One file: finds and converts, and refuses by the names of its elements."""
+
+    def __init__(self, file: str, root: Element) -> None:
+        self._file = file
+        self._root = root
+        if root.name != "SnowProfile" or NAMESPACE.fullmatch(root.namespace) is None:
+            found = f"{root.name} of {root.namespace or 'no namespace'}"
+            self._refuse("SnowProfile", found, "SnowProfile of CAAML 5 or 6", "Export it as CAAML 6.")
+        measured = root.child("snowProfileResultsOf", "SnowProfileMeasurements")
+        if measured is None:
+            self._refuse("snowProfileResultsOf", "nothing", "SnowProfileMeasurements", "The file holds no profile.")
+        self._measured = measured
+        self._is_version_6 = "v6" in root.namespace
+        height = self._height()
+        self._from_ground = measured.attributes.get("dir", "top down") != "top down"
+        if self._from_ground and height is None:
+            action = "Add snowPackCond/hS, or export it top down."
+            self._refuse("SnowProfileMeasurements", "bottom up", "top down, or the height of the snow", action)
+        self._snow_height = height
+
+    def _refuse(self, element: str, value: str, allowed: str, action: str) -> NoReturn:
+        raise FieldDataError(
+            [error("unreadable_file", self._file, column=element, value=value, allowed=allowed, action=action)]
+        )
+
+    def pit(self) -> SnowPit:
+        """Everything that is read."""
+        root, measured = self._root, self._measured
+        place = root.child("locRef", "ObsPoint") or root.child("locRef") or root
+        latitude, longitude = self._position(place)
+        return SnowPit(
+            name=place.text_of("name") or root.attributes.get("id", ""),
+            time=self._time(),
+            observer=self._observer(),
+            comment=root.text_of("metaData", "comment") or measured.text_of("comment"),
+            country=place.text_of("country"),
+            region=place.text_of("region"),
+            latitude_deg=latitude,
+            longitude_deg=longitude,
+            elevation=self._quantity(ELEVATION, place, "validElevation", "ElevationPosition", "position"),
+            aspect=self._aspect(place, "validAspect", "AspectPosition", "position"),
+            slope_angle_deg=self._quantity(ANGLE, place, "validSlopeAngle", "SlopeAnglePosition", "position"),
+            snow_height=self._snow_height,
+            air_temperature_C=self._quantity(TEMPERATURE, measured.child("weatherCond") or measured, "airTempPres"),
+            layers=tuple(self._layer(*each) for each in self._of("stratProfile", "Layer")),
+            densities=tuple(self._density(*each) for each in self._of("densityProfile", "Layer")),
+            temperatures=tuple(self._temperature(*each) for each in self._of("tempProfile", "Obs")),
+            forces=tuple(self._forces(each) for each in measured.every("hardnessProfile")),
+            snow_hardness=self._plate_value("snowHardness", SNOW_HARDNESS),
+            failure_shear_stress=self._plate_value("failureShearStress", SHEAR_STRESS),
+        )
+
+    def _of(self, profile: str, name: str) -> list[tuple[Element, Element]]:
+        """The layers or observations of all profiles of a kind that hold them one by one, each after its profile."""
+        return [(found, each) for found in self._measured.every(profile) for each in found.every(name)]
+
+    def _height(self) -> float | None:
+        components = self._measured.child("snowPackCond", "hS", "Components")
+        if components is not None:
+            return self._quantity(LENGTH, components, "height")
+        return self._quantity(LENGTH, self._measured, "hS", "Components", "snowHeight")
+
+    def _time(self) -> str:
+        records = (self._root.child("timeRef", "recordTime"), self._root.child("validTime"))
+        paths = (("TimeInstant", "timePosition"), ("TimePeriod", "beginPosition"))
+        return next(filter(None, (each.text_of(*path) for each in records if each for path in paths)), "")
+
+    def _aspect(self, place: Element, *path: str) -> str:
+        """A compass point, or a number of degrees as text."""
+        text = place.text_of(*path)
+        is_number = text.replace(".", "", 1).isdecimal()
+        return f"{self._quantity(ANGLE, place, *path):.10g}" if is_number else self._word(text)
+
+    def _observer(self) -> str:
+        source = self._root.child("srcRef") or self._root.child("metaDataProperty", "MetaData", "srcRef")
+        if source is None:
+            return ""
+        paths = (
+            ("Person", "name"),
+            ("Operation", "contactPerson", "name"),
+            ("Operation", "contactPerson", "Person", "name"),
+            ("Operation", "name"),
+        )
+        return next(filter(None, (source.text_of(*path) for path in paths)), "")
+
+    def _position(self, place: Element) -> tuple[float, float] | tuple[None, None]:
+        """Latitude and longitude; version 5 gives the longitude first where it names CRS84, as that says."""
+        point = place.child("pointLocation", "Point") or place.child("Point")
+        text = "" if point is None else point.text_of("pos")
+        if point is None or not text:
+            return None, None
+        both = [self._finite("pos", each) for each in text.split()[:2]]
+        if not self._is_version_6 and point.attributes.get("srsName", "").endswith("CRS84"):
+            both.reverse()
+        if len(both) != 2 or not (-90.0 <= both[0] <= 90.0 and -180.0 <= both[1] <= 180.0):
+            self._refuse("pos", text, "latitude and longitude in degrees", "Correct the place.")
+        return both[0], both[1]
+
+    def _layer(self, profile: Element, layer: Element) -> SnowLayer:
+        top, thickness = self._top_and_thickness(profile, layer)
+        hand, upper, lower = (self._word(layer.text_of(name)) for name in ("hardness", "hardnessTop", "hardnessBottom"))
+        return SnowLayer(
+            top=top,
+            thickness=thickness,
+            hardness=hand or upper or lower,
+            grain_form=self._word(layer.text_of("grainFormPrimary")),
+            grain_size=self._quantity(GRAIN_SIZE, layer, "grainSize", "Components", "avg", words=True),
+            comment=layer.text_of("metaData", "comment") or layer.text_of("comment"),
+            hardness_bottom=lower if upper and not hand else "",
+        )
+
+    def _density(self, profile: Element, layer: Element) -> LayerDensity:
+        top, thickness = self._top_and_thickness(profile, layer)
+        return LayerDensity(top, self._required(DENSITY, profile, layer, "density"), thickness)
+
+    def _temperature(self, profile: Element, observed: Element) -> DepthTemperature:
+        depth = self._required(LENGTH, profile, observed, "depth")
+        return DepthTemperature(self._down(depth), self._required(TEMPERATURE, profile, observed, "snowTemp"))
+
+    def _forces(self, profile: Element) -> ForceProfile:
+        about = profile.child("hardnessMetaData") or profile.child("MetaData") or profile
+        method = self._word(about.text_of("methodOfMeas"))
+        rows = profile.text_of("Measurements", "tupleList").split()
+        if not rows:
+            layers = list(profile.every("Layer"))
+            depths = [self._top_and_thickness(profile, each)[0] for each in layers]
+            forces = [self._required(FORCE, profile, each, "hardness") for each in layers]
+            return ForceProfile(method, np.array(depths, dtype=float), np.array(forces, dtype=float))
+        pairs = [[self._finite("tupleList", number) for number in row.split(",")] for row in rows]
+        if any(len(pair) != 2 for pair in pairs):
+            self._refuse("tupleList", rows[0], "pairs of depth and force", "Correct the list.")
+        units = (profile.child("MeasurementComponents") or profile).attributes
+        columns = [
+            np.array([self._convert(kind, attribute, pair[column], units.get(attribute)) for pair in pairs])
+            for column, (kind, attribute) in enumerate(((LENGTH, "uomDepth"), (FORCE, "uomHardness")))
+        ]
+        return ForceProfile(method, columns[0], columns[1])
+
+    def _plate_value(self, name: str, units: CaamlUnits) -> PlateValue | None:
+        custom = self._measured.child("customData", name)
+        if custom is None or custom.namespace != OWN_NAMESPACE:
+            return None
+        unit = custom.attributes.get("uom")
+        ends = [custom.attributes.get(end) for end in ("low", "high")]
+        known = [self._convert(units, name, self._finite(name, each), unit) for each in ends if each is not None]
+        interval = (known[0], known[1]) if len(known) == 2 else None
+        count = round(self._finite(name, custom.attributes.get("n", "0")))
+        return PlateValue(self._convert(units, name, self._finite(name, custom.text), unit), count, interval)
+
+    def _top_and_thickness(self, profile: Element, layer: Element) -> tuple[float, float | None]:
+        thickness = self._quantity(LENGTH, layer, "thickness", profile=profile)
+        return self._down(self._required(LENGTH, profile, layer, "depthTop")), thickness
+
+    def _down(self, value: float) -> float:
+        """A depth from the surface, whichever way the profile counts."""
+        return (self._snow_height or 0.0) - value if self._from_ground else value
+
+    def _required(self, units: CaamlUnits, profile: Element, parent: Element, name: str) -> float:
+        value = self._quantity(units, parent, name, profile=profile)
+        if value is None:
+            self._refuse(name, "nothing", "a number", f"Give every {parent.name} its {name}.")
+        return value
+
+    def _quantity(
+        self, units: CaamlUnits, parent: Element, *path: str, profile: Element | None = None, words: bool = False
+    ) -> float | None:
+        """A number converted from the unit of its element, of one that contains it, or of its profile."""
+        text = parent.text_of(*path)
+        if text.lower() in NIL or (words and not any(character.isdigit() for character in text)):
+            return None
+        above = [parent.child(*path[:length]) for length in range(len(path), 0, -1)]
+        said = [each.attributes["uom"] for each in above if each is not None and "uom" in each.attributes]
+        name = path[-1]
+        if profile is not None:
+            of_profile = _UNIT_OF_PROFILE.get(name, f"uom{name[0].upper()}{name[1:]}")
+            said += [profile.attributes[of_profile]] if of_profile in profile.attributes else []
+        return self._convert(units, name, self._finite(name, text), said[0] if said else None)
+
+    def _convert(self, units: CaamlUnits, name: str, value: float, unit: str | None) -> float:
+        converted = units.convert(value, unit)
+        if converted is None:
+            allowed, action = f"a unit among {', '.join(units.sizes)}", "Correct the unit, or convert the numbers."
+            self._refuse(name, unit or "", allowed, action)
+        if not abs(converted) <= LARGEST:
+            self._refuse(name, f"{value:g} {unit or ''}", f"a number to ±{LARGEST:g} in SI", "Correct the number.")
+        return converted
+
+    def _finite(self, element: str, text: str) -> float:
+        try:
+            value = float(text)
+        except ValueError:
+            value = math.nan
+        if not math.isfinite(value):
+            self._refuse(element, text.strip()[:80], "a finite number", "Correct the number.")
+        return value
+
+    def _word(self, text: str) -> str:
+        return "" if text.lower() in NIL else text

@@ -1,0 +1,334 @@
+"""Read a campaign's folder: every file once, every problem reported, and records only where none is an error."""
+
+from __future__ import annotations
+
+from collections.abc import Container
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Final
+
+from ..._support.errors import FieldDataError
+from ..problems import error, placed
+from ..records import Campaign
+from .assembling import density_samples, drop_cone_tests, penetration_tests, shear_tests
+from .campaign_file import CAMPAIGN_FILE, read_campaign_file
+from .campaign_files import FilesInMemory, FilesOfFolder
+from .corrections import corrections_by_file, refuse_without_file
+from .headings import Headings
+from .raw_files import RawFiles
+from .recordings import ENDING, recording_contents, snow_micro_pen_recordings
+from .table_forms import CORRECTIONS, DENSITY, DROP_CONE, PENETRATION, SHEAR, SNOW_MICRO_PEN, TABLES
+from .tables import read_table
+from .text import UnreadableTextError, decode, inspect_csv
+from .together import check_together
+from .weather import ENDING as WEATHER_ENDING
+from .weather import campaign_weather
+from .workbook_files import is_workbook, unfolded
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
+    from ..applied_correction import AppliedCorrection
+    from ..problems import Problem
+    from ..weather_records import CampaignWeather
+    from .campaign_file import CampaignFile
+    from .campaign_files import CampaignFiles
+    from .corrections import RowCorrections
+    from .table import Table
+    from .table_forms import TableForm
+
+CAMPAIGN_FILES: Final = (CAMPAIGN_FILE, CORRECTIONS.file, *(form.file for form in TABLES))
+"""Names of the files that a campaign reads, in their order; workbooks may stand for them."""
+
+
+class _ReadFiles(Container[str]):
+    """Those, and in the campaign's folder workbooks and the files that its tables may name."""
+
+    def __contains__(self, name: object) -> bool:
+        if not isinstance(name, str) or "/" in name:
+            return False
+        return name in CAMPAIGN_FILES or name.lower().endswith((ENDING, WEATHER_ENDING)) or is_workbook(name)
+
+
+READ_FILES: Final = _ReadFiles()
+"""Names of files that a campaign may read.
+
+>>> ["shear.csv" in READ_FILES, "Hang.xlsx" in READ_FILES, "photos/Hang.xlsx" in READ_FILES, "photo.jpg" in READ_FILES]
+[True, True, False, False]
+"""
+
+
+def read_campaign(folder: str | Path, *, progress: Callable[[str], None] | None = None) -> Campaign:
+    """Read and check a campaign.
+
+    Parameters
+    ----------
+    folder
+        The folder with campaign.toml and the tables; or a workbook (.xlsx) with all of it in its sheets.
+    progress
+        Called now and then with a few words on how far the reading is.
+
+    Returns
+    -------
+    The campaign in SI, corrections applied; ``problems`` holds the warnings.
+
+    Raises
+    ------
+    FieldDataError
+        With every problem, warnings too, where at least one is an error.
+
+    See Also
+    --------
+    skisnow.check_campaign : lists problems and does not raise.
+    skisnow.analyse : what the campaign says.
+
+    References
+    ----------
+    The page docs/files/campaign.md.
+    """
+    return _sound(_read_folder(Path(folder), progress))
+
+
+def campaign_of_files(files: Mapping[str, bytes], *, others: tuple[str, ...] = ()) -> Campaign:
+    """Read and check a campaign whose files are at hand: nothing is looked for on the disk.
+
+    Parameters
+    ----------
+    files
+        Contents by name, as they would lie in the campaign's folder.
+    others
+        Names of further files, which a campaign does not read.
+
+    Raises
+    ------
+    FieldDataError
+        As `read_campaign`.
+    """
+    return _sound(_read(FilesInMemory(files, others), None))
+
+
+def check_campaign(folder: str | Path) -> tuple[Problem, ...]:
+    """List every error and warning of a campaign, in the order of its files and rows; a bad campaign does not raise.
+
+    Parameters
+    ----------
+    folder
+        Of the campaign, with campaign.toml and its tables.
+
+    Returns
+    -------
+    tuple of Problem
+        Each with file, row, column, value, what is allowed and what to do; empty where nothing is wrong.
+
+    See Also
+    --------
+    skisnow.read_campaign : raises in place of listing.
+
+    References
+    ----------
+    The page docs/files/campaign.md.
+    """
+    return _read_folder(Path(folder), None).problems
+
+
+def _sound(contents: _Contents) -> Campaign:
+    if contents.described is None or any(problem.severity == "error" for problem in contents.problems):
+        raise FieldDataError(contents.problems)
+    return _campaign(contents, contents.described)
+
+
+@dataclass(frozen=True, slots=True)
+class _Contents:
+    """What was read, and what was found wrong, by file and row."""
+
+    folder: Path
+    described: CampaignFile | None
+    tables: Mapping[str, Table]
+    hashes: Mapping[str, str]
+    problems: tuple[Problem, ...]
+    corrections: tuple[AppliedCorrection, ...] = ()
+    unread: tuple[str, ...] = ()
+    places: Mapping[str, str] = field(default_factory=dict)
+    recordings: Mapping[str, bytes] = field(default_factory=dict)
+    weather: CampaignWeather | None = None
+
+
+def _read_folder(folder: Path, progress: Callable[[str], None] | None) -> _Contents:
+    if folder.is_file() and is_workbook(folder.name):
+        return _read(FilesInMemory({folder.name: folder.read_bytes()}, folder=folder.with_suffix("")), progress)
+    if not folder.is_dir():
+        action = "Name the folder that holds campaign.toml and the tables, or a workbook (.xlsx) with all of it."
+        if folder.is_file() and folder.suffix.lower() == ".toml":
+            action += " A ski or a scenario is checked where it is used: by carve --ski FILE, by simulate FILE."
+        value = "a file" if folder.exists() else "nothing"
+        nowhere = error("unreadable_file", str(folder), value=value, allowed="a folder that exists", action=action)
+        return _Contents(folder, None, {}, {}, (nowhere,))
+    return _read(FilesOfFolder(folder), progress)
+
+
+def _read(lying: CampaignFiles, progress: Callable[[str], None] | None) -> _Contents:
+    campaign = unfolded(lying)
+    files = RawFiles(campaign, found=campaign.found)
+    described = _described(files)
+    headings = described.headings if described is not None else Headings()
+    corrections = _corrections(files, headings)
+    tables: dict[str, Table] = {}
+    for form in TABLES:
+        table = _table(files, form, corrections.get(form.file, {}), headings, progress)
+        if table is not None:
+            tables[form.file] = table
+            files.found.extend(check_together(table, described))
+    if not any(problem.severity == "error" for problem in files.found):
+        files.found.extend(_units_without_heading(headings, tables))
+    recordings = recording_contents(tables.get(SNOW_MICRO_PEN.file), files)
+    weather = None if described is None else campaign_weather(described.weather, files)
+    there = campaign.names()
+    files.found.extend(_misnamed(there, files.absent))
+    if {PENETRATION.file, SHEAR.file} <= files.absent:
+        files.found.append(_no_measurements())
+    hashes = {name: digest for name, digest in files.hashes.items() if name not in campaign.of_sheets}
+    applied = sorted(
+        (each for rows in corrections.values() for row in rows.values() for each in row), key=lambda each: each.line
+    )
+    return _Contents(
+        campaign.folder,
+        described,
+        tables,
+        hashes | campaign.hashes,
+        tuple(placed(problem, campaign.places) for problem in _in_order(files.found)),
+        tuple(each.applied() for each in applied),
+        (*(name for name in _unread(there) if name not in files.hashes), *campaign.unread),
+        campaign.places,
+        recordings,
+        weather,
+    )
+
+
+def _in_order(problems: list[Problem]) -> tuple[Problem, ...]:
+    place = {name: index for index, name in enumerate(CAMPAIGN_FILES)}
+    return tuple(sorted(problems, key=lambda problem: (place.get(problem.file, len(place)), problem.row or 0)))
+
+
+def _unread(there: Mapping[str, bool]) -> tuple[str, ...]:
+    """Files that are no part of a campaign; hidden ones, and what Excel puts beside an open one, are not spoken of."""
+    files = sorted(name for name, is_file in there.items() if is_file)
+    return tuple(name for name in files if name not in CAMPAIGN_FILES and not name.startswith((".", "~$")))
+
+
+def _units_without_heading(headings: Headings, tables: Mapping[str, Table]) -> list[Problem]:
+    """Units that campaign.toml states for headings that no table has: they would be ignored without a word."""
+    there = {file: table.headings for file, table in tables.items()}
+    return [
+        error(
+            "bad_toml",
+            CAMPAIGN_FILE,
+            column=path,
+            value=path.rpartition(".")[2],
+            allowed="a heading of a table",
+            action="Write the heading as the table has it, or remove the line.",
+        )
+        for path in headings.without_heading(there)
+    ]
+
+
+def _misnamed(there: Mapping[str, bool], absent: set[str]) -> list[Problem]:
+    """Files whose names differ from the campaign's by capitals alone: they would be passed over without a word."""
+    return [
+        error("unreadable_file", name, value=name, allowed=name.lower(), action=f"Rename it to {name.lower()}.")
+        for name in sorted(there)
+        if name not in CAMPAIGN_FILES and name.lower() in absent
+    ]
+
+
+def _no_measurements() -> Problem:
+    return error(
+        "unreadable_file",
+        PENETRATION.file,
+        allowed=f"at least one of {PENETRATION.file} and {SHEAR.file}",
+        action="Put the tables of the experiments into the folder, under these names.",
+    )
+
+
+def _described(files: RawFiles) -> CampaignFile | None:
+    data = files.read(CAMPAIGN_FILE)
+    if CAMPAIGN_FILE in files.absent:
+        action = "`skisnow new campaign` writes one into this folder: put your tools and plates there."
+        allowed = "a file of this name in the folder"
+        files.found.append(error("bad_toml", CAMPAIGN_FILE, allowed=allowed, action=action))
+    if data is None:
+        return None
+    try:
+        decoded = decode(data)
+    except UnreadableTextError as failure:
+        files.report_unreadable(CAMPAIGN_FILE, failure)
+        return None
+    if not decoded.text.strip():
+        action = "Describe the tools and plates that the tables name."
+        files.found.append(
+            error("empty_file", CAMPAIGN_FILE, value="nothing", allowed="keys and values", action=action)
+        )
+        return None
+    files.report_encoding(CAMPAIGN_FILE, decoded.foreign_encoding)
+    return read_campaign_file(decoded.text, files.found)
+
+
+def _corrections(files: RawFiles, headings: Headings) -> Mapping[str, RowCorrections]:
+    table = _table(files, CORRECTIONS, {}, headings, None)
+    if table is None or table.absent:
+        return {}
+    return corrections_by_file(table, files.found)
+
+
+def _table(
+    files: RawFiles,
+    form: TableForm,
+    corrections: RowCorrections,
+    headings: Headings,
+    progress: Callable[[str], None] | None,
+) -> Table | None:
+    data = files.read(form.file)
+    if form.file in files.absent:
+        refuse_without_file(corrections, files.found)
+    if data is None:
+        return None
+    try:
+        text = inspect_csv(data)
+    except UnreadableTextError as failure:
+        files.report_unreadable(form.file, failure)
+        return None
+    files.report_encoding(form.file, text.foreign_encoding)
+    return read_table(form, text, corrections=corrections, files=files, headings=headings, progress=progress)
+
+
+def _campaign(contents: _Contents, described: CampaignFile) -> Campaign:
+    tables = contents.tables
+    return Campaign(
+        name=described.name or contents.folder.resolve().name,
+        place=described.place,
+        observers=described.observers,
+        folder=contents.folder,
+        gauge_resolution=described.gauge_resolution,
+        load_uncertainty=described.load_uncertainty,
+        moment_uncertainty=described.moment_uncertainty,
+        lever_arm_uncertainty=described.lever_arm_uncertainty,
+        load_steps=described.load_steps,
+        tools=described.tools,
+        plates=described.plates,
+        excluding=described.excluding,
+        penetration=penetration_tests(tables[PENETRATION.file]) if PENETRATION.file in tables else None,
+        shear=shear_tests(tables[SHEAR.file]) if SHEAR.file in tables else None,
+        density=density_samples(tables[DENSITY.file]) if DENSITY.file in tables else None,
+        drop_cone=drop_cone_tests(tables[DROP_CONE.file]) if DROP_CONE.file in tables else None,
+        problems=contents.problems,
+        file_hashes=contents.hashes,
+        corrections=contents.corrections,
+        unread_files=contents.unread,
+        places=contents.places,
+        pole_stiffness=described.pole_stiffness,
+        snow_micro_pen=snow_micro_pen_recordings(
+            tables[SNOW_MICRO_PEN.file], contents.recordings, described.snow_micro_pen
+        )
+        if SNOW_MICRO_PEN.file in tables
+        else None,
+        weather=contents.weather,
+    )

@@ -1,0 +1,269 @@
+"""campaign.toml: who measured with what, how finely, and which quality flags exclude."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Annotated, Any, Final
+
+from ..._support.units import MM
+from ..._support.user_files import GivenError, toml_values
+from ...geometry import Tool
+from ...geometry.tools import LIKELY_LENGTH_MM
+from ...parameters import Quantity, own_quantities
+from ..problems import error, warning
+from ..quality_flags import ALWAYS_EXCLUDE, QUALITY_FLAGS
+from ..snow_micro_pen_records import SnowMicroPenSettings
+from ..weather_records import WeatherSettings
+from .headings import KEY as COLUMNS_KEY
+from .headings import UNITS_KEY, Headings, headings_of
+from .toml_values import TomlValues
+from .tool_shapes import SHAPES
+
+if TYPE_CHECKING:
+    from ..problems import Problem
+
+CAMPAIGN_FILE: Final = "campaign.toml"
+
+
+@dataclass(frozen=True, slots=True)
+class Plate:
+    """A blade for shear tests."""
+
+    length: Annotated[
+        float, Quantity("length_mm", "length of the blade", lowest=0.0, above=True, usual=LIKELY_LENGTH_MM)
+    ]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CampaignFile:
+    """What campaign.toml says, in SI; the fields are those of `skisnow.campaign.records.Campaign`.
+
+    ``tool_names`` and ``plate_names`` also hold those whose lengths were refused; ``flat_tools`` are the tools without
+    an edge, for which only the edge angle 0 has a meaning.
+    """
+
+    name: Annotated[str | None, Quantity("name", "name of the campaign; left out or blank: the folder's", blank=True)]
+    place: Annotated[str, Quantity("place", "where", blank=True)] = ""
+    observers: tuple[str, ...] = ()
+    gauge_resolution: Annotated[
+        float | None,
+        Quantity(
+            "gauge_resolution_mm",
+            "step of the depth gauge; a reading's standard uncertainty is step/√12. Left out: no depth uncertainty and "
+            "no `below_resolution` flag, which the report says",
+            lowest=0.0,
+            above=True,
+            usual=(0.0005, 5.0),
+        ),
+    ] = None
+    load_uncertainty: Annotated[
+        float | None,
+        Quantity(
+            "load_uncertainty_N",
+            "standard uncertainty of a load; left out it counts as 0, which the report says, as for the next two",
+            lowest=0.0,
+        ),
+    ] = None
+    moment_uncertainty: Annotated[
+        float | None, Quantity("moment_uncertainty_Nm", "standard uncertainty of a moment", lowest=0.0)
+    ] = None
+    lever_arm_uncertainty: Annotated[
+        float | None, Quantity("lever_arm_uncertainty_mm", "standard uncertainty of a lever arm", lowest=0.0)
+    ] = None
+    pole_stiffness: Annotated[
+        float | None,
+        Quantity(
+            "pole_stiffness_Nm_per_deg",
+            "moment that twists the shear device's pole by a degree between where its turning angle is read and the "
+            "plate; left out: rigid, or read at the plate",
+            lowest=0.0,
+            above=True,
+        ),
+    ] = None
+    load_steps: Annotated[
+        tuple[float, ...], Quantity("load_steps_N", "the campaign's own discs, for entry", lowest=0.0, above=True)
+    ] = ()
+    tools: Mapping[str, Tool]
+    plates: Mapping[str, float]
+    tool_names: frozenset[str]
+    plate_names: frozenset[str]
+    flat_tools: frozenset[str]
+    excluding: frozenset[str]
+    headings: Headings
+    snow_micro_pen: SnowMicroPenSettings
+    weather: WeatherSettings
+
+
+CAMPAIGN_KEYS: Final = {key.name: key for key in own_quantities(CampaignFile)}
+"""Keys with one value or a list of numbers."""
+(PLATE_LENGTH,) = own_quantities(Plate)
+_SECTIONS: Final = ("tool", "plate", "screening", COLUMNS_KEY, UNITS_KEY, "snow_micro_pen", "weather")
+TOP_KEYS: Final = ("name", "place", "observers", *list(CAMPAIGN_KEYS)[2:], *_SECTIONS)
+
+
+def read_campaign_file(text: str, found: list[Problem]) -> CampaignFile | None:
+    """Read the text of campaign.toml.
+
+    Parameters
+    ----------
+    text
+        The decoded file.
+    found
+        Takes every problem.
+
+    Returns
+    -------
+    Its content, or None where it is not TOML. With an error in ``found`` what was refused is left out.
+    """
+    parsed = _parsed(text, found)
+    if parsed is None:
+        return None
+    top = TomlValues(CAMPAIGN_FILE, parsed, "", found)
+    top.refuse_misspelt(TOP_KEYS)
+    tools, tool_names, flat_tools = _tools(top)
+    plates, plate_names = _plates(top)
+    return CampaignFile(
+        name=top.text("name", blank_allowed=True),
+        place=top.text("place", blank_allowed=True) or "",
+        observers=top.texts("observers"),
+        gauge_resolution=_length(top, CAMPAIGN_KEYS["gauge_resolution_mm"]),
+        load_uncertainty=top.number(CAMPAIGN_KEYS["load_uncertainty_N"]),
+        moment_uncertainty=top.number(CAMPAIGN_KEYS["moment_uncertainty_Nm"]),
+        lever_arm_uncertainty=_length(top, CAMPAIGN_KEYS["lever_arm_uncertainty_mm"]),
+        pole_stiffness=_stiffness(top),
+        load_steps=top.numbers(CAMPAIGN_KEYS["load_steps_N"]),
+        tools=tools,
+        plates=plates,
+        tool_names=tool_names,
+        plate_names=plate_names,
+        flat_tools=flat_tools,
+        excluding=_excluding(top),
+        headings=headings_of(top),
+        snow_micro_pen=_recordings(top.table("snow_micro_pen")),
+        weather=top.table("weather").declared(WeatherSettings),
+    )
+
+
+def _parsed(text: str, found: list[Problem]) -> dict[str, Any] | None:
+    try:
+        return toml_values(text.replace("\r\n", "\n").replace("\r", "\n"))
+    except GivenError as failure:
+        row, what = failure.line, failure.what
+    action = "Correct the line: texts stand in quotes, numbers have a decimal point, lists stand in brackets."
+    found.append(error("bad_toml", CAMPAIGN_FILE, row=row, value=what, allowed="TOML (toml.io)", action=action))
+    return None
+
+
+def _recordings(section: TomlValues) -> SnowMicroPenSettings:
+    settings = section.declared(SnowMicroPenSettings)
+    if settings.from_depth >= settings.to_depth:
+        allowed = f"a depth above from_depth_mm, {settings.from_depth / MM:g}"
+        section.refuse("to_depth_mm", allowed, "Correct one of the two.", value=f"{settings.to_depth / MM:g}")
+    return settings
+
+
+def _tools(top: TomlValues) -> tuple[dict[str, Tool], frozenset[str], frozenset[str]]:
+    tools: dict[str, Tool] = {}
+    names: set[str] = set()
+    flat: set[str] = set()
+    for entry in top.tables("tool"):
+        name = _new_name(entry, names)
+        shape_name = _shape_name(entry)
+        if shape_name is None:
+            continue
+        shape = SHAPES[shape_name]
+        entry.refuse_misspelt(("name", "shape", *shape.argument_of_key))
+        lengths = {each.field: _needed_length(entry, each) for each in shape.lengths}
+        if name is not None and all(length is not None for length in lengths.values()):
+            tools[name] = shape.tool(**lengths)
+        if name is not None and not shape.has_edge:
+            flat.add(name)
+    return tools, frozenset(names), frozenset(flat)
+
+
+def _plates(top: TomlValues) -> tuple[dict[str, float], frozenset[str]]:
+    plates: dict[str, float] = {}
+    names: set[str] = set()
+    for entry in top.tables("plate"):
+        name = _new_name(entry, names)
+        entry.refuse_misspelt(("name", "length_mm"))
+        length = _needed_length(entry, PLATE_LENGTH)
+        if name is not None and length is not None:
+            plates[name] = length
+    return plates, frozenset(names)
+
+
+def _new_name(entry: TomlValues, names: set[str]) -> str | None:
+    """Take a name in; None, with an error, where it is missing or taken."""
+    if "name" not in entry.values:
+        entry.refuse("name", "a name", "Add the name that the tables use.")
+    name = entry.text("name")
+    if name in names:
+        entry.refuse("name", "each name once", "Rename or remove one of the two.")
+        return None
+    if name is not None:
+        names.add(name)
+    return name
+
+
+def _shape_name(entry: TomlValues) -> str | None:
+    allowed = f"one of {', '.join(SHAPES)}"
+    if "shape" not in entry.values:
+        entry.refuse("shape", allowed, "Add the shape.")
+        return None
+    shape = entry.text("shape")
+    if shape is None or shape in SHAPES:
+        return shape
+    near = difflib.get_close_matches(shape.lower(), SHAPES, n=1)
+    entry.refuse("shape", allowed, f"Is {near[0]} meant? Correct the shape." if near else "Correct the shape.")
+    return None
+
+
+def _needed_length(entry: TomlValues, quantity: Quantity) -> float | None:
+    if quantity.name not in entry.values:
+        entry.refuse(quantity.name, "a length in mm above 0", f"Add {quantity.name}.")
+    return _length(entry, quantity)
+
+
+def _length(entry: TomlValues, quantity: Quantity) -> float | None:
+    """A length in m; one that hardly is in mm is warned of."""
+    value = entry.number(quantity)
+    if value is not None and quantity.usual is not None and not quantity.usual[0] <= value <= quantity.usual[1]:
+        low, high = quantity.usual
+        unit = "m" if value < low else "µm"
+        entry.found.append(
+            warning(
+                "unlikely_unit",
+                CAMPAIGN_FILE,
+                column=entry.path_of(quantity.name),
+                value=f"{value:g}",
+                allowed=f"a number in mm; {low:g} to {high:g} is usual",
+                action=f"If this is in {unit} convert it to mm; if it is in mm nothing need be done.",
+            )
+        )
+    return None if value is None else quantity.in_si(value)
+
+
+def _stiffness(top: TomlValues) -> float | None:
+    quantity = CAMPAIGN_KEYS["pole_stiffness_Nm_per_deg"]
+    value = top.number(quantity)
+    return None if value is None else quantity.in_si(value)
+
+
+def _excluding(top: TomlValues) -> frozenset[str]:
+    """Codes of the quality flags that exclude: the file's list replaces the default, but for those that always do."""
+    screening = top.table("screening")
+    screening.refuse_misspelt(("exclude",))
+    if "exclude" not in screening.values:
+        return frozenset(code for code, flag in QUALITY_FLAGS.items() if flag.excludes_by_default)
+    codes = screening.texts("exclude")
+    for code in codes:
+        if code not in QUALITY_FLAGS:
+            near = difflib.get_close_matches(code, QUALITY_FLAGS, n=1)
+            hint = f"Is {near[0]} meant? " if near else ""
+            screening.refuse(
+                "exclude", f"codes among {', '.join(QUALITY_FLAGS)}", f"{hint}Correct the code.", value=code
+            )
+    return (frozenset(codes) & frozenset(QUALITY_FLAGS)) | ALWAYS_EXCLUDE

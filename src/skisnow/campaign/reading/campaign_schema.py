@@ -1,0 +1,95 @@
+"""The JSON Schema of campaign.toml: what `CampaignFile`, plates and tools declare."""
+
+from __future__ import annotations
+
+from typing import Final
+
+from ...parameters import own_quantities
+from ...parameters.json_schema import DRAFT, Schema, table_schema
+from ..quality_flags import QUALITY_FLAGS
+from ..snow_micro_pen_records import SnowMicroPenSettings
+from ..weather_records import WeatherSettings
+from .campaign_file import CAMPAIGN_KEYS, PLATE_LENGTH
+from .tool_shapes import SHAPES, Shape
+
+FILE: Final = "campaign/schemas/campaign.schema.json"
+_NAME: Final[Schema] = {"type": "string", "pattern": "\\S", "description": "Unique in its list."}
+
+
+def campaign_schema() -> Schema:
+    """The schema that stands in the package as `FILE`."""
+    return {
+        "$schema": DRAFT,
+        "$id": "urn:skisnow:schema:campaign:1",
+        "title": "campaign.toml of a skisnow campaign, parsed",
+        "description": "Units are part of the keys. Keys that are not listed here are ignored with a warning; keys "
+        "that are nearly one of these are refused as misspelt.",
+        "type": "object",
+        "properties": {
+            **table_schema(CAMPAIGN_KEYS.values())["properties"],
+            "observers": {"description": "who", **_one_or_several({"type": "string"})},
+            "tool": {"type": "array", "items": {"$ref": "#/$defs/tool"}},
+            "plate": {"type": "array", "items": {"$ref": "#/$defs/plate"}},
+            "columns": _by_heading("Column of the numbers or texts below a heading"),
+            "units": _by_heading("Unit of the numbers below a heading that names none"),
+            "snow_micro_pen": _recordings(),
+            "weather": _weather(),
+            "screening": {"type": "object", "properties": {"exclude": _exclude()}},
+        },
+        "$defs": {"mark": {"enum": list(QUALITY_FLAGS)}, "tool": _tool(), "plate": _plate()},
+    }
+
+
+def _one_or_several(item: Schema) -> Schema:
+    return {"anyOf": [item, {"type": "array", "items": item}]}
+
+
+def _exclude() -> Schema:
+    words = "Codes of the quality flags that exclude an experiment; replaces the default."
+    return {"description": words, **_one_or_several({"$ref": "#/$defs/mark"})}
+
+
+def _by_heading(words: str) -> Schema:
+    """Texts by headings, for all tables or for one."""
+    pairs = {"type": "object", "additionalProperties": {"type": "string"}}
+    either: Schema = {"anyOf": [{"type": "string"}, pairs]}
+    words = f"{words}; in a table of a table's name, such as penetration, for that one."
+    return {"description": words, "type": "object", "additionalProperties": either}
+
+
+def _recordings() -> Schema:
+    """How recordings of a SnowMicroPen are evaluated."""
+    words = "How the recordings that snow_micro_pen.csv names are evaluated."
+    return {"description": words, **table_schema(own_quantities(SnowMicroPenSettings))}
+
+
+def _weather() -> Schema:
+    """The readings of a station."""
+    words = "Readings of a weather station, in SMET."
+    return {"description": words, **table_schema(own_quantities(WeatherSettings))}
+
+
+def _tool() -> Schema:
+    return {
+        "type": "object",
+        "properties": {"name": _NAME, "shape": {"enum": list(SHAPES)}},
+        "required": ["name", "shape"],
+        "oneOf": [_shape(name, shape) for name, shape in SHAPES.items()],
+    }
+
+
+def _shape(name: str, shape: Shape) -> Schema:
+    lengths = table_schema(shape.lengths)
+    return {
+        "properties": {"shape": {"const": name}, **lengths["properties"]},
+        "required": lengths["required"],
+    }
+
+
+def _plate() -> Schema:
+    length = table_schema([PLATE_LENGTH])
+    return {
+        "type": "object",
+        "properties": {"name": _NAME, **length["properties"]},
+        "required": ["name", *length["required"]],
+    }

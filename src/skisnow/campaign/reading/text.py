@@ -1,0 +1,218 @@
+"""Bytes of a file to text and records: encoding, separator, file lines.
+
+What any European laptop's spreadsheet program writes is read: UTF-8 with or without byte order mark, UTF-16,
+Windows-1252; comma, semicolon or tab; CR, LF or both. Nothing is interpreted here, and nothing is dropped but lines
+that hold no character other than separators and spaces.
+"""
+
+from __future__ import annotations
+
+import csv
+import io
+import re
+from dataclasses import dataclass
+from itertools import chain
+from typing import TYPE_CHECKING, Final, TypeAlias
+
+from ..._support.spreadsheet_text import (
+    LONGEST_CELL,
+    MOST_COLUMNS,
+    SEPARATOR_NAMES,
+    DecodedText,
+    NoTextError,
+    decoded,
+    most_frequent_separator,
+    named_separator,
+    unguarded,
+)
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+__all__ = ["RECORDS_AT_ONCE", "SEPARATOR_NAMES", "CsvText", "Records", "UnreadableTextError", "decode", "inspect_csv"]
+
+Records: TypeAlias = tuple[list[int], list[list[str]]]
+"""File lines at which records begin, and the records' cells."""
+
+RECORDS_AT_ONCE: Final = 4096  # more at once is slower: the garbage collector walks them
+
+_CONTROL_BYTES: Final = bytes(code for code in range(32) if code not in b"\t\n\v\f\r") + b"\x7f"
+_CONTROL_SHARE: Final = 0.01  # text has none; random bytes have a tenth
+_END: Final = "\0"  # a line that no text file holds: decode refuses the character
+_HEAD: Final = 1 << 16
+
+
+class UnreadableTextError(Exception):
+    """A file is not the text it should be. ``row`` is the file line, or None where no line can be named."""
+
+    def __init__(self, *, value: str | None, allowed: str, action: str, row: int | None = None) -> None:
+        super().__init__(allowed)
+        self.row, self.value, self.allowed, self.action = row, value, allowed, action
+
+
+def decode(data: bytes) -> DecodedText:
+    """Decode a text file.
+
+    Parameters
+    ----------
+    data
+        The whole file.
+
+    Raises
+    ------
+    UnreadableTextError
+        Where the bytes are no text in UTF-8, UTF-16 with byte order mark, or Windows-1252.
+    """
+    try:
+        found = decoded(data)
+    except NoTextError as error:
+        raise _binary(str(error) if error.place.startswith("byte") else error.place) from None
+    _refuse_control_characters(data if found.codec != "utf-16" else found.text.encode())
+    return found
+
+
+def _refuse_control_characters(data: bytes) -> None:
+    control = len(data) - len(data.translate(None, _CONTROL_BYTES))
+    if control > _CONTROL_SHARE * len(data):
+        raise _binary(f"{control} control characters among {len(data)} bytes")
+
+
+def _binary(found: str) -> UnreadableTextError:
+    return UnreadableTextError(
+        value=found,
+        allowed="text in UTF-8, UTF-16 with byte order mark, or Windows-1252",
+        action="This looks like a binary file, such as a spreadsheet's own format; save it as CSV in UTF-8.",
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class CsvText:
+    """A CSV file that was looked at but not yet cut into records.
+
+    Attributes
+    ----------
+    data
+        The file's bytes, held once.
+    codec, foreign_encoding
+        As in `DecodedText`.
+    separator
+        Comma, semicolon or tab.
+    separator_line
+        Whether line 1 is a spreadsheet program's ``sep=;``, so that the header begins below it.
+    """
+
+    data: bytes
+    codec: str
+    foreign_encoding: str | None
+    separator: str
+    separator_line: bool
+
+    def records(self) -> Iterator[Records]:
+        """Cut the file into records, some thousand at a time; the first record is the header.
+
+        The apostrophe that keeps a text from being taken for a formula is off again.
+
+        Raises
+        ------
+        UnreadableTextError
+            At a quote that is never closed: all further lines would end in one cell; at a cell or a row that is longer
+            than any table of measurements has.
+        """
+        for lines, rows in self._records():
+            _require_size(lines, rows)
+            yield lines, rows
+
+    def _records(self) -> Iterator[Records]:
+        stream = io.TextIOWrapper(io.BytesIO(self.data), encoding=self.codec, newline="")
+        skipped = len(stream.readline()[:1]) if self.separator_line else 0
+        reader = csv.reader(chain(stream, (_END,)), delimiter=self.separator, skipinitialspace=True)
+        lines: list[int] = []
+        rows: list[list[str]] = []
+        line = 1 + skipped
+        may_be_guarded = b"'" in self.data  # in most files there is none
+        try:
+            for cells in reader:
+                if len(rows) >= RECORDS_AT_ONCE:
+                    yield lines, rows
+                    lines, rows = [], []
+                if len(cells) == 1 and cells[0] == _END and reader.line_num + skipped == line:
+                    yield lines, rows
+                    return
+                first = cells[0] if cells else ""
+                if (first and not first.isspace()) or any(map(str.strip, cells)):
+                    lines.append(line)
+                    rows.append(list(map(unguarded, cells)) if may_be_guarded else cells)
+                line = reader.line_num + 1 + skipped
+            line = lines.pop()  # its last cell swallowed the end
+            rows.pop()
+        except csv.Error:  # a cell beyond the csv module's limit: an open quote swallows the file, or it is as long
+            yield lines, rows
+            raise _endless_cell(line) from None
+        yield lines, rows
+        raise _open_quote(line)
+
+
+def _require_size(lines: list[int], rows: list[list[str]]) -> None:
+    if max(map(len, rows), default=0) > MOST_COLUMNS:
+        line, count = next(
+            (line, len(cells)) for line, cells in zip(lines, rows, strict=True) if len(cells) > MOST_COLUMNS
+        )
+        raise UnreadableTextError(
+            row=line,
+            value=f"{count} cells",
+            allowed=f"at most {MOST_COLUMNS} columns",
+            action="Take out the columns that are not needed.",
+        )
+    if max(map(len, chain.from_iterable(rows)), default=0) > LONGEST_CELL:
+        line, cell = next(
+            (line, cell) for line, cells in zip(lines, rows, strict=True) for cell in cells if len(cell) > LONGEST_CELL
+        )
+        raise UnreadableTextError(
+            row=line,
+            value=f"{cell[:40]}…",
+            allowed=f"cells of at most {LONGEST_CELL} characters",
+            action="Shorten the cell; is a separator or a quote missing?",
+        )
+
+
+def _open_quote(line: int) -> UnreadableTextError:
+    return UnreadableTextError(
+        row=line,
+        value='"',
+        allowed="quotes in pairs",
+        action="A quote opened in this row is never closed, so that the rest of the file was not read; close it.",
+    )
+
+
+def _endless_cell(line: int) -> UnreadableTextError:
+    return UnreadableTextError(
+        row=line,
+        value=f"a cell of more than {csv.field_size_limit()} characters",
+        allowed=f"quotes in pairs, and cells of at most {LONGEST_CELL} characters",
+        action="Close the quote that is opened in this row, or shorten the cell.",
+    )
+
+
+def inspect_csv(data: bytes) -> CsvText:
+    """Find out how a CSV file is written.
+
+    The separator is the one found most often in the header, outside quotes, or the one that a first line like ``sep=;``
+    names.
+
+    Raises
+    ------
+    UnreadableTextError
+        Where the bytes are no text, or the first line names another separator.
+    """
+    found = decode(data)
+    head = found.text[:_HEAD]
+    named = named_separator(head)
+    separator = named or most_frequent_separator(head)
+    if separator not in SEPARATOR_NAMES:
+        raise UnreadableTextError(
+            row=1,
+            value=re.split(r"[\r\n]", head, maxsplit=1)[0].strip(' "'),
+            allowed="comma, semicolon or tab between cells",
+            action="Save the file with one of these separators.",
+        )
+    return CsvText(data, found.codec, found.foreign_encoding, separator, named is not None)

@@ -1,0 +1,167 @@
+"""Values of a parsed TOML file, asked for by key: each is checked, and each problem names the path of its key.
+
+Paths count from 1, ``tool[2].length_mm`` is the second tool's length.
+"""
+
+from __future__ import annotations
+
+import difflib
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar
+
+from ..._support.errors import ParameterError
+from ...parameters import made, own_quantities
+from ..problems import error, warning
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping, Sequence
+
+    from ...parameters import Quantity
+    from ..problems import Problem
+
+_SIMILAR = 0.8  # from here a key is taken for a misspelt one
+_MISSING = object()
+
+TomlTable: TypeAlias = "Mapping[str, Any]"
+T = TypeVar("T")
+
+
+@dataclass(frozen=True, slots=True)
+class TomlValues:
+    """One table of a TOML file.
+
+    Attributes
+    ----------
+    file
+        The file's name.
+    values
+        The parsed table.
+    path
+        Path of the table, ``""`` at the top.
+    found
+        Takes the problems.
+    """
+
+    file: str
+    values: TomlTable
+    path: str
+    found: list[Problem]
+
+    def path_of(self, key: str) -> str:
+        """Path of a key of this table."""
+        return f"{self.path}.{key}" if self.path else key
+
+    def refuse(self, key: str, allowed: str, action: str, *, code: str = "bad_toml", value: object = _MISSING) -> None:
+        """Report an error about a key; without a value the key's own is shown."""
+        shown = self.values.get(key) if value is _MISSING else value
+        text = None if shown is None else _shown(shown)
+        self.found.append(error(code, self.file, column=self.path_of(key), value=text, allowed=allowed, action=action))
+
+    def text(self, key: str, *, blank_allowed: bool = False) -> str | None:
+        """Give a text, stripped; None where it is absent, wrong or blank."""
+        value = self.values.get(key)
+        if value is None:
+            return None
+        if not isinstance(value, str) or not (value.strip() or blank_allowed):
+            self.refuse(key, f"a text{'' if blank_allowed else ' that is not blank'}, in quotes", f"Correct {key}.")
+            return None
+        return value.strip() or None
+
+    def texts(self, key: str) -> tuple[str, ...]:
+        """Give one text or a list of texts; empty where absent or wrong."""
+        value = self.values.get(key, [])
+        each = [value] if isinstance(value, str) else value
+        if not isinstance(each, list) or not all(isinstance(item, str) for item in each):
+            self.refuse(key, "a text or a list of texts, in quotes", f"Correct {key}.")
+            return ()
+        return tuple(item.strip() for item in each if item.strip())
+
+    def number(self, quantity: Quantity) -> float | None:
+        """Give a number in the unit of its key; None where absent or wrong."""
+        key = quantity.name
+        return self._checked(self.values[key], quantity) if key in self.values else None
+
+    def numbers(self, quantity: Quantity) -> tuple[float, ...]:
+        """Give a list of numbers; wrong ones are left out."""
+        key = quantity.name
+        values = self.values.get(key, [])
+        if not isinstance(values, list):
+            self.refuse(key, "a list of numbers such as [50, 100, 150]", f"Put the numbers of {key} in brackets.")
+            return ()
+        checked = (self._checked(value, one) for one, value in quantity.each_of(values))
+        return tuple(value for value in checked if value is not None)
+
+    def _checked(self, value: object, quantity: Quantity) -> float | None:
+        allowed = f"a finite number {quantity.allowed}"
+        if isinstance(value, bool) or not isinstance(value, int | float):
+            action = "Write a number with a decimal point, without quotes."
+            self.refuse(quantity.name, allowed, action, value=value)
+            return None
+        try:
+            quantity.in_range(value)
+        except ParameterError:
+            action = "Correct the number; its unit stands in the key's name."
+            self.refuse(quantity.name, allowed, action, code="out_of_range", value=value)
+            return None
+        return float(value)
+
+    def table(self, key: str) -> TomlValues:
+        """Give a table below this one; empty where absent or wrong."""
+        value = self.values.get(key, {})
+        if not isinstance(value, dict):
+            self.refuse(key, f"a table, begun by the line [{key}]", f"Write [{key}] above its keys.")
+            value = {}
+        return TomlValues(self.file, value, self.path_of(key), self.found)
+
+    def tables(self, key: str) -> list[TomlValues]:
+        """Give the tables of a list; empty where absent or wrong."""
+        values = self.values.get(key, [])
+        if not isinstance(values, list) or not all(isinstance(value, dict) for value in values):
+            self.refuse(key, f"tables, each begun by the line [[{key}]]", f"Write [[{key}]] above each one's keys.")
+            return []
+        paths = (f"{self.path_of(key)}[{place}]" for place in range(1, len(values) + 1))
+        return [TomlValues(self.file, value, path, self.found) for value, path in zip(values, paths, strict=True)]
+
+    def declared(self, owner: type[T]) -> T:
+        """Give a dataclass of what this table says of its quantities; what is absent or refused has its default."""
+        known = {each.name: each for each in own_quantities(owner)}
+        self.refuse_misspelt(known)
+        values: dict[str, object] = {}
+        for key in known.keys() & self.values.keys():
+            try:
+                values[key] = known[key].in_range(self.values[key])
+            except ParameterError:
+                self.refuse(key, known[key].allowed, f"Correct {key}.", code="bad_toml")
+        return made(owner, values)
+
+    def refuse_misspelt(self, known: Iterable[str]) -> None:
+        """Report keys that nobody knows: an error where one is nearly a known key, else a warning."""
+        keys: Sequence[str] = tuple(known)
+        for key in self.values:
+            if key in keys:
+                continue
+            near = difflib.get_close_matches(key.lower(), keys, n=1, cutoff=_SIMILAR)
+            if near:
+                self.refuse(key, f"the key {near[0]}", f"Is {near[0]} meant? Correct or remove the key.", value=key)
+            else:
+                self._ignored(key, keys)
+
+    def _ignored(self, key: str, known: Sequence[str]) -> None:
+        self.found.append(
+            warning(
+                "unknown_column",
+                self.file,
+                column=self.path_of(key),
+                value=key,
+                allowed=f"the keys {', '.join(known)}",
+                action="The key is not used; nothing need be done.",
+            )
+        )
+
+
+def _shown(value: object, limit: int = 200) -> str:
+    try:
+        text = str(value)
+    except ValueError:  # an integer of more digits than Python writes
+        return "a number of thousands of digits"
+    return text if len(text) <= limit else text[:limit] + " ..."

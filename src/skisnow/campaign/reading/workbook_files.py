@@ -1,0 +1,179 @@
+"""A workbook as the files of a campaign: each sheet of a table's name is that table, row for row."""
+
+from __future__ import annotations
+
+import csv
+import hashlib
+import io
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Final
+
+from ..._support.user_files import GivenError, workbook_sheets
+from ..problems import error, warning
+from .heading_words import proposed
+from .sheet_description import DESCRIBING, description_text
+from .table_forms import CORRECTIONS, TABLES
+
+if TYPE_CHECKING:
+    from ..._support.user_files.workbook import Rows
+    from ..problems import Problem
+    from .campaign_files import CampaignFiles
+
+ENDINGS: Final = (".xlsx", ".xlsm")
+DESCRIPTION: Final = "campaign.toml"
+_LIKELY: Final = 0.6
+"""Share of the needed columns."""
+_FILES: Final = {form.file.removesuffix(".csv"): form.file for form in (*TABLES, CORRECTIONS)}
+
+
+@dataclass(frozen=True, slots=True)
+class UnfoldedFiles:
+    """The files of a campaign, those that stand in workbooks too.
+
+    Attributes
+    ----------
+    files
+        Where the others lie.
+    of_sheets
+        What the sheets hold, by the names of a campaign's files.
+    places
+        What a file that is a sheet is called for people, by its name.
+    hashes
+        SHA-256 of each workbook that was read.
+    unread
+        Rows of the sheets that have another name, by what they are called for people.
+    found
+        What is wrong with the workbooks.
+    """
+
+    files: CampaignFiles
+    of_sheets: dict[str, bytes] = field(default_factory=dict)
+    places: dict[str, str] = field(default_factory=dict)
+    hashes: dict[str, str] = field(default_factory=dict)
+    unread: dict[str, Rows] = field(default_factory=dict)
+    found: list[Problem] = field(default_factory=list)
+
+    @property
+    def folder(self) -> Path:
+        """See `CampaignFiles.folder`."""
+        return self.files.folder
+
+    def read(self, name: str) -> bytes | None:
+        """See `CampaignFiles.read`."""
+        return self.of_sheets[name] if name in self.of_sheets else self.files.read(name)
+
+    def names(self) -> dict[str, bool]:
+        """See `CampaignFiles.names`: without the workbooks, with what stands in them."""
+        there = {name: is_file for name, is_file in self.files.names().items() if name not in self.hashes}
+        return there | dict.fromkeys(self.of_sheets, True)
+
+
+def unfolded(files: CampaignFiles) -> UnfoldedFiles:
+    """Look for workbooks among the files of a campaign, and read them."""
+    found = UnfoldedFiles(files)
+    there = files.names()
+    for name in sorted(there):
+        if there[name] and is_workbook(name):
+            _take(found, name)
+    for name in sorted(set(there) & set(found.of_sheets)):
+        found.of_sheets.pop(name)
+        action = f"Keep one of {name} and the sheet; rename or remove the other."
+        place, allowed = found.places.pop(name), "one table of a kind"
+        found.found.append(error("unreadable_file", place, value=name, allowed=allowed, action=action))
+    for place, rows in found.unread.items():
+        meant = _looks_like(rows)
+        if meant and _FILES[meant] not in {*there, *found.of_sheets}:
+            found.found.append(_named_otherwise(place, meant))
+    return found
+
+
+def _looks_like(rows: Rows) -> str | None:
+    """The table whose columns most of the headings of a sheet seem to be."""
+    headings = next((cells for cells in rows if len(cells) > 2), [])
+    shares = {
+        form: len(set(proposed(form, headings).values()) & set(form.required)) / len(form.required) for form in TABLES
+    }
+    form = max(shares, key=lambda form: shares[form])
+    return form.file.removesuffix(".csv") if shares[form] >= _LIKELY else None
+
+
+def _named_otherwise(place: str, table: str) -> Problem:
+    names = ", ".join(("campaign", "tools", "plates", "columns", *_FILES))
+    action = f"It looks like {table}: call the sheet so if it is. Else nothing need be done."
+    return warning(
+        "unread_sheet", place, value=place.rpartition(", sheet ")[2], allowed=f"sheets called {names}", action=action
+    )
+
+
+def is_workbook(name: str) -> bool:
+    """Whether a file is a workbook by its name, and not what a spreadsheet program puts beside an open one.
+
+    >>> is_workbook("Hang.XLSX"), is_workbook("~$Hang.xlsx"), is_workbook("hang.csv")
+    (True, False, False)
+    """
+    return name.lower().endswith(ENDINGS) and not name.startswith((".", "~$"))
+
+
+def _take(found: UnfoldedFiles, workbook: str) -> None:
+    try:
+        data = found.files.read(workbook)
+        if data is None:
+            return
+        found.hashes[workbook] = hashlib.sha256(data).hexdigest()
+        sheets = workbook_sheets(data, wanted=lambda _: True)
+    except (GivenError, OSError) as failure:
+        what = failure.strerror or str(failure) if isinstance(failure, OSError) else str(failure)
+        value, _, action = what.partition(". ")
+        allowed = "a workbook (.xlsx) with a sheet for each table"
+        found.found.append(
+            error(
+                "unreadable_file", workbook, value=value, allowed=allowed, action=action or "Save it again, or as CSV."
+            )
+        )
+        return
+    _sort(found, workbook, {name: rows for name, rows in sheets.items() if rows})
+
+
+def _sort(found: UnfoldedFiles, workbook: str, sheets: Mapping[str, Rows]) -> None:
+    describing: dict[str, Rows] = {}
+    for title, rows in sheets.items():
+        kind = _kind(title)
+        place = f"{workbook}, sheet {title}"
+        if kind in DESCRIBING:
+            describing[kind] = rows
+        elif kind not in _FILES:
+            found.unread[place] = rows
+        elif _FILES[kind] in found.of_sheets:
+            action = "Keep one of the sheets; rename or remove the other."
+            found.found.append(
+                error("unreadable_file", place, value=title, allowed="one table of a kind", action=action)
+            )
+        else:
+            found.of_sheets[_FILES[kind]] = _csv(rows)
+            found.places[_FILES[kind]] = place
+    if describing:
+        found.of_sheets[DESCRIPTION] = description_text(describing).encode()
+        found.places[DESCRIPTION] = f"{workbook}, sheets {', '.join(describing)}"
+
+
+def _kind(title: str) -> str:
+    """The table that a sheet is by its name.
+
+    >>> _kind(" Drop cone "), _kind("penetration.csv")
+    ('drop_cone', 'penetration')
+    """
+    return "_".join(title.casefold().removesuffix(".csv").split())
+
+
+def _csv(rows: Iterable[list[str]]) -> bytes:
+    """A line for each row, so that line and row have one number; all cells in quotes, so that nothing is guessed."""
+    stream = io.StringIO()
+    writer = csv.writer(stream, lineterminator="\n", quoting=csv.QUOTE_ALL)
+    for cells in rows:
+        if cells:
+            writer.writerow(cells)
+        else:
+            stream.write("\n")
+    return stream.getvalue().encode()

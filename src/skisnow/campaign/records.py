@@ -1,0 +1,390 @@
+"""What a field campaign consists of, in SI, by columns.
+
+Columns and not objects, because a campaign may hold a million readings. A single experiment is seen through
+``PenetrationTests.series(i)``.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, TypeVar
+
+import numpy as np
+import numpy.typing as npt
+
+from .._support.display import Facts, Shown, amount, ends
+from .._support.units import DEGREE, MM
+from .applied_correction import AppliedCorrection
+
+if TYPE_CHECKING:
+    from collections.abc import Hashable, Mapping, Sequence
+    from pathlib import Path
+
+    from ..geometry import Tool
+    from .problems import Problem
+    from .snow_micro_pen_records import SnowMicroPenRecordings
+    from .weather_records import CampaignWeather
+
+FloatArray = npt.NDArray[np.float64]
+IntArray = npt.NDArray[np.int64]
+BoolArray = npt.NDArray[np.bool_]
+Key = TypeVar("Key", bound="Hashable")
+
+
+@dataclass(frozen=True, slots=True, repr=False)
+class PenetrationSeries(Shown):
+    """One penetration experiment: a tool at one edge angle under rising loads.
+
+    Attributes
+    ----------
+    experiment, site, tool
+        Names as written in the file.
+    edge_angle
+        ϑ in rad.
+    load, penetration_depth
+        F in N and e in m, one per load step in the order of loading.
+    """
+
+    experiment: str
+    site: str
+    tool: str
+    edge_angle: float
+    load: FloatArray
+    penetration_depth: FloatArray
+
+    def _facts(self) -> Facts:
+        tool = f"{self.tool} at {amount(self.edge_angle / DEGREE, '°')}"
+        readings = (
+            f"{len(self.load)} loads {ends(self.load, 'N')}, {ends(self.penetration_depth, 'mm', factor=MM)} deep"
+        )
+        return Facts(f"{self.experiment} at {self.site}: {tool}, {readings}")
+
+
+@dataclass(frozen=True, slots=True, repr=False)
+class UnloadingReadings(Shown):
+    """Readings while the discs were taken off, series after series, each in the order in which they were read.
+
+    Attributes
+    ----------
+    first
+        m + 1 offsets: readings ``first[i]:first[i + 1]`` belong to experiment i, which may have none.
+    load, penetration_depth
+        Load that is left F (N) and depth e (m), one per reading.
+    row
+        Line of the file of each reading.
+    """
+
+    first: IntArray
+    load: FloatArray
+    penetration_depth: FloatArray
+    row: IntArray
+
+    def _facts(self) -> Facts:
+        series = int(np.count_nonzero(np.diff(self.first)))
+        return Facts(f"of {series} experiments, {len(self.load)} readings, loads {ends(self.load, 'N')}")
+
+    @property
+    def count(self) -> IntArray:
+        """How many readings each experiment has."""
+        return np.diff(self.first)
+
+    @property
+    def series_of_reading(self) -> IntArray:
+        """Index of the experiment that each reading belongs to."""
+        return np.repeat(np.arange(len(self.first) - 1, dtype=np.int64), self.count)
+
+
+@dataclass(frozen=True, slots=True, repr=False)
+class PenetrationTests(Shown):
+    """All m penetration experiments of a campaign, n readings under rising loads in the order of the file.
+
+    Attributes
+    ----------
+    experiment, site, tool, spot
+        Names, one per experiment; an absent spot is ``""``.
+    edge_angle
+        ϑ in rad, one per experiment.
+    snow_density, drop_cone_depth
+        The experiment's own density ρ (kg/m³) and drop-cone depth H_p (m); NaN where its rows give none. The mean where
+        its rows give several.
+    cancelled
+        Why the experiment was cancelled, ``""`` where it was not.
+    first
+        m + 1 offsets: readings ``first[i]:first[i + 1]`` belong to experiment i.
+    load, penetration_depth
+        F in N and e in m, one per reading.
+    row
+        Line of the file of each reading; the header is line 1.
+    further
+        Every further column of the file as text, one cell per reading: kept, not interpreted.
+    unloading
+        Readings while the discs were taken off, which no estimate of hardness knows of; None where there are none.
+    depth_after
+        e (m) read once more under the same load after waiting, one per reading, NaN where it was not; None where the
+        campaign has none.
+    """
+
+    experiment: tuple[str, ...]
+    site: tuple[str, ...]
+    tool: tuple[str, ...]
+    spot: tuple[str, ...]
+    edge_angle: FloatArray
+    snow_density: FloatArray
+    drop_cone_depth: FloatArray
+    cancelled: tuple[str, ...]
+    first: IntArray
+    load: FloatArray
+    penetration_depth: FloatArray
+    row: IntArray
+    further: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    unloading: UnloadingReadings | None = None
+    depth_after: FloatArray | None = None
+
+    def __len__(self) -> int:
+        """Count the experiments."""
+        return len(self.experiment)
+
+    def _facts(self) -> Facts:
+        rows = (
+            ("sites", _listed(self.site)),
+            ("tools", _listed(self.tool)),
+            ("edge angles", ends(self.edge_angle, "°", factor=DEGREE)),
+            ("loads", ends(self.load, "N")),
+            ("depths", ends(self.penetration_depth, "mm", factor=MM)),
+        )
+        return Facts(f"of {len(self)} experiments, {len(self.load)} readings", rows)
+
+    @property
+    def series_of_reading(self) -> IntArray:
+        """Index of the experiment that each reading belongs to."""
+        return np.repeat(np.arange(len(self), dtype=np.int64), np.diff(self.first))
+
+    def series(self, index: int) -> PenetrationSeries:
+        """Look at one experiment by its index."""
+        part = slice(int(self.first[index]), int(self.first[index + 1]))
+        return PenetrationSeries(
+            experiment=self.experiment[index],
+            site=self.site[index],
+            tool=self.tool[index],
+            edge_angle=float(self.edge_angle[index]),
+            load=self.load[part],
+            penetration_depth=self.penetration_depth[part],
+        )
+
+
+@dataclass(frozen=True, slots=True, repr=False)
+class TurningReadings(Shown):
+    """Moments over turning angles of the shear experiments, test after test, each in the order of reading.
+
+    Attributes
+    ----------
+    first
+        m + 1 offsets: readings ``first[i]:first[i + 1]`` belong to experiment i, which may have none.
+    turning_angle, moment
+        φ (rad) from any zero, and M (N m), one per reading.
+    """
+
+    first: IntArray
+    turning_angle: FloatArray
+    moment: FloatArray
+
+    def _facts(self) -> Facts:
+        tests = int(np.count_nonzero(np.diff(self.first)))
+        return Facts(f"of {tests} experiments, {len(self.moment)} readings, {ends(self.moment, 'N m')}")
+
+    @property
+    def test_of_reading(self) -> IntArray:
+        """Index of the experiment that each reading belongs to."""
+        return np.repeat(np.arange(len(self.first) - 1, dtype=np.int64), np.diff(self.first))
+
+
+@dataclass(frozen=True, slots=True, repr=False)
+class ShearTests(Shown):
+    """All shear experiments of a campaign; one of several rows has what its row of the largest moment says.
+
+    Attributes
+    ----------
+    experiment, site, plate, spot, cancelled, further
+        As in `PenetrationTests`.
+    edge_angle, penetration_depth, lever_arm, moment
+        ϑ (rad), e (m), r (m), M (N m).
+    snow_density, drop_cone_depth
+        The experiment's own ρ (kg/m³) and H_p (m), NaN where absent.
+    row
+        Line of the file.
+    turning
+        Moments over turning angles; None where the campaign has none.
+    """
+
+    experiment: tuple[str, ...]
+    site: tuple[str, ...]
+    plate: tuple[str, ...]
+    spot: tuple[str, ...]
+    edge_angle: FloatArray
+    penetration_depth: FloatArray
+    lever_arm: FloatArray
+    moment: FloatArray
+    snow_density: FloatArray
+    drop_cone_depth: FloatArray
+    cancelled: tuple[str, ...]
+    row: IntArray
+    further: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    turning: TurningReadings | None = None
+
+    def __len__(self) -> int:
+        """Count the experiments."""
+        return len(self.experiment)
+
+    def _facts(self) -> Facts:
+        rows = (
+            ("sites", _listed(self.site)),
+            ("plates", _listed(self.plate)),
+            ("edge angles", ends(self.edge_angle, "°", factor=DEGREE)),
+            ("depths", ends(self.penetration_depth, "mm", factor=MM)),
+            ("lever arms", ends(self.lever_arm, "mm", factor=MM)),
+            ("moments", ends(self.moment, "N m")),
+        )
+        return Facts(f"of {len(self)} experiments", rows)
+
+
+@dataclass(frozen=True, slots=True, repr=False)
+class DensitySamples(Shown):
+    """Samples of a density cutter: ρ in kg/m³. ``further`` as in `PenetrationTests`."""
+
+    sample: tuple[str, ...]
+    site: tuple[str, ...]
+    snow_density: FloatArray
+    cancelled: tuple[str, ...]
+    row: IntArray
+    further: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+
+    def _facts(self) -> Facts:
+        return Facts(f"of {len(self.sample)} samples: {ends(self.snow_density, 'kg/m³')}; {_listed(self.site)}")
+
+    def site_means(self) -> dict[str, float]:
+        """Mean density of each site's samples that were not cancelled (kg/m³)."""
+        return _means(self.site, self.snow_density, self.cancelled)
+
+
+@dataclass(frozen=True, slots=True, repr=False)
+class DropConeTests(Shown):
+    """Repeats of a drop-cone test: depth H_p in m, larger is *softer*. A test is the mean of its repeats."""
+
+    test: tuple[str, ...]
+    site: tuple[str, ...]
+    repeat: tuple[str, ...]
+    drop_cone_depth: FloatArray
+    cancelled: tuple[str, ...]
+    row: IntArray
+    further: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+
+    def _facts(self) -> Facts:
+        return Facts(
+            f"of {len(self.test)} repeats: {ends(self.drop_cone_depth, 'mm', factor=MM)}; {_listed(self.site)}"
+        )
+
+    def site_means(self) -> dict[str, float]:
+        """Mean over each site's tests of the mean over the test's repeats (m); a cancelled test takes no part."""
+        tests = list(zip(self.site, self.test, strict=True))
+        gone = {test for test, why in zip(tests, self.cancelled, strict=True) if why}
+        cancelled = tuple("cancelled" if test in gone else "" for test in tests)
+        means = _means(tests, self.drop_cone_depth, cancelled)
+        return _means([site for site, _ in means], np.array(list(means.values())), ("",) * len(means))
+
+
+def _listed(names: Sequence[str]) -> str:
+    return ", ".join(dict.fromkeys(names))
+
+
+def _means(keys: Sequence[Key], values: FloatArray, cancelled: Sequence[str]) -> dict[Key, float]:
+    collected: dict[Key, list[float]] = {}
+    for key, value, why in zip(keys, values.tolist(), cancelled, strict=True):
+        if not why:
+            collected.setdefault(key, []).append(value)
+    return {key: math.fsum(found) / len(found) for key, found in collected.items()}
+
+
+@dataclass(frozen=True, slots=True, repr=False)
+class Campaign(Shown):
+    """A checked campaign, corrections applied.
+
+    Attributes
+    ----------
+    name, place, observers
+        From campaign.toml; the name falls back to the folder's.
+    folder
+        Where it was read from.
+    gauge_resolution
+        Step of the depth gauge (m), or None where the campaign does not say.
+    load_uncertainty, moment_uncertainty, lever_arm_uncertainty
+        Standard uncertainties (N, N m, m); None where left out, which counts as 0.
+    load_steps
+        The campaign's own discs (N), for entry; may be empty.
+    tools, plates
+        Tools by name; plate lengths L (m) by name.
+    excluding
+        Codes of the quality flags that keep an experiment out of the estimates.
+    penetration, shear, density, drop_cone, snow_micro_pen
+        The tables; None where the campaign has no such file.
+    problems
+        Warnings of reading the files (errors would have refused the campaign).
+    file_hashes
+        SHA-256 of each file that was read, by name.
+    corrections
+        What corrections.csv changed, in its order.
+    unread_files
+        Names of files in the folder that are no part of a campaign.
+    pole_stiffness
+        Moment over twist of the shear device between angle and plate (N m/rad); None: rigid.
+    weather
+        Readings of a station; None where the campaign has none.
+    places
+        What people know a table as that is a sheet of a workbook, by the file's name.
+
+    See Also
+    --------
+    skisnow.read_campaign
+    """
+
+    name: str
+    place: str
+    observers: tuple[str, ...]
+    folder: Path
+    gauge_resolution: float | None
+    load_uncertainty: float | None
+    moment_uncertainty: float | None
+    lever_arm_uncertainty: float | None
+    load_steps: tuple[float, ...]
+    tools: Mapping[str, Tool]
+    plates: Mapping[str, float]
+    excluding: frozenset[str]
+    penetration: PenetrationTests | None
+    shear: ShearTests | None
+    density: DensitySamples | None
+    drop_cone: DropConeTests | None
+    problems: tuple[Problem, ...]
+    file_hashes: Mapping[str, str]
+    corrections: tuple[AppliedCorrection, ...] = ()
+    unread_files: tuple[str, ...] = ()
+    pole_stiffness: float | None = None
+    places: Mapping[str, str] = field(default_factory=dict)
+    snow_micro_pen: SnowMicroPenRecordings | None = None
+    weather: CampaignWeather | None = None
+
+    def _facts(self) -> Facts:
+        tables = {"penetration": self.penetration, "shear": self.shear, "density": self.density, "cone": self.drop_cone}
+        counts = [(name, "none" if table is None else table._facts().title) for name, table in tables.items()]
+        gauge = "not stated" if self.gauge_resolution is None else amount(self.gauge_resolution / MM, "mm")
+        rows = (
+            ("place", self.place or "not stated"),
+            *counts,
+            ("gauge step", gauge),
+            ("warnings", str(len(self.problems))),
+        )
+        return Facts(f"{self.name!r}", rows)
+
+    @property
+    def depth_uncertainty(self) -> float | None:
+        """Standard uncertainty of one depth reading from the gauge's step: step/√12 (m)."""
+        return None if self.gauge_resolution is None else self.gauge_resolution / 12.0**0.5

@@ -1,0 +1,132 @@
+"""Design of the synthetic reference campaign: sites, tools, angles, loads, group sizes.
+
+The paper (Mössner and others 2013) gives the totals, the ranges and the regressions; what it does not print is ours and
+is called a modelling assumption here. Nothing in this file was adjusted to what an analysis of the campaign gives.
+
+From the paper: 236 penetration series of seven loads between 12 and 492 N at edge angles of 0-60° with a piece of ski
+of 200 mm x 62 mm; H_V of 0.04-90 N/mm³; densities of 420-620 kg/m³ (mean 556) and drop-cone depths of 7.4-21.2 mm
+(mean 13.6) at the penetration tests, neither related to H_V; 108 shear tests, of which 20 on hard and 30 on soft snow
+at varied angle, the others at 90°, there with densities of 420-740 kg/m³ and S_f of 0.04-0.40 N/mm²; 35 pairs of shear
+and penetration tests at two sites; Eqns 13 and 14 with their rmse.
+
+Modelling assumption: all else, namely the sites and how many tests each has, evenly spaced loads, which angles, the
+hard snow's
+0.25 N/mm² and its scatter, plate length, lever arm, depths and the largest moment of a person, densities and drop-cone
+depths of each site and their scatter, and that the pairs are among the tests at 90°.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from ..._support.units import DEGREE, MM, N_PER_MM2, N_PER_MM3
+from ...geometry import SkiPiece
+from ...snow.published import moessner_2013
+
+if TYPE_CHECKING:
+    from ..records import FloatArray
+
+
+@dataclass(frozen=True, slots=True)
+class PenetrationSite:
+    """A site of penetration tests: the median H_V (N/m³), mean ρ (kg/m³) and H_p (m) of its snow, its paired tests."""
+
+    name: str
+    series: int
+    snow_hardness: float
+    snow_density: float
+    drop_cone_depth: float
+    spots: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class ShearSite:
+    """A site of shear tests at 90° with no penetration tests: mean ρ (kg/m³)."""
+
+    name: str
+    tests: int
+    snow_density: float
+
+
+TOOL: Final = "ski piece"
+SKI_PIECE: Final = SkiPiece(length=moessner_2013.TOOL_LENGTH_MM * MM, width=moessner_2013.TOOL_WIDTH_MM * MM)
+LOADS: Final = (12.0, 92.0, 172.0, 252.0, 332.0, 412.0, 492.0)
+EDGE_ANGLES_DEG: Final = (0.0, 15.0, 30.0, 45.0, 60.0)
+SHALLOWEST_FLAT_DEPTH: Final = 0.2 * MM
+"""Modelling assumption: 20 steps of the gauge. Where the flat tool would not go deeper at the largest load, it is set
+on edge."""
+
+HARDNESS_RANGE: Final = tuple(limit * N_PER_MM3 for limit in moessner_2013.SNOW_HARDNESS_RANGE_N_PER_MM3)
+DENSITY_RANGE: Final = (420.0, 620.0)
+DENSITY_SD: Final = 10.0
+DENSITY_SAMPLES: Final = 5
+DROP_CONE_RANGE: Final = (7.4 * MM, 21.2 * MM)
+DROP_CONE_SD: Final = 0.8 * MM
+DROP_CONE_TESTS: Final = 3
+DROP_CONE_REPEATS: Final = 3
+
+# Modelling assumption: eight sites, their medians evenly spaced in ln H_V so that the spread within the first and the
+# last reaches the ends of the paper's range. As the paper found no relation, mean ρ and H_p of the sites are arranged
+# to have none with the medians (correlations of 0.01): eight sites drawn at random would often show one by chance.
+# The two sites with pairs have nearly the same density, so that S_f has no relation with H_V between them either.
+PENETRATION_SITES: Final = tuple(
+    PenetrationSite(f"site {letter}", series, hardness * N_PER_MM3, density, cone * MM, spots)
+    for letter, series, hardness, density, cone, spots in zip(
+        "ABCDEFGH",
+        (30, 30, 30, 30, 29, 29, 29, 29),
+        np.geomspace(0.06, 60.0, 8).tolist(),
+        (600.0, 552.0, 612.0, 436.0, 604.0, 496.0, 600.0, 548.0),
+        (20.2, 9.0, 16.0, 11.0, 8.5, 18.0, 12.5, 13.6),
+        (0, 0, 18, 0, 17, 0, 0, 0),
+        strict=True,
+    )
+)
+
+UNLOADED_SITES: Final = ("site B", "site D", "site F")
+"""Sites at which the discs are taken off again one by one: soft, middle and hard snow."""
+UNLOADING_RATIO: Final = 10.0
+"""Median k_u/H_V everywhere: of the order that the published runs of a sledge are simulated with."""
+
+SHEAR_DISPLACEMENT: Final = 0.25 * MM
+"""Median u_y, where turning angles are asked for: between the default of a scenario and half a millimetre."""
+TURNING_SHARES: Final = (0.2, 0.4, 0.6, 0.8, 1.0)
+"""Of the largest moment, at which the turning angle is read: four readings of the rising part, and the largest."""
+CREEPING_SITE: Final = "site B"
+"""Whose snow goes on giving way under a constant load, where depths after waiting are asked for."""
+
+PLATE: Final = "plate 100 mm"
+PLATE_LENGTH: Final = 100.0 * MM
+LEVER_ARM: Final = 250.0 * MM
+PLATE_DEPTHS: Final = (2.0 * MM, 12.0 * MM)
+MAXIMUM_MOMENT: Final = 60.0
+
+SHEAR_ANGLES_DEG: Final = (30.0, 45.0, 60.0, 75.0, 90.0)
+HARD_SITE: Final = "site I"
+HARD_TESTS: Final = 20
+HARD_SHEAR_STRESS: Final = 0.25 * N_PER_MM2
+HARD_SCATTER: Final = 0.03 * N_PER_MM2
+SOFT_SITE: Final = "site J"
+SOFT_TESTS: Final = 30
+SOFT_SCATTER: Final = 0.006 * N_PER_MM2
+
+FURTHER_SHEAR_SITES: Final = (
+    ShearSite("site K", 8, 470.0),
+    ShearSite("site L", 8, 560.0),
+    ShearSite("site M", 7, 690.0),
+)
+SHEAR_DENSITY_RANGE: Final = moessner_2013.SNOW_DENSITY_RANGE
+SHEAR_DENSITY_SD: Final = 40.0
+SHEAR_STRESS_RANGE: Final = tuple(limit * N_PER_MM2 for limit in moessner_2013.FAILURE_SHEAR_STRESS_RANGE_N_PER_MM2)
+DENSITY_SCATTER: Final = 0.059 * N_PER_MM2
+
+FLAT_LIMIT: Final = LOADS[-1] / (SKI_PIECE.length * SKI_PIECE.width * SHALLOWEST_FLAT_DEPTH)
+"""H_V (N/m³) from which on the flat tool stays shallower than `SHALLOWEST_FLAT_DEPTH`."""
+
+
+def planned_angles() -> FloatArray:
+    """Edge angle planned for each series (rad): the angles in turn within each site."""
+    turn = [EDGE_ANGLES_DEG[index % len(EDGE_ANGLES_DEG)] for site in PENETRATION_SITES for index in range(site.series)]
+    return np.array(turn) * DEGREE

@@ -1,0 +1,285 @@
+"""The draws of the synthetic reference campaign: tables with errors, and the truth behind them.
+
+What is drawn, and from which law, stands in `skisnow.campaign.reference_campaign`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from ..._support.units import DEGREE, MM
+from ...snow.published.moessner_2013 import failure_shear_stress_from_angle, failure_shear_stress_from_density
+from ..records import (
+    DensitySamples,
+    DropConeTests,
+    PenetrationTests,
+    ShearTests,
+    TurningReadings,
+    UnloadingReadings,
+)
+from . import design
+
+if TYPE_CHECKING:
+    from ..records import BoolArray, FloatArray
+    from .noise import ReferenceNoise
+
+
+_ANGLE_DECIMALS = 4
+"""Of a turning angle in degrees: finer than 0.001 mm at the plate."""
+
+
+class DrawnPenetration(NamedTuple):
+    """Readings, and per series the seating offset (m), κ, the tool's depth under the largest load (m) and k_u/H_V.
+
+    The last is NaN where no disc was taken off. ``true_depth`` (m), one per reading, is that of the law.
+    """
+
+    tests: PenetrationTests
+    seating_offset: FloatArray
+    layering: FloatArray
+    true_depth: FloatArray
+    deepest: FloatArray
+    unloading_ratio: FloatArray
+
+
+def snow_hardness(generator: np.random.Generator, noise: ReferenceNoise) -> FloatArray:
+    """Draw H_V (N/m³) of each series."""
+    medians = np.repeat([site.snow_hardness for site in design.PENETRATION_SITES], _series_counts())
+    low, high = np.log(design.HARDNESS_RANGE).tolist()
+    return np.exp(_normal_within(generator, np.log(medians), noise.hardness_log_sd, (low, high)))
+
+
+def edge_angle(generator: np.random.Generator, snow_hardness: FloatArray) -> FloatArray:
+    """Give each series its planned angle (rad), or one drawn from the others where the flat tool stays too shallow."""
+    planned = design.planned_angles()
+    others = np.array([angle for angle in design.EDGE_ANGLES_DEG if angle > 0]) * DEGREE
+    instead = others[generator.integers(len(others), size=planned.size)]
+    return np.where((planned == 0) & (snow_hardness >= design.FLAT_LIMIT), instead, planned)
+
+
+def penetration(
+    generator: np.random.Generator, snow_hardness: FloatArray, edge_angle: FloatArray, noise: ReferenceNoise
+) -> DrawnPenetration:
+    """Draw the readings of every series."""
+    shape = (snow_hardness.size, len(design.LOADS))
+    nominal = np.array(design.LOADS)
+    layering = noise.layering_mean + noise.layering_sd * generator.standard_normal(shape[0])
+    seating_offset = noise.seating_sd * generator.standard_normal(shape[0])
+    load = nominal + noise.load_sd * generator.standard_normal(shape)
+    scatter = noise.depth_scatter * generator.standard_normal(shape)
+    exponent = 1.0 / (1.0 + layering / 2.0)
+    volume = (nominal[-1] / snow_hardness)[:, np.newaxis] * (load / nominal[-1]) ** exponent[:, np.newaxis]
+    true_depth = design.SKI_PIECE.depth_at_volume(volume, edge_angle[:, np.newaxis])
+    # A gauge does not read below its zero.
+    depth = true_depth * (1.0 + scatter)
+    reading = np.maximum(depth + seating_offset[:, np.newaxis], 0.0)
+    tests = _penetration_tests(edge_angle, _on_gauge(reading, noise).ravel())
+    unknown = np.full(shape[0], np.nan)
+    return DrawnPenetration(tests, seating_offset, layering, true_depth.ravel(), depth[:, -1], unknown)
+
+
+def unloaded(generator: np.random.Generator, drawn: DrawnPenetration, noise: ReferenceNoise) -> DrawnPenetration:
+    """Add the readings while the discs are taken off, at the sites where they are.
+
+    The tool starts at its depth e_m under the largest load, and feels at e_m - d what it felt at the depth e_m - κ d.
+    """
+    tests, shape = drawn.tests, (len(drawn.tests), len(design.LOADS) - 1)
+    ratio = design.UNLOADING_RATIO * np.exp(noise.unloading_log_sd * generator.standard_normal(shape[0]))
+    load = np.array(design.LOADS[-2::-1]) + noise.load_sd * generator.standard_normal(shape)
+    scatter = noise.rebound_scatter * generator.standard_normal(shape)
+    angle, deepest = tests.edge_angle[:, np.newaxis], drawn.deepest[:, np.newaxis]
+    volume = design.SKI_PIECE.displaced_volume(deepest, angle) * load / design.LOADS[-1]
+    rebound = (deepest - design.SKI_PIECE.depth_at_volume(volume, angle)) / ratio[:, np.newaxis] * (1.0 + scatter)
+    depth = np.maximum(deepest - rebound + drawn.seating_offset[:, np.newaxis], 0.0)
+    there = np.isin(tests.site, design.UNLOADED_SITES)
+    readings = _unloading_readings(there, _on_gauge(depth, noise)[there])
+    row = tests.row + readings.first[:-1][tests.series_of_reading]
+    tests = replace(tests, unloading=readings, row=row)
+    return drawn._replace(tests=tests, unloading_ratio=np.where(there, ratio, np.nan))
+
+
+def _unloading_readings(there: BoolArray, depth: FloatArray) -> UnloadingReadings:
+    """Readings behind those of their own series in the file."""
+    up, down = len(design.LOADS), depth.shape[1]
+    first = np.concatenate(([0], np.cumsum(np.where(there, down, 0)))).astype(np.int64)
+    before = 2 + (np.flatnonzero(there) + 1) * up
+    row = np.repeat(before, down) + np.arange(depth.size)
+    return UnloadingReadings(first, np.tile(design.LOADS[-2::-1], len(depth)), depth.ravel(), row.astype(np.int64))
+
+
+def shear(generator: np.random.Generator, noise: ReferenceNoise) -> tuple[ShearTests, FloatArray]:
+    """Draw the shear tests, and the true S_f (N/m²) of each."""
+    further = _further_density(generator)
+    count = design.HARD_TESTS + design.SOFT_TESTS + further.size
+    place_in_range = generator.uniform(size=count)
+    moment_error = noise.moment_sd * generator.standard_normal(count)
+    lever_arm = design.LEVER_ARM + noise.lever_arm_sd * generator.standard_normal(count)
+    angle = _shear_angles(further.size)
+    stress = _shear_stress(generator, angle, further, noise)  # last: redrawing takes a varying count of numbers
+    low, high = design.PLATE_DEPTHS
+    reachable = design.MAXIMUM_MOMENT / (stress * design.PLATE_LENGTH * design.LEVER_ARM)
+    depth = low + place_in_range * (np.minimum(high, reachable) - low)
+    moment = np.maximum(stress * depth * design.PLATE_LENGTH * lever_arm + moment_error, 0.0)
+    own_density: FloatArray = np.concatenate([np.full(count - further.size, np.nan), further])
+    return _shear_tests(angle, _on_gauge(depth, noise), np.round(moment, 2).astype(np.float64), own_density), stress
+
+
+def waited(generator: np.random.Generator, tests: PenetrationTests, noise: ReferenceNoise) -> PenetrationTests:
+    """Add depths that are read once more under the same load, at the site whose snow creeps."""
+    growth = noise.creep_mean * generator.standard_exponential(len(tests.load))
+    there = np.array(tests.site, dtype=object)[tests.series_of_reading] == design.CREEPING_SITE
+    after = _on_gauge(tests.penetration_depth * (1.0 + growth), noise)
+    return replace(tests, depth_after=np.where(there, after, np.nan))
+
+
+def turned(generator: np.random.Generator, tests: ShearTests, noise: ReferenceNoise) -> tuple[ShearTests, FloatArray]:
+    """Add turning angles up to the largest moment, φ = (u_y/r) M/M_f, and give the true u_y (m) of each test."""
+    shape, shares = (len(tests), len(design.TURNING_SHARES)), np.array(design.TURNING_SHARES)
+    way = design.SHEAR_DISPLACEMENT * np.exp(noise.displacement_log_sd * generator.standard_normal(shape[0]))
+    angle = (way / tests.lever_arm)[:, np.newaxis] * shares + noise.turning_sd * generator.standard_normal(shape)
+    moment = np.round(tests.moment[:, np.newaxis] * shares, 2)
+    readings = TurningReadings(
+        first=np.arange(0, angle.size + 1, shape[1], dtype=np.int64),
+        turning_angle=np.round(angle.ravel() / DEGREE, _ANGLE_DECIMALS) * DEGREE,
+        moment=moment.ravel(),
+    )
+    row = 2 + shape[1] * np.arange(shape[0], dtype=np.int64) + np.argmax(moment, axis=1)
+    return replace(tests, turning=readings, row=row), way
+
+
+def density(generator: np.random.Generator) -> DensitySamples:
+    """Draw the density samples of the penetration sites."""
+    sites = [site for site in design.PENETRATION_SITES for _ in range(design.DENSITY_SAMPLES)]
+    centre = np.array([site.snow_density for site in sites])
+    value = _normal_within(generator, centre, design.DENSITY_SD, design.DENSITY_RANGE)
+    return DensitySamples(
+        sample=_numbered("D", len(sites)),
+        site=tuple(site.name for site in sites),
+        snow_density=np.rint(value),
+        cancelled=("",) * len(sites),
+        row=_rows(len(sites)),
+    )
+
+
+def drop_cone(generator: np.random.Generator) -> DropConeTests:
+    """Draw the repeats of the drop-cone tests of the penetration sites."""
+    sites = [site for site in design.PENETRATION_SITES for _ in range(design.DROP_CONE_TESTS)]
+    repeats = design.DROP_CONE_REPEATS
+    centre = np.repeat([site.drop_cone_depth for site in sites], repeats)
+    depth = _normal_within(generator, centre, design.DROP_CONE_SD, design.DROP_CONE_RANGE)
+    return DropConeTests(
+        test=tuple(name for name in _numbered("C", len(sites)) for _ in range(repeats)),
+        site=tuple(site.name for site in sites for _ in range(repeats)),
+        repeat=tuple(str(repeat + 1) for _ in sites for repeat in range(repeats)),
+        drop_cone_depth=np.round(depth / MM, 1) * MM,
+        cancelled=("",) * centre.size,
+        row=_rows(centre.size),
+    )
+
+
+def _normal_within(
+    generator: np.random.Generator, centre: FloatArray, sd: float, limits: tuple[float, float]
+) -> FloatArray:
+    """Draw from a normal distribution, again where outside the limits; the centres lie inside."""
+    low, high = limits
+    value: FloatArray = centre + sd * generator.standard_normal(centre.shape)
+    while np.any(outside := (value < low) | (value > high)):
+        value[outside] = centre[outside] + sd * generator.standard_normal(np.count_nonzero(outside))
+    return value
+
+
+def _on_gauge(depth: FloatArray, noise: ReferenceNoise) -> FloatArray:
+    if noise.gauge_resolution == 0:
+        return depth
+    steps = np.rint(depth / noise.gauge_resolution)
+    # Rounded in mm, so that the number is the one that a file states, to the last bit.
+    return np.round(steps * (noise.gauge_resolution / MM), 6) * MM
+
+
+def _further_density(generator: np.random.Generator) -> FloatArray:
+    beside = [site.snow_density for site in design.PENETRATION_SITES for _ in range(site.spots)]
+    alone = [site.snow_density for site in design.FURTHER_SHEAR_SITES for _ in range(site.tests)]
+    centre = np.array(beside + alone)
+    return np.rint(_normal_within(generator, centre, design.SHEAR_DENSITY_SD, design.SHEAR_DENSITY_RANGE))
+
+
+def _shear_angles(further: int) -> FloatArray:
+    angles = np.array(design.SHEAR_ANGLES_DEG)
+    in_turn = [np.resize(angles, count) for count in (design.HARD_TESTS, design.SOFT_TESTS)]
+    return np.concatenate([*in_turn, np.full(further, 90.0)]) * DEGREE
+
+
+def _shear_stress(
+    generator: np.random.Generator, angle: FloatArray, density: FloatArray, noise: ReferenceNoise
+) -> FloatArray:
+    hard = np.full(design.HARD_TESTS, design.HARD_SHEAR_STRESS)
+    soft = failure_shear_stress_from_angle(angle[design.HARD_TESTS :][: design.SOFT_TESTS])
+    further = failure_shear_stress_from_density(density)
+    low, high = design.SHEAR_STRESS_RANGE
+    groups = (
+        (hard, design.HARD_SCATTER, (low, high)),
+        (soft, design.SOFT_SCATTER, (0.0, high)),  # Eqn 13 itself goes down to 0.034 N/mm²
+        (further, design.DENSITY_SCATTER, (low, high)),
+    )
+    drawn = [_normal_within(generator, mean, noise.shear_scatter * sd, limits) for mean, sd, limits in groups]
+    return np.concatenate(drawn)
+
+
+def _series_counts() -> list[int]:
+    return [site.series for site in design.PENETRATION_SITES]
+
+
+def _numbered(letter: str, count: int) -> tuple[str, ...]:
+    return tuple(f"{letter}{number:03d}" for number in range(1, count + 1))
+
+
+def _rows(count: int) -> np.ndarray[tuple[int], np.dtype[np.int64]]:
+    return np.arange(2, count + 2, dtype=np.int64)  # the header is line 1
+
+
+def _spot(site: design.PenetrationSite, index: int) -> str:
+    return f"{site.name[-1]}{index + 1:02d}" if index < site.spots else ""
+
+
+def _penetration_tests(edge_angle: FloatArray, depth: FloatArray) -> PenetrationTests:
+    count, steps = edge_angle.size, len(design.LOADS)
+    sites = [(site, index) for site in design.PENETRATION_SITES for index in range(site.series)]
+    return PenetrationTests(
+        experiment=_numbered("P", count),
+        site=tuple(site.name for site, _ in sites),
+        tool=(design.TOOL,) * count,
+        spot=tuple(_spot(site, index) for site, index in sites),
+        edge_angle=edge_angle,
+        snow_density=np.full(count, np.nan),
+        drop_cone_depth=np.full(count, np.nan),
+        cancelled=("",) * count,
+        first=np.arange(0, (count + 1) * steps, steps, dtype=np.int64),
+        load=np.tile(design.LOADS, count),
+        penetration_depth=depth,
+        row=_rows(count * steps),
+    )
+
+
+def _shear_tests(angle: FloatArray, depth: FloatArray, moment: FloatArray, density: FloatArray) -> ShearTests:
+    count = angle.size
+    varied = [(design.HARD_SITE, "")] * design.HARD_TESTS + [(design.SOFT_SITE, "")] * design.SOFT_TESTS
+    beside = [(site.name, _spot(site, index)) for site in design.PENETRATION_SITES for index in range(site.spots)]
+    alone = [(site.name, "") for site in design.FURTHER_SHEAR_SITES for _ in range(site.tests)]
+    places = varied + beside + alone
+    return ShearTests(
+        experiment=_numbered("S", count),
+        site=tuple(site for site, _ in places),
+        plate=(design.PLATE,) * count,
+        spot=tuple(spot for _, spot in places),
+        edge_angle=angle,
+        penetration_depth=depth,
+        lever_arm=np.full(count, design.LEVER_ARM),
+        moment=moment,
+        snow_density=density,
+        drop_cone_depth=np.full(count, np.nan),
+        cancelled=("",) * count,
+        row=_rows(count),
+    )

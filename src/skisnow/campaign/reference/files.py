@@ -1,0 +1,232 @@
+"""Write the synthetic reference campaign as a campaign folder."""
+
+from __future__ import annotations
+
+import csv
+import io
+import os
+import tempfile
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..._support.errors import OutputError
+from ..._support.units import DEGREE, MM, N_PER_MM2
+from ..reading.table_forms import LOADING, UNLOADING
+from . import design
+from .campaign import reference_campaign
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping, Sequence
+
+    from ..records import FloatArray
+    from .campaign import ReferenceCampaign
+
+_CAMPAIGN_FILES = ("penetration.csv", "shear.csv", "density.csv", "drop_cone.csv", "corrections.csv", "campaign.toml")
+
+
+def write_reference(folder: str | Path, *, seed: int, turning_angles: bool = False, creep: bool = False) -> None:
+    """Write the reference campaign of a seed: campaign.toml, penetration, shear, density and drop_cone CSV.
+
+    Parameters
+    ----------
+    folder
+        Made where it does not exist; other files in it are left alone.
+    seed
+        As for `skisnow.campaign.reference_campaign`. The same seed writes the same bytes.
+    turning_angles, creep
+        Whether shear.csv has turning angles, and penetration.csv depths after waiting; all other cells stay the same.
+
+    Returns
+    -------
+    None
+        The files are written, or an error is raised.
+
+    Raises
+    ------
+    OutputError
+        Where the folder already holds a file of a campaign, or cannot be written; nothing is left half-written.
+    ParameterError
+        For a seed that is no integer of at least 0.
+
+    See Also
+    --------
+    skisnow.read_campaign : reads them.
+
+    References
+    ----------
+    * Mössner, Innerhofer, Schindelwig, Kaps, Schretter and Nachbauer (2013), "Measurement of mechanical properties of
+      snow for simulation of skiing", J. Glaciol.
+    * The page docs/reference-campaign.md.
+    """
+    drawn = reference_campaign(seed, turning_angles=turning_angles, creep=creep)
+    folder = Path(folder)
+    there = [name for name in _CAMPAIGN_FILES if (folder / name).exists()]
+    if there:
+        raise OutputError(
+            f"{folder} already holds a campaign ({', '.join(there)}); nothing was written. "
+            "Choose a folder without one, or remove it first."
+        )
+    files = {
+        "penetration.csv": _penetration_csv(drawn),
+        "shear.csv": _shear_csv(drawn),
+        "density.csv": _density_csv(drawn),
+        "drop_cone.csv": _drop_cone_csv(drawn),
+        "campaign.toml": _campaign_toml(drawn),  # moved last: without it the folder is no campaign
+    }
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        _move_into_place(folder, files)
+    except OSError as failure:
+        raise OutputError(
+            f"{folder}: the reference campaign could not be written ({failure.strerror or failure}); nothing of it was "
+            "left there. Choose a folder that you may write to, on a disk with room."
+        ) from failure
+
+
+def _move_into_place(folder: Path, files: Mapping[str, str]) -> None:
+    """Write all files into a temporary folder, then move them; take back what an error interrupts."""
+    moved: list[Path] = []
+    with tempfile.TemporaryDirectory(prefix=".reference-", dir=folder) as temporary:
+        for name, text in files.items():
+            with (Path(temporary) / name).open("w", encoding="utf-8", newline="") as stream:
+                stream.write(text)
+                stream.flush()
+                os.fsync(stream.fileno())
+        try:
+            for name in files:
+                (Path(temporary) / name).replace(folder / name)
+                moved.append(folder / name)
+        except BaseException:
+            for path in moved:
+                path.unlink()
+            raise
+
+
+def _csv(header: Sequence[str], columns: Iterable[Sequence[str]]) -> str:
+    stream = io.StringIO()
+    writer = csv.writer(stream, lineterminator="\n")
+    writer.writerow(header)
+    writer.writerows(zip(*columns, strict=True))
+    return stream.getvalue()
+
+
+def _written(values: FloatArray, unit: float, decimals: int) -> list[str]:
+    """Write numbers in a unit; NaN as an empty cell."""
+    return ["" if np.isnan(value) else f"{value / unit:.{decimals}f}" for value in values.tolist()]
+
+
+def _penetration_csv(drawn: ReferenceCampaign) -> str:
+    tests, unloading = drawn.penetration, drawn.penetration.unloading
+    header = ("experiment", "site", "spot", "tool", "edge_angle_deg", "load_N", "depth_mm", "branch")
+    row, load, depth = tests.row, tests.load, tests.penetration_depth
+    owner, branch = tests.series_of_reading, [LOADING] * len(row)
+    if unloading is not None:
+        row, load = np.append(row, unloading.row), np.append(load, unloading.load)
+        depth = np.append(depth, unloading.penetration_depth)
+        owner, branch = np.append(owner, unloading.series_of_reading), branch + [UNLOADING] * len(unloading.row)
+    order = np.argsort(row, kind="stable")
+    of_row = owner[order].tolist()
+    names = [[column[index] for index in of_row] for column in (tests.experiment, tests.site, tests.spot, tests.tool)]
+    angle = _written(tests.edge_angle[of_row], DEGREE, 0)
+    numbers = (_written(load[order], 1.0, 0), _written(depth[order], MM, 2))
+    columns = [*names, angle, *numbers, [branch[index] for index in order.tolist()]]
+    if tests.depth_after is None:
+        return _csv(header, columns)
+    after = np.concatenate([tests.depth_after, np.full(len(row) - len(tests.load), np.nan)])
+    return _csv((*header, "depth_after_mm"), [*columns, _written(after[order], MM, 2)])
+
+
+def _shear_csv(drawn: ReferenceCampaign) -> str:
+    tests = drawn.shear
+    header: tuple[str, ...] = (
+        "experiment", "site", "spot", "plate", "edge_angle_deg", "depth_mm", "lever_arm_mm", "moment_Nm",
+        "snow_density_kg_per_m3",
+    )  # fmt: skip
+    numbers = [
+        _written(tests.edge_angle, DEGREE, 0),
+        _written(tests.penetration_depth, MM, 2),
+        _written(tests.lever_arm, MM, 0),
+        _written(tests.moment, 1.0, 2),
+        _written(tests.snow_density, 1.0, 0),
+    ]
+    columns = [tests.experiment, tests.site, tests.spot, tests.plate, *numbers]
+    turning = tests.turning
+    if turning is None:
+        return _csv(header, columns)
+    of_row = turning.test_of_reading.tolist()
+    several = [[column[index] for index in of_row] for column in columns]
+    several[header.index("moment_Nm")] = _written(turning.moment, 1.0, 2)
+    return _csv((*header, "turning_angle_deg"), [*several, _written(turning.turning_angle, DEGREE, 4)])
+
+
+def _density_csv(drawn: ReferenceCampaign) -> str:
+    samples = drawn.density
+    header = ("sample", "site", "snow_density_kg_per_m3")
+    return _csv(header, [samples.sample, samples.site, _written(samples.snow_density, 1.0, 0)])
+
+
+def _drop_cone_csv(drawn: ReferenceCampaign) -> str:
+    tests = drawn.drop_cone
+    header = ("test", "site", "repeat", "drop_cone_depth_mm")
+    return _csv(header, [tests.test, tests.site, tests.repeat, _written(tests.drop_cone_depth, MM, 1)])
+
+
+def _campaign_toml(drawn: ReferenceCampaign) -> str:
+    noise = drawn.noise
+    tool = design.SKI_PIECE
+    hard, soft, about_density = (
+        scatter / N_PER_MM2 for scatter in (design.HARD_SCATTER, design.SOFT_SCATTER, design.DENSITY_SCATTER)
+    )
+    further = _further_noise(drawn)
+    return f"""\
+# SYNTHETIC DATA: no snow was measured. Drawn by skisnow's reference campaign with seed {drawn.seed}.
+# Design, ranges and group sizes after Mössner and others (2013), J. Glaciol.; what that paper does not print is chosen.
+# Noise model, standard deviations of independent normal draws:
+#   gauge: depths rounded to {noise.gauge_resolution / MM:g} mm, none below 0
+#   load: the true load is the stated one plus {noise.load_sd:g} N
+#   placement: the depth zero of a series is off by {noise.seating_sd / MM:g} mm;
+#     each depth scatters by {noise.depth_scatter:.0%}
+#   unloading at {", ".join(design.UNLOADED_SITES)}: k_u/H_V is {design.UNLOADING_RATIO:g}, its logarithm varies by
+#     {noise.unloading_log_sd:g} from spot to spot; each rebound scatters by {noise.rebound_scatter:.0%}
+#   snow: ln H_V varies by {noise.hardness_log_sd:g} within a site, redrawn outside 0.04-90 N/mm3; layering of a series:
+#     F = H_V V(e7) (V(e)/V(e7))^(1 + kappa/2), kappa with {noise.layering_sd:g}
+#   shear: S_f scatters by {hard:g} N/mm2 (hard), {soft:g} (soft, about Eqn 13), {about_density:g} (about Eqn 14),
+#     hard and Eqn 14 redrawn outside 0.04-0.40;
+#     moment {noise.moment_sd:g} N m; the true lever arm is the stated one plus {noise.lever_arm_sd / MM:g} mm
+{further}name = "{drawn.name}"
+place = "{drawn.place}"
+observers = ["skisnow"]
+gauge_resolution_mm = {noise.gauge_resolution / MM:g}
+load_uncertainty_N = {noise.load_sd:g}
+moment_uncertainty_Nm = {noise.moment_sd:g}
+lever_arm_uncertainty_mm = {noise.lever_arm_sd / MM:g}
+load_steps_N = [{", ".join(f"{load:g}" for load in design.LOADS)}]
+
+[[tool]]
+name = "{design.TOOL}"
+shape = "ski"
+length_mm = {tool.length / MM:g}
+width_mm = {tool.width / MM:g}
+
+[[plate]]
+name = "{design.PLATE}"
+length_mm = {design.PLATE_LENGTH / MM:g}
+"""
+
+
+def _further_noise(drawn: ReferenceCampaign) -> str:
+    """Of what was asked for beside the usual tables."""
+    noise, said = drawn.noise, ""
+    if drawn.shear.turning is not None:
+        said += (
+            f"#   turning angles: u_y is {design.SHEAR_DISPLACEMENT / MM:g} mm, its logarithm varies by "
+            f"{noise.displacement_log_sd:g} from test to test; each angle by {noise.turning_sd / DEGREE:g} degrees\n"
+        )
+    if drawn.penetration.depth_after is not None:
+        said += (
+            f"#   creep at {design.CREEPING_SITE}: after waiting each depth is larger by an exponential share of mean "
+            f"{noise.creep_mean:g}\n"
+        )
+    return said

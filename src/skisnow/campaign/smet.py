@@ -1,0 +1,255 @@
+"""Weather of a station from SMET, the ASCII format of MeteoIO and SNOWPACK (WSL Institute SLF), versions 0.9 to 1.2.
+
+A header with place, time zone, fields and units precedes a row for each time. Values are SI: K, m/s, W/m², and 1 for
+the relative humidity. ``units_offset`` and ``units_multiplier`` are applied, ``nodata`` becomes NaN. Since version 1.1
+the multiplier comes first (value × multiplier + offset); before, the offset did ((value + offset) × multiplier).
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from dataclasses import dataclass, field
+from datetime import MAXYEAR, MINYEAR, UTC, datetime, timedelta, timezone
+from pathlib import Path
+from typing import TYPE_CHECKING, Final, NoReturn
+
+import numpy as np
+import numpy.typing as npt
+
+from .._support.display import Facts, Shown
+from .._support.errors import FieldDataError
+from .._support.user_files import GivenError, plain_bytes
+from ..parameters.quantity import LARGEST
+from .problems import error
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+FloatArray = npt.NDArray[np.float64]
+
+MOST_BYTES: Final = 256 * 2**20
+_NEEDED: Final = ("station_id", "nodata", "fields")
+_TIME: Final = "timestamp"
+_COMMENT: Final = re.compile("[#;].*")
+_VERSIONS: Final = ("0.9", "0.95", "0.99", "1.0", "1.1", "1.2")
+_OFFSET_FIRST: Final = _VERSIONS[:4]
+_ZONES: Final = (-14.0, 14.0)
+"""Hours east of Greenwich that a clock may show."""
+
+
+@dataclass(frozen=True, slots=True, repr=False)
+class StationSeries(Shown):
+    """What a weather station measured, in rising time.
+
+    Attributes
+    ----------
+    file, station
+        Name of the file; ``station_name``, else ``station_id``.
+    latitude_deg, longitude_deg, altitude
+        Of the station (degree, m); None where the header does not say.
+    utc_offset
+        Of the file's times, hours east of Greenwich.
+    time
+        (n,) seconds since 1970-01-01, UTC.
+    fields
+        Each column by its name in the file, SI, NaN where there is no value.
+    """
+
+    file: str
+    station: str
+    latitude_deg: float | None
+    longitude_deg: float | None
+    altitude: float | None
+    utc_offset: float
+    time: FloatArray = field(repr=False)
+    fields: Mapping[str, FloatArray] = field(repr=False)
+
+    def _facts(self) -> Facts:
+        ends = [datetime.fromtimestamp(each, UTC).strftime("%Y-%m-%d %H:%M") for each in self.time[[0, -1]].tolist()]
+        return Facts(f"{self.station!r}: {len(self.time)} rows, {ends[0]} to {ends[1]} UTC, {', '.join(self.fields)}")
+
+    def at(self, moments: FloatArray, name: str, *, longest_gap: float) -> FloatArray:
+        """A field at some times (s since 1970, UTC), linear between neighbours; NaN outside and over longer gaps."""
+        values = self.fields.get(name)
+        if values is None:
+            return np.full(len(moments), math.nan)
+        known = np.isfinite(values)
+        time, values = self.time[known], values[known]
+        if not len(time):
+            return np.full(len(moments), math.nan)
+        after = np.searchsorted(time, moments)
+        low, high = np.clip(after - 1, 0, None), np.clip(after, None, len(time) - 1)
+        exact = time[high] == moments
+        inside = exact | ((after > 0) & (after < len(time)) & (time[high] - time[low] <= longest_gap))
+        return np.where(inside, np.interp(moments, time, values), math.nan)
+
+
+def read_smet(path: str | Path) -> StationSeries:
+    """Read a SMET file in ASCII.
+
+    Raises
+    ------
+    FieldDataError
+        The file cannot be read, is no SMET in ASCII, lacks a key of the header, or has a row, time or number that does
+        not fit; the message names the line.
+    """
+    path = Path(path)
+    try:
+        data = plain_bytes(path, most_bytes=MOST_BYTES)
+    except GivenError as failure:
+        allowed, action = "a weather file in SMET", "Check its name and folder."
+        problem = error("unreadable_file", path.name, value=failure.what, allowed=allowed, action=action)
+        raise FieldDataError([problem]) from failure
+    return smet_series(path.name, data)
+
+
+def smet_series(name: str, data: bytes) -> StationSeries:
+    """Take the bytes of a file of this name.
+
+    Raises
+    ------
+    FieldDataError
+        As `read_smet`.
+    """
+    return _Reading(name, data).series()
+
+
+class _Reading:
+    """One file, whose refusals name the line."""
+
+    def __init__(self, file: str, data: bytes) -> None:
+        self._file = file
+        try:
+            text = data.decode("utf-8-sig")
+        except UnicodeDecodeError:
+            text = data.decode("latin-1")
+        self._lines = text.splitlines()
+        first = self._lines[0].split() if self._lines else []
+        if len(first) < 3 or first[0] != "SMET" or first[2] != "ASCII":
+            found = self._lines[0][:80] if self._lines else "nothing"
+            self._refuse(1, "", found, "SMET, a version and ASCII", "Export the station's data as SMET in ASCII.")
+        if first[1] not in _VERSIONS:
+            self._refuse(1, "", first[1], f"a version among {', '.join(_VERSIONS)}", "Export it in one of these.")
+        self._version = first[1]
+        self._header, self._data = self._split()
+
+    def _refuse(self, line: int, column: str, value: str, allowed: str, action: str) -> NoReturn:
+        problem = error(
+            "unreadable_file",
+            self._file,
+            row=line,
+            column=column or None,
+            value=value,
+            allowed=allowed,
+            action=action,
+        )
+        raise FieldDataError([problem])
+
+    def _split(self) -> tuple[dict[str, tuple[int, str]], int]:
+        """Keys of the header with their lines, and the line before the first row."""
+        header: dict[str, tuple[int, str]] = {}
+        for number, line in enumerate(self._lines, start=1):
+            plain = _COMMENT.sub("", line).strip()
+            if plain.upper() == "[DATA]":
+                return header, number
+            key, equals, value = plain.partition("=")
+            if equals:
+                header[key.strip().lower()] = (number, value.strip())
+        allowed, action = "a header and then [DATA]", "The file is cut off; copy it again."
+        return self._refuse(len(self._lines), "", "no [DATA]", allowed, action)
+
+    def series(self) -> StationSeries:
+        """Everything of the file."""
+        for key in _NEEDED:
+            if key not in self._header:
+                self._refuse(self._data, key, "nothing", f"the key {key} in the header", "Add it.")
+        line, listed = self._header["fields"]
+        names = listed.split()
+        if _TIME not in names or len(set(names)) != len(names):
+            self._refuse(line, "fields", listed[:80], f"different names, {_TIME} among them", "Correct the header.")
+        offset = self._zone()
+        times, table = self._rows(names, offset)
+        nodata = self._number_of("nodata", -999.0)
+        values = self._in_si(np.where(table == nodata, math.nan, table), names)
+        columns = {name: column for name, column in zip(names, values.T, strict=True) if name != _TIME}
+        place = [self._number_of(key, math.nan) for key in ("latitude", "longitude", "altitude")]
+        latitude, longitude, altitude = (None if math.isnan(each) or each == nodata else each for each in place)
+        station = self._header.get("station_name", self._header["station_id"])[1]
+        return StationSeries(self._file, station, latitude, longitude, altitude, offset, times, columns)
+
+    def _zone(self) -> float:
+        """Hours east of Greenwich of the times that name no zone."""
+        hours = self._number_of("tz", 0.0)
+        low, high = _ZONES
+        if not low <= hours <= high:
+            line, text = self._header["tz"]
+            self._refuse(line, "tz", text[:80], f"hours from {low:g} to {high:g}", "Correct the time zone.")
+        return hours
+
+    def _in_si(self, table: FloatArray, names: Sequence[str]) -> FloatArray:
+        """A table in SI, by the order of offset and multiplier of the file's version."""
+        offsets, factors = self._units("units_offset", 0.0, names), self._units("units_multiplier", 1.0, names)
+        with np.errstate(over="ignore", invalid="ignore"):
+            offset_first = self._version in _OFFSET_FIRST
+            values = (table + offsets) * factors if offset_first else table * factors + offsets
+        huge = ~np.isnan(table) & ~(np.abs(values) <= LARGEST)
+        if huge.any():
+            name = names[int(np.argmax(huge.any(axis=0)))]
+            allowed, action = f"numbers to ±{LARGEST:g} in SI", "Correct units_offset, units_multiplier or the numbers."
+            self._refuse(self._header["fields"][0], name, "a larger number", allowed, action)
+        return values
+
+    def _number_of(self, key: str, default: float) -> float:
+        if key not in self._header:
+            return default
+        line, text = self._header[key]
+        return self._number(line, key, text)
+
+    def _number(self, line: int, column: str, text: str) -> float:
+        try:
+            value = float(text)
+        except ValueError:
+            value = math.nan
+        if not math.isfinite(value):
+            self._refuse(line, column, text[:80], "a finite number", "Correct the number.")
+        return value
+
+    def _units(self, key: str, default: float, names: Sequence[str]) -> list[float]:
+        if key not in self._header:
+            return [default] * len(names)
+        line, text = self._header[key]
+        found = [self._number(line, key, each) for each in text.split()]
+        if len(found) != len(names):
+            self._refuse(line, key, f"{len(found)} numbers", f"{len(names)}, one for each field", "Correct the header.")
+        return found
+
+    def _rows(self, names: Sequence[str], offset: float) -> tuple[FloatArray, FloatArray]:
+        zone, place = timezone(timedelta(hours=offset)), names.index(_TIME)
+        times: list[float] = []
+        table: list[list[float]] = []
+        for number, line in enumerate(self._lines[self._data :], start=self._data + 1):
+            cells = _COMMENT.sub("", line).split()
+            if not cells:
+                continue
+            if len(cells) != len(names):
+                self._refuse(number, "", f"{len(cells)} cells", f"{len(names)}, one for each field", "Correct the row.")
+            moment = self._moment(number, cells[place], zone)
+            if times and moment <= times[-1]:
+                self._refuse(number, _TIME, cells[place], "a later time than the row before", "Sort the rows.")
+            times.append(moment)
+            cells[place] = "0"
+            table.append([self._number(number, name, cell) for name, cell in zip(names, cells, strict=True)])
+        if not times:
+            self._refuse(self._data, "", "no row", "at least one row below [DATA]", "Export the station's data again.")
+        return np.array(times), np.array(table)
+
+    def _moment(self, line: int, text: str, zone: timezone) -> float:
+        try:
+            found = datetime.fromisoformat(text)
+            moment = (found if found.tzinfo else found.replace(tzinfo=zone)).astimezone(UTC)
+        except (ValueError, OverflowError):
+            self._refuse(line, _TIME, text[:80], "a time such as 2026-02-03T09:10", "Correct the time.")
+        if not MINYEAR < moment.year < MAXYEAR:  # so that each zone has this time
+            self._refuse(line, _TIME, text[:80], f"a year between {MINYEAR} and {MAXYEAR}", "Correct the time.")
+        return moment.timestamp()

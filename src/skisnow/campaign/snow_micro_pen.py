@@ -1,0 +1,281 @@
+"""Recordings of a SnowMicroPen: force against depth from its binary ``.PNT`` files.
+
+A file is a header of 512 bytes, then force samples of two bytes, all big endian and signed, then padding to full
+blocks. The layout is the one that the instrument's makers document in their own reader, snowmicropyn (WSL Institute for
+Snow and Avalanche Research SLF).
+"""
+
+from __future__ import annotations
+
+import re
+import struct
+from dataclasses import dataclass, field
+from datetime import UTC, date, datetime, timedelta
+from pathlib import Path
+from typing import Any, Final, NoReturn
+
+import numpy as np
+import numpy.typing as npt
+
+from .._support.errors import FieldDataError
+from .._support.units import CM, MM
+from .._support.user_files import GivenError, plain_bytes
+from .problems import error
+
+FloatArray = npt.NDArray[np.float64]
+
+HEADER_BYTES: Final = 512
+MOST_BYTES: Final = 1 << 26
+"""Of a recording: 30 million samples, 130 m of snow at the usual distance of 4 µm."""
+_SAMPLE_BYTES: Final = 2
+_NO_HEIGHT_CM: Final = 99999.0
+_MICROMETRE: Final = 1e-6
+_WEEKS_OF_GPS_COUNTER: Final = timedelta(weeks=1024)
+
+# name, offset in bytes, format for struct
+_FIELDS: Final = (
+    ("firmware", 0, "h"),
+    ("announced_samples", 2, "i"),
+    ("sample_distance_mm", 6, "f"),
+    ("force_per_count", 10, "f"),
+    ("force_offset", 18, "h"),
+    ("clock", 20, "6h"),
+    ("speed_mm_per_s", 64, "f"),
+    ("comment_length", 152, "h"),
+    ("comment", 154, "102s"),
+    ("name", 256, "8s"),
+    ("latitude_deg", 264, "f"),
+    ("longitude_deg", 268, "f"),
+    ("height_cm", 272, "f"),
+    ("dilution_of_precision", 276, "f"),
+    ("hemisphere", 280, "2s"),
+    ("satellites", 282, "h"),
+    ("fix_mode", 284, "h"),
+    ("samples", 358, "i"),
+    ("tip_diameter_um", 376, "i"),
+    ("overload_N", 380, "h"),
+    ("instrument_serial", 384, "h"),
+    ("instrument_length_mm", 386, "h"),
+    ("sensor_serial", 392, "20s"),
+    ("amplifier_serial", 412, "20s"),
+)
+
+
+@dataclass(frozen=True, slots=True)
+class SnowMicroPenProfile:
+    """A recording: force against depth, and what the header says.
+
+    Attributes
+    ----------
+    file, name, comment
+        Name of the file; name of the recording and comment in its header.
+    depth
+        How far the tip had moved at each sample (m). Its zero is where the recording began, in the air above the snow:
+        the file does not say where the surface is, nor why a recording ended.
+    force
+        Force on the tip (N), counts times `force_per_count`; no offset is taken off.
+    sample_distance
+        Distance from sample to sample (m).
+    force_per_count
+        N per count of the analogue-digital converter.
+    force_offset
+        As in the header, where the makers call it unused; 0 in practice.
+    announced_samples
+        A second, larger sample count of the header. The recording has ``len(force)``, the header's count of force
+        samples; what follows it in the file is padding.
+    clock
+        Time stamp by the instrument's clock, UTC; None where it is no date. It may be wrong by years, see
+        `date_in_file_name`.
+    date_in_file_name
+        The first eight digits of the file's name that are a date (20200208), or None.
+    latitude_deg, longitude_deg
+        WGS 84, north and east positive: the header has magnitudes and the flags N or S, E or W. None where flags or
+        numbers are not valid, or both are 0.
+    height
+        Above sea level (m), None where the receiver gave none.
+    dilution_of_precision, satellites, fix_mode
+        Of the satellite receiver, as in the header.
+    speed
+        Of the tip (m/s).
+    tip_diameter, instrument_length
+        In m.
+    overload_N
+        Force at which the instrument stops itself.
+    firmware, instrument_serial, sensor_serial, amplifier_serial
+        As in the header.
+    """
+
+    file: str
+    name: str
+    comment: str
+    depth: FloatArray = field(repr=False)
+    force: FloatArray = field(repr=False)
+    sample_distance: float
+    force_per_count: float
+    force_offset: int
+    announced_samples: int
+    clock: datetime | None
+    date_in_file_name: date | None
+    latitude_deg: float | None
+    longitude_deg: float | None
+    height: float | None
+    dilution_of_precision: float
+    satellites: int
+    fix_mode: int
+    speed: float
+    tip_diameter: float
+    instrument_length: float
+    overload_N: int
+    firmware: int
+    instrument_serial: int
+    sensor_serial: str
+    amplifier_serial: str
+
+    @property
+    def recorded_on(self) -> date | None:
+        """Day of the recording: the file name's, else the clock's."""
+        return self.date_in_file_name or (self.clock.date() if self.clock else None)
+
+    @property
+    def clock_is_one_rollover_behind(self) -> bool:
+        """Whether the clock is exactly 1024 weeks behind the file name.
+
+        Satellites count weeks modulo 1024, last from 0 on 7 April 2019; a receiver that does not know gives a date 19.6
+        years too early, at the right time of day.
+        """
+        if self.clock is None or self.date_in_file_name is None:
+            return False
+        return self.date_in_file_name - self.clock.date() == _WEEKS_OF_GPS_COUNTER
+
+
+def read_snow_micro_pen(path: Path) -> SnowMicroPenProfile:
+    """Read a ``.PNT`` file.
+
+    Raises
+    ------
+    FieldDataError
+        Where the file cannot be read, is empty, is cut off, or is no recording of a SnowMicroPen.
+    """
+    path = Path(path)
+    try:
+        data = plain_bytes(path, most_bytes=MOST_BYTES)
+    except GivenError as failure:
+        _refuse(path.name, failure.what, "a readable file", "Check its name and permissions.")
+    return snow_micro_pen_profile(path.name, data)
+
+
+def snow_micro_pen_profile(name: str, data: bytes) -> SnowMicroPenProfile:
+    """Take the bytes of a ``.PNT`` file of this name.
+
+    Raises
+    ------
+    FieldDataError
+        As `read_snow_micro_pen`.
+    """
+    if not data:
+        _refuse(name, "0 bytes", "a recording of a SnowMicroPen", "Copy it from the instrument again.", "empty_file")
+    if len(data) < HEADER_BYTES:
+        allowed = f"at least {HEADER_BYTES} bytes, the header of a SnowMicroPen recording"
+        _refuse(name, f"{len(data)} bytes", allowed, "Copy the file from the instrument again.")
+    header = {key: _value(data, offset, form) for key, offset, form in _FIELDS}
+    _check(name, header, len(data))
+    counts = np.frombuffer(data, dtype=">i2", count=header["samples"], offset=HEADER_BYTES)
+    return _profile(name, header, counts.astype(np.float64))
+
+
+def _value(data: bytes, offset: int, form: str) -> Any:
+    values = struct.unpack_from(f">{form}", data, offset)
+    return values[0] if len(values) == 1 else values
+
+
+def _refuse(name: str, found: str, allowed: str, action: str, code: str = "unreadable_file") -> NoReturn:
+    raise FieldDataError([error(code, name, value=found, allowed=allowed, action=action)])
+
+
+def _check(file: str, header: dict[str, Any], size: int) -> None:
+    """Refuse what is no such recording; the format has no signature, so that plausible numbers must do."""
+    limits = {
+        "sample_distance_mm": (1e-4, 1.0),
+        "force_per_count": (1e-6, 1.0),
+        "samples": (1, 2**31),
+        "speed_mm_per_s": (0.0, 1000.0),
+        "tip_diameter_um": (0, 100_000),
+        "instrument_length_mm": (0, 10_000),
+    }
+    for name, (low, high) in limits.items():
+        if not low <= header[name] <= high:  # NaN too
+            allowed = f"a SnowMicroPen recording, whose header has {name} from {low:g} to {high:g}"
+            _refuse(file, f"{name} {header[name]:g}", allowed, "This is another kind of file, or a damaged one.")
+    needed = HEADER_BYTES + _SAMPLE_BYTES * header["samples"]
+    if size < needed:
+        allowed = f"{needed} bytes or more for the {header['samples']} samples that the header counts"
+        _refuse(file, f"{size} bytes", allowed, "The file is cut off; copy it from the instrument again.")
+
+
+def _profile(file: str, header: dict[str, Any], counts: FloatArray) -> SnowMicroPenProfile:
+    distance = header["sample_distance_mm"] * MM
+    latitude, longitude = _position(header)
+    return SnowMicroPenProfile(
+        file=file,
+        name=_text(header["name"]),
+        comment=_text(header["comment"][: max(header["comment_length"], 0)]),
+        depth=np.arange(counts.size) * distance,
+        force=counts * header["force_per_count"],
+        sample_distance=distance,
+        force_per_count=header["force_per_count"],
+        force_offset=header["force_offset"],
+        announced_samples=header["announced_samples"],
+        clock=_clock(header["clock"]),
+        date_in_file_name=_date_in(file),
+        latitude_deg=latitude,
+        longitude_deg=longitude,
+        height=_height(header["height_cm"]),
+        dilution_of_precision=header["dilution_of_precision"],
+        satellites=header["satellites"],
+        fix_mode=header["fix_mode"],
+        speed=header["speed_mm_per_s"] * MM,
+        tip_diameter=header["tip_diameter_um"] * _MICROMETRE,
+        instrument_length=header["instrument_length_mm"] * MM,
+        overload_N=header["overload_N"],
+        firmware=header["firmware"],
+        instrument_serial=header["instrument_serial"],
+        sensor_serial=_text(header["sensor_serial"]),
+        amplifier_serial=_text(header["amplifier_serial"]),
+    )
+
+
+def _text(raw: bytes) -> str:
+    """Take the text before the first NUL; what follows it is filling."""
+    return raw.split(b"\0", 1)[0].decode("latin-1").strip()
+
+
+def _clock(fields: tuple[int, ...]) -> datetime | None:
+    year, month, day, hour, minute, second = fields
+    try:
+        return datetime(year, month, day, hour, minute, second, tzinfo=UTC)
+    except ValueError:
+        return None
+
+
+def _date_in(name: str) -> date | None:
+    for digits in re.findall(r"(?<!\d)\d{8}(?!\d)", name):
+        try:
+            return datetime.strptime(digits, "%Y%m%d").replace(tzinfo=UTC).date()
+        except ValueError:
+            continue
+    return None
+
+
+def _position(header: dict[str, Any]) -> tuple[float, float] | tuple[None, None]:
+    latitude, longitude = header["latitude_deg"], header["longitude_deg"]
+    signs = {ord("N"): 1.0, ord("E"): 1.0, ord("S"): -1.0, ord("W"): -1.0}
+    north, east = header["hemisphere"].upper()
+    valid = north in b"NS" and east in b"EW" and abs(latitude) <= 90 and abs(longitude) <= 180
+    if not valid or latitude == longitude == 0:
+        return None, None
+    # The magnitudes: a firmware that already wrote signs beside its flags would else lose them.
+    return signs[north] * abs(latitude), signs[east] * abs(longitude)
+
+
+def _height(centimetres: float) -> float | None:
+    return None if centimetres == _NO_HEIGHT_CM or not np.isfinite(centimetres) else centimetres * CM

@@ -1,0 +1,104 @@
+"""Recordings of a SnowMicroPen as records of a campaign, and how they are evaluated."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Annotated, Literal, TypeAlias
+
+from .._support.display import Facts, Shown, amount
+from .._support.units import MM
+from ..parameters import Quantity, require_declared
+from .snow_micro_pen import SnowMicroPenProfile, snow_micro_pen_profile
+
+if TYPE_CHECKING:
+    import numpy as np
+    import numpy.typing as npt
+
+    FloatArray: TypeAlias = npt.NDArray[np.float64]
+    IntArray: TypeAlias = npt.NDArray[np.int64]
+
+Relation: TypeAlias = Literal["proksch-2015", "calonne-2020", "king-2020a", "king-2020b"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SnowMicroPenSettings:
+    """The section ``[snow_micro_pen]`` of campaign.toml, in SI; every default is a modelling assumption."""
+
+    from_depth: Annotated[
+        float,
+        Quantity(
+            "from_depth_mm",
+            "where the depth begins over which the force is averaged, from the snow surface; the instrument's cone of "
+            "60° and 5 mm is 4.3 mm long",
+            lowest=0.0,
+        ),
+    ] = 5.0 * MM
+    to_depth: Annotated[float, Quantity("to_depth_mm", "where it ends", lowest=0.0, above=True)] = 30.0 * MM
+    surface_rise: Annotated[
+        float,
+        Quantity(
+            "surface_rise_N",
+            "the snow begins where the force rises by this above what it was in the air just before …",
+            lowest=0.0,
+            above=True,
+        ),
+    ] = 0.01
+    surface_hold: Annotated[float, Quantity("surface_hold_mm", "… and stays above over this length", lowest=0.0)] = (
+        5.0 * MM
+    )
+    subtract_air_force: Annotated[
+        bool, Quantity("subtract_air_force", "take the air's force off before anything else")
+    ] = False
+    relation: Annotated[
+        Relation, Quantity("relation", "publication whose regression gives density and specific surface area")
+    ] = "calonne-2020"
+
+    def __post_init__(self) -> None:
+        require_declared(self)
+
+
+@dataclass(frozen=True, slots=True, repr=False)
+class SnowMicroPenRecordings(Shown):
+    """The m recordings that snow_micro_pen.csv names.
+
+    Attributes
+    ----------
+    recording, site, spot, file
+        Names as written in the table; an absent spot is ``""``.
+    surface
+        Depth of the snow surface that the table states, from where the recording began (m); NaN where it is looked for.
+    cancelled
+        Why the recording was cancelled, ``""`` where it was not.
+    row
+        Line of the table.
+    contents
+        Bytes of each file, as they are.
+    settings
+        How they are evaluated.
+    further
+        Every further column as text.
+    """
+
+    recording: tuple[str, ...]
+    site: tuple[str, ...]
+    spot: tuple[str, ...]
+    file: tuple[str, ...]
+    surface: FloatArray
+    cancelled: tuple[str, ...]
+    row: IntArray
+    contents: tuple[bytes, ...] = field(repr=False)
+    settings: SnowMicroPenSettings = field(default_factory=SnowMicroPenSettings)
+    further: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+
+    def __len__(self) -> int:
+        """Count the recordings."""
+        return len(self.recording)
+
+    def profile(self, index: int) -> SnowMicroPenProfile:
+        """Force against depth of one recording, by its index."""
+        return snow_micro_pen_profile(self.file[index], self.contents[index])
+
+    def _facts(self) -> Facts:
+        depths = f"{amount(self.settings.from_depth / MM)} to {amount(self.settings.to_depth / MM, 'mm')}"
+        return Facts(f"of {len(self)} recordings, forces from {depths}; {', '.join(dict.fromkeys(self.site))}")

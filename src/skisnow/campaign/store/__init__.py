@@ -1,0 +1,49 @@
+"""The store, a file or on a server: campaigns byte for byte, and journals (event sourcing) of those being entered."""
+
+from .address import ServerAddress, StorePlace, store_place
+from .corrected_export import ExportedCampaign, add_corrections, corrected_files, export_corrected
+from .journal import JournalHead, Journals, OvertakenError
+from .journal_entry import JournalEntry, NewEntry
+from .lookup import FoundCampaign, entered_files, export_entered, find_campaign
+from .replayed import ReplayedCampaign, ReplayedRow, ReplayedTest, replayed
+from .replayed_files import campaign_files, write_campaign
+from .store import AddedCampaign, Finding, Store, StoredCampaign, StoredFile, default_path
+from .stored_tables import StoredTable, stored_tables
+from .syncing import Conflict, Side, Synced, sync
+
+__all__ = [
+    "AddedCampaign",
+    "Conflict",
+    "ExportedCampaign",
+    "Finding",
+    "FoundCampaign",
+    "JournalEntry",
+    "JournalHead",
+    "Journals",
+    "NewEntry",
+    "OvertakenError",
+    "ReplayedCampaign",
+    "ReplayedRow",
+    "ReplayedTest",
+    "ServerAddress",
+    "Side",
+    "Store",
+    "StorePlace",
+    "StoredCampaign",
+    "StoredFile",
+    "StoredTable",
+    "Synced",
+    "add_corrections",
+    "campaign_files",
+    "corrected_files",
+    "default_path",
+    "entered_files",
+    "export_corrected",
+    "export_entered",
+    "find_campaign",
+    "replayed",
+    "store_place",
+    "stored_tables",
+    "sync",
+    "write_campaign",
+]

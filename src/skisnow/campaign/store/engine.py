@@ -1,0 +1,269 @@
+"""The database under the store: connections, transactions, the schema of a file, plain words for what goes wrong.
+
+A store on a server is opened by `server`. In a file,
+every connection has foreign keys on and waits for others; every commit is on the disk before it returns
+(``synchronous=FULL``). Connections are opened for each piece of work and closed after it, threads share none.
+"""
+
+from __future__ import annotations
+
+import errno
+import sqlite3
+import time
+from contextlib import closing, contextmanager, suppress
+from typing import TYPE_CHECKING, Any, Final
+
+from sqlalchemy import Connection, Engine, NullPool, create_engine, event
+from sqlalchemy.exc import DBAPIError
+
+from ..._support.errors import StoreError
+from ..._support.sqlite_file import (
+    NO_ROOM,
+    READ_ONLY,
+    connect,
+    first_damage,
+    place_reason,
+    primary_code,
+    require_schema,
+)
+from .address import ServerAddress
+from .schema import APPLICATION_ID, metadata
+from .server import lock_for_writing, needs_migration, open_server, reason
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from pathlib import Path
+
+    from sqlalchemy import ExceptionContext
+
+    from ..._support.sqlite_file import Mode
+    from .address import StorePlace
+
+_DAMAGED: Final = "the file is damaged; put a backup in its place, or export what can still be exported"
+_NO_STORE: Final = "this file is no store but something else; name another file"
+_NO_TEXT: Final = "Could not decode to UTF-8"
+_SYSTEM_REASONS: Final = {
+    errno.ENOSPC: NO_ROOM,
+    errno.EDQUOT: NO_ROOM,
+    errno.EROFS: READ_ONLY,
+    errno.EACCES: "access is not allowed; change the permissions or name another place",
+    errno.EPERM: "access is not allowed; change the permissions or name another place",
+}
+
+
+@contextmanager
+def database_errors(store: StorePlace, doing: str) -> Iterator[None]:
+    """Turn a database error into a `StoreError` that says what to do; ``doing`` as in "could not be read"."""
+    try:
+        yield
+    except (DBAPIError, sqlite3.Error) as error:
+        store = _place_of(error) or store
+        if isinstance(store, ServerAddress):
+            raise StoreError(f"The store {store} {doing}: {reason(error, store)}.") from error
+        original = getattr(error, "orig", error)
+        raise StoreError(f"The store {store} {doing}: {_file_reason(original, store)}.") from error
+    except UnicodeDecodeError as error:  # what SQLite says names a part of the schema that is no text any more
+        raise StoreError(f"The store {store} {doing}: {_DAMAGED}.") from error
+
+
+def _file_reason(error: BaseException, path: Path) -> str:
+    """Why a store in a file cannot be used, and what to do."""
+    message, code = str(error), primary_code(error)
+    if code == sqlite3.SQLITE_NOTADB:
+        return _NO_STORE
+    if code == sqlite3.SQLITE_CORRUPT or message.startswith(_NO_TEXT):
+        return f"{_DAMAGED} ({damage})" if (damage := _damage(path)) else _DAMAGED
+    return place_reason(error) or message
+
+
+def _damage(path: Path) -> str | None:
+    with suppress(sqlite3.Error), closing(connect(path, mode="ro")) as database:
+        return first_damage(database)
+    return None
+
+
+@contextmanager
+def file_errors(place: Path, doing: str) -> Iterator[None]:
+    """Turn a file system error into a `StoreError` that says what to do; ``doing`` as in "could not be read"."""
+    try:
+        yield
+    except OSError as error:
+        why = _SYSTEM_REASONS.get(error.errno or 0, error.strerror or str(error))
+        raise StoreError(f"{error.filename or place} {doing}: {why}.") from error
+
+
+def _remember_place(engine: Engine, place: StorePlace) -> None:
+    """Errors say which of two stores they are from."""
+
+    def remember(context: ExceptionContext) -> None:
+        context.original_exception.skisnow_place = place  # type: ignore[attr-defined]
+
+    event.listen(engine, "handle_error", remember)
+
+
+def _place_of(error: BaseException) -> StorePlace | None:
+    return getattr(getattr(error, "orig", None) or error, "skisnow_place", None)
+
+
+@contextmanager
+def reading(engine: Engine) -> Iterator[Connection]:
+    """Give a connection that sees the store as it is now, whatever others write meanwhile; it cannot commit."""
+    with (
+        engine.connect() as connection
+    ):  # ended by a rollback, which works even on damaged files, where COMMIT does not
+        if not is_file(connection):
+            connection.execution_options(isolation_level="REPEATABLE READ", postgresql_readonly=True)
+        yield connection
+
+
+@contextmanager
+def writing(engine: Engine) -> Iterator[Connection]:
+    """Give a connection that alone may write; all of its work is kept, or none."""
+    with engine.connect() as connection, connection.execution_options(skisnow_begin="IMMEDIATE").begin():
+        if not is_file(connection):
+            lock_for_writing(connection)
+        yield connection
+
+
+@contextmanager
+def apart(connection: Connection) -> Iterator[None]:
+    """What fails inside leaves the transaction as it was before, so that it can go on; a server ends it otherwise."""
+    if is_file(connection):
+        yield
+    else:
+        with connection.begin_nested():
+            yield
+
+
+def is_file(connection: Connection) -> bool:
+    """Tell an SQLite file from a server."""
+    return connection.dialect.name == "sqlite"
+
+
+def open_engine(place: StorePlace, *, create: bool, busy_timeout_s: float) -> Engine:
+    """Connect to the database and bring its schema up to date.
+
+    Raises
+    ------
+    StoreError
+        It is no store, or of a newer program, or damaged, or must be written and cannot.
+    """
+    with database_errors(place, "cannot be used"):
+        if isinstance(place, ServerAddress):
+            engine = open_server(place, create=create, busy_timeout_s=busy_timeout_s)
+        else:
+            engine = _open_file(place, create=create, busy_timeout_s=busy_timeout_s)
+    _remember_place(engine, place)
+    return engine
+
+
+def _open_file(path: Path, *, create: bool, busy_timeout_s: float) -> Engine:
+    engine = _readable_engine(path, create=create, busy_timeout_s=busy_timeout_s)
+    if _is_outdated(engine, path):
+        _bring_up_to_date(engine, path, busy_timeout_s)
+    _require_tables(engine, path)
+    return engine
+
+
+def _require_tables(engine: Engine, path: Path) -> None:
+    """Check that every table of the schema is there with all of its columns."""
+    with reading(engine) as connection:
+        database: Any = connection.connection.driver_connection
+        try:
+            require_schema(database, {name: table.columns.keys() for name, table in metadata.tables.items()})
+        except sqlite3.DatabaseError as error:
+            if place_reason(error) is not None:
+                raise
+            raise StoreError(f"{path} is damaged: {error}. Put a backup in its place.") from error
+
+
+def _readable_engine(path: Path, *, create: bool, busy_timeout_s: float) -> Engine:
+    engine = _engine(path, "rwc" if create else "rw", busy_timeout_s)
+    try:
+        _tables(engine)
+    except DBAPIError as error:
+        # A write-ahead log needs a file beside the store. Where the folder forbids that and there is no log, nobody is
+        # writing, and SQLite can be told to read the file as it stands.
+        log = path.with_name(path.name + "-wal")
+        forbidden = primary_code(error.orig or error) in (sqlite3.SQLITE_CANTOPEN, sqlite3.SQLITE_READONLY)
+        if not forbidden or not path.exists() or (log.exists() and log.stat().st_size > 0):
+            raise
+        engine = _engine(path, "ro&immutable=1", busy_timeout_s)
+        _tables(engine)
+    return engine
+
+
+def _engine(path: Path, mode: Mode, busy_timeout_s: float) -> Engine:
+    def open_file() -> sqlite3.Connection:
+        connection = connect(path, mode=mode, timeout_s=busy_timeout_s)
+        try:
+            connection.execute("PRAGMA foreign_keys = ON")
+            connection.execute("PRAGMA synchronous = FULL")
+        except BaseException:
+            connection.close()
+            raise
+        return connection
+
+    engine = create_engine("sqlite://", creator=open_file, poolclass=NullPool)
+    event.listen(engine, "begin", _begin)
+    return engine
+
+
+def _begin(connection: Connection) -> None:
+    # The driver's own BEGIN comes late and never before DDL; with isolation_level None it stays out of the way.
+    connection.exec_driver_sql(f"BEGIN {connection.get_execution_options().get('skisnow_begin', 'DEFERRED')}")
+
+
+def _tables(engine: Engine) -> set[str]:
+    with reading(engine) as connection:
+        return set(connection.exec_driver_sql("SELECT name FROM sqlite_master WHERE type = 'table'").scalars())
+
+
+def _revision(connection: Connection, path: Path) -> str | None:
+    """Migration that the store is at; None for a file without tables."""
+    tables = set(connection.exec_driver_sql("SELECT name FROM sqlite_master WHERE type = 'table'").scalars())
+    if not tables - {"alembic_version"}:
+        return None
+    if connection.exec_driver_sql("PRAGMA application_id").scalar_one() != APPLICATION_ID:
+        raise StoreError(f"{path} is an SQLite database of another program, not a store; name another file.")
+    versions = connection.exec_driver_sql("SELECT version_num FROM alembic_version").scalars().all()
+    if len(versions) != 1 or not isinstance(versions[0], str):
+        raise StoreError(f"{path} is damaged: it does not say what version it is. Put a backup in its place.")
+    return versions[0]
+
+
+def _is_outdated(engine: Engine, path: Path) -> bool:
+    with reading(engine) as connection:
+        return needs_migration(_revision(connection, path), path)
+
+
+def _bring_up_to_date(engine: Engine, path: Path, busy_timeout_s: float) -> None:
+    from .migrations import upgrade
+
+    _use_write_ahead_log(engine, busy_timeout_s)
+    with engine.connect() as connection:
+        # Tables are rebuilt by some migrations, which foreign keys would hinder; they can only be switched off outside
+        # of a transaction and are checked before it ends.
+        connection.connection.cursor().execute("PRAGMA foreign_keys = OFF")
+        with connection.execution_options(skisnow_begin="IMMEDIATE").begin():
+            if not needs_migration(_revision(connection, path), path):
+                return  # another process was faster
+            upgrade(connection)
+            if connection.exec_driver_sql("PRAGMA foreign_key_check").first() is not None:
+                raise StoreError(
+                    f"{path} holds rows that point nowhere; it was left as it is. Put a backup in its place."
+                )
+
+
+def _use_write_ahead_log(engine: Engine, busy_timeout_s: float) -> None:
+    """Switch the file to write-ahead logging, which it then keeps; SQLite does not wait for others here by itself."""
+    give_up = time.monotonic() + busy_timeout_s
+    while True:
+        try:
+            with engine.connect() as connection:
+                connection.connection.cursor().execute("PRAGMA journal_mode = WAL")
+            return
+        except sqlite3.OperationalError as error:
+            if primary_code(error) != sqlite3.SQLITE_BUSY or time.monotonic() > give_up:
+                raise
+        time.sleep(0.01)

@@ -1,0 +1,258 @@
+"""Folders that go into the store and come out of it: listing, hashing, safe paths, writing.
+
+What is stored of a folder is the path and the bytes of each regular file; empty folders, times and permissions are not.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import re
+import stat
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path, PurePosixPath
+from tempfile import TemporaryDirectory
+from typing import TYPE_CHECKING, Final, Protocol
+
+from ..._support.errors import ParameterError, StoreError
+from ..._support.user_files import MOST_TOML_BYTES, plain_bytes, toml_values
+from ..reading.campaign_files import FilesOfFolder
+from ..reading.text import UnreadableTextError, decode
+from ..reading.workbook_files import DESCRIPTION, unfolded
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Mapping
+
+_WINDOWS_NAMES: Final = re.compile(
+    r"(con|prn|aux|nul|conin\$|conout\$|com[0-9¹²³]|lpt[0-9¹²³])\s*(\..*)?", re.IGNORECASE
+)
+_NOT_ON_WINDOWS: Final = re.compile(r'[<>:"|?*\\\x00-\x1f]|[. ]$')
+
+
+class Progress(Protocol):
+    """Told how many bytes of all have been worked through."""
+
+    def __call__(self, done_bytes: int, total_bytes: int, /) -> None:
+        """Take note."""
+
+
+def no_progress(done_bytes: int, total_bytes: int, /) -> None:
+    """Take no note of the progress."""
+
+
+@dataclass(frozen=True, slots=True)
+class StoredFile:
+    """A file of a campaign: path relative to its folder (parts joined by ``/``), size in bytes, SHA-256 in hex."""
+
+    path: str
+    size: int
+    sha256: str
+
+
+@dataclass(frozen=True, slots=True)
+class FileState:
+    """What must not change while a file is read: its size (bytes) and the time of its last change (ns)."""
+
+    size: int
+    changed_ns: int
+
+
+def manifest_sha256(files: Iterable[StoredFile]) -> str:
+    """Hash paths, sizes and contents of a campaign, whatever the order the files come in.
+
+    The manifest is the line ``skisnow manifest 1`` and, sorted by the bytes of the path in UTF-8, for each file
+    ``SHA256 SIZE PATH`` and a zero byte.
+
+    >>> manifest_sha256([])[:12]
+    '16e12f957da4'
+    """
+    manifest = hashlib.sha256(b"skisnow manifest 1\n")
+    for path, file in sorted((file.path.encode(), file) for file in files):
+        manifest.update(f"{file.sha256} {file.size} ".encode() + path + b"\0")
+    return manifest.hexdigest()
+
+
+def listed_files(folder: Path) -> dict[str, FileState]:
+    """List every file below a folder, hidden ones too.
+
+    Raises
+    ------
+    StoreError
+        Links, pipes and the like (all are named), names that are no text, paths that no folder could give back.
+    OSError
+        A folder cannot be read.
+    """
+    files: dict[str, FileState] = {}
+    refused: list[str] = []
+    waiting = [folder]
+    while waiting:
+        for entry in sorted(waiting.pop().iterdir()):
+            path = entry.relative_to(folder).as_posix()
+            state = entry.lstat()
+            if stat.S_ISDIR(state.st_mode) and not _is_junction(entry):
+                waiting.append(entry)
+            elif stat.S_ISREG(state.st_mode):
+                _refuse_unsafe(path, for_windows=False)
+                files[path] = FileState(state.st_size, state.st_mtime_ns)
+            else:
+                refused.append(path)
+    if refused:
+        raise StoreError(
+            f"{folder} holds what is neither file nor folder (links, pipes, …): {', '.join(map(_printable, refused))}; "
+            "put the files themselves in their place, or take them out."
+        )
+    return files
+
+
+def _is_junction(entry: Path) -> bool:
+    """Tell Windows's other kind of link to a folder, which Python knows from 3.12."""
+    return bool(getattr(entry, "is_junction", bool)())
+
+
+def read_chunks(file: Path, chunk_bytes: int) -> Iterator[bytes]:
+    """Read a file piece by piece; every piece but the last is full."""
+    with file.open("rb") as stream:
+        while piece := stream.read(chunk_bytes):
+            yield piece
+
+
+def campaign_name(folder: Path) -> str:
+    """Name from campaign.toml, or the sheets that stand for it, where they can be read, else the folder's.
+
+    Never an error: raw data are kept as is.
+    """
+    own = folder.resolve().name.encode(errors="replace").decode()
+    try:
+        name = toml_values(decode(_description(folder)).text).get("name")
+    except (OSError, ParameterError, UnreadableTextError):
+        return own
+    words = " ".join(name.split()) if isinstance(name, str) else ""
+    return words or own
+
+
+def _description(folder: Path) -> bytes:
+    place = folder / DESCRIPTION
+    if place.exists():
+        return plain_bytes(place, most_bytes=MOST_TOML_BYTES)
+    return unfolded(FilesOfFolder(folder)).read(DESCRIPTION) or b""
+
+
+def unsafe_because(path: str, *, for_windows: bool) -> str | None:
+    """Say why a relative path must not be written below a folder; None where it may.
+
+    >>> unsafe_because("../passwd", for_windows=False)
+    'it has a part that is empty, . or ..'
+    >>> unsafe_because("day 1/shear.csv", for_windows=True) is None
+    True
+    >>> unsafe_because("aux.csv", for_windows=True)
+    'Windows allows no such name'
+    """
+    parts = path.split("/")
+    if path.startswith("/") or re.match("[A-Za-z]:", path):
+        return "it is absolute or names a drive"
+    if any(part in ("", ".", "..") for part in parts):
+        return "it has a part that is empty, . or .."
+    if "\0" in path:
+        return "it has a zero byte"
+    if for_windows and any(_WINDOWS_NAMES.fullmatch(part) or _NOT_ON_WINDOWS.search(part) for part in parts):
+        return "Windows allows no such name"
+    try:
+        path.encode()
+    except UnicodeEncodeError:
+        return "its name is no valid text"
+    return None
+
+
+def _refuse_unsafe(path: str, *, for_windows: bool) -> None:
+    if (why := unsafe_because(path, for_windows=for_windows)) is not None:
+        raise StoreError(f"The file {_printable(path)} cannot be taken in or given back: {why}; rename it.")
+
+
+def _printable(path: str) -> str:
+    return path.encode(errors="backslashreplace").decode()
+
+
+@contextmanager
+def new_folder(out: Path) -> Iterator[Path]:
+    """Give an empty folder to fill, which takes the name ``out`` only when all went well.
+
+    Raises
+    ------
+    StoreError
+        ``out`` is there already and not an empty folder.
+    OSError
+        The disk is full, read-only and so on; nothing is left behind.
+    """
+    out = out.resolve()
+    if out.exists() and (not out.is_dir() or any(out.iterdir())):
+        raise StoreError(f"{out} is there already and not an empty folder; name a folder that does not exist yet.")
+    out.parent.mkdir(parents=True, exist_ok=True)
+    with TemporaryDirectory(dir=out.parent, prefix=f".{out.name[:40]}-") as hidden:
+        filling = Path(hidden) / "campaign"  # its permissions are the usual ones, the hidden folder's are not
+        filling.mkdir()
+        yield filling
+        for written in [filling, *filling.rglob("*")]:
+            _settle_folder(written)
+        if os.name == "nt" and out.exists():
+            out.rmdir()
+        filling.rename(out)
+    _settle_folder(out.parent)
+
+
+def write_file(folder: Path, file: StoredFile, pieces: Iterable[bytes]) -> None:
+    """Write one file below a folder, to the disk's surface, and check that it is what was stored.
+
+    Raises
+    ------
+    StoreError
+        An unsafe path, bytes that do not have the stored SHA-256, or two paths that are one on this file system.
+    """
+    _refuse_unsafe(file.path, for_windows=os.name == "nt")
+    place = folder / PurePosixPath(file.path)
+    place.parent.mkdir(parents=True, exist_ok=True)
+    found = hashlib.sha256()
+    try:
+        with place.open("xb") as stream:
+            for piece in pieces:
+                stream.write(piece)
+                found.update(piece)
+            stream.flush()
+            os.fsync(stream.fileno())
+    except FileExistsError as error:
+        raise StoreError(
+            f"{file.path} and another file of the campaign have the same name on this file system; "
+            "export to one that tells upper from lower case."
+        ) from error
+    if found.hexdigest() != file.sha256:
+        raise StoreError(f"{file.path} is damaged in the store and was not written; `skisnow store verify` lists all.")
+
+
+def whole(file: StoredFile, pieces: Iterable[bytes]) -> bytes:
+    """A file's bytes, which are checked to be what was stored.
+
+    Raises
+    ------
+    StoreError
+        Bytes that do not have the stored SHA-256.
+    """
+    data = b"".join(pieces)
+    if hashlib.sha256(data).hexdigest() != file.sha256:
+        raise StoreError(f"{file.path} is damaged in the store and was not read; `skisnow store verify` lists all.")
+    return data
+
+
+def _settle_folder(folder: Path) -> None:
+    """Bring a folder's entries to the disk; Windows does so by itself and cannot be asked."""
+    if os.name == "nt" or not folder.is_dir():
+        return
+    handle = os.open(folder, os.O_RDONLY)
+    try:
+        os.fsync(handle)
+    finally:
+        os.close(handle)
+
+
+def changed_files(before: Mapping[str, FileState], after: Mapping[str, FileState]) -> list[str]:
+    """Name the files that came, went or changed between two listings."""
+    return sorted(path for path in before.keys() | after.keys() if before.get(path) != after.get(path))

@@ -1,0 +1,252 @@
+"""Journals: campaigns that are being entered, by event sourcing. Each entry is on the disk before it counts as stored.
+
+A journal is a list of entries that only grows (event sourcing). A reading is an entry; so is its correction, a
+cancelling, an undoing: nothing is overwritten, and the campaign as it is now is replayed from all of them (`replayed`).
+
+What is corrected in a campaign that is stored byte for byte stands in a journal too, which has that campaign's id. Its
+first entry about a test says what the file says.
+"""
+
+from __future__ import annotations
+
+import secrets
+from dataclasses import dataclass, replace
+from hashlib import sha256
+from typing import TYPE_CHECKING, Final
+
+from sqlalchemy import ColumnElement, Connection, and_, func, insert, select
+
+from ..._support.errors import StoreError
+from .engine import database_errors, reading, writing
+from .entered_name import entered_name
+from .entry_rows import file_uid, now, write_entry
+from .journal_entry import DESCRIPTION, JournalEntry, NewEntry, entry_of
+from .rows import damaged, number_of, text_of
+from .schema import campaign, journal, journal_entry
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
+    from .store import Store
+
+_IN_ENTRY: Final = journal.c.id.not_in(select(campaign.c.id))
+"""Of a journal; that of a stored campaign says what is corrected in it."""
+
+
+class OvertakenError(StoreError):
+    """Somebody else wrote about the same test since it was last read; nothing was stored."""
+
+
+@dataclass(frozen=True, slots=True)
+class JournalHead:
+    """A campaign that consists of lab entries, in a list.
+
+    Attributes
+    ----------
+    id
+        12 hexadecimal digits.
+    name
+        From its description; "" if it has none or is damaged.
+    begun_at, last_at
+        Times of the beginning and of the last entry (UTC, ISO 8601).
+    n_entries
+        Number of its entries.
+    """
+
+    id: str
+    name: str
+    begun_at: str
+    n_entries: int
+    last_at: str
+
+
+class Journals:
+    """The journals of a store."""
+
+    def __init__(self, store: Store) -> None:
+        self._engine = store.engine
+        self._path = store.path
+
+    def begin(self, description: str, *, who: str = "", once: str | None = None) -> str:
+        """Begin a campaign with the text of its campaign.toml; gives the journal's id.
+
+        With the same ``once`` again it gives the id of the campaign that was begun the first time.
+        """
+        id_ = secrets.token_hex(6) if once is None else sha256(once.encode()).hexdigest()[:12]
+        with database_errors(self._path, "could not be written"), writing(self._engine) as connection:
+            if once is not None and connection.execute(select(journal.c.id).where(journal.c.id == id_)).first():
+                return id_
+            connection.execute(insert(journal).values(id=id_, begun_at=now()))
+            entry = NewEntry(action="describe", file=DESCRIPTION, cells={DESCRIPTION: description}, who=who)
+            write_entry(connection, id_, entry)
+        return id_
+
+    def list(self) -> tuple[JournalHead, ...]:
+        """Give the journals of all campaigns that are being entered, oldest first."""
+        asked = (
+            select(
+                journal.c.id,
+                journal.c.begun_at,
+                func.count(journal_entry.c.sequence),
+                func.coalesce(func.max(journal_entry.c.at), journal.c.begun_at),
+            )
+            .join_from(journal, journal_entry, isouter=True)
+            .where(_IN_ENTRY)
+            .group_by(journal.c.id)
+            .order_by(journal.c.begun_at, journal.c.id)
+        )
+        with database_errors(self._path, "could not be read"), reading(self._engine) as connection:
+            rows = connection.execute(asked).all()
+            return tuple(_head(entered_name(connection, row[0]), *row) for row in rows)
+
+    def entries(self, id: str, *, after: int = 0) -> tuple[JournalEntry, ...]:  # noqa: A002 (as in Store)
+        """Give the entries of a journal, oldest first, from the one behind a sequence on.
+
+        The order is that of their uids, which is the same in all stores; where nothing was synchronised it is that in
+        which they were written down.
+
+        Raises
+        ------
+        StoreError
+            There is no such journal.
+        """
+        return self._read(id, after, _require)
+
+    def corrections(self, id: str, *, after: int = 0) -> tuple[JournalEntry, ...]:  # noqa: A002 (as in Store)
+        """Give the entries about a campaign that is stored byte for byte, oldest first, from behind a sequence on.
+
+        Raises
+        ------
+        StoreError
+            There is no such campaign.
+        """
+        return self._read(id, after, _require_stored)
+
+    def _read(self, id_: str, after: int, require: Callable[[Connection, str], None]) -> tuple[JournalEntry, ...]:
+        with database_errors(self._path, "could not be read"), reading(self._engine) as connection:
+            require(connection, id_)
+            asked = select(journal_entry).where(journal_entry.c.journal_id == id_, journal_entry.c.sequence > after)
+            rows = connection.execute(asked).mappings()
+            return tuple(sorted(map(entry_of, rows), key=lambda entry: entry.uid))
+
+    def append(self, id: str, entry: NewEntry, *, seen: int) -> JournalEntry:  # noqa: A002 (as in Store)
+        """Write an entry down; when this returns it is on the disk. One that is there already is given back.
+
+        Parameters
+        ----------
+        id
+            The journal.
+        entry
+            What to write.
+        seen
+            The last sequence that the writer knows of the entry's test; 0 for a test that it takes for new.
+
+        Raises
+        ------
+        OvertakenError
+            There is a later entry about the same test.
+        StoreError
+            There is no such journal, or no such entry to correct or undo.
+        """
+        with database_errors(self._path, "could not be written"), writing(self._engine) as connection:
+            _require(connection, id)
+            if (known := _written_before(connection, id, entry)) is not None:
+                return known
+            _refuse_overtaken(connection, id, entry, seen)
+            _require_subject(connection, id, entry)
+            return write_entry(connection, id, entry)
+
+    def correct(self, id: str, entry: NewEntry, *, seen: int, standing: Mapping[str, str]) -> JournalEntry:  # noqa: A002
+        """Write down what is to be different in a campaign that is stored byte for byte.
+
+        Parameters
+        ----------
+        id
+            The campaign, with all digits.
+        entry
+            A correction, a cancelling or an undoing of one test; ``about`` of a correction is filled in.
+        seen
+            As in `append`.
+        standing
+            Every cell of the test as the files say it, which is written down before the first entry about it.
+
+        Raises
+        ------
+        OvertakenError
+            There is a later entry about the same test.
+        StoreError
+            There is no such campaign, or no such entry to undo.
+        """
+        with database_errors(self._path, "could not be written"), writing(self._engine) as connection:
+            _require_stored(connection, id)
+            if (known := _written_before(connection, id, entry)) is not None:
+                return known
+            _refuse_overtaken(connection, id, entry, seen)
+            if connection.execute(select(journal.c.id).where(journal.c.id == id)).first() is None:
+                connection.execute(insert(journal).values(id=id, begun_at=now()))
+            base = _base(connection, id, entry, standing)
+            if entry.action == "correct":
+                entry = replace(entry, about=base)
+            _require_subject(connection, id, entry)
+            return write_entry(connection, id, entry)
+
+
+def _head(name: str, id_: object, begun_at: object, n_entries: object, last_at: object) -> JournalHead:
+    try:
+        return JournalHead(text_of(id_), name, text_of(begun_at), number_of(n_entries), text_of(last_at))
+    except TypeError as error:
+        raise damaged(f"The campaign in entry {id_}") from error
+
+
+def _require(connection: Connection, id_: str) -> None:
+    if connection.execute(select(journal.c.id).where(journal.c.id == id_, _IN_ENTRY)).first() is None:
+        raise StoreError(f"The store has no campaign in entry with the id {id_!r}; the list of campaigns names all.")
+
+
+def _require_stored(connection: Connection, id_: str) -> None:
+    if connection.execute(select(campaign.c.id).where(campaign.c.id == id_)).first() is None:
+        raise StoreError(f"The store keeps no campaign with the id {id_!r}; the list of campaigns names all.")
+
+
+def _base(connection: Connection, id_: str, entry: NewEntry, standing: Mapping[str, str]) -> int:
+    """The sequence of the entry that says what the file says about a test; it is written where there is none."""
+    found = select(journal_entry.c.sequence).where(_of_test(id_, entry), journal_entry.c.action == "add")
+    row = connection.execute(found).first()
+    if row is not None:
+        return int(row[0])
+    original = NewEntry(action="add", file=entry.file, test=entry.test, cells=standing, why="as the file has it")
+    uid = file_uid(id_, entry.file, entry.test)
+    return write_entry(connection, id_, original, uid=uid).sequence
+
+
+def _of_test(id_: str, entry: NewEntry) -> ColumnElement[bool]:
+    columns = journal_entry.c
+    return and_(columns.journal_id == id_, columns.file == entry.file, columns.test == entry.test)
+
+
+def _written_before(connection: Connection, id_: str, entry: NewEntry) -> JournalEntry | None:
+    """The entry as it was written down when it was sent the first time."""
+    if entry.once is None:
+        return None
+    found = select(journal_entry).where(journal_entry.c.journal_id == id_, journal_entry.c.once == entry.once)
+    row = connection.execute(found).mappings().first()
+    return None if row is None else entry_of(row)
+
+
+def _refuse_overtaken(connection: Connection, id_: str, entry: NewEntry, seen: int) -> None:
+    found = select(journal_entry).where(_of_test(id_, entry), journal_entry.c.sequence > seen)
+    row = connection.execute(found.order_by(journal_entry.c.sequence.desc())).mappings().first()
+    if row is not None:
+        subject = f"{entry.file}, {entry.test}" if entry.test else entry.file
+        raise OvertakenError(
+            f"Nothing was stored: {row['who'] or 'somebody'} wrote about {subject} meanwhile ({row['at']}). "
+            "Look at it as it is now, then enter again what is still missing."
+        )
+
+
+def _require_subject(connection: Connection, id_: str, entry: NewEntry) -> None:
+    if entry.about is None:
+        return
+    found = select(journal_entry.c.sequence).where(_of_test(id_, entry), journal_entry.c.sequence == entry.about)
+    if connection.execute(found).first() is None:
+        raise StoreError(f"{entry.test} has no entry {entry.about} that could be corrected or undone.")

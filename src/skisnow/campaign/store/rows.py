@@ -1,0 +1,310 @@
+"""Campaigns as rows of the store: what each read and write does inside a transaction that the caller opened."""
+
+from __future__ import annotations
+
+import hashlib
+import re
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from typing import TYPE_CHECKING, Final, NamedTuple
+
+from sqlalchemy import Connection, Row, delete, insert, select, update
+
+from ..._support.errors import StoreError
+from .folder import StoredFile, manifest_sha256, read_chunks
+from .schema import CHUNK_BYTES, campaign, campaign_file, chunk, content
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Sequence
+    from pathlib import Path
+
+ID_DIGITS: Final = 12
+_SHORTEST_PREFIX: Final = 4
+_SHOWN_CANDIDATES: Final = 10
+TIME: Final = "%Y-%m-%dT%H:%M:%SZ"
+
+
+class NamedId(NamedTuple):
+    """A campaign as a message names it."""
+
+    id: object
+    name: object
+
+
+@dataclass(frozen=True, slots=True)
+class StoredCampaign:
+    """A campaign in the store.
+
+    Attributes
+    ----------
+    id, sha256
+        The hash of the manifest and its first 12 hex digits.
+    name
+        From campaign.toml, else the folder's, when it was added first.
+    added_at
+        When, in UTC.
+    n_errors, n_warnings
+        Of checking the campaign; None where the check itself failed.
+    files
+        Sorted by path.
+    """
+
+    id: str
+    name: str
+    added_at: datetime
+    sha256: str
+    n_errors: int | None
+    n_warnings: int | None
+    files: tuple[StoredFile, ...]
+
+    @property
+    def n_files(self) -> int:
+        """Count the files."""
+        return len(self.files)
+
+    @property
+    def n_bytes(self) -> int:
+        """Add up the sizes of the files."""
+        return sum(file.size for file in self.files)
+
+
+def all_campaigns(connection: Connection) -> tuple[StoredCampaign, ...]:
+    """Give all campaigns, oldest first."""
+    rows = connection.execute(select(campaign).order_by(campaign.c.added_at, campaign.c.id)).all()
+    return tuple(stored_campaign(connection, row) for row in rows)
+
+
+def one_campaign(connection: Connection, beginning: str) -> StoredCampaign:
+    """Find the one campaign whose hash begins so.
+
+    Raises
+    ------
+    StoreError
+        No hexadecimal digits, fewer than 4, unknown, or several: lists those that may be meant.
+    """
+    beginning = required_digits(beginning)
+    begins_so = select(campaign).where(campaign.c.sha256.startswith(beginning)).order_by(campaign.c.id)
+    rows = connection.execute(begins_so).all()
+    if len(rows) == 1:
+        return stored_campaign(connection, rows[0])
+    matching = [NamedId(row.id, row.name) for row in rows]
+    raise unclear_id(beginning, matching, known_campaigns(connection))
+
+
+def required_digits(beginning: str) -> str:
+    """The beginning of an id in lower case.
+
+    Raises
+    ------
+    StoreError
+        It has fewer than 4 hexadecimal digits, or other characters.
+    """
+    digits = beginning.strip().lower()
+    if not re.fullmatch(rf"[0-9a-f]{{{_SHORTEST_PREFIX},64}}", digits):
+        raise StoreError(
+            f"{digits!r} is no campaign's id: give its {ID_DIGITS} hexadecimal digits or the first "
+            f"{_SHORTEST_PREFIX} or more of them."
+        )
+    return digits
+
+
+def known_campaigns(connection: Connection) -> list[NamedId]:
+    """Id and name of each stored campaign, newest first."""
+    rows = connection.execute(select(campaign).order_by(campaign.c.added_at.desc(), campaign.c.id)).all()
+    return [NamedId(row.id, row.name) for row in rows]
+
+
+def unclear_id(beginning: str, matching: Sequence[NamedId], known: Sequence[NamedId]) -> StoreError:
+    """Error for an id that is the beginning of no or of several campaigns: lists those that may be meant."""
+    if matching:
+        return StoreError(f"Several campaigns begin with {beginning}: {_candidates(matching)}; give more digits.")
+    return StoreError(f"No campaign begins with {beginning}; the store holds {_candidates(known)}.")
+
+
+def _candidates(campaigns: Sequence[NamedId]) -> str:
+    named = [f"{each.id} ({each.name})" for each in campaigns[:_SHOWN_CANDIDATES]]
+    further = len(campaigns) - len(named)
+    return (", ".join(named) or "none") + (f" and {further} more" if further else "")
+
+
+def stored_hashes(connection: Connection) -> set[str]:
+    """The SHA-256 of every campaign."""
+    return set(connection.execute(select(campaign.c.sha256)).scalars())
+
+
+def damaged(what: str) -> StoreError:
+    """The error for rows that hold what was never written there."""
+    return StoreError(
+        f"{what} is damaged in the store; `skisnow store verify` lists all damage. Put a backup in its place."
+    )
+
+
+def require_whole(stored: StoredCampaign) -> None:
+    """Refuse a campaign whose list of files is not the one that it was added with.
+
+    Raises
+    ------
+    StoreError
+        A name, a size, a hash or a file differs.
+    """
+    if manifest_sha256(stored.files) != stored.sha256:
+        raise damaged(f"The list of files of the campaign {stored.id}")
+
+
+def stored_campaign(connection: Connection, row: Row[tuple[object, ...]]) -> StoredCampaign:
+    """A campaign from its row.
+
+    Raises
+    ------
+    StoreError
+        The row, or one of its files, holds what was never written there.
+    """
+    try:
+        return _stored_campaign(connection, row)
+    except (TypeError, ValueError) as error:
+        raise damaged(f"The campaign {row.id}") from error
+
+
+def _stored_campaign(connection: Connection, row: Row[tuple[object, ...]]) -> StoredCampaign:
+    rows = connection.execute(
+        select(campaign_file.c.path, content.c.size, content.c.sha256)
+        .join_from(campaign_file, content)
+        .where(campaign_file.c.campaign_id == row.id)
+    )
+    files = [StoredFile(text_of(file.path), number_of(file.size), text_of(file.sha256)) for file in rows]
+    return StoredCampaign(
+        id=text_of(row.id),
+        name=text_of(row.name),
+        added_at=datetime.strptime(text_of(row.added_at), TIME).replace(tzinfo=UTC),
+        sha256=text_of(row.sha256),
+        n_errors=None if row.n_errors is None else number_of(row.n_errors),
+        n_warnings=None if row.n_warnings is None else number_of(row.n_warnings),
+        files=tuple(sorted(files, key=lambda file: file.path)),
+    )
+
+
+def text_of(value: object) -> str:
+    """A text as it must be; SQLite gives bytes or a number where a damaged row says so."""
+    if not isinstance(value, str):
+        raise TypeError(f"{value!r} is no text")
+    return value
+
+
+def number_of(value: object) -> int:
+    """A whole number as it must be."""
+    if not isinstance(value, int):
+        raise TypeError(f"{value!r} is no whole number")
+    return value
+
+
+def bytes_of(value: object) -> bytes:
+    """Bytes as they must be; of a number `bytes` would make so many zeros."""
+    if not isinstance(value, bytes):
+        raise TypeError(f"{value!r} is not bytes")
+    return value
+
+
+def stored_chunks(connection: Connection, sha256: str) -> Iterator[bytes]:
+    """Give a content's bytes piece by piece."""
+    pieces = select(chunk.c.data).where(chunk.c.sha256 == sha256).order_by(chunk.c.position)
+    try:
+        for piece in connection.execute(pieces, execution_options={"yield_per": 1}).scalars():
+            yield bytes_of(piece)
+    except TypeError as error:
+        raise damaged(f"The content {sha256}") from error
+
+
+def is_sound(connection: Connection, sha256: str, size: int) -> bool:
+    """Tell whether a content still has the hash and the size (bytes) that it had when it was taken in."""
+    found, n_bytes = hashlib.sha256(), 0
+    try:
+        for piece in stored_chunks(connection, sha256):
+            found.update(piece)
+            n_bytes += len(piece)
+    except StoreError:
+        return False
+    return found.hexdigest() == sha256 and n_bytes == size
+
+
+def store_content(connection: Connection, folder: Path, file: StoredFile) -> bool:
+    """Store the bytes of a file unless they are there already; True where damaged ones were made whole.
+
+    Raises
+    ------
+    StoreError
+        The file no longer is what its hash was taken from.
+    """
+    stored_size = connection.execute(select(content.c.size).where(content.c.sha256 == file.sha256)).scalar_one_or_none()
+    if stored_size is None:
+        connection.execute(insert(content).values(sha256=file.sha256, size=file.size))
+    elif is_sound(connection, file.sha256, file.size) and stored_size == file.size:
+        return False
+    else:
+        connection.execute(update(content).where(content.c.sha256 == file.sha256).values(size=file.size))
+        connection.execute(delete(chunk).where(chunk.c.sha256 == file.sha256))
+    if not _store_chunks(connection, file.sha256, read_chunks(folder / file.path, CHUNK_BYTES)):
+        refuse_changed([file.path])
+    return stored_size is not None
+
+
+def copy_content(connection: Connection, file: StoredFile, pieces: Iterable[bytes]) -> bool:
+    """Store the bytes of a file that another store gives, unless they are there; False where they are damaged."""
+    held = connection.execute(select(content.c.size).where(content.c.sha256 == file.sha256)).first()
+    if held is not None:
+        return True
+    connection.execute(insert(content).values(sha256=file.sha256, size=file.size))
+    return _store_chunks(connection, file.sha256, pieces)
+
+
+def _store_chunks(connection: Connection, sha256: str, pieces: Iterable[bytes]) -> bool:
+    """Store a content piece by piece; whether it has its hash."""
+    found = hashlib.sha256()
+    for position, piece in enumerate(pieces):
+        found.update(piece)
+        connection.execute(insert(chunk).values(sha256=sha256, position=position, data=piece))
+    return found.hexdigest() == sha256
+
+
+def refuse_changed(paths: Sequence[str]) -> None:
+    """Refuse a campaign whose files changed while they were read."""
+    if paths:
+        raise StoreError(
+            f"Changed while being read: {', '.join(paths)}; nothing was stored. "
+            "Close the program that writes there and add the folder again."
+        )
+
+
+def store_campaign(
+    connection: Connection,
+    files: Iterable[StoredFile],
+    sha256: str,
+    name: str,
+    counts: tuple[int | None, int | None],
+    *,
+    added_at: datetime | None = None,
+) -> bool:
+    """Enter a campaign whose contents are stored already; False where it was there before.
+
+    Counts: errors, warnings. ``added_at`` is now where it is not given.
+    """
+    id_ = sha256[:ID_DIGITS]
+    present = connection.execute(select(campaign.c.sha256).where(campaign.c.id == id_)).scalar_one_or_none()
+    if present == sha256:
+        return False
+    if present is not None:
+        raise StoreError(f"Another campaign in the store has the id {id_} by chance; keep this one in another store.")
+    connection.execute(
+        insert(campaign).values(
+            id=id_,
+            sha256=sha256,
+            name=name,
+            added_at=(added_at or datetime.now(UTC)).strftime(TIME),
+            n_errors=counts[0],
+            n_warnings=counts[1],
+        )
+    )
+    connection.execute(
+        insert(campaign_file),
+        [{"campaign_id": id_, "path": file.path, "sha256": file.sha256} for file in files],
+    )
+    return True

@@ -1,0 +1,217 @@
+"""The PostgreSQL server under a group's store: connections, locks, schema, and plain words for what goes wrong.
+
+One advisory lock makes writers wait for each other, as SQLite's does; every commit is on the server's disk before it
+returns. A laptop that is closed in the midst holds others up for a minute at most: the server then drops it, and what
+it had begun.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Final
+
+from sqlalchemy import Connection, create_engine, event, text
+
+from ..._support.errors import StoreError
+from .schema import APPLICATION_ID, MARK, REVISION
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from sqlalchemy import Engine
+
+    from .address import ServerAddress
+
+CONNECT_TIMEOUT_S: Final = 10
+_SILENT_S: Final = 60
+"""How long the other side may say nothing before the connection is given up (s)."""
+_IDLE_S: Final = 300
+"""How long a transaction may wait for its client (s): reading a large file between two pieces takes far less."""
+_CONNECTION: Final = {
+    "connect_timeout": str(CONNECT_TIMEOUT_S),
+    "keepalives_idle": "30",
+    "keepalives_interval": "10",
+    "keepalives_count": "3",
+    "tcp_user_timeout": str(1000 * _SILENT_S),
+    "client_encoding": "utf8",
+    "application_name": "skisnow",
+}
+
+_STATES: Final = {
+    "55P03": "another program has kept it locked for too long; wait until that one is done and try again",
+    "53100": "there is no room left on the server's disk; its administrator must make some",
+    "53300": "the server has too many connections; wait a little and try again",
+    "42501": "this user is not allowed to do that; the owner of the database can grant it",
+    "25006": "it is read-only; ask the server's administrator, or name another place",
+    "42P01": "a table of the store is missing; put a backup in its place",
+    "42703": "a column of the store is missing; put a backup in its place",
+    "25P03": "the server gave up waiting for this program; nothing half-written stays, do it again",
+}
+_BROKEN: Final = "the connection to the server broke; nothing half-written stays, do it again"
+_NOT_REACHED: Final = "the server cannot be reached; check the network, the host's name and the port"
+_CONNECTING: Final = (
+    ("password authentication failed", "the user's name or the password is wrong"),
+    ("no password supplied", "a password is wanted; put it into PGPASSWORD, or into the file ~/.pgpass"),
+    ("no pg_hba.conf entry", "the server lets this user not in from this machine; a line of its pg_hba.conf would"),
+    ("failed to resolve host", "there is no host of that name; check the address"),
+    ("could not translate host name", "there is no host of that name; check the address"),
+    ("does not support SSL", "the server speaks no TLS; its administrator sets ssl = on, or leave sslmode out"),
+    ("certificate", "the server's certificate was refused; check sslmode and sslrootcert in the address"),
+    ("role ", "the server knows no user of that name"),
+    ("does not exist", "the server has no database of that name; its administrator makes one with createdb"),
+    ("Connection refused", "no server answers there; check that it runs, the host's name and the port"),
+    ("No such file or directory", "no server answers there; check that it runs, and the address"),
+    ("timeout expired", _NOT_REACHED),
+    ("timed out", _NOT_REACHED),
+    ("No route to host", _NOT_REACHED),
+    ("Network is unreachable", _NOT_REACHED),
+    ("server closed the connection", _BROKEN),
+    ("connection is lost", _BROKEN),
+    ("connection is closed", _BROKEN),
+    ("terminating connection", _BROKEN),
+)
+"""What is searched for in what the driver says where the server gave no code, and what is told instead."""
+
+
+def reason(error: BaseException, address: ServerAddress) -> str:
+    """What went wrong, in words, without the password."""
+    cause = getattr(error, "orig", None) or error
+    state = getattr(cause, "sqlstate", None)
+    if state in _STATES:
+        return _STATES[state]
+    said = str(cause)
+    if state is None or state.startswith(("08", "28", "3D", "57P")):
+        for part, words in _CONNECTING:
+            if part in said:
+                return words
+    line = next((line.strip() for line in said.splitlines() if line.strip()), type(cause).__name__)
+    password = str(address.url.password or "")
+    return (line.replace(password, "***") if password else line).rstrip(".")
+
+
+def open_server(address: ServerAddress, *, create: bool, busy_timeout_s: float) -> Engine:
+    """Connect to the database and bring its tables up to date.
+
+    Raises
+    ------
+    StoreError
+        psycopg is not installed; the database holds no store, or one of a newer program, or something else.
+    """
+    engine = _engine(address, busy_timeout_s)
+    try:
+        with engine.connect() as connection:
+            _require_unicode(connection, address)
+            revision = _revision(connection, address)
+        if revision is None and not create:
+            raise StoreError(f"There is no store at {address}; add a campaign first, or name another place.")
+        if needs_migration(revision, address):
+            _bring_up_to_date(engine, address)
+    except BaseException:
+        engine.dispose()
+        raise
+    return engine
+
+
+def lock_for_writing(connection: Connection) -> None:
+    """Wait until no other program writes; let go at the end of the transaction."""
+    connection.execute(text("SELECT pg_advisory_xact_lock(:key)"), {"key": APPLICATION_ID})
+
+
+def broken_references(connection: Connection) -> Iterator[tuple[str, str, int]]:
+    """Tables with rows that point at what another does not hold: both names, and how many."""
+    from sqlalchemy import and_, exists, func, select
+
+    from .schema import metadata
+
+    for table in metadata.sorted_tables:
+        for constraint in table.foreign_key_constraints:
+            parent = constraint.referred_table.alias()
+            pairs = [(key.parent, parent.c[key.column.name]) for key in constraint.elements]
+            held = exists().where(and_(*(here == there for here, there in pairs)))
+            lost = select(func.count()).select_from(table).where(~held, and_(*(here.is_not(None) for here, _ in pairs)))
+            number = connection.execute(lost).scalar_one()
+            if number:
+                yield table.name, constraint.referred_table.name, number
+
+
+def _engine(address: ServerAddress, busy_timeout_s: float) -> Engine:
+    defaults = {name: value for name, value in _CONNECTION.items() if name not in address.url.query}
+    try:
+        engine = create_engine(address.url, connect_args=defaults, pool_pre_ping=True, hide_parameters=True)
+    except ModuleNotFoundError as missing:
+        raise StoreError(
+            f"A store on a server needs {missing.name}; install it with: pip install 'skisnow[postgresql]'"
+        ) from None
+
+    def set_up(connection: Any, _: object) -> None:
+        connection.autocommit = True  # what is set inside a transaction ends with it
+        with connection.cursor() as cursor:
+            for name, value in (
+                ("lock_timeout", f"{max(round(1000 * busy_timeout_s), 1)}ms"),
+                ("synchronous_commit", "on"),
+                ("idle_in_transaction_session_timeout", f"{_IDLE_S}s"),
+                ("tcp_keepalives_idle", "30"),
+                ("tcp_keepalives_interval", "10"),
+                ("tcp_keepalives_count", "3"),
+            ):
+                cursor.execute("SELECT set_config(%s, %s, false)", (name, value))
+        connection.autocommit = False
+
+    event.listen(engine, "connect", set_up)
+    return engine
+
+
+def _require_unicode(connection: Connection, address: ServerAddress) -> None:
+    encoding = connection.exec_driver_sql("SHOW server_encoding").scalar_one()
+    if encoding != "UTF8":
+        raise StoreError(
+            f"The database {address} holds texts as {encoding}, which has not every letter; "
+            "make one with: createdb --encoding=UTF8 --template=template0 NAME"
+        )
+
+
+def _revision(connection: Connection, address: ServerAddress) -> str | None:
+    """Migration that the store is at; None for a database without tables."""
+    asked = text(
+        "SELECT c.relname, obj_description(c.oid, 'pg_class') FROM pg_class c "
+        "WHERE c.relnamespace = to_regnamespace(quote_ident(current_schema())) AND c.relkind IN ('r', 'p')"
+    )
+    tables = {row[0]: row[1] for row in connection.execute(asked)}
+    if not tables.keys() - {"alembic_version"}:
+        return None
+    if tables.get("campaign") != MARK or "alembic_version" not in tables:
+        raise StoreError(
+            f"{address} holds tables of another program, not a store; make a database of its own for the store."
+        )
+    versions = connection.exec_driver_sql("SELECT version_num FROM alembic_version").scalars().all()
+    if len(versions) != 1:
+        raise StoreError(f"{address} is damaged: it does not say what version it is. Put a backup in its place.")
+    return str(versions[0])
+
+
+def needs_migration(revision: str | None, place: object) -> bool:
+    """Tell whether a store at that migration must be brought up to date.
+
+    Raises
+    ------
+    StoreError
+        A newer program wrote it.
+    """
+    if revision == REVISION:
+        return False  # the usual case: alembic need not even be imported
+    from .migrations import knows
+
+    if revision is not None and not knows(revision):
+        raise StoreError(
+            f"{place} was written by a newer skisnow (schema {revision}; this one knows up to {REVISION}); "
+            "update skisnow, or name another store."
+        )
+    return True
+
+
+def _bring_up_to_date(engine: Engine, address: ServerAddress) -> None:
+    from .migrations import upgrade
+
+    with engine.begin() as connection:
+        lock_for_writing(connection)
+        if needs_migration(_revision(connection, address), address):  # else another program was faster
+            upgrade(connection)

@@ -1,0 +1,204 @@
+"""Two stores made alike: campaigns with their files, and journals entry by entry, in both directions.
+
+Nothing is remembered between two runs: each compares what both stores have, by hashes and uids. Each campaign and each
+journal goes over in one transaction, so that a run that was cut short at any moment is simply done again.
+"""
+
+from __future__ import annotations
+
+from contextlib import contextmanager
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final
+
+from ...._support.errors import StoreError
+from ..engine import database_errors, reading, writing
+from ..folder import Progress, no_progress
+from ..rows import one_campaign, stored_hashes
+from .choosing import settle
+from .conflict import Conflict, divergences
+from .heads import entries_by_uid, heads, shared_journals
+from .names import Names, names_of, same_names
+from .taking import take_campaign, take_journal
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+    from sqlalchemy import Connection
+
+    from ..store import Store
+    from .conflict import Divergence, Side
+
+ALL: Final = "all"
+"""In place of a conflict's id: every one that is open."""
+
+
+@dataclass(frozen=True, slots=True)
+class Synced:
+    """What was done.
+
+    Attributes
+    ----------
+    n_campaigns_given, n_campaigns_taken
+        Stored campaigns that went there, and that came here.
+    n_entries_given, n_entries_taken
+        Entries of journals, likewise.
+    n_settled
+        Conflicts that were settled as chosen.
+    conflicts
+        Those that are open.
+    same_names
+        Campaigns from two sources that bear one name, in words; they are kept apart.
+    problems
+        What is damaged and was left where it is, in words.
+    """
+
+    n_campaigns_given: int
+    n_campaigns_taken: int
+    n_entries_given: int
+    n_entries_taken: int
+    n_settled: int
+    conflicts: tuple[Conflict, ...]
+    same_names: tuple[str, ...]
+    problems: tuple[str, ...]
+
+
+def sync(
+    here: Store,
+    there: Store,
+    *,
+    keep: Mapping[str, Side] | None = None,
+    who: str = "",
+    progress: Progress = no_progress,
+) -> Synced:
+    """Bring each store what the other has; where both wrote about one test and contradict, neither is changed.
+
+    Parameters
+    ----------
+    here
+        This user's store; what is chosen is written down here first.
+    there
+        The group's: on a server, or a file that is carried about.
+    keep
+        What to keep of conflicts, by their ids or ``"all"``: what is here, what is there, or both where that can be.
+    who
+        Whose choice it is.
+    progress
+        Told how many campaigns of all have been compared.
+
+    Raises
+    ------
+    StoreError
+        A store cannot be reached, read or written, both are one, or a choice names no conflict that is open. What went
+        over before stays; run again, it goes on.
+    """
+    if here.path == there.path:
+        raise StoreError(f"{here.path} cannot be synchronised with itself; name the group's store.")
+    return _Sync(here, there).run(keep or {}, who, progress)
+
+
+class _Sync:
+    """One run."""
+
+    def __init__(self, here: Store, there: Store) -> None:
+        self._here, self._there = here, there
+        self._problems: list[str] = []
+
+    def run(self, chosen: Mapping[str, Side], who: str, progress: Progress) -> Synced:
+        with database_errors(self._there.path, "could not be synchronised"):
+            before = self._names()
+            n_settled = self._settle(chosen, who)
+            given, taken = (self._here, self._there), (self._there, self._here)
+            return Synced(
+                n_campaigns_given=self._carry_campaigns(*given),
+                n_campaigns_taken=self._carry_campaigns(*taken),
+                n_entries_given=self._carry_journals(*given, lambda done, n: progress(done, 2 * n)),
+                n_entries_taken=self._carry_journals(*taken, lambda done, n: progress(n + done, 2 * n)),
+                n_settled=n_settled,
+                conflicts=self._conflicts(),
+                same_names=tuple(same_names(*before)),
+                problems=tuple(self._problems),
+            )
+
+    def _names(self) -> tuple[Names, Names]:
+        with reading(self._here.engine) as here, reading(self._there.engine) as there:
+            return names_of(here), names_of(there)
+
+    def _carry_campaigns(self, source: Store, to: Store) -> int:
+        with reading(to.engine) as connection:
+            held = stored_hashes(connection)
+        n_taken = 0
+        with reading(source.engine) as from_:
+            for sha256 in sorted(stored_hashes(from_) - held):
+                try:
+                    stored = one_campaign(from_, sha256)
+                    with writing(to.engine) as connection:
+                        take_campaign(from_, connection, stored)
+                    n_taken += 1
+                except StoreError as error:
+                    self._problems.append(f"{source.path}: {error}")
+        return n_taken
+
+    def _carry_journals(self, source: Store, to: Store, progress: Progress) -> int:
+        n_taken = 0
+        with reading(source.engine) as from_:
+            with reading(to.engine) as connection:
+                ids = list(shared_journals(from_, connection))
+            for number, id_ in enumerate(ids):
+                with self._sound(id_):
+                    with reading(to.engine) as connection:  # where nothing is lacking nobody need wait
+                        is_complete = not heads(from_, id_).missing_in(heads(connection, id_))
+                    if not is_complete:
+                        with writing(to.engine) as connection:
+                            n_taken += take_journal(from_, connection, id_)
+                progress(number + 1, len(ids))
+        return n_taken
+
+    def _settle(self, chosen: Mapping[str, Side], who: str) -> int:
+        """Write down what was chosen, all of it or nothing."""
+        if not chosen:
+            return 0
+        with reading(self._there.engine) as there, writing(self._here.engine) as here:
+            open_ = {each.id: each for each in self._open(here, there)}
+            if unknown := sorted(chosen.keys() - open_.keys() - {ALL}):
+                raise StoreError(
+                    f"No open conflict is called {', '.join(unknown)}: one of its sides may have changed. Nothing was "
+                    "settled; synchronise without a choice to see what is open."
+                )
+            sides = {id_: chosen.get(id_, chosen.get(ALL)) for id_ in open_}
+            choices = [(open_[id_], side) for id_, side in sides.items() if side is not None]
+            for divergence, side in choices:
+                settle(here, there, divergence, side, who)
+        return len(choices)
+
+    def _conflicts(self) -> tuple[Conflict, ...]:
+        with reading(self._here.engine) as here, reading(self._there.engine) as there:
+            open_ = list(self._open(here, there))
+            names = names_of(here).all if open_ else {}
+        return tuple(each.told(names.get(each.journal_id, "")) for each in open_)
+
+    def _open(self, here: Connection, there: Connection) -> Iterator[Divergence]:
+        for id_ in shared_journals(here, there):
+            with self._sound(id_):
+                found = divergences(here, there, id_, heads(here, id_), heads(there, id_))
+                yield from [each for each in found if not each.is_agreed]
+
+    @contextmanager
+    def _sound(self, journal_id: str) -> Iterator[None]:
+        """A journal that is damaged is told, with its store, and left as it is; the others go on."""
+        try:
+            yield
+        except StoreError as error:
+            told = [
+                f"{store.path}: {why}" for store in (self._here, self._there) if (why := _damage(store, journal_id))
+            ]
+            self._problems += [each for each in told or [str(error)] if each not in self._problems]
+
+
+def _damage(store: Store, journal_id: str) -> str:
+    """What is wrong with a journal in a store; "" where it is sound."""
+    try:
+        with reading(store.engine) as connection:
+            entries_by_uid(connection, journal_id, heads(connection, journal_id).subject)
+    except StoreError as error:
+        return str(error)
+    return ""

@@ -1,0 +1,79 @@
+"""What `carve` and `rest` refuse, before anything is computed."""
+
+from __future__ import annotations
+
+import math
+from typing import Final
+
+from .._support.errors import ParameterError
+from ..ski.ski import Ski
+from ..snow.properties import SnowProperties
+
+GREATEST_EDGE_ANGLE: Final = math.radians(85.0)
+GROOVES: Final = ("edge", "path")
+MOMENT_BALANCES: Final = ("boot", "free")
+SIDE_FORCE_SPREADS: Final = ("depth", "base-reaction")
+
+
+def require_kinds(ski: object, snow: object) -> None:
+    """Refuse what is no ski, or no snow."""
+    if not isinstance(ski, Ski):
+        raise ParameterError(f"ski is {ski!r}; it must be a Ski: read_ski gives one, from a name or a file")
+    if not isinstance(snow, SnowProperties):
+        raise ParameterError(
+            f"snow is {snow!r}; it must be SnowProperties: from published_snow, from snow_from_results, or from numbers"
+        )
+
+
+def require_ranges(edge_angle: float, load: float, unloading_ratio: float, moment: float) -> None:
+    """Refuse a number outside its range."""
+    if not 0.0 <= edge_angle <= GREATEST_EDGE_ANGLE:
+        raise ParameterError(
+            f"edge_angle is {edge_angle} rad; it must be from 0 to {GREATEST_EDGE_ANGLE:.3f} rad (85 degrees)"
+        )
+    if not (math.isfinite(load) and load > 0.0):
+        raise ParameterError(f"load is {load} N; it must be a finite force above 0")
+    if not unloading_ratio >= 1.0:
+        raise ParameterError(f"unloading_ratio is {unloading_ratio}; k_u/H_V must be 1 (elastic) or more")
+    if not math.isfinite(moment):
+        raise ParameterError(f"moment is {moment} N m; it must be finite")
+
+
+def require_within(ski: Ski, load: float, moment: float) -> None:
+    """Refuse a moment that puts the resultant beyond the ski's ends."""
+    ahead = moment / load
+    if not ski.station[-1] < ahead < ski.station[0]:
+        raise ParameterError(
+            f"a moment of {moment} N m under a load of {load} N puts the resultant {ahead:.2f} m ahead of the boot: "
+            f"off the ski, which reaches from {ski.station[-1]:.2f} to {ski.station[0]:.2f} m: no snow can balance that"
+        )
+
+
+def require_choices(groove: str, moment_balance: str, side_force_spread: str) -> None:
+    """Refuse a word that is no choice."""
+    if groove not in GROOVES:
+        raise ParameterError(f"groove is {groove!r}; it must be 'edge' or 'path'")
+    if moment_balance not in MOMENT_BALANCES:
+        raise ParameterError(f"moment_balance is {moment_balance!r}; it must be 'boot' or 'free'")
+    if side_force_spread not in SIDE_FORCE_SPREADS:
+        raise ParameterError(f"side_force_spread is {side_force_spread!r}; it must be 'depth' or 'base-reaction'")
+
+
+def require_strength(snow: SnowProperties) -> None:
+    """Refuse snow without S_f, where no law says what holds the edge."""
+    if snow.failure_shear_stress is None:
+        raise ParameterError(
+            f"the snow ({snow.source}) has no failure shear stress S_f; a carved turn needs it: give one, or a shear "
+            "law"
+        )
+
+
+def unloading_ratio_of(snow: SnowProperties, given: float | None) -> float:
+    """k_u/H_V as given, or else the snow's own; refused where neither says it."""
+    ratio = snow.unloading_ratio if given is None else given
+    if ratio is None:
+        raise ParameterError(
+            f"unloading_ratio is missing, and the snow ({snow.source}) has none: k_u/H_V has no default. Give it here, "
+            "or to the snow: 1 is elastic snow, math.inf rigid-plastic snow"
+        )
+    return ratio

@@ -1,0 +1,282 @@
+"""A ski in snow under a load: flat or edged, at rest or carving steadily.
+
+The ski is held at the boot with a given edge angle. A load along the snow normal presses it, and in a balanced turn the
+snow's side force is load × tan ϑ, so that the whole reaction is normal to the base under the boot. The edge is held:
+whether the snow can hold it is a result (`Equilibrium.holds`), not part of the balance.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import TYPE_CHECKING, Final, Literal, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from .._support.errors import ParameterError
+from ..ski.beam.clamped import CLAMP_LENGTH, ClampedSki, clamped
+from ..ski.ski import Ski
+from ..snow.properties import SnowProperties
+from .checks import (
+    require_choices,
+    require_kinds,
+    require_ranges,
+    require_strength,
+    require_within,
+    unloading_ratio_of,
+)
+from .edge_line import EdgeLine
+from .laws import SnowLaws, equivalent_snow, snow_laws
+from .result import Equilibrium, equilibrium_of, radius_at_boot
+from .solve import RIGID_PLASTIC, Conditions, Solution, solved
+
+if TYPE_CHECKING:
+    from ..forces.penetration import PointLaw
+    from ..forces.shear import ShearLaw
+
+FloatArray: TypeAlias = npt.NDArray[np.float64]
+GrooveForm: TypeAlias = Literal["edge", "path"]
+MomentBalance: TypeAlias = Literal["boot", "free"]
+SideForceSpread: TypeAlias = Literal["depth", "base-reaction"]
+
+ELEMENTS: Final = 160
+"""Elements over the whole ski: 1 cm each, half of 1/λ on the hardest snow (assumption: see the convergence tests)."""
+GENTLER_RATIOS: Final = (500.0, 300.0, 200.0)
+"""Unloading ratios to fall back on, with a warning, where steeper unloading has no numerical end (modelling
+assumption): against 1000 the
+greatest depth is 0.6, 1.1 and 1.7 % smaller, the radius less than 0.2 %."""
+_MOST_PATHS: Final = 80
+_PATH_TOLERANCE: Final = 1e-5  # m, of the edge from the path that was assumed
+
+
+def carve(
+    ski: Ski,
+    snow: SnowProperties,
+    *,
+    edge_angle: float,
+    load: float,
+    unloading_ratio: float | None = None,
+    shear: ShearLaw | None = None,
+    penetration: PointLaw | None = None,
+    moment: float = 0.0,
+    clamp_length: float = CLAMP_LENGTH,
+    footprint_stiffness: float | None = None,
+    side_force_bending: bool = True,
+    side_force_spread: SideForceSpread = "depth",
+    groove: GrooveForm = "edge",
+    moment_balance: MomentBalance = "boot",
+    twist: bool = True,
+    elements: int = ELEMENTS,
+) -> Equilibrium:
+    """Equilibrium of a ski that carves steadily: every place on the snow meets its stations from tip to tail.
+
+    Parameters
+    ----------
+    ski, snow
+        The ski, and the snow with H_V and S_f.
+    edge_angle
+        ϑ of the base under the boot to the snow surface (rad), 0 to 85°.
+    load
+        Force on this ski along the snow normal, at the boot (N), > 0.
+    unloading_ratio
+        k_u/H_V ≥ 1: 1 is elastic snow, `math.inf` rigid-plastic snow (computed as 1000). Where such steep unloading
+        does not converge, 500, 300 or 200 is taken and a warning says so. Left out: that of the snow.
+    shear
+        A law of `skisnow.forces.shear`, or one of yours, in place of S_f; one with a thrust is refused.
+    penetration
+        A `PointLaw` of `skisnow.forces.penetration`, or one of yours, in place of H_V and k_u. One that acts along the
+        base's normal holds the edge by its pressure's part across: neither S_f nor a shear law stands beside it.
+    moment
+        At the boot, positive where it presses the tip down (N m); about which axis, `moment_balance` says.
+    clamp_length, footprint_stiffness
+        Length of ski that boot and binding hold (m), and how stiff they are between the boot and each metre of it
+        (N/m²); None: rigid, the ski stays straight there.
+    side_force_bending
+        Whether the side force, too, bends and twists the ski (it does: the part sin ϑ of it is normal to the base).
+    side_force_spread
+        How the side force goes along the edge: "depth", in proportion to the edge's depth, or "base-reaction", in
+        proportion to the snow's force on the base, whose whole reaction is then normal to the base everywhere.
+    groove
+        "edge": the groove of the forebody lies under the edge of the afterbody. "path": it lies on the circle through
+        the edge line at the boot and 0.4 m before and behind, and each edge beside it by what its edge line differs.
+    moment_balance
+        "boot": `moment` is about the horizontal cross axis and balances the load alone; what the side force does about
+        the ski's cross axis, boot and skier hold besides: `Equilibrium.boot_pitch_moment` tells how much. "free":
+        `moment` is about the ski's own cross axis, and all that boot and skier hold there.
+    twist
+        Whether the ski twists (GJ) or keeps its edge angle everywhere.
+    elements
+        Of the whole ski.
+
+    Returns
+    -------
+    Equilibrium
+        Whatever the outcome; numbers that do not exist are None.
+
+    Raises
+    ------
+    ParameterError
+        An argument is outside its range, or the snow has no S_f; neither argument nor snow say k_u/H_V; what was given
+        as a law is none, or gives no finite answer.
+
+    See Also
+    --------
+    skisnow.rest : a ski that is set down and does not turn.
+    skisnow.simulate : a whole turn in place of a steady one.
+    skisnow.study : many such answers in one table.
+
+    Notes
+    -----
+    The balance is linear in the ski's deflection (small slopes) and exact in edge angle and twist. The ski's own weight
+    is left out. With ``side_force_spread`` "depth" the side force draws the same share of the shear strength
+    everywhere along the edge (modelling assumption): τ e per length. Nobody has measured how it goes.
+
+    References
+    ----------
+    * Mössner and others (2013), "Modeling the ski-snow contact in skiing turns using a hypoplastic vs an elastic
+      force-penetration relation", Scand. J. Med. Sci. Sports, doi 10.1111/sms.12035.
+    * Federolf, Roos, Lüthi and Dual (2010), "Finite element simulation of the ski-snow interaction of an alpine ski in
+      a carved turn", Sports Eng. 12, 123-133, doi 10.1007/s12283-010-0038-z.
+    * The page docs/methods/carved-turn.md.
+    * The page docs/methods/carve-laws.md.
+    """
+    require_kinds(ski, snow)
+    ratio = _unloading_ratio(snow, unloading_ratio, penetration)
+    require_ranges(edge_angle, load, ratio, moment)
+    require_within(ski, load, moment)
+    require_choices(groove, moment_balance, side_force_spread)
+    laws = snow_laws(shear, penetration, edge_angle)
+    if laws is None or not (laws.shear is not None or laws.along_base_normal):
+        require_strength(snow)
+    model = clamped(ski, clamp_length, elements, footprint_stiffness)
+    conditions = _conditions(ski, snow, edge_angle, load, moment, min(ratio, RIGID_PLASTIC), side_force_bending, twist)
+    conditions = _under(laws, ski, conditions)._replace(by_reaction=side_force_spread == "base-reaction")
+    if moment_balance == "free":
+        conditions = conditions._replace(pitch_of_force=math.cos(edge_angle), pitch_of_shear=math.sin(edge_angle))
+    find = solved if groove == "edge" else _following_path
+    solution = find(model, conditions)
+    note: tuple[str, ...] = ()
+    for gentler in (each for each in GENTLER_RATIOS if each < ratio):
+        if solution.converged:
+            break
+        conditions = conditions._replace(excess=snow.snow_hardness * (gentler - 1.0))
+        solution = find(model, conditions)
+        note = (f"computed with k_u/H_V = {gentler:g}: the steeper unloading that was asked did not converge",)
+    if laws is not None and not solution.converged:
+        laws.require_finite()
+    found = equilibrium_of(model, conditions, snow, solution, note)
+    if found.turn_radius_boot is None:
+        return found
+    other = find(model, conditions._replace(by_reaction=not conditions.by_reaction))
+    return replace(found, turn_radius_boot_other_spread=radius_at_boot(model, conditions, other))
+
+
+def rest(
+    ski: Ski,
+    snow: SnowProperties,
+    *,
+    edge_angle: float,
+    load: float,
+    moment: float = 0.0,
+    clamp_length: float = CLAMP_LENGTH,
+    footprint_stiffness: float | None = None,
+    twist: bool = True,
+    elements: int = ELEMENTS,
+) -> Equilibrium:
+    """Equilibrium of a ski set down on snow: virgin snow everywhere, no side force. Arguments as in `carve`.
+
+    Parameters
+    ----------
+    ski, snow, edge_angle, load, moment, clamp_length, footprint_stiffness, twist, elements
+        As in `carve`; the snow needs no S_f.
+
+    Returns
+    -------
+    Equilibrium
+        Without side force and turn radius.
+
+    See Also
+    --------
+    skisnow.carve : a ski that turns.
+
+    References
+    ----------
+    * Hetényi (1946), Beams on Elastic Foundation, University of Michigan Press: what a flat ski of one stiffness is
+      held to.
+    * The page docs/methods/carved-turn.md.
+    """
+    require_kinds(ski, snow)
+    require_ranges(edge_angle, load, 1.0, moment)
+    require_within(ski, load, moment)
+    model = clamped(ski, clamp_length, elements, footprint_stiffness)
+    conditions = _conditions(ski, snow, edge_angle, load, moment, 1.0, False, twist)._replace(side_force=0.0)
+    return equilibrium_of(model, conditions, snow, solved(model, conditions))
+
+
+def _unloading_ratio(snow: SnowProperties, given: float | None, penetration: object) -> float:
+    if penetration is None:
+        return unloading_ratio_of(snow, given)
+    if given is not None:
+        raise ParameterError(
+            f"unloading_ratio is {given} beside a penetration law, which says itself how the snow unloads: leave it out"
+        )
+    return 1.0
+
+
+def _under(laws: SnowLaws | None, ski: Ski, conditions: Conditions) -> Conditions:
+    """The conditions with laws, and the linear snow where a penetration law's search begins."""
+    if laws is None or laws.penetration is None:
+        return conditions._replace(laws=laws)
+    hardness, ratio = equivalent_snow(laws.penetration, ski, conditions.edge_angle, conditions.load)
+    return conditions._replace(laws=laws, hardness=hardness, excess=hardness * (ratio - 1.0))
+
+
+def _conditions(
+    ski: Ski,
+    snow: SnowProperties,
+    edge_angle: float,
+    load: float,
+    moment: float,
+    unloading_ratio: float,
+    side_force_bending: bool,
+    twist: bool,
+) -> Conditions:
+    return Conditions(
+        edge_angle=edge_angle,
+        hardness=snow.snow_hardness,
+        excess=snow.snow_hardness * (unloading_ratio - 1.0),
+        load=load,
+        moment=moment,
+        side_force=load * math.tan(edge_angle),
+        side_force_bending=side_force_bending,
+        twists=twist and edge_angle > 0.0,
+        bevel=ski.base_bevel,
+        bevel_width=ski.edge_width,
+        pitch_of_force=1.0,
+        pitch_of_shear=0.0,
+        by_reaction=False,
+    )
+
+
+def _following_path(model: ClampedSki, conditions: Conditions) -> Solution:
+    """Repeat with the edge's offset from the path until path and edge line agree."""
+    solution = solved(model, conditions)
+    offset = np.zeros(len(model.stations.station))
+    share, before = 0.5, math.inf
+    for _ in range(_MOST_PATHS):
+        if not solution.converged:
+            return solution
+        line = EdgeLine(model, conditions.edge_angle, solution)
+        if line.radius_at_boot() is None:
+            return solution
+        change = line.offset_from_circle() - offset
+        size = float(np.max(np.abs(change[solution.edge_depth > 0.0])))
+        if size <= _PATH_TOLERANCE:
+            return solution
+        if size > 0.9 * before:
+            share *= 0.7
+        before = size
+        offset = offset + share * change
+        solution = solved(model, conditions, offset=offset, near=solution)
+    return Solution(False, *(getattr(solution, name) for name in Solution.__slots__[1:]))

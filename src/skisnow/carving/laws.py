@@ -1,0 +1,200 @@
+"""Laws of the snow in the place of H_V, k_u and S_f in a steady carve, as the compiled core asks them."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Final, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from .._support.errors import ParameterError
+from ..compiled import core
+from ..contact.asked_laws import AskedPressure, AskedStrength
+from ..forces.penetration import PenetrationLaw, PointLaw
+from ..forces.shear import ShearLaw
+from ..ski.ski import Ski
+
+FloatArray: TypeAlias = npt.NDArray[np.float64]
+
+STEEPEST_RATIO: Final = 1000.0
+"""Unloading ratio of the linear snow from which the search for another law's equilibrium begins, at most."""
+_LOADED_SHARE: Final = 0.9  # of the running length, on a straight edge
+_SOME_DEPTH: Final = 1e-3  # m, at which strengths are compared
+_DEPTHS: Final = np.geomspace(1e-6, 1.0, 600)  # m, of a straight edge
+_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(64)
+
+
+class PressureLaw(AskedPressure):
+    """Stress of a law. What is not finite is kept in ``refused``: a step may try depths that no ski comes to."""
+
+    def __init__(self, law: PointLaw) -> None:
+        super().__init__(law)
+        self.refused = ""
+
+    def stress(self, depth: FloatArray, deepest: FloatArray, edge_angle: FloatArray, /) -> FloatArray:
+        """Stress (N/m²) of places at depths (m), that were at deepest depths (m), at edge angles (rad)."""
+        return self.bear(depth, deepest, edge_angle)[0]
+
+    def refuse(self, reason: str) -> None:
+        """Keep the reason."""
+        self.refused = reason
+
+
+class StrengthLaw:
+    """Failure stress of a law over that at one depth and the boot's edge angle, for arrays; `refused` as above."""
+
+    def __init__(self, law: ShearLaw, edge_angle: float) -> None:
+        self._asked = AskedStrength(law)
+        self._unit = float(self._asked(np.array([_SOME_DEPTH]), np.array([edge_angle]))[0, 0])
+        self.refused = ""
+
+    def share(self, depth: FloatArray, edge_angle: FloatArray, /) -> FloatArray:
+        """Of depths (m), 0 where there is none, and edge angles (rad)."""
+        found = self._asked(depth, edge_angle)[0] / self._unit
+        self.refused = self.refused or self._asked.refused
+        return found
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SnowLaws:
+    """Laws that were given for a carve, None where the snow's numbers act, and as the core asks them."""
+
+    shear: ShearLaw | None
+    penetration: PointLaw | None
+    asked: tuple[PressureLaw | StrengthLaw, ...]
+    compiled: core.CarveLaws
+
+    @property
+    def along_base_normal(self) -> bool:
+        """Whether the pressure itself holds the edge across."""
+        return self.penetration is not None and self.penetration.along_base_normal
+
+    def side_force_limit(
+        self, depth: FloatArray, force: FloatArray, edge_angle: FloatArray, length: FloatArray
+    ) -> float | None:
+        """What the edge holds (N), by its depths (m), the snow's force per length (N/m), edge angles and lengths.
+
+        None where S_f of the snow says it, or no strength is finite.
+        """
+        if self.along_base_normal:
+            return float(length @ (force * np.tan(edge_angle)))
+        if self.shear is None:
+            return None
+        below = depth > 0.0
+        limit = float(self.shear.failure_force(depth[below], length[below], edge_angle[below]).sum())
+        return limit if math.isfinite(limit) else None
+
+    def require_finite(self) -> None:
+        """Refuse a law that gave no finite answer on the way; asked where no equilibrium was found."""
+        for each in self.asked:
+            if each.refused:
+                raise ParameterError(f"{each.refused}, and no equilibrium was found")
+
+
+def snow_laws(shear: object, penetration: object, edge_angle: float) -> SnowLaws | None:
+    """Check laws and make them ready for the core; None where none is given.
+
+    Parameters
+    ----------
+    shear, penetration
+        A `ShearLaw` and a `PointLaw`, or None.
+    edge_angle
+        Of the base under the boot (rad).
+
+    Raises
+    ------
+    ParameterError
+        An object is no such law, two laws hold the edge, or a shear law has a thrust or no strength.
+    """
+    if shear is None and penetration is None:
+        return None
+    if penetration is not None and not isinstance(penetration, PointLaw):
+        raise ParameterError(_no_point_law(penetration))
+    if shear is not None and not isinstance(shear, ShearLaw):
+        raise ParameterError(
+            f"shear is {shear!r}; it must be a shear law, such as ConstantShear(0.2e6) of skisnow.forces.shear, or one "
+            "of yours derived from ShearLaw"
+        )
+    if shear is not None and penetration is not None and penetration.along_base_normal:
+        raise ParameterError(
+            f"{type(penetration).__name__} acts along the base's normal and so holds the edge across by itself; leave "
+            "the shear law out"
+        )
+    pressure = None if penetration is None else PressureLaw(penetration)
+    strength = None
+    if shear is not None and edge_angle > 0.0:
+        _require_strength_alone(shear, edge_angle)
+        strength = StrengthLaw(shear, edge_angle)
+    compiled = core.CarveLaws(
+        None if pressure is None else pressure.stress,
+        None if pressure is None else pressure.residual,
+        np.array(() if penetration is None else penetration.bends, float),
+        None if strength is None else strength.share,
+    )
+    return SnowLaws(shear, penetration, tuple(each for each in (pressure, strength) if each is not None), compiled)
+
+
+def _no_point_law(given: object) -> str:
+    kind = "a law for the force of a whole tool" if isinstance(given, PenetrationLaw) else "no law of a place"
+    return (
+        f"penetration is {given!r}, {kind}; it must be a law of one place on the snow, such as MeanPressurePoint(…) of "
+        "skisnow.forces.penetration, or one of yours derived from PointLaw"
+    )
+
+
+def _require_strength_alone(law: ShearLaw, edge_angle: float) -> None:
+    depth = np.array([_SOME_DEPTH, 5.0 * _SOME_DEPTH, 20.0 * _SOME_DEPTH])
+    stress, thrust = law.stress_and_thrust(depth, np.full(3, edge_angle))
+    degrees = math.degrees(edge_angle)
+    if not (np.isfinite(stress).all() and np.all(stress > 0.0)):
+        raise ParameterError(f"shear is {law!r}, which gives no finite strength above 0 at {degrees:.3g} degrees")
+    share = float(np.max(np.abs(thrust / stress))) * math.tan(edge_angle)
+    if share > 0.0:
+        raise ParameterError(
+            f"shear is {law!r}, which comes with a thrust. Drawn as its strength is, it would bear {share:.3g} of the "
+            f"load by itself in a balanced turn at {degrees:.3g} degrees (of 1 on none is left for the base), and a "
+            "steady carve does not balance a thrust. Give the strength alone: ConstantShear("
+            f"{float(stress[0]):.6g}), or a law of yours without thrust_force. A simulated turn takes this one"
+        )
+
+
+def equivalent_snow(law: PointLaw, ski: Ski, edge_angle: float, load: float) -> tuple[float, float]:
+    """H_V (N/m³) and k_u/H_V of linear snow that bears a load with a straight edge as deep as the law does.
+
+    The law's search for an equilibrium begins there; the equilibrium does not depend on it.
+
+    Parameters
+    ----------
+    law
+        Of a place on the snow.
+    ski, edge_angle, load
+        The ski, ϑ (rad), force along the snow normal (N).
+
+    Raises
+    ------
+    ParameterError
+        The law gives no finite pressure above 0, or lets go at once when the depth shrinks.
+    """
+    reach = float(ski.at(0.0).width) * math.cos(edge_angle)
+    place = 0.5 * np.minimum(reach, _DEPTHS / max(math.tan(edge_angle), 1e-12))[:, None] * (1.0 + _NODES)
+    step = place[:, -1:] / (1.0 + _NODES[-1])
+    depth = np.maximum(_DEPTHS[:, None] - place * math.tan(edge_angle), 0.0)
+    flat = depth.ravel()
+    pressure = law.stress_and_energy(flat, flat, np.full(len(flat), edge_angle))[0].reshape(depth.shape)
+    force, volume = ((each * step) @ _WEIGHTS for each in (pressure, depth))
+    bears = np.flatnonzero(force * _LOADED_SHARE * ski.running_length >= load)
+    at = int(bears[0]) if len(bears) else len(_DEPTHS) - 1
+    hardness, deepest = float(force[at] / volume[at]), np.array([_DEPTHS[at]])
+    if not (math.isfinite(hardness) and hardness > 0.0):
+        raise ParameterError(f"penetration is {law!r}, which gives no finite pressure above 0 under this ski and load")
+    spring = float(deepest[0] - np.asarray(law.residual_depth(deepest), float)[0])
+    if not spring > 0.0:
+        raise ParameterError(
+            f"penetration is {law!r}, which lets go at once when the depth shrinks: residual_depth must stay below the "
+            "deepest depth, as with a finite unloading_ratio"
+        )
+    stress = float(law.stress_and_energy(deepest, deepest, np.array([edge_angle]))[0, 0])
+    ratio = min(max(stress / spring / hardness, 1.0), STEEPEST_RATIO)
+    return hardness, ratio if ratio > 1.0 + 1e-9 else 1.0

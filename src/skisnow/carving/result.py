@@ -1,0 +1,266 @@
+"""What carving steadily, or standing at rest, comes to: the numbers of an equilibrium, its outcome, what to do."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Final, Literal, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from .._support.display import Facts, Shown, amount
+from .._support.units import MM
+from ..ski.beam.clamped import ClampedSki
+from ..snow.properties import SnowProperties
+from .edge_line import EdgeLine
+from .solve import Conditions, Solution
+
+FloatArray: TypeAlias = npt.NDArray[np.float64]
+Outcome: TypeAlias = Literal["equilibrium", "slips", "sinks", "bridges", "not_converged"]
+
+SINKING_DEPTH: Final = 0.30
+"""Edge depth (m) beyond which a ski counts as swallowed: no balance above it (modelling assumption)."""
+NOTHING_TO_SPARE: Final = 1e-7
+"""Share of the side force that Newton's method leaves open where pressure along the base's normal just balances it."""
+LARGE_SLOPE: Final = 0.35
+"""Slope of the bent ski, and twist (rad), beyond which beams of small deflection fail (modelling assumption: 6 % in
+the cosine)."""
+
+REMEDIES: Final[dict[Outcome, str]] = {
+    "equilibrium": "",
+    "slips": "the snow cannot hold the side force: less edge angle or load, or stronger snow; the numbers are those of "
+    "an edge held by something else",
+    "sinks": f"no balance above {SINKING_DEPTH * 1e2:.0f} cm: the snow is too soft for this load",
+    "bridges": "the ski stands on separate pieces, or not under the boot: softer snow, a softer ski, less camber or a "
+    "shorter clamp closes the gap",
+    "not_converged": "no equilibrium was found: try a smaller unloading ratio, more elements or a lower edge angle",
+}
+"""What to do about an outcome, in words."""
+
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Equilibrium(Shown):
+    """A ski in equilibrium with the snow. SI, radians; None where a number does not exist.
+
+    Attributes
+    ----------
+    outcome
+        "equilibrium"; "slips": the side force is beyond the shear strength, all numbers are those of the held edge;
+        "bridges": the contact is not one piece or misses the boot; "sinks" and "not_converged" have no numbers.
+        Where several apply: not_converged, sinks, slips, bridges, equilibrium.
+    remedy
+        What to do about it, in words.
+    side_force, side_force_limit
+        Load × tan ϑ, and S_f ∫ e ds over the edge that is below the surface (N). With a shear law S_f is its failure
+        stress there; with a penetration law along the base's normal the limit is the pressure's part across,
+        ∫ f tan(ϑ + φ) ds.
+    holds
+        Whether the limit is not exceeded.
+    turn_radius_boot
+        Radius of the circle through the edge line at the boot and 0.4 m before and behind it (m); None for a ski that
+        is flat or at rest.
+    turn_radius_boot_other_spread
+        The same with the side force spread the other way along the edge, all else alike (m): how much hangs on that
+        choice; None also where that has no equilibrium.
+    turn_radius_chord
+        Radius of the circle through the edge line at the boot and at both ends of the contact (m).
+    contact_length
+        Between the first and the last place at which the edge is below the undisturbed surface (m): there it meets
+        snow or its groove, and can hold side force.
+    bearing_length
+        Of the places that carry force (m): in a groove that does not spring back, parts of the contact carry none.
+    afterbody_depth_ratio
+        Mean edge depth of the contact behind the boot over that before it.
+    forebody_load, afterbody_load
+        What the snow bears before and behind the boot, along its normal (N).
+    boot_pitch_moment
+        What boot and skier hold about the ski's cross axis, positive where they press the tip down (N m):
+        ∫ s (f cos ϑ + τ e sin ϑ) ds.
+    station
+        Places along the ski, from the boot, positive forward, tip to tail (m), shape (n,), as all that follow.
+    edge_depth
+        Of the edge below the undisturbed surface (m); negative: above it.
+    force_per_length
+        Of the snow, along the snow normal (N/m).
+    bending
+        Deflection of the base against the ski held straight at the boot, away from the snow (m).
+    twist
+        Growth of the edge angle against that at the boot (rad).
+    edge_line
+        Position of the edge in the snow surface, towards the inside of the turn (m).
+    residual_force, residual_moment
+        What the snow's force and its moment about the boot differ by from load and moment (N, N m); the moment is that
+        which was balanced.
+    warnings
+        Where the answer is outside what the model can say, in words.
+    iterations
+        Of Newton's method.
+
+    See Also
+    --------
+    skisnow.carve
+    skisnow.rest
+    """
+
+    outcome: Outcome
+    remedy: str
+    holds: bool | None
+    side_force: float | None
+    side_force_limit: float | None
+    turn_radius_boot: float | None
+    turn_radius_boot_other_spread: float | None
+    turn_radius_chord: float | None
+    contact_length: float | None
+    bearing_length: float | None
+    afterbody_depth_ratio: float | None
+    forebody_load: float | None
+    afterbody_load: float | None
+    boot_pitch_moment: float | None
+    station: FloatArray
+    edge_depth: FloatArray | None
+    force_per_length: FloatArray | None
+    bending: FloatArray | None
+    twist: FloatArray | None
+    edge_line: FloatArray | None
+    residual_force: float | None
+    residual_moment: float | None
+    warnings: tuple[str, ...]
+    iterations: int
+
+    @property
+    def total_force(self) -> float | None:
+        """Magnitude of load and side force together (N)."""
+        if self.side_force is None or self.forebody_load is None or self.afterbody_load is None:
+            return None
+        return math.hypot(self.side_force, self.forebody_load + self.afterbody_load)
+
+    @property
+    def grip_utilisation(self) -> float | None:
+        """Side force over its limit; None without a limit above 0."""
+        return (
+            self.side_force / self.side_force_limit if self.side_force is not None and self.side_force_limit else None
+        )
+
+    def _facts(self) -> Facts:
+        deepest = None if self.edge_depth is None else float(np.max(self.edge_depth)) / MM
+        holds = {True: "holds", False: "does not hold", None: "unknown"}[self.holds]
+        limit = f"of {amount(self.side_force_limit, 'N')}: {holds}"
+        rows = (
+            ("side force", f"{amount(self.side_force, 'N')} {limit}"),
+            ("turn radius", amount(self.turn_radius_boot, "m")),
+            ("side force spread otherwise", amount(self.turn_radius_boot_other_spread, "m")),
+            ("contact", amount(self.contact_length, "m")),
+            ("edge depth", f"at most {amount(deepest, 'mm')}"),
+            ("afterbody", f"{amount(self.afterbody_depth_ratio)} of the forebody's depth"),
+            ("warnings", str(len(self.warnings))),
+        )
+        return Facts(self.outcome.replace("_", " "), rows)
+
+
+def _too_soft(model: ClampedSki, conditions: Conditions) -> bool:
+    """Whether the load is beyond what the snow bears with the whole base pushed to the sinking depth."""
+    area = float(model.stations.weight @ model.stations.width) * math.cos(conditions.edge_angle)
+    return conditions.load > conditions.hardness * SINKING_DEPTH * area
+
+
+def equilibrium_of(
+    model: ClampedSki, conditions: Conditions, snow: SnowProperties, solution: Solution, note: tuple[str, ...] = ()
+) -> Equilibrium:
+    """Outcome and numbers of a solution; `note` stands before its own warnings."""
+    station = model.stations.station
+    deepest = float(np.max(solution.edge_depth))
+    sinks = deepest > SINKING_DEPTH if solution.converged else _too_soft(model, conditions)
+    if not solution.converged or sinks:
+        outcome: Outcome = "sinks" if sinks else "not_converged"
+        nothing = (None,) * 12
+        return Equilibrium(outcome, REMEDIES[outcome], *nothing, station, *(None,) * 7, (), solution.iterations)
+    line = EdgeLine(model, conditions.edge_angle, solution)
+    weight, depth, force = model.stations.weight, solution.edge_depth, solution.force_per_length
+    below = depth > 0.0
+    limit = _side_force_limit(conditions, snow, solution, weight, conditions.edge_angle + line.twist)
+    holds = _holds(conditions, limit)
+    outcome = "slips" if not holds else "bridges" if _bridges(station, below) else "equilibrium"
+    ends = line.contact_ends(depth)
+    of_force = float(weight @ (force * station))
+    drawn_from = force if conditions.by_reaction else np.maximum(depth, 0.0)
+    of_shear = solution.shear_stress * float(weight @ (drawn_from * station))
+    before = float(weight @ (force * np.heaviside(station, 0.5)))
+    turns = conditions.side_force > 0.0
+    return Equilibrium(
+        outcome=outcome,
+        remedy=REMEDIES[outcome],
+        holds=holds,
+        side_force=conditions.side_force,
+        side_force_limit=limit,
+        turn_radius_boot=line.radius_at_boot() if turns else None,
+        turn_radius_boot_other_spread=None,
+        turn_radius_chord=line.radius_over(*ends) if turns else None,
+        contact_length=ends[0] - ends[1],
+        bearing_length=float(weight[force > 0.0].sum()),
+        afterbody_depth_ratio=_depth_ratio(station, weight, depth),
+        forebody_load=before,
+        afterbody_load=float(weight @ force) - before,
+        boot_pitch_moment=math.cos(conditions.edge_angle) * of_force + math.sin(conditions.edge_angle) * of_shear,
+        station=station,
+        edge_depth=depth,
+        force_per_length=force,
+        bending=line.deflection,
+        twist=line.twist,
+        edge_line=line.position,
+        residual_force=float(weight @ force) - conditions.load,
+        residual_moment=conditions.pitch_of_force * of_force + conditions.pitch_of_shear * of_shear - conditions.moment,
+        warnings=(*note, *_warnings(line)),
+        iterations=solution.iterations,
+    )
+
+
+def _side_force_limit(
+    conditions: Conditions, snow: SnowProperties, solution: Solution, weight: FloatArray, edge_angle: FloatArray
+) -> float | None:
+    """What the edge holds (N): by a law where one was given, else S_f ∫ e ds."""
+    depth, stress = solution.edge_depth, snow.failure_shear_stress
+    if conditions.laws is not None and (conditions.laws.shear is not None or conditions.laws.along_base_normal):
+        return conditions.laws.side_force_limit(depth, solution.force_per_length, edge_angle, weight)
+    return None if stress is None else stress * float(weight @ np.maximum(depth, 0.0))
+
+
+def _holds(conditions: Conditions, limit: float | None) -> bool:
+    if conditions.side_force == 0.0 or limit is None:
+        return conditions.side_force == 0.0
+    # a pressure along the base's normal holds a ski that does not twist with nothing to spare
+    rounding = NOTHING_TO_SPARE if conditions.laws is not None and conditions.laws.along_base_normal else 0.0
+    return conditions.side_force <= limit * (1.0 + rounding)
+
+
+def radius_at_boot(model: ClampedSki, conditions: Conditions, solution: Solution) -> float | None:
+    """Of the circle through the edge line there (m); None where there is no balance."""
+    if not solution.converged or float(np.max(solution.edge_depth)) > SINKING_DEPTH:
+        return None
+    return EdgeLine(model, conditions.edge_angle, solution).radius_at_boot()
+
+
+def _bridges(station: FloatArray, below: npt.NDArray[np.bool_]) -> bool:
+    pieces = int(below[0]) + int(np.count_nonzero(np.diff(below.astype(int)) == 1))
+    contact = station[below]
+    return pieces != 1 or not contact[-1] <= 0.0 <= contact[0]
+
+
+def _depth_ratio(station: FloatArray, weight: FloatArray, depth: FloatArray) -> float | None:
+    before, behind = (depth > 0.0) & (station > 0.0), (depth > 0.0) & (station < 0.0)
+    if not (before.any() and behind.any()):
+        return None
+    mean_before, mean_behind = (float(weight[part] @ depth[part] / weight[part].sum()) for part in (before, behind))
+    return mean_behind / mean_before
+
+
+def _warnings(line: EdgeLine) -> tuple[str, ...]:
+    found = []
+    slope, twist = line.greatest_slope(), float(np.max(np.abs(line.twist)))
+    if slope > LARGE_SLOPE:
+        found.append(
+            f"the ski bends to a slope of {slope:.2f}: beyond {LARGE_SLOPE} beams of small deflection are inexact"
+        )
+    if twist > LARGE_SLOPE:
+        found.append(f"the ski twists by {math.degrees(twist):.0f} degrees: more than a linear torsion bar can tell")
+    return tuple(found)

@@ -1,0 +1,341 @@
+"""The whole estimation of a campaign: records in, snow parameters with uncertainty out."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from datetime import UTC, datetime
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+import numpy.typing as npt
+
+from .._support.display import Facts, Shown, amount, span
+from .._support.errors import ParameterError
+from ..campaign import read_campaign
+from ..campaign.records import Campaign
+from ..snow import SnowProperties
+from .comparisons import Comparison, OwnValue, compare_with_published, own_mean
+from .errors_in_depth import fit_models_with_depth_errors, fitted_hardness
+from .fit_warnings import fit_warnings
+from .growing_hardness import growing_hardness, site_growth
+from .hardness import DEFINITIONS, ReadingUncertainty, hardness
+from .model_choice import bootstrap_intervals, compare_nested_rows
+from .models import Model, fit_models, select_model, why_no_choice
+from .observations import (
+    DENSITY_KEY,
+    HARDNESS_KEY,
+    STRESS_KEY,
+    Observations,
+    penetration_observations,
+    shear_observations,
+    spot_observations,
+)
+from .parts import ModelTable, PenetrationAnalysis, ShearAnalysis, used_of
+from .readings import readings_of
+from .regressions import Regression, Source, regressions
+from .screening import screened_penetration, screened_shear
+from .seating import seating
+from .shear_displacement import shear_displacement, site_displacement
+from .shear_stress import shear_stress
+from .site_snow import site_snow
+from .sites import SiteComparison, SiteMean, compare_sites, site_means
+from .snow_micro_pen import SnowMicroPenAnalysis, evaluate_recordings
+from .unloading import NOT_FALLING, site_unloading, unloading
+from .weather import WeatherAtTests, weather_at_tests
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
+    from ..geometry import GeometryForm
+
+FloatArray = npt.NDArray[np.float64]
+
+DEFAULT_RESAMPLES: Final = 2000
+"""Bootstrap resamples; the ends of a 95 % interval then move by a few percent of its width between seeds."""
+FEWEST_RESAMPLES: Final = 100
+DEFAULT_SEED: Final = 1
+
+
+@dataclass(frozen=True, repr=False)
+class Analysis(Shown):
+    """A campaign analysed.
+
+    Attributes
+    ----------
+    campaign
+        What was analysed.
+    geometry, seed, n_resamples
+        How: see `analyse`.
+    penetration, shear
+        Results of each kind of experiment, in SI; None where the campaign has none.
+    regressions, site_means, site_comparisons, comparisons
+        Relations between the quantities, sites beside each other, published values beside the campaign's own.
+    own_hardness, own_stress
+        Means over all sites.
+    observations
+        The used experiments with the snow that they were made on.
+    time
+        When it was made.
+    snow_micro_pen
+        What the recordings of a SnowMicroPen say; None where the campaign has none.
+    weather
+        At each experiment, from a station; None where the campaign has none.
+
+    See Also
+    --------
+    skisnow.analyse
+    """
+
+    campaign: Campaign
+    geometry: GeometryForm
+    seed: int
+    n_resamples: int
+    penetration: PenetrationAnalysis | None
+    shear: ShearAnalysis | None
+    regressions: tuple[Regression, ...]
+    site_means: tuple[SiteMean, ...]
+    site_comparisons: tuple[SiteComparison, ...]
+    comparisons: tuple[Comparison, ...]
+    own_hardness: OwnValue
+    own_stress: OwnValue
+    observations: Mapping[Source, Observations]
+    time: datetime = field(default_factory=lambda: datetime.now(UTC))
+    snow_micro_pen: SnowMicroPenAnalysis | None = None
+    weather: WeatherAtTests | None = None
+
+    @cached_property
+    def results(self) -> dict[str, Any]:
+        """The contents of results.json, see `results_dict`; not to be changed."""
+        from .results import results_dict
+
+        return results_dict(self)
+
+    def snow(self, site: str | None = None, *, unloading_ratio: float | None = None) -> SnowProperties:
+        """The snow of a site: the geometric mean of H_V and the mean of S_f over the used experiments, with intervals.
+
+        k_u/H_V is that of the site's unloading readings, where both ends of its interval are known; the shear
+        displacement u_y the geometric mean of its shear tests with turning angles.
+
+        The same numbers as `skisnow.snow_from_results` reads from results.json.
+
+        Parameters
+        ----------
+        site
+            As the campaign calls it; "C" is also its "site C". Left out: all sites together.
+        unloading_ratio
+            k_u/H_V in place of the measured one: 1 is snow that springs back, 10 or more snow that keeps its grooves.
+            `Scenario.with_` takes either over.
+
+        Raises
+        ------
+        ParameterError
+            No used penetration experiment is of that site; the message names the sites that have some.
+        """
+        return site_snow(self.campaign, self.penetration, self.shear, site, unloading_ratio)
+
+    def _facts(self) -> Facts:
+        selected = self.penetration.selected if self.penetration is not None else None
+        rows = [
+            ("penetration", "none" if self.penetration is None else used_of(self.penetration.screened)),
+            ("shear", "none" if self.shear is None else used_of(self.shear.screened)),
+            ("H_V", _own(self.own_hardness, "N/mm³")),
+            ("S_f", _own(self.own_stress, "N/mm²")),
+            ("model", "none" if selected is None else f"{selected.model.id}, rmse {amount(selected.rmse, 'N')}"),
+            ("sites", ", ".join(dict.fromkeys(row.site for row in self.site_means)) or "none"),
+        ]
+        return Facts(f"of {self.campaign.name!r}", tuple(rows))
+
+
+def _own(mean: OwnValue, unit: str) -> str:
+    """A mean over the campaign with its interval, in the unit that it is held in."""
+    return f"{amount(mean.value, unit)} ({span(mean.low, mean.high)})"
+
+
+def analyse(
+    campaign: Campaign | str | Path,
+    *,
+    geometry: GeometryForm = "extended",
+    seed: int = DEFAULT_SEED,
+    n_resamples: int = DEFAULT_RESAMPLES,
+    progress: Callable[[str], None] | None = None,
+) -> Analysis:
+    """Estimate H_V, S_f, the model table, regressions and comparisons of a campaign.
+
+    Parameters
+    ----------
+    campaign
+        A campaign, or the folder that holds one.
+    geometry
+        ``extended``: the ski piece with its trapezoid continuation; ``paper``: the plain wedge of Eqn 2.
+    seed
+        Seed of the bootstrap; the same seed gives the same numbers bit for bit on one machine.
+    n_resamples
+        Bootstrap resamples of whole experiments, ≥ 100.
+    progress
+        Called with a line of text now and then.
+
+    Returns
+    -------
+    Analysis
+        With results, snow of a site, figures and tables.
+
+    Raises
+    ------
+    FieldDataError
+        The folder has errors; its ``problems`` list every one.
+    ParameterError
+        ``n_resamples`` is too small for a 95 % interval.
+
+    See Also
+    --------
+    skisnow.read_campaign : the campaign to analyse.
+    skisnow.write_report : what was found, as a page.
+    skisnow.Analysis.snow : the snow of a site for a turn.
+
+    References
+    ----------
+    * Mössner, Innerhofer, Schindelwig, Kaps, Schretter and Nachbauer (2013), "Measurement of mechanical properties of
+      snow for simulation of skiing", J. Glaciol.
+    * Efron (1979), "Bootstrap methods: another look at the jackknife", Ann. Stat. 7, 1-26, doi 10.1214/aos/1176344552.
+    """
+    if n_resamples < FEWEST_RESAMPLES:
+        raise ParameterError(f"n_resamples is {n_resamples!r}; a 95 % interval needs {FEWEST_RESAMPLES} or more")
+    read = campaign if isinstance(campaign, Campaign) else read_campaign(campaign, progress=progress)
+    return _analysis(read, geometry, seed, n_resamples, progress)
+
+
+def _analysis(
+    campaign: Campaign,
+    geometry: GeometryForm,
+    seed: int,
+    n_resamples: int,
+    progress: Callable[[str], None] | None,
+) -> Analysis:
+    rng = np.random.default_rng(seed)
+    penetration = _penetration(campaign, geometry, rng, n_resamples, progress)
+    shear = _shear(campaign)
+    recordings = campaign.snow_micro_pen
+    if recordings is not None:
+        _report(progress, f"{len(recordings)} recordings of the SnowMicroPen")
+    pen = None if recordings is None else evaluate_recordings(recordings)
+    observations = _observations(campaign, penetration, shear, pen)
+    pressed, sheared = observations["penetration"].known(HARDNESS_KEY), observations["shear"].known(STRESS_KEY)
+    own_hardness, own_stress = own_mean(*pressed, geometric=True), own_mean(*sheared, geometric=False)
+    return Analysis(
+        campaign=campaign,
+        geometry=geometry,
+        seed=seed,
+        n_resamples=n_resamples,
+        penetration=penetration,
+        shear=shear,
+        regressions=regressions(observations),
+        site_means=(
+            *site_means(HARDNESS_KEY, *pressed, geometric=True),
+            *site_means(STRESS_KEY, *sheared, geometric=False),
+        ),
+        site_comparisons=(*compare_sites("H_V", *pressed), *compare_sites("S_f", *sheared)),
+        comparisons=compare_with_published(
+            own_hardness,
+            own_stress,
+            _angle_term(penetration),
+            own_mean(*observations["shear"].known(DENSITY_KEY), geometric=False),
+        ),
+        own_hardness=own_hardness,
+        own_stress=own_stress,
+        observations=observations,
+        snow_micro_pen=pen,
+        weather=weather_at_tests(campaign),
+    )
+
+
+def _penetration(
+    campaign: Campaign,
+    geometry: GeometryForm,
+    rng: np.random.Generator,
+    n_resamples: int,
+    progress: Callable[[str], None] | None,
+) -> PenetrationAnalysis | None:
+    if campaign.penetration is None:
+        return None
+    screened = screened_penetration(campaign, geometry=geometry)
+    readings = readings_of(campaign.penetration, campaign.tools, geometry=geometry)
+    uncertainty = ReadingUncertainty(campaign.depth_uncertainty or 0.0, campaign.load_uncertainty or 0.0)
+    _report(progress, f"hardness of {readings.n_series} penetration experiments")
+    found = {symbol: hardness(readings, definition, uncertainty) for symbol, definition in DEFINITIONS.items()}
+    back = unloading(campaign.penetration, readings, found["H_V"], uncertainty, screened.flags[NOT_FALLING])
+    back_by_site = site_unloading(back, screened.used, campaign.penetration.site)
+    growing = growing_hardness(readings, found["H_V"].value, uncertainty)
+    growth_by_site = site_growth(growing, screened.used, campaign.penetration.site)
+    offsets = seating(readings, found["H_V"].value, uncertainty)
+    fitted = fitted_hardness(readings, offsets, uncertainty)
+    if not screened.used.any():
+        return PenetrationAnalysis(
+            screened, readings, found, offsets, fitted, growing, (), back, back_by_site, None, (), None, None
+        )
+
+    used = readings.of(screened.used)
+    _report(progress, f"model table over {used.n} readings")
+    by_last = {symbol: H.value[screened.used] for symbol, H in found.items()}
+    fits = fit_models(used, by_last)
+    intervals = bootstrap_intervals(used, by_last, rng, n_resamples=n_resamples, progress=progress)
+    fitted_used = fitted.of(screened.used)
+    depth_fits, _ = fit_models_with_depth_errors(fitted_used, uncertainty)
+    no_choice = why_no_choice(used)
+    selected = None if no_choice else select_model(fits)
+    return PenetrationAnalysis(
+        screened=screened,
+        readings=readings,
+        hardness=found,
+        seating=offsets,
+        fitted=fitted,
+        growing=growing,
+        site_growth=growth_by_site,
+        unloading=back,
+        site_unloading=back_by_site,
+        table=ModelTable(fits, intervals),
+        nested=compare_nested_rows(fits),
+        selected=selected,
+        errors_in_depth=ModelTable(depth_fits, {}),  # no intervals: a bootstrap covers b in 7 to 90 % of campaigns
+        warnings=(*filter(None, (no_choice,)), *fit_warnings(fits, selected, used.load)),
+    )
+
+
+def _shear(campaign: Campaign) -> ShearAnalysis | None:
+    if campaign.shear is None:
+        return None
+    screened, displacement = screened_shear(campaign), shear_displacement(campaign, campaign.shear)
+    by_site = site_displacement(displacement, screened.used, campaign.shear.site)
+    return ShearAnalysis(screened, shear_stress(campaign, campaign.shear), displacement, by_site)
+
+
+def _observations(
+    campaign: Campaign,
+    penetration: PenetrationAnalysis | None,
+    shear: ShearAnalysis | None,
+    pen: SnowMicroPenAnalysis | None,
+) -> dict[Source, Observations]:
+    nothing = np.zeros(0), np.zeros(0, dtype=bool)
+    hardness, used = (penetration.hardness["H_V"].value, penetration.screened.used) if penetration else nothing
+    sheared = (shear.stress.value, shear.screened.used) if shear else nothing
+    first = penetration_observations(campaign, hardness, used, pen)
+    second = shear_observations(campaign, *sheared)
+    return {"penetration": first, "shear": second, "spots": spot_observations(first, second)}
+
+
+def _angle_term(penetration: PenetrationAnalysis | None) -> tuple[OwnValue, OwnValue]:
+    """b0 and b1 of the row that Eqn 11 is, with their bootstrap intervals."""
+    unknown = OwnValue(*[float("nan")] * 5)
+    if penetration is None or penetration.table is None:
+        return unknown, unknown
+    model = Model("H_V", "none", "linear")
+    fit = next(fit for fit in penetration.table.fits if fit.model == model)
+    (low0, high0), (low1, high1) = penetration.table.intervals[model][2:].tolist()
+    nan = float("nan")
+    return OwnValue(fit.b0, low0, high0, nan, nan), OwnValue(fit.b1, low1, high1, nan, nan)
+
+
+def _report(progress: Callable[[str], None] | None, text: str) -> None:
+    if progress:
+        progress(text)

@@ -1,0 +1,129 @@
+"""The campaign beside what others published."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+import numpy.typing as npt
+
+from .._support.constants import CONFIDENCE
+from .._support.errors import FitError
+from .._support.numbered_names import numbered
+from .._support.units import N_PER_MM2, N_PER_MM3
+from ..snow.published import domine_2011, federolf_2006, moessner_2013
+from ..statistics.clusters import cluster_intervals
+from ..statistics.combined_uncertainty import expanded_factor
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+FloatArray = npt.NDArray[np.float64]
+
+FEWEST_SITES: Final = 4
+"""Fewer sites do not show how sites scatter (two leave one degree of freedom): no interval over them (assumption)."""
+
+
+@dataclass(frozen=True, slots=True)
+class OwnValue:
+    """A mean of the campaign: value and 95 % interval, NaN if unknown or withheld; minimum and maximum.
+
+    With several sites the interval takes them as clusters; under four sites it is withheld.
+    """
+
+    value: float
+    low: float
+    high: float
+    minimum: float
+    maximum: float
+
+
+@dataclass(frozen=True, slots=True)
+class Comparison:
+    """One published value or range beside the campaign's own; units stand in the quantity's name."""
+
+    source: str
+    quantity: str
+    published: float | tuple[float, float]
+    own: OwnValue
+
+    def as_dict(self) -> dict[str, Any]:
+        """Give the entry of results.json."""
+        own = self.own
+        published: dict[str, Any] = (
+            {"range": list(self.published)} if isinstance(self.published, tuple) else {"value": self.published}
+        )
+        return {
+            "source": self.source,
+            "quantity": self.quantity,
+            **published,
+            "own": own.value,
+            "own_interval": [own.low, own.high],
+            "own_range": [own.minimum, own.maximum],
+        }
+
+
+def own_mean(values: FloatArray, sites: Sequence[str], *, geometric: bool) -> OwnValue:
+    """Mean (geometric for hardness, which spans decades) of the used experiments with its interval.
+
+    The interval is one of the logarithm of the mean, so that no bound of a positive quantity is negative: for a plain
+    mean m with half-width h, m exp(± h/m) (delta method).
+
+    >>> own = own_mean(np.array([1.0, 3.0]), ["A", "A"], geometric=False)  # h = t₁ · 1 = 12.706
+    >>> round(own.value, 9), round(float(np.log(own.high / 2.0)), 3), own.low > 0
+    (2.0, 6.353, True)
+    """
+    if values.size == 0 or (geometric and np.any(values <= 0)):
+        return OwnValue(*[float("nan")] * 5)
+    data = np.log(values) if geometric else values
+    mean, half = float(data.mean()), _half_width(data, numbered(sites)[1])
+    if geometric:
+        mean = float(np.exp(mean))
+    else:
+        half = half / mean if mean > 0 else float("nan")
+    low, high = (mean * np.exp([-half, half])).tolist()
+    return OwnValue(mean, low, high, float(values.min()), float(values.max()))
+
+
+def _half_width(data: FloatArray, sites: npt.NDArray[np.int64]) -> float:
+    """Half of the 95 % interval of the mean; NaN for one value, and for more than one site but fewer than four."""
+    n_sites = len(np.unique(sites))
+    if n_sites >= FEWEST_SITES:
+        try:
+            low, high = cluster_intervals(data, np.empty((len(data), 0)), sites).intervals[0]
+        except FitError:
+            return float("nan")
+        return float(high - low) / 2.0
+    if n_sites > 1 or len(data) < 2:
+        return float("nan")
+    return float(expanded_factor(len(data) - 1.0, CONFIDENCE)) * float(data.std(ddof=1)) / float(np.sqrt(len(data)))
+
+
+def compare_with_published(
+    hardness: OwnValue, stress: OwnValue, angle_term: tuple[OwnValue, OwnValue], shear_density: OwnValue
+) -> tuple[Comparison, ...]:
+    """The published ranges, Federolf 2006 converted, Eqns 11 and 14, Domine 2011; units as in the keys."""
+    H_V, S_f = "H_V_N_per_mm3", "S_f_N_per_mm2"
+    paper = moessner_2013.SOURCE
+    rows = [
+        Comparison(f"{paper}, range", H_V, moessner_2013.SNOW_HARDNESS_RANGE_N_PER_MM3, hardness),
+        Comparison(f"{paper}, range", S_f, moessner_2013.FAILURE_SHEAR_STRESS_RANGE_N_PER_MM2, stress),
+    ]
+    for name, snow in federolf_2006.snows().items():
+        source = f"{federolf_2006.SOURCE}: {name}"
+        rows.append(Comparison(source, H_V, snow.snow_hardness / N_PER_MM3, hardness))
+        if snow.failure_shear_stress is not None:
+            rows.append(Comparison(source, S_f, snow.failure_shear_stress / N_PER_MM2, stress))
+    rows += [
+        Comparison(f"{paper}, Eqn 11", quantity, value, own)
+        for quantity, value, own in zip(("b0", "b1_per_rad"), moessner_2013.ANGLE_TERM, angle_term, strict=True)
+    ]
+    if np.isfinite(shear_density.value):
+        at = f" at this campaign's mean {shear_density.value:.0f} kg/m³"
+        for source, law in (
+            (f"{paper}, Eqn 14", moessner_2013.failure_shear_stress_from_density),
+            (domine_2011.SOURCE, domine_2011.failure_shear_stress_from_density),
+        ):
+            rows.append(Comparison(source + at, S_f, float(law(shear_density.value)) / N_PER_MM2, stress))
+    return tuple(rows)

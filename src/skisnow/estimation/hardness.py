@@ -1,0 +1,210 @@
+"""Snow hardness of each penetration experiment (Eqn 1), with an interval.
+
+The three rival definitions share one form, H = F / M with a measure M of the contact: the depth e, the projected area A
+or the displaced volume V. A further definition is one more entry in ``DEFINITIONS``.
+
+Error model of a reading, used throughout this package: its departure from the law, ln F - ln(H M), has the variance
+
+    s² + (u_F / F)² + (k u_e / e)²,     k = d ln M / d ln e,
+
+with u_F the standard uncertainty of the load, u_e = (gauge step)/√12 that of the depth, and s the relative scatter of
+the snow, estimated from the series' own load steps (Paule and Mandel 1982). Intervals use Student's t with the degrees
+of freedom of s (assumption): the effective degrees of the GUM (JCGM 100:2008, G.4) take s = 0 for certain where the
+estimate happens to be 0, and then covered the truth in as few as 90 % of simulated series; this form covers it in
+92-96 %, and in more where the gauge alone limits.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+import numpy.typing as npt
+
+from .._support.constants import CONFIDENCE
+from .._support.display import ShownFields
+from .._support.units import N_PER_MM, N_PER_MM2, N_PER_MM3
+from ..statistics.combined_uncertainty import expanded_factor
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from .readings import Readings
+
+FloatArray = npt.NDArray[np.float64]
+BoolArray = npt.NDArray[np.bool_]
+
+
+@dataclass(frozen=True, slots=True)
+class HardnessDefinition:
+    """One way to define hardness.
+
+    Attributes
+    ----------
+    symbol
+        H_e, H_A or H_V.
+    unit, unit_key, si
+        Its unit in the paper as printed, as in keys and file headers, and as a factor to SI.
+    measure
+        M of each reading (SI).
+    growth
+        dM/de of each reading (SI).
+    """
+
+    symbol: str
+    unit: str
+    unit_key: str
+    si: float
+    measure: Callable[[Readings], FloatArray]
+    growth: Callable[[Readings], FloatArray]
+
+    @property
+    def key(self) -> str:
+        """Name of this hardness in files, with its unit."""
+        return f"{self.symbol}_{self.unit_key}"
+
+
+DEFINITIONS: Final = {
+    definition.symbol: definition
+    for definition in (
+        HardnessDefinition(
+            "H_e", "N/mm", "N_per_mm", N_PER_MM, lambda r: r.penetration_depth, lambda r: np.ones_like(r.load)
+        ),
+        HardnessDefinition("H_A", "N/mm²", "N_per_mm2", N_PER_MM2, lambda r: r.contact_area, lambda r: r.area_growth),
+        HardnessDefinition(
+            "H_V", "N/mm³", "N_per_mm3", N_PER_MM3, lambda r: r.displaced_volume, lambda r: r.contact_area
+        ),
+    )
+}
+
+
+@dataclass(frozen=True, slots=True)
+class ReadingUncertainty:
+    """Standard uncertainties of one reading: depth u_e (m) and load u_F (N); 0 where unknown."""
+
+    depth: float = 0.0
+    load: float = 0.0
+
+
+@dataclass(frozen=True, slots=True, repr=False)
+class Hardness(ShownFields):
+    """Hardness of m series by one definition, in SI; NaN where it does not exist.
+
+    Attributes
+    ----------
+    value
+        H.
+    interval
+        (m, 2), 95 %; carries gauge, load and scatter over the load steps. NaN where too few readings in contact leave
+        the scatter unknown.
+    scatter
+        Relative scatter s of the readings that the interval knows it from.
+    """
+
+    value: FloatArray
+    interval: FloatArray
+    scatter: FloatArray
+
+
+def hardness_at_largest_load(readings: Readings, definition: HardnessDefinition) -> FloatArray:
+    """H = F₇ / M₇ of each series (Eqn 1), SI; NaN where M₇ = 0: nothing was displaced."""
+    F, M = readings.load[readings.largest], definition.measure(readings)[readings.largest]
+    return np.divide(F, M, out=np.full(F.shape, np.nan), where=M > 0)
+
+
+def hardness(readings: Readings, definition: HardnessDefinition, uncertainty: ReadingUncertainty) -> Hardness:
+    """Hardness of each series from the reading under its largest load (Eqn 1).
+
+    The scatter is that of the *other* readings, so that it is independent of the one judged: n - 2 degrees of freedom.
+    """
+    logs, known, others = _log_ratios(readings, definition, uncertainty)
+    others[readings.largest] = False
+    value = hardness_at_largest_load(readings, definition)
+    scatter2 = scatter_variance(readings, logs, known, others)
+    variance, dof = scatter2 + known[readings.largest], readings.sums(others.astype(float)) - 1.0
+    return Hardness(value, _log_interval(np.log(value), variance, dof), np.sqrt(scatter2))
+
+
+def hardness_of_all_readings(
+    readings: Readings, definition: HardnessDefinition, uncertainty: ReadingUncertainty
+) -> Hardness:
+    """Hardness of each series from all its readings, with errors in depth and load: n - 1 degrees of freedom."""
+    logs, known, touching = _log_ratios(readings, definition, uncertainty)
+    scatter2 = scatter_variance(readings, logs, known, touching)
+    mean, variance = _weighted_mean(readings, logs, scatter2[readings.series] + known, touching)
+    interval = _log_interval(mean, variance, readings.sums(touching.astype(float)) - 1.0)
+    return Hardness(np.exp(mean), interval, np.sqrt(scatter2))
+
+
+def _log_ratios(
+    readings: Readings, definition: HardnessDefinition, uncertainty: ReadingUncertainty
+) -> tuple[FloatArray, FloatArray, BoolArray]:
+    """ln(F/M) of each reading, its known variance, and whether the tool touches."""
+    M = definition.measure(readings)
+    touching = (M > 0) & (readings.penetration_depth > 0)
+    logs = np.log(np.divide(readings.load, M, out=np.ones_like(M), where=touching))
+    return logs, known_variance(readings, definition, uncertainty), touching
+
+
+def _weighted_mean(
+    readings: Readings, logs: FloatArray, variance: FloatArray, touching: BoolArray
+) -> tuple[FloatArray, FloatArray]:
+    """Mean of each series weighted by 1/variance, and its variance; without any variance all readings count alike."""
+    weight = np.where(touching, _reciprocal(variance), 0.0)
+    exact = readings.sums(weight) == 0.0
+    weight = np.where(touching & exact[readings.series], 1.0, weight)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        total = readings.sums(weight)
+        return readings.sums(weight * logs) / total, np.where(exact, 0.0, 1.0 / total)
+
+
+def known_variance(readings: Readings, definition: HardnessDefinition, uncertainty: ReadingUncertainty) -> FloatArray:
+    """Variance of ln(F/M) of each reading from the gauge and the load alone; 0 where the tool does not touch."""
+    M = definition.measure(readings)
+    touching = (M > 0) & (readings.penetration_depth > 0)
+    slope = np.divide(definition.growth(readings), M, out=np.zeros_like(M), where=touching)
+    known: FloatArray = (uncertainty.load / readings.load) ** 2 + (slope * uncertainty.depth) ** 2
+    return known
+
+
+def scatter_variance(readings: Readings, logs: FloatArray, known: FloatArray, touching: BoolArray) -> FloatArray:
+    """Between-reading variance s² of each series beyond the known one: Paule and Mandel (1982).
+
+    Solves Σ (x - x̄)²/(s² + v) = n - 1 for s² ≥ 0 in each series at once; 0 where the known variance already explains
+    the scatter, NaN with fewer than two readings in contact.
+    """
+    n = readings.sums(touching.astype(float))
+    use = touching.astype(float)
+
+    def excess(s2: FloatArray) -> tuple[FloatArray, FloatArray]:
+        weight = use * _reciprocal(s2[readings.series] + known)
+        with np.errstate(invalid="ignore", divide="ignore"):
+            mean = readings.sums(weight * logs) / readings.sums(weight)
+        deviation2 = (logs - mean[readings.series]) ** 2
+        return readings.sums(weight * deviation2), readings.sums(weight**2 * deviation2)
+
+    with np.errstate(invalid="ignore", divide="ignore"):
+        plain = readings.sums(use * logs) / n
+        s2 = readings.sums(use * (logs - plain[readings.series]) ** 2) / (n - 1.0)
+        for _ in range(40):
+            Q, slope = excess(s2)
+            # Newton on 1/Q, which is straight where the scatter dominates
+            step = np.where(slope > 0, (Q / (n - 1.0) - 1.0) * Q / slope, 0.0)
+            moved = np.maximum(s2 + step, 0.0)
+            settled = np.abs(moved - s2) <= 1e-9 * moved
+            s2 = moved
+            if settled[n > 1].all():
+                break
+    return np.where(n > 1, s2, np.nan)
+
+
+def _reciprocal(variance: FloatArray) -> FloatArray:
+    return np.divide(1.0, variance, out=np.zeros_like(variance), where=variance > 0)
+
+
+def _log_interval(log_value: FloatArray, variance: FloatArray, dof: FloatArray) -> FloatArray:
+    """Interval of exp(log_value) by Student's t; NaN without a degree of freedom."""
+    with np.errstate(invalid="ignore"):
+        half = expanded_factor(np.where(dof >= 1.0, dof, np.nan), CONFIDENCE) * np.sqrt(variance)
+        return np.exp(np.stack((log_value - half, log_value + half), axis=-1))

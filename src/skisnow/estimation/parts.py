@@ -1,0 +1,82 @@
+"""Results of each kind of experiment: the parts of an `Analysis`."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from .._support.display import Facts, Shown, amount, field_facts
+from .errors_in_depth import FittedHardness
+from .growing_hardness import GrowingHardness, SiteGrowth
+from .hardness import Hardness
+from .model_choice import NestedRows
+from .models import Model, ModelFit
+from .readings import Readings
+from .screening import Screened
+from .seating import Seating
+from .shear_displacement import ShearDisplacement, SiteDisplacement
+from .shear_stress import ShearStress
+from .unloading import SiteUnloading, Unloading
+
+FloatArray = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True, repr=False)
+class ModelTable(Shown):
+    """The nine fitted rows with bootstrap intervals of a0, a1, b0, b1 by model ((4, 2) each); none where withheld."""
+
+    fits: tuple[ModelFit, ...]
+    intervals: dict[Model, FloatArray]
+
+    def _facts(self) -> Facts:
+        rows = tuple((fit.model.id, f"rmse {amount(fit.rmse, 'N')}") for fit in self.fits)
+        return Facts(f"of {len(rows)} rows", rows)
+
+
+@dataclass(frozen=True, repr=False)
+class PenetrationAnalysis(Shown):
+    """Results of the penetration experiments; arrays run over all m experiments, the table over the used ones.
+
+    ``hardness`` holds each definition by its symbol, ``fitted`` what all readings of a series say, ``growing`` what
+    they say of a hardness that grows with depth, ``unloading`` what those say that were read while discs were taken
+    off. ``table``, ``errors_in_depth`` and ``selected`` are None where no experiment is used, ``selected`` also with
+    too few series; ``warnings`` say so, and hold those of `fit_warnings`.
+    """
+
+    screened: Screened
+    readings: Readings
+    hardness: dict[str, Hardness]
+    seating: Seating
+    fitted: FittedHardness
+    growing: GrowingHardness
+    site_growth: tuple[SiteGrowth, ...]
+    unloading: Unloading
+    site_unloading: tuple[SiteUnloading, ...]
+    table: ModelTable | None
+    nested: tuple[NestedRows, ...]
+    selected: ModelFit | None
+    errors_in_depth: ModelTable | None
+    warnings: tuple[str, ...] = ()
+
+    def _facts(self) -> Facts:
+        return field_facts(self, {}, title=used_of(self.screened))
+
+
+@dataclass(frozen=True, repr=False)
+class ShearAnalysis(Shown):
+    """Results of the shear experiments, over all experiments."""
+
+    screened: Screened
+    stress: ShearStress
+    displacement: ShearDisplacement
+    site_displacement: tuple[SiteDisplacement, ...]
+
+    def _facts(self) -> Facts:
+        return Facts(used_of(self.screened))
+
+
+def used_of(screened: Screened) -> str:
+    """How many of the experiments take part, in words."""
+    return f"{int(screened.used.sum())} of {len(screened.used)} experiments used"

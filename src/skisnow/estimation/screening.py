@@ -1,0 +1,137 @@
+"""Which experiments are included: the quality flags of the field screening and those that need the hardness."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from itertools import pairwise
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+import numpy.typing as npt
+
+from .._support.display import ShownFields
+from .._support.numbered_names import numbered
+from .._support.units import N_PER_MM3
+from ..campaign.screening import flag_problems, screen_penetration, screen_shear
+from .hardness import DEFINITIONS, ReadingUncertainty, hardness, hardness_at_largest_load
+from .layering import layered
+from .readings import readings_of
+from .shear_stress import shear_stress
+from .unloading import NOT_FALLING, unloading
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from ..campaign.problems import Problem
+    from ..campaign.records import Campaign
+    from ..geometry import GeometryForm
+
+FloatArray = npt.NDArray[np.float64]
+BoolArray = npt.NDArray[np.bool_]
+
+FEWEST_FOR_OUTLIERS: Final = 5
+OUTLIER_DISTANCE: Final = 3.5
+"""Iglewicz and Hoaglin (1993): a modified z score above 3.5 is a potential outlier."""
+NORMAL_MAD: Final = 1.4826
+"""Standard deviation of a normal distribution over its median absolute deviation."""
+
+
+@dataclass(frozen=True, slots=True, repr=False)
+class Screened(ShownFields):
+    """Quality flags of each experiment by code, and which experiments are used (masks over the experiments)."""
+
+    flags: Mapping[str, BoolArray]
+    used: BoolArray
+
+    def codes(self) -> list[list[str]]:
+        """Codes of the flags of each experiment, in the order of `QUALITY_FLAGS`."""
+        found: list[list[str]] = [[] for _ in range(len(self.used))]
+        for code, mask in self.flags.items():
+            for index in np.flatnonzero(mask).tolist():
+                found[index].append(code)
+        return found
+
+
+def screened_penetration(campaign: Campaign, *, geometry: GeometryForm) -> Screened:
+    """Quality flags of the penetration experiments, also those that need the hardness, and which of them are used."""
+    tests = campaign.penetration
+    if tests is None:
+        return Screened({}, np.zeros(0, dtype=bool))
+    flags = dict(screen_penetration(campaign, geometry=geometry))
+    readings = readings_of(tests, campaign.tools, geometry=geometry)
+    H_V = hardness_at_largest_load(readings, DEFINITIONS["H_V"])
+    used = _used(flags, campaign, len(tests)) & np.isfinite(H_V)
+    flags["layered"] = layered(readings, np.where(used, H_V, np.nan), _uncertainty(campaign))
+    used = _used(flags, campaign, len(tests)) & np.isfinite(H_V)
+    found = hardness(readings, DEFINITIONS["H_V"], _uncertainty(campaign))
+    back = unloading(tests, readings, found, _uncertainty(campaign), flags[NOT_FALLING])
+    flags["rebound_unresolved"] = back.is_unresolved
+    used = _used(flags, campaign, len(tests)) & np.isfinite(H_V)
+    flags["hardness_outlier"] = hardness_outliers(H_V, used, tests.site)
+    return Screened(flags, _used(flags, campaign, len(tests)) & np.isfinite(H_V))
+
+
+def screened_shear(campaign: Campaign) -> Screened:
+    """Quality flags of the shear experiments and which of them are used."""
+    tests = campaign.shear
+    if tests is None:
+        return Screened({}, np.zeros(0, dtype=bool))
+    flags = dict(screen_shear(campaign))
+    defined = np.isfinite(shear_stress(campaign, tests).value)
+    return Screened(flags, _used(flags, campaign, len(tests)) & defined)
+
+
+def hardness_outliers(hardness: FloatArray, used: BoolArray, site: Sequence[str]) -> BoolArray:
+    """Used series with |ln H_V - the site's median| > 3.5 × 1.4826 × MAD, at sites with five or more used series."""
+    outlier = np.zeros(len(hardness), dtype=bool)
+    logs = np.log(hardness, out=np.zeros_like(hardness), where=used)
+    names, site_of = numbered(site)
+    order = np.argsort(site_of, kind="stable")
+    bounds = np.searchsorted(site_of[order], np.arange(len(names) + 1))
+    for start, stop in pairwise(bounds.tolist()):
+        members = order[start:stop]
+        members = members[used[members]]
+        if len(members) < FEWEST_FOR_OUTLIERS:
+            continue
+        distance = np.abs(logs[members] - np.median(logs[members]))
+        mad = float(np.median(distance))
+        if mad > 0:
+            outlier[members] = distance > OUTLIER_DISTANCE * NORMAL_MAD * mad
+    return outlier
+
+
+def screened_both(campaign: Campaign, *, geometry: GeometryForm) -> tuple[Screened, Screened]:
+    """The penetration and the shear experiments, screened."""
+    return screened_penetration(campaign, geometry=geometry), screened_shear(campaign)
+
+
+def quality_flags(
+    campaign: Campaign, *, geometry: GeometryForm = "extended", screened: tuple[Screened, Screened] | None = None
+) -> list[Problem]:
+    """Every quality flag of a campaign as a problem of severity ``mark``, the one that needs the hardness included.
+
+    ``screened`` is what `screened_both` gives, where that is at hand.
+    """
+    penetration, shear = screened or screened_both(campaign, geometry=geometry)
+    problems = flag_problems(campaign, penetration.flags, shear.flags, geometry=geometry)
+    tests = campaign.penetration
+    if tests is None:
+        return problems
+    H_V = hardness_at_largest_load(readings_of(tests, campaign.tools, geometry=geometry), DEFINITIONS["H_V"])
+    values = {name: f"H_V = {H:.4g} N/mm³" for name, H in zip(tests.experiment, H_V / N_PER_MM3, strict=True)}
+    return [
+        replace(problem, value=values[problem.experiment or ""]) if problem.code == "hardness_outlier" else problem
+        for problem in problems
+    ]
+
+
+def _uncertainty(campaign: Campaign) -> ReadingUncertainty:
+    return ReadingUncertainty(campaign.depth_uncertainty or 0.0, campaign.load_uncertainty or 0.0)
+
+
+def _used(flags: Mapping[str, BoolArray], campaign: Campaign, count: int) -> BoolArray:
+    excluded = np.zeros(count, dtype=bool)
+    for code, mask in flags.items():
+        if code in campaign.excluding:
+            excluded |= mask
+    return ~excluded

@@ -1,0 +1,124 @@
+"""Shear displacement: how far the plate moves until the snow's shear stress reaches S_f, from moments over angles.
+
+The law of the simulations (`skisnow.forces.shear`): the force grows in proportion to the displacement up to S_f e L,
+which it reaches at u_y. At a plate on the lever arm r the displacement is r φ, so the moment is M_f (φ - φ₀)/φ_y up
+to the largest moment M_f, and u_y = r φ_y. φ on M is a straight line over the rising part, whose intercept φ₀ takes
+slack and the zero of the angle; its slope times M_f r is u_y. A pole that twists by M/k between gauge and plate takes
+1/k of the slope. The whole module is our modelling assumption: the paper records the largest moment alone.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+import numpy.typing as npt
+
+from .._support.constants import CONFIDENCE
+from .._support.display import ShownFields
+from ..statistics.combined_uncertainty import expanded_factor
+from .comparisons import own_mean
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from ..campaign.records import Campaign, ShearTests, TurningReadings
+
+FloatArray = npt.NDArray[np.float64]
+BoolArray = npt.NDArray[np.bool_]
+IntArray = npt.NDArray[np.int64]
+
+RISING: Final = (0.1, 0.9)
+"""Shares of the largest moment between which a reading is of the rising part (modelling assumption): below, the plate
+still comes to lie on the snow; above, parts of the snow have failed."""
+_FITTED: Final = 2
+"""Slope and intercept."""
+
+
+@dataclass(frozen=True, slots=True, repr=False)
+class ShearDisplacement(ShownFields):
+    """u_y of m shear tests; NaN where a test has no rising part.
+
+    Attributes
+    ----------
+    n_readings
+        Readings of the rising part, one number per test.
+    value, interval
+        u_y (m), and its 95 % interval (m, 2) from the scatter about the line and the stated uncertainties of moment and
+        lever arm: NaN with fewer than three readings.
+    """
+
+    n_readings: IntArray
+    value: FloatArray
+    interval: FloatArray
+
+
+@dataclass(frozen=True, slots=True)
+class SiteDisplacement:
+    """Geometric mean of u_y (m) over n used tests of a site (None: of all), and its 95 % interval, NaN for one."""
+
+    site: str | None
+    n: int
+    value: float
+    low: float
+    high: float
+
+
+def shear_displacement(campaign: Campaign, tests: ShearTests) -> ShearDisplacement:
+    """Fit the rising part of every test."""
+    m, turning = len(tests), tests.turning
+    if turning is None:
+        return ShearDisplacement(np.zeros(m, dtype=np.int64), np.full(m, np.nan), np.full((m, 2), np.nan))
+    test = turning.test_of_reading
+    share = np.divide(turning.moment, tests.moment[test], out=np.zeros(len(test)), where=tests.moment[test] > 0)
+    rising = (share >= RISING[0]) & (share <= RISING[1]) & _before_the_largest(turning, tests)
+    count = np.bincount(test[rising], minlength=m)
+    slope, error = _slope(turning.moment[rising], turning.turning_angle[rising], test[rising], count)
+    own = slope - (1.0 / campaign.pole_stiffness if campaign.pole_stiffness else 0.0)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        value = np.where(own > 0, own, np.nan) * tests.moment * tests.lever_arm
+        relative2 = (error / own) ** 2
+        relative2 += ((campaign.moment_uncertainty or 0.0) / tests.moment) ** 2
+        relative2 += ((campaign.lever_arm_uncertainty or 0.0) / tests.lever_arm) ** 2
+        dof = count - float(_FITTED)
+        half = expanded_factor(np.where(dof >= 1.0, dof, np.nan), CONFIDENCE) * np.sqrt(relative2)
+        interval = value[:, None] * np.exp(np.stack((-half, half), axis=-1))
+    return ShearDisplacement(count, value, interval)
+
+
+def _before_the_largest(turning: TurningReadings, tests: ShearTests) -> BoolArray:
+    """Readings before the first one of their test with its largest moment."""
+    largest = turning.moment >= tests.moment[turning.test_of_reading]
+    reached = np.concatenate(([0], np.cumsum(largest)))
+    return np.asarray(reached[1:] == reached[turning.first[:-1]][turning.test_of_reading])
+
+
+def _slope(x: FloatArray, y: FloatArray, test: IntArray, count: IntArray) -> tuple[FloatArray, FloatArray]:
+    """Slope of y on x in each test by least squares, and its standard error from the scatter about the line."""
+    m = len(count)
+
+    def sums(values: FloatArray) -> FloatArray:
+        return np.bincount(test, weights=values, minlength=m).astype(np.float64, copy=False)
+
+    with np.errstate(invalid="ignore", divide="ignore"):
+        dx, dy = x - (sums(x) / count)[test], y - (sums(y) / count)[test]
+        spread = sums(dx**2)
+        slope = sums(dx * dy) / spread
+        residual2 = sums((dy - slope[test] * dx) ** 2)
+        return slope, np.sqrt(np.where(count > _FITTED, residual2 / (count - _FITTED), np.nan) / spread)
+
+
+def site_displacement(found: ShearDisplacement, used: BoolArray, site: Sequence[str]) -> tuple[SiteDisplacement, ...]:
+    """The mean of each site in alphabetical order, then of all together; empty without a used test that has one."""
+    there = used & np.isfinite(found.value)
+    names = np.array(site, dtype=object)
+    if not there.any():
+        return ()
+    rows = [(name, there & (names == name)) for name in sorted(set(names[there].tolist()))]
+    return tuple(_mean(found.value[chosen], names[chosen].tolist(), name) for name, chosen in [*rows, (None, there)])
+
+
+def _mean(values: FloatArray, sites: list[str], site: str | None) -> SiteDisplacement:
+    own = own_mean(values, sites, geometric=True)
+    return SiteDisplacement(site, len(values), own.value, own.low, own.high)

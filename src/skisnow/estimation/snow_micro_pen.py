@@ -1,0 +1,228 @@
+"""What recordings of a SnowMicroPen say of the snow: mean force, shot noise, density, specific surface area."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+import numpy.typing as npt
+
+from .._support.display import Facts, Shown
+from ..campaign.snow_surface import SnowSurface, snow_surface
+from ..snow.penetrometer_relations import PENETROMETER_RELATIONS
+from ..statistics.shot_noise import shot_noise, windows_of
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from ..campaign.snow_micro_pen import SnowMicroPenProfile
+    from ..campaign.snow_micro_pen_records import SnowMicroPenRecordings, SnowMicroPenSettings
+
+FloatArray = npt.NDArray[np.float64]
+BoolArray = npt.NDArray[np.bool_]
+
+OVERLAP: Final = 0.5
+"""Share of a window that the next one begins in (modelling assumption, as in the instrument's own program)."""
+CANCELLED: Final = "cancelled"
+NO_SURFACE: Final = "no_surface"
+TOO_SHORT: Final = "too_short"
+FLAGS: Final = {
+    CANCELLED: "the status of its row is not blank",
+    NO_SURFACE: "the force rises nowhere out of the air's; surface_mm in the table tells where the snow begins",
+    TOO_SHORT: "it ends above the depth to which the force is averaged",
+}
+"""Why a recording is not used, by code."""
+
+
+@dataclass(frozen=True, slots=True)
+class WindowMeans:
+    """Of the windows of one relation between the two depths: medians of the shot noise, means of what follows from it.
+
+    Attributes
+    ----------
+    rupture_force, deflection, element_size
+        f₀ (N), δ (m), L (m): medians.
+    snow_density, specific_surface_area
+        Means (kg/m³, m²/kg); NaN where the relation has none.
+    n
+        Windows.
+    """
+
+    rupture_force: float
+    deflection: float
+    element_size: float
+    snow_density: float
+    specific_surface_area: float
+    n: int
+
+
+@dataclass(frozen=True, slots=True)
+class EvaluatedRecording:
+    """One recording; NaN where it has no such number.
+
+    Attributes
+    ----------
+    flags
+        Codes of `FLAGS`; it is used where there is none.
+    surface
+        Depth of the snow surface from where the recording began (m).
+    reach
+        How deep below the surface it ends (m).
+    air_force
+        In the air before the surface (N).
+    mean_force, median_force
+        Between the two depths (N).
+    windows
+        By the name of each published relation.
+    """
+
+    flags: tuple[str, ...]
+    surface: float
+    reach: float
+    air_force: float
+    mean_force: float
+    median_force: float
+    windows: dict[str, WindowMeans]
+
+    @property
+    def is_used(self) -> bool:
+        """Whether it takes part in means and regressions."""
+        return not self.flags
+
+
+@dataclass(frozen=True, slots=True, repr=False)
+class SnowMicroPenAnalysis(Shown):
+    """The recordings of a campaign, evaluated one by one, in the order of its table."""
+
+    recordings: SnowMicroPenRecordings
+    evaluated: tuple[EvaluatedRecording, ...]
+
+    def _facts(self) -> Facts:
+        used = sum(each.is_used for each in self.evaluated)
+        return Facts(f"{used} of {len(self.evaluated)} recordings used")
+
+    @property
+    def mean_force(self) -> FloatArray:
+        """Of each recording (N), NaN where it is not used."""
+        return np.array([each.mean_force if each.is_used else math.nan for each in self.evaluated])
+
+    @property
+    def snow_density(self) -> FloatArray:
+        """Of each recording by the campaign's relation (kg/m³), NaN where it is not used."""
+        name = self.recordings.settings.relation
+        return np.array([each.windows[name].snow_density if each.is_used else math.nan for each in self.evaluated])
+
+    def at(self, sites: tuple[str, ...], spots: tuple[str, ...], values: FloatArray) -> FloatArray:
+        """The mean of the values at each place: of the recordings at its spot, else of those at its site, else NaN."""
+        known = np.isfinite(values)
+        of_spot = _means(zip(self.recordings.site, self.recordings.spot, strict=True), values, known)
+        of_site = _means(((site, "") for site in self.recordings.site), values, known)
+        return np.array(
+            [
+                of_spot[site, spot] if spot and (site, spot) in of_spot else of_site.get((site, ""), math.nan)
+                for site, spot in zip(sites, spots, strict=True)
+            ]
+        )
+
+
+def _means(places: Iterable[tuple[str, str]], values: FloatArray, known: BoolArray) -> dict[tuple[str, str], float]:
+    collected: dict[tuple[str, str], list[float]] = {}
+    for place, value, use in zip(places, values.tolist(), known.tolist(), strict=True):
+        if use:
+            collected.setdefault(place, []).append(value)
+    return {place: math.fsum(found) / len(found) for place, found in collected.items()}
+
+
+def evaluate_recordings(recordings: SnowMicroPenRecordings) -> SnowMicroPenAnalysis:
+    """Evaluate every recording of a campaign, one after the other."""
+    evaluated = (
+        evaluate_profile(
+            recordings.profile(index),
+            recordings.settings,
+            surface=float(recordings.surface[index]),
+            is_cancelled=bool(recordings.cancelled[index]),
+        )
+        for index in range(len(recordings))
+    )
+    return SnowMicroPenAnalysis(recordings, tuple(evaluated))
+
+
+def evaluate_profile(
+    profile: SnowMicroPenProfile,
+    settings: SnowMicroPenSettings,
+    *,
+    surface: float = math.nan,
+    is_cancelled: bool = False,
+) -> EvaluatedRecording:
+    """Mean force, shot noise, density and surface area of one recording.
+
+    Parameters
+    ----------
+    profile
+        Force against depth.
+    settings
+        Between which depths, by which relation, how the surface is looked for.
+    surface
+        Where the snow begins (m from the first sample); NaN: it is looked for.
+    is_cancelled
+        Whether its row says so.
+
+    References
+    ----------
+    The page docs/methods/snow-micro-pen.md.
+    """
+    found = _surface(profile, settings, surface)
+    flags = [CANCELLED] if is_cancelled else []
+    if found is None:
+        return _nothing((*flags, NO_SURFACE))
+    reach = float(profile.depth[-1]) - found.depth
+    if reach < settings.to_depth:
+        return _nothing((*flags, TOO_SHORT), found, reach)
+    force = profile.force - found.air_force if settings.subtract_air_force else profile.force
+    first, last = (
+        round((found.depth + depth) / profile.sample_distance) for depth in (settings.from_depth, settings.to_depth)
+    )
+    part = force[first:last]
+    area = 0.25 * math.pi * profile.tip_diameter**2
+    windows = {name: _windows(part, profile.sample_distance, area, name) for name in PENETROMETER_RELATIONS}
+    mean, median = float(part.mean()), float(np.median(part))
+    return EvaluatedRecording(tuple(flags), found.depth, reach, found.air_force, mean, median, windows)
+
+
+def _surface(profile: SnowMicroPenProfile, settings: SnowMicroPenSettings, stated: float) -> SnowSurface | None:
+    """As stated, with the median of what was before it as the air's force; else looked for."""
+    if not math.isnan(stated):
+        air = profile.force[: round(stated / profile.sample_distance)]
+        return SnowSurface(stated, float(np.median(air)) if len(air) else 0.0)
+    return snow_surface(profile.force, profile.sample_distance, rise=settings.surface_rise, hold=settings.surface_hold)
+
+
+def _nothing(flags: tuple[str, ...], surface: SnowSurface | None = None, reach: float = math.nan) -> EvaluatedRecording:
+    none = WindowMeans(*(math.nan,) * 5, n=0)
+    depth, air = (math.nan, math.nan) if surface is None else (surface.depth, surface.air_force)
+    windows = dict.fromkeys(PENETROMETER_RELATIONS, none)
+    return EvaluatedRecording(flags, depth, reach, air, math.nan, math.nan, windows)
+
+
+def _windows(force: FloatArray, sample_distance: float, area: float, name: str) -> WindowMeans:
+    relation = PENETROMETER_RELATIONS[name]
+    size = max(round(relation.window / sample_distance), 3)
+    windows = windows_of(force, size, max(round(size * (1.0 - OVERLAP)), 1))
+    noise = shot_noise(windows, sample_distance)
+    median = np.median(windows, axis=-1)
+    usable = np.isfinite(noise.intensity) & (median > 0.0)
+    if not usable.any():
+        return WindowMeans(*(math.nan,) * 5, n=0)
+    element_size = np.cbrt(area / noise.intensity[usable])
+    median = median[usable]
+    surface_area = relation.specific_surface_area
+    return WindowMeans(
+        rupture_force=float(np.median(noise.rupture_force[usable])),
+        deflection=float(np.median(noise.deflection[usable])),
+        element_size=float(np.median(element_size)),
+        snow_density=float(relation.snow_density(median, element_size).mean()),
+        specific_surface_area=math.nan if surface_area is None else float(surface_area(median, element_size).mean()),
+        n=int(usable.sum()),
+    )

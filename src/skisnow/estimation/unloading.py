@@ -1,0 +1,276 @@
+"""Unloading: how steep the force falls where the discs are taken off one by one.
+
+Snow of the hypoplastic law (`skisnow.forces.penetration.HypoplasticPoint`) that was pressed to the depth e_m under F_m
+gives the tool that came back by d the pressure H_V ε_m - k_u d where that is above 0. Its force is that of
+the depth e_m - κ d of the loading, κ = k_u/H_V, whatever its shape:
+
+    F = H_V V(e_m - κ d),    d = (e_m - ê(V_m F/F_m)) / κ,    V_m = V(e_m).
+
+A flat tool falls along a straight line, an edged one along (1 - κ d/e_m)². The law is linear in the rebound ratio
+s = H_V/k_u: the depth is e = e_0 - s g with g = e_m - ê(V_m F/F_m). Each series is fitted in (e_0, s) with its reading
+under the largest load among the others. The variance of a depth is
+
+    u_e² + (s dê/dF u_F)² + σ² d²
+
+with gauge and load as in `hardness` and the relative scatter σ of the rebound from the series itself (Paule and Mandel
+1982). Intervals of k_u/H_V are the reciprocals of those of s. The whole module is our modelling assumption: the paper
+names the steepness and prints neither method nor value.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+import numpy.typing as npt
+
+from .._support.constants import CONFIDENCE
+from .._support.display import ShownFields
+from ..statistics.combined_uncertainty import expanded_factor
+from ..statistics.random_effects import random_effects_mean
+from .comparisons import own_mean
+from .readings import Readings
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from ..campaign.records import PenetrationTests, UnloadingReadings
+    from .hardness import Hardness, ReadingUncertainty
+
+FloatArray = npt.NDArray[np.float64]
+BoolArray = npt.NDArray[np.bool_]
+IntArray = npt.NDArray[np.int64]
+
+NOT_FALLING: Final = "unloading_not_falling"
+"""The quality flag that excludes a series here, and nowhere else."""
+_FITTED: Final = 2
+"""e_0 and s."""
+_ROUNDING: Final = 1e-9
+"""Relative error of a depth that stands for none: rounding of double precision."""
+_ITERATIONS: Final = 50
+_SETTLED: Final = 1e-6
+
+
+@dataclass(frozen=True, slots=True, repr=False)
+class Unloading(ShownFields):
+    """Unloading of m series; NaN where a series has none.
+
+    Attributes
+    ----------
+    n_readings
+        Readings of the unloading branch, one number per series.
+    rebound_ratio, rebound_ratio_error, rebound_ratio_interval
+        s = H_V/k_u, 0 for rigid-plastic and 1 for elastic snow, its standard error and 95 % interval
+        (m, 2); the last two need two readings.
+    unloading_ratio, unloading_ratio_interval
+        k_u/H_V and its 95 % interval (m, 2); the interval is NaN where that of s reaches 0.
+    unloading_stiffness, unloading_stiffness_interval
+        k_u (N/m³) with H_V of Eqn 1, and its 95 % interval (m, 2).
+    """
+
+    n_readings: IntArray
+    rebound_ratio: FloatArray
+    rebound_ratio_error: FloatArray
+    rebound_ratio_interval: FloatArray
+    unloading_ratio: FloatArray
+    unloading_ratio_interval: FloatArray
+    unloading_stiffness: FloatArray
+    unloading_stiffness_interval: FloatArray
+
+    @property
+    def is_unresolved(self) -> BoolArray:
+        """Series whose rebound ratio could be 0, or whose readings are too few to resolve it."""
+        return np.isfinite(self.rebound_ratio) & ~np.isfinite(self.unloading_ratio_interval).all(axis=1)
+
+
+@dataclass(frozen=True, slots=True)
+class SiteUnloading:
+    """The unloading of the n used series of a site (None: of all sites together, taken for draws from one snow).
+
+    Attributes
+    ----------
+    ratio, low, high
+        k_u/H_V, the harmonic mean over the series, which keeps the mean rebound, and its 95 % interval, NaN where the
+        rebound could be 0 or one series leaves it open; the ratio is NaN where nothing came back on average.
+    low_rebound, high_rebound
+        95 % interval of the mean of H_V/k_u.
+    stiffness, stiffness_low, stiffness_high
+        k_u (N/m³), the geometric mean over the series whose tool came back, and its 95 % interval from their scatter.
+    """
+
+    site: str | None
+    n: int
+    ratio: float
+    low: float
+    high: float
+    low_rebound: float
+    high_rebound: float
+    stiffness: float
+    stiffness_low: float
+    stiffness_high: float
+
+    @property
+    def is_resolved(self) -> bool:
+        """Whether both ends of the ratio are known: only such a ratio goes into a snow."""
+        return bool(np.isfinite([self.ratio, self.low, self.high]).all())
+
+
+def unloading(
+    tests: PenetrationTests, readings: Readings, hardness: Hardness, uncertainty: ReadingUncertainty, bad: BoolArray
+) -> Unloading:
+    """Fit the unloading of every series.
+
+    Parameters
+    ----------
+    tests
+        The experiments.
+    readings
+        Their readings under rising loads; ``tests.unloading`` follows the one under the largest load, or begins with
+        another reading under it.
+    hardness
+        H_V of each series.
+    uncertainty
+        Of a reading.
+    bad
+        Mask over the series: those that are left out, because their loads do not fall.
+    """
+    m, back = len(tests), tests.unloading
+    chosen = np.zeros(m, dtype=np.bool_) if back is None else (back.count > 0) & ~bad & np.isfinite(hardness.value)
+    s, error, dof = np.full((3, m), np.nan)
+    if back is not None and chosen.any():
+        s[chosen], error[chosen], dof[chosen] = _fit(_unloading_branch(readings, back, chosen), uncertainty)
+    half = expanded_factor(np.where(dof >= 1.0, dof, np.nan), CONFIDENCE) * error
+    ends = np.stack((s - half, s + half), axis=-1)
+    ratio, ratio_ends = _reciprocal(s, ends)
+    return Unloading(
+        n_readings=np.zeros(m, dtype=np.int64) if back is None else back.count,
+        rebound_ratio=s,
+        rebound_ratio_error=error,
+        rebound_ratio_interval=ends,
+        unloading_ratio=ratio,
+        unloading_ratio_interval=ratio_ends,
+        unloading_stiffness=ratio * hardness.value,
+        unloading_stiffness_interval=_of_product((ratio, ratio_ends), (hardness.value, hardness.interval)),
+    )
+
+
+def _unloading_branch(readings: Readings, back: UnloadingReadings, chosen: BoolArray) -> Readings:
+    """The chosen series from their largest load on; a second reading under it takes the place of the first."""
+    again = back.load[back.first[:-1][chosen]] == readings.load[readings.largest[chosen]]
+    taken = chosen[back.series_of_reading]
+    count = back.count[chosen]
+    begin = np.concatenate(([0], np.cumsum(count)))[:-1][~again]
+    return Readings(
+        load=np.insert(back.load[taken], begin, readings.load[readings.largest[chosen]][~again]),
+        penetration_depth=np.insert(
+            back.penetration_depth[taken], begin, readings.penetration_depth[readings.largest[chosen]][~again]
+        ),
+        edge_angle=readings.edge_angle[chosen],
+        first=(first := np.concatenate(([0], np.cumsum(count + ~again)))),
+        largest=first[:-1],
+        tool=readings.tool[chosen],
+        tools=readings.tools,
+    )
+
+
+def _fit(branch: Readings, uncertainty: ReadingUncertainty) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """S of each series, its standard error, and the degrees of freedom."""
+    top = branch.largest[branch.series]
+    volume = branch.displaced_volume[top] * branch.load / branch.load[top]
+    loading_depth = branch.depth_at_volume(volume)
+    g = branch.penetration_depth[top] - loading_depth
+    per_newton = np.divide(volume, branch.area_at_depth(loading_depth) * branch.load)  # dê/dF = V/(A F)
+    s, _, _ = _line(branch, g, np.ones(branch.n))
+    s = np.clip(s, 0.0, 1.0)
+    known = uncertainty.depth**2 + (s[branch.series] * per_newton * uncertainty.load) ** 2
+    floor = (_ROUNDING * branch.penetration_depth[top]) ** 2  # a series without any error keeps finite weights
+    dof = branch.sums(np.ones(branch.n)) - _FITTED
+    scatter2 = _scatter_variance(branch, g, known + floor, (s[branch.series] * g) ** 2, dof)
+    s, spread, _ = _line(branch, g, 1.0 / (known + floor + scatter2[branch.series] * (s[branch.series] * g) ** 2))
+    with np.errstate(invalid="ignore", divide="ignore"):
+        return s, np.where(dof >= 1.0, np.sqrt(1.0 / spread), np.nan), dof
+
+
+def _scatter_variance(
+    branch: Readings, g: FloatArray, known: FloatArray, per_scatter: FloatArray, dof: FloatArray
+) -> FloatArray:
+    """σ² ≥ 0 of the rebound of each series: Σ r²/(known + σ² d²) = n - 2 (Paule and Mandel 1982)."""
+    scatter2 = np.zeros(branch.n_series)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        for _ in range(_ITERATIONS):
+            weight = 1.0 / (known + scatter2[branch.series] * per_scatter)
+            _, _, residual = _line(branch, g, weight)
+            Q = branch.sums(weight * residual**2)
+            fall = branch.sums((weight * residual) ** 2 * per_scatter)
+            moved = np.where((fall > 0) & (dof >= 1.0), np.maximum(scatter2 + (Q / dof - 1.0) * Q / fall, 0.0), 0.0)
+            settled = np.abs(moved - scatter2) <= _SETTLED * moved
+            scatter2 = moved
+            if settled.all():
+                break
+    return scatter2
+
+
+def _line(branch: Readings, g: FloatArray, weight: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Slope of e = e_0 - s g by weighted least squares, Σ w (g - ḡ)² of each series, and the residuals."""
+    total = branch.sums(weight)
+    dg = g - (branch.sums(weight * g) / total)[branch.series]
+    de = branch.penetration_depth - (branch.sums(weight * branch.penetration_depth) / total)[branch.series]
+    spread = branch.sums(weight * dg**2)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        s = -branch.sums(weight * dg * de) / spread
+    return s, spread, de + s[branch.series] * dg
+
+
+def _reciprocal(s: FloatArray, ends: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """1/s where that is above 0, and its interval where both ends are."""
+    ratio = np.divide(1.0, s, out=np.full(s.shape, np.nan), where=s > 0)
+    known = (ends[..., 0] > 0)[..., None]
+    turned = np.divide(1.0, ends[..., ::-1], out=np.full(ends.shape, np.nan), where=known & (ends > 0))
+    return ratio, turned
+
+
+def _of_product(first: tuple[FloatArray, FloatArray], second: tuple[FloatArray, FloatArray]) -> FloatArray:
+    """Interval of a product of two independent values with theirs: half-widths of logarithms add as squares."""
+    with np.errstate(invalid="ignore", divide="ignore"):
+        half = np.hypot(*(np.log(ends / value[:, None]) for value, ends in (first, second)))
+        return np.asarray((first[0] * second[0])[:, None] * np.exp(half * np.array([-1.0, 1.0])))
+
+
+def site_unloading(found: Unloading, used: BoolArray, site: Sequence[str]) -> tuple[SiteUnloading, ...]:
+    """The mean of each site in alphabetical order, then of all together; empty without a used series."""
+    counts = used & np.isfinite(found.rebound_ratio)
+    names = np.array(site, dtype=object)
+    if not counts.any():
+        return ()
+    sites = sorted(set(names[counts].tolist()))
+    return (*(_mean(found, counts & (names == name), names, name) for name in sites), _mean(found, counts, names, None))
+
+
+def _mean(found: Unloading, chosen: BoolArray, names: npt.NDArray[np.object_], site: str | None) -> SiteUnloading:
+    """Of the series with a standard error; where none has one, the plain mean without an interval."""
+    known = chosen & np.isfinite(found.rebound_ratio_error)
+    low, high = np.nan, np.nan
+    if not known.any():
+        s = float(found.rebound_ratio[chosen].mean())
+    elif known.sum() == 1:
+        s = float(found.rebound_ratio[known][0])
+        low, high = found.rebound_ratio_interval[known][0].tolist()
+    else:
+        s, low, high, _ = random_effects_mean(found.rebound_ratio[known], found.rebound_ratio_error[known])
+    ratio, ends = _reciprocal(np.array([s]), np.array([[low, high]]))
+    back = chosen & np.isfinite(found.unloading_stiffness)
+    own = own_mean(found.unloading_stiffness[back], names[back].tolist(), geometric=True)
+    n = int(known.sum() or chosen.sum())
+    return SiteUnloading(
+        site=site,
+        n=n,
+        ratio=float(ratio[0]),
+        low=float(ends[0, 0]),
+        high=float(ends[0, 1]),
+        low_rebound=low,
+        high_rebound=high,
+        stiffness=own.value,
+        stiffness_low=own.low,
+        stiffness_high=own.high,
+    )

@@ -1,0 +1,114 @@
+"""The weather at the time of each experiment, from the readings of a station."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from datetime import datetime, timedelta, timezone
+from typing import TYPE_CHECKING, Final, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from .._support.constants import ZERO_CELSIUS
+from .._support.display import Facts, Shown
+from .._support.numbered_names import numbered
+from .._support.units import HOUR, PERCENT
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping, Sequence
+
+    from ..campaign.records import Campaign
+
+FloatArray: TypeAlias = npt.NDArray[np.float64]
+
+QUANTITIES: Final = {
+    "air_temperature_C": ("TA", 1.0, -ZERO_CELSIUS),
+    "relative_humidity_percent": ("RH", 1.0 / PERCENT, 0.0),
+    "snow_surface_temperature_C": ("TSS", 1.0, -ZERO_CELSIUS),
+    "wind_speed_m_per_s": ("VW", 1.0, 0.0),
+    "incoming_short_wave_W_per_m2": ("ISWR", 1.0, 0.0),
+}
+"""What is taken of a station: its name in SMET, and factor and offset from SI."""
+
+
+@dataclass(frozen=True, slots=True, repr=False)
+class WeatherAtTests(Shown):
+    """The weather at m experiments, in the order of the files, penetration before shear; NaN where it is not known.
+
+    ``time`` is that of each experiment as its file has it; ``quantities`` have the units of their names.
+    """
+
+    kind: tuple[str, ...]
+    experiment: tuple[str, ...]
+    site: tuple[str, ...]
+    time: tuple[str, ...]
+    quantities: Mapping[str, FloatArray]
+
+    def _facts(self) -> Facts:
+        known = int(np.isfinite(np.stack(list(self.quantities.values()))).any(axis=0).sum())
+        return Facts(f"at {known} of {len(self.experiment)} experiments")
+
+    def site_means(self) -> Iterator[tuple[str, int, dict[str, float]]]:
+        """Each site with the number of its experiments whose weather is known, and their means."""
+        names, site_of = numbered(self.site)
+        for index, name in enumerate(names):
+            mine = {key: values[site_of == index] for key, values in self.quantities.items()}
+            known = {key: values[np.isfinite(values)] for key, values in mine.items()}
+            means = {key: float(values.mean()) if len(values) else math.nan for key, values in known.items()}
+            yield name, max(map(len, known.values())), means
+
+
+def weather_at_tests(campaign: Campaign) -> WeatherAtTests | None:
+    """Interpolate the station's readings to the time of each experiment; None where the campaign has no weather.
+
+    Notes
+    -----
+    An experiment has weather where the column ``time`` of one of its rows holds a day and a time of day.
+
+    References
+    ----------
+    The page docs/files/smet.md.
+    """
+    weather = campaign.weather
+    if weather is None:
+        return None
+    rows = list(_experiments(campaign))
+    moments = np.array([_moment(time, weather.utc_offset) for *_, time in rows], dtype=float)
+    gap = weather.settings.longest_gap_h * HOUR
+    found = {
+        key: weather.series.at(moments, name, longest_gap=gap) * factor + offset
+        for key, (name, factor, offset) in QUANTITIES.items()
+    }
+    kinds, experiments, sites, times = (tuple(column) for column in zip(*rows, strict=True)) if rows else ((),) * 4
+    return WeatherAtTests(kinds, experiments, sites, times, found)
+
+
+def _experiments(campaign: Campaign) -> Iterator[tuple[str, str, str, str]]:
+    """Kind, name, site and time of each experiment."""
+    if campaign.penetration is not None:
+        tests = campaign.penetration
+        cells = tests.further.get("time", ("",) * len(tests.load))
+        for index, (experiment, site) in enumerate(zip(tests.experiment, tests.site, strict=True)):
+            own = cells[int(tests.first[index]) : int(tests.first[index + 1])]
+            yield "penetration", experiment, site, _first(own)
+    if campaign.shear is not None:
+        sheared = campaign.shear
+        cells = sheared.further.get("time", ("",) * len(sheared))
+        yield from zip(("shear",) * len(sheared), sheared.experiment, sheared.site, cells, strict=True)
+
+
+def _first(cells: Sequence[str]) -> str:
+    return next(filter(None, cells), "")
+
+
+def _moment(text: str, utc_offset: float) -> float:
+    """Seconds since 1970, UTC; NaN where the text is no day with a time of day."""
+    if "T" not in text and " " not in text:
+        return math.nan
+    try:
+        found = datetime.fromisoformat(text)
+    except ValueError:
+        return math.nan
+    zone = timezone(timedelta(hours=utc_offset))
+    return (found if found.tzinfo else found.replace(tzinfo=zone)).timestamp()

@@ -1,0 +1,255 @@
+"""A body that glides straight down a slope: when it passes which cell.
+
+    m v' = m g sin α - μ(v) m (g cos α + κ v²) - ½ ρ C_dA v²,   s' = v,   μ(v) = μ_0 + μ_1 v
+
+s is the arc length along the slope's surface, α(s) its inclination, κ(s) its curvature, above 0 in a hollow, where the
+snow presses more. After Kaps, Nachbauer and Mössner (1996).
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import Final
+
+import numpy as np
+import numpy.typing as npt
+
+from .._support.errors import ParameterError
+from ..scenario import Plane, Slope, Terrain
+
+FloatArray = npt.NDArray[np.float64]
+IntArray = npt.NDArray[np.int64]
+
+STEPS: Final = 200
+"""Time steps over a run at least: the terms change over tens of seconds (modelling assumption)."""
+WAIT: Final = 5.0
+"""How many times as long as a run took its body is waited for."""
+CRAWL: Final = 0.1
+"""Speed (m/s) of a body that does not get there in that time, so that a search finds its direction."""
+LONGEST_STEP_ON_PROFILE: Final = 0.02
+"""(s): 0.4 m at 20 m/s (modelling assumption); a step ends at every point of a profile besides."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SlopeLine:
+    """The slope along the path, from the start on, in n pieces on which its gradient changes linearly.
+
+    A profile's points do not say where between them it bends. Each of its segments has its gradient at its middle, and
+    from middle to middle the gradient changes linearly (modelling assumption): a hollow presses and a crest relieves
+    over the length
+    between the middles, by the whole angle and nowhere by the contrary, as cubics through the points would.
+
+    Attributes
+    ----------
+    arc_length
+        (n + 1,) m: where the pieces begin, from 0 on, and where the last one ends; a plane has one without an end.
+    x
+        (n + 1,) m: the horizontal distances of these places.
+    gradient
+        (2, n): dz/dx at the beginning of each piece, and d²z/dx² (1/m); of planes one column for each body, or one for
+        all.
+    """
+
+    arc_length: FloatArray
+    x: FloatArray
+    gradient: FloatArray
+
+    @property
+    def length(self) -> float:
+        """How far it goes (m); a plane has no end."""
+        return float(self.arc_length[-1])
+
+    def at(self, piece: IntArray, x: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Sine and cosine of the inclination, positive downwards, and curvature (1/m), above 0 in a hollow."""
+        own = self.gradient if math.isinf(self.length) else self.gradient[:, piece]
+        bend = own[1]
+        gradient = own[0] + bend * (x - self.x[piece])
+        stretch = np.hypot(1.0, gradient)
+        return -gradient / stretch, 1.0 / stretch, bend / stretch**3
+
+
+def slope_line(slope: Slope, start: float) -> SlopeLine:
+    """The slope along the fall line from x = `start` (m) on.
+
+    Raises
+    ------
+    ParameterError
+        The slope is a grid, whose fall line is no straight one.
+
+    >>> line = slope_line(Plane(math.radians(30.0)), 0.0)
+    >>> sine, _, curvature = line.at(np.zeros(1, int), np.zeros(1))
+    >>> round(float(sine[0]), 9), float(curvature[0]), line.length
+    (0.5, 0.0, inf)
+    """
+    if isinstance(slope, Plane):
+        return planes(np.array([slope.angle]))
+    if isinstance(slope, Terrain):
+        raise ParameterError(
+            'photo-cell times are computed along one line; slope.kind = "grid" has none. Give the heights along it: '
+            'slope.kind = "profile"'
+        )
+    middle = 0.5 * (slope.x[1:] + slope.x[:-1])
+    of_segment = np.diff(slope.height) / np.diff(slope.x)
+    ahead = middle > start
+    x = np.concatenate([[start], middle[ahead], slope.x[-1:]])
+    gradient = np.concatenate([np.interp([start], middle, of_segment), of_segment[ahead], of_segment[-1:]])
+    line = SlopeLine(np.zeros(len(x)), x, np.stack([gradient[:-1], np.diff(gradient) / np.diff(x)]))
+    return replace(line, arc_length=np.concatenate([[0.0], np.cumsum(_lengths(line))]))
+
+
+def planes(angle: FloatArray) -> SlopeLine:
+    """Planes inclined by the angles (rad), one for each body."""
+    ends = np.array([0.0, math.inf])
+    zero = np.zeros_like(angle)
+    return SlopeLine(ends, ends, np.stack([-np.tan(angle), zero]))
+
+
+def _lengths(line: SlopeLine) -> FloatArray:
+    """Lengths (m) of the pieces, by Gauss's rule with ten points."""
+    place, weight = np.polynomial.legendre.leggauss(10)
+    middle, half = 0.5 * (line.x[1:] + line.x[:-1]), 0.5 * np.diff(line.x)
+    number = np.arange(len(middle))
+    stretch = [1.0 / line.at(number, middle + half * each)[1] for each in place]
+    return np.asarray(half * np.tensordot(weight, stretch, axes=1))
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class Glide:
+    """Bodies that glide at once, one entry each, (k,).
+
+    Attributes
+    ----------
+    friction, friction_by_speed
+        μ_0, and μ_1 (s/m).
+    drag_per_mass
+        ½ ρ C_dA / m (1/m).
+    speed
+        At the start (m/s).
+    gravity
+        (m/s²).
+    """
+
+    friction: FloatArray
+    friction_by_speed: FloatArray
+    drag_per_mass: FloatArray
+    speed: FloatArray
+    gravity: FloatArray
+
+    def rates(self, line: SlopeLine, piece: IntArray, x: FloatArray, speed: FloatArray) -> FloatArray:
+        """Of change of x (m/s), arc length (m/s) and speed (m/s²), (3, k); the snow presses but does not pull."""
+        sine, cosine, curvature = line.at(piece, x)
+        pressed = np.maximum(self.gravity * cosine + curvature * speed**2, 0.0)
+        friction = (self.friction + self.friction_by_speed * speed) * pressed
+        return np.stack([speed * cosine, speed, self.gravity * sine - friction - self.drag_per_mass * speed**2])
+
+
+def passage_times(line: SlopeLine, glide: Glide, station: FloatArray, longest: float) -> FloatArray:
+    """When each body passes each cell.
+
+    Parameters
+    ----------
+    line
+        The slope along the path.
+    glide
+        k bodies.
+    station
+        (n,) or (k, n) m, rising, from 0 on.
+    longest
+        About how long the runs take (s); the step follows from it, and so many times `WAIT` is waited.
+
+    Returns
+    -------
+    array
+        (k, n) s. A body that stops before, or is not there after the wait, is taken to crawl on at 0.1 m/s from then:
+        later than any that gets there, and the later the farther it is from there.
+
+    Notes
+    -----
+    Runge-Kutta of fourth order in time, which a start from rest does not trouble as ∫ ds/v would. The curvature of a
+    profile jumps between its pieces: there a step ends, and no step sees two. Between the steps a cubic through
+    places and speeds.
+    """
+    k = len(glide.speed)
+    stations = np.broadcast_to(np.asarray(station, float), (k, np.shape(station)[-1]))
+    h = longest / STEPS if math.isinf(line.length) else min(longest / STEPS, LONGEST_STEP_ON_PROFILE)
+    time, arc_length, speed = _histories(line, glide, h, float(stations.max()), WAIT * longest)
+    found = [_passages(time[:, j], arc_length[:, j], speed[:, j], stations[j]) for j in range(k)]
+    crawling = WAIT * longest + (stations - arc_length[-1][:, None]) / CRAWL
+    return np.where(np.isfinite(found), found, crawling)
+
+
+def _histories(
+    line: SlopeLine, glide: Glide, h: float, last: float, longest: float
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Times, ways and speeds after each step, (m, k) each; a body that is there, or waited for in vain, stays."""
+    k = len(glide.speed)
+    piece, time = np.zeros(k, np.int64), np.zeros(k)
+    state = np.stack([np.full(k, line.x[0]), np.zeros(k), glide.speed.astype(float)])
+    history = [(time, state)]
+    with np.errstate(over="ignore", invalid="ignore"):
+        for _ in range(math.ceil(longest / h) + len(line.arc_length)):
+            step = np.where((state[1] < last) & (time < longest), h, 0.0)
+            state, piece, share = _stepped(line, glide, piece, state, step)
+            time = time + share * step
+            history.append((time, state))
+            if not np.any((state[1] < last) & (state[2] > 0.0) & (time < longest)):
+                break
+    return np.array([each for each, _ in history]), *np.array([each[1:] for _, each in history]).transpose(1, 0, 2)
+
+
+def _stepped(
+    line: SlopeLine, glide: Glide, piece: IntArray, state: FloatArray, h: FloatArray
+) -> tuple[FloatArray, IntArray, FloatArray]:
+    """State and piece after a step, and which share of it was taken: all, or what leads to the end of the piece."""
+    share = np.ones_like(h)
+    moved = _runge_kutta(line, glide, piece, state, h)
+    end = line.arc_length[piece + 1]
+    passes = moved[1] >= end
+    if passes.any():
+        shorter = _share(state[1], moved[1], h * state[2], h * moved[2], end)
+        share = np.where(passes, shorter, 1.0)
+        again = _runge_kutta(line, glide, piece, state, share * h)
+        at_end = np.stack([line.x[piece + 1], end, again[2]])
+        moved = np.where(passes, at_end, moved)
+        piece = np.minimum(piece + passes, len(line.arc_length) - 2)
+    return moved, piece, share
+
+
+def _runge_kutta(line: SlopeLine, glide: Glide, piece: IntArray, state: FloatArray, h: FloatArray) -> FloatArray:
+    def rates(of: FloatArray) -> FloatArray:
+        return glide.rates(line, piece, of[0], of[2])
+
+    first = rates(state)
+    second = rates(state + 0.5 * h * first)
+    third = rates(state + 0.5 * h * second)
+    fourth = rates(state + h * third)
+    moved = state + h / 6.0 * (first + 2.0 * second + 2.0 * third + fourth)
+    moved[2] = np.maximum(moved[2], 0.0)
+    return np.where(moved[1] < state[1], np.stack([state[0], state[1], moved[2]]), moved)
+
+
+def _passages(time: FloatArray, arc_length: FloatArray, speed: FloatArray, station: FloatArray) -> FloatArray:
+    """Times (s) at the cells, infinite at those that are not reached."""
+    number = np.searchsorted(arc_length, station, side="left") - 1
+    reached = number < len(arc_length) - 1
+    at = np.clip(number, 0, len(arc_length) - 2)
+    h = time[at + 1] - time[at]
+    share = _share(arc_length[at], arc_length[at + 1], h * speed[at], h * speed[at + 1], station)
+    return np.where(reached, time[at] + h * share, np.inf)
+
+
+def _share(first: FloatArray, last: FloatArray, begin: FloatArray, end: FloatArray, place: FloatArray) -> FloatArray:
+    """Where a cubic through first and last place, with slopes begin and end, is at a place: by Newton's method."""
+    u = np.clip(np.divide(place - first, last - first, out=np.zeros_like(first), where=last > first), 0.0, 1.0)
+    for _ in range(6):
+        at = (
+            first * (1.0 + 2.0 * u) * (1.0 - u) ** 2
+            + begin * u * (1.0 - u) ** 2
+            + last * u**2 * (3.0 - 2.0 * u)
+            + end * u**2 * (u - 1.0)
+        )
+        slope = (last - first) * 6.0 * u * (1.0 - u) + begin * (1.0 - u) * (1.0 - 3.0 * u) + end * u * (3.0 * u - 2.0)
+        step = np.divide(place - at, slope, out=np.zeros_like(first), where=slope > 0.0)
+        u = np.clip(u + step, 0.0, 1.0)
+    return u

@@ -1,0 +1,259 @@
+"""Residuals of the track left in the snow: the groove and the radius of a ski that carves, or that the snow lets slide.
+
+The ski is the one of `skisnow.carve`: half of the weight's part along the snow's normal on each, edge angle given. The
+depth that stays is e_max (1 - H_V/k_u), the width across the groove e_max/tan ϑ where it is deepest, the radius that of
+the circle through the edge line at the boot and both ends of the contact. S_f plays no part while the edge holds.
+Where it slides, the snow gives all it has, 2 S_f ∫ e ds, and the radius follows from the balance across the path:
+
+    m v²/R = 2 S_f ∫ e ds - m g sin α sin χ (turn to the left; χ heading from the fall line)
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any, Final
+
+import numpy as np
+import numpy.typing as npt
+
+from .._support.errors import ParameterError, SkisnowError
+from .._support.units import DEGREE, MM, N_PER_MM2, N_PER_MM3
+from ..carving.equilibrium import carve
+from ..carving.result import Equilibrium
+from ..scenario import Plane, ScenarioFile
+from ..scenario.slope_surface import normals_of
+from ..ski import Ski
+from ..snow import SnowProperties
+from .measured_grooves import MeasuredGrooves
+from .observations import Fit, Kind, Values
+
+FloatArray = npt.NDArray[np.float64]
+
+HARDNESS, STRENGTH = "snow.H_V_N_per_mm3", "snow.S_f_N_per_mm2"
+USED: Final = (
+    HARDNESS,
+    STRENGTH,
+    "snow.unloading_ratio",
+    "sledge.edge_angle_deg",
+    "sledge.mass_kg",
+    "start.speed_m_per_s",
+    "start.heading_deg",
+    "slope.angle_deg",
+    "slope.gravity_m_per_s2",
+)
+"""Keys that the grooves depend on."""
+STRAIGHTEST: Final = 1e6
+"""Radius (m) that stands for a straight path: grip too small for any turn."""
+
+
+@dataclass(frozen=True, slots=True)
+class Groove:
+    """What a ski leaves, and what it needs: depth that stays, width, radius (m), grip length ∫ e ds (m²), load (N)."""
+
+    depth: float
+    width: float
+    turn_radius: float
+    grip_area: float
+    load: float
+
+
+@dataclass(slots=True)
+class GrooveResiduals:
+    """Measured grooves, and the ski that is taken to have left them.
+
+    Attributes
+    ----------
+    measured
+        What was measured.
+    asked
+        The scenario: ski, mass, slope, speed, heading, edge angle, and the values of what is not looked for.
+    slides
+        Whether the edge is taken to slide: then the radius follows from S_f, and the width, swept sideways, tells
+        nothing.
+    """
+
+    measured: MeasuredGrooves
+    asked: ScenarioFile
+    slides: bool = False
+    _kept: dict[tuple[float, ...], Groove | None] = field(init=False, default_factory=dict)
+
+    @property
+    def kind(self) -> Kind:
+        """MeasuredGrooves."""
+        return "marks"
+
+    @property
+    def runs(self) -> tuple[str, ...]:
+        """None: all grooves are of one passage."""
+        return ()
+
+    def depends_on(self, key: str) -> bool:
+        """Snow, edge angle, mass, slope; speed and heading only where the edge slides."""
+        return key in USED
+
+    @property
+    def points(self) -> int:
+        """Numbers measured."""
+        return sum(self.series)
+
+    @property
+    def nuisances(self) -> int:
+        """None."""
+        return 0
+
+    @property
+    def accuracy_is_stated(self) -> bool:
+        """Whether the file has standard deviations."""
+        return self.measured.stated
+
+    @property
+    def series(self) -> tuple[int, ...]:
+        """How many depths, widths, radii are used."""
+        return tuple(int(np.sum(use)) for _, _, use in self._columns())
+
+    def residuals(self, many: Sequence[Values]) -> list[FloatArray | None]:
+        """(Computed - measured)/sd of depths, widths, radii."""
+        return [self._residual(values) for values in many]
+
+    final_residuals = residuals
+
+    def fits(self, values: Values) -> tuple[Fit, ...]:
+        """The three quantities, place by place."""
+        groove = self.groove(values)
+        if groove is None:
+            return ()
+        computed = np.tile(
+            [groove.depth / MM, groove.width / MM, self._radius(values, groove)], (len(self.measured), 1)
+        )
+        measured = np.column_stack([self.measured.depth / MM, self.measured.width / MM, self.measured.turn_radius])
+        sd = np.column_stack([self.measured.depth_sd / MM, self.measured.width_sd / MM, self.measured.turn_radius_sd])
+        labels = ("depth (mm)", "width (mm)", "turn radius (m)")
+        return (
+            Fit(
+                name=self.measured.name, kind="marks", along=np.arange(1.0, len(self.measured) + 1.0), labels=labels,
+                measured=measured, fitted=computed, sd=sd,
+            ),
+        )  # fmt: skip
+
+    def warnings(self, values: Values) -> tuple[str, ...]:
+        """That a model of equal loads stands behind it."""
+        if self.groove(values) is None:
+            return ("no ski carves with these values: start elsewhere",)
+        return ()
+
+    def groove(self, values: Values) -> Groove | None:
+        """What the ski leaves with these values; None where it finds no balance."""
+        of = {**self.asked.values, **values}
+        number = tuple(float(of[key]) for key in USED if key not in (STRENGTH, "start.speed_m_per_s"))
+        if number not in self._kept:
+            self._kept[number] = _groove(self.asked, of)
+        return self._kept[number]
+
+    def demand(self, values: Values, turn_radius: float) -> float:
+        """Force (N) across the path that both skis together need from the snow on that radius."""
+        of = {**self.asked.values, **values}
+        side = math.copysign(1.0, float(of["sledge.edge_angle_deg"]))
+        pull = _angle(self.asked, of) * math.sin(float(of["start.heading_deg"]) * DEGREE) * side
+        return _mass(self.asked, of) * (float(of["start.speed_m_per_s"]) ** 2 / turn_radius + pull)
+
+    def strength_for(self, values: Values, turn_radius: float) -> float | None:
+        """S_f (N/mm²) that just holds the skis on that radius; None where they find no balance."""
+        groove = self.groove(values)
+        if groove is None or groove.grip_area <= 0.0:
+            return None
+        return max(self.demand(values, turn_radius), 0.0) / (2.0 * groove.grip_area) / N_PER_MM2
+
+    @property
+    def mean_radius(self) -> float:
+        """Weighted mean of the measured radii (m), NaN without any."""
+        use = np.isfinite(self.measured.turn_radius)
+        weight = self.measured.turn_radius_sd[use] ** -2.0
+        return float(np.sum(weight * self.measured.turn_radius[use]) / np.sum(weight)) if use.any() else math.nan
+
+    @property
+    def mean_radius_sd(self) -> float:
+        """Its standard deviation (m)."""
+        use = np.isfinite(self.measured.turn_radius)
+        return float(np.sum(self.measured.turn_radius_sd[use] ** -2.0) ** -0.5) if use.any() else math.nan
+
+    def _columns(self) -> list[tuple[FloatArray, FloatArray, npt.NDArray[np.bool_]]]:
+        grooves = self.measured
+        return [
+            (grooves.depth, grooves.depth_sd, np.isfinite(grooves.depth)),
+            (grooves.width, grooves.width_sd, np.isfinite(grooves.width) & (not self.slides)),
+            (grooves.turn_radius, grooves.turn_radius_sd, np.isfinite(grooves.turn_radius)),
+        ]
+
+    def _residual(self, values: Values) -> FloatArray | None:
+        groove = self.groove(values)
+        if groove is None:
+            return None
+        computed = (groove.depth, groove.width, self._radius(values, groove))
+        parts = [
+            (one - measured[use]) / sd[use] for one, (measured, sd, use) in zip(computed, self._columns(), strict=True)
+        ]
+        return np.concatenate(parts)
+
+    def _radius(self, values: Values, groove: Groove) -> float:
+        if not self.slides:
+            return groove.turn_radius
+        of = {**self.asked.values, **values}
+        grip = 2.0 * float(of[STRENGTH]) * N_PER_MM2 * groove.grip_area
+        left = grip - self.demand(values, math.inf)
+        mass, speed = _mass(self.asked, of), float(of["start.speed_m_per_s"])
+        return min(mass * speed**2 / left, STRAIGHTEST) if left > 0.0 else STRAIGHTEST
+
+
+def require_groove_stays(asked: ScenarioFile) -> None:
+    """Refuse scenarios whose ski leaves no groove, or that say nothing of a turn."""
+    if asked.scenario.contact.unloading_ratio <= 1.0:
+        raise ParameterError("snow.unloading_ratio is 1: elastic snow keeps no groove. Give the snow that kept these")
+    if asked.scenario.sledge.edge_angle == 0.0:
+        raise ParameterError("sledge.edge_angle_deg is 0: a flat ski leaves no groove of an edge. Give the edge angle")
+
+
+def _mass(asked: ScenarioFile, of: Mapping[str, Any]) -> float:
+    return float(of["sledge.mass_kg"]) + 2.0 * asked.scenario.ski.mass
+
+
+def _inclination(asked: ScenarioFile, of: Mapping[str, Any]) -> float:
+    slope = asked.scenario.slope
+    if isinstance(slope, Plane):
+        return float(of["slope.angle_deg"]) * DEGREE
+    start = asked.scenario.start
+    normal = normals_of(slope, start.x, start.y)
+    return math.atan2(float(normal[0]), float(normal[2]))
+
+
+def _angle(asked: ScenarioFile, of: Mapping[str, Any]) -> float:
+    """G sin α (m/s²)."""
+    return float(of["slope.gravity_m_per_s2"]) * math.sin(_inclination(asked, of))
+
+
+def _groove(asked: ScenarioFile, of: Mapping[str, Any]) -> Groove | None:
+    gravity = float(of["slope.gravity_m_per_s2"])
+    load = 0.5 * _mass(asked, of) * gravity * math.cos(_inclination(asked, of))
+    angle = abs(float(of["sledge.edge_angle_deg"])) * DEGREE
+    ratio = float(of["snow.unloading_ratio"])
+    snow = SnowProperties(float(of[HARDNESS]) * N_PER_MM3, 1.0 * N_PER_MM2, source="looked for")
+    try:
+        found = carve(
+            asked.scenario.flexing_ski, snow, edge_angle=angle, load=load, unloading_ratio=ratio,
+            clamp_length=asked.scenario.clamp_length, footprint_stiffness=asked.scenario.footprint_stiffness,
+        )  # fmt: skip
+    except SkisnowError:
+        return None
+    return _of_equilibrium(found, asked.scenario.ski, angle, ratio, load)
+
+
+def _of_equilibrium(found: Equilibrium, ski: Ski, angle: float, ratio: float, load: float) -> Groove | None:
+    depth, twist, radius, limit = found.edge_depth, found.twist, found.turn_radius_chord, found.side_force_limit
+    if depth is None or twist is None or radius is None or limit is None:
+        return None
+    deepest = int(np.argmax(depth))
+    local = angle + float(twist[deepest])
+    reach = float(ski.at(float(found.station[deepest])).width) * math.cos(local)
+    width = min(float(depth[deepest]) / math.tan(local), reach)
+    return Groove(float(depth[deepest]) * (1.0 - 1.0 / ratio), width, radius, limit / N_PER_MM2, load)

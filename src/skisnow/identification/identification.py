@@ -1,0 +1,260 @@
+"""What an identification gives."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from datetime import UTC, datetime
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any, Literal, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from .._support.display import Facts, Shown, amount, ends, span
+from .._support.json_number import json_number
+from .observations import Fit
+from .parameter import Parameter
+
+FloatArray = npt.NDArray[np.float64]
+Interval: TypeAlias = tuple[float | None, float | None]
+Outcome: TypeAlias = Literal["converged", "not_converged", "not_identifiable", "too_few_points", "interrupted"]
+
+REASONS: dict[Outcome, str] = {
+    "converged": "The search ended: no step brings the computed nearer to the measured by more than its noise.",
+    "not_converged": "The search did not come to an end; the values are the best that were seen. Start nearer, or free "
+    "fewer parameters.",
+    "not_identifiable": "The data do not determine every parameter; the warnings say which, and what would help.",
+    "too_few_points": "There are too few points for these parameters; nothing was identified.",
+    "interrupted": "The search was stopped; the values are the best that were seen until then.",
+}
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, repr=False)
+class Identified(Shown):
+    """One parameter, in the unit that its key names; None where a number does not exist.
+
+    Attributes
+    ----------
+    parameter
+        What was looked for.
+    value, standard_error, interval
+        The best value, and what the curvature of the sum of squares says of it; an end that is open is None.
+    profile_interval, bootstrap_interval, posterior_interval
+        By other ways, where they were asked for.
+    at_bound
+        Whether the best value sits on a bound.
+    identifiable
+        Whether the data say something about it.
+    """
+
+    parameter: Parameter
+    value: float | None = None
+    standard_error: float | None = None
+    interval: Interval | None = None
+    profile_interval: Interval | None = None
+    bootstrap_interval: Interval | None = None
+    posterior_interval: Interval | None = None
+    at_bound: bool = False
+    identifiable: bool = True
+
+    def _facts(self) -> Facts:
+        return Facts(f"{self.parameter.key} = {self.in_words}")
+
+    @property
+    def in_words(self) -> str:
+        """The value with its interval in the key's unit, and whether the data determine it."""
+        low, high = self.interval or (None, None)
+        text = amount(self.value, self.parameter.unit)
+        if low is not None and high is not None:
+            text = f"{text} ({span(low, high)})"
+        return f"{text}{'' if self.identifiable else ', not determined'}{', at a bound' if self.at_bound else ''}"
+
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Profile(Shown):
+    """The sum of squares along one parameter with all others refitted.
+
+    Attributes
+    ----------
+    value
+        (m,) of the parameter, rising.
+    rise
+        (m,) of the sum of squares above its least, in squared standard deviations of the data.
+    limit
+        The rise at the ends of the 95 % interval.
+    """
+
+    key: str
+    value: FloatArray
+    rise: FloatArray
+    limit: float
+
+    def _facts(self) -> Facts:
+        return Facts(f"of {self.key} at {len(self.value)} values, {ends(self.value)}")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Effort:
+    """What it took: simulated runs computed and taken from an earlier start, Jacobians, time (s)."""
+
+    simulations: int = 0
+    kept_simulations: int = 0
+    rounds: int = 0
+    wall_s: float = 0.0
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True, repr=False)
+class Identification(Shown):
+    """What came out.
+
+    Attributes
+    ----------
+    outcome, reason
+        How it ended, and what that means, in words.
+    scenario
+        Its title.
+    parameters
+        The free ones, in the order in which they were named.
+    correlation
+        (p, p); NaN where nothing is known.
+    covariance
+        (p, p) in the keys' units, linearised; infinite or NaN where nothing is known.
+    noise
+        Standard deviation of each kind of data's residuals over the stated one (1 where it is stated and true).
+    accuracy_is_stated
+        Whether the data state theirs.
+    points, degrees_of_freedom
+        Points measured; residuals and priors less what was fitted.
+    warnings, methods
+        What to beware of; how it was computed.
+    fits
+        What was measured and what the best parameters give, run by run.
+    starts
+        Places (p,) of several starts and the sums of squares that they led to; None where nothing could be computed.
+    profiles, bootstrap, posterior
+        Where asked for; samples are (N, p) in the keys' units.
+    effort
+        What it took.
+    data
+        The name of each file, and what it was taken for, in words.
+
+    See Also
+    --------
+    skisnow.identify
+    """
+
+    outcome: Outcome
+    reason: str
+    scenario: str
+    parameters: tuple[Identified, ...]
+    correlation: FloatArray
+    covariance: FloatArray
+    noise: tuple[float, ...] = ()
+    accuracy_is_stated: bool = True
+    points: int = 0
+    degrees_of_freedom: int = 0
+    warnings: tuple[str, ...] = ()
+    methods: tuple[str, ...] = ()
+    fits: tuple[Fit, ...] = ()
+    starts: tuple[tuple[FloatArray, float | None], ...] = ()
+    profiles: tuple[Profile, ...] = ()
+    bootstrap: FloatArray | None = None
+    posterior: FloatArray | None = None
+    effort: Effort = field(default_factory=Effort)
+    data: tuple[tuple[str, str], ...] = ()
+
+    def _facts(self) -> Facts:
+        rows = tuple((each.parameter.key, each.in_words) for each in self.parameters)
+        return Facts(f"{self.outcome.replace('_', ' ')}: {self.scenario}, {self.points} points", rows)
+
+    @property
+    def values(self) -> dict[str, float | None]:
+        """The best values by key."""
+        return {each.parameter.key: each.value for each in self.parameters}
+
+    def __getitem__(self, key: str) -> Identified:
+        """One parameter by its full key or its short name."""
+        for each in self.parameters:
+            if key in (each.parameter.key, each.parameter.name):
+                return each
+        raise KeyError(key)
+
+
+def identification_dict(found: Identification, *, files: Iterable[Path] = ()) -> dict[str, Any]:
+    """The contents of identification.json, and of ``skisnow identify --json``; nothing is rounded, nothing is NaN.
+
+    Its JSON Schema is schemas/identification.schema.json.
+
+    Parameters
+    ----------
+    found
+        What came out.
+    files
+        What it was read from, for their SHA-256.
+    """
+    keys = [each.parameter.key for each in found.parameters]
+    return {
+        "schema_version": 1,
+        "outcome": found.outcome,
+        "reason": found.reason,
+        "parameters": {each.parameter.key: _parameter_dict(each) for each in found.parameters},
+        "correlation": {
+            key: {other: json_number(found.correlation[i, j]) for j, other in enumerate(keys)}
+            for i, key in enumerate(keys)
+        },
+        "warnings": list(found.warnings),
+        "methods": list(found.methods),
+        "data": [{"name": name, "taken_for": kind} for name, kind in found.data],
+        "scenario": found.scenario,
+        "points": found.points,
+        "degrees_of_freedom": found.degrees_of_freedom,
+        "accuracy_is_stated": found.accuracy_is_stated,
+        "noise": [json_number(each) for each in found.noise],
+        "runs": [{"name": fit.name, "kind": fit.kind, "rms": _rms(fit)} for fit in found.fits],
+        "effort": {
+            "simulations": found.effort.simulations,
+            "kept_simulations": found.effort.kept_simulations,
+            "rounds": found.effort.rounds,
+            "wall_s": found.effort.wall_s,
+        },
+        "provenance": {
+            "files": {str(path): hashlib.sha256(path.read_bytes()).hexdigest() for path in files},
+            "skisnow": version("skisnow"),
+            "time": datetime.now(UTC).isoformat(timespec="seconds"),
+        },
+    }
+
+
+def _parameter_dict(each: Identified) -> dict[str, Any]:
+    parameter = each.parameter
+    return {
+        "value": each.value,
+        "interval": _pair(each.interval),
+        "standard_error": each.standard_error,
+        "profile_interval": _pair(each.profile_interval),
+        "bootstrap_interval": _pair(each.bootstrap_interval),
+        "posterior_interval": _pair(each.posterior_interval),
+        "unit": parameter.unit,
+        "start": parameter.start,
+        "lower": parameter.lower,
+        "upper": parameter.upper,
+        "prior_mean": parameter.prior_mean,
+        "prior_sd": parameter.prior_sd,
+        "at_bound": each.at_bound,
+        "identifiable": each.identifiable,
+    }
+
+
+def _pair(interval: Interval | None) -> list[float | None] | None:
+    return None if interval is None else list(interval)
+
+
+def _rms(fit: Fit) -> dict[str, float | None]:
+    found: dict[str, float | None] = {}
+    for i, label in enumerate(fit.labels):
+        known = fit.residual[np.isfinite(fit.residual[:, i]), i]
+        found[label] = float(np.sqrt(np.mean(known**2))) if known.size else None
+    return found

@@ -1,0 +1,123 @@
+"""A parameter that is looked for: its name, unit, bounds, start, prior, and the scale on which it is searched."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from .._support.errors import ParameterError
+
+FloatArray = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Parameter:
+    """One parameter, in the unit that its key names.
+
+    Attributes
+    ----------
+    key
+        Full name of the scenario's key; behind an ``@`` the run that it belongs to, where each has its own.
+    name, unit
+        The short name, and the unit's symbol.
+    start, lower, upper
+        Where the search begins, and what it may not leave.
+    size
+        A usual size of the parameter, or of its logarithm: the search counts in it, derivatives step by 1 to 5 % of it.
+    logarithmic
+        Whether its logarithm is searched: a quantity above zero that spans decades. Its interval is then a factor.
+    prior_mean, prior_sd
+        What is known of it from elsewhere, as a normal distribution; None: nothing.
+    free
+        Whether it is looked for; a fixed one keeps its start.
+
+    Raises
+    ------
+    ParameterError
+        A number is not finite, bounds are swapped or exclude the start, half a prior is given, a standard
+        deviation is not above 0, or a logarithmic parameter may reach 0.
+
+    Examples
+    --------
+    >>> friction = Parameter(key="friction.mu_0", name="mu_0", start=0.04, lower=0.0, upper=0.5, size=0.05)
+    >>> round(friction.scaled(0.09), 9), round(friction.value(1.0), 9)
+    (1.0, 0.09)
+    """
+
+    key: str
+    name: str
+    start: float
+    lower: float
+    upper: float
+    size: float
+    unit: str = ""
+    logarithmic: bool = False
+    prior_mean: float | None = None
+    prior_sd: float | None = None
+    free: bool = True
+
+    def __post_init__(self) -> None:
+        for name in ("start", "lower", "upper", "size"):
+            if not math.isfinite(getattr(self, name)):
+                raise ParameterError(f"{self.key}: {name} is {getattr(self, name)}; it must be a finite number")
+        if not self.lower < self.upper:
+            raise ParameterError(
+                f"{self.key}: lower is {self.lower:g} and upper {self.upper:g}{self._unit}; lower must be below upper"
+            )
+        if not self.lower <= self.start <= self.upper:
+            raise ParameterError(
+                f"{self.key}: the bounds, {self.lower:g} to {self.upper:g}{self._unit}, exclude the start, "
+                f"{self.start:g}. Widen them, or start inside"
+            )
+        if self.logarithmic and self.lower <= 0.0:
+            raise ParameterError(f"{self.key}: lower is {self.lower:g}{self._unit}; it must be above 0")
+        self._require_prior()
+
+    def _require_prior(self) -> None:
+        if (self.prior_mean is None) != (self.prior_sd is None):
+            missing = "prior_sd" if self.prior_sd is None else "prior_mean"
+            raise ParameterError(f"{self.key}: {missing} is missing; a prior has a mean and a standard deviation")
+        if self.prior_sd is not None and not (math.isfinite(self.prior_sd) and self.prior_sd > 0.0):
+            raise ParameterError(f"{self.key}: prior_sd is {self.prior_sd:g}{self._unit}; it must be above 0")
+        if self.prior_mean is not None and not math.isfinite(self.prior_mean):
+            raise ParameterError(f"{self.key}: prior_mean is {self.prior_mean}; it must be a finite number")
+
+    @property
+    def _unit(self) -> str:
+        return f" {self.unit}" if self.unit else ""
+
+    def scaled(self, value: float) -> float:
+        """The value on the scale of the search: 0 at the start, 1 a usual size away."""
+        away = math.log(value / self.start) if self.logarithmic else value - self.start
+        return away / self.size
+
+    def value(self, scaled: float) -> float:
+        """The value at a place on the scale of the search, held inside the bounds against rounding."""
+        away = scaled * self.size
+        value = self.start * math.exp(away) if self.logarithmic else self.start + away
+        return min(max(value, self.lower), self.upper)
+
+    def slope(self, value: float) -> float:
+        """Change of the value per step of one on the scale of the search."""
+        return value * self.size if self.logarithmic else self.size
+
+    def prior_residual(self, value: float) -> float | None:
+        """How many standard deviations the value lies above the prior's mean; None without a prior."""
+        if self.prior_mean is None or self.prior_sd is None:
+            return None
+        return (value - self.prior_mean) / self.prior_sd
+
+
+def values_of(parameters: tuple[Parameter, ...], scaled: FloatArray) -> dict[str, float]:
+    """The values by key at a place of the search, shape (p,)."""
+    return {each.key: each.value(float(u)) for each, u in zip(parameters, scaled, strict=True)}
+
+
+def bounds_of(parameters: tuple[Parameter, ...]) -> tuple[FloatArray, FloatArray]:
+    """Bounds on the scale of the search, (p,) each."""
+    lower = np.array([each.scaled(each.lower) for each in parameters])
+    upper = np.array([each.scaled(each.upper) for each in parameters])
+    return lower, upper

@@ -1,0 +1,182 @@
+"""Residuals of photo-cell times: friction and drag together, after Kaps, Nachbauer and Mössner (1996)."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any, Final
+
+import numpy as np
+import numpy.typing as npt
+
+from .._support.errors import ParameterError
+from .._support.units import DEGREE
+from ..scenario import Plane, ScenarioFile
+from .glide import Glide, SlopeLine, passage_times, planes, slope_line
+from .observations import Fit, Kind, Values, values_of_run
+from .photo_cells import PhotoCellRun, PhotoCells
+
+FloatArray = npt.NDArray[np.float64]
+
+USED: Final = (
+    "friction.mu_0",
+    "friction.mu_1_s_per_m",
+    "drag.drag_area_m2",
+    "drag.air_density_kg_per_m3",
+    "start.speed_m_per_s",
+    "sledge.mass_kg",
+    "slope.angle_deg",
+    "slope.gravity_m_per_s2",
+)
+"""Keys that the times depend on."""
+NOMINAL_SD: Final = 0.01
+"""Standard deviation (s) where none is stated: it cancels, the noise is then estimated from the residuals."""
+
+
+@dataclass(slots=True)
+class PhotoCellTimes:
+    """Times of passage down the fall line, from the scenario's start on.
+
+    Attributes
+    ----------
+    cells
+        What was measured.
+    asked
+        The scenario: slope, mass with both skis, and the values of what is not looked for.
+    starts
+        Values of ``start.…`` keys by run, where a run has its own.
+    clock_is_free
+        Whether each run's clock has an offset of its own; else it shows 0 when the body leaves the start.
+    """
+
+    cells: PhotoCells
+    asked: ScenarioFile
+    starts: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
+    clock_is_free: bool = False
+    _line: SlopeLine = field(init=False)
+    _skis: float = field(init=False)
+
+    def __post_init__(self) -> None:
+        scenario = self.asked.scenario
+        self._line = slope_line(scenario.slope, scenario.start.x)
+        self._skis = 2.0 * scenario.ski.mass
+        stated = {run.time_sd is not None for run in self.cells.runs}
+        if len(stated) > 1:
+            raise ParameterError(
+                f"{self.cells.name}: some runs state time_sd_s and some do not; write it for all of them, or for none"
+            )
+        for run in self.cells.runs:
+            if run.station[-1] > self._line.length:
+                raise ParameterError(
+                    f"{self.cells.name}, run {run.name}: station {run.station[-1]:g} m lies beyond the end of the "
+                    f"profile, which goes on for {self._line.length:.4g} m from the start. Is it the right slope?"
+                )
+
+    @property
+    def kind(self) -> Kind:
+        """Photo cells."""
+        return "photo_cells"
+
+    @property
+    def runs(self) -> tuple[str, ...]:
+        """Names of the runs."""
+        return tuple(run.name for run in self.cells.runs)
+
+    def depends_on(self, key: str) -> bool:
+        """Friction, drag, start speed, mass, slope."""
+        return key in USED
+
+    @property
+    def points(self) -> int:
+        """Passages; one at the start with a clock that starts there says nothing."""
+        return sum(len(run.station) for run in self.cells.runs) - self._trivial
+
+    @property
+    def _trivial(self) -> int:
+        return 0 if self.clock_is_free else sum(float(run.station[0]) == 0.0 for run in self.cells.runs)
+
+    @property
+    def nuisances(self) -> int:
+        """An offset for each run whose clock is free."""
+        return len(self.cells.runs) if self.clock_is_free else 0
+
+    @property
+    def accuracy_is_stated(self) -> bool:
+        """Whether the file has standard deviations."""
+        return self.cells.runs[0].time_sd is not None
+
+    @property
+    def series(self) -> tuple[int, ...]:
+        """Passages of each run."""
+        return tuple(len(self._telling(run)[0]) for run in self.cells.runs)
+
+    def residuals(self, many: Sequence[Values]) -> list[FloatArray | None]:
+        """(Computed - measured)/sd of every passage, run after run."""
+        found: list[list[FloatArray]] = [[] for _ in many]
+        for run in self.cells.runs:
+            station, time, sd = self._telling(run)
+            for parts, late in zip(found, self._times(run, station, many) - time, strict=True):
+                parts.append(self._without_offset(late, sd) / sd)
+        return [np.concatenate(parts) for parts in found]
+
+    final_residuals = residuals
+
+    def fits(self, values: Values) -> tuple[Fit, ...]:
+        """Times over the distance."""
+        found = []
+        for run in self.cells.runs:
+            station, time, sd = self._telling(run)
+            late = self._times(run, station, [values])[0] - time
+            fitted = time + self._without_offset(late, sd)
+            columns = (each[:, None] for each in (time, fitted, sd))
+            measured, computed, spread = columns
+            found.append(
+                Fit(
+                    name=run.name, kind="photo_cells", along=station, labels=("time (s)",), measured=measured,
+                    fitted=computed, sd=spread,
+                )
+            )  # fmt: skip
+        return tuple(found)
+
+    def warnings(self, values: Values) -> tuple[str, ...]:  # noqa: ARG002 - the same for all values
+        """A heading that plays no part."""
+        if self.asked.scenario.start.heading == 0.0:
+            return ()
+        heading = self.asked.scenario.start.heading / DEGREE
+        return (f"the scenario's heading of {heading:g}° plays no part: photo cells stand down the fall line",)
+
+    def _telling(self, run: PhotoCellRun) -> tuple[FloatArray, FloatArray, FloatArray]:
+        sd = run.time_sd if run.time_sd is not None else np.full(len(run.time), NOMINAL_SD)
+        first = int(not self.clock_is_free and run.station[0] == 0.0)
+        return run.station[first:], run.time[first:], sd[first:]
+
+    def _without_offset(self, late: FloatArray, sd: FloatArray) -> FloatArray:
+        if not self.clock_is_free:
+            return late
+        weight = sd**-2.0
+        return np.asarray(late - np.sum(weight * late) / np.sum(weight))
+
+    def _times(self, run: PhotoCellRun, station: FloatArray, many: Sequence[Values]) -> FloatArray:
+        of = {**self.asked.values, **self.starts.get(run.name, {})}
+        sets = [{**of, **values_of_run(each, run.name)} for each in many]
+        taken = float(run.time[-1] - (run.time[0] if self.clock_is_free else 0.0))
+        return passage_times(self._line_of(sets), self._glide(sets), station, max(taken, 1e-3))
+
+    def _line_of(self, sets: Sequence[Mapping[str, Any]]) -> SlopeLine:
+        if not isinstance(self.asked.scenario.slope, Plane):
+            return self._line
+        angle = np.array([each["slope.angle_deg"] for each in sets]) * DEGREE
+        return planes(angle)
+
+    def _glide(self, sets: Sequence[Mapping[str, Any]]) -> Glide:
+        def column(key: str) -> FloatArray:
+            return np.array([float(each[key]) for each in sets])
+
+        mass = column("sledge.mass_kg") + self._skis
+        return Glide(
+            friction=column("friction.mu_0"),
+            friction_by_speed=column("friction.mu_1_s_per_m"),
+            drag_per_mass=0.5 * column("drag.air_density_kg_per_m3") * column("drag.drag_area_m2") / mass,
+            speed=column("start.speed_m_per_s"),
+            gravity=column("slope.gravity_m_per_s2"),
+        )

@@ -1,0 +1,36 @@
+"""A quantity, declared once on the dataclass that holds it: for files, checks, command line, schemas, docs, forms."""
+
+from .._support.nearest import meant, nearest
+from .declared import (
+    Section,
+    Word,
+    changed,
+    declared_text,
+    made,
+    own_quantities,
+    quantities,
+    require_declared,
+    values_of,
+)
+from .quantity import SMALLEST, InputValue, Kind, Quantity, Search
+from .table import checked_table
+
+__all__ = [
+    "SMALLEST",
+    "InputValue",
+    "Kind",
+    "Quantity",
+    "Search",
+    "Section",
+    "Word",
+    "changed",
+    "checked_table",
+    "declared_text",
+    "made",
+    "meant",
+    "nearest",
+    "own_quantities",
+    "quantities",
+    "require_declared",
+    "values_of",
+]

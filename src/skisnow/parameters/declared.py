@@ -1,0 +1,277 @@
+"""Quantities that dataclasses declare: found, checked in constructors, read from values as given and written back.
+
+A field's annotation says what may stand there:
+
+>>> @dataclass(frozen=True)
+... class Air:
+...     density: Annotated[float, Quantity("air.density_kg_per_m3", "density of the air", lowest=0.0)] = 1.2
+...
+...     def __post_init__(self) -> None:
+...         require_declared(self)
+>>> (density,) = quantities(Air)
+>>> density.unit, density.default, density.allowed
+('kg/m³', 1.2, '0 or more')
+>>> made(Air, {"air.density_kg_per_m3": 1.1})
+Air(density=1.1)
+>>> Air(-1.0)
+Traceback (most recent call last):
+skisnow._support.errors.ParameterError: air.density_kg_per_m3 is -1.0; allowed is 0 or more kg/m³
+"""
+
+from __future__ import annotations
+
+import sys
+import textwrap
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import MISSING, Field, dataclass, fields, is_dataclass, replace
+from types import NoneType, UnionType
+from typing import Annotated, Any, Final, Literal, NamedTuple, TypeVar, Union, get_args, get_origin
+
+from .quantity import Kind, Quantity
+
+T = TypeVar("T")
+
+
+def _nothing(_: Any) -> None:
+    """The word for a value that has none."""
+
+
+@dataclass(frozen=True, slots=True)
+class Word(Quantity):
+    """What a file says of a field in its own words, such as a name; whoever reads the file heeds it.
+
+    Attributes
+    ----------
+    word_of
+        The word for a value of the field.
+    names_file
+        Whether it is the path of a file.
+    """
+
+    kind: Kind = "text"
+    needed: bool = False
+    word_of: Callable[[Any], object] = _nothing
+    names_file: bool = False
+
+
+class Section(NamedTuple):
+    """Where the quantities of a field's own dataclass stand; with `otherwise` words may stand for them."""
+
+    name: str
+    otherwise: bool = False
+
+
+class _Slot(NamedTuple):
+    """A field with what its annotation says: its own quantities, and the dataclasses that it may hold."""
+
+    field: Field[Any]
+    own: tuple[Quantity, ...]
+    parts: tuple[type, ...]
+    section: Section
+    may_be_none: bool
+
+
+def own_quantities(owner: type) -> tuple[Quantity, ...]:
+    """The quantities of a dataclass's own fields, in their order."""
+    return tuple(each for slot in _slots(owner) for each in slot.own)
+
+
+def quantities(owner: type) -> tuple[Quantity, ...]:
+    """The quantities of a dataclass and of the dataclasses that it holds, by section in the order of first sight."""
+    found = list(_all(owner))
+    sections = list(dict.fromkeys(_section(each) for each in found))
+    return tuple(sorted(found, key=lambda each: sections.index(_section(each))))
+
+
+def require_declared(thing: Any) -> None:
+    """Refuse what a file could not give: what a dataclass's ``__post_init__`` calls.
+
+    Raises
+    ------
+    ParameterError
+        The first value that is of another kind or outside its range, in the unit that its key names.
+    """
+    for slot in _slots(type(thing)):
+        value = getattr(thing, slot.field.name)
+        if value is not None or not slot.may_be_none:
+            for quantity in slot.own:
+                if not isinstance(quantity, Word):
+                    quantity.require(value if quantity.index is None else value[quantity.index])
+
+
+def made(owner: type[T], values: Mapping[str, Any], *, section: str = "", **parts: Any) -> T:
+    """A dataclass of values as given, by name, in the units that the names say, with the dataclasses that it holds.
+
+    Parameters
+    ----------
+    owner
+        The dataclass.
+    values
+        In their ranges; None and what is not there leave the field its default.
+    section
+        Where names without one stand.
+    parts
+        Other fields, in SI; they go before.
+    """
+    several: dict[str, list[tuple[int, Any]]] = {}
+    for each in own_quantities(owner):
+        value = values.get(_full(section, each.name))
+        if isinstance(each, Word):
+            continue
+        if each.index is not None:
+            several.setdefault(each.field, []).append(
+                (each.index, each.in_si(each.default if value is None else value))
+            )
+        elif value is not None:
+            parts.setdefault(each.field, each.in_si(value))
+    for slot in _slots(owner):
+        if len(slot.parts) == 1 and slot.field.name not in parts:
+            parts[slot.field.name] = made(slot.parts[0], values, section=slot.section.name)
+    for name, entries in several.items():
+        parts.setdefault(name, tuple(value for _, value in sorted(entries)))
+    return owner(**parts)
+
+
+def changed(thing: T, values: Mapping[str, Any], *, section: str = "") -> T:
+    """The same dataclass with other values, by name, in the units that the names say; also in what it holds.
+
+    >>> @dataclass(frozen=True)
+    ... class Step:
+    ...     length: Annotated[float, Quantity("solver.step_ms", "time step")]
+    >>> changed(Step(0.5e-3), {"solver.step_ms": 2.0})
+    Step(length=0.002)
+    """
+    parts: dict[str, Any] = {}
+    for slot in _slots(type(thing)):
+        now = getattr(thing, slot.field.name)
+        for each in slot.own:
+            name = _full(section, each.name)
+            if isinstance(each, Word) or name not in values:
+                continue
+            value = each.in_si(each.in_range(values[name]))
+            if each.index is None:
+                parts[slot.field.name] = value
+            else:
+                several = list(parts.get(slot.field.name, now))
+                several[each.index] = value
+                parts[slot.field.name] = tuple(several)
+        if slot.parts and now is not None:
+            inside = changed(now, values, section=slot.section.name)
+            if inside is not now:
+                parts[slot.field.name] = inside
+    return replace(thing, **parts) if parts else thing  # type: ignore[type-var]
+
+
+def values_of(thing: Any, *, section: str = "") -> dict[str, Any]:
+    """The values of a dataclass and of what it holds, by name, in the units that the names say."""
+    found: dict[str, Any] = {}
+    for slot in _slots(type(thing)):
+        value = getattr(thing, slot.field.name)
+        for each in slot.own:
+            single = value if each.index is None else value[each.index]
+            found[_full(section, each.name)] = each.word_of(value) if isinstance(each, Word) else each.in_unit(single)
+        if slot.parts and value is not None:
+            found |= values_of(value, section=slot.section.name)
+    return found
+
+
+_WIDEST: Final = 160
+"""Characters of a line of `declared_text`."""
+
+
+def declared_text(thing: Any) -> str:
+    """A dataclass by the names of its quantities, which tell the units: what its ``__repr__`` gives.
+
+    >>> @dataclass(frozen=True, repr=False)
+    ... class Step:
+    ...     length: Annotated[float, Quantity("solver.step_ms", "time step")] = 0.5e-3
+    ...
+    ...     __repr__ = declared_text
+    >>> Step()
+    <Step: step_ms = 0.5>
+    """
+    pairs = ((name.rpartition(".")[2], value) for name, value in values_of(thing).items() if value is not None)
+    glue = "\xa0"  # a name stays beside its value
+    values = ", ".join(f"{name} = {_in_short(value)}".replace(" ", glue) for name, value in pairs)
+    lines = textwrap.wrap(f"<{type(thing).__name__}: {values}>", _WIDEST, subsequent_indent="    ")
+    return "\n".join(lines).replace(glue, " ")
+
+
+def _in_short(value: Any) -> str:
+    if isinstance(value, list):
+        return f"[{', '.join(map(_in_short, value))}]"
+    return f"{value:.6g}" if isinstance(value, float) else str(value)
+
+
+def _all(owner: type) -> Iterator[Quantity]:
+    for slot in _slots(owner):
+        yield from slot.own
+        otherwise = slot.section.otherwise
+        for part in slot.parts:
+            for each in quantities(part):
+                yield replace(each, name=_full(slot.section.name, each.name), needed=each.needed and not otherwise)
+
+
+def _full(section: str, name: str) -> str:
+    return f"{section}.{name}" if section and "." not in name else name
+
+
+def _section(quantity: Quantity) -> str:
+    return quantity.name.rpartition(".")[0]
+
+
+_SLOTS: dict[type, tuple[_Slot, ...]] = {}
+
+
+def _slots(owner: type) -> tuple[_Slot, ...]:
+    if owner not in _SLOTS:
+        _SLOTS[owner] = tuple(_slot(owner, field) for field in fields(owner) if field.init)
+    return _SLOTS[owner]
+
+
+def _slot(owner: type, field: Field[Any]) -> _Slot:
+    hint = field.type
+    if isinstance(hint, str):  # postponed; such a text is a line of this package's own code
+        hint = eval(hint, dict(vars(sys.modules[owner.__module__])))
+    marks = hint.__metadata__ if get_origin(hint) is Annotated else ()
+    members = _members(get_args(hint)[0] if marks else hint)
+    section = next((each for each in marks if isinstance(each, Section)), Section(""))
+    declared = [each for each in marks if isinstance(each, Quantity)]
+    otherwise = any(isinstance(each, Word) for each in declared)
+    needed = not otherwise and field.default is MISSING and field.default_factory is MISSING and NoneType not in members
+    parts = tuple(each for each in members if isinstance(each, type) and is_dataclass(each) and quantities(each))
+    return _Slot(
+        field,
+        tuple(each if isinstance(each, Word) else _resolved(each, field, members, needed) for each in declared),
+        parts,
+        section._replace(otherwise=section.otherwise or otherwise),
+        NoneType in members,
+    )
+
+
+_KINDS: Final[dict[Any, Kind]] = {
+    float: "number",
+    int: "whole number",
+    str: "text",
+    bool: "switch",
+    tuple[float, ...]: "numbers",
+    tuple[float, float, float]: "three numbers",
+}
+
+
+def _members(hint: Any) -> tuple[Any, ...]:
+    return get_args(hint) if get_origin(hint) in (Union, UnionType) else (hint,)
+
+
+def _resolved(quantity: Quantity, field: Field[Any], members: tuple[Any, ...], needed: bool) -> Quantity:
+    """With what the field says: kind, choices, default."""
+    (type_,) = (each for each in members if each is not NoneType)
+    choices = get_args(type_) if get_origin(type_) is Literal else ()
+    kind = "text" if choices else "number" if quantity.index is not None else _KINDS[type_]
+    default = quantity.default
+    resolved = replace(
+        quantity, kind=kind, choices=choices, field=field.name, needed=quantity.needed and needed and default is None
+    )
+    if default is None and field.default is not MISSING:
+        return replace(resolved, default=resolved.in_unit(field.default))
+    return resolved

@@ -1,0 +1,294 @@
+"""A quantity that a user gives a value to, declared once: its name with unit, meaning, range, default and more."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator
+from dataclasses import KW_ONLY, dataclass, replace
+from numbers import Real
+from typing import TYPE_CHECKING, Any, Literal, TypeAlias
+
+from .._support.errors import ParameterError
+from .._support.units import unit_of_name
+
+if TYPE_CHECKING:
+    import numpy as np
+    import numpy.typing as npt
+
+    FloatArray: TypeAlias = npt.NDArray[np.float64]
+    BoolArray: TypeAlias = npt.NDArray[np.bool_]
+
+Kind: TypeAlias = Literal["number", "whole number", "text", "switch", "numbers", "three numbers"]
+SMALLEST, LARGEST = 1e-100, 1e100
+"""Sizes of numbers that can be squared and divided by (modelling assumption)."""
+InputValue: TypeAlias = float | int | str | bool | tuple[float, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Search:
+    """How a quantity is looked for: size in its unit (of its logarithm where `logarithmic`), and usual bounds.
+
+    Attributes
+    ----------
+    size
+        Derivatives step by 1 to 5 % of it.
+    lower, upper
+        Bounds where the user gives none; where `about` is set they count from the start of the search.
+    """
+
+    size: float
+    lower: float
+    upper: float
+    about: bool = False
+    logarithmic: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Quantity:
+    """What may stand under one key; stands in the annotation of the field that holds it, see `declared`.
+
+    Attributes
+    ----------
+    name
+        With its unit, as users write it; a scenario's begins with its section.
+    meaning
+        In words.
+    lowest, highest
+        Ends of the range in the unit of the name; `above` leaves the lowest value itself out, `below` the highest.
+    infinite, blank
+        Whether an infinite number has a meaning; whether a text may be blank.
+    origin
+        Where the default or the range comes from.
+    example
+        How it is given on the command line, with what its values mean.
+    label, symbol
+        What people call it, such as on the axis of a figure, and its symbol there.
+    usual
+        Ends of what is usual, in the unit of the name; None: all of the range.
+    search
+        How it is looked for; None: by the value that the search begins with.
+    index
+        Its place, where the field holds several numbers.
+    needed
+        Whether a value must be given, where the field has no default.
+    kind, choices, default, field
+        Come from the field: what its type allows, the words of a ``Literal``, the default in the unit of the name (None
+        where there is none), the field's name.
+
+    The range of numbers is that of each.
+    """
+
+    name: str
+    meaning: str
+    _: KW_ONLY
+    lowest: float = -math.inf
+    highest: float = math.inf
+    above: bool = False
+    below: bool = False
+    infinite: bool = False
+    blank: bool = False
+    origin: str = ""
+    example: str = ""
+    label: str = ""
+    symbol: str = ""
+    usual: tuple[float, float] | None = None
+    search: Search | None = None
+    index: int | None = None
+    kind: Kind = "number"
+    choices: tuple[str, ...] = ()
+    default: InputValue | None = None
+    field: str = ""
+    needed: bool = True
+
+    @property
+    def unit(self) -> str:
+        """The unit's symbol, from the name.
+
+        >>> Quantity("load_N", "load").unit, Quantity("friction.mu_0", "friction").unit
+        ('N', '')
+        """
+        return unit_of_name(self.name).symbol
+
+    @property
+    def factor(self) -> float:
+        """The unit's size in SI."""
+        return unit_of_name(self.name).size
+
+    @property
+    def allowed(self) -> str:
+        """The range in words.
+
+        >>> Quantity("load_N", "load", lowest=0.0, above=True).allowed
+        'above 0'
+        """
+        if self.kind == "switch":
+            return "true or false"
+        if self.kind == "text":
+            return " or ".join(self.choices) or ("a text" if self.blank else "a text that is not blank")
+        if self.kind in ("numbers", "three numbers"):
+            return f"{self.kind}, each {replace(self, kind='number').allowed}"
+        kind = "whole numbers " if self.kind == "whole number" else ""
+        if self.highest < math.inf:
+            low, high = "above" if self.above else "from", "below " if self.below else ""
+            return f"{kind}{low} {self.lowest:g} to {high}{self.highest:g}"
+        if self.lowest > -math.inf:
+            return kind + (f"above {self.lowest:g}" if self.above else f"{self.lowest:g} or more")
+        return f"any {'whole' if kind else 'finite'} number"
+
+    @property
+    def described(self) -> str:
+        """Meaning and unit.
+
+        >>> Quantity("load_N", "force on the ski").described
+        'force on the ski (N)'
+        """
+        return f"{self.meaning} ({self.unit})" if self.unit else self.meaning
+
+    @property
+    def axis_label(self) -> str:
+        """Label, symbol and unit; the name where there is neither label nor symbol.
+
+        >>> Quantity("load_N", "force on the ski", label="load").axis_label
+        'load (N)'
+        """
+        words = " ".join(filter(None, (self.label, self.symbol)))
+        return f"{words}{f' ({self.unit})' if self.unit else ''}" if words else self.name
+
+    def outside(self, values: FloatArray) -> BoolArray:
+        """Which of an array's values, in the unit of the name, are outside the range; NaN is not."""
+        low = values <= self.lowest if self.above else values < self.lowest
+        return low | (values >= self.highest if self.below else values > self.highest)
+
+    def of_kind(self, value: object) -> InputValue:
+        """Give the value in its kind, a number as float; its range is not looked at.
+
+        Raises
+        ------
+        ParameterError
+            It is of another kind.
+        """
+        if self.kind == "switch" and isinstance(value, bool):
+            return value
+        if self.kind == "text" and isinstance(value, str):
+            return value.strip()
+        if self.kind == "three numbers" and isinstance(value, list | tuple) and len(value) == 3:
+            one = replace(self, kind="number")
+            return tuple(float(one.of_kind(each)) for each in value)  # type: ignore[arg-type]
+        if self.kind == "numbers" and isinstance(value, list | tuple) and (value or self.default is not None):
+            return tuple(float(one.of_kind(each)) for one, each in self.each_of(value))  # type: ignore[arg-type]
+        if self.infinite and value == "inf":
+            return math.inf
+        if self.kind in ("number", "whole number") and isinstance(value, int | float) and not isinstance(value, bool):
+            return self._number(value)
+        wanted = {
+            "switch": "true or false without quotes",
+            "text": "a text in quotes",
+            "numbers": "a list of numbers in brackets",
+            "three numbers": "[a, b, c]",
+        }.get(self.kind, f"a {self.kind}")
+        raise ParameterError(f"{self.name} is {_shown(value)}; it must be {wanted}")
+
+    def _number(self, value: float) -> float | int:
+        try:
+            number = float(value)
+        except OverflowError:
+            number = math.inf
+        if number and math.isfinite(number) and not SMALLEST <= abs(number) <= LARGEST:
+            what = f"allowed are 0 and sizes from {SMALLEST:g} to {LARGEST:g}"
+            raise ParameterError(f"{self.name} is {_shown(value)}, which is no quantity; {what}")
+        if self.kind == "number":
+            return number
+        if not number.is_integer():
+            raise ParameterError(f"{self.name} is {_shown(value)}; it must be a whole number")
+        return int(value)
+
+    def each_of(self, values: Iterable[object]) -> Iterator[tuple[Quantity, object]]:
+        """The numbers of a list, each with the quantity that it is by its place."""
+        for place, each in enumerate(values, start=1):
+            yield replace(self, kind="number", name=f"{self.name}[{place}]"), each
+
+    def in_range(self, value: object) -> InputValue:
+        """Give the value in its kind.
+
+        Raises
+        ------
+        ParameterError
+            It is of another kind or outside the range.
+        """
+        checked = self.of_kind(value)
+        if self.kind == "numbers" and isinstance(value, list | tuple):
+            for one, each in self.each_of(value):
+                one.in_range(each)
+        if not self._allows(checked):
+            unit = f" {self.unit}" if self.unit else ""
+            raise ParameterError(f"{self.name} is {_shown(value)}; allowed is {self.allowed}{unit}")
+        return checked
+
+    @property
+    def _held(self) -> float:
+        """Size in SI of the unit that the field holds it in: a field that bears the whole name holds it as given."""
+        return 1.0 if self.field == self.name.rpartition(".")[2] else self.factor
+
+    def in_si(self, value: Any) -> Any:
+        """Give a value in SI, three numbers as a tuple; what is no number stays.
+
+        >>> Quantity("solver.step_ms", "step").in_si(0.5)
+        0.0005
+        """
+        if self.kind in ("numbers", "three numbers"):
+            return tuple(each * self._held for each in value)
+        return value * self._held if self.kind == "number" else value
+
+    def in_unit(self, value: Any) -> Any:
+        """Give a field's value in the unit of the name, three numbers as a list; None stays.
+
+        >>> Quantity("snow.H_V_N_per_mm3", "snow hardness").in_unit(2e8)
+        0.2
+        """
+        if self.kind in ("numbers", "three numbers") and value is not None:
+            return [each / self._held for each in value]
+        return value / self._held if self.kind == "number" and value is not None else value
+
+    def require(self, value: object) -> None:
+        """Refuse a field's value, as Python gives it, that no file could give.
+
+        Raises
+        ------
+        ParameterError
+            As `in_range`, with the value in the unit of the name.
+        """
+        if self.kind in ("numbers", "three numbers") and isinstance(value, list | tuple):
+            self.in_range([_plain(each, self._held) for each in value])
+        elif self.kind in ("number", "whole number"):
+            self.in_range(_plain(value, self._held))
+        elif self.in_range(value) != value:  # a file's text may have blanks around it
+            raise ParameterError(f"{self.name} is {_shown(value)}; allowed is {self.allowed}")
+
+    def _allows(self, value: InputValue) -> bool:
+        if isinstance(value, str):
+            return bool(value or self.blank) and (not self.choices or value in self.choices)
+        if isinstance(value, bool):
+            return True
+        if isinstance(value, tuple):
+            return all(self._allows(each) for each in value)
+        if math.isinf(value):
+            return self.infinite and value > 0
+        at_end = (self.above and value == self.lowest) or (self.below and value == self.highest)
+        return self.lowest <= value <= self.highest and not at_end
+
+
+def _plain(value: object, factor: float) -> object:
+    """A number of any library in a unit, without the last digits that the unit's size leaves uncertain."""
+    if isinstance(value, bool) or not isinstance(value, Real):
+        return value
+    number = float(value) / factor
+    return float(f"{number:.14g}")
+
+
+def _shown(value: Any, limit: int = 80) -> str:
+    """A value for an error message, shortened."""
+    try:
+        text = repr(value)
+    except ValueError:  # an integer of more digits than Python writes
+        return "a number of thousands of digits"
+    return text if len(text) <= limit else text[:limit] + " …"

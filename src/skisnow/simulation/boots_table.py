@@ -1,0 +1,116 @@
+"""The boots of a run as a table: poses, forces and moments, as CSV or as OpenSim reads it."""
+
+from __future__ import annotations
+
+import csv
+import io
+from pathlib import Path
+from typing import Final, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from .._support.errors import ParameterError
+from .._support.files import write_file
+from .._support.units import DEGREE
+from ..scenario.boots_file import ANGLES, OF_SLOPE, SIDES
+from .boot_history import BootHistory
+from .run import Run
+
+FloatArray: TypeAlias = npt.NDArray[np.float64]
+
+ENDINGS: Final = (".csv", ".mot", ".sto")
+_OWN: Final = ("ahead", "left", "up")
+_TO_OPENSIM: Final = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]])
+"""From the slope's axes to those of OpenSim's ground: x ahead, y up, z to the right."""
+
+
+def boots_columns(run: Run) -> dict[str, FloatArray]:
+    """Columns by name, (n,) each: time, and of each boot pose, forces and moments in the slope's and its own axes.
+
+    Raises
+    ------
+    ParameterError
+        The run knows nothing of its boots.
+    """
+    boots = _boots(run)
+    columns = {"time_s": run.time}
+    for k, side in enumerate(SIDES):
+        values = {name: boots.place[:, k, axis] for axis, name in enumerate(OF_SLOPE)}
+        values |= {name: boots.angles[:, k, axis] / DEGREE for axis, name in enumerate(ANGLES)}
+        for what, unit, slope, own in (
+            ("force", "N", boots.force, boots.own_force),
+            ("moment", "N_m", boots.moment, boots.own_moment),
+        ):
+            values |= {f"{what}_{axis}_{unit}": slope[:, k, i] for i, axis in enumerate("xyz")}
+            values |= {f"{what}_{axis}_{unit}": own[:, k, i] for i, axis in enumerate(_OWN)}
+        columns |= {f"{side}_{name}": column for name, column in values.items()}
+    return columns
+
+
+def opensim_columns(run: Run) -> dict[str, FloatArray]:
+    """The same with ``time``, and behind them force, its place, and moment of each ski in the axes of OpenSim's ground.
+
+    ``left_ski_force_vx``, ``left_ski_force_px`` and ``left_ski_moment_mx`` and so on: external loads for OpenSim.
+    """
+    columns = boots_columns(run)
+    columns = {"time": columns.pop("time_s"), **columns}
+    boots = _boots(run)
+    for k, side in enumerate(SIDES):
+        for name, values in (("force_v", boots.force), ("force_p", boots.place), ("moment_m", boots.moment)):
+            turned = values[:, k] @ _TO_OPENSIM.T
+            columns |= {f"{side}_ski_{name}{axis}": turned[:, i] for i, axis in enumerate("xyz")}
+    return columns
+
+
+def require_ending(path: Path) -> None:
+    """ParameterError where a file's name ends in none of `ENDINGS`."""
+    if path.suffix.lower() not in ENDINGS:
+        raise ParameterError(f"{path} ends in none of {', '.join(ENDINGS)}, as which boots are written; name it so")
+
+
+def boots_text(run: Run, ending: str, *, name: str = "boots") -> str:
+    """The table as a file's text: numbers with all their digits.
+
+    Parameters
+    ----------
+    run
+        What `skisnow.simulate` gave.
+    ending
+        One of `ENDINGS`.
+    name
+        That the head of a .mot or .sto file begins with.
+    """
+    columns = boots_columns(run) if ending == ".csv" else opensim_columns(run)
+    rows = np.column_stack(list(columns.values())).tolist()
+    stream = io.StringIO()
+    if ending == ".csv":
+        writer = csv.writer(stream, lineterminator="\n")
+        writer.writerow(columns)
+        writer.writerows([repr(cell) for cell in row] for row in rows)
+        return stream.getvalue()
+    stream.write(f"{name}\nversion=1\nnRows={len(rows)}\nnColumns={len(columns)}\ninDegrees=yes\nendheader\n")
+    stream.write("\t".join(columns) + "\n")
+    stream.writelines("\t".join(repr(cell) for cell in row) + "\n" for row in rows)
+    return stream.getvalue()
+
+
+def write_boots(run: Run, path: str | Path) -> None:
+    """Write the boots of a run in one piece: a .csv, .mot or .sto file, which boots.file reads again.
+
+    Raises
+    ------
+    ParameterError
+        The name ends otherwise, or the run knows nothing of its boots.
+    OutputError
+        The place cannot be written.
+    """
+    path = Path(path)
+    require_ending(path)
+    write_file(path, boots_text(run, path.suffix.lower(), name=path.stem))
+
+
+def _boots(run: Run) -> BootHistory:
+    if run.boots is None:
+        raise ParameterError("this run knows nothing of its boots: it was not made by skisnow.simulate")
+    return run.boots

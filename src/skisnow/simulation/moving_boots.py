@@ -1,0 +1,174 @@
+"""Control of a run: boots moved by a table, a skier or a function, and varying strength, each with its period."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Final, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from .._support.display import Facts, Shown, amount, name_with_values
+from .._support.errors import ParameterError
+from ..contact import SnowField
+from ..dynamics import BootMotion, BootPose, Dynamics
+from ..scenario.boots import Boots
+
+FloatArray: TypeAlias = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class BootMoment(Shown):
+    """What whoever moves the boots knows when poses are asked for.
+
+    Attributes
+    ----------
+    time, until
+        Now, and when the boots shall be there (s); equal at the start.
+    distance
+        Run so far (m).
+    position, rotation, velocity
+        Of the sledge: (3,) in space (m), its axes as columns (3, 3), velocity and angular velocity in its axes (6,).
+    boots
+        Of each boot against the sledge now: place, axes ahead, left and off the base, velocity, angular velocity,
+        (2, 6, 3).
+    wrench
+        What each ski does to its boot, in its axes: force (N), moment (N m), (2, 6). Zero at the start.
+
+    See Also
+    --------
+    skisnow.simulate
+    skisnow.BootPose
+    """
+
+    time: float
+    until: float
+    distance: float
+    position: FloatArray
+    rotation: FloatArray
+    velocity: FloatArray
+    boots: FloatArray
+    wrench: FloatArray
+
+    def _facts(self) -> Facts:
+        speed, bears = float(np.linalg.norm(self.velocity[:3])), np.linalg.norm(self.wrench[:, :3], axis=1)
+        rows = (
+            ("run", f"{amount(self.distance, 'm')}, now at {amount(speed, 'm/s')}"),
+            ("forces", ", ".join(amount(float(each), "N") for each in bears)),
+        )
+        return Facts(f"at {amount(self.time, 's')}, for {amount(self.until, 's')}", rows)
+
+
+BootControl: TypeAlias = Callable[[BootMoment], Sequence[BootPose]]
+"""Gives the poses of the left and the right boot against the sledge at `BootMoment.until`, with their rates.
+
+Where it has a method ``push``, that is called after it with the same moment, and gives a force (N, in space) and where
+it acts in the sledge's frame (m), until the next. Its attribute ``period`` is the time from call to call (s, default:
+0.01).
+"""
+
+CONTROL_PERIOD: Final = 0.01
+"""Time between two calls of a control that has no period (s) (modelling assumption)."""
+SHORTEST_PERIOD: Final = 1e-4
+"""Shortest period of a table of boots (s), however near its rows are (modelling assumption)."""
+SAME_TIME: Final = 1e-9
+"""Difference of two times (s) that are one: a step between them would be rounding."""
+
+
+@dataclass(slots=True)
+class BootDrive:
+    """Boots that move as a control says."""
+
+    control: BootControl
+    held: bool = False
+    _last: Sequence[BootPose] = ()
+    _calls: int = 0
+
+    @property
+    def period(self) -> float:
+        """Time from call to call (s)."""
+        return float(getattr(self.control, "period", CONTROL_PERIOD))
+
+    @property
+    def until(self) -> float:
+        """Time (s) to which the boots move by the last call; the next call is due there."""
+        return self._calls * self.period
+
+    @property
+    def described(self) -> str:
+        """What moves the boots, in words."""
+        if isinstance(self.control, TableControl):
+            return f"moved by {self.control.table.source}"
+        return f"moved by {name_with_values(self.control)}"
+
+    def begin(self, dynamics: Dynamics) -> None:
+        """Put the boots where they are at the start."""
+        if self.held:
+            dynamics.hold_body()
+        self._last = self._asked(dynamics, 0.0, 0.0)
+        dynamics.move_boots([BootMotion(0.0, self.period, pose, pose) for pose in self._last])  # only its start is met
+
+    def move(self, dynamics: Dynamics, distance: float) -> None:
+        """Call the control, and let the boots move to its poses within a period. `distance`: run so far (m)."""
+        self._calls += 1
+        poses = self._asked(dynamics, self.until, distance)
+        pairs = zip(self._last, poses, strict=True)
+        dynamics.move_boots([BootMotion(dynamics.time, self.until, first, last) for first, last in pairs])
+        self._last = poses
+
+    def _asked(self, dynamics: Dynamics, until: float, distance: float) -> Sequence[BootPose]:
+        moment = BootMoment(
+            dynamics.time, until, distance, dynamics.position, dynamics.rotation, dynamics.velocity, dynamics.boots,
+            dynamics.boot_wrench,
+        )  # fmt: skip
+        poses = self.control(moment)
+        push = getattr(self.control, "push", None)
+        if push is not None:
+            dynamics.push(*push(moment))
+        count = len(dynamics.body.skis)
+        if len(poses) != count or not all(isinstance(each, BootPose) for each in poses):
+            raise ParameterError(f"boots: the control gave {poses!r}; it must give {count} BootPose")
+        return poses
+
+
+@dataclass(slots=True)
+class StrengthDrive:
+    """Shear strength that varies along the path: its share of S_f by the distance run (m)."""
+
+    share: Callable[[float], float]
+    snow: SnowField
+    _calls: int = 0
+
+    @property
+    def until(self) -> float:
+        """Time (s) to which the last share counts."""
+        return self._calls * CONTROL_PERIOD
+
+    def move(self, _: Dynamics, distance: float) -> None:
+        """Evaluate the share at a distance run (m)."""
+        self._calls += 1
+        self.snow.compiled.strength_share = self.share(distance)
+
+
+@dataclass(frozen=True, slots=True)
+class TableControl:
+    """Boots where a table has them."""
+
+    table: Boots
+
+    @property
+    def period(self) -> float:
+        """Smallest spacing of rows over time, at most 10 ms (s)."""
+        if self.table.over == "distance":
+            return CONTROL_PERIOD
+        return min(CONTROL_PERIOD, max(SHORTEST_PERIOD, float(np.diff(self.table.at).min())))
+
+    def __call__(self, moment: BootMoment) -> Sequence[BootPose]:
+        """Poses at the time, or at the distance that will have been run then at the present speed."""
+        at, rate = moment.until, 1.0
+        if self.table.over == "distance":
+            rate = float(np.linalg.norm(moment.velocity[:3]))
+            at = moment.distance + rate * (moment.until - moment.time)
+        place, axes, velocity, turning = self.table.poses(at)
+        return [BootPose(*pose) for pose in zip(place, axes, rate * velocity, rate * turning, strict=True)]

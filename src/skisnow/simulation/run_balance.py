@@ -1,0 +1,103 @@
+"""How the body of a run leant over its skis, from places, forces and attitude."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from .._support.errors import ParameterError
+from ..scenario import Plane
+from ..scenario.slope_surface import down_and_left, normals_of
+from .balance_history import BalanceHistory
+
+if TYPE_CHECKING:
+    from .run import Run
+
+FloatArray: TypeAlias = npt.NDArray[np.float64]
+
+LEAST_LOAD: Final = 50.0
+"""Load (N) of both skis from which on there is a centre of pressure (modelling assumption)."""
+
+
+def balance_of(run: Run) -> BalanceHistory:
+    """How the body leant.
+
+    Parameters
+    ----------
+    run
+        What `skisnow.simulate` gave.
+
+    Raises
+    ------
+    ParameterError
+        The run knows nothing of its boots.
+    """
+    boots = run.boots
+    if boots is None:
+        raise ParameterError("this run knows nothing of its boots: it was not made by skisnow.simulate")
+    normal = normals_of(run.scenario.slope, run.place[:, 0], run.place[:, 1])
+    ahead = boots.axes[:, :, 0].mean(axis=1)
+    ahead = ahead - np.einsum("na,na->n", ahead, normal)[:, None] * normal
+    ahead /= np.linalg.norm(ahead, axis=1, keepdims=True)
+    left = np.cross(normal, ahead)
+    centre = boots.centre_of_mass - boots.place.mean(axis=1)
+    aside, up = (np.einsum("na,na->n", centre, axis) for axis in (left, normal))
+    load = np.einsum("nka,na->nk", boots.force, normal)
+    pressure = _pressure(run, ahead, load.sum(axis=1))
+    lean = np.arctan2(aside, up)
+    balanced, rolling = _balanced(run, normal, up)
+    return BalanceHistory(
+        lean=lean,
+        pressure_lean=np.arctan2(aside - pressure, up),
+        balanced_lean=balanced,
+        rolling_lean=rolling,
+        angulation=boots.angles[:, :, 0].mean(axis=1) - lean,
+        leg=np.linalg.norm(centre, axis=1),
+        pressure=pressure,
+        load=load,
+    )
+
+
+def _pressure(run: Run, ahead: FloatArray, load: FloatArray) -> FloatArray:
+    """Centre of pressure from the middle of the boots, to the left (m)."""
+    boots = run.boots
+    assert boots is not None
+    arm = boots.place - boots.place.mean(axis=1, keepdims=True)
+    moment = (np.cross(arm, boots.force) + boots.moment).sum(axis=1)
+    roll = np.einsum("na,na->n", moment, ahead)
+    bears = load > LEAST_LOAD
+    return np.where(bears, roll / np.where(bears, load, 1.0), np.nan)
+
+
+def _balanced(run: Run, normal: FloatArray, up: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Leans in balance by the path of the centre of mass, so high, without and with roll and rise (rad)."""
+    boots, slope, gravity = run.boots, run.scenario.slope, run.scenario.gravity
+    assert boots is not None
+    if len(run.time) < 5:
+        return np.full(len(run.time), np.nan), np.full(len(run.time), np.nan)
+    velocity = np.gradient(boots.centre_of_mass, run.time, axis=0)
+    acceleration = np.gradient(velocity, run.time, axis=0)
+    down = down_and_left(normal)[0]
+    if isinstance(slope, Plane):
+        across, fall = gravity * np.cos(slope.angle), np.full(len(run.time), gravity * np.sin(slope.angle))
+    else:
+        across, fall = gravity * normal[:, 2], -gravity * down[:, 2]
+    along = velocity - np.einsum("na,na->n", velocity, normal)[:, None] * normal
+    along /= np.maximum(np.linalg.norm(along, axis=1, keepdims=True), 1e-9)
+    left = np.cross(normal, along)
+    turning = np.einsum("na,na->n", acceleration, left) - fall * np.einsum("na,na->n", down, left)
+    rising = across + np.einsum("na,na->n", acceleration, normal)
+    sledge = run.scenario.sledge
+    by_roll = sledge.inertia[0] * _rolling(run) / (sledge.mass * np.maximum(up, 1e-3))
+    out = np.array([np.arctan2(turning, across), np.arctan2(turning + by_roll, np.maximum(rising, 1e-3))])
+    out[:, [0, 1, -2, -1]] = np.nan
+    return out[0], out[1]
+
+
+def _rolling(run: Run) -> FloatArray:
+    """Angular acceleration of the body about its own axis ahead, to the left (rad/s²)."""
+    axis = run.attitude[:, :, 2]
+    spin = np.cross(axis, np.gradient(axis, run.time, axis=0))
+    return np.asarray(np.gradient(-np.einsum("na,na->n", spin, run.attitude[:, :, 0]), run.time))

@@ -1,0 +1,353 @@
+"""A scenario made ready to run: numbers of the solver chosen, snow laid out, sledge set down on it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Final, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from .._support.errors import ParameterError
+from ..contact import Laws, Runner, SnowContact, SnowField
+from ..contact.snow_field import PART_ALONG
+from ..dynamics import Dynamics, Ended, StepControl
+from ..dynamics.motion import LONGEST_STEP, DynamicsState
+from ..forces.friction import LinearFriction
+from ..geometry.surfaces import Grid
+from ..scenario import Plane, Scenario, SnowMap
+from ..scenario.slope_surface import down_and_left, heights_of, normals_of, reach_of, surface_of
+from ..ski.beam.clamped import clamped
+from ..skier import BalancedSkier
+from ..snow.measured_range import without_range_warnings
+from .moving_boots import SAME_TIME, BootControl, BootDrive, StrengthDrive, TableControl
+from .run import Strength
+from .sledge.body import sledge_body
+
+FloatArray: TypeAlias = npt.NDArray[np.float64]
+
+ELEMENTS: Final = 40
+"""Finite elements over a ski at least: 4.5 cm each (modelling assumption, see the convergence of the docs)."""
+LINE_SPACING: Final = 0.02
+"""Largest spacing (m) of the snow's lines (modelling assumption)."""
+FAST: Final = 10.0
+"""Times the tolerance, to which the fast method controls a step's error (modelling assumption)."""
+FAST_LONGEST: Final = 10e-3
+"""Longest step (s) of the fast method (modelling assumption: that of outputs)."""
+FAST_GROOVE: Final = 3.0
+"""Times the groove's tolerance, to which the fast method simplifies grooves (modelling assumption)."""
+FAST_PART: Final = 0.02
+"""Path along a ski (m) over which its history is marched at once with the fast method (modelling assumption: the
+lines' spacing)."""
+FLOATING_DEPTH: Final = 0.1
+"""Depth (m) by which a flat base must carry the sledge, or it has sunk from the start (modelling assumption)."""
+SET_DOWN: Final = 0.1
+"""Distance (m) of the boots past a border that still counts as on it: a sledge may start there and settle."""
+AT_REST: Final = 1e-6
+"""Last step (m) of Newton's method that counts as equilibrium."""
+_UP: Final = np.array([0.0, 0.0, 1.0])
+
+
+@dataclass(slots=True)
+class Setup:
+    """A run under way."""
+
+    scenario: Scenario
+    dynamics: Dynamics
+    snow: SnowField
+    node: FloatArray
+    numbers: dict[str, float]
+    static_residual: float
+    drive: BootDrive | None = None
+    strength: StrengthDrive | None = None
+    _before_output: DynamicsState | None = None
+
+    @property
+    def drives(self) -> tuple[BootDrive | StrengthDrive, ...]:
+        """Controls of the run, each with its own period."""
+        return tuple(each for each in (self.drive, self.strength) if each is not None)
+
+    def advance(self, until: float, distance: float, *, is_over: Callable[[], bool] = lambda: False) -> Ended:
+        """Step to a time (s).
+
+        Drives are called at their own times. An output between these leaves no trace: the steps after it begin at the
+        state before it, so that the outputs do not change the run.
+
+        Parameters
+        ----------
+        until
+            Time to reach.
+        distance
+            Distance run so far (m).
+        is_over
+            Called at each time at which a drive is due; True: stop there.
+        """
+        drives = self.drives
+        if not drives:
+            return self.dynamics.advance(until)
+        while until - self.time > SAME_TIME:
+            for each in drives:
+                if self.time > each.until - SAME_TIME:
+                    each.move(self.dynamics, distance)
+            due = min(each.until for each in drives)
+            if due > until + SAME_TIME:
+                self._before_output = self._before_output or self.dynamics.state()
+                return self.dynamics.advance(until)
+            if self._before_output is not None:
+                self.dynamics.restore(self._before_output)
+                self._before_output = None
+            before, ended = self.place, self.dynamics.advance(due)
+            if ended is not Ended.REACHED or is_over():
+                return ended
+            distance += math.dist(before, self.place)
+        return Ended.REACHED
+
+    @property
+    def place(self) -> FloatArray:
+        """Of the middle between the boots, in space (m), (3,)."""
+        if self.drive is None:
+            return self.dynamics.position
+        return self.dynamics.position + self.dynamics.rotation @ self.dynamics.boots[:, 0].mean(axis=0)
+
+    @property
+    def velocity(self) -> FloatArray:
+        """Of the middle between the boots, in space (m/s), (3,)."""
+        rotation, rates = self.dynamics.rotation, self.dynamics.velocity
+        if self.drive is None:
+            return rotation @ rates[:3]
+        boots = self.dynamics.boots.mean(axis=0)
+        return np.asarray(rotation @ (rates[:3] + np.cross(rates[3:], boots[0]) + boots[4]))
+
+    @property
+    def attitude(self) -> FloatArray:
+        """Of the sledge, or where nothing carries the boots, of a level between their skis: axes as columns, (3, 3)."""
+        if self.drive is None or not self.drive.held:
+            return self.dynamics.rotation
+        normal = self.slope_normal(*self.place[:2].tolist())
+        ahead = self.dynamics.boots[:, 1].mean(axis=0)
+        ahead -= (ahead @ normal) * normal
+        ahead /= np.linalg.norm(ahead)
+        return np.column_stack([ahead, np.cross(normal, ahead), normal])
+
+    @property
+    def time(self) -> float:
+        """Simulated so far (s)."""
+        return self.dynamics.time
+
+    @property
+    def speed(self) -> float:
+        """Of the boots' middle (m/s)."""
+        return float(np.linalg.norm(self.dynamics.velocity[:3] if self.drive is None else self.velocity))
+
+    @property
+    def touches(self) -> bool:
+        """Whether any ski is in contact with the snow."""
+        return self.dynamics.touches
+
+    @property
+    def leaning(self) -> float:
+        """Angle between the sledge's axis upwards and the snow's normal (rad)."""
+        return math.acos(min(1.0, max(-1.0, float(self.attitude[:, 2] @ self._slope_at_boots()[1]))))
+
+    @property
+    def pitching(self) -> float:
+        """Angle between the sledge's axis ahead and the snow's surface (rad)."""
+        return math.asin(min(1.0, abs(float(self.attitude[:, 0] @ self._slope_at_boots()[1]))))
+
+    @property
+    def height(self) -> float:
+        """Of the boots' middle above the slope (m)."""
+        return float(self.place[2] - self._slope_at_boots()[0])
+
+    @property
+    def sinks(self) -> bool:
+        """Whether the snow does not even bear the sledge with its bases flat and ten centimetres deep."""
+        ski = self.scenario.ski
+        length = float(ski.station[0] - ski.station[-1])
+        area = length * float(np.mean(ski.at(np.linspace(float(ski.station[-1]), float(ski.station[0]), 101)).width))
+        return self.numbers["load_N"] > hardness_at_start(self.scenario) * area * FLOATING_DEPTH
+
+    @property
+    def past_end(self) -> bool:
+        """Whether tips or boots are past the end of the slope, or past a side of it."""
+        if isinstance(self.scenario.slope, Plane):
+            return False
+        boots, ahead = self.place[:2], self.attitude[:2, 0]
+        low, high = np.transpose(reach_of(self.scenario.slope))
+        tips = boots + float(self.node[0]) * ahead
+        aside = np.maximum(low - boots, boots - high).max()
+        return bool(np.any(tips < low) or np.any(tips > high) or aside > SET_DOWN)
+
+    def residual_depth(self, deepest: FloatArray) -> FloatArray:
+        """Depth (m) of the groove that is left where the snow was pressed to a deepest one."""
+        law = self.snow.penetration
+        ratio = 1.0 - 1.0 / self.scenario.contact.unloading_ratio
+        return deepest * ratio if law is None else law.residual_depth(deepest)
+
+    def slope_normal(self, x: float, y: float) -> FloatArray:
+        """Unit normal (3,) of the slope at a place (m)."""
+        return normals_of(self.scenario.slope, x, y)
+
+    def _slope_at_boots(self) -> tuple[float, FloatArray]:
+        if isinstance(self.scenario.slope, Plane):
+            return 0.0, _UP
+        x, y = self.place[:2].tolist()
+        return float(heights_of(self.scenario.slope, x, y)), self.slope_normal(x, y)
+
+
+def set_up(
+    scenario: Scenario,
+    snow: SnowField | None = None,
+    *,
+    laws: Laws | None = None,
+    boots: BootControl | None = None,
+    strength_along: Strength | None = None,
+) -> Setup:
+    """Choose the solver's numbers, lay the snow out, or take this one, and set the sledge down on it."""
+    setup = laid_out(scenario, snow, laws=laws)
+    setup.drive = _drive(scenario, boots)
+    setup.strength = None if strength_along is None else StrengthDrive(strength_along, setup.snow)
+    speed = scenario.start.speed
+    if setup.drive is not None:
+        if setup.drive.held:
+            setup.dynamics.move_to(np.zeros(3), np.eye(3))
+            speed = 0.0
+        setup.drive.begin(setup.dynamics)
+    setup.static_residual = setup.dynamics.find_equilibrium()
+    setup.dynamics.begin(np.array([speed, 0.0, 0.0, 0.0, 0.0, 0.0]))
+    return setup
+
+
+def _drive(scenario: Scenario, boots: BootControl | None) -> BootDrive | None:
+    if boots is not None:
+        if scenario.boots is not None:
+            raise ParameterError("the boots move by boots.file and by a function; give one of them")
+        if scenario.skier is not None and not _balances(boots):
+            raise ParameterError(
+                "boots: the scenario has a skier, whose control moves the boots. Give the scenario without it, "
+                "scenario.with_(skier=None), or a BalancedSkier."
+            )
+        return BootDrive(boots)
+    if scenario.skier is not None:
+        return BootDrive(BalancedSkier(scenario))
+    if scenario.boots is None:
+        return None
+    return BootDrive(TableControl(scenario.boots), held=scenario.boots.frame == "slope")
+
+
+def _balances(control: BootControl) -> bool:
+    """Whether a control is the balance control of a skier, or passes its moments on to one."""
+    return isinstance(control, BalancedSkier) or isinstance(getattr(control, "skier", None), BalancedSkier)
+
+
+def laid_out(scenario: Scenario, snow: SnowField | None = None, *, laws: Laws | None = None) -> Setup:
+    """The sledge above the snow, before anything moves; above this one, with the tracks in it, where it is given."""
+    load, depth, wavelength = _contact(scenario)
+    solver, air = scenario.solver, scenario.air
+    length = float(scenario.ski.station[0] - scenario.ski.station[-1])
+    elements = solver.elements or max(ELEMENTS, math.ceil(5.0 * length / wavelength))
+    spacing = solver.line_spacing or min(LINE_SPACING, wavelength / 10.0)  # two to an element
+    ski = clamped(scenario.flexing_ski, scenario.clamp_length, elements, scenario.footprint_stiffness)
+    body = sledge_body(
+        scenario.sledge, ski, damping_ratio=scenario.damping_ratio, gravity=_gravity(scenario),
+        drag=0.5 * air.density * air.drag_area, drag_height=air.centre_of_pressure_height,
+    )  # fmt: skip
+    snow = snow or _snow(scenario, laws or Laws())
+    runner = Runner.of(scenario.ski, nodes=ski.node)
+    contact = SnowContact(snow, [runner, runner], spacing=spacing)
+    dynamics = Dynamics(body, contact, *_start(scenario, depth), _control(scenario))
+    numbers = {"elements": float(elements), "line_spacing_m": spacing, "load_N": load}
+    return Setup(scenario, dynamics, snow, ski.node, numbers, math.inf)
+
+
+def _control(scenario: Scenario) -> StepControl:
+    solver = scenario.solver
+    tolerance = solver.tolerance * (FAST if solver.method == "fast" else 1.0)
+    longest = FAST_LONGEST if solver.method == "fast" else LONGEST_STEP
+    return StepControl(first=solver.step, fixed=solver.fixed, tolerance=tolerance, longest=longest)
+
+
+def hardness_at_start(scenario: Scenario) -> float:
+    """H_V (N/m³) where the sledge is set down."""
+    return scenario.contact.hardness_at(scenario.start.x, scenario.start.y)
+
+
+def _contact(scenario: Scenario) -> tuple[float, float, float]:
+    """Load on a ski along the snow normal (N), depth of its edge (m) as if rigid, and 1/λ of its contact (m)."""
+    ski, sledge = scenario.flexing_ski, scenario.sledge
+    station = np.asarray(ski.station)
+    at = ski.at(np.linspace(float(station[-1]), float(station[0]), 101))
+    length = float(station[0] - station[-1])
+    mass = sledge.mass / 2.0 + float(np.mean(at.mass_per_length)) * length
+    load = mass * scenario.gravity * abs(float(normals_of(scenario.slope, scenario.start.x, scenario.start.y)[2]))
+    hardness, hardest = hardness_at_start(scenario), scenario.contact.greatest_hardness
+    tangent = math.tan(abs(sledge.edge_angle))
+    width = float(np.mean(at.width))
+    flat = load / (hardness * 0.8 * length * width)
+    depth = max(flat, math.sqrt(2.0 * load * tangent / (hardness * 0.8 * length)))
+    stiffness = hardest * min(depth * math.sqrt(hardness / hardest) / max(tangent, 1e-9), width)
+    wavelength = (4.0 * float(np.mean(at.bending_stiffness)) / stiffness) ** 0.25
+    return load, depth, wavelength
+
+
+def _snow(scenario: Scenario, laws: Laws) -> SnowField:
+    contact = scenario.contact
+    with without_range_warnings():  # a scenario has its own words for friction that is unlikely
+        friction = LinearFriction(friction_at_rest=contact.friction, friction_slope=contact.friction_by_speed)
+    over_place = contact.snow_map
+    carries_side_force = laws.penetration is not None and laws.penetration.along_base_normal
+    return SnowField(
+        snow_hardness=contact.snow.snow_hardness
+        if over_place is None
+        else over_place.hardness or contact.snow.snow_hardness,
+        failure_shear_stress=0.0 if carries_side_force else contact.snow.failure_shear_stress or 0.0,
+        unloading_ratio=contact.unloading_ratio,
+        friction=laws.friction or friction,
+        friction_acts_on=contact.friction_acts_on,
+        shear=laws.shear
+        or (None if carries_side_force else scenario.shear.of(contact.snow.failure_shear_stress or 0.0)),
+        strength_share=_strength_share(over_place),
+        residual_ratio=scenario.shear.residual_ratio,
+        slip_weakening=scenario.shear.slip_weakening,
+        penetration=laws.penetration,
+        damping=contact.damping,
+        delayed_share=contact.delayed_share,
+        retardation_time=contact.retardation_time,
+        delayed_spacing=scenario.solver.delayed_spacing,
+        surface=surface_of(scenario.slope),
+        compaction_resistance=contact.compaction_resistance,
+        shear_displacement=contact.shear_displacement,
+        knot_area=scenario.solver.groove_tolerance * (FAST_GROOVE if scenario.solver.method == "fast" else 1.0),
+        part_along=FAST_PART if scenario.solver.method == "fast" else PART_ALONG,
+    )
+
+
+def _strength_share(snow_map: SnowMap | None) -> float | Grid:
+    """S_f over the place over its mean."""
+    if snow_map is None or snow_map.failure_shear_stress is None or snow_map.mean_stress is None:
+        return 1.0
+    grid = snow_map.failure_shear_stress
+    return Grid(grid.x, grid.y, grid.values / snow_map.mean_stress)
+
+
+def _gravity(scenario: Scenario) -> FloatArray:
+    slope, g = scenario.slope, scenario.gravity
+    if isinstance(slope, Plane):
+        return np.array([g * math.sin(slope.angle), 0.0, -g * math.cos(slope.angle)])
+    return np.array([0.0, 0.0, -g])
+
+
+def _start(scenario: Scenario, depth: float) -> tuple[FloatArray, FloatArray]:
+    """Place and rotation of the sledge on the slope at its start, as deep as rigid skis would be."""
+    start = scenario.start
+    normal = normals_of(scenario.slope, start.x, start.y)
+    down, left = down_and_left(normal)
+    ahead = math.cos(start.heading) * down + math.sin(start.heading) * left
+    height = float(heights_of(scenario.slope, start.x, start.y))
+    half = float(scenario.ski.at(0.0).width) / 2.0
+    above = half * math.sin(abs(scenario.sledge.edge_angle)) - depth
+    return np.array([start.x, start.y, height]) + above * normal, np.column_stack(
+        [ahead, np.cross(normal, ahead), normal]
+    )

@@ -1,0 +1,144 @@
+"""A run as JSON values: SI numbers become the units that the keys name; nothing is rounded, nothing is NaN."""
+
+from __future__ import annotations
+
+import hashlib
+import platform
+from collections.abc import Iterable, Mapping, Sequence
+from datetime import UTC, datetime
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+
+from .._support.json_number import json_number
+from .._support.units import DEGREE
+from ..scenario.values import in_sections, scenario_values
+from ..snow.snow_dict import snow_dict
+from ..track.course.gates_table import gates_dict
+from .run import GIVEN, LEAST_OPEN, LOST, OPEN_SHARE, STORED, Run
+from .run_gates import run_gates
+
+SCHEMA_VERSION: Final = 1
+
+
+def summary_dict(
+    run: Run,
+    values: Mapping[str, Any] | None = None,
+    *,
+    files: Iterable[Path] = (),
+    warnings: Sequence[str] = (),
+    verification: Mapping[str, Any] | None = None,
+) -> dict[str, Any]:
+    """The contents of summary.json; its JSON Schema is schemas/summary.schema.json.
+
+    Parameters
+    ----------
+    run
+        What came out.
+    values
+        Every key of the scenario as `ScenarioFile.values` has it; left out: taken from the run's scenario.
+    files
+        What the scenario was read from, for their SHA-256.
+    warnings
+        About the scenario, in words.
+    verification
+        What `verification_dict` gives, where the run was repeated.
+    """
+    checked = {} if verification is None else {"verification": dict(verification)}
+    return {
+        "schema_version": SCHEMA_VERSION,
+        "outcome": run.outcome,
+        "remedy": run.remedy,
+        "run_length_m": json_number(run.run_length),
+        "simulated_s": json_number(run.simulated_s),
+        "wall_s": json_number(run.wall_s),
+        "steps": int(run.steps),
+        "rejected_steps": int(run.rejected_steps),
+        **_moments(run),
+        **_gates(run),
+        "energies": energies_dict(run),
+        "energy_balance_error": json_number(run.energy_balance_error),
+        "numbers": {name: json_number(value) for name, value in run.numbers.items()},
+        "laws": run.given_laws,
+        "scenario": in_sections(scenario_values(run.scenario) if values is None else values),
+        "snow": snow_dict(run.scenario.contact.snow),
+        "ski": {"name": run.scenario.ski.name, "source": run.scenario.ski.source},
+        **checked,
+        "warnings": [*warnings, *run_warnings(run)],
+        "provenance": _provenance(files),
+    }
+
+
+def energies_dict(run: Run) -> dict[str, float | None]:
+    """Energies (J) at the end and at the start, what was lost between, and given by boots that move and by pushes."""
+    stored = {f"{name}_J": json_number(run.energies[name][-1]) for name in STORED}
+    start = {f"{name}_start_J": json_number(run.energies[name][0]) for name in STORED}
+    given = {f"given_{name}_J": json_number(run.energies[name][-1]) for name in GIVEN if name in run.energies}
+    return stored | start | {f"lost_{name}_J": json_number(run.energies[name][-1]) for name in LOST} | given
+
+
+def end_dict(run: Run) -> dict[str, float | None]:
+    """Where the middle between the boots is at the end, how fast, and where it heads."""
+    x, y, z = run.place[-1]
+    return {
+        "time_s": json_number(run.simulated_s),
+        "x_m": json_number(x),
+        "y_m": json_number(y),
+        "z_m": json_number(z),
+        "speed_m_per_s": json_number(run.speed[-1]),
+        "heading_deg": json_number(run.heading[-1] / DEGREE),
+    }
+
+
+def least_turn_radius(run: Run) -> float | None:
+    """The tightest turn radius (m), positive left; None of a straight run."""
+    known = run.turn_radius[np.isfinite(run.turn_radius)]
+    return float(known[np.argmin(np.abs(known))]) if known.size else None
+
+
+def radii_dict(run: Run) -> dict[str, float | None]:
+    """Median and 5 % quantile of the turn radius (m), without its sign and once the start is over; None if straight."""
+    return {
+        "turn_radius_median_m": run.turn_radius_quantile(0.5),
+        "turn_radius_p5_m": run.turn_radius_quantile(0.05),
+    }
+
+
+def run_warnings(run: Run) -> tuple[str, ...]:
+    """Warnings about the numbers of a run, in words: an energy residual that is too large."""
+    error = run.energy_balance_error
+    if not (run.has_residual_above(OPEN_SHARE) or (error is None and run.energy_residual > LEAST_OPEN)):
+        return ()
+    share = "" if error is None else f"{100.0 * error:.2g} % of the energy exchanged, "
+    return (
+        f"the energy residual is {share}{run.energy_residual:.3g} J: where and how fast the run ends is less "
+        "certain than its digits say. Take smaller steps or a smaller tolerance, and see how far the end moves",
+    )
+
+
+def _gates(run: Run) -> dict[str, Any]:
+    result = run_gates(run)
+    if result is None:
+        return {"gates_passed": None, "gates_missed": [], "gate_times_s": []}
+    return gates_dict(result)
+
+
+def _moments(run: Run) -> dict[str, Any]:
+    known = run.speed[np.isfinite(run.speed)]
+    return {
+        "end": end_dict(run),
+        "greatest_speed_m_per_s": float(known.max()) if known.size else None,
+        "least_turn_radius_m": least_turn_radius(run),
+        **radii_dict(run),
+    }
+
+
+def _provenance(files: Iterable[Path]) -> dict[str, Any]:
+    packages = ("skisnow", "numpy", "scipy")
+    return {
+        "files": {str(path): hashlib.sha256(path.read_bytes()).hexdigest() for path in files},
+        "versions": {"python": platform.python_version()} | {name: version(name) for name in packages},
+        "time": datetime.now(UTC).isoformat(timespec="seconds"),
+    }

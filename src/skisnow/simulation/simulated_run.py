@@ -1,0 +1,261 @@
+"""A scenario computed: the loop over output times, how a run ends, what is stored of it."""
+
+from __future__ import annotations
+
+import math
+import time
+import warnings
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+from typing import Final, TypeAlias
+
+import numpy as np
+
+from .._support.errors import ModelLimitWarning, SolverError
+from ..contact import Laws
+from ..scenario import Scenario
+from ..scenario.model_limits import model_limits
+from .moving_boots import SAME_TIME, BootControl
+from .run import OPEN_SHARE, Groove, Outcome, Run, Strength
+from .run_gates import GatesAhead, run_gates
+from .run_record import Record
+from .run_setup import AT_REST, Setup, set_up
+from .standing import why_no_start
+
+Progress: TypeAlias = Callable[[float, float], None]
+"""Takes the simulated time (s), and the share of the run that is done, 0 to 1."""
+
+TIPPED: Final = math.radians(60.0)
+"""Angle between the sledge and the snow's normal at which it has tipped over (modelling assumption)."""
+PITCHED: Final = math.radians(40.0)
+"""Angle between the length of a sledge on the snow and the surface at which it has tipped over (modelling assumption).
+
+Beyond it a ski stands on its shovel or tail: a line across the snow meets its base more than once.
+"""
+LONGEST_FLIGHT: Final = 0.3
+"""Time (s) with both skis off the snow after which it is airborne (modelling assumption)."""
+SINKING_DEPTH: Final = 0.5
+"""Depth (m) of the boots below the surface at which the sledge has sunk (modelling assumption)."""
+OUTPUTS_AT_ONCE: Final = 5
+"""Outputs between which no progress is reported."""
+CLEAR: Final = 1.0
+"""Distance (m) of the boots behind the last gate at which a course is over: whatever counts has crossed its line."""
+_COMPUTED_WRONG: Final = ("step_too_small", "not_finite", "interrupted")
+"""Outcomes that an open balance does not take the place of."""
+_REACHED: Final = 1e-6
+"""Run length (m) that counts as none left."""
+
+REMEDIES: Final[dict[Outcome, str]] = {
+    "finished": "Completed: the whole duration was simulated.",
+    "distance_reached": "The run length was reached.",
+    "end_of_slope": "The tips reached the end of the profile, or a border of the grid. Give a longer or wider slope, "
+    "or a shorter run.",
+    "tipped_over": "The sledge leant more than 60° from the snow's normal, or more than 40° ahead or back: it has "
+    "tipped over. Lower its centre of mass, widen the stance, or take less edge or speed.",
+    "fell": "The skier leant more than 60° from the snow's normal: it fell. Take less speed, a gentler slope or "
+    "shorter turns; figures/balance shows where the lean left what would be in balance.",
+    "airborne": "Both skis were off the snow for 0.3 s. Flight is not what this model is for: take less speed, or a "
+    "smoother slope.",
+    "sunk": "The boots went more than half a metre below the surface, or would: this snow does not carry the sledge. "
+    "Take harder snow, less mass or a wider ski.",
+    "missed_gate": "Change line or start, or the course; gates.csv says of each gate what became of it.",
+    "straddled": "By the rules that is no passage. Change line or start, or the course; gates.csv says of each gate "
+    "what became of it.",
+    "energy_open": "The energy residual is more than 0.5 % of the energy exchanged: do not rely on these numbers. Take "
+    "smaller steps, or the error control (solver.fixed false); on very hard snow, or at more than 50° of edge angle, a "
+    "smaller tolerance.",
+    "step_too_small": "The error control asked for steps below 0.1 µs: the motion is too stiff or too rough. Loosen "
+    "the tolerance, or take a smaller k_u/H_V.",
+    "not_finite": "The numbers diverged. Take a smaller step, or leave the error control on.",
+    "interrupted": "The run was stopped; what had been computed is kept.",
+}
+
+
+def simulate(
+    scenario: Scenario,
+    *,
+    progress: Progress | None = None,
+    strength_along: Strength | None = None,
+    laws: Laws | None = None,
+    boots: BootControl | None = None,
+) -> Run:
+    """Simulate a scenario from static equilibrium.
+
+    Parameters
+    ----------
+    scenario
+        What to simulate.
+    progress
+        Called with the simulated time and the share that is done, after every five outputs at the latest.
+    strength_along
+        S_f over that of the scenario, > 0, by the distance run (m): snow that is weaker or stronger in places.
+        Evaluated every 10 ms, for both skis and all along them.
+    laws
+        In place of the scenario's: laws of `skisnow.forces`, or of your own. Run, summary.json and report name them
+        with their numbers.
+    boots
+        Moves the boots against the sledge, in place of the scenario's boots.file: called with a `BootMoment` every
+        10 ms, or after its attribute ``period`` (s), it gives the `BootPose` of the left and the right boot at the end
+        of that time. Its method ``push``, if it has one, gives a force and its place on the sledge.
+
+    Returns
+    -------
+    Run
+        Whatever the outcome, with what was computed so far. Ctrl-C ends a run with the outcome "interrupted".
+
+    Raises
+    ------
+    SolverError
+        The sledge finds no equilibrium to start from.
+
+    See Also
+    --------
+    skisnow.scenario : what a run is.
+    skisnow.verify : how exact it is.
+    skisnow.compare_tracks : the run beside a measured track.
+
+    Notes
+    -----
+    One thread; the same scenario gives the same bits on the same machine.
+
+    References
+    ----------
+    * Mössner and others (2013), "Modeling the ski-snow contact in skiing turns using a hypoplastic vs an elastic
+      force-penetration relation", Scand. J. Med. Sci. Sports, doi 10.1111/sms.12035.
+    * The page docs/methods/simulated-turn.md.
+    """
+    for code, text in model_limits(scenario).items():
+        warnings.warn(ModelLimitWarning(text, code), stacklevel=2)
+    setup = set_up(scenario, laws=laws, boots=boots, strength_along=strength_along)
+    record = Record(setup)
+    if setup.height < -SINKING_DEPTH or (not setup.static_residual <= AT_REST and setup.sinks):
+        return replace(computed_run(setup, record, "sunk", 0.0), laws=laws, strength_along=strength_along)
+    if not setup.static_residual <= AT_REST:
+        setup.dynamics.contact.require_finite_laws()
+        raise SolverError(why_no_start(setup))
+    begin = time.perf_counter()
+    try:
+        outcome = _loop(setup, record, progress)
+    except KeyboardInterrupt:
+        outcome = "interrupted"
+    run = computed_run(setup, record, outcome, time.perf_counter() - begin)
+    return replace(run, laws=laws, strength_along=strength_along)
+
+
+@dataclass(slots=True)
+class _Watch:
+    """End of a run by its motion, checked at the times of its drives, or without drives at its outputs."""
+
+    setup: Setup
+    outcome: Outcome | None = None
+    _course: GatesAhead = field(init=False)
+    _flying: float = 0.0
+    _last: float = 0.0
+
+    def __post_init__(self) -> None:
+        self._course = GatesAhead(self.setup.scenario.course)
+        self._finish_course()
+
+    def look(self) -> bool:
+        """Check the present moment; True where the run is over."""
+        setup = self.setup
+        self._flying = 0.0 if setup.touches else self._flying + setup.time - self._last
+        self._last = setup.time
+        self.outcome = _ended(setup, self._flying)
+        if self.outcome is None:
+            self._finish_course()
+        return self.outcome is not None
+
+    def _finish_course(self) -> None:
+        if self._course.is_over(self.setup.place, CLEAR):
+            self.outcome = "finished"
+
+
+def _loop(setup: Setup, record: Record, progress: Progress | None) -> Outcome:
+    """Go from output to output until something ends the run."""
+    stop, interval = setup.scenario.stop, setup.scenario.solver.output_interval
+    duration = math.inf if stop.duration is None else stop.duration
+    length = math.inf if stop.length is None else stop.length
+    number, nearing, watch = 0, False, _Watch(setup)
+    while watch.outcome is None:
+        now = setup.time
+        if now >= duration - SAME_TIME:
+            return "finished"
+        left = length - record.run_length
+        if left <= _REACHED:
+            return "distance_reached"
+        moment = min((number + 1) * interval, duration)
+        was_near, nearing = nearing, setup.speed * (moment - now) > left
+        if nearing:
+            moment = now + max(left / setup.speed, 1e-9)
+        ended = record.advance(moment, replace=was_near, is_over=watch.look)
+        number = math.floor(setup.time / interval + 1e-9)
+        if record.gains_energy:
+            record.drop()
+            return "not_finite"
+        if progress is not None and number % OUTPUTS_AT_ONCE == 0:
+            progress(setup.time, min(1.0, max(setup.time / duration, record.run_length / length)))
+        if ended is not None:
+            return ended
+        if not setup.drives:
+            watch.look()
+    return watch.outcome
+
+
+def _ended(setup: Setup, flying: float) -> Outcome | None:
+    if setup.leaning > TIPPED or (setup.touches and setup.drive is None and setup.pitching > PITCHED):
+        return "tipped_over" if setup.scenario.skier is None else "fell"
+    if flying >= LONGEST_FLIGHT:
+        return "airborne"
+    if setup.height < -SINKING_DEPTH:
+        return "sunk"
+    return "end_of_slope" if setup.past_end else None
+
+
+def computed_run(setup: Setup, record: Record, outcome: Outcome, wall: float) -> Run:
+    """What came out; an end with the balance of energy open is no such end."""
+    steps, rejected, *_ = setup.dynamics.counts
+    run = Run(
+        scenario=setup.scenario,
+        outcome=outcome,
+        remedy=REMEDIES[outcome],
+        **record.histories(),
+        groove=_groove(setup),
+        run_length=record.run_length,
+        steps=steps,
+        rejected_steps=rejected,
+        wall_s=wall,
+        numbers=setup.numbers,
+        boots_by=None if setup.drive is None else setup.drive.described,
+    )
+    if outcome in _COMPUTED_WRONG:
+        return run
+    if run.has_residual_above(OPEN_SHARE):
+        return replace(run, outcome="energy_open", remedy=REMEDIES["energy_open"])
+    return _through_gates(run) if outcome in ("finished", "distance_reached") else run
+
+
+def _through_gates(run: Run) -> Run:
+    """A run that ends well, but not through all gates of its course, missed or straddled one."""
+    result = run_gates(run)
+    fault = None if result is None else result.fault
+    if fault is None:
+        return run
+    outcome: Outcome = "straddled" if fault.outcome == "straddled" else "missed_gate"
+    return replace(run, outcome=outcome, remedy=f"{fault.words[0].upper()}{fault.words[1:]}. {REMEDIES[outcome]}")
+
+
+def _groove(setup: Setup) -> Groove:
+    """The lines with a groove, each as one piece from its first knot to its last."""
+    rows = setup.dynamics.contact.tracks()
+    if not len(rows):
+        return Groove(np.zeros((0, 3)), np.zeros((0, 3)), np.zeros(0), np.zeros(0), np.zeros(0))
+    first = np.flatnonzero(np.any(np.diff(rows[:, :2], axis=0, prepend=-1.0) != 0.0, axis=1))
+    last = np.append(first[1:], len(rows)) - 1
+    depth = np.maximum.reduceat(rows[:, 5], first)
+    across = rows[last, 2:5] - rows[first, 2:5]
+    width = np.linalg.norm(across, axis=1)
+    wide = width > 0.0
+    left = across[wide] / width[wide, None]
+    middle = 0.5 * (rows[first, 2:5] + rows[last, 2:5])[wide]
+    return Groove(middle, left, width[wide], depth[wide], setup.residual_depth(depth[wide]))

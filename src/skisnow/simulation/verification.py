@@ -1,0 +1,220 @@
+"""How exact and how steady a run is: repeated finer, and with a little more or less of its inputs, one at a time."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass, replace
+from functools import partial
+from typing import Any, Final, TypeAlias
+
+import numpy as np
+
+from .._support.display import Facts, Shown, amount
+from .._support.json_number import json_number
+from .._support.units import CM
+from ..parameters import values_of
+from ..scenario import Scenario, Solver
+from ..scenario.keys import SCENARIO_KEYS
+from .run import Outcome, Run
+
+Simulate: TypeAlias = Callable[[Scenario], Run]
+FINER: Final = 2.0
+"""By how much each choice is refined."""
+DISPLACEMENT: Final = "snow.shear_displacement_mm"
+NUDGED: Final = (
+    "start.speed_m_per_s",
+    "sledge.edge_angle_deg",
+    "snow.H_V_N_per_mm3",
+    "snow.S_f_N_per_mm2",
+)
+NUDGE: Final = 1e-3
+"""Share by which each of them is changed, up and down."""
+NEAR: Final = 5.0
+"""Times the share of the run by which its end may move for the same share of an input (modelling assumption: carves
+move by once)."""
+
+
+@dataclass(frozen=True, slots=True, repr=False)
+class Refinement(Shown):
+    """What one finer choice changed.
+
+    Attributes
+    ----------
+    key
+        Of the scenario, such as "solver.elements".
+    was, now
+        Its value in force and the finer one, in the unit that the key names.
+    end_moves
+        Distance between the ends of both runs (m); None where one of them is not finite.
+    outcome
+        Of the finer run.
+
+    See Also
+    --------
+    skisnow.verify
+    """
+
+    key: str
+    was: float
+    now: float
+    end_moves: float | None
+    outcome: Outcome
+
+    def _facts(self) -> Facts:
+        moves = amount(None if self.end_moves is None else self.end_moves / CM, "cm")
+        return Facts(f"{self.key} {amount(self.was)} to {amount(self.now)}: the end moves by {moves}, {self.outcome}")
+
+
+def refined_solvers(run: Run) -> dict[str, Solver]:
+    """Solvers that are finer in one choice each, by the scenario's key.
+
+    A run with control of the error gets half the tolerance, one with a fixed step half the step; twice the elements,
+    half the spacing of the snow's lines, and half the tolerance of the groove; where the snow has a delayed depth, half
+    the spacing of its places.
+    """
+    solver = run.scenario.solver
+    nearer = replace(solver, delayed_spacing=solver.delayed_spacing / FINER)
+    shorter, stricter = replace(solver, step=solver.step / FINER), replace(solver, tolerance=solver.tolerance / FINER)
+    return {
+        **({"solver.step_ms": shorter} if solver.fixed else {"solver.tolerance_mm": stricter}),
+        "solver.elements": replace(solver, elements=round(run.numbers["elements"] * FINER)),
+        "solver.line_spacing_mm": replace(solver, line_spacing=run.numbers["line_spacing_m"] / FINER),
+        "solver.groove_tolerance": replace(solver, groove_tolerance=solver.groove_tolerance / FINER),
+        **({"solver.delayed_spacing_mm": nearer} if run.scenario.contact.delayed_share else {}),
+    }
+
+
+def nudged_scenarios(run: Run) -> dict[str, tuple[Scenario, ...]]:
+    """Scenarios with half of u_y, and a thousandth more and less of what a run near its limit hangs on, by key.
+
+    Half of u_y only where a scenario may have it; an input that is 0 is not nudged.
+    """
+    scenario = run.scenario
+    found: dict[str, tuple[Scenario, ...]] = {}
+    displacement = _given(scenario, DISPLACEMENT)
+    if displacement / FINER >= SCENARIO_KEYS[DISPLACEMENT].lowest:
+        found[DISPLACEMENT] = (scenario.with_(**{DISPLACEMENT: displacement / FINER}),)
+    for key in NUDGED:
+        value = _given(scenario, key)
+        if value:
+            found[key] = tuple(scenario.with_(**{key: value * (1.0 + sign * NUDGE)}) for sign in (1.0, -1.0))
+    return found
+
+
+def repetitions(run: Run) -> tuple[str, ...]:
+    """Keys of the runs that `verify` makes, in their order."""
+    nudged = (key for key, each in nudged_scenarios(run).items() for _ in each)
+    return (*refined_solvers(run), *nudged)
+
+
+def verify(run: Run, simulate: Simulate | None = None) -> tuple[Refinement, ...]:
+    """Repeat a run, finer or with a little more or less of an input, one at a time, and see how far its end moves.
+
+    Parameters
+    ----------
+    run
+        The run.
+    simulate
+        What computes a scenario, called in the order of `repetitions`; left out: `skisnow.simulate`, with the laws
+        that the run was given in Python.
+
+    Returns
+    -------
+    tuple
+        One entry for each choice of the solver, for half of u_y, and for each of start speed, edge angle, H_V and S_f
+        with 0.1 % more and less: what moves the end farther. Where a repetition is interrupted, those before it.
+
+    See Also
+    --------
+    skisnow.simulate : the run.
+
+    References
+    ----------
+    The page docs/validation/simulated-turn.md.
+    """
+    again = simulate or _alike(run)
+    finer = refine(run, again)
+    return finer if len(finer) < len(refined_solvers(run)) else (*finer, *_nudge(run, again))
+
+
+def refine(run: Run, simulate: Simulate) -> tuple[Refinement, ...]:
+    """The part of `verify` that makes the solver finer."""
+    found: list[Refinement] = []
+    for key, solver in refined_solvers(run).items():
+        finer = simulate(replace(run.scenario, solver=solver))
+        if finer.outcome == "interrupted":
+            break
+        found.append(Refinement(key, _in_force(run, key), _chosen(solver, key), _distance(run, finer), finer.outcome))
+    return tuple(found)
+
+
+def _nudge(run: Run, simulate: Simulate) -> Iterator[Refinement]:
+    for key, scenarios in nudged_scenarios(run).items():
+        moved: list[Refinement] = []
+        for scenario in scenarios:
+            other = simulate(scenario)
+            if other.outcome == "interrupted":
+                return
+            was, now = _given(run.scenario, key), _given(scenario, key)
+            moved.append(Refinement(key, was, now, _distance(run, other), other.outcome))
+        yield max(moved, key=lambda each: math.inf if each.end_moves is None else each.end_moves)
+
+
+def limit_warnings(run: Run, refinements: Iterable[Refinement]) -> tuple[str, ...]:
+    """A sentence where a thousandth of an input moves the end by more than five thousandths of the run."""
+    return limit_sentences({each.key: each.end_moves or 0.0 for each in refinements}, run.run_length)
+
+
+def limit_sentences(moves: Mapping[str, float], length: float) -> tuple[str, ...]:
+    """The sentence of `limit_warnings`, from distances (m) by key, where those of `NUDGED` count, and a length (m)."""
+    worst = max((key for key in moves if key in NUDGED), key=lambda key: moves[key], default=None)
+    if worst is None or not moves[worst] > NEAR * NUDGE * length:
+        return ()
+    return (
+        f"near the limit of grip: the end moves {moves[worst]:.2g} m for {100.0 * NUDGE:g} % of {worst}. A run "
+        "there tells what may happen and not where it ends: look at many, over what the inputs leave open",
+    )
+
+
+def _alike(run: Run) -> Simulate:
+    from .simulated_run import simulate  # which loads the compiled core
+
+    return partial(simulate, laws=run.laws, strength_along=run.strength_along)
+
+
+def verification_dict(refinements: tuple[Refinement, ...]) -> dict[str, dict[str, Any]]:
+    """The entry ``verification`` of summary.json: under each key what was refined and how far the end moved."""
+    return {
+        each.key: {
+            "was": each.was,
+            "now": each.now,
+            "end_moves_cm": None if each.end_moves is None else each.end_moves / CM,
+            "outcome": each.outcome,
+        }
+        for each in refinements
+    }
+
+
+def _in_force(run: Run, key: str) -> float:
+    numbers = run.numbers
+    chosen = replace(
+        run.scenario.solver,
+        elements=round(numbers["elements"]),
+        line_spacing=numbers["line_spacing_m"],
+    )
+    return _chosen(chosen, key)
+
+
+def _given(scenario: Scenario, key: str) -> float:
+    return float(values_of(scenario)[key])
+
+
+def _chosen(solver: Solver, key: str) -> float:
+    quantity = SCENARIO_KEYS[key]
+    value: float = quantity.in_unit(getattr(solver, quantity.field))
+    return value
+
+
+def _distance(run: Run, finer: Run) -> float | None:
+    return json_number(float(np.linalg.norm(run.place[-1] - finer.place[-1])))

@@ -1,0 +1,251 @@
+"""Rows of a large table, read from its file as they are used."""
+
+from __future__ import annotations
+
+import csv
+import io
+import itertools
+import sqlite3
+import weakref
+from abc import ABC, abstractmethod
+from array import array
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import IO, Any, Final, overload
+
+from .._support.errors import ParameterError
+from .._support.optional_packages import needed
+from .._support.processes.kept_rows import Row
+from .._support.sqlite_file import connect, first_damage, place_reason, require_schema, require_sound_pages
+from .._support.user_files import own_json
+from ..parameters import Quantity
+from .cells import Reader, is_text, require_kinds, row_of
+
+ROWS_OF_A_BLOCK: Final = 1000
+"""Rows that are read at once: a few megabytes (modelling assumption)."""
+
+
+class StoredRows(Sequence[Row], ABC):
+    """Rows in their order; the block that was read last is remembered. It is a sequence, equal to any of equal rows."""
+
+    def __init__(self, count: int) -> None:
+        self._count = count
+        self._last: tuple[int, list[Row]] = (-1, [])
+
+    @abstractmethod
+    def block(self, number: int) -> list[Row]:
+        """Rows from `number` times `ROWS_OF_A_BLOCK` on."""
+
+    def __len__(self) -> int:
+        """How many there are."""
+        return self._count
+
+    @overload
+    def __getitem__(self, place: int) -> Row: ...
+    @overload
+    def __getitem__(self, place: slice) -> list[Row]: ...
+    def __getitem__(self, place: int | slice) -> Row | list[Row]:
+        """One row, or some of them as a list."""
+        if isinstance(place, slice):
+            return [self[number] for number in range(self._count)[place]]
+        block, row = divmod(range(self._count)[place], ROWS_OF_A_BLOCK)
+        if self._last[0] != block:
+            self._last = (block, self.block(block))
+        return self._last[1][row]
+
+    def __iter__(self) -> Iterator[Row]:
+        """Block after block."""
+        for number in range(-(-self._count // ROWS_OF_A_BLOCK)):
+            yield from self.block(number)
+
+    def __eq__(self, other: object) -> bool:
+        """Whether a sequence has the same rows in the same order."""
+        if not isinstance(other, Sequence):
+            return NotImplemented
+        return len(self) == len(other) and all(a == b for a, b in zip(self, other, strict=True))
+
+    __hash__ = None  # type: ignore[assignment]  # as of a list
+
+
+class CsvRows(StoredRows):
+    """Rows of a CSV file in UTF-8.
+
+    Parameters
+    ----------
+    path
+        For messages.
+    file
+        It stays open.
+    columns, readers
+        Names, and what makes values of cells.
+    begins
+        Where each block of rows begins (bytes), and where the last one ends.
+    count
+        How many rows there are.
+    """
+
+    def __init__(
+        self,
+        path: Path,
+        file: IO[bytes],
+        columns: Sequence[str],
+        readers: Sequence[Reader],
+        begins: Sequence[int],
+        count: int,
+    ) -> None:
+        super().__init__(count)
+        self._path, self._file, self._columns, self._readers, self._begins = path, file, columns, readers, begins
+        weakref.finalize(self, file.close)
+
+    def block(self, number: int) -> list[Row]:
+        """Some rows."""
+        begin, end = self._begins[number : number + 2]
+        self._file.seek(begin)
+        return csv_block(
+            self._path, self._file.read(end - begin), self._columns, self._readers, number * ROWS_OF_A_BLOCK
+        )
+
+
+def csv_block(path: Path, data: bytes, columns: Sequence[str], readers: Sequence[Reader], before: int) -> list[Row]:
+    """The rows of some lines of a CSV file.
+
+    Raises
+    ------
+    ParameterError
+        A row is damaged; the message names it.
+    """
+    first = before + 2  # behind the names; right as long as no text has a line end
+    try:
+        lines = list(csv.reader(io.StringIO(data.decode("utf-8"), newline="")))
+    except (UnicodeDecodeError, csv.Error) as error:
+        raise ParameterError(f"{path} is no table of a study, from about line {first} on: {error}") from error
+    return [row_of(f"{path}, line {number}", columns, each, readers) for number, each in enumerate(lines, start=first)]
+
+
+class DatabaseRows(StoredRows):
+    """Rows of the table `study` of an SQLite file, in the order of their rowid.
+
+    Raises
+    ------
+    ParameterError
+        The file cannot be opened, is damaged, or is not a study's table.
+    """
+
+    def __init__(self, path: Path, keys: Mapping[str, Quantity]) -> None:
+        self._path = path
+        with self._errors():
+            self._database = connect(path, mode="ro")
+        weakref.finalize(self, self._database.close)
+        with self._errors():
+            require_schema(self._database, {"study": ("outcome", "study")})
+            require_sound_pages(self._database)
+            declared = self._database.execute("select name, type from pragma_table_info('study')").fetchall()
+            numbers = [number for (number,) in self._database.execute("select rowid from study order by rowid")]
+        super().__init__(len(numbers))
+        self._firsts = array("q", numbers[::ROWS_OF_A_BLOCK])
+        self.columns = tuple(name for name, _ in declared)
+        self._kinds = [kind for _, kind in declared]
+        self._texts = [is_text(name, keys) for name in self.columns]
+
+    @contextmanager
+    def _errors(self) -> Iterator[None]:
+        try:
+            yield
+        except (sqlite3.Error, UnicodeDecodeError) as error:  # the latter where a name in the schema is no text
+            damage = first_damage(self._database) if hasattr(self, "_database") else None
+            raise _no_table(self._path, place_reason(error) or damage or error) from error
+
+    def block(self, number: int) -> list[Row]:
+        """Some rows."""
+        query = "select * from study where rowid >= ? order by rowid limit ?"
+        with self._errors():
+            rows = self._database.execute(query, (self._firsts[number], ROWS_OF_A_BLOCK)).fetchall()
+        first = number * ROWS_OF_A_BLOCK + 1
+        return [self._row(place, row) for place, row in enumerate(rows, start=first)]
+
+    def _row(self, place: int, values: Sequence[Any]) -> Row:
+        try:
+            found = dict(zip(self.columns, map(_natural, values, self._kinds), strict=True))
+        except ValueError as error:
+            raise _no_table(self._path, f"row {place}: {error}") from error
+        require_kinds(f"{self._path}, row {place}", found, self._texts)
+        return found
+
+
+def _no_table(path: Path, why: object) -> ParameterError:
+    return ParameterError(
+        f"{path} cannot be read as a study's table: {why}. Put back a copy, or remove it and run the study again"
+    )
+
+
+def _natural(value: Any, kind: str) -> Any:
+    if value is None:
+        return None
+    if kind == "BOOLEAN" and value in (0, 1):
+        return bool(value)
+    return own_json(value) if kind == "JSON" and isinstance(value, str) else value
+
+
+class ParquetRows(StoredRows):
+    """Rows of a Parquet file; the row group that was read last is remembered."""
+
+    def __init__(self, path: Path, keys: Mapping[str, Quantity]) -> None:
+        parquet = require_pyarrow().parquet
+        self._path = path
+        with self._errors():
+            self._file = parquet.ParquetFile(path)
+            super().__init__(self._file.metadata.num_rows)
+            self.columns = tuple(self._file.schema_arrow.names)
+            self._groups = _group_begins(self._file.metadata)
+        self._texts = [is_text(name, keys) for name in self.columns]
+        self._read: tuple[int, Any] = (-1, None)
+
+    @contextmanager
+    def _errors(self) -> Iterator[None]:
+        try:
+            yield
+        except (
+            OSError,
+            ValueError,
+            TypeError,
+            NotImplementedError,
+            MemoryError,
+        ) as error:  # and what pyarrow makes of them
+            raise _no_table(self._path, " ".join(str(error).split())) from error
+
+    def block(self, number: int) -> list[Row]:
+        """Some rows."""
+        first = number * ROWS_OF_A_BLOCK
+        last = min(first + ROWS_OF_A_BLOCK, len(self))
+        rows: list[Row] = []
+        for group, (begin, end) in enumerate(self._groups):
+            if begin < last and end > first:
+                with self._errors():
+                    if self._read[0] != group:
+                        self._read = (group, self._file.read_row_group(group))
+                    rows += self._read[1].slice(max(first - begin, 0), last - max(first, begin)).to_pylist()
+        for place, row in enumerate(rows, start=first + 1):
+            require_kinds(f"{self._path}, row {place}", row, self._texts)
+        return rows
+
+
+def _group_begins(metadata: Any) -> list[tuple[int, int]]:
+    ends = [0]
+    for group in range(metadata.num_row_groups):
+        ends.append(ends[-1] + metadata.row_group(group).num_rows)
+    return list(itertools.pairwise(ends))
+
+
+def require_pyarrow() -> Any:
+    """The library of Parquet files.
+
+    Raises
+    ------
+    ParameterError
+        It is not installed.
+    """
+    pyarrow, _ = (
+        needed(module, extra="parquet", what="a table in Parquet") for module in ("pyarrow", "pyarrow.parquet")
+    )
+    return pyarrow

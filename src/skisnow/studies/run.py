@@ -1,0 +1,237 @@
+"""Running a study: what is finished is kept, what is missing is computed, the table is complete or not there."""
+
+from __future__ import annotations
+
+import tempfile
+from collections import deque
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+from enum import Enum
+from pathlib import Path
+from typing import Any, Protocol
+
+from .._support.errors import OutputError, ParameterError
+from .._support.files import cannot_write
+from .._support.processes.batch import Progress, compute_missing
+from .._support.processes.executors import ExecutorLike, require_executor
+from .._support.processes.kept_rows import KeptRows, Row, json_text
+from .._support.processes.pool import workers_in_force
+from ..parameters import Quantity
+from .computing import StudyRows
+from .study import Study
+from .study_file import read_study
+from .table import MOST_ROWS_HELD, StudyTable, large_csv, read_table, stored_rows
+from .tally import FAILED, Tally
+from .writing import write_csv, write_table, writer_of
+
+
+class StudyState(Enum):
+    """What stands at the place of a study's table."""
+
+    NEW = "new"
+    FINISHED = "finished"
+    ANOTHER = "another study"
+
+
+def study_state(study: Study) -> StudyState:
+    """Whether the table of this study, or of another one, is there.
+
+    Raises
+    ------
+    ParameterError
+        A file that is no study's table stands in its place: it is not replaced.
+    """
+    if not study.out.exists():
+        return StudyState.NEW
+    return standing(study.out, study.subject.keys, study.fingerprint(), len(study.points))[0]
+
+
+def standing(
+    out: Path, keys: Mapping[str, Quantity], fingerprint: str, points: int
+) -> tuple[StudyState, StudyTable | None]:
+    """What stands at the place of a table, and the table where it is one.
+
+    Raises
+    ------
+    ParameterError
+        As of `study_state`.
+    """
+    if not out.exists():
+        return StudyState.NEW, None
+    try:
+        table = read_table(out, keys)
+    except ParameterError as error:
+        raise ParameterError(f"{error}. It is not replaced: name another place in out, or move it away") from error
+    found = table.tally()
+    same = found.rows == points and found.studies == {fingerprint}
+    return (StudyState.FINISHED if same else StudyState.ANOTHER), table
+
+
+def run_study(
+    study: Study | str | Path,
+    *,
+    workers: int | None = None,
+    executor: ExecutorLike | None = None,
+    progress: Progress | None = None,
+) -> StudyTable:
+    """Ask one question over a grid or a sample of its inputs: compute the points that are missing, write the table.
+
+    Parameters
+    ----------
+    study
+        What to do, or the path of its STUDY.toml. A table of the same study is read and not computed again; one of
+        another study is moved to `Study.place_for_previous`. A table in which no point could be asked is not written.
+    workers
+        Number of processes; None: one for each core. The table does not depend on it.
+    executor
+        What computes in place of processes of this computer, as of `skisnow.run_batch`.
+    progress
+        Called with the number of finished points and that of all.
+
+    Returns
+    -------
+    StudyTable
+        A row for each point, in their order; the table is written when it is complete.
+
+    Raises
+    ------
+    ParameterError
+        Finished points of another study stand beside the table, or something that is no table stands in its place;
+        or the number of workers is below 1.
+    OutputError
+        The table's place cannot be written.
+
+    See Also
+    --------
+    skisnow.read_study : the study of a file.
+    skisnow.run_batch : points and a function of your own.
+
+    References
+    ----------
+    * McKay, Beckman and Conover (1979), "A comparison of three methods for selecting values of input variables in the
+      analysis of output from a computer code", Technometrics 21, 239-245, doi 10.1080/00401706.1979.10489755.
+    * The page docs/how-to/study.md.
+    """
+    workers = workers_in_force(workers)
+    require_executor(executor)
+    study = study if isinstance(study, Study) else read_study(study)
+    writer_of(study.out)
+    fingerprint = study.fingerprint()
+    before = _stamp(study.out)
+    state, table = standing(study.out, study.subject.keys, fingerprint, len(study.points))
+    if state is StudyState.FINISHED and table is not None:
+        if study.partial.exists():  # a kill between writing the one and removing the other
+            kept_rows(study, study.partial, fingerprint).remove()
+        return replace(table, varied=study.varied)
+    kept = kept_rows(study, study.partial, fingerprint)
+    try:
+        if _stamp(study.out) != before:
+            raise OutputError(f"{study.out} was just written by another run. Start again to see its table")
+        rows = StudyRows.of(study)
+        compute_missing(study.points, rows, kept, workers=workers, executor=executor, progress=progress)
+        previous = study.place_for_previous() if state is StudyState.ANOTHER else None
+        found = written(study.out, kept, fingerprint, study.subject.keys, previous=previous)
+        kept.remove()
+    finally:
+        kept.close()
+    return replace(found, varied=study.varied)
+
+
+def kept_rows(study: Study, path: Path, fingerprint: str, **about: str) -> KeptRows:
+    """The finished points of a study, in a file."""
+    kinds = json_text({name: key.kind for name, key in study.subject.keys.items()})
+    about = {"points": str(len(study.points)), "kinds": kinds, **about}
+    return KeptRows.opened(path, fingerprint, columns=study.columns[:-1], about=about)
+
+
+class FinishedRows(Protocol):
+    """The rows of all points of a study."""
+
+    columns: tuple[str, ...] | None
+
+    def __len__(self) -> int:
+        """How many there are."""
+        ...
+
+    def values(self) -> Iterator[list[Any]]:
+        """The values of the columns of each."""
+        ...
+
+
+def written(
+    out: Path, kept: FinishedRows, fingerprint: str, keys: Mapping[str, Quantity], *, previous: Path | None = None
+) -> StudyTable:
+    """The table of all rows; it is not written if no point could be asked.
+
+    Parameters
+    ----------
+    out
+        Its place.
+    kept
+        The rows.
+    fingerprint
+        For the column `study`.
+    keys
+        The study's inputs.
+    previous
+        Where a table in its place goes; None: there is none.
+
+    Raises
+    ------
+    OutputError
+        Its place cannot be written.
+    """
+    columns = (*(kept.columns or ()), "study")
+    rows = _Rows(kept, columns, fingerprint)
+    stored = None
+    if any(row[columns.index("outcome")] != FAILED for row in kept.values()):
+        if previous is not None:
+            _move(out, previous)
+        begins = write_table(out, columns, rows)
+        stored = None if rows.held is not None else stored_rows(out, keys, begins)
+    elif len(kept) > MOST_ROWS_HELD:
+        file = tempfile.TemporaryFile()  # noqa: SIM115 - the rows close it
+        begins = write_csv(file, columns, rows())
+        file.seek(0)
+        stored = large_csv(out, file, keys, begins)
+    else:
+        deque(rows(), maxlen=0)
+    found = stored[1] if stored is not None else rows.held or []
+    return StudyTable(columns, found, (), rows.counted)
+
+
+class _Rows:
+    """Rows as lists of values; with each beginning they are counted, and held where they are few, anew."""
+
+    def __init__(self, kept: FinishedRows, columns: tuple[str, ...], fingerprint: str) -> None:
+        self._kept, self._columns, self._fingerprint = kept, columns, fingerprint
+        self.counted = Tally()
+        self.held: list[Row] | None = None
+
+    def __call__(self) -> Iterator[list[Any]]:
+        self.counted = Tally()
+        self.held = [] if len(self._kept) <= MOST_ROWS_HELD else None
+        return self.counted.counting(self._columns, self._values())
+
+    def _values(self) -> Iterator[list[Any]]:
+        for values in self._kept.values():
+            row = [*values, self._fingerprint]
+            if self.held is not None:
+                self.held.append(dict(zip(self._columns, row, strict=True)))
+            yield row
+
+
+def _stamp(path: Path) -> tuple[int, int, int] | None:
+    """Another one where a file was written anew."""
+    try:
+        found = path.stat()
+    except OSError:
+        return None
+    return found.st_ino, found.st_size, found.st_mtime_ns
+
+
+def _move(table: Path, place: Path) -> None:
+    try:
+        table.rename(place)
+    except OSError as error:
+        raise cannot_write(place, error) from error

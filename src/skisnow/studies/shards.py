@@ -1,0 +1,230 @@
+"""A study in parts, for the job arrays of batch systems: each part computes some points, then all are put together."""
+
+from __future__ import annotations
+
+import heapq
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import ExitStack
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Final, Self
+
+from .._support.errors import ParameterError
+from .._support.processes.batch import Progress, compute_missing
+from .._support.processes.chunk import own_identity
+from .._support.processes.executors import ExecutorLike, require_executor
+from .._support.processes.kept_rows import KeptRows, NumberedText
+from .._support.processes.pool import workers_in_force
+from .._support.user_files import own_json
+from ..parameters import Quantity
+from .computing import StudyRows
+from .run import StudyState, kept_rows, standing, written
+from .study import Study, place_for_previous
+from .study_file import read_study
+from .table import StudyTable
+from .writing import writer_of
+
+MOST_SHARDS: Final = 10_000
+"""Of one study (modelling assumption: more than a job array has)."""
+_SHARD: Final = re.compile(r"(\d{1,9})/(\d{1,9})")
+
+
+@dataclass(frozen=True, slots=True)
+class Shard:
+    """One of several parts of a study: every n-th point.
+
+    Attributes
+    ----------
+    number
+        From 1 to `count`.
+    count
+        How many parts there are.
+    """
+
+    number: int
+    count: int
+
+    @classmethod
+    def of(cls, text: str) -> Self:
+        """Read ``"2/8"``, the second of eight.
+
+        Raises
+        ------
+        ParameterError
+            It is none.
+        """
+        found = _SHARD.fullmatch(text)
+        shard = cls(int(found[1]), int(found[2])) if found else None
+        if shard is None or not 1 <= shard.number <= shard.count <= MOST_SHARDS:
+            raise ParameterError(
+                f"shard is {text!r}; it is written i/n, from 1/n to n/n, such as 2/8 for the second of eight; n is "
+                f"{MOST_SHARDS} at most"
+            )
+        return shard
+
+    def points(self, count: int) -> range:
+        """The numbers of its points: every n-th, so that parts take about as long."""
+        return range(self.number - 1, count, self.count)
+
+    def place(self, study: Study) -> Path:
+        """Where its finished points are kept, beside the table."""
+        return study.out.with_name(f"{study.out.name}.shard-{self.number}-of-{self.count}")
+
+
+def run_shard(
+    study: Study | str | Path,
+    shard: Shard | str,
+    *,
+    workers: int | None = None,
+    executor: ExecutorLike | None = None,
+    progress: Progress | None = None,
+) -> Path:
+    """Compute the points of one part of a study that are missing; several parts may be computed at once.
+
+    Parameters
+    ----------
+    study
+        What to do, or the path of its STUDY.toml.
+    shard
+        The part, such as "2/8".
+    workers, executor, progress
+        As of `skisnow.study`.
+
+    Returns
+    -------
+    Path
+        The file of the part, which `merge_shards` takes; it is gone on with when the part is started again.
+
+    Raises
+    ------
+    ParameterError
+        The file is of another study, or the shard is none.
+    OutputError
+        The file cannot be written, or another run is writing it.
+
+    References
+    ----------
+    The page docs/how-to/cluster.md.
+    """
+    workers = workers_in_force(workers)
+    require_executor(executor)
+    shard = Shard.of(shard) if isinstance(shard, str) else shard
+    study = study if isinstance(study, Study) else read_study(study)
+    place = shard.place(study)
+    kept = kept_rows(study, place, study.fingerprint(), core=own_identity().core)
+    try:
+        numbers = shard.points(len(study.points))
+        rows = StudyRows.of(study)
+        compute_missing(
+            study.points, rows, kept, numbers=numbers, workers=workers, executor=executor, progress=progress
+        )
+    finally:
+        kept.close()
+    return place
+
+
+def merge_shards(out: str | Path, parts: Sequence[str | Path]) -> StudyTable:
+    """Put the parts of a study together: the same table as without parts. The parts stay.
+
+    Parameters
+    ----------
+    out
+        The table; ends in .csv, .sqlite or .parquet. A table of another study in its place is moved aside.
+    parts
+        The files of `run_shard`, in any order.
+
+    Returns
+    -------
+    StudyTable
+        A row for each point; not written if no point could be asked.
+
+    Raises
+    ------
+    ParameterError
+        The parts are of different studies or were computed by different cores, or points are missing.
+    OutputError
+        A part is still being computed, or the place cannot be written.
+
+    References
+    ----------
+    The page docs/how-to/cluster.md.
+    """
+    out = Path(out)
+    writer_of(out)
+    places = [Path(part) for part in parts]
+    if not places:
+        raise ParameterError("no part is named; name the files of all parts of the study")
+    with ExitStack() as opened:
+        kept = []
+        for place in dict.fromkeys(places):
+            kept.append(KeptRows.read(place))
+            opened.callback(kept[-1].close)
+        return _merged(out, _Parts(kept))
+
+
+def _merged(out: Path, parts: _Parts) -> StudyTable:
+    parts.require_whole()
+    state, table = standing(out, parts.keys, parts.fingerprint, parts.count)
+    if state is StudyState.FINISHED and table is not None:
+        return table
+    before = place_for_previous(out) if state is StudyState.ANOTHER else None
+    return written(out, parts, parts.fingerprint, parts.keys, previous=before)
+
+
+class _Parts:
+    """The rows of all parts, as if they were kept in one file."""
+
+    def __init__(self, parts: Sequence[KeptRows]) -> None:
+        self._parts = parts
+        about = [part.about() for part in parts]
+        for name, what in (("fingerprint", "another study"), ("core", "this study, computed by another core")):
+            odd = next(
+                (part for part, each in zip(parts, about, strict=True) if each.get(name) != about[0].get(name)), None
+            )
+            if odd is not None:
+                raise ParameterError(f"{odd.path} is a part of {what} than {parts[0].path}. Leave one of them out")
+        if "points" not in about[0] or parts[0].columns is None:
+            raise ParameterError(f"{parts[0].path} is no part of a study. Name the files that --shard left")
+        self.columns: tuple[str, ...] | None = parts[0].columns
+        self.fingerprint = about[0]["fingerprint"]
+        self.count = int(about[0]["points"])
+        self._kinds = own_json(about[0]["kinds"])
+
+    @property
+    def keys(self) -> Mapping[str, Quantity]:
+        """The study's inputs, as far as a table needs them."""
+        return {name: Quantity(name, "", kind=kind) for name, kind in self._kinds.items()}
+
+    def __len__(self) -> int:
+        """How many points the study has."""
+        return self.count
+
+    def texts(self) -> Iterator[NumberedText]:
+        """Points with their rows as they are kept, in rising order, each once."""
+        last: NumberedText | None = None
+        for each in heapq.merge(*(part.texts() for part in self._parts)):
+            if last is None or each[0] != last[0]:
+                yield each
+            elif each[1] != last[1]:
+                raise ParameterError(f"two parts have different rows for point {each[0] + 1}. Compute one of them anew")
+            last = each
+
+    def values(self) -> Iterator[list[Any]]:
+        """The values of the columns of every point."""
+        return (own_json(text) for _, text in self.texts())
+
+    def require_whole(self) -> None:
+        """Refuse parts in which points are missing."""
+        found = bytearray(self.count)
+        for part in self._parts:
+            for number in part.numbers():
+                if 0 <= number < self.count:  # all others are rejected with their row
+                    found[number] = True
+        missing = found.count(0)
+        if missing:
+            first = found.index(0)
+            raise ParameterError(
+                f"{missing} of {self.count} points are in none of the parts, the first is point {first + 1}. Compute "
+                "or name the missing parts"
+            )

@@ -1,0 +1,221 @@
+"""The table of a study: one row for each point."""
+
+from __future__ import annotations
+
+import csv
+import io
+from array import array
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from itertools import chain
+from pathlib import Path
+from typing import IO, Final
+
+from .._support.display import Facts, Shown
+from .._support.errors import ParameterError
+from .._support.processes.kept_rows import Row
+from .._support.spreadsheet_text import (
+    SEPARATOR_NAMES,
+    NoTextError,
+    decimal_mark,
+    decoded,
+    most_frequent_separator,
+    named_separator,
+)
+from .._support.user_files import plain_bytes
+from ..parameters import Quantity
+from .cells import readers, row_of
+from .rows import ROWS_OF_A_BLOCK, CsvRows, DatabaseRows, ParquetRows, StoredRows, csv_block
+from .tally import FAILED, Tally
+from .writing import write_csv
+
+MOST_ROWS_HELD: Final = 20_000
+"""A table of more stays in its file, and rows are read as they are used (8 kB each in memory)."""
+MOST_BYTES_HELD: Final = 1 << 24
+MOST_BYTES_AT_ONCE: Final = 1 << 27
+"""Largest table of another program, which is read as a whole (bytes)."""
+"""Of a CSV file; a larger one is not read at once."""
+_HEAD: Final = 1 << 16
+
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class StudyTable(Shown):
+    """Rows in the order of the points, each by the names of the columns; None where there is no value.
+
+    Attributes
+    ----------
+    columns
+        The names, inputs first.
+    rows
+        Numbers, texts and switches. Of a table of more than 20,000 rows they are read from its file as they are used.
+    varied
+        The inputs that vary.
+    counted
+        What was counted while the rows went by; None: it is counted when it is asked for.
+
+    See Also
+    --------
+    skisnow.study
+    """
+
+    columns: tuple[str, ...]
+    rows: Sequence[Row]
+    varied: tuple[str, ...]
+    counted: Tally | None = None
+
+    def _facts(self) -> Facts:
+        counts = ", ".join(f"{outcome} {count}" for outcome, count in self.counts().items())
+        rows = (("outcomes", counts), ("varied", ", ".join(self.varied)), ("columns", ", ".join(self.columns)))
+        return Facts(f"of {len(self.rows)} points", rows)
+
+    def answers(self) -> list[Row]:
+        """The rows whose point could be asked."""
+        return [row for row in self.rows if row["outcome"] != FAILED]
+
+    def csv(self) -> str:
+        """The table as text: numbers with all their digits, true and false, nothing where there is no value."""
+        stream = io.BytesIO()
+        write_csv(stream, self.columns, ([row.get(name) for name in self.columns] for row in self.rows))
+        return stream.getvalue().decode("utf-8")
+
+    def counts(self) -> dict[str, int]:
+        """How many rows have each outcome, the most frequent first."""
+        return self.tally().counts()
+
+    def tally(self) -> Tally:
+        """Outcomes, warnings and errors, counted."""
+        return Tally.of(self.rows) if self.counted is None else self.counted
+
+
+def read_table(path: str | Path, keys: Mapping[str, Quantity], *, varied: Sequence[str] = ()) -> StudyTable:
+    """Read a study's table back.
+
+    Parameters
+    ----------
+    path
+        The file: CSV, or by the ending of its name SQLite or Parquet.
+    keys
+        The study's inputs: the texts among them stay texts.
+    varied
+        The inputs that vary.
+
+    Raises
+    ------
+    ParameterError
+        It cannot be read, or is no study's table.
+    """
+    path = Path(path)
+    stored = stored_rows(path, keys)
+    if stored is None:
+        return StudyTable(*_read_at_once(path, keys), tuple(varied))
+    columns, rows = stored
+    _require_columns(path, columns)
+    counted = Tally.of(rows)
+    held = rows if len(rows) > MOST_ROWS_HELD else list(rows)
+    return StudyTable(columns, held, tuple(varied), counted)
+
+
+def stored_rows(
+    path: Path, keys: Mapping[str, Quantity], begins: array[int] | None = None
+) -> tuple[tuple[str, ...], StoredRows] | None:
+    """Columns and rows that are read as they are used; None of a small CSV file, and of one of another program."""
+    ending = path.suffix.lower()
+    if ending in (".sqlite", ".parquet"):
+        found = DatabaseRows(path, keys) if ending == ".sqlite" else ParquetRows(path, keys)
+        return found.columns, found
+    try:
+        if begins is None and path.stat().st_size <= MOST_BYTES_HELD:
+            return None
+        file = path.open("rb")
+    except OSError as error:
+        raise _unreadable(path, error) from error
+    return large_csv(path, file, keys, begins)
+
+
+def large_csv(
+    path: Path, file: IO[bytes], keys: Mapping[str, Quantity], begins: array[int] | None = None
+) -> tuple[tuple[str, ...], StoredRows] | None:
+    """Columns and rows of a CSV file as `write_csv` writes it; None of any other, which is closed.
+
+    Parameters
+    ----------
+    path
+        For messages.
+    file
+        Open for reading.
+    keys
+        The study's inputs.
+    begins
+        As `write_csv` gave it; None: looked for.
+    """
+    try:
+        found = _large_csv(path, file, keys, begins)
+    except BaseException:
+        file.close()
+        raise
+    if found is None:
+        file.close()
+    return found
+
+
+def _large_csv(
+    path: Path, file: IO[bytes], keys: Mapping[str, Quantity], begins: array[int] | None
+) -> tuple[tuple[str, ...], StoredRows] | None:
+    try:
+        head = file.readline().decode("utf-8")
+        columns = tuple(next(csv.reader([head], strict=True)))
+    except (UnicodeDecodeError, csv.Error, StopIteration):
+        return None
+    if not {"outcome", "study"} <= set(columns) or "\ufeff" in head:
+        return None
+    begins = _begins(file) if begins is None else begins
+    each = readers(columns, keys, ".")
+    whole = max(len(begins) - 2, 0)
+    file.seek(begins[whole])
+    last = csv_block(path, file.read(), columns, each, whole * ROWS_OF_A_BLOCK)
+    count = whole * ROWS_OF_A_BLOCK + len(last)
+    return columns, CsvRows(path, file, columns, each, begins, count)
+
+
+def _begins(file: IO[bytes]) -> array[int]:
+    """Where blocks of rows begin, from the file's place on, and where the last one ends. A text may have line ends."""
+    begins, place, rows, quotes = array("q", [file.tell()]), file.tell(), 0, 0
+    for line in file:
+        place += len(line)
+        quotes += line.count(b'"')
+        if quotes % 2 == 0:
+            rows += 1
+            if rows % ROWS_OF_A_BLOCK == 0:
+                begins.append(place)
+    if rows % ROWS_OF_A_BLOCK or quotes % 2:
+        begins.append(place)
+    return begins
+
+
+def _read_at_once(path: Path, keys: Mapping[str, Quantity]) -> tuple[tuple[str, ...], list[Row]]:
+    try:
+        text = decoded(plain_bytes(path, most_bytes=MOST_BYTES_AT_ONCE)).text
+        named = named_separator(text)
+        separator = named if named in SEPARATOR_NAMES else most_frequent_separator(text[:_HEAD])
+        stream = io.StringIO(text, newline="")
+        skipped = len(stream.readline()[:1]) if named in SEPARATOR_NAMES else 0
+        reader = csv.reader(stream, delimiter=str(separator))
+        columns = tuple(next(reader, ()))
+        _require_columns(path, columns)
+        lines = [(reader.line_num + skipped, cells) for cells in reader if cells]
+    except OSError as error:
+        raise _unreadable(path, error) from error
+    except (NoTextError, csv.Error) as error:
+        raise ParameterError(f"{path} is no table of a study: {error}") from error
+    mark = "." if separator == "," else decimal_mark([chain.from_iterable(row for _, row in lines)], separator=";")
+    each = readers(columns, keys, mark)
+    return columns, [row_of(f"{path}, line {line}", columns, cells, each) for line, cells in lines]
+
+
+def _unreadable(path: Path, error: OSError) -> ParameterError:
+    return ParameterError(f"{path} cannot be read: {error.strerror or error}")
+
+
+def _require_columns(path: str | Path, columns: Sequence[str]) -> None:
+    if not {"outcome", "study"} <= set(columns):
+        raise ParameterError(f"{path} is no table of a study: its first line names no columns outcome and study")

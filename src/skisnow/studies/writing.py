@@ -1,0 +1,175 @@
+"""The table of a study into its file, row after row: CSV, SQLite or Parquet by its name."""
+
+from __future__ import annotations
+
+import csv
+import io
+import itertools
+import json
+import sqlite3
+from array import array
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from pathlib import Path
+from typing import IO, Any, Final, TypeAlias
+
+from .._support.errors import ParameterError
+from .._support.files import cannot_write, place_to_write
+from .._support.sqlite_file import connect
+from .cells import cell, cells
+from .rows import ROWS_OF_A_BLOCK, require_pyarrow
+
+ValueRows: TypeAlias = Callable[[], Iterable[list[Any]]]
+"""Begins anew at the first row with every call; each row has a value for every column."""
+Writer: TypeAlias = Callable[[Path, Sequence[str], ValueRows], "array[int] | None"]
+
+ROWS_OF_A_GROUP: Final = 10 * ROWS_OF_A_BLOCK
+"""Of a Parquet file: some megabytes (modelling assumption)."""
+_DATABASE_TYPES: Final[tuple[tuple[frozenset[type], str], ...]] = (
+    (frozenset({bool}), "BOOLEAN"),
+    (frozenset({int}), "INTEGER"),
+    (frozenset({int, float}), "REAL"),
+    (frozenset({list}), "JSON"),
+    (frozenset({str}), "TEXT"),
+)
+
+
+def write_table(path: Path, columns: Sequence[str], rows: ValueRows) -> array[int] | None:
+    """Write a table; it stands in its place when it is complete, and else nowhere.
+
+    Parameters
+    ----------
+    path
+        Ends in .csv, .sqlite or .parquet.
+    columns
+        Names.
+    rows
+        Values in the order of the columns; gone through twice for SQLite and Parquet, whose columns have types.
+
+    Returns
+    -------
+    array of int, or None
+        Of a CSV file, where each block of rows begins.
+
+    Raises
+    ------
+    ParameterError
+        Another ending, or pyarrow is missing.
+    OutputError
+        The place cannot be written.
+    """
+    return writer_of(path)(path, columns, rows)
+
+
+def writer_of(path: Path) -> Writer:
+    """What writes a file of such a name.
+
+    Raises
+    ------
+    ParameterError
+        Another ending, or pyarrow is missing.
+    """
+    ending = path.suffix.lower()
+    if ending not in WRITERS:
+        raise ParameterError(f"{path}: the name of a table ends in {', '.join(WRITERS)}")
+    if ending == ".parquet":
+        require_pyarrow()
+    return WRITERS[ending]
+
+
+def write_csv(file: IO[bytes], columns: Sequence[str], rows: Iterable[list[Any]]) -> array[int]:
+    """Write a CSV table; gives where (bytes) each block of rows begins, and where the last one ends."""
+    begins, place, rows = array("q"), 0, iter(rows)
+    block: list[Sequence[str]] = [columns]
+    while block:
+        text = io.StringIO()
+        csv.writer(text, lineterminator="\n").writerows(block)
+        data = text.getvalue().encode()
+        file.write(data)
+        place += len(data)
+        begins.append(place)
+        block = [cells(row) for row in itertools.islice(rows, ROWS_OF_A_BLOCK)]
+    return begins
+
+
+def _write_csv_file(path: Path, columns: Sequence[str], rows: ValueRows) -> array[int]:
+    with place_to_write(path) as place, place.open("wb") as file:
+        return write_csv(file, columns, rows())
+
+
+def _write_database(path: Path, columns: Sequence[str], rows: ValueRows) -> None:
+    kinds = _kinds(columns, rows())
+    types = [_database_type(kinds[name]) for name in columns]
+    named = ", ".join(f'"{name}" {kind}'.rstrip() for name, kind in zip(columns, types, strict=True))
+    with place_to_write(path) as place:
+        try:
+            _fill(connect(place), named, len(columns), rows())
+        except sqlite3.Error as error:
+            raise cannot_write(path, OSError(str(error))) from error
+
+
+def _fill(database: sqlite3.Connection, named: str, count: int, rows: Iterable[list[Any]]) -> None:
+    try:
+        database.execute("pragma journal_mode = off")  # a file that is not complete goes away anyhow
+        database.execute(f"create table study ({named})")
+        database.execute("begin")
+        marks = ", ".join("?" * count)
+        database.executemany(f"insert into study values ({marks})", ([_stored(value) for value in row] for row in rows))
+        database.execute("commit")
+    finally:
+        database.close()
+
+
+def _database_type(kinds: frozenset[type]) -> str:
+    return next((name for taken, name in _DATABASE_TYPES if kinds and kinds <= taken), "")
+
+
+def _stored(value: Any) -> Any:
+    return json.dumps(value) if isinstance(value, list) else value
+
+
+def _write_parquet(path: Path, columns: Sequence[str], rows: ValueRows) -> None:
+    arrow = require_pyarrow()
+    kinds = _kinds(columns, rows())
+    schema = arrow.schema([(name, _arrow_type(arrow, kinds[name])) for name in columns])
+    mixed = [_arrow_type(arrow, kinds[name]) == arrow.string() and kinds[name] - {str} for name in columns]
+    source = iter(rows())
+    with place_to_write(path) as place, arrow.parquet.ParquetWriter(place, schema) as writer:
+        while block := list(itertools.islice(source, ROWS_OF_A_GROUP)):
+            arrays = [
+                arrow.array([_plain(value, text=bool(text)) for value in values], type=field.type)
+                for values, field, text in zip(zip(*block, strict=True), schema, mixed, strict=True)
+            ]
+            writer.write_batch(arrow.record_batch(arrays, schema=schema))
+
+
+def _plain(value: Any, *, text: bool) -> Any:
+    return cell(value) if text and value is not None and not isinstance(value, str) else value
+
+
+def _arrow_type(arrow: Any, kinds: frozenset[type]) -> Any:
+    for taken, kind in (
+        ({bool}, arrow.bool_()),
+        ({int}, arrow.int64()),
+        ({int, float}, arrow.float64()),
+        ({list}, arrow.list_(arrow.float64())),
+    ):
+        if kinds and kinds <= taken:
+            return kind
+    return arrow.string()
+
+
+def _kinds(columns: Sequence[str], rows: Iterable[list[Any]]) -> dict[str, frozenset[type]]:
+    """The types of the values of each column, without None."""
+    found: list[set[type]] = [set() for _ in columns]
+    for row in rows:
+        for kinds, value in zip(found, row, strict=True):
+            kinds.add(type(value))
+    return {name: frozenset(kinds - {type(None)}) for name, kinds in zip(columns, found, strict=True)}
+
+
+WRITERS: Final[Mapping[str, Writer]] = {
+    ".csv": _write_csv_file,
+    ".sqlite": _write_database,
+    ".parquet": _write_parquet,
+}
+"""By the ending of the name."""

@@ -1,0 +1,193 @@
+"""A course from its file: CSV in metres, or GPX in degrees."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+from typing import Any, Final, cast
+
+import numpy as np
+import numpy.typing as npt
+
+from ..._support.csv_rows import CsvRow, csv_rows
+from ..._support.errors import ParameterError
+from ..._support.units import DEGREE
+from ..projection import GeodeticPoint, east_north_up
+from ..slope_frame import slope_axes
+from .built_in import course_names, course_place
+from .course import Course, Discipline
+from .gate import Gate, Side
+from .gpx_course import Waypoint, read_waypoints
+
+FloatArray = npt.NDArray[np.float64]
+
+SHARPEST: Final = 0.05
+"""Bend (rad) of the line from pole to pole below which it does not tell a gate's side."""
+_COLUMNS: Final = ("gate", "x_m", "y_m", "side")
+_OUTER: Final = ("outer_x_m", "outer_y_m")
+_ACTION: Final = (
+    "write one row for each gate, in their order, with its name, its turning pole in m and left or right, the side on "
+    "which it is passed, under a first line gate,x_m,y_m,side"
+)
+
+
+def read_course(
+    path: str | Path,
+    *,
+    discipline: Discipline | None = None,
+    latitude_deg: float | None = None,
+    longitude_deg: float | None = None,
+    fall_line_azimuth_deg: float | None = None,
+) -> Course:
+    """Read a course.
+
+    Parameters
+    ----------
+    path
+        A name of `course_names`, or the path of a file: CSV with the columns ``gate``,
+        ``x_m``, ``y_m``, ``side``, and where the outer poles are known ``outer_x_m``, ``outer_y_m``; or GPX with one
+        waypoint for each gate, in their order, whose type, symbol, comment, description or name says left or right.
+    discipline
+        Whose rules `course_warnings` looks at.
+    latitude_deg, longitude_deg
+        Where x and y of a GPX's gates are counted from; left out: its first waypoint.
+    fall_line_azimuth_deg
+        Kept for `on_slope`.
+
+    Returns
+    -------
+    Course
+        In the file's metres, or in metres east and north of the origin.
+
+    Raises
+    ------
+    ParameterError
+        The file cannot be read, or is no course; file, row, column and value are named.
+
+    See Also
+    --------
+    skisnow.time_gates : who passed them, and when.
+
+    References
+    ----------
+    The page docs/files/course.md.
+    """
+    name = str(path)
+    path = course_place(name) if name in course_names() else Path(path)
+    said: dict[str, Any] = {
+        "source": name, "discipline": discipline, "fall_line_azimuth_deg": fall_line_azimuth_deg,
+    }  # fmt: skip
+    if (latitude_deg is None) != (longitude_deg is None):
+        raise ParameterError(f"{path}: latitude and longitude of the origin go together; give both, or neither")
+    try:
+        if path.suffix.lower() != ".gpx":
+            return Course(gates=tuple(_gate(row) for row in _rows(path)), **said)
+        waypoints = read_waypoints(path)
+        return _geodetic_course(waypoints, latitude_deg, longitude_deg, said)
+    except ParameterError as error:
+        raise error if str(error).startswith(str(path)) else ParameterError(f"{path}: {error}") from error
+
+
+def _rows(path: Path) -> Iterator[CsvRow]:
+    return csv_rows(path, _COLUMNS, further=_OUTER, action=_ACTION)
+
+
+def _gate(row: CsvRow) -> Gate:
+    side = row.cells["side"].lower()
+    if side not in ("left", "right"):
+        raise row.refused("side", "must be left or right, the side on which the turning pole is passed")
+    if not row.cells["gate"]:
+        raise row.refused("gate", "is no name; give each gate a number or a name")
+    known = [name for name in _OUTER if row.cells.get(name)]
+    if len(known) == 1:
+        raise row.refused(known[0], "stands alone", action=f"give {' and '.join(_OUTER)}, or neither")
+    outer = (row.number("outer_x_m"), row.number("outer_y_m")) if known else None
+    place = (row.number("x_m"), row.number("y_m"))
+    return Gate(name=row.cells["gate"], turning=place, side=cast("Side", side), outer=outer)
+
+
+def _geodetic_course(
+    waypoints: list[Waypoint], latitude_deg: float | None, longitude_deg: float | None, said: dict[str, Any]
+) -> Course:
+    if not waypoints:
+        raise ParameterError("there is no waypoint; write one for each gate, in their order")
+    first = waypoints[0]
+    latitude = first.latitude_deg if latitude_deg is None else latitude_deg
+    longitude = first.longitude_deg if longitude_deg is None else longitude_deg
+    height = 0.0 if np.isnan(first.height) else first.height
+    points = np.array([(each.latitude_deg, each.longitude_deg, height) for each in waypoints])
+    place = east_north_up(points, origin=GeodeticPoint(latitude, longitude, height))[:, :2]
+    bends = _bends(place)
+    sides, assumed = [], []
+    for waypoint, bend in zip(waypoints, bends, strict=True):
+        side = waypoint.side or bend
+        if side is None:
+            raise ParameterError(
+                f"waypoint {waypoint.row}, {waypoint.name!r}, does not say on which side it is passed, and the gates "
+                "lie so straight there that their line does not tell either. Write left or right into its type"
+            )
+        sides.append(side)
+        if waypoint.side is None:
+            assumed.append(waypoint.name)
+    gates = tuple(
+        Gate(name=each.name, turning=(float(x), float(y)), side=side)
+        for each, (x, y), side in zip(waypoints, place, sides, strict=True)
+    )
+    warnings = (
+        (f"the side of {len(assumed)} gates was taken from the bends of the course: {', '.join(assumed)}",)
+        if assumed
+        else ()
+    )
+    return Course(
+        gates=gates, axes="east_north_up", latitude_deg=latitude, longitude_deg=longitude, warnings=warnings, **said
+    )
+
+
+def _bends(place: FloatArray) -> list[Side | None]:
+    """The outside of each bend of the line from pole to pole, where a turning pole is passed; at an end the other."""
+    ways = np.diff(place, axis=0)
+    angle = np.arctan2(ways[:-1, 0] * ways[1:, 1] - ways[:-1, 1] * ways[1:, 0], (ways[:-1] * ways[1:]).sum(axis=1))
+    inner: list[Side | None] = [
+        None if abs(each) < SHARPEST else "right" if each > 0.0 else "left" for each in angle.tolist()
+    ]
+    other: dict[Side | None, Side | None] = {"left": "right", "right": "left", None: None}
+    ends = [other[inner[0]], other[inner[-1]]] if inner else [None, None]
+    return [ends[0], *inner, ends[1]]
+
+
+def on_slope(course: Course, *, slope_angle: float | None) -> Course:
+    """A course in a scenario's x and y.
+
+    Parameters
+    ----------
+    course
+        In metres it stays as it is; in east and north it is turned by its `fall_line_azimuth_deg`.
+    slope_angle
+        Inclination of a plane slope (rad), whose x goes down the incline; None: x is horizontal.
+
+    Raises
+    ------
+    ParameterError
+        It is in degrees, and nothing says where x points.
+    """
+    if course.axes == "metres":
+        return course
+    if course.fall_line_azimuth_deg is None:
+        raise ParameterError(
+            f"{course.source}: its gates are in degrees; give course.fall_line_azimuth_deg, the compass direction in "
+            "which x points, and course.latitude_deg and course.longitude_deg of x = y = 0"
+        )
+    angle = slope_angle or 0.0
+    axes = slope_axes(course.fall_line_azimuth_deg * DEGREE, angle)
+
+    def turned(point: tuple[float, float]) -> tuple[float, float]:
+        up = -float(np.dot(axes[2, :2], point)) / float(axes[2, 2]) if angle else 0.0
+        x, y, _ = axes @ np.array([*point, up])
+        return float(x), float(y)
+
+    gates = tuple(
+        replace(gate, turning=turned(gate.turning), outer=None if gate.outer is None else turned(gate.outer))
+        for gate in course.gates
+    )
+    return replace(course, gates=gates, axes="metres")

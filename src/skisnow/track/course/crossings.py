@@ -1,0 +1,109 @@
+"""When and where a moving point crosses a line."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Final, Literal, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from ..._support.errors import ParameterError
+
+FloatArray: TypeAlias = npt.NDArray[np.float64]
+
+HALVINGS: Final = 60
+"""Of the interval between two points, until the time of a crossing has all its digits."""
+
+
+@dataclass(frozen=True, slots=True)
+class Crossing:
+    """One crossing of a line.
+
+    Attributes
+    ----------
+    time
+        (s) of the points' own clock.
+    aside
+        How far from the line's origin, along the line (m).
+    speed
+        In the plane (m/s).
+    forward
+        Whether it goes along the asked direction, or against it.
+    doubt
+        By how much the time differs from that of a straight way between the two points (s): what is not known between
+        them.
+    """
+
+    time: float
+    aside: float
+    speed: float
+    forward: bool
+    doubt: float
+
+
+class MovingPoint:
+    """A point that moves in a plane: places at times, and between them cubics with the velocities that they tell.
+
+    Parameters
+    ----------
+    time
+        (n,), rising (s), n ≥ 2.
+    place
+        (n, 2) (m).
+    velocity
+        (n, 2) (m/s); None: by differences of second order, which a constant acceleration makes exact.
+    """
+
+    def __init__(self, time: FloatArray, place: FloatArray, velocity: FloatArray | None = None) -> None:
+        self.time, self.place = np.asarray(time, float), np.asarray(place, float)
+        if len(self.time) < 2 or not np.all(np.diff(self.time) > 0.0):
+            raise ParameterError("gates need two places or more at rising times; this track has fewer")
+        order: Literal[1, 2] = 2 if len(self.time) > 2 else 1
+        known = np.gradient(self.place, self.time, axis=0, edge_order=order)
+        self.velocity = known if velocity is None else np.where(np.isfinite(velocity), velocity, known)
+
+    def crossings(self, origin: FloatArray, along: FloatArray, across: FloatArray) -> list[Crossing]:
+        """Every crossing of the line through `origin` (2,) along `across`, in their order.
+
+        `along` and `across` are unit vectors (2,), square to each other. A point on the line counts as beyond it.
+        """
+        beyond = (self.place - origin) @ along >= 0.0
+        return [
+            self._crossing(int(i), origin, along, across) for i in np.flatnonzero(np.diff(beyond.astype(np.int8)) != 0)
+        ]
+
+    def _crossing(self, i: int, origin: FloatArray, along: FloatArray, across: FloatArray) -> Crossing:
+        step = float(self.time[i + 1] - self.time[i])
+        first, last = (float((self.place[j] - origin) @ along) for j in (i, i + 1))
+        rates = (step * float(self.velocity[j] @ along) for j in (i, i + 1))
+        forward = last >= 0.0
+        high = _reached(first, last, *rates)
+        place, velocity = self._at(i, high)
+        straight = first / (first - last)
+        return Crossing(
+            time=float(self.time[i]) + high * step,
+            aside=float((place - origin) @ across),
+            speed=float(np.linalg.norm(velocity)),
+            forward=forward,
+            doubt=abs(high - straight) * step,
+        )
+
+    def _at(self, i: int, f: float) -> tuple[FloatArray, FloatArray]:
+        """Place and velocity at the share f of the interval i, by Hermite's cubic."""
+        h, e = float(self.time[i + 1] - self.time[i]), 1.0 - f
+        before, behind, v, w = self.place[i], self.place[i + 1], h * self.velocity[i], h * self.velocity[i + 1]
+        place = e * e * (1.0 + 2.0 * f) * before + f * f * (3.0 - 2.0 * f) * behind + f * e * e * v - f * f * e * w
+        rate = 6.0 * f * e * (behind - before) + e * (1.0 - 3.0 * f) * v + f * (3.0 * f - 2.0) * w
+        return place, rate / h
+
+
+def _reached(first: float, last: float, rate: float, last_rate: float) -> float:
+    """Share of an interval at which Hermite's cubic from `first` to `last` changes its sign as they do."""
+    low, high, forward = 0.0, 1.0, last >= 0.0
+    for _ in range(HALVINGS):
+        f = 0.5 * (low + high)
+        e = 1.0 - f
+        place = e * e * (1.0 + 2.0 * f) * first + f * f * (3.0 - 2.0 * f) * last + f * e * (e * rate - f * last_rate)
+        low, high = (low, f) if (place >= 0.0) is forward else (f, high)
+    return high

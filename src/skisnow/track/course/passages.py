@@ -1,0 +1,182 @@
+"""Gates passed or missed, and when."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Final, Literal, TypeAlias
+
+from ..._support.display import Facts, Shown, ShownFields, amount
+from .course import Course, GateLine
+from .crossings import Crossing, MovingPoint
+from .gate import Gate
+
+GateOutcome: TypeAlias = Literal["passed", "straddled", "missed", "backwards", "not_reached"]
+
+FARTHEST: Final = 50.0
+"""Distance (m) beside a turning pole beyond which a track that crosses the gate's line is somewhere else."""
+CLIMB_BACK: Final = 120.0
+"""Time (s) after a gate was missed within which it may still be passed (modelling assumption)."""
+BESIDE: Final = 2.0
+"""Time (s) between the crossings of the parts of one racer."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, repr=False)
+class Passage(ShownFields):
+    """What became of one gate.
+
+    Attributes
+    ----------
+    gate
+        The gate.
+    outcome
+        "passed": feet and ski tips crossed the gate's line between the poles; "straddled": with a pole between them;
+        "missed": beside it; "backwards": against the course only; "not_reached".
+    words
+        The same as a sentence.
+    time
+        (s) when the middle crossed the line, of the track's own clock; None where it did not.
+    speed
+        (m/s) then, seen from above.
+    clearance
+        From the nearer pole to the foot or tip that came nearest to it (m), below 0 beside the gate.
+    doubt
+        What the time depends on how the points are joined (s).
+    """
+
+    gate: Gate
+    outcome: GateOutcome
+    words: str
+    time: float | None = None
+    speed: float | None = None
+    clearance: float | None = None
+    doubt: float | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, repr=False, eq=False)
+class CourseResult(Shown):
+    """A course and what became of each of its gates.
+
+    Attributes
+    ----------
+    course
+        The course.
+    passages
+        One for each gate, in their order.
+    start_time
+        (s) of the track's first point: what times are counted from.
+
+    See Also
+    --------
+    skisnow.time_gates
+    """
+
+    course: Course
+    passages: tuple[Passage, ...]
+    start_time: float = 0.0
+
+    @property
+    def passed(self) -> int:
+        """How many gates were passed."""
+        return sum(each.outcome == "passed" for each in self.passages)
+
+    @property
+    def missed(self) -> tuple[str, ...]:
+        """Names of the gates that were not passed."""
+        return tuple(each.gate.name for each in self.passages if each.outcome != "passed")
+
+    @property
+    def times(self) -> tuple[float | None, ...]:
+        """Time at each gate (s), None where its line was not crossed."""
+        return tuple(each.time for each in self.passages)
+
+    @property
+    def fault(self) -> Passage | None:
+        """The first gate that was not passed, if any."""
+        return next((each for each in self.passages if each.outcome != "passed"), None)
+
+    def _facts(self) -> Facts:
+        first, last = self.passages[0].time, self.passages[-1].time
+        rows = [("course", repr(self.course).strip("<>"))]
+        if first is not None and last is not None:
+            rows.append(("first to last gate", amount(last - first, "s")))
+        if self.fault is not None:
+            rows.append(("first fault", self.fault.words))
+        return Facts(f"{self.passed} of {len(self.passages)} gates passed", tuple(rows))
+
+
+def passages(course: Course, middle: MovingPoint, parts: Mapping[str, MovingPoint]) -> CourseResult:
+    """What became of each gate.
+
+    Parameters
+    ----------
+    course
+        In the coordinates of the points.
+    middle
+        The point whose crossing is the time at a gate.
+    parts
+        By name, what must cross the line between the poles: both feet and both ski tips (FIS ICR 661.4.1). Without
+        them the middle alone.
+
+    Notes
+    -----
+    Gates are passed in their order. After a crossing beside its poles a gate may still be passed within two minutes, by
+    climbing back (661.4.1). The line ends at the poles (661.4.1.1, 661.4.1.2); without an outer pole it goes on, as in
+    a slalom with single poles (804.3). A crossing against the course does not count.
+    """
+    found: list[Passage] = []
+    after = float("-inf")
+    for gate, line in zip(course.gates, course.lines, strict=True):
+        passage = _passage(gate, line, after, middle, parts or {"track": middle})
+        after = after if passage.time is None else max(after, passage.time)
+        found.append(passage)
+    return CourseResult(course=course, passages=tuple(found), start_time=float(middle.time[0]))
+
+
+def _passage(
+    gate: Gate, line: GateLine, after: float, middle: MovingPoint, parts: Mapping[str, MovingPoint]
+) -> Passage:
+    crossed = middle.crossings(line.pole, line.along, line.across)
+    near = [each for each in crossed if each.time > after and abs(each.aside) <= FARTHEST]
+    tried = [each for each in near if each.forward]
+    tried = [each for each in tried if each.time <= tried[0].time + CLIMB_BACK]
+    if not tried:
+        backwards = any(0.0 < each.aside < line.width for each in near)
+        if backwards:
+            return Passage(
+                gate=gate, outcome="backwards", words=f"gate {gate.name} was crossed against the course only"
+            )
+        return Passage(gate=gate, outcome="not_reached", words=f"gate {gate.name} was not reached")
+    judged = [_judged(gate, line, each, parts) for each in tried]
+    return next((each for each in judged if each.outcome == "passed"), judged[0])
+
+
+def _judged(gate: Gate, line: GateLine, at: Crossing, parts: Mapping[str, MovingPoint]) -> Passage:
+    aside = {name: _aside(line, at, part) for name, part in parts.items()}
+    low, high = min(aside.values()), max(aside.values())
+    clearance = min(low, line.width - high)
+    outcome, words = _verdict(gate, line, low, high)
+    if outcome == "missed":
+        clearance = high if high <= 0.0 else line.width - low
+    return Passage(
+        gate=gate, outcome=outcome, words=words, time=at.time, speed=at.speed, clearance=clearance, doubt=at.doubt
+    )
+
+
+def _aside(line: GateLine, at: Crossing, part: MovingPoint) -> float:
+    """Where a part crossed the line, at about that time; where it did not, the middle counts."""
+    own = [each for each in part.crossings(line.pole, line.along, line.across) if each.forward]
+    own = [each for each in own if abs(each.time - at.time) <= BESIDE]
+    return min(own, key=lambda each: abs(each.time - at.time)).aside if own else at.aside
+
+
+def _verdict(gate: Gate, line: GateLine, low: float, high: float) -> tuple[GateOutcome, str]:
+    if low > 0.0 and high < line.width:
+        return "passed", f"gate {gate.name} was passed"
+    for place, pole in ((0.0, "turning"), (line.width, "outer")):
+        if low <= place <= high and low < high:
+            return "straddled", f"the {pole} pole of gate {gate.name} was straddled: it passed between the skis"
+    if high <= 0.0:
+        other = "right" if gate.side == "left" else "left"
+        return "missed", f"gate {gate.name} was missed: {abs(high):.2f} m to the {other} of its turning pole"
+    return "missed", f"gate {gate.name} was missed: {low - line.width:.2f} m beyond its outer pole"

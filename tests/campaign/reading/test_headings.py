@@ -1,0 +1,168 @@
+"""Tables with headings of their own: mapped by campaign.toml, proposed in one line, refused in another unit."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Mapping
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from skisnow.campaign import check_campaign, read_campaign
+from skisnow.campaign.reading.heading_words import proposed
+from skisnow.campaign.reading.table_forms import DENSITY, DROP_CONE, PENETRATION, SHEAR, TableForm
+from skisnow.cli import main
+
+WriteCampaign = Callable[[Mapping[str, str | bytes]], Path]
+
+GERMAN = {
+    "penetration.csv": """\
+Versuch;Standort;Stempel;Kantwinkel [°];Last [N];Eindringtiefe [mm];Datum;Bearbeiter
+P1;Süd;piece;30;70,5;1,25;23.11.2026 09:10;Huber
+P1;Süd;piece;30;140,5;2,5;;
+P1;Süd;piece;30;210,5;3,75;;
+""",
+    "shear.csv": """\
+Versuch;Standort;Platte;Kantwinkel [°];Tiefe [mm];Hebelarm [mm];Drehmoment [Nm];Datum
+S1;Süd;blade;90;5,5;300;12,25;23.11.26
+""",
+    "density.csv": "Probe;Standort;Dichte [kg/m³]\nD1;Süd;410,5\n",
+    "drop_cone.csv": "Versuch;Standort;Wiederholung;Kegeltiefe [mm]\nC1;Süd;1;12,5\n",
+}
+
+
+@pytest.fixture
+def german(small_campaign: dict[str, str]) -> dict[str, str | bytes]:
+    """As a German Excel writes it: semicolons, decimal commas, Windows-1252."""
+    tables = {name: text.encode("cp1252") for name, text in GERMAN.items()}
+    return {"campaign.toml": small_campaign["campaign.toml"], **tables}
+
+
+def test_the_proposal_is_one_line_a_file_and_does_what_it_says(
+    write_campaign: WriteCampaign, german: dict[str, str | bytes], capsys: pytest.CaptureFixture[str]
+) -> None:
+    folder = write_campaign(german)
+    assert main(["check", str(folder)]) == 1
+    printed = capsys.readouterr().out.splitlines()
+    errors = [line for line in printed if line.startswith("error ")]
+    assert len(errors) == 4
+    assert [line for line in printed if line.startswith("note: nothing need be done")] == [
+        "note: nothing need be done: Windows-1252 in penetration.csv, shear.csv, density.csv, drop_cone.csv; "
+        "semicolon in penetration.csv, shear.csv, density.csv, drop_cone.csv."
+    ]
+    lines = [found[0] for line in errors if (found := re.search(r"columns\.\w+ = \{.*?\}", line))]
+    german["campaign.toml"] = "\n".join([*lines, str(german["campaign.toml"])])
+    campaign = read_campaign(write_campaign(german))
+    assert campaign.penetration is not None
+    assert campaign.shear is not None
+    assert campaign.density is not None
+    assert campaign.drop_cone is not None
+    assert np.degrees(campaign.penetration.edge_angle).tolist() == pytest.approx([30.0])
+    assert (campaign.penetration.load.tolist(), campaign.penetration.penetration_depth[0]) == (
+        [70.5, 140.5, 210.5],
+        1.25e-3,
+    )
+    assert (campaign.shear.lever_arm[0], campaign.shear.moment[0]) == (0.3, 12.25)
+    assert (campaign.density.snow_density[0], campaign.drop_cone.drop_cone_depth[0]) == (410.5, 12.5e-3)
+    assert campaign.penetration.further["time"][0] == "2026-11-23T09:10:00"
+    assert not [problem for problem in campaign.problems if problem.needs_action]
+
+
+@pytest.mark.parametrize(
+    ("form", "headings", "columns"),
+    [
+        (
+            PENETRATION,
+            ["Nr.", "Hang", "Prüfkörper", "Aufkantwinkel / °", "Kraft (N)", "Einsinktiefe in mm", "Bemerkung"],
+            ["experiment", "site", "tool", "edge_angle_deg", "load_N", "depth_mm", "remark"],
+        ),
+        (
+            SHEAR,
+            ["Versuch Nr.", "Ort", "Scherplatte", "Winkel", "Tiefe", "Hebel [mm]", "M [Nm]", "Drehwinkel", "Dichte"],
+            ["experiment", "site", "plate", "edge_angle_deg", "depth_mm", "lever_arm_mm", "moment_Nm",
+             "turning_angle_deg", "snow_density_kg_per_m3"],
+        ),
+        (DENSITY, ["Proben-Nr.", "Stelle", "ρ", "Schneedichte (kg/m3)"], ["sample", "site", "snow_density_kg_per_m3"]),
+        (DENSITY, ["Versuch", "Ort", "Dichte [kg/m³]"], ["sample", "site", "snow_density_kg_per_m3"]),
+        (DROP_CONE, ["Test", "Ort", "Wdh", "Fallkegel [mm]"], ["test", "site", "drop_cone_depth_mm"]),
+        (PENETRATION, ["Essai", "Lieu", "Outil", "Angle [°]", "Force [N]", "Profondeur [mm]"],
+         ["experiment", "site", "tool", "edge_angle_deg", "load_N", "depth_mm"]),
+        (PENETRATION, ["Farbe", "Kurs", "x", ""], []),
+    ],
+)  # fmt: skip
+def test_headings_that_people_write(form: TableForm, headings: list[str], columns: list[str]) -> None:
+    assert list(proposed(form, headings).values()) == columns
+
+
+def test_a_title_above_the_headings_is_passed_over(
+    write_campaign: WriteCampaign, small_campaign: dict[str, str]
+) -> None:
+    small_campaign["density.csv"] = f"Hang am 23. November;;\n;;\n{small_campaign['density.csv'].replace(',', ';')}"
+    campaign = read_campaign(write_campaign(small_campaign))
+    assert campaign.density is not None
+    assert campaign.density.row.tolist() == [4, 5, 6]
+
+
+def test_many_alike_are_counted(
+    write_campaign: WriteCampaign, small_campaign: dict[str, str], capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Merged cells: a name in the first row alone."""
+    rows = [f"{'D1' if row == 2 else ''},Süd,{300 + row}" for row in range(2, 20)]
+    table = "\n".join(["sample,site,snow_density_kg_per_m3", *rows])
+    assert main(["check", str(write_campaign({**small_campaign, "density.csv": table}))]) == 1
+    printed = capsys.readouterr().out.splitlines()
+    assert len([line for line in printed if line.startswith("error out_of_range: density.csv, row")]) == 10
+    assert (
+        "error out_of_range: density.csv, column sample: 7 more like these, up to row 19; --json lists all" in printed
+    )
+    assert printed[-1] == "errors: 17, warnings: 0, flags: 0"
+
+
+def test_a_unit_of_another_quantity_is_neither_proposed_nor_taken(
+    write_campaign: WriteCampaign, german: dict[str, str | bytes], small_campaign: dict[str, str]
+) -> None:
+    table = GERMAN["penetration.csv"].replace("Eindringtiefe [mm]", "Eindringtiefe [kg]")
+    files = {**german, "penetration.csv": table, "shear.csv": small_campaign["shear.csv"]}
+    problem = next(problem for problem in check_campaign(write_campaign(files)) if problem.severity == "error")
+    assert "depth_mm" not in problem.action.split("}")[0]
+    assert "No heading looks like depth_mm" in problem.action
+    assert "Convert first: Eindringtiefe [kg] names kg" in problem.action
+    mapped = f'columns."Eindringtiefe [kg]" = "depth_mm"\n{small_campaign["campaign.toml"]}'
+    table = small_campaign["penetration.csv"].replace("depth_mm", "Eindringtiefe [kg]")
+    (problem,) = check_campaign(write_campaign({**small_campaign, "campaign.toml": mapped, "penetration.csv": table}))
+    assert (problem.severity, problem.code, problem.row, problem.column) == ("error", "other_unit", 1, "depth_mm")
+
+
+def test_a_mapping_of_one_table_comes_before_that_of_all(
+    write_campaign: WriteCampaign, small_campaign: dict[str, str]
+) -> None:
+    mapping = '[columns]\n"Tiefe" = "depth_mm"\nOrt = "site"\n[columns.drop_cone]\nTIEFE = "drop_cone_depth_mm"\n'
+    small_campaign["campaign.toml"] += mapping
+    for name in ("penetration.csv", "shear.csv"):
+        small_campaign[name] = small_campaign[name].replace("depth_mm", "Tiefe", 1).replace(",site,", ",Ort,")
+    small_campaign["drop_cone.csv"] = small_campaign["drop_cone.csv"].replace("drop_cone_depth_mm", "Tiefe")
+    campaign = read_campaign(write_campaign(small_campaign))
+    assert campaign.problems == ()
+    assert campaign.drop_cone is not None
+    assert campaign.drop_cone.drop_cone_depth[0] == 12.5e-3
+    assert campaign.shear is not None
+    assert campaign.shear.penetration_depth[0] == 5.5e-3
+
+
+@pytest.mark.parametrize(
+    ("line", "column", "told"),
+    [
+        ('columns."Last" = "load"', "columns.Last", "Is load_N meant?"),
+        ("columns.Last = 3", "columns.Last", "both in quotes"),
+        ('columns.penetration.x = "moment_Nm"', "columns.penetration.x", "both in quotes"),
+        ('columns = "x"', "columns", "[columns]"),
+    ],
+)
+def test_a_mapping_to_no_column_is_refused(
+    write_campaign: WriteCampaign, small_campaign: dict[str, str], line: str, column: str, told: str
+) -> None:
+    small_campaign["campaign.toml"] = f"{line}\n{small_campaign['campaign.toml']}"
+    (problem,) = check_campaign(write_campaign(small_campaign))
+    assert (problem.code, problem.column) == ("bad_toml", column)
+    assert told in problem.action

@@ -1,0 +1,127 @@
+"""What only several cells or files together tell: mixed experiments, unknown tools, angles."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from pathlib import Path
+
+import pytest
+
+from skisnow.campaign import Problem, check_campaign, read_campaign
+from skisnow.campaign.problems import lines_of
+
+WriteCampaign = Callable[[Mapping[str, str | bytes]], Path]
+Where = tuple[str, str, int | None, str | None, str | None, str | None]
+
+PEN, SHEAR, DENSITY, CONE = "penetration.csv", "shear.csv", "density.csv", "drop_cone.csv"
+
+
+def where(problem: Problem) -> Where:
+    return (problem.code, problem.file, problem.row, problem.column, problem.experiment, problem.value)
+
+
+CHANGES: list[tuple[str, str, str, list[Where]]] = [
+    (PEN, "piece,30,140", "piece,35,140", [("mixed_experiment", PEN, 3, "edge_angle_deg", "P1", "35")]),
+    (PEN, "Süd,piece,30,140", "Nord,piece,30,140", [("mixed_experiment", PEN, 3, "site", "P1", "Nord")]),
+    (PEN, "P2,Nord,disc 100,0,140", "P2,Nord,roll,0,140", [("mixed_experiment", PEN, 6, "tool", "P2", "roll")]),
+    (PEN, "210.5,3.75,a", "210.5,3.75,b", [("mixed_experiment", PEN, 4, "spot", "P1", "b")]),
+    (PEN, "210.5,3.75,a", "210.5,3.75,", []),
+    (PEN, "piece,30,140", "piece,30.0,140", []),
+    (SHEAR, "S2", "S1", [("mixed_experiment", SHEAR, 3, "experiment", "S1", "S1")]),
+    (CONE, "C2,Süd", "C1,Nord", [("mixed_experiment", CONE, 4, "site", "C1", "Nord")]),
+    (PEN, "disc 100,0,140", "disc 100,5,140", [
+        ("mixed_experiment", PEN, 6, "edge_angle_deg", "P2", "5"),
+        ("out_of_range", PEN, 6, "edge_angle_deg", "P2", "5"),
+    ]),
+    (SHEAR, "Nord,blade", "Nord,spade", [("unknown_plate", SHEAR, 3, "plate", "S2", "spade")]),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("file", "old", "new", "expected"), CHANGES)
+def test_rows_that_disagree(
+    write_campaign: WriteCampaign, small_campaign: dict[str, str], file: str, old: str, new: str, expected: list[Where]
+) -> None:
+    assert small_campaign[file].count(old) == 1
+    small_campaign[file] = small_campaign[file].replace(old, new)
+    assert [where(problem) for problem in check_campaign(write_campaign(small_campaign))] == expected
+
+
+def test_an_experiment_that_is_told_in_two_places(
+    write_campaign: WriteCampaign, small_campaign: dict[str, str]
+) -> None:
+    small_campaign[PEN] += "P1,Süd,piece,30,280.5,5,a,,,\n"
+    (problem,) = check_campaign(write_campaign(small_campaign))
+    assert where(problem) == ("mixed_experiment", PEN, 7, "experiment", "P1", "P1")
+    assert "row 2" in problem.allowed
+
+
+def test_the_spot_may_stand_in_any_row(write_campaign: WriteCampaign, small_campaign: dict[str, str]) -> None:
+    small_campaign[PEN] = small_campaign[PEN].replace("1.25,a", "1.25,").replace("3.75,a", "3.75,")
+    tests = read_campaign(write_campaign(small_campaign)).penetration
+    assert tests is not None
+    assert tests.spot == ("a", "")
+
+
+def test_samples_of_one_name_are_fine(write_campaign: WriteCampaign, small_campaign: dict[str, str]) -> None:
+    small_campaign[DENSITY] = small_campaign[DENSITY].replace("D2", "D1")
+    assert check_campaign(write_campaign(small_campaign)) == ()
+
+
+def test_unknown_tool_is_told_once_in_each_experiment(
+    write_campaign: WriteCampaign, small_campaign: dict[str, str]
+) -> None:
+    small_campaign[PEN] = small_campaign[PEN].replace("piece", "Piece").replace("disc 100", "disc")
+    problems = check_campaign(write_campaign(small_campaign))
+    assert [where(problem) for problem in problems] == [
+        ("unknown_tool", PEN, 2, "tool", "P1", "Piece"),
+        ("unknown_tool", PEN, 5, "tool", "P2", "disc"),
+    ]
+    assert "disc 100, piece, roll" in problems[0].allowed
+
+
+def test_unknown_tool_of_two_experiments_is_one_line(
+    write_campaign: WriteCampaign, small_campaign: dict[str, str]
+) -> None:
+    table = small_campaign[PEN].replace("piece", "Piece").replace("disc 100", "Piece")
+    small_campaign[PEN] = table.replace("P2,Nord,Piece,0", "P2,Nord,Piece,30")
+    problems = check_campaign(write_campaign(small_campaign))
+    lines = [line for line in lines_of(problems) if "unknown_tool" in line]
+    assert [problem.experiment for problem in problems if problem.code == "unknown_tool"] == ["P1", "P2"]
+    assert len(lines) == 1
+    assert "penetration.csv, row 2, column tool (experiment P1 and 1 more, up to row 5): found 'Piece'" in lines[0]
+
+
+@pytest.mark.parametrize("tool", ["disc 100", "roll"])
+def test_tools_without_an_edge_lie_flat(
+    write_campaign: WriteCampaign, small_campaign: dict[str, str], tool: str
+) -> None:
+    small_campaign[PEN] = small_campaign[PEN].replace("disc 100,0", f"{tool},10")
+    problems = check_campaign(write_campaign(small_campaign))
+    assert [where(problem) for problem in problems] == [("out_of_range", PEN, 5, "edge_angle_deg", "P2", "10")]
+
+
+@pytest.mark.parametrize(("angle", "warned"), [("60", False), ("60.5", True), ("89.9", True)])
+def test_steep_angles_are_warned_of(
+    write_campaign: WriteCampaign, small_campaign: dict[str, str], angle: str, warned: bool
+) -> None:
+    small_campaign[PEN] = small_campaign[PEN].replace("piece,30", f"piece,{angle}")
+    problems = check_campaign(write_campaign(small_campaign))
+    expected = ("angle_above_60", PEN, 2, "edge_angle_deg", "P1", angle)
+    assert [(problem.severity, where(problem)) for problem in problems] == [("warning", expected)] * warned
+
+
+@pytest.mark.parametrize(("angle", "warned"), [("1.6", False), ("1.5708", True), ("0.5236", True)])
+def test_angles_that_look_like_radians(
+    write_campaign: WriteCampaign, small_campaign: dict[str, str], angle: str, warned: bool
+) -> None:
+    small_campaign[PEN] = small_campaign[PEN].replace("piece,30", f"piece,{angle}")
+    problems = check_campaign(write_campaign(small_campaign))
+    expected = ("angles_look_like_radians", PEN, None, "edge_angle_deg", None, f"{angle} to {angle}")
+    assert [(problem.severity, where(problem)) for problem in problems] == [("warning", expected)] * warned
+
+
+def test_flat_tests_alone_do_not_look_like_radians(
+    write_campaign: WriteCampaign, small_campaign: dict[str, str]
+) -> None:
+    small_campaign[PEN] = small_campaign[PEN].replace("piece,30", "piece,0")
+    assert check_campaign(write_campaign(small_campaign)) == ()

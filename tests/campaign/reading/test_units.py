@@ -1,0 +1,358 @@
+"""Units of tables: stated ones are believed and converted; numbers that look like another unit than a silent heading's
+column are errors with the result for both readings.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from skisnow import write_reference
+from skisnow.campaign import Campaign, Problem, check_campaign, read_campaign
+
+WriteCampaign = Callable[[Mapping[str, str | bytes]], Path]
+SHARED = Path(__file__).parents[3].parent / "shared"
+CASE = SHARED / "cases" / "campaign" / "one-sheet-a-site.xlsx"
+SAND = SHARED / "data" / "plates-in-sand" / "plates_large_box_7level.csv"
+COLUMNS = {
+    "Versuch": "experiment", "Ort": "site", "Werkzeug": "tool", "Blatt": "plate", "Kantwinkel": "edge_angle_deg",
+    "Last": "load_N", "Tiefe": "depth_mm", "Hebelarm": "lever_arm_mm", "Drehmoment": "moment_Nm",
+    "Probe": "sample", "Dichte": "snow_density_kg_per_m3",
+}  # fmt: skip
+TOOLS = """
+[[tool]]
+name = "ski"
+shape = "ski"
+length_mm = 200
+width_mm = 62
+[[tool]]
+name = "disc"
+shape = "disc"
+diameter_mm = 100
+[[plate]]
+name = "blade"
+length_mm = 100
+"""
+LOADS = "1,A,ski,30,10,0.63\n1,A,ski,30,30,1.11\n1,A,ski,30,50,1.41\n"
+SHEAR = "S1,A,blade,90,5.8,250,23.1\nS2,A,blade,60,4.4,250,20.1\n"
+
+
+def campaign(
+    loads: str = LOADS,
+    shear: str = SHEAR,
+    *,
+    load: str = "Last",
+    arm: str = "Hebelarm",
+    toml: str = "",
+    mapped: Mapping[str, str] | None = None,
+    **further: str,
+) -> dict[str, str]:
+    """Tables with headings of their own, which state no unit but that of `load` and `arm`."""
+    columns = COLUMNS | {load: "load_N", arm: "lever_arm_mm"} | dict(mapped or {})
+    lines = [f'columns."{heading}" = "{column}"' for heading, column in columns.items() if heading != column]
+    files = {
+        "campaign.toml": "\n".join([*lines, toml, TOOLS]),
+        "penetration.csv": f"Versuch,Ort,Werkzeug,Kantwinkel,{load},Tiefe\n{loads}",
+        "shear.csv": f"Versuch,Ort,Blatt,Kantwinkel,Tiefe,{arm},Drehmoment\n{shear}",
+    }
+    return files | {f"{name}.csv": text for name, text in further.items()}
+
+
+def problems(folder: Path) -> list[Problem]:
+    return [each for each in check_campaign(folder) if each.needs_action]
+
+
+def loads_of(read: Campaign) -> list[float]:
+    assert read.penetration is not None
+    return [float(each) for each in read.penetration.load]
+
+
+def test_loads_that_look_like_kg_are_refused_with_both_readings(write_campaign: WriteCampaign) -> None:
+    """H_V = F / V with V = L e² / (2 tan 30°): 50 N and 490.3 N on 200 mm of ski, 1.41 mm deep."""
+    (problem,) = problems(write_campaign(campaign()))
+    place = (problem.severity, problem.code, problem.file, problem.row, problem.column, problem.experiment)
+    assert place == ("error", "unit_missing", "penetration.csv", 4, "load_N", "1")
+    volume = 200.0 * 1.41**2 / (2.0 * math.tan(math.radians(30.0)))
+    assert f"{50.0 / volume:.4g} N/mm³ if they are in N" in problem.action
+    assert f"{50.0 * 9.80665 / volume:.4g} in kg" in problem.action
+    assert 'units."Last" = "kg"' in problem.action
+    assert "Last [kg]" in problem.action
+
+
+@pytest.mark.parametrize(
+    "heading", ["Last [kg]", "Last (kg)", "Last / kg", "Last in kg", "Last kg", "Last_kg", "LAST [KG]"]
+)
+def test_a_heading_in_kg_is_believed(write_campaign: WriteCampaign, heading: str) -> None:
+    folder = write_campaign(campaign(load=heading))
+    assert loads_of(read_campaign(folder)) == pytest.approx([98.0665, 294.1995, 490.3325])
+    assert [each.code for each in check_campaign(folder)] == ["converted_unit"]
+
+
+@pytest.mark.parametrize("heading", ["Last [N]", "Last (N)", "Last / N", "Last N", "Last_N", "load_N"])
+def test_a_heading_in_newtons_is_believed(write_campaign: WriteCampaign, heading: str) -> None:
+    folder = write_campaign(campaign(load=heading))
+    assert loads_of(read_campaign(folder)) == [10.0, 30.0, 50.0]
+    assert check_campaign(folder) == ()
+
+
+@pytest.mark.parametrize(
+    ("line", "factor"),
+    [
+        ('units."Last" = "kg"', 9.80665),
+        ("units.last = 'KG'", 9.80665),
+        ('units.penetration.Last = "kg"', 9.80665),
+        ('units.Last = "N"', 1.0),
+        ('units.Last = "N"\nunits.penetration.Last = "kN"', 1000.0),
+    ],
+)
+def test_a_unit_in_campaign_toml_is_believed(write_campaign: WriteCampaign, line: str, factor: float) -> None:
+    folder = write_campaign(campaign(toml=line))
+    assert loads_of(read_campaign(folder)) == pytest.approx([10.0 * factor, 30.0 * factor, 50.0 * factor])
+
+
+@pytest.mark.parametrize(
+    ("loads", "refused"),
+    [
+        ([10, 30, 50], True),
+        ([10.5, 30, 79.5], True),
+        ([10, 30, 80], False),
+        ([10, 30.25, 50], False),
+        ([12, 92, 492], False),
+        ([98.07, 196.13], False),
+    ],
+)
+def test_loads_that_are_refused(write_campaign: WriteCampaign, loads: list[float], refused: bool) -> None:
+    rows = "".join(f"1,A,ski,30,{load},{0.1 * i + 0.5}\n" for i, load in enumerate(loads))
+    assert bool(problems(write_campaign(campaign(rows)))) is refused
+
+
+def test_each_tool_is_judged_separately(write_campaign: WriteCampaign) -> None:
+    """The disc's loads are small; those of the ski are not, and unloading and an empty table change nothing."""
+    rows = "1,A,ski,30,100,0.63\n1,A,ski,30,300,1.11\n2,A,disc,0,20,0.5\n2,A,disc,0,40,1.0\n"
+    (problem,) = problems(write_campaign(campaign(rows)))
+    area = math.pi * 50.0**2
+    assert (problem.row, problem.experiment) == (5, "2")
+    assert f"{40.0 / (area * 1.0):.4g} N/mm³ if they are in N" in problem.action
+
+
+def test_lever_arms_in_cm_are_refused_with_both_readings(write_campaign: WriteCampaign) -> None:
+    """S_f = M / (r L e): 23.1 N m at 25 mm and at 250 mm on 100 mm of blade, 5.8 mm deep."""
+    (problem,) = problems(write_campaign(campaign(shear="S1,A,blade,90,5.8,25,23.1\n", load="Last [N]")))
+    assert (problem.code, problem.row, problem.column) == ("unit_missing", 2, "lever_arm_mm")
+    assert f"{23.1e3 / (25.0 * 100.0 * 5.8):.4g} N/mm² if they are in mm" in problem.action
+    assert f"{23.1e3 / (250.0 * 100.0 * 5.8):.4g} in cm" in problem.action
+
+
+@pytest.mark.parametrize(
+    ("arm", "cell", "millimetres"),
+    [
+        ("Hebelarm [cm]", 25, 250.0),
+        ("Hebelarm [m]", 0.25, 250.0),
+        ("Hebelarm_m", 6, 6000.0),
+        ("Hebelarm [mm]", 25, 25.0),
+        ("lever_arm_mm", 6000, 6000.0),
+    ],
+)
+def test_stated_lever_arms_are_believed(
+    write_campaign: WriteCampaign, arm: str, cell: float, millimetres: float
+) -> None:
+    folder = write_campaign(campaign(shear=f"S1,A,blade,90,5.8,{cell},23.1\n", arm=arm, load="Last [N]"))
+    assert not [each for each in problems(folder) if each.severity == "error"]
+    shear = read_campaign(folder).shear
+    assert shear is not None
+    assert float(shear.lever_arm[0]) == pytest.approx(1e-3 * millimetres)
+
+
+@pytest.mark.parametrize(("arm", "unit"), [(0.25, "m"), (25, "cm"), (60, "cm"), (5001, "µm"), (250000, "µm")])
+def test_lever_arms_that_are_refused(write_campaign: WriteCampaign, arm: float, unit: str) -> None:
+    (problem,) = problems(write_campaign(campaign(shear=f"S1,A,blade,90,5.8,{arm},23.1\n", load="Last [N]")))
+    assert (problem.code, problem.severity) == ("unit_missing", "error")
+    assert f'units."Hebelarm" = "{unit}"' in problem.action
+
+
+def test_one_lever_arm_above_five_metres_is_enough(write_campaign: WriteCampaign) -> None:
+    rows = SHEAR + "S3,A,blade,90,5.8,5000.5,23.1\n"
+    (problem,) = [each for each in problems(write_campaign(campaign(shear=rows, load="Last [N]"))) if each.row]
+    assert problem.code == "unit_missing"
+
+
+@pytest.mark.parametrize(
+    ("heading", "column", "cells", "unit"),
+    [
+        ("Dichte", "snow_density_kg_per_m3", "0.41", "g/cm³"),
+        ("Drehmoment", "moment_Nm", "2310", "N mm"),
+        ("Tiefe", "depth_mm", "0.0058", "m"),
+    ],
+)
+def test_other_quantities_below_silent_headings(
+    write_campaign: WriteCampaign, heading: str, column: str, cells: str, unit: str
+) -> None:
+    row = {"Tiefe": "5.8", "Drehmoment": "23.1"} | {heading: cells}
+    files = campaign(shear=f"S1,A,blade,90,{row['Tiefe']},250,{row['Drehmoment']}\n", load="Last [N]")
+    if heading == "Dichte":
+        files["density.csv"] = f"Probe,Ort,Dichte\nD1,A,{cells}\n"
+    (problem,) = problems(write_campaign(files))
+    assert (problem.severity, problem.code, problem.column) == ("error", "unit_missing", column)
+    assert unit in problem.action
+
+
+@pytest.mark.parametrize(
+    ("heading", "column", "cell", "value"),
+    [
+        ("Dichte [g/cm³]", "snow_density_kg_per_m3", 0.41, 410.0),
+        ("Dichte g/cm3", "snow_density_kg_per_m3", 0.41, 410.0),
+        ("Dichte [kg/l]", "snow_density_kg_per_m3", 0.41, 410.0),
+        ("Dichte [g/l]", "snow_density_kg_per_m3", 410.0, 410.0),
+    ],
+)
+def test_densities_are_converted(
+    write_campaign: WriteCampaign, heading: str, column: str, cell: float, value: float
+) -> None:
+    files = campaign(load="Last [N]", mapped={heading: column}, density=f"Probe,Ort,{heading}\nD1,A,{cell}\n")
+    density = read_campaign(write_campaign(files)).density
+    assert density is not None
+    assert density.snow_density.tolist() == pytest.approx([value])
+
+
+@pytest.mark.parametrize(
+    ("heading", "cell", "degrees"),
+    [("Winkel [rad]", 0.5, 28.64788975654116), ("Winkel [°]", 30, 30.0), ("Winkel [Grad]", 30, 30.0)],
+)
+def test_angles_are_converted(write_campaign: WriteCampaign, heading: str, cell: float, degrees: float) -> None:
+    files = campaign(load="Last [N]", mapped={heading: "edge_angle_deg"})
+    files["penetration.csv"] = f"Versuch,Ort,Werkzeug,{heading},Last [N],Tiefe\n1,A,ski,{cell},100.5,1.2\n"
+    tests = read_campaign(write_campaign(files)).penetration
+    assert tests is not None
+    assert np.degrees(tests.edge_angle).tolist() == pytest.approx([degrees])
+
+
+def test_ranges_and_corrections_are_those_of_the_file(write_campaign: WriteCampaign) -> None:
+    """500 cm are within the range of 5 m; a correction names the cell as it is written."""
+    corrections = (
+        "file,experiment,row,column,old,new,who,when,why\npenetration.csv,1,3,load_N,30,31,A,2026-01-01,misread\n"
+    )
+    folder = write_campaign(campaign(load="Last [kg]", corrections=corrections))
+    assert loads_of(read_campaign(folder))[1] == pytest.approx(31.0 * 9.80665)
+    files = campaign(
+        load="Last [N]",
+        mapped={"Dichte [g/cm³]": "snow_density_kg_per_m3"},
+        density="Probe,Ort,Dichte [g/cm³]\nD1,A,0.95\n",
+    )
+    (problem,) = problems(write_campaign(files))
+    assert (problem.code, problem.value) == ("out_of_range", "0.95 g/cm³")
+
+
+@pytest.mark.parametrize(
+    ("changes", "code", "file", "column"),
+    [
+        ({"toml": 'units.Last = "kgg"'}, "bad_toml", "campaign.toml", "units.Last"),
+        ({"toml": "units.Last = 3"}, "bad_toml", "campaign.toml", "units.Last"),
+        ({"toml": 'units.Lasst = "kg"', "load": "Last [N]"}, "bad_toml", "campaign.toml", "units.lasst"),
+        ({"toml": 'units.shear.Last = "kg"', "load": "Last [N]"}, "bad_toml", "campaign.toml", "units.shear.last"),
+        ({"toml": 'units.Last = "mm"'}, "other_unit", "penetration.csv", "load_N"),
+        ({"toml": 'units."Last [N]" = "kg"', "load": "Last [N]"}, "other_unit", "penetration.csv", "load_N"),
+        ({"toml": 'units.load_N = "kg"', "load": "load_N"}, "other_unit", "penetration.csv", "load_N"),
+        ({"load": "Last [MN]"}, "other_unit", "penetration.csv", "load_N"),
+    ],
+)
+def test_units_that_cannot_be_are_refused(
+    write_campaign: WriteCampaign, changes: dict[str, Any], code: str, file: str, column: str
+) -> None:
+    found = [each for each in problems(write_campaign(campaign(**changes))) if each.severity == "error"]
+    assert (code, file, column) in [(each.code, each.file, each.column) for each in found]
+
+
+@pytest.mark.parametrize("units", ["Nr.,,,°,kg,mm", ",,,[°],[kg],[mm]", "-,-,-,,kg,mm"])
+def test_a_row_of_units_below_the_headings_is_believed(write_campaign: WriteCampaign, units: str) -> None:
+    folder = write_campaign(campaign(f"{units}\n{LOADS}"))
+    read = read_campaign(folder)
+    assert loads_of(read) == pytest.approx([98.0665, 294.1995, 490.3325])
+    assert read.penetration is not None
+    assert read.penetration.row.tolist() == [3, 4, 5]
+    assert not problems(folder)
+
+
+def test_a_row_of_units_that_contradicts_is_refused(write_campaign: WriteCampaign) -> None:
+    for changes in ({"load": "Last [N]"}, {"load": "load_N"}, {"toml": 'units.Last = "N"'}):
+        (problem,) = problems(write_campaign(campaign(f",,,°,kg,mm\n{LOADS}", **changes)))  # type: ignore[arg-type]
+        assert (problem.code, problem.column) == ("other_unit", "load_N")
+
+
+def test_a_row_with_numbers_is_not_one_of_units(write_campaign: WriteCampaign) -> None:
+    found = problems(write_campaign(campaign(f"1,A,ski,30,kg,mm\n{LOADS}", load="Last [kg]")))
+    assert [(each.code, each.row) for each in found] == [("not_a_number", 2), ("not_a_number", 2)]
+
+
+def test_the_same_unit_twice_is_no_contradiction(write_campaign: WriteCampaign) -> None:
+    folder = write_campaign(campaign(load="Last [kg]", toml='units."Last [kg]" = "kgf"'))
+    assert loads_of(read_campaign(folder))[0] == pytest.approx(98.0665)
+
+
+def test_columns_that_are_kept_as_text_are_not_converted(write_campaign: WriteCampaign) -> None:
+    files = campaign(load="Last [N]", mapped={"Luft [°F]": "air_temperature_C"})
+    files["penetration.csv"] = "Versuch,Ort,Werkzeug,Kantwinkel,Last [N],Tiefe,Luft [°F]\n1,A,ski,30,100,1.2,14\n"
+    (problem,) = problems(write_campaign(files))
+    assert (problem.code, problem.column) == ("other_unit", "air_temperature_C")
+
+
+def silent(folder: Path) -> Path:
+    """A campaign with headings that state no unit, in place of its own names."""
+    names = {column: heading for heading, column in COLUMNS.items()} | {"drop_cone_depth_mm": "Kegel"}
+    lines = []
+    for table in folder.glob("*.csv"):
+        head, rest = table.read_text(encoding="utf-8").split("\n", 1)
+        headings = [names.get(column, column) for column in head.split(",")]
+        pairs = zip(headings, head.split(","), strict=True)
+        lines += [f'columns.{table.stem}."{heading}" = "{column}"' for heading, column in pairs if heading != column]
+        table.write_text("\n".join((",".join(headings), rest)), encoding="utf-8")
+    toml = folder / "campaign.toml"
+    toml.write_text("\n".join((*lines, toml.read_text(encoding="utf-8"))), encoding="utf-8")
+    return folder
+
+
+@pytest.mark.parametrize("seeds", [range(3), pytest.param(range(3, 200), marks=pytest.mark.slow)])
+def test_no_reference_campaign_is_refused(tmp_path: Path, seeds: range) -> None:
+    for seed in seeds:
+        folder = tmp_path / str(seed)
+        write_reference(folder, seed=seed)
+        assert problems(silent(folder)) == []
+
+
+@pytest.mark.skipif(not SAND.is_file(), reason="../shared is not beside this folder")
+def test_no_shared_data_are_refused(write_campaign: WriteCampaign) -> None:
+    """Plates in sand, a disc each; their loads go up to 460 N and have three decimals."""
+    rows = [line.split(",") for line in SAND.read_text(encoding="utf-8").splitlines()[1:]]
+    table = "".join(f"{trial},A,disc,0,{load},{depth}\n" for trial, _, _, depth, load in rows)
+    found = [each.code for each in problems(write_campaign(campaign(table)))]
+    assert "unit_missing" not in found
+
+
+@pytest.mark.skipif(not CASE.is_file(), reason="../shared is not beside this folder")
+def test_shared_case_reshaped_by_hand(write_campaign: WriteCampaign) -> None:
+    """H_V of series 2 of the upper and of series 6 of the lower slope, and S_f of S1, as the cases' README has them."""
+    import openpyxl
+
+    from skisnow import analyse, results_dict
+
+    loads, shear = "", ""
+    for sheet in openpyxl.load_workbook(CASE).worksheets[:2]:
+        cells = sheet.iter_rows(values_only=True)
+        rows = [["" if each is None else str(each).replace(",", ".") for each in row] for row in cells]
+        series = angle = ""
+        for name, tilt, load, depth, *_ in rows[6:36]:
+            series, angle = name or series, tilt or angle
+            loads += f"{sheet.title} {series},{sheet.title},ski,{angle},{load},{depth}\n"
+        for name, tilt, depth, arm, moment, *_ in rows[40:45]:
+            shear += f"{sheet.title} {name},{sheet.title},blade,{tilt},{depth},{arm},{moment}\n"
+    assert {each.column for each in problems(write_campaign(campaign(loads, shear)))} == {"load_N", "lever_arm_mm"}
+    folder = write_campaign(campaign(loads, shear, toml='units.Last = "kg"\nunits.Hebelarm = "cm"'))
+    results = results_dict(analyse(read_campaign(folder), n_resamples=100))
+    hardness = {each["experiment"]: each["H_V_N_per_mm3"] for each in results["penetration"]["experiments"]}
+    assert [hardness["Hang oben 2"], hardness["Hang unten 6"]] == pytest.approx([1.424, 0.896], rel=1e-3)
+    stress = {each["experiment"]: each["S_f_N_per_mm2"] for each in results["shear"]["experiments"]}
+    assert stress["Hang oben S1"] == pytest.approx(0.159, abs=5e-4)

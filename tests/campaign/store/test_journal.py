@@ -1,0 +1,241 @@
+"""A campaign that is being entered: nothing is overwritten, and its files are read as any campaign's."""
+
+import csv
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from sqlalchemy import insert
+from sqlalchemy.exc import IntegrityError
+
+from skisnow._support.errors import StoreError
+from skisnow.campaign import read_campaign
+from skisnow.campaign.store import Journals, NewEntry, OvertakenError, Store, campaign_files, replayed, write_campaign
+from skisnow.campaign.store.engine import writing
+from skisnow.campaign.store.schema import journal_entry
+
+TOML = """name = "a day"
+gauge_resolution_mm = 0.01
+load_steps_N = [20.0, 40.0, 60.0]
+[[tool]]
+name = "piece"
+shape = "ski"
+length_mm = 200.0
+width_mm = 62.0
+[[plate]]
+name = "p"
+length_mm = 100.0
+"""
+
+
+def reading(test: str, position: int, load: str, depth: str) -> NewEntry:
+    cells = {"experiment": test, "site": "A", "tool": "piece", "edge_angle_deg": "30", "load_N": load}
+    return NewEntry(
+        action="add",
+        file="penetration.csv",
+        test=test,
+        position=position,
+        cells={**cells, "depth_mm": depth},
+        who="Ada",
+    )
+
+
+def campaign_with(journals: Journals, *depths: str) -> tuple[str, int]:
+    """A journal with one series "1"; its id and the last sequence."""
+    id_, last = journals.begin(TOML), 0
+    for position, depth in enumerate(depths):
+        entry = reading("1", position, str(20 * (position + 1)), depth)
+        last = journals.append(id_, entry, seen=last).sequence
+    return id_, last
+
+
+def test_what_was_entered_is_read_as_a_campaign(store: Store, tmp_path: Path) -> None:
+    journals = Journals(store)
+    id_, _ = campaign_with(journals, "1.5", "2.25", "3")
+    write_campaign(replayed(journals.entries(id_)), tmp_path)
+    campaign = read_campaign(tmp_path)
+    assert campaign.penetration is not None
+    series = campaign.penetration.series(0)
+    assert series.load.tolist() == [20.0, 40.0, 60.0]
+    np.testing.assert_allclose(series.penetration_depth, [1.5e-3, 2.25e-3, 3e-3], rtol=1e-15)
+    np.testing.assert_allclose(series.edge_angle, np.pi / 6, rtol=1e-15)
+    assert campaign.problems == ()
+
+
+def test_readings_stand_in_the_order_of_their_loads_whichever_came_first(store: Store) -> None:
+    journals = Journals(store)
+    id_, last = campaign_with(journals, "1.5", "2.25")
+    last = journals.append(id_, reading("1", 2, "30.5", "1.9"), seen=last).sequence
+    journals.append(id_, reading("1", 3, "5", "0.7"), seen=last)
+    test = replayed(journals.entries(id_)).test("penetration.csv", "1")
+    assert [row.cells["load_N"] for row in test.rows] == ["5", "20", "30.5", "40"]
+    under = test.row_under("30.50")
+    assert under is not None and under.cells["depth_mm"] == "1.9"
+    assert test.row_under("50") is None
+    assert test.next_position == 4
+
+
+def test_a_column_that_need_not_be_there_is_written_where_one_row_has_it(store: Store) -> None:
+    """The remark of the second reading alone; spot, which no reading has, is no column."""
+    journals = Journals(store)
+    id_, last = campaign_with(journals, "1.5")
+    first = reading("1", 1, "40", "2.25")
+    journals.append(id_, replace(first, cells={**first.cells, "remark": "wind"}), seen=last)
+    header, *rows = campaign_files(replayed(journals.entries(id_)))["penetration.csv"].splitlines()
+    names = header.split(",")
+    assert "spot" not in names
+    assert [dict(zip(names, row.split(","), strict=True))["remark"] for row in rows] == ["", "wind"]
+
+
+def test_a_correction_keeps_the_first_reading_and_what_came_between(store: Store, tmp_path: Path) -> None:
+    journals = Journals(store)
+    id_, last = campaign_with(journals, "1.5", "22.5", "3")
+    subject = replayed(journals.entries(id_)).test("penetration.csv", "1").rows[1].entered.sequence
+    for new in ("2.52", "2.25"):
+        entry = NewEntry(
+            action="correct", file="penetration.csv", test="1", about=subject, cells={"depth_mm": new}, why="slip"
+        )
+        last = journals.append(id_, entry, seen=last).sequence
+    now = replayed(journals.entries(id_))
+    files = campaign_files(now)
+    assert "22.5" in files["penetration.csv"] and "2.25" not in files["penetration.csv"]
+    lines = files["corrections.csv"].splitlines()
+    assert lines[1].startswith("penetration.csv,1,3,depth_mm,22.5,2.52,") and ",2.52,2.25," in lines[2]
+    write_campaign(now, tmp_path)
+    campaign = read_campaign(tmp_path)
+    assert campaign.penetration is not None
+    np.testing.assert_allclose(campaign.penetration.penetration_depth, [1.5e-3, 2.25e-3, 3e-3], rtol=1e-15)
+    assert [each.old for each in campaign.corrections] == ["22.5", "2.52"]
+
+
+def test_a_cancelled_series_stays_with_its_reason(store: Store, tmp_path: Path) -> None:
+    journals = Journals(store)
+    id_, last = campaign_with(journals, "1.5", "2.25", "3")
+    journals.append(id_, NewEntry(action="cancel", file="penetration.csv", test="1", why="plate slipped"), seen=last)
+    write_campaign(replayed(journals.entries(id_)), tmp_path)
+    campaign = read_campaign(tmp_path)
+    assert campaign.penetration is not None
+    assert campaign.penetration.cancelled == ("plate slipped",)
+    assert len(campaign.penetration.load) == 3
+
+
+def test_undoing_takes_the_last_entry_back_and_keeps_it_in_the_history(store: Store) -> None:
+    journals = Journals(store)
+    id_, last = campaign_with(journals, "1.5", "2.25")
+    test = replayed(journals.entries(id_)).test("penetration.csv", "1")
+    assert test.undoable is not None and test.undoable.cells["depth_mm"] == "2.25"
+    undo = NewEntry(action="undo", file="penetration.csv", test="1", about=test.undoable.sequence)
+    journals.append(id_, undo, seen=last)
+    test = replayed(journals.entries(id_)).test("penetration.csv", "1")
+    assert [row.cells["depth_mm"] for row in test.rows] == ["1.5"]
+    assert [entry.action for entry in test.history] == ["add", "add", "undo"]
+    assert test.undoable is not None and test.undoable.cells["depth_mm"] == "1.5"
+
+
+def test_a_load_filled_in_late_stands_in_its_place(store: Store) -> None:
+    journals = Journals(store)
+    id_ = journals.begin(TOML)
+    first = journals.append(id_, reading("1", 2, "60", "3"), seen=0)
+    journals.append(id_, reading("1", 0, "20", "1.5"), seen=first.sequence)
+    rows = replayed(journals.entries(id_)).test("penetration.csv", "1").rows
+    assert [row.cells["load_N"] for row in rows] == ["20", "60"]
+
+
+def test_two_who_write_about_one_test_do_not_overwrite_each_other(store: Store) -> None:
+    journals = Journals(store)
+    id_, last = campaign_with(journals, "1.5")
+    journals.append(id_, reading("1", 1, "40", "2.25"), seen=last)
+    with pytest.raises(OvertakenError, match=r"Ada wrote about penetration\.csv, 1 meanwhile"):
+        journals.append(id_, reading("1", 1, "40", "9.99"), seen=last)
+    journals.append(id_, reading("2", 0, "20", "1"), seen=0)  # another test is nobody's business
+    assert "9.99" not in campaign_files(replayed(journals.entries(id_)))["penetration.csv"]
+
+
+def test_a_name_that_another_gave_meanwhile_is_refused(store: Store) -> None:
+    journals = Journals(store)
+    id_, _ = campaign_with(journals, "1.5")
+    with pytest.raises(OvertakenError):
+        journals.append(id_, reading("1", 0, "20", "7"), seen=0)
+
+
+def test_only_what_is_there_can_be_corrected(store: Store) -> None:
+    journals = Journals(store)
+    id_, last = campaign_with(journals, "1.5")
+    wrong = NewEntry(action="correct", file="penetration.csv", test="1", about=999, cells={"depth_mm": "1"})
+    with pytest.raises(StoreError, match="no entry 999"):
+        journals.append(id_, wrong, seen=last)
+    with pytest.raises(StoreError, match="no campaign in entry"):
+        journals.entries("0123456789ab")
+
+
+def test_the_list_counts_entries(store: Store) -> None:
+    journals = Journals(store)
+    id_, _ = campaign_with(journals, "1.5", "2")
+    (head,) = journals.list()
+    assert (head.id, head.n_entries) == (id_, 3)
+
+
+@pytest.mark.parametrize(
+    ("action", "about", "rule"),
+    [("rewrite", 1, "known_action"), ("correct", None, "about_an_entry"), ("add", 1, "about_an_entry")],
+)
+def test_entries_can_only_be_added_by_the_rules(store: Store, action: str, about: int | None, rule: str) -> None:
+    """The table itself refuses what no program should write."""
+    id_, _ = campaign_with(Journals(store), "1.5")
+    before = Journals(store).entries(id_)
+    with (
+        writing(store.engine) as connection,
+        pytest.raises(IntegrityError, match=f"ck_journal_entry_{rule}"),
+    ):
+        row = {"sequence": 99, "at": "", "who": "", "file": "", "test": "", "cells": "{}", "why": ""}
+        connection.execute(insert(journal_entry).values(journal_id=id_, action=action, about=about, **row))
+    assert Journals(store).entries(id_) == before
+
+
+def test_what_comes_later_can_be_put_on_top(store: Store) -> None:
+    """Bit by bit, as a page sees a journal grow, is the same as all at once; what was there before stays as it was."""
+    journals = Journals(store)
+    id_, last = campaign_with(journals, "1.5", "2.25")
+    early = replayed(journals.entries(id_))
+    entries = journals.entries(id_)
+    undo = NewEntry(action="undo", file="penetration.csv", test="1", about=last)
+    last = journals.append(id_, undo, seen=last).sequence
+    journals.append(id_, reading("1", 1, "40", "2.3"), seen=last)
+    journals.append(id_, reading("2", 0, "20", "1"), seen=0)
+    later = journals.entries(id_, after=entries[-1].sequence)
+    assert replayed(later, before=early) == replayed(journals.entries(id_))
+    assert [row.cells["depth_mm"] for row in early.test("penetration.csv", "1").rows] == ["1.5", "2.25"]
+    assert len(early.tests) == 1
+
+
+def test_an_entry_that_is_sent_again_is_written_down_once(store: Store) -> None:
+    journals = Journals(store)
+    id_, last = campaign_with(journals, "1.5")
+    sent = replace(reading("1", 1, "40", "2.25"), once="browser-7")
+    first = journals.append(id_, sent, seen=last)
+    assert journals.append(id_, sent, seen=last) == first  # and it is not overtaken by itself
+    assert journals.append(id_, replace(sent, position=9), seen=first.sequence) == first
+    assert [entry.once for entry in journals.entries(id_)[1:]] == [None, "browser-7"]
+    other, _ = campaign_with(journals)
+    assert journals.append(other, sent, seen=0).sequence > first.sequence
+    assert journals.begin(TOML, once="page-1") == journals.begin(TOML, once="page-1")
+    assert len(journals.list()) == 3
+
+
+def test_names_like_formulas_are_exported_as_texts_and_read_as_they_were(store: Store, tmp_path: Path) -> None:
+    journals = Journals(store)
+    id_ = journals.begin(TOML)
+    name, site = "=1+1", "'@SUM(A1)"
+    for position, (load, depth) in enumerate((("20", "1.5"), ("40", "2.1"), ("60", "2.6"))):
+        row = reading(name, position, load, depth)
+        journals.append(id_, replace(row, cells={**row.cells, "site": site}), seen=position and 10**6)
+    write_campaign(replayed(journals.entries(id_)), tmp_path)
+    text = (tmp_path / "penetration.csv").read_text(encoding="utf-8")
+    assert "'=1+1" in text
+    assert "''@SUM(A1)" in text
+    cells = next(csv.reader(text.splitlines()[1:]))
+    assert not any(cell.startswith(("=", "@", "+", "-")) for cell in cells)
+    campaign = read_campaign(tmp_path)
+    assert campaign.penetration is not None
+    assert (set(campaign.penetration.experiment), set(campaign.penetration.site)) == ({name}, {site})

@@ -1,0 +1,281 @@
+"""Damage is found and repaired; locks, a full disk and threads cost nothing that is stored."""
+
+import random
+import re
+import shutil
+import sqlite3
+from contextlib import suppress
+from pathlib import Path
+from threading import Thread
+
+import pytest
+from sqlalchemy import event
+
+from skisnow._support.errors import StoreError
+from skisnow.campaign.store import Journals, Store
+
+FILES = {
+    "empty.csv": b"",
+    "windows.csv": "Schneehärte;1,5\r\n".encode("cp1252"),
+    "case.csv": b"lower",
+    "raw/SMP.PNT": b"".join(number.to_bytes(4) for number in range(600_000)),  # 2.3 MiB: three chunks
+}
+
+SMALL = {"campaign.toml": b"name = 'day'\n", "sub/a.csv": b"experiment,site\n" * 300, "b.bin": bytes(range(256)) * 9}
+ENTRY = (
+    "INSERT INTO journal VALUES ('j', ''); PRAGMA ignore_check_constraints = 1; "
+    "INSERT INTO journal_entry (journal_id, at, who, file, test, why, action, cells) VALUES ('j', '', '', '', '', '',"
+)
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    return write(tmp_path / "Brenner 2012", FILES)
+
+
+@pytest.fixture
+def place(tmp_path: Path) -> Path:
+    return tmp_path / "deep" / "store.sqlite3"
+
+
+def write(folder: Path, files: dict[str, bytes]) -> Path:
+    for path, data in files.items():
+        (folder / path).parent.mkdir(parents=True, exist_ok=True)
+        (folder / path).write_bytes(data)
+    return folder
+
+
+def contents(folder: Path) -> dict[str, bytes]:
+    return {file.relative_to(folder).as_posix(): file.read_bytes() for file in folder.rglob("*") if file.is_file()}
+
+
+def change(place: Path, statement: str) -> None:
+    """Meddle with a store behind its back, foreign keys off."""
+    connection = sqlite3.connect(place, isolation_level=None)
+    connection.executescript(statement)
+    connection.close()
+
+
+def flip_in_file(place: Path, data: bytes) -> None:
+    """Change one bit of the file on the disk, inside a BLOB, where the database's own check does not look."""
+    raw = bytearray(place.read_bytes())
+    at = raw.index(data)
+    raw[at] ^= 1
+    place.write_bytes(raw)
+
+
+def test_a_flipped_bit_is_found_named_and_repaired(folder: Path, place: Path, tmp_path: Path) -> None:
+    with Store.open(place) as store:
+        added = store.add(folder)
+        assert store.verify() == ()
+    flip_in_file(place, FILES["windows.csv"])
+    with Store.open(place) as store:
+        findings = store.verify()
+        assert [(finding.campaign, finding.path) for finding in findings] == [(added.id, "windows.csv")]
+        with pytest.raises(StoreError, match=r"windows\.csv is damaged in the store"):
+            store.export(added.id, tmp_path / "out")
+        assert not (tmp_path / "out").exists()
+        again = store.add(folder)
+        assert (again.already_stored, again.n_repaired) == (True, 1)
+        assert store.verify() == ()
+        store.export(added.id, tmp_path / "out")
+    assert contents(tmp_path / "out") == FILES
+
+
+@pytest.mark.parametrize(
+    ("statement", "sentence"),
+    [
+        ("UPDATE chunk SET data = x'00' WHERE position = 2", "no longer have the SHA-256"),
+        ("UPDATE chunk SET position = 9 WHERE position = 0", "no longer have the SHA-256"),
+        ("DELETE FROM chunk WHERE position = 1", "no longer have the SHA-256"),
+        ("UPDATE content SET size = size + 1 WHERE size = 0", "no longer have the SHA-256"),
+        ("DELETE FROM campaign_file WHERE path = 'case.csv'", "not those it was added with"),
+        ("UPDATE campaign_file SET path = 'x' WHERE path = 'case.csv'", "not those it was added with"),
+        ("DELETE FROM content WHERE size = 0", "points at what table content does not hold"),
+        ("DELETE FROM campaign", "points at what table campaign does not hold"),
+        ("PRAGMA ignore_check_constraints = 1; UPDATE content SET size = -1 WHERE size = 0", "CHECK constraint"),
+        ("DROP TABLE chunk", "no longer have the SHA-256"),
+        ("DROP TABLE content", "no such table"),
+        ("UPDATE campaign SET added_at = 'yesterday'", "The campaign .* is damaged in the store"),
+        ("UPDATE campaign SET name = x'ff00'", "The campaign .* is damaged in the store"),
+        ("UPDATE campaign SET n_errors = x'00', n_warnings = 0", "The campaign .* is damaged in the store"),
+        ("UPDATE content SET size = 'many' WHERE size = 0", "no longer have the SHA-256"),
+        ("UPDATE chunk SET data = 'text' WHERE position = 2", "no longer have the SHA-256"),
+        ("UPDATE campaign_file SET path = x'ff' WHERE path = 'case.csv'", "The campaign .* is damaged in the store"),
+        (f"{ENTRY} 'describe', '[1]')", "The entry 1 of the campaign in entry j is damaged"),
+        (f"{ENTRY} 'describe', '{{')", "The entry 1 of the campaign in entry j is damaged"),
+        (f"{ENTRY} x'00', '{{}}')", "The entry 1 of the campaign in entry j is damaged"),
+        (f"{ENTRY} 'describe', '{{\"a\": 1}}')", "The entry 1 of the campaign in entry j is damaged"),
+    ],
+)
+def test_verify_finds(statement: str, sentence: str, folder: Path, place: Path) -> None:
+    with Store.open(place) as store:
+        store.add(folder)
+        change(place, statement)
+        assert any(re.search(sentence, str(finding)) for finding in store.verify())
+        for read in (store.list, Journals(store).list, lambda: Journals(store).entries("j")):
+            with suppress(StoreError):
+                read()
+
+
+def test_verify_goes_on_behind_each_damage(folder: Path, place: Path) -> None:
+    with Store.open(place) as store:
+        store.add(folder)
+        change(place, f"{ENTRY} 'describe', '[1]'); DROP TABLE content; UPDATE campaign SET name = x'ff'")
+        found = [str(finding) for finding in store.verify()]
+    for sentence in ("no such table", "is damaged in the store", "The entry 1"):
+        assert any(sentence in finding for finding in found), sentence
+
+
+@pytest.mark.parametrize(
+    "statement",
+    [
+        "UPDATE campaign_file SET path = 'cate.csv' WHERE path = 'case.csv'",
+        "DELETE FROM campaign_file WHERE path = 'case.csv'",
+        "DELETE FROM campaign_file",
+    ],
+)
+def test_nothing_is_exported_under_a_damaged_name(statement: str, folder: Path, place: Path, tmp_path: Path) -> None:
+    with Store.open(place) as store:
+        id_ = store.add(folder).id
+        change(place, statement)
+        with pytest.raises(StoreError, match=r"The list of files of the campaign .* is damaged in the store"):
+            store.export(id_, tmp_path / "out")
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_store_of_two_versions_is_damaged(folder: Path, place: Path) -> None:
+    with Store.open(place) as store:
+        store.add(folder)
+    change(place, "INSERT INTO alembic_version VALUES ('0001')")
+    with pytest.raises(StoreError, match="does not say what version it is"):
+        Store.open(place)
+
+
+def test_a_schema_whose_names_are_no_text_is_damaged(folder: Path, place: Path) -> None:
+    with Store.open(place) as store:
+        store.add(folder)
+    raw = place.read_bytes()
+    assert b"tablechunkchunk" in raw
+    raw = raw.replace(b"tablechunkchunk", b"tablech\xf5nkchunk").replace(b"CREATE TABLE chunk", b"CREATE TABLE ch(nk")
+    place.write_bytes(raw)
+    with pytest.raises(StoreError, match="the file is damaged"):
+        Store.open(place)
+
+
+def flipped(raw: bytes, random_: random.Random) -> bytes:
+    """A store with bits flipped in its head, at the beginning of pages or anywhere; or cut; or with a page of zeros."""
+    data = bytearray(raw)
+    how = random_.randrange(5)
+    if how == 3:
+        return bytes(data[: random_.randrange(len(data))])
+    if how == 4:
+        at = random_.randrange(len(data))
+        data[at : at + 4096] = bytes(len(data[at : at + 4096]))
+    else:
+        for _ in range(random_.choice((1, 1, 2, 5, 20))):
+            anywhere = random_.randrange(len(data))
+            at = (anywhere, anywhere % 100, anywhere - anywhere % 4096 + anywhere % 200)[how]
+            data[at % len(data)] ^= 1 << random_.randrange(8)
+    return bytes(data)
+
+
+def read_damaged(folder: Path, tmp_path: Path, *, seed: int, number: int) -> int:
+    """Verify, list and export so many damaged stores; how many were told so. Any other error comes through."""
+    sound, damaged, random_ = tmp_path / "sound", tmp_path / "damaged", random.Random(seed)
+    with Store.open(sound) as store:
+        id_ = store.add(folder).id
+        journal = Journals(store).begin("name = 'day'\n")
+    raw, told = sound.read_bytes(), 0
+    for tried in range(number):
+        for path in tmp_path.glob("damaged*"):
+            path.unlink()
+        damaged.write_bytes(flipped(raw, random_))
+        out = tmp_path / f"out{tried}"
+        with suppress(StoreError), Store.open(damaged, create=False) as store:
+            told += bool(store.verify())
+            for read in (store.list, Journals(store).list, lambda store=store: Journals(store).entries(journal)):
+                with suppress(StoreError):
+                    read()
+            with suppress(StoreError):
+                store.export(id_, out)
+        assert not out.exists() or contents(out) == SMALL
+        shutil.rmtree(out, ignore_errors=True)
+    return told
+
+
+def test_flipped_bits_are_told_in_words(tmp_path: Path) -> None:
+    assert read_damaged(write(tmp_path / "small", SMALL), tmp_path, seed=1, number=20) > 2
+
+
+@pytest.mark.slow
+def test_many_flipped_bits_are_told_in_words(tmp_path: Path) -> None:
+    assert read_damaged(write(tmp_path / "small", SMALL), tmp_path, seed=2, number=1500) > 150
+
+
+def test_verify_finds_broken_pages(folder: Path, place: Path) -> None:
+    with Store.open(place) as store:
+        store.add(folder)
+    raw = bytearray(place.read_bytes())
+    raw[4096 * 3 : -4096] = bytes(len(raw) - 4096 * 4)
+    place.write_bytes(raw)
+    with Store.open(place) as store:
+        assert any("database disk image is malformed" in str(finding) for finding in store.verify())
+
+
+# Locks, room, threads
+
+
+def test_a_lock_held_too_long(folder: Path, place: Path, tmp_path: Path) -> None:
+    with Store.open(place, busy_timeout_s=0.05) as store:
+        id_ = store.add(folder).id
+        other = sqlite3.connect(place, isolation_level=None)
+        try:
+            other.execute("BEGIN IMMEDIATE")
+            with pytest.raises(StoreError, match="kept it locked for too long"):
+                store.add(write(tmp_path / "other", {"a": b"a"}))
+            assert [stored.id for stored in store.list()] == [id_]  # readers need not wait
+            store.export(id_, tmp_path / "out")
+        finally:
+            other.close()
+        assert not store.add(tmp_path / "other").already_stored
+
+
+def test_a_full_disk_leaves_the_store_as_it_was(folder: Path, place: Path, tmp_path: Path) -> None:
+    first = write(tmp_path / "first", {"a": b"a"})
+    with Store.open(place) as store:
+        id_ = store.add(first).id
+        event.listen(store.engine, "connect", lambda connection, _: connection.execute("PRAGMA max_page_count = 200"))
+        with pytest.raises(StoreError, match="no room left on the disk; free some space"):
+            store.add(folder)
+        assert [stored.id for stored in store.list()] == [id_]
+        assert store.verify() == ()
+        assert store.add(first).already_stored
+    with Store.open(place) as store:  # there is room again
+        assert not store.add(folder).already_stored
+        assert store.verify() == ()
+
+
+def test_threads_share_a_store(tmp_path: Path, place: Path) -> None:
+    folders = [write(tmp_path / f"{number}", {"a": bytes([number]) * 100_000}) for number in range(8)]
+    with Store.open(place) as store:
+        threads = [Thread(target=store.add, args=(folder,)) for folder in folders]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        assert sorted(stored.name for stored in store.list()) == [str(number) for number in range(8)]
+        assert store.verify() == ()
+
+
+@pytest.mark.parametrize("data", ["3", "9223372036854775807", "'text'"])
+def test_a_content_that_is_not_bytes_is_damage(data: str, folder: Path, place: Path, tmp_path: Path) -> None:
+    """Python would make three zeros of a 3, and no memory is enough for the largest number."""
+    with Store.open(place) as store:
+        added = store.add(folder)
+    change(place, f"PRAGMA ignore_check_constraints = 1; UPDATE chunk SET data = {data}")
+    with Store.open(place) as store:
+        with pytest.raises(StoreError):
+            store.export(added.id, tmp_path / "out")
+        assert not (tmp_path / "out").exists()
+        assert {finding.campaign for finding in store.verify()} == {added.id}

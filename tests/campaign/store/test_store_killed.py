@@ -1,0 +1,186 @@
+"""A process killed at any moment of an import leaves the store as it was, or complete.
+
+A nursery process imports the program once and forks a child for each trial, so that a trial costs the import of the
+campaign alone. The child opens the store, adds the campaign, and writes down how far it got; it is killed with SIGKILL
+after a random delay. The delays are drawn evenly over the whole of a trial, from before the store is opened to after it
+is closed.
+"""
+
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from collections import Counter
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import IO
+
+import numpy as np
+import pytest
+
+from skisnow.campaign.store import Store
+
+pytestmark = pytest.mark.skipif(not hasattr(os, "fork"), reason="the trials are forked")
+
+NURSERY = """
+import os, sys
+from pathlib import Path
+import skisnow.campaign.store.migrations, skisnow.campaign.reading.campaign
+from skisnow.campaign.store import Store
+
+def child(place, folder, diary):
+    diary = os.open(diary, os.O_WRONLY | os.O_CREAT | os.O_APPEND)
+    def progress(done, total):
+        os.write(diary, b"writing " if 2 * done >= total else b"reading ")
+    os.write(diary, b"opening ")
+    with Store.open(Path(place)) as store:
+        store.add(Path(folder), progress=progress)
+        os.write(diary, b"added ")
+    os.write(diary, b"closed ")
+
+while line := sys.stdin.readline():
+    pid = os.fork()
+    if pid == 0:
+        child(*line.rstrip("\\n").split("\\t"))
+        os._exit(0)
+    print(pid, flush=True)
+    sys.stdin.readline()  # until then the number stays the child's, even if it has ended
+    print(os.waitstatus_to_exitcode(os.waitpid(pid, 0)[1]), flush=True)
+"""
+N_FILES, FILE_BYTES = 24, 200_000
+TABLES = ("campaign", "campaign_file", "content", "chunk")
+
+
+def rows(store: Store) -> list[int]:
+    """Count the rows of each table: a campaign of n files has 1, n, n, n, its files being smaller than a chunk."""
+    with store.engine.connect() as connection:
+        return [connection.exec_driver_sql(f"SELECT count(*) FROM {table}").scalar_one() for table in TABLES]
+
+
+@dataclass
+class Nursery:
+    """Forks a child for each trial and tells how it ended."""
+
+    process: subprocess.Popen[str]
+    asking: IO[str]
+    answers: IO[str]
+
+    def trial(self, place: Path, folder: Path, diary: Path, delay_s: float | None) -> tuple[int, str, float]:
+        """Exit code, last word of the diary, duration in s."""
+        diary.unlink(missing_ok=True)
+        self.asking.write(f"{place}\t{folder}\t{diary}\n")
+        self.asking.flush()
+        pid = int(self.answers.readline())
+        start = time.perf_counter()
+        if delay_s is not None:
+            time.sleep(delay_s)
+            os.kill(pid, signal.SIGKILL)
+        self.asking.write("how did it end?\n")
+        self.asking.flush()
+        code = int(self.answers.readline())
+        duration_s = time.perf_counter() - start
+        words = diary.read_text().split() if diary.exists() else []
+        return code, words[-1] if words else "nothing", duration_s
+
+
+@pytest.fixture
+def nursery() -> Iterator[Nursery]:
+    environment = {**os.environ, "OPENBLAS_NUM_THREADS": "1"}  # a process with threads should not fork
+    with subprocess.Popen(
+        [sys.executable, "-c", NURSERY], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True, env=environment
+    ) as process:
+        assert process.stdin is not None
+        assert process.stdout is not None
+        yield Nursery(process, process.stdin, process.stdout)
+        process.stdin.close()
+        assert process.wait(timeout=60) == 0
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    """A campaign of 4.8 MB, more than SQLite keeps in memory: half-written pages do reach the disk."""
+    folder = tmp_path / "campaign"
+    folder.mkdir()
+    generator = np.random.default_rng(1)
+    for number in range(N_FILES):
+        (folder / f"{number}.PNT").write_bytes(generator.bytes(FILE_BYTES))
+    return folder
+
+
+def kill_many(nursery: Nursery, folder: Path, tmp_path: Path, n_kills: int) -> Counter[tuple[str, bool]]:
+    """Kill at ``n_kills`` moments; counts how far the child was, and whether the campaign is in the store.
+
+    Among those where it is not, ``half-written log`` counts where pages of it were on the disk already.
+    """
+    base = tmp_path / "base.sqlite3"
+    small = tmp_path / "small"
+    small.mkdir()
+    (small / "a").write_bytes(b"a")
+    with Store.open(base) as store:
+        small_id = store.add(small).id
+    place, diary = tmp_path / "trial" / "store.sqlite3", tmp_path / "diary"
+
+    def start_anew(index: int) -> None:
+        shutil.rmtree(place.parent, ignore_errors=True)
+        place.parent.mkdir()
+        if index % 2:  # every other time the store has to be made, too
+            shutil.copyfile(base, place)
+
+    def whole_s(index: int) -> float:
+        """How long an import takes that nobody kills."""
+        durations = []
+        for _ in range(3):
+            start_anew(index)
+            code, word, duration_s = nursery.trial(place, folder, diary, None)
+            assert (code, word) == (0, "closed")
+            durations.append(duration_s)
+        return float(np.median(durations))
+
+    span_s = [1.1 * whole_s(0), 1.1 * whole_s(1)]  # a little beyond the end
+    generator = np.random.default_rng(n_kills)
+    seen: Counter[tuple[str, bool]] = Counter()
+    for index, moment in enumerate(generator.permutation(n_kills) + generator.uniform(size=n_kills)):
+        start_anew(index)
+        code, word, _ = nursery.trial(place, folder, diary, span_s[index % 2] * moment / n_kills)
+        assert code in (-signal.SIGKILL, 0)
+        log = place.with_name(place.name + "-wal")
+        log_bytes = log.stat().st_size if log.exists() else 0
+        with Store.open(place) as store:
+            assert store.verify() == ()
+            n_small = index % 2
+            assert rows(store) in ([n_small] * 4, [n_small + n for n in (1, N_FILES, N_FILES, N_FILES)])
+            others = {stored.id: stored for stored in store.list()}
+            assert (others.pop(small_id, None) is not None) == bool(n_small)
+            assert [stored.n_files for stored in others.values()] in ([], [N_FILES])
+            if others:
+                assert next(iter(others.values())).n_bytes == N_FILES * FILE_BYTES
+                assert word not in ("nothing", "opening", "reading")
+            else:
+                assert word not in ("added", "closed")
+                assert not store.add(folder).already_stored  # and it can be added at once
+                seen["half-written log", False] += log_bytes > FILE_BYTES
+        seen[word, bool(others)] += 1
+    return seen
+
+
+def test_killed_at_many_moments(nursery: Nursery, folder: Path, tmp_path: Path) -> None:
+    seen, rounds = Counter[tuple[str, bool]](), 0
+    while not seen["writing", False] and rounds < 5:  # killed while the transaction was open
+        rounds += 1
+        place = tmp_path / str(rounds)
+        place.mkdir()
+        seen += kill_many(nursery, folder, place, 14)
+    assert seen.total() - seen["half-written log", False] == 14 * rounds
+    assert seen["writing", False] >= 1, seen
+
+
+@pytest.mark.slow
+def test_killed_at_very_many_moments(nursery: Nursery, folder: Path, tmp_path: Path) -> None:
+    seen = kill_many(nursery, folder, tmp_path, 200)
+    assert seen["writing", False] >= 20, seen
+    assert seen["half-written log", False] >= 5, seen
+    assert seen["reading", False] >= 1, seen
+    assert any(is_stored for _, is_stored in seen), seen

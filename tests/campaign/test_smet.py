@@ -1,0 +1,158 @@
+"""SMET: units, gaps, time zones, and what does not fit."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from datetime import UTC, datetime
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from skisnow._support.errors import FieldDataError
+from skisnow.campaign import Problem
+from skisnow.campaign.smet import read_smet
+from skisnow.interop.smet import write_smet
+
+CASES = Path(__file__).parents[2].parent / "shared" / "cases" / "weather"
+
+HEAD = """SMET 1.1 ASCII
+[HEADER]
+station_id       = WFJ2
+station_name     = Weissfluhjoch: snow
+latitude         = 46.829
+longitude        = 9.809
+altitude         = 2540
+nodata           = -999
+tz               = 1
+units_offset     = 0 273.15 0 0
+units_multiplier = 1 1 0.01 1
+fields           = timestamp TA RH VW
+[DATA]
+"""
+ROWS = """2026-02-03T08:00  -4.0  80   3.5
+2026-02-03T09:00  -2.0  -999 4.5   # remark
+
+2026-02-03T14:00  +1.5  60   5.5
+"""
+
+
+def moment(hour: int, minute: int = 0) -> float:
+    return datetime(2026, 2, 3, hour, minute, tzinfo=UTC).timestamp()
+
+
+def refusal(path: Path) -> Problem:
+    with pytest.raises(FieldDataError) as refused:
+        read_smet(path)
+    (problem,) = refused.value.problems
+    assert isinstance(problem, Problem)
+    return problem
+
+
+@pytest.fixture
+def path(tmp_path: Path) -> Path:
+    return tmp_path / "station.smet"
+
+
+def test_values_are_si_and_times_utc(path: Path) -> None:
+    path.write_text(HEAD + ROWS)
+    series = read_smet(path)
+    assert (series.station, series.altitude, series.utc_offset) == ("Weissfluhjoch: snow", 2540.0, 1.0)
+    assert (series.latitude_deg, series.longitude_deg) == (46.829, 9.809)
+    assert series.time.tolist() == [moment(7), moment(8), moment(13)]
+    np.testing.assert_allclose(series.fields["TA"], [269.15, 271.15, 274.65])
+    np.testing.assert_allclose(series.fields["RH"], [0.8, math.nan, 0.6])
+    assert "3 rows, 2026-02-03 07:00 to 2026-02-03 13:00 UTC" in repr(series)
+
+
+def test_interpolation_is_linear_and_leaves_gaps_open(path: Path) -> None:
+    """Between 8 and 9 o'clock; the five hours after are a gap for three, none for six; nothing outside."""
+    path.write_text(HEAD + ROWS)
+    series = read_smet(path)
+    asked = np.array([moment(7, 15), moment(8), moment(10), moment(13), moment(6), moment(14)])
+    nan = math.nan
+    np.testing.assert_allclose(series.at(asked, "TA", longest_gap=3 * 3600.0), [269.65, 271.15, nan, 274.65, nan, nan])
+    np.testing.assert_allclose(series.at(asked, "TA", longest_gap=6 * 3600.0)[2], 271.15 + 3.5 * 2 / 5)
+    assert math.isnan(series.at(asked, "RH", longest_gap=3 * 3600.0)[1])
+    assert np.isnan(series.at(asked, "TSS", longest_gap=1e9)).all()
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("", "row 1.*SMET, a version and ASCII"),
+        ("SMET 1.1 BINARY\n", "SMET 1.1 BINARY"),
+        (HEAD.replace("[DATA]", ""), "cut off"),
+        (HEAD, "at least one row"),
+        (HEAD.replace("nodata ", "nodat ") + ROWS, "the key nodata"),
+        (HEAD.replace("timestamp", "when") + ROWS, "timestamp among them"),
+        (HEAD.replace("0 273.15 0 0", "0 273.15 0") + ROWS, "row 10.*3 numbers.*4, one for each"),
+        (HEAD + "2026-02-03T08:00 -4.0 80\n", "row 14.*3 cells"),
+        (HEAD + "2026-02-03T08:00 -4.0 dry 3\n", "row 14, column RH.*'dry'"),
+        (HEAD + "yesterday -4.0 80 3\n", "row 14, column timestamp.*'yesterday'"),
+        (HEAD + "2026-02-03T08:00 1 2 3\n2026-02-03T08:00 1 2 3\n", "row 15.*later time"),
+        (HEAD.replace("SMET 1.1", "SMET 2.0") + ROWS, "row 1.*'2.0'"),
+        (HEAD + "0001-01-01T00:00 1 2 3\n", "row 14, column timestamp"),
+        (HEAD + "9999-12-31T23:59-12:00 1 2 3\n", "row 14, column timestamp"),
+        (HEAD + "2026-02-03T08:00 1 -1e308 3\n", "column RH.*numbers to"),
+        (HEAD.replace("1 1 0.01 1", "1 1e300 1 1") + "2026-02-03T08:00 1e300 2 3\n", "column TA.*numbers to"),
+    ],
+)
+def test_what_does_not_fit_is_told_with_its_line(path: Path, text: str, words: str) -> None:
+    path.write_text(text)
+    with pytest.raises(FieldDataError, match=rf"station\.smet.*{words}"):
+        read_smet(path)
+
+
+def test_a_missing_file_is_said(tmp_path: Path) -> None:
+    with pytest.raises(FieldDataError, match=r"gone\.smet"):
+        read_smet(tmp_path / "gone.smet")
+
+
+@pytest.mark.parametrize(
+    ("version", "kelvin"),
+    [("0.9", 273.15), ("0.95", 273.15), ("0.99", 273.15), ("1.0", 273.15), ("1.1", 477.4478), ("1.2", 477.4478)],
+)
+def test_the_version_decides_whether_the_offset_comes_first(path: Path, version: str, kelvin: float) -> None:
+    """32 °F: (32 + 459.67) × 5/9 = 273.15; with the multiplier first 32 × 5/9 + 459.67 = 477.4478."""
+    units = "units_offset = 0 459.67\nunits_multiplier = 1 0.555555555556"
+    head = f"SMET {version} ASCII\n[HEADER]\nstation_id = a\nnodata = -999\nfields = timestamp TA\n{units}\n[DATA]\n"
+    path.write_text(head + "2010-06-22T12:00 32.0\n2010-06-22T13:00 -999\n")
+    assert read_smet(path).fields["TA"] == pytest.approx([kelvin, math.nan], abs=1e-4, nan_ok=True)
+
+
+@pytest.mark.parametrize("mark", ["#", ";"])
+def test_remarks_begin_with_two_characters(path: Path, mark: str) -> None:
+    head = HEAD.replace("[DATA]", f"{mark} a line\ncomment = x {mark} nodata = 5\n[DATA] {mark} rows")
+    path.write_text(f"{head}{mark} another\n2026-02-03T08:00 -4.0 80 3.5 {mark} cleaned\n")
+    assert read_smet(path).fields["VW"].tolist() == [3.5]
+
+
+@pytest.mark.parametrize(("zone", "utc"), [("-14", 22), ("5.75", 2.25), ("14", -6), ("0", 8)])
+def test_zones_in_range_are_subtracted(path: Path, zone: str, utc: float) -> None:
+    path.write_text(HEAD.replace("tz               = 1", f"tz = {zone}") + ROWS)
+    series = read_smet(path)
+    assert series.time[0] == moment(0) + utc * 3600.0
+    again = read_smet(write_smet(series, path.with_name("again.smet")))
+    assert (again.time.tolist(), again.utc_offset) == (series.time.tolist(), float(zone))
+
+
+@pytest.mark.parametrize("zone", ["14.1", "-24", "24", "99999", "1e300", "nan", "UTC"])
+def test_zones_out_of_range_are_refused_with_their_line(path: Path, zone: str) -> None:
+    path.write_text(HEAD.replace("tz               = 1", f"tz = {zone}") + ROWS)
+    problem = refusal(path)
+    assert (problem.row, problem.column, problem.value) == (9, "tz", zone)
+
+
+def test_a_written_name_does_not_begin_a_remark(path: Path) -> None:
+    path.write_text(HEAD + ROWS)
+    named = replace(read_smet(path), station="No. #1; ridge")
+    assert read_smet(write_smet(named, path)).station.split() == ["No.", "1", "ridge"]
+
+
+@pytest.mark.skipif(not CASES.is_dir(), reason="../shared is not beside this folder")
+def test_shared_cases() -> None:
+    assert read_smet(CASES / "v10_fahrenheit.smet").fields["TA"] == pytest.approx([273.15, 283.15], abs=1e-6)
+    assert read_smet(CASES / "semicolon_comment.smet").fields["ISWR"].tolist() == [320.0, 340.0]
+    assert refusal(CASES / "tz-out-of-range.smet").row == 9

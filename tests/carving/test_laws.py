@@ -1,0 +1,227 @@
+"""Laws of the snow given to `carve`: the core's own through the door, exact cases, what is refused."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from skisnow import SnowProperties, read_ski
+from skisnow._support.errors import ParameterError
+from skisnow.carving.equilibrium import carve
+from skisnow.carving.result import Equilibrium
+from skisnow.forces.penetration import (
+    ElasticPoint,
+    HypoplasticPoint,
+    MeanPressureLaw,
+    MeanPressurePoint,
+    VolumeWithAnglePoint,
+)
+from skisnow.forces.shear import AngleShear, ConstantShear, DensityShear, MachiningShear
+
+from .laws import Deepening, Power, Pushing
+from .synthetic import rigid_ski, snow
+
+CASE: dict[str, Any] = {"edge_angle": math.radians(45.0), "load": 800.0}
+FEDEROLF = MeanPressurePoint(pressure_slope=0.034e9, pressure_offset=0.35e6, unloading_ratio=10.0)
+LENGTH, WIDTH = 1.6, 0.065
+GROOVES = [{}, {"groove": "path"}]
+
+
+def alike(found: Equilibrium, expected: Equilibrium, rel: float) -> None:
+    assert found.outcome == expected.outcome == "equilibrium"
+    for name in ("turn_radius_boot", "turn_radius_boot_other_spread", "turn_radius_chord", "side_force_limit"):
+        assert getattr(found, name) == pytest.approx(getattr(expected, name), rel=rel)
+    for name in ("edge_depth", "bending", "twist"):
+        theirs = getattr(expected, name)
+        assert getattr(found, name) == pytest.approx(theirs, abs=rel * float(np.max(np.abs(theirs))))
+    force = expected.force_per_length
+    assert force is not None
+    # where snow unloads at 2 N/mm³ over 4 mm, Newton's last 10⁻¹² m are 10⁻⁵ N/m
+    assert found.force_per_length == pytest.approx(force, abs=max(rel, 5e-9) * float(np.max(force)))
+
+
+@pytest.mark.parametrize("choice", [*GROOVES, {"side_force_spread": "base-reaction"}, {"moment_balance": "free"}])
+def test_a_constant_law_is_s_f(choice: dict[str, Any]) -> None:
+    known = carve(read_ski("slalom"), snow(0.2), **CASE, **choice, unloading_ratio=10.0)
+    found = carve(
+        read_ski("slalom"), snow(0.2, 0.1), **CASE, **choice, unloading_ratio=10.0, shear=ConstantShear(0.35e6)
+    )
+    alike(found, known, 1e-12)
+
+
+@pytest.mark.parametrize("choice", [*GROOVES, {"side_force_spread": "base-reaction"}, {"twist": False}])
+@pytest.mark.parametrize("ratio", [1.0, 10.0])
+def test_the_cores_law_through_the_door(ratio: float, choice: dict[str, Any]) -> None:
+    law = HypoplasticPoint(0.2e9, ratio) if ratio > 1.0 else ElasticPoint(0.2e9)
+    known = carve(read_ski("slalom"), snow(0.2), **CASE, **choice, unloading_ratio=ratio)
+    alike(carve(read_ski("slalom"), snow(5.0), **CASE, **choice, penetration=law), known, 1e-9)
+
+
+def test_a_bevelled_base_through_the_door() -> None:
+    ski = replace(read_ski("slalom"), base_bevel=math.radians(1.0))
+    known = carve(ski, snow(0.2), **CASE, unloading_ratio=10.0)
+    alike(carve(ski, snow(0.2), **CASE, penetration=HypoplasticPoint(0.2e9, 10.0)), known, 1e-9)
+
+
+@pytest.mark.parametrize("angle_deg", [20.0, 45.0, 75.0])
+def test_federolfs_law_under_a_rigid_wedge(angle_deg: float) -> None:
+    """F = (A e² + B e - B ε_B/2) L/tan ϑ; the pressure's part across is what the turn needs, with nothing to spare."""
+    angle = math.radians(angle_deg)
+    found = carve(rigid_ski(), snow(0.2), edge_angle=angle, load=800.0, penetration=FEDEROLF)
+    needed = 800.0 * math.tan(angle) / LENGTH + 0.5 * 0.35e6 * FEDEROLF.ramp_depth
+    depth = (math.sqrt(0.35e6**2 + 4.0 * 0.034e9 * needed) - 0.35e6) / (2.0 * 0.034e9)
+    assert depth > FEDEROLF.ramp_depth
+    assert found.edge_depth == pytest.approx(np.full(320, depth), rel=1e-6)
+    assert (found.outcome, found.holds) == ("equilibrium", True)
+    assert found.side_force_limit == pytest.approx(800.0 * math.tan(angle), rel=1e-7)
+
+
+def test_federolfs_law_under_a_flat_rigid_base() -> None:
+    """F = L W (2 A ε + B)."""
+    load = 60e3
+    found = carve(rigid_ski(), snow(0.2), edge_angle=0.0, load=load, penetration=FEDEROLF)
+    depth = (load / (LENGTH * WIDTH) - 0.35e6) / (2.0 * 0.034e9)
+    assert depth > FEDEROLF.ramp_depth
+    assert found.edge_depth == pytest.approx(np.full(320, depth), rel=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("exponent", "ratio"), [(0.5, 1.0), (0.7, 1.0), (1.0, 5.0), (1.5, 5.0), (2.0, 5.0), (3.0, 5.0)]
+)
+def test_another_exponent_under_a_rigid_wedge(exponent: float, ratio: float) -> None:
+    """F = a eⁿ⁺¹ L/((n + 1) tan ϑ)."""
+    law = Power(1e6 / 5e-3**exponent, exponent, unloading_ratio=ratio)
+    found = carve(rigid_ski(), snow(0.2), **CASE, penetration=law)
+    depth = (800.0 * (exponent + 1.0) / (law.factor * LENGTH)) ** (1.0 / (exponent + 1.0))
+    assert found.edge_depth == pytest.approx(np.full(320, depth), rel=1e-6)
+
+
+def test_a_twisted_ski_slips_on_pressure_alone() -> None:
+    """Along the base's normal at each section: what is less steep than the boot holds less."""
+    found = carve(read_ski("slalom"), snow(0.2), **CASE, penetration=FEDEROLF)
+    assert found.twist is not None
+    assert found.force_per_length is not None
+    assert (found.outcome, found.holds) == ("slips", False)
+    assert found.side_force_limit is not None
+    assert 0.9 * 800.0 < found.side_force_limit < 0.99 * 800.0
+    stiff = carve(read_ski("slalom"), snow(0.2), **CASE, penetration=FEDEROLF, twist=False)
+    assert (stiff.outcome, stiff.holds) == ("equilibrium", True)
+
+
+@pytest.mark.parametrize("share", [0.5, 0.8])
+def test_the_answer_does_not_hang_on_where_the_search_begins(monkeypatch: pytest.MonkeyPatch, share: float) -> None:
+    case: dict[str, Any] = {**CASE, "penetration": Power(3e9, 1.5, unloading_ratio=8.0)}
+    known = carve(read_ski("slalom"), snow(0.2), **case)
+    monkeypatch.setattr("skisnow.carving.laws._LOADED_SHARE", share)
+    alike(carve(read_ski("slalom"), snow(0.2), **case), known, 1e-8)
+
+
+def test_a_hardness_by_the_edge_angle() -> None:
+    """Without twist it is one number: (0.99 + 0.14 ϑ) H_V."""
+    law = VolumeWithAnglePoint(snow_hardness=0.2e9, unloading_ratio=10.0)
+    hardness = 0.2 * (0.99 + 0.14 * math.radians(45.0))
+    known = carve(read_ski("slalom"), snow(hardness), **CASE, unloading_ratio=10.0, twist=False)
+    alike(carve(read_ski("slalom"), snow(0.2), **CASE, penetration=law, twist=False), known, 1e-9)
+
+
+@pytest.mark.parametrize("choice", GROOVES)
+def test_a_law_along_either_groove(choice: dict[str, Any]) -> None:
+    found = carve(read_ski("slalom"), snow(0.2), **CASE, **choice, penetration=Power(3e9, 1.5, unloading_ratio=8.0))
+    assert found.outcome == "equilibrium"
+    assert abs(found.residual_force or 0.0) < 1e-5
+    assert abs(found.residual_moment or 0.0) < 1e-5
+
+
+def test_grip_by_the_edge_angle() -> None:
+    """Eqn 13 under a rigid wedge: F = H_V e² L/(2 tan ϑ) asks for F tan ϑ of S_f0 (1 - k ϑ) e L."""
+    angle = math.radians(50.0)
+    stress = 0.3e6 * (1.0 - 0.5 * angle)
+    load = 2.0 * stress**2 * LENGTH / 0.2e9 / math.tan(angle)
+    below, above = (
+        carve(rigid_ski(), snow(0.2), edge_angle=angle, load=each, unloading_ratio=1.0, shear=AngleShear(0.3e6, 0.5))
+        for each in (load * (1.0 - 1e-6), load * (1.0 + 1e-6))
+    )
+    assert (below.holds, above.holds) == (True, False)
+    assert above.side_force_limit == pytest.approx(load * math.tan(angle), rel=2e-6)
+
+
+def test_grip_by_the_depth() -> None:
+    """S_f (1 + e/d) e L."""
+    found = carve(rigid_ski(), snow(0.2), **CASE, unloading_ratio=1.0, shear=Deepening(0.1e6, 2e-3))
+    depth = math.sqrt(2.0 * 800.0 / (0.2e9 * LENGTH))
+    assert found.side_force_limit == pytest.approx(0.1e6 * (1.0 + depth / 2e-3) * depth * LENGTH, rel=1e-6)
+
+
+def test_a_law_stands_in_for_s_f() -> None:
+    """Snow without S_f carves on a strength by density, or on pressure along the base's normal."""
+    bare = SnowProperties(0.2e9, None, source="test")
+    law = DensityShear(snow_density=500.0)
+    found = carve(read_ski("slalom"), bare, **CASE, unloading_ratio=10.0, shear=law)
+    known = carve(read_ski("slalom"), snow(0.2, 0.108), **CASE, unloading_ratio=10.0)
+    assert found.side_force_limit == pytest.approx(known.side_force_limit, rel=1e-12)
+    assert carve(read_ski("slalom"), bare, **CASE, penetration=FEDEROLF).side_force_limit is not None
+    with pytest.raises(ParameterError, match="no failure shear stress S_f"):
+        carve(read_ski("slalom"), bare, **CASE, penetration=HypoplasticPoint(0.2e9, 10.0))
+
+
+class NotFinite(Deepening):
+    def _stress(self, depth: np.ndarray[Any, Any], angle: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
+        return np.where(np.abs(angle - CASE["edge_angle"]) < 1e-3, super()._stress(depth, angle), np.nan)
+
+
+class Fades(Power):
+    def stress(self, depth: Any, deepest: Any) -> Any:
+        return np.where(np.asarray(depth) > 1.5e-3, np.nan, super().stress(depth, deepest))
+
+
+@pytest.mark.parametrize(
+    ("given", "words"),
+    [
+        ({"penetration": MeanPressureLaw(0.034e9, 0.35e6)}, "a law for the force of a whole tool; it must be a law of"),
+        ({"penetration": 0.2e9}, "penetration is 200000000.0, no law of a place"),
+        ({"penetration": HypoplasticPoint}, "no law of a place"),
+        ({"penetration": HypoplasticPoint(0.2e9, math.inf)}, "lets go at once when the depth shrinks"),
+        ({"penetration": Power(0.0, 1.0)}, "no finite pressure above 0"),
+        ({"penetration": Fades(1e9, 1.0, 2.0)}, "gives no finite answer at a depth of .* mm, and no equilibrium"),
+        ({"penetration": FEDEROLF, "shear": ConstantShear(0.2e6)}, "holds the edge across by itself; leave the shear"),
+        ({"penetration": FEDEROLF, "unloading_ratio": 10.0}, "unloading_ratio is 10.0 beside a penetration law"),
+        ({"shear": 0.2e6, "unloading_ratio": 10.0}, "shear is 200000.0; it must be a shear law"),
+        ({"shear": FEDEROLF, "unloading_ratio": 10.0}, "it must be a shear law"),
+        ({"shear": MachiningShear(0.1e6, 0.1), "unloading_ratio": 10.0}, "would bear 1.22 of the load by itself"),
+        ({"shear": Pushing(0.1e6, 1e-3), "unloading_ratio": 10.0}, "would bear 0.3 of the load by itself"),
+        ({"shear": Deepening(-0.1e6, 1e-3), "unloading_ratio": 10.0}, "no finite strength above 0 at 45 degrees"),
+        ({"shear": NotFinite(0.1e6, 1e-3), "unloading_ratio": 10.0}, "gives no finite strength at an edge angle of"),
+    ],
+)
+def test_what_is_refused(given: dict[str, Any], words: str) -> None:
+    with pytest.raises(ParameterError, match=words):
+        carve(read_ski("slalom"), snow(0.2), **CASE, **given)
+
+
+def test_an_error_in_a_law_comes_through() -> None:
+    class Broken(Power):
+        asked = 0
+
+        def residual_depth(self, deepest: Any) -> Any:
+            type(self).asked += 1
+            if type(self).asked > 3:
+                raise ZeroDivisionError("in the law")
+            return super().residual_depth(deepest)
+
+    with pytest.raises(ZeroDivisionError, match="in the law"):
+        carve(read_ski("slalom"), snow(0.2), **CASE, penetration=Broken(1e9, 1.0, 5.0))
+
+
+def test_a_flat_ski_asks_for_no_strength() -> None:
+    """Its bits are those without a law."""
+    found = carve(
+        read_ski("slalom"), snow(0.2), edge_angle=0.0, load=800.0, unloading_ratio=1.0, shear=AngleShear(1e5, 0.1)
+    )
+    known = carve(read_ski("slalom"), snow(0.2), edge_angle=0.0, load=800.0, unloading_ratio=1.0)
+    assert found.edge_depth is not None
+    assert known.edge_depth is not None
+    assert np.array_equal(found.edge_depth, known.edge_depth)

@@ -1,0 +1,157 @@
+"""`carve` against the equilibrium written down again without elements, `openbench.entries.numpy_reference.slow_carve`.
+
+With 320 elements: what the default 160 add is in `test_mesh.py`.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from openbench.entries.numpy_reference import slow_carve as reference
+from openbench.entries.numpy_reference.slow_carve import Case
+
+from skisnow.carving.equilibrium import carve
+from skisnow.forces.penetration import MeanPressurePoint, PointLaw, VolumeWithAnglePoint
+from skisnow.forces.shear import AngleShear, ShearLaw
+from skisnow.ski import Ski, read_ski
+
+from .laws import Deepening, Power
+from .synthetic import boot_pose, circular_sidecut, plain_ski, shovel, snow
+
+AGREE = 1e-3
+"""Of radius, depth and contact: 30 knots of curvature on each end and 160 points across are good to half of it."""
+
+
+def compare(case: Case) -> None:
+    theirs = reference.solved(case)
+    ski, shear, penetration = case.ski, case.shear, case.penetration
+    assert isinstance(ski, Ski)
+    assert shear is None or isinstance(shear, ShearLaw)
+    assert penetration is None or isinstance(penetration, PointLaw)
+    ours = carve(
+        ski,
+        snow(case.hardness / 1e9),
+        edge_angle=case.edge_angle,
+        load=case.load,
+        moment=case.moment,
+        unloading_ratio=case.unloading_ratio if case.penetration is None else None,
+        shear=shear,
+        penetration=penetration,
+        clamp_length=case.clamp_length,
+        side_force_bending=case.side_force_bending,
+        side_force_spread="base-reaction" if case.by_reaction else "depth",
+        moment_balance="free" if case.boot_is_free else "boot",
+        twist=case.twist,
+        elements=320,
+    )
+    assert ours.edge_depth is not None
+    assert ours.turn_radius_boot == pytest.approx(theirs.radius_at_boot(), rel=AGREE)
+    front, rear = theirs.contact_ends()
+    assert ours.contact_length == pytest.approx(front - rear, rel=AGREE)
+    # the chord's end moves with the contact's, where the sidecut is no circle any more
+    assert ours.turn_radius_chord == pytest.approx(theirs.radius_through(front, rear), rel=2.0 * AGREE)
+    waist = float(ski.at(0.0).width) / 2.0 * math.sin(case.edge_angle)
+    depth = boot_pose(ours, ski, case.edge_angle)[0] + waist
+    assert depth == pytest.approx(theirs.boot_depth + waist, abs=2.0 * AGREE * float(ours.edge_depth.max()))
+
+    def at_ours(values: np.ndarray[tuple[int, ...], np.dtype[np.float64]]) -> object:
+        return np.interp(ours.station[::-1], theirs.station[::-1], values[::-1])[::-1]
+
+    below = ours.edge_depth > 0.0
+    inner = np.abs(ours.station) < 0.6
+    scale = float(ours.edge_depth.max())
+    off = np.abs(np.asarray(at_ours(theirs.edge_depth)) - ours.edge_depth)
+    assert ours.bending is not None
+    assert np.max(off[below & inner]) < 5.0 * AGREE * scale
+    # towards the ends depth is the small difference of deflection and base height
+    assert np.max(off[below]) < AGREE * float(ours.bending.max())
+    assert at_ours(theirs.deflection) == pytest.approx(ours.bending, abs=AGREE * float(ours.bending.max()))
+    assert ours.twist is not None
+    assert at_ours(theirs.twist) == pytest.approx(ours.twist, abs=2.0 * AGREE * math.radians(3.0))
+
+
+def base(ski: Ski | None = None) -> Case:
+    return Case(ski=ski or read_ski("slalom"), hardness=0.2e9, edge_angle=math.radians(45.0), load=800.0)
+
+
+@pytest.mark.slow
+def test_hypoplastic_with_twist_and_side_force() -> None:
+    compare(replace(base(), unloading_ratio=10.0, clamp_length=0.3))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("ratio", [1.0, 10.0])
+@pytest.mark.parametrize("angle_deg", [30.0, 60.0])
+@pytest.mark.parametrize("clamp", [0.0, 0.3])
+@pytest.mark.parametrize(("twist", "side_force_bending"), [(True, True), (False, True), (True, False)])
+def test_all_choices(ratio: float, angle_deg: float, clamp: float, twist: bool, side_force_bending: bool) -> None:
+    compare(
+        replace(
+            base(),
+            unloading_ratio=ratio,
+            edge_angle=math.radians(angle_deg),
+            clamp_length=clamp,
+            twist=twist,
+            side_force_bending=side_force_bending,
+        )
+    )
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("hardness", [0.04e9, 1e9])
+@pytest.mark.parametrize("moment", [-30.0, 30.0])
+def test_other_snow_and_a_moment(hardness: float, moment: float) -> None:
+    compare(replace(base(), hardness=hardness, moment=moment, unloading_ratio=5.0, clamp_length=0.3))
+
+
+@pytest.mark.slow
+def test_a_plain_ski_with_a_shovel() -> None:
+    ski = plain_ski(width=circular_sidecut(13.0), base_height=shovel(1.4, 0.05, 1.6), running_length=1.4)
+    compare(replace(base(ski), unloading_ratio=10.0, clamp_length=0.3))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("moment", [0.0, 40.0])
+def test_a_boot_that_takes_no_moment_of_the_side_force(moment: float) -> None:
+    compare(replace(base(), unloading_ratio=10.0, clamp_length=0.3, boot_is_free=True, moment=moment))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("boot_is_free", [False, True])
+def test_a_side_force_that_goes_as_the_force_on_the_base(boot_is_free: bool) -> None:
+    compare(replace(base(), unloading_ratio=10.0, clamp_length=0.3, by_reaction=True, boot_is_free=boot_is_free))
+
+
+@pytest.mark.slow
+def test_federolfs_law() -> None:
+    """p = 2 A ε + B beyond the ramp, which bends where the groove does, too."""
+    law = MeanPressurePoint(pressure_slope=0.034e9, pressure_offset=0.35e6, unloading_ratio=10.0)
+    compare(replace(base(), hardness=0.15e9, unloading_ratio=5.0, penetration=law, clamp_length=0.3))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("exponent", [0.6, 1.7])
+def test_another_exponent(exponent: float) -> None:
+    law = Power(1e6 / 5e-3**exponent, exponent, unloading_ratio=8.0)
+    compare(replace(base(), unloading_ratio=5.0, penetration=law, clamp_length=0.3))
+
+
+@pytest.mark.slow
+def test_a_hardness_that_grows_with_the_edge_angle() -> None:
+    law = VolumeWithAnglePoint(snow_hardness=0.2e9, unloading_ratio=10.0)
+    compare(replace(base(), unloading_ratio=10.0, penetration=law, clamp_length=0.3))
+
+
+@pytest.mark.parametrize(
+    "law",
+    [
+        pytest.param(AngleShear(0.35e6, 0.6), id="angle", marks=pytest.mark.slow),
+        pytest.param(Deepening(0.1e6, 1e-3), marks=pytest.mark.slow, id="depth"),
+    ],
+)
+def test_a_strength_that_is_not_the_same_along_the_edge(law: AngleShear | Deepening) -> None:
+    """Where the ski twists, and where it is deeper, it draws as much more or less of the side force."""
+    compare(replace(base(), unloading_ratio=10.0, shear=law, clamp_length=0.3))

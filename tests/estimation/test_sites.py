@@ -1,0 +1,100 @@
+"""Site comparisons and comparisons with published values."""
+
+import math
+
+import numpy as np
+import pytest
+from scipy import stats
+
+from skisnow.estimation.comparisons import compare_with_published, own_mean
+from skisnow.estimation.sites import compare_sites, site_means
+
+
+def test_ratio_of_sites_is_welch_on_logarithms() -> None:
+    rng = np.random.default_rng(2)
+    a, b = 2.0 * np.exp(rng.normal(0, 0.2, 12)), np.exp(rng.normal(0, 0.4, 8))
+    (row,) = compare_sites("H_V", np.concatenate((b, a)), ["B"] * 8 + ["A"] * 12)
+    assert (row.site_a, row.site_b) == ("A", "B")
+    assert row.ratio == pytest.approx(math.exp(np.log(a).mean() - np.log(b).mean()), rel=1e-12)
+    assert row.p == pytest.approx(stats.ttest_ind(np.log(a), np.log(b), equal_var=False).pvalue, rel=1e-9)
+    assert row.interval[0] < row.ratio < row.interval[1]
+
+
+def test_number_of_tests_that_tell_ten_percent() -> None:
+    """Normal approximation n = 2 (z₀.₉₇₅ + z₀.₈)² s²/ln²1.1; Student's t asks for one or two more."""
+    rng = np.random.default_rng(3)
+    logs = rng.normal(0, 0.2, (2, 30))
+    (row,) = compare_sites("S_f", np.exp(logs).ravel(), ["A"] * 30 + ["B"] * 30)
+    pooled = math.sqrt((logs[0].var(ddof=1) + logs[1].var(ddof=1)) / 2)
+    normal = 2 * (1.959964 + 0.841621) ** 2 * pooled**2 / math.log(1.1) ** 2
+    assert row.n_for_10_percent is not None
+    assert normal < row.n_for_10_percent < normal + 3
+
+
+def test_a_site_with_one_test_has_no_interval() -> None:
+    (row,) = compare_sites("H_V", np.array([1.0, 2.0, 3.0]), ["A", "B", "B"])
+    assert math.isnan(row.p)
+    assert np.isnan(row.interval).all()
+
+
+def test_own_mean_over_one_site_is_the_classical_interval() -> None:
+    values = np.array([0.1, 0.2, 0.15, 0.3])
+    own = own_mean(values, ["A"] * 4, geometric=True)
+    logs = np.log(values)
+    low, high = np.exp(stats.t.interval(0.95, 3, logs.mean(), logs.std(ddof=1) / 2))
+    assert (own.value, own.low, own.high) == pytest.approx((math.exp(logs.mean()), low, high))
+    assert (own.minimum, own.maximum) == (0.1, 0.3)
+
+
+def test_own_mean_over_balanced_sites_is_the_interval_of_their_means() -> None:
+    values, sites = np.array([1.0, 1.2, 2.0, 2.2, 4.0, 4.4, 3.0, 3.2]), [*"AABBCCDD"]
+    own = own_mean(values, sites, geometric=True)
+    means = np.log(values).reshape(4, 2).mean(axis=1)
+    low, high = np.exp(stats.t.interval(0.95, 3, means.mean(), means.std(ddof=1) / 2))
+    assert (own.value, own.low, own.high) == pytest.approx((math.exp(means.mean()), low, high))
+
+
+def test_the_interval_of_a_plain_mean_is_that_of_its_logarithm_and_never_below_zero() -> None:
+    """Delta method: the half-width of ln m is that of m over m."""
+    values = np.array([0.02, 0.5, 0.03])
+    own = own_mean(values, ["A"] * 3, geometric=False)
+    low, high = stats.t.interval(0.95, 2, values.mean(), values.std(ddof=1) / math.sqrt(3))
+    assert low < 0 < own.low < own.value < own.high
+    assert math.log(own.high / own.low) == pytest.approx((high - low) / values.mean())
+    assert own.low * own.high == pytest.approx(own.value**2)
+
+
+@pytest.mark.parametrize("geometric", [True, False])
+def test_two_or_three_sites_give_no_interval_over_them(geometric: bool) -> None:
+    values = np.array([1.0, 1.2, 2.0, 2.2, 4.0, 4.4, 3.0, 3.2])
+    for sites in ("AABB", "AABBCC"):
+        own = own_mean(values[: len(sites)], [*sites], geometric=geometric)
+        assert math.isnan(own.low)
+        assert math.isnan(own.high)
+    assert math.isfinite(own_mean(values, [*"AABBCCDD"], geometric=geometric).low)
+
+
+def test_each_site_has_its_own_mean_with_the_interval_of_its_experiments() -> None:
+    values = np.array([3.0, 0.1, 0.2, 0.15, 0.3])
+    first, second = site_means("S_f_N_per_mm2", values, ["B", "A", "A", "A", "A"], geometric=False)
+    assert (first.site, first.n, second.site, second.n) == ("A", 4, "B", 1)
+    assert first.own == own_mean(values[1:], ["A"] * 4, geometric=False)
+    assert second.own.value == 3.0
+    assert math.isnan(second.own.low)
+
+
+def test_published_values_are_those_that_the_paper_prints() -> None:
+    own = own_mean(np.array([1.0, 2.0]), ["A", "A"], geometric=False)
+    density = own_mean(np.array([500.0, 500.0]), ["A", "A"], geometric=False)
+    rows = compare_with_published(own, own, (own, own), density)
+    values = {(row.source, row.quantity): row.published for row in rows}
+    hardness = [v for (s, q), v in values.items() if "Federolf" in s and q == "H_V_N_per_mm3"]
+    stress = [v for (s, q), v in values.items() if "Federolf" in s and q == "S_f_N_per_mm2"]
+    # as many digits as are printed
+    assert [f"{value:.2g}" for value in hardness if isinstance(value, float)] == ["0.21", "0.16", "0.022"]
+    assert [f"{value:.2g}" for value in stress if isinstance(value, float)] == ["0.52", "0.086", "0.094"]
+    domine = next(v for (s, _), v in values.items() if "Domine" in s)
+    assert domine == pytest.approx(1585e-6, rel=1e-3)
+    eqn_14 = next(v for (s, _), v in values.items() if "Eqn 14" in s)
+    assert eqn_14 == pytest.approx(0.108, abs=1e-6)
+    assert values["Mössner and others 2013, range", "H_V_N_per_mm3"] == (0.04, 90.0)

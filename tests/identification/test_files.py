@@ -1,0 +1,95 @@
+"""Files of measurements that are refused, because a part of them would not be read, or be read as something else."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from skisnow._support.errors import FieldDataError, ParameterError
+from skisnow.identification import identify
+from skisnow.identification.data import read_data, taken_for
+from skisnow.identification.photo_cells import PhotoCells
+from skisnow.simulation.track_table import COLUMNS
+from skisnow.track.track import Track
+
+CELLS = "run,station_m,time_s\nfirst,20,3.34\nfirst,40,5.1\nfirst,60,6.5\n"
+
+
+def file_in(folder: Path, text: str, name: str = "cells.csv") -> Path:
+    path = folder / name
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+@pytest.mark.parametrize(
+    ("text", "row", "beyond"),
+    [
+        (CELLS.replace("3.34", "3,34"), "row 2", "'34'"),
+        ("width_mm,depth_mm\n20.0,3.0\n20,3,1\n", "row 3", "'1'"),
+        ("depth_mm\n3,1\n3,3\n3,0\n", "row 2", "'1'"),
+    ],
+)
+def test_decimal_commas_between_commas_are_not_cut_off(text: str, row: str, beyond: str, tmp_path: Path) -> None:
+    path = file_in(tmp_path, text)
+    with pytest.raises(FieldDataError, match="decimal comma") as refused:
+        read_data(path)
+    (problem,) = refused.value.problems
+    assert str(path) in str(problem) and row in str(problem) and beyond in str(problem)
+
+
+@pytest.mark.parametrize(
+    ("text", "column", "meant"),
+    [
+        ("depth_mm,width_mm,turn_radius\n3,20,12\n", "turn_radius", "turn_radius_m"),
+        ("depth_mm,depth_sd\n3,0.1\n", "depth_sd", "depth_sd_mm"),
+        (CELLS.replace("time_s\n", "time_s,time_sd\n"), "time_sd", "time_sd_s"),
+    ],
+)
+def test_a_column_named_nearly_right_is_not_passed_over(text: str, column: str, meant: str, tmp_path: Path) -> None:
+    with pytest.raises(ParameterError, match=f"row 1: there is a column {column}; is {meant} meant"):
+        read_data(file_in(tmp_path, text))
+
+
+def test_another_column_is_nobody_s_concern(tmp_path: Path) -> None:
+    found = read_data(file_in(tmp_path, CELLS.replace("time_s\n", "time_s,weather\n")))
+    assert isinstance(found, PhotoCells)
+    assert found.runs[0].time.tolist() == [3.34, 5.1, 6.5]
+
+
+@pytest.mark.parametrize(
+    "head", ["experiment,site,tool,edge_angle_deg,load_N,depth_mm", "experiment,plate,depth_mm,lever_arm_mm,moment_Nm"]
+)
+def test_a_table_of_a_campaign_is_no_marks(head: str, tmp_path: Path) -> None:
+    with pytest.raises(ParameterError, match="has a column experiment: it is a table of a campaign"):
+        read_data(file_in(tmp_path, f"{head}\n1,2,3,4,5,6\n"))
+
+
+def test_what_was_measured_once_counts_once(tmp_path: Path) -> None:
+    one, copy = file_in(tmp_path, CELLS), file_in(tmp_path, CELLS, "copy.csv")
+    with pytest.raises(ParameterError, match=r"copy\.csv holds the same as .*cells\.csv"):
+        identify("carved-46m", [one, copy], "mu_0")
+
+
+def test_the_track_of_a_run_is_a_track(tmp_path: Path) -> None:
+    """It has the column turn_radius_m, as marks do; every column that `skisnow simulate` writes is there."""
+    row = dict.fromkeys(COLUMNS, "1") | {"turn_radius_m": ""}
+    rows = [",".join((row | {"time_s": f"{k}", "x_m": f"{3 * k}"}).values()) for k in range(3)]
+    found = read_data(file_in(tmp_path, "\n".join([",".join(row), *rows]), "track.csv"))
+    assert isinstance(found, Track)
+    assert found.time.tolist() == [0.0, 1.0, 2.0]
+    assert taken_for(found) == "a track (points: 3)"
+
+
+@pytest.mark.parametrize(
+    ("text", "kind"),
+    [
+        ("time_s,x_m,y_m,depth_mm\n0,0,0,3\n1,5,0,3\n", "a track (points: 2)"),
+        ("time,lat,lon,turn_radius_m\n0,47,11,3\n1,47.0001,11,3\n", "a track (points: 2)"),
+        ("time_s,x_m,y_m,station_m\n0,0,0,0\n1,5,0,5\n", "a track (points: 2)"),
+        ("run,station_m,time_s,x_m,y_m\na,5,1,5,0\na,9,2,9,0\nb,5,1,5,0\n", "photo-cell times (runs: 2)"),
+        ("x_m,y_m,depth_mm,depth_sd_mm\n0,0,3,1\n1,1,3,1\n", "measured grooves (places: 2)"),
+    ],
+)
+def test_what_a_table_is_taken_for(text: str, kind: str, tmp_path: Path) -> None:
+    assert taken_for(read_data(file_in(tmp_path, text))) == kind

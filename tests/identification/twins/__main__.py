@@ -1,0 +1,56 @@
+"""``python -m tests.identification.twins``: compute twins, and write the tables of docs/validation/identification.md.
+
+Twins of photo cells and marks take minutes, those of turns hours: all that are finished stand in docs/validation/twins,
+and the same command goes on with those that are missing.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from pathlib import Path
+from typing import Final
+
+from . import glides, grooves, shears, tables
+from .kept import KeptTwins
+from .pool import run_twins
+from .truth import SCENARIOS, SEEDS
+from .turns import NOISELESS, one_noiseless, one_turn
+
+DOCS: Final = Path(__file__).parents[3] / "docs" / "validation"
+KINDS: Final = ("glides", "grooves", "noiseless", "turns", "shears")
+
+
+def main(words: list[str] | None = None, *, docs: Path = DOCS) -> None:
+    parser = argparse.ArgumentParser(prog="python -m tests.identification.twins", description=__doc__)
+    parser.add_argument("kinds", nargs="*", default=[], help=f"of {', '.join(KINDS)}; none: the tables alone")
+    parser.add_argument("--seeds", type=int, default=len(SEEDS), help="from 0 up to this many")
+    parser.add_argument("--minutes", type=float, help="after which no further twin of a kind is begun")
+    parser.add_argument("--workers", type=int, default=2)
+    options = parser.parse_args(words)
+    if unknown := set(options.kinds) - set(KINDS):
+        parser.error(f"there is no kind {', '.join(sorted(unknown))}; there are {', '.join(KINDS)}")
+    folder = docs / "twins"
+    seeds = SEEDS[: options.seeds]
+    asked = {
+        "glides": (glides.one_glide, [(case, seed) for case in glides.CASES for seed in seeds]),
+        "grooves": (grooves.one_groove, [(case, seed) for case in grooves.CASES for seed in seeds]),
+        "noiseless": (one_noiseless, [(scenario + NOISELESS, 0) for scenario in SCENARIOS]),
+        "shears": (shears.one_shear, [(shears.CASE, seed) for seed in seeds]),
+        "turns": (one_turn, [(scenario, seed) for seed in seeds for scenario in SCENARIOS]),
+    }
+    seconds = None if options.minutes is None else 60.0 * options.minutes
+    try:
+        for kind in options.kinds:
+            twin, cases = asked[kind]
+            kept = KeptTwins.opened(folder / f"{kind}.csv")
+            run_twins(twin, cases, kept, workers=options.workers, seconds=seconds)
+    except KeyboardInterrupt:
+        print(f"interrupted; finished twins are kept in {folder}, the page is as it was", file=sys.stderr)
+        raise SystemExit(130) from None
+    rows = {kind: KeptTwins.opened(folder / f"{kind}.csv") for kind in KINDS}
+    tables.write(docs / "identification.md", rows)
+
+
+if __name__ == "__main__":
+    main()

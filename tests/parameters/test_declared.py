@@ -1,0 +1,156 @@
+"""Quantities that dataclasses declare: what their fields say of them, checks in constructors, values there and back."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field, replace
+from typing import Annotated, Any, Literal
+
+import jsonschema
+import numpy as np
+import pytest
+
+from skisnow._support.errors import ParameterError
+from skisnow.parameters import Quantity, Section, Word, made, quantities, require_declared, values_of
+from skisnow.parameters.json_schema import table_schema
+from skisnow.parameters.page_table import page_table
+
+
+@dataclass(frozen=True, kw_only=True)
+class Snow:
+    """Shared by several; its names have no section."""
+
+    hardness: Annotated[float, Quantity("H_V_N_per_mm3", "hardness", lowest=0.0, above=True)]
+    strength: Annotated[float | None, Quantity("S_f_N_per_mm2", "strength", lowest=0.0)]
+    source: Annotated[str, Word("published", "name of a snow")] = "numbers"
+
+    def __post_init__(self) -> None:
+        require_declared(self)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Bench:
+    """Something that is held on snow."""
+
+    snow: Annotated[Snow, Section("snow", otherwise=True)]
+    law: Annotated[Literal["a", "b"], Quantity("bench.law", "which law")] = "a"
+    step: Annotated[float, Quantity("bench.step_ms", "step", lowest=0.1, highest=5.0, origin="choice")] = 0.5e-3
+    parts: Annotated[int | None, Quantity("bench.parts", "parts", lowest=4)] = None
+    fixed: Annotated[bool, Quantity("bench.fixed", "whether fixed")] = False
+    inertia: Annotated[tuple[float, float, float], Quantity("bench.inertia_kg_m2", "inertia", lowest=0.0, above=True)]
+    centre: Annotated[
+        tuple[float, float],
+        Quantity("bench.height_mm", "height", lowest=0.0, highest=100.0, index=1),
+        Quantity("bench.forward_mm", "forward", index=0, default=0.0),
+    ]
+    angle: Annotated[float, Quantity("snow.angle_deg", "angle", lowest=-85.0, highest=85.0)] = 0.0
+    load_N: Annotated[float, Quantity("bench.load_N", "load")] = 1.0
+    table: dict[str, float] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        require_declared(self)
+
+
+GIVEN = {
+    "snow.H_V_N_per_mm3": 0.2,
+    "bench.step_ms": 2.0,
+    "bench.inertia_kg_m2": [1.0, 2.0, 3.0],
+    "bench.height_mm": 50.0,
+    "snow.angle_deg": 45.0,
+    "bench.fixed": True,
+}
+
+
+def bench(**values: Any) -> Bench:
+    snow = made(Snow, GIVEN, section="snow", strength=None)
+    return made(Bench, GIVEN | {f"bench.{name}": value for name, value in values.items()}, snow=snow)
+
+
+def test_fields_say_kind_choices_default_and_need() -> None:
+    found = {key.name: (key.kind, key.choices, key.default, key.needed) for key in quantities(Bench)}
+    assert found == {
+        "snow.H_V_N_per_mm3": ("number", (), None, False),  # a word may stand for it
+        "snow.S_f_N_per_mm2": ("number", (), None, False),
+        "snow.published": ("text", (), None, False),
+        "snow.angle_deg": ("number", (), 0.0, False),
+        "bench.law": ("text", ("a", "b"), "a", False),
+        "bench.step_ms": ("number", (), 0.5, False),
+        "bench.parts": ("whole number", (), None, False),
+        "bench.fixed": ("switch", (), False, False),
+        "bench.inertia_kg_m2": ("three numbers", (), None, True),
+        "bench.height_mm": ("number", (), None, True),
+        "bench.forward_mm": ("number", (), 0.0, False),
+        "bench.load_N": ("number", (), 1.0, False),
+    }
+
+
+def test_sections_stand_together_in_the_order_of_first_sight() -> None:
+    assert [key.name.partition(".")[0] for key in quantities(Bench)] == ["snow"] * 4 + ["bench"] * 8
+
+
+def test_values_as_given_become_si() -> None:
+    found = bench()
+    assert (found.snow.hardness, found.step, found.inertia, found.centre) == (2e8, 2e-3, (1.0, 2.0, 3.0), (0.0, 0.05))
+    assert found.angle == pytest.approx(math.pi / 4.0, rel=1e-15)
+    assert (found.law, found.parts, found.fixed, found.load_N) == ("a", None, True, 1.0)
+
+
+def test_what_a_dataclass_holds_is_made_with_it() -> None:
+    found = made(Bench, GIVEN | {"snow.S_f_N_per_mm2": 0.5})
+    assert found.snow == Snow(hardness=2e8, strength=5e5)
+
+
+def test_values_are_told_back_in_the_units_of_their_keys() -> None:
+    told = values_of(bench(parts=8))
+    assert told.pop("bench.inertia_kg_m2") == [1.0, 2.0, 3.0]
+    given = {name: value for name, value in GIVEN.items() if name in told}
+    assert {name: told[name] for name in given} == pytest.approx(given)
+    assert (told["bench.parts"], told["bench.law"], told["snow.published"]) == (8, "a", None)
+    assert {*told, "bench.inertia_kg_m2"} == {key.name for key in quantities(Bench)}
+
+
+@pytest.mark.parametrize(
+    ("changes", "told"),
+    [
+        ({"law": "c"}, "bench.law is 'c'; allowed is a or b"),
+        ({"law": " a"}, "bench.law is ' a'; allowed is a or b"),
+        ({"step": 1.0}, "bench.step_ms is 1000.0; allowed is from 0.1 to 5 ms"),
+        ({"step": None}, "bench.step_ms is None; it must be a number"),
+        ({"step": True}, "bench.step_ms is True; it must be a number"),
+        ({"parts": 4.5}, "bench.parts is 4.5; it must be a whole number"),
+        ({"parts": 3}, "bench.parts is 3.0; allowed is whole numbers 4 or more"),
+        ({"fixed": 1}, "bench.fixed is 1; it must be true or false without quotes"),
+        ({"inertia": 3.0}, "bench.inertia_kg_m2 is 3.0; it must be \\[a, b, c\\]"),
+        ({"load_N": [1.0]}, "bench.load_N is \\[1.0\\]; it must be a number"),
+        ({"inertia": (1.0, 2.0)}, "it must be \\[a, b, c\\]"),
+        ({"inertia": (1.0, 0.0, 2.0)}, "three numbers, each above 0"),
+        ({"centre": (0.0, 0.2)}, "bench.height_mm is 200.0; allowed is from 0 to 100 mm"),
+        ({"angle": math.nan}, "snow.angle_deg is nan"),
+        ({"load_N": math.inf}, "bench.load_N is inf; allowed is any finite number N"),
+    ],
+)
+def test_constructor_refuses_what_a_file_could_not_give(changes: dict[str, object], told: str) -> None:
+    with pytest.raises(ParameterError, match=told):
+        replace(bench(), **changes)  # type: ignore[arg-type]
+
+
+def test_numbers_of_numpy_and_ends_of_ranges_are_taken() -> None:
+    changed = replace(bench(), parts=np.int64(8), step=np.float32(1e-3), angle=math.radians(85.0))  # type: ignore[arg-type]
+    assert (changed.parts, changed.angle) == (8, math.radians(85.0))
+
+
+def test_schema_refuses_what_the_constructor_refuses() -> None:
+    schema = table_schema(key for key in quantities(Bench) if key.name.startswith("bench."))
+    good = {"inertia_kg_m2": [1, 2, 3], "height_mm": 50}
+    jsonschema.validate(good, schema)
+    for bad in ({"law": "c"}, {"step_ms": 6}, {"parts": 3}, {"fixed": 1}, {"inertia_kg_m2": [1, 0, 3]}, {"lay": "a"}):
+        with pytest.raises(jsonschema.ValidationError):
+            jsonschema.validate(good | bad, schema)
+    with pytest.raises(jsonschema.ValidationError, match="height_mm"):
+        jsonschema.validate({"inertia_kg_m2": [1, 2, 3]}, schema)
+
+
+def test_table_of_a_page() -> None:
+    rows = page_table(quantities(Bench)).splitlines()
+    assert rows[7] == "| `bench.step_ms` | ms | from 0.1 to 5 | 0.5 | choice | step |"
+    assert rows[4] == "| `snow.published` | | a text | none | | name of a snow |"

@@ -1,0 +1,237 @@
+"""Boots of a run: what is exported drives the skis back to its forces; tables, functions and refusals."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from skisnow import BootMoment, BootPose, Boots, Run, Scenario, load_scenario, simulate
+from skisnow._support.errors import ParameterError
+from skisnow.replay import replay_of_run, ski_edges
+from skisnow.scenario.boots_file import read_boots
+from skisnow.simulation.boots_table import boots_text, write_boots
+
+
+def turn(**changes: object) -> Scenario:
+    return load_scenario("carved-46m", changes={name.replace("__", "."): value for name, value in changes.items()})
+
+
+@pytest.fixture(scope="module")
+def own() -> Run:
+    return simulate(turn(run__duration_s=0.3, run__output_ms=1.0))
+
+
+@pytest.mark.parametrize("ending", [".csv", ".mot", ".sto"])
+def test_boots_driven_back_give_the_forces_of_the_run(own: Run, tmp_path: Path, ending: str) -> None:
+    """Once the start is over within a tenth of the hundredth that is asked; the file is read and run as any."""
+    file = tmp_path / f"boots{ending}"
+    write_boots(own, file)
+    duration = 0.3 if ending == ".csv" else 0.02
+    driven = simulate(turn(run__duration_s=duration, run__output_ms=1.0, boots__file=str(file)))
+    n = len(driven.time)
+    assert driven.outcome == "finished"
+    assert own.boots is not None
+    assert driven.boots is not None
+    assert driven.place == pytest.approx(own.place[:n], abs=1e-9)
+    if ending == ".csv":
+        size = np.linalg.norm(own.boots.own_force, axis=-1).mean()
+        apart = np.linalg.norm(driven.boots.own_force - own.boots.own_force, axis=-1) / size
+        assert apart[own.time > 0.1].max() < 0.01
+        assert np.sqrt(np.mean(apart**2)) < 0.02
+        assert driven.boots.force.mean(axis=0) == pytest.approx(own.boots.force.mean(axis=0), abs=0.01 * size)
+        given = driven.energies["boots"]
+        assert driven.energy_balance_error == pytest.approx(0.0, abs=1e-3)
+        assert abs(given[-1]) > 1.0
+
+
+def test_forces_are_the_sledge_s_acceleration(own: Run) -> None:
+    """Both boots together move the sledge's own mass: F + m g = m a, by differences in time."""
+    assert own.boots is not None
+    sledge = own.scenario.sledge
+    centre = own.place + own.attitude @ [sledge.centre_of_mass[0], 0.0, sledge.centre_of_mass[1]]
+    acceleration = np.gradient(np.gradient(centre, own.time, axis=0), own.time, axis=0)
+    slope = own.scenario.slope.angle  # type: ignore[union-attr]
+    gravity = 9.81 * np.array([np.sin(slope), 0.0, -np.cos(slope)])
+    drag = 0.5 * own.scenario.air.density * own.scenario.air.drag_area * own.speed[:, None] * own.velocity
+    found = own.boots.force.sum(axis=1) + sledge.mass * gravity - drag
+    later = slice(150, -2)
+    assert found[later] == pytest.approx(sledge.mass * acceleration[later], abs=0.01 * 80.0 * 9.81)
+
+
+def test_a_function_moves_the_boots_and_the_lean_follows_the_legs() -> None:
+    """The left boot is drawn up by 5 cm within 0.5 s: the sledge leans left by about 5 cm over its stance of 50."""
+
+    def retract(moment: BootMoment) -> Sequence[BootPose]:
+        share = min(moment.until / 0.5, 1.0)
+        rate = 0.1 if 0.0 < moment.until < 0.5 else 0.0
+        left = BootPose.of([0.0, 0.25, 0.05 * share], 0.0)
+        moving = BootPose(left.place, left.axes, np.array([0.0, 0.0, rate]), np.zeros(3))
+        return [moving, BootPose.of([0.0, -0.25, 0.0], 0.0)]
+
+    flat = turn(run__duration_s=0.7, sledge__edge_angle_deg=0.0, start__heading_deg=0.0)
+    run = simulate(flat, boots=retract)
+    assert run.outcome == "finished"
+    assert run.boots_by is not None
+    assert "retract" in run.boots_by
+    lean = np.arcsin(run.attitude[:, 2, 1])
+    assert np.degrees(lean[-1]) == pytest.approx(-np.degrees(0.05 / 0.5), abs=1.0)
+    replay = replay_of_run(run)
+    at_boot = int(np.argmin(np.abs(replay.skis.station)))
+    for frame in (0, len(run.time) // 2, -1):  # the run's own edges under the boots
+        edges = ski_edges(replay, frame)[:, at_boot]
+        places = np.append(edges, edges.mean(axis=1, keepdims=True), axis=1)  # the middle where a ski is exactly level
+        apart = np.linalg.norm(places - run.skis.track[frame][:, None], axis=-1).min(axis=1)
+        assert apart.max() < abs(replay.skis.station[at_boot]) + 1e-3
+    # the sledge leans and both skis lie on the snow; skis that stayed on the sledge would be 5 cm apart in height
+    assert np.ptp(ski_edges(replay, -1)[:, at_boot, :, 2].mean(axis=1)) < 0.002
+    with pytest.raises(ParameterError, match="must give 2 BootPose"):
+        simulate(flat, boots=lambda _: [])
+
+
+def test_turning_the_boots_left_is_the_mirror_of_turning_them_right(tmp_path: Path) -> None:
+    """Edge angles from a table over the distance run; the columns that are not there are the sledge's."""
+    ends = []
+    for sense in (1.0, -1.0):
+        file = tmp_path / f"table{sense}.csv"
+        names = "distance_m,left_edge_angle_deg,right_edge_angle_deg"
+        rows = [f"{d},{sense * angle},{sense * angle}" for d, angle in ((0, 5), (1, 10), (2, 20), (5, 25))]
+        file.write_text("\n".join([names, *rows]) + "\n", encoding="utf-8")
+        run = simulate(
+            turn(run__duration_s=0.5, start__heading_deg=0.0, sledge__edge_angle_deg=5.0, boots__file=str(file))
+        )
+        assert run.boots is not None
+        ends.append([*run.place[-1], np.degrees(run.boots.angles[-1, 0, 0])])
+    assert ends[0][1] > 0.005
+    assert ends[0][0] == pytest.approx(ends[1][0], abs=1e-5)
+    assert ends[0][1] == pytest.approx(-ends[1][1], abs=1e-5)
+    assert ends[0][3] == pytest.approx(-ends[1][3], abs=1e-3)
+    assert 18.0 < ends[0][3] < 26.0
+
+
+HEAD = "time_s,left_edge_angle_deg"
+SLOPE = "time_s," + ",".join(
+    f"{side}_{name}"
+    for side in ("left", "right")
+    for name in ("x_m", "y_m", "z_m", "edge_angle_deg", "pitch_deg", "heading_deg")
+)
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("time_s,left_edge_angel_deg\n0,1\n", "left_edge_angle_deg"),
+        (f"{HEAD}\n0,1\n1,x\n2,3\n3,4\n", "row 3, column left_edge_angle_deg: 'x' is no finite number"),
+        (f"{HEAD}\n0,1\n1,2\n", "4 rows or more"),
+        (f"{HEAD}\n0,1\n1,2\n1,3\n2,4\n", "must rise"),
+        ("left_edge_angle_deg\n0\n", "one of the columns time_s"),
+        (f"{HEAD}\n0,1,2\n", "row 2: 3 cells stand under 2 names"),
+        (SLOPE.replace(",left_pitch_deg", "") + "\n", "left_pitch_deg is missing"),
+        (SLOPE.replace("time_s", "distance_m") + "\n" + "\n".join(f"{i}" + ",0" * 12 for i in range(4)), "over time"),
+    ],
+)
+def test_a_table_that_is_none_is_refused(tmp_path: Path, text: str, said: str) -> None:
+    file = tmp_path / "boots.csv"
+    file.write_text(text, encoding="utf-8")
+    with pytest.raises(ParameterError, match=said):
+        read_boots(file)
+
+
+def test_what_is_written_is_read(own: Run, tmp_path: Path) -> None:
+    assert own.boots is not None
+    for ending in (".csv", ".mot"):
+        file = tmp_path / f"boots{ending}"
+        write_boots(own, file)
+        read = read_boots(file)
+        assert (read.frame, read.over) == ("slope", "time")
+        assert np.array_equal(read.at, own.time)
+        assert np.array_equal(read.place, own.boots.place)
+        assert read.axes == pytest.approx(own.boots.axes, abs=1e-14)
+    with pytest.raises(ParameterError, match="ends in none of"):
+        write_boots(own, tmp_path / "boots.txt")
+
+
+def test_opensim_has_y_up_and_z_to_the_right(own: Run) -> None:
+    """Its head, and what bears the left boot points up there."""
+    lines = boots_text(own, ".mot", name="turn").splitlines()
+    assert lines[:2] == ["turn", "version=1"]
+    assert lines[2:6] == [f"nRows={len(own.time)}", f"nColumns={len(lines[6].split())}", "inDegrees=yes", "endheader"]
+    row = dict(zip(lines[6].split(), map(float, lines[7].split()), strict=True))
+    assert row["left_ski_force_vy"] == row["left_force_z_N"] > 300.0
+    assert row["left_ski_force_vz"] == -row["left_force_y_N"]
+    assert row["left_ski_force_px"] == row["left_x_m"]
+
+
+def test_rates_of_a_table_are_those_of_its_poses() -> None:
+    """By differences, in the frame; outside the table the boots rest."""
+    time = np.linspace(0.0, 1.0, 11)
+    place = np.stack([np.stack([time**2, np.sin(time), 0.1 * time], axis=-1)] * 2, axis=1)
+    axes = np.array([[BootPose.of(np.zeros(3), 0.5 * t, 0.2 * t * t, t).axes] * 2 for t in time])
+    boots = Boots(time, place, axes)
+    (p0, a0, v0, w0), (p1, a1, _, _) = boots.poses(0.33), boots.poses(0.33 + 1e-6)
+    assert (p1 - p0) / 1e-6 == pytest.approx(v0, abs=1e-5)
+    assert (a1[0] - a0[0]) / 1e-6 == pytest.approx(np.cross(w0[0], a0[0]), abs=1e-5)
+    assert not boots.poses(2.0)[2].any()
+    assert boots.poses(2.0)[0] == pytest.approx(place[-1], abs=1e-15)
+
+
+def level(**changes: float) -> Scenario:
+    """Seen from nothing but snow: no slope, no friction, no air."""
+    flat = dict.fromkeys(("angle_deg", "heading_deg", "edge_angle_deg", "mu_0", "drag_area_m2"), 0.0)
+    return turn().with_(**flat | changes)
+
+
+def curvature_by_speed(place: np.ndarray, time: np.ndarray) -> float:
+    """v²/(R g) of a path, the mean over what is given."""
+    velocity = np.gradient(place, time, axis=0)
+    v, a = velocity[5:-5, :2], np.gradient(velocity, time, axis=0)[5:-5, :2]
+    return float(np.mean((v[:, 0] * a[:, 1] - v[:, 1] * a[:, 0]) / np.linalg.norm(v, axis=1)) / 9.81)
+
+
+def test_lean_of_a_steady_turn() -> None:
+    """A body as tall as a skier, one leg shorter: the line from the centre of pressure to the centre of mass leans by
+    tan Ψ = v²/(R g) with the centre of mass's own v and R; with those of the skis it is a little lower."""
+    stance, height, lean = 0.44, 0.9, np.radians(8.0)
+
+    def legs(_: BootMoment) -> Sequence[BootPose]:
+        places = ([0.0, side * stance, side * stance * np.tan(lean)] for side in (0.5, -0.5))
+        return [BootPose.of(place, np.radians(12.0) - lean) for place in places]
+
+    tall = level(centre_of_mass_height_m=height, stance_width_m=stance, speed_m_per_s=5.5, duration_s=3.0)
+    run = simulate(tall, boots=legs)
+    assert run.outcome == "finished"
+    assert run.boots is not None
+    later = run.time > 1.5
+    centre = (run.place + height * run.attitude[:, :, 2])[later]
+    force, arm = run.boots.force[later], run.boots.place[later] - centre[:, None]
+    moment, total = (np.cross(arm, force) + run.boots.moment[later]).sum(axis=1), force.sum(axis=1)
+    pressure = np.stack([-centre[:, 2] * total[:, 0] - moment[:, 1], moment[:, 0] - centre[:, 2] * total[:, 1]], axis=1)
+    ahead = np.gradient(centre, run.time[later], axis=0)[:, :2]
+    ahead /= np.linalg.norm(ahead, axis=1)[:, None]
+    aside = (pressure[:, 0] * ahead[:, 1] - pressure[:, 1] * ahead[:, 0]) / total[:, 2]  # of the centre of mass, left
+    tangent = float(np.mean(aside / centre[:, 2]))
+    assert tangent > 0.15
+    assert tangent == pytest.approx(curvature_by_speed(centre, run.time[later]), rel=0.01)
+    of_skis = curvature_by_speed(run.place[later], run.time[later])
+    assert 0.002 < 1.0 - tangent / of_skis < 0.02
+
+
+def test_a_control_may_push() -> None:
+    """50 N ahead for 0.2 s at the centre of mass: the momentum, and the energy that stands as given."""
+
+    class Pushed:
+        def __call__(self, _: BootMoment) -> Sequence[BootPose]:
+            return [BootPose.of([0.0, side, 0.0], 0.0) for side in (0.25, -0.25)]
+
+        def push(self, moment: BootMoment) -> tuple[Sequence[float], Sequence[float]]:
+            return ([50.0 if 0.1 <= moment.time < 0.2999 else 0.0, 0.0, 0.0], [0.0, 0.0, 0.12])
+
+    flat = level(duration_s=0.4)
+    run, alone = simulate(flat, boots=Pushed()), simulate(flat)
+    mass = 80.0 + 2.0 * flat.ski.mass
+    assert run.speed[-1] - alone.speed[-1] == pytest.approx(50.0 * 0.2 / mass, rel=0.01)
+    gained = 0.5 * mass * (run.speed[-1] ** 2 - alone.speed[-1] ** 2)
+    assert run.energies["push"][-1] == pytest.approx(gained, rel=0.02)
+    assert run.energy_balance_error == pytest.approx(0.0, abs=1e-4)

@@ -1,0 +1,191 @@
+"""Where a run begins: the sledge at rest on the snow."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import replace
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+from scipy.optimize import fsolve
+
+from skisnow import Run, Scenario, read_ski, rest
+from skisnow._support.errors import SolverError
+from skisnow.scenario import Solver, load_scenario
+from skisnow.simulation.run_record import at_nodes
+from skisnow.simulation.run_setup import set_up
+from skisnow.simulation.simulated_run import simulate
+from skisnow.simulation.standing import why_no_start
+
+from ...carving.synthetic import snow
+from ..beyond_ranges import beyond
+from .sledges import GRAVITY, load, rigid_ski, scenario, total_mass
+
+LENGTH, WIDTH, HARDNESS = 1.6, 0.065, 0.2
+INSTANT = 1e-3
+
+
+def at_start(given: Scenario) -> Run:
+    run = simulate(replace(given, stop=replace(given.stop, duration=INSTANT)))
+    assert run.time[0] == 0.0
+    return run
+
+
+def out_of_balance(changes: Mapping[str, object]) -> float:
+    """Force left over at the start (N, or N m), held directions aside: the largest on the sledge and on the skis."""
+    setup = set_up(load_scenario("carved-46m", changes={"start.speed_m_per_s": 0.0, **changes}))
+    assert setup.static_residual < 1e-6
+    dynamics, R = setup.dynamics, setup.dynamics.rotation
+    body, skis = dynamics.body, dynamics.body.skis
+    nodes = list(at_nodes(dynamics.beam_dofs, skis[0].unknown))
+    where = np.array([dynamics.position + R @ ski.boot for ski in skis])
+    turned = np.array([R @ ski.axes.T for ski in skis])
+    still = [np.zeros_like(each) for each in nodes]
+    pressed = dynamics.contact.force(where, turned, np.zeros((2, 6)), 1e-3, beam_dofs=nodes, beam_rates=still)
+    g = R.T @ body.gravity
+    left = np.concatenate([body.mass * g, np.cross(body.first_moment, g)])
+    worst = 0.0
+    for k, ski in enumerate(skis):
+        force, moment = R.T @ pressed.wrench[k, :3], R.T @ pressed.wrench[k, 3:]
+        left += np.concatenate([force, moment + np.cross(ski.boot, force)])
+        loads = pressed.beam_loads[k][ski.unknown >= 0].ravel()
+        stiffness = np.zeros((len(loads), len(loads)))
+        for i in range(len(loads)):
+            for j in range(min(i, 5) + 1):
+                stiffness[i, i - j] = stiffness[i - j, i] = ski.stiffness[i, j]
+        worst = max(worst, float(np.abs(loads + ski.coupling[:, :3] @ g - stiffness @ dynamics.beam_dofs[k]).max()))
+    return max(worst, float(np.abs(left[2:5]).max()))
+
+
+HARD_STARTS = ((60.0, 1.0), (50.0, 5.0), (45.0, 10.0), (40.0, 20.0), (45.0, 20.0), (40.0, 90.0), (-60.0, 90.0))
+
+
+@pytest.mark.parametrize(("edge_angle", "hardness"), [*HARD_STARTS, (0.0, 0.002), (70.0, 0.2)])
+def test_edges_on_hard_snow_find_their_balance(edge_angle: float, hardness: float) -> None:
+    """Of 800 N nothing is left but rounding."""
+    assert out_of_balance({"sledge.edge_angle_deg": edge_angle, "snow.H_V_N_per_mm3": hardness}) < 1e-5
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("edge_angle", [0, 2, 5, 10, 20, 30, 40, 45, 50, 60, 70, 80, -20, -45, -70])
+def test_every_edge_on_every_snow_finds_its_balance(edge_angle: float) -> None:
+    for hardness in (0.002, 0.02, 0.04, 0.2, 1.0, 5.0, 10.0, 20.0, 40.0, 90.0):
+        for heading in (-30.0, 0.0, 60.0):
+            changes = {"sledge.edge_angle_deg": edge_angle, "snow.H_V_N_per_mm3": hardness}
+            assert out_of_balance({**changes, "start.heading_deg": heading}) < 1e-3, (hardness, heading)
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"start.heading_deg": 90.0, "slope.angle_deg": 30.0}, ["to the right of", "centre_of_mass_height"]),
+        ({"start.heading_deg": -90.0, "slope.angle_deg": 30.0}, ["to the left of", "stance_width"]),
+        ({"slope.angle_deg": 50.0, "start.heading_deg": 0.0}, ["0.903 m before", "centre_of_mass_forward"]),
+    ],
+)
+def test_a_sledge_whose_weight_passes_beside_its_skis(changes: dict[str, object], words: list[str]) -> None:
+    high = {"sledge.centre_of_mass_height_m": 0.8, **changes}
+    with pytest.raises(SolverError) as told:
+        simulate(load_scenario("carved-46m", changes=high))
+    assert all(word in str(told.value) for word in words)
+
+
+def test_weight_over_the_skis_is_not_blamed() -> None:
+    text = why_no_start(set_up(load_scenario("carved-46m")))
+    assert "falls between the skis" in text
+    assert "cannot stand" not in text
+
+
+@pytest.mark.parametrize("edge_angle", [60.0, 70.0])
+def test_steep_edges_that_hold_strongly(edge_angle: float) -> None:
+    """Nothing moves faster than gravity lets it."""
+    changes = {"sledge.edge_angle_deg": edge_angle, "snow.S_f_N_per_mm2": 2.0, "run.duration_s": INSTANT}
+    run = simulate(load_scenario("carved-46m", changes=changes))
+    assert run.outcome == "finished"
+    assert abs(float(run.velocity[-1, 2] - run.velocity[0, 2])) < GRAVITY * INSTANT
+
+
+@pytest.mark.parametrize("hardness", [0.002, 0.02, 0.2])
+def test_rigid_flat(hardness: float) -> None:
+    """F/(H_V L W), F half the weight; so stiff a ski still bends by 4e-9 m between boot and snow."""
+    given = scenario(ski=rigid_ski(), hardness=hardness)
+    expected = load(given) / 2.0 / (hardness * 1e9 * LENGTH * WIDTH)
+    run = at_start(given)
+    assert run.skis.edge_depth[0] == pytest.approx(np.full_like(run.skis.edge_depth[0], expected), rel=1e-5, abs=5e-9)
+
+
+def wedges(given: Scenario, edge_angle: float) -> tuple[float, float]:
+    """Depths (m) of the left and the right edge for ϑ > 0, from the balance of force and rolling moment of two wedges.
+
+    The edges lie left of the skis' middles, so the right ski bears more, and the sledge leans by the difference.
+    """
+    half, stance, height = WIDTH / 2.0, given.sledge.stance_width, given.sledge.centre_of_mass[1]
+
+    def depths(lift: float, roll: float) -> list[float]:
+        across = [side * stance / 2.0 + half * math.cos(edge_angle) for side in (1.0, -1.0)]
+        return [-(y * math.sin(roll) - half * math.sin(edge_angle) * math.cos(roll) + lift) for y in across]
+
+    def unbalanced(unknown: npt.NDArray[np.float64], /) -> list[float]:
+        lift, roll = (float(each) for each in unknown)
+        slant = math.tan(edge_angle - roll)
+        force, moment = -total_mass(given) * GRAVITY, given.sledge.mass * GRAVITY * height * math.sin(roll)
+        for side, depth in zip((1.0, -1.0), depths(lift, roll), strict=True):
+            bears = HARDNESS * 1e9 * LENGTH * depth**2 / (2.0 * slant)
+            edge = (side * stance / 2.0 + half * math.cos(edge_angle)) * math.cos(roll)
+            edge += half * math.sin(edge_angle) * math.sin(roll)
+            force += bears
+            moment += bears * (edge - depth / slant / 3.0)  # pressed at a third of the wedge
+        return [force, moment]
+
+    even = math.sqrt(load(given) * math.tan(edge_angle) / (HARDNESS * 1e9 * LENGTH))
+    lift, roll = fsolve(unbalanced, [half * math.sin(edge_angle) - even, 0.0], xtol=1e-13)
+    left, right = depths(float(lift), float(roll))
+    return left, right
+
+
+@pytest.mark.parametrize("edge_deg", [10.0, 30.0, 60.0])
+def test_rigid_edged(edge_deg: float) -> None:
+    """e = √(2 F tan ϑ/(H_V L)) for the load and the edge angle that each ski has once the sledge leans."""
+    given = scenario(ski=rigid_ski(), hardness=HARDNESS, edge_deg=edge_deg, centre_height=0.1)
+    left, right = wedges(given, math.radians(edge_deg))
+    even = math.sqrt(load(given) * math.tan(math.radians(edge_deg)) / (HARDNESS * 1e9 * LENGTH))
+    assert left < even < right  # half the weight lies between
+    depth = at_start(given).skis.edge_depth[0]
+    assert depth[0] == pytest.approx(np.full_like(depth[0], left), rel=2e-5)
+    assert depth[1] == pytest.approx(np.full_like(depth[1], right), rel=2e-5)
+    mirrored = at_start(replace(given, sledge=replace(given.sledge, edge_angle=-given.sledge.edge_angle)))
+    assert mirrored.skis.edge_depth[0] == pytest.approx(depth[::-1], abs=1e-12)
+
+
+def test_rigid_edged_with_half_the_weight_each() -> None:
+    """Skis a kilometre apart bear the same within 6e-5, and the sledge does not lean: the plain formula."""
+    given = scenario(ski=rigid_ski(), hardness=HARDNESS, edge_deg=35.0)
+    given = replace(given, sledge=beyond(given.sledge, stance_width=1000.0))
+    expected = math.sqrt(load(given) * math.tan(math.radians(35.0)) / (HARDNESS * 1e9 * LENGTH))
+    depth = at_start(given).skis.edge_depth[0]
+    assert depth == pytest.approx(np.full_like(depth, expected), rel=3e-4)  # it leans by 1e-9 rad: 0.5 µm of 1.6 mm
+
+
+@pytest.mark.parametrize(
+    ("edge_deg", "hardness"),
+    [(0.0, 0.04), (0.0, 0.2), (0.0, 5.0), (40.0, 0.04), (40.0, 0.2), (40.0, 5.0), (45.0, 20.0), (60.0, 90.0)],
+)
+def test_flexible_as_at_rest(edge_deg: float, hardness: float) -> None:
+    """`rest` knows the same ski by other equations on a mesh of its own. The skis weigh next to nothing here."""
+    ski = read_ski("giant-slalom")
+    ski = replace(ski, mass_per_length=np.full_like(ski.station, 1e-4))
+    fine = Solver(elements=160, line_spacing=6e-3)
+    given = scenario(ski=ski, hardness=hardness, edge_deg=edge_deg, mass=160.0, solver=fine)
+    given = replace(given, sledge=beyond(given.sledge, stance_width=1000.0))
+    found = rest(ski, snow(hardness), edge_angle=math.radians(edge_deg), load=80.0 * GRAVITY)
+    assert found.edge_depth is not None
+    run = at_start(given)
+    station = run.skis.station
+    assert -np.trapezoid(run.skis.force_per_length[0], station) == pytest.approx([80.0 * GRAVITY] * 2, rel=5e-4)
+    buried = (found.edge_depth > 0.0) & (np.abs(found.station) < 0.6)
+    for depth in run.skis.edge_depth[0]:
+        there = np.interp(found.station[buried], station[::-1], depth[::-1])
+        # lines of 6 mm against Gauss points of 1 cm; the skis a kilometre apart lean by 0.3 µm
+        assert there == pytest.approx(found.edge_depth[buried], rel=5e-3, abs=2e-6)

@@ -1,0 +1,70 @@
+"""Warnings about limits of the model: in Python with a code, in the terminal, and in the report."""
+
+from __future__ import annotations
+
+import json
+import warnings
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from skisnow import BootMoment, BootPose, Scenario, load_scenario, simulate
+from skisnow._support.errors import ModelLimitWarning, ParameterError
+from skisnow._support.units import DEGREE
+from skisnow.cli import main
+from skisnow.scenario.model_limits import model_limits
+from skisnow.ski import ski_named
+from skisnow.ski.editing import SkiEdit, edit_stations
+
+
+def turn(**changes: object) -> Scenario:
+    return load_scenario("carved-46m", changes={"run.duration_s": 0.05} | changes)
+
+
+@pytest.mark.parametrize(
+    ("edge_angle", "warned"), [(0.0, False), (0.01, True), (-1.0, True), (2.99, True), (3.0, False), (-30.0, False)]
+)
+def test_an_edge_angle_between_0_and_3_degrees_is_warned_of(edge_angle: float, warned: bool) -> None:
+    nearly_flat = turn(**{"sledge.edge_angle_deg": edge_angle})
+    assert ("nearly_flat_ski" in model_limits(nearly_flat)) == warned
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always", ModelLimitWarning)
+        simulate(nearly_flat)
+    codes = [each.message.code for each in caught if isinstance(each.message, ModelLimitWarning)]
+    assert codes == (["nearly_flat_ski"] if warned else [])
+
+
+def test_a_skier_sets_its_edges_itself() -> None:
+    assert model_limits(load_scenario("skier-10deg")) == {}
+
+
+def test_a_base_bevel_is_warned_of() -> None:
+    ground = replace(ski_named("giant-slalom"), base_bevel=1.0 * DEGREE, edge_width=0.002)
+    assert list(model_limits(turn().with_(ski=ground))) == ["base_bevel_ignored"]
+
+
+def test_the_terminal_and_the_report_have_the_warning(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    settings = ["--set", "sledge.edge_angle_deg=1", "--set", "run.duration_s=0.05"]
+    main(["simulate", "carved-46m", *settings, "--out", str(tmp_path)])
+    (text,) = model_limits(turn(**{"sledge.edge_angle_deg": 1.0})).values()
+    assert capsys.readouterr().err.count(text) == 1
+    assert text in json.loads((tmp_path / "summary.json").read_text(encoding="utf-8"))["warnings"]
+    assert text in (tmp_path / "report.html").read_text(encoding="utf-8")
+
+
+def test_a_function_does_not_replace_a_skier_s_balance() -> None:
+    def still(_: BootMoment) -> list[BootPose]:
+        return [BootPose.of([0.0, side, 0.0], 0.0) for side in (0.2, -0.2)]
+
+    with pytest.raises(ParameterError, match="with_"):
+        simulate(load_scenario("skier-10deg"), boots=still)
+
+
+@pytest.mark.parametrize("part", ["factors", "values"])
+def test_an_unknown_column_of_an_edit_is_an_error(part: str) -> None:
+    station = edit_stations(ski_named("slalom"))
+    arguments: dict[str, Any] = {part: {"sidecut": 1.2 if part == "factors" else station}}
+    with pytest.raises(ParameterError, match="sidecut"):
+        SkiEdit(station, **arguments)

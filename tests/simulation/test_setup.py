@@ -1,0 +1,199 @@
+"""The numbers that a run chooses from its ski and its snow."""
+
+from __future__ import annotations
+
+import math
+from types import SimpleNamespace
+from typing import Any, cast
+
+import numpy as np
+import pytest
+
+from skisnow import BootMoment, BootPose
+from skisnow._support.errors import ParameterError, SolverError
+from skisnow.contact import Laws
+from skisnow.geometry.surfaces import Grid
+from skisnow.scenario import Plane, load_scenario
+from skisnow.simulation import run_setup, simulated_run
+from skisnow.simulation.run_setup import Setup, _drive, _start, _strength_share, laid_out
+
+from ..carving.synthetic import plain_ski
+from .runs.sledges import load, scenario
+
+
+@pytest.mark.parametrize(("load", "sinks"), [(1699.0, False), (1701.0, True)])
+def test_snow_that_does_not_bear_a_ski_a_decimetre_deep(load: float, sinks: bool) -> None:
+    """1.7 m by 0.1 m, 0.1 m deep in 0.1 MN/m³: 1700 N."""
+    ski = SimpleNamespace(
+        station=np.array([0.9, 0.2, -0.8]), at=lambda station: SimpleNamespace(width=np.full_like(station, 0.1))
+    )
+    contact = SimpleNamespace(hardness_at=lambda x, y: 1e5 + x + y)
+    snow = SimpleNamespace(contact=contact, start=SimpleNamespace(x=0.0, y=0.0), ski=ski)
+    stub = cast("Any", SimpleNamespace(scenario=snow, numbers={"load_N": load}))
+    assert cast("Any", Setup.sinks).fget(stub) is sinks
+
+
+@pytest.mark.parametrize(
+    ("height", "residual", "sinks", "outcome"),
+    [
+        (0.0, 0.0, False, "looped"),
+        (0.0, run_setup.AT_REST, True, "looped"),
+        (-1.01 * simulated_run.SINKING_DEPTH, 0.0, False, "sunk"),
+        (-0.99 * simulated_run.SINKING_DEPTH, 0.0, False, "looped"),
+        (0.0, 2.0 * run_setup.AT_REST, True, "sunk"),
+        (0.0, math.nan, True, "sunk"),
+        (0.0, 2.0 * run_setup.AT_REST, False, "cannot stand"),
+        (0.0, math.nan, False, "cannot stand"),
+    ],
+)
+def test_a_run_begins_where_its_sledge_stands(
+    height: float, residual: float, sinks: bool, outcome: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """At rest by its own estimate and no deeper than the model goes; else it sinks, or is refused with the reason."""
+    contact = SimpleNamespace(require_finite_laws=lambda: None)
+    stub = SimpleNamespace(
+        height=height, static_residual=residual, sinks=sinks, dynamics=SimpleNamespace(contact=contact)
+    )
+    fakes: dict[str, Any] = {
+        "set_up": lambda *_, **__: stub,
+        "Record": lambda _: None,
+        "_loop": lambda *_: "looped",
+        "computed_run": lambda _setup, _record, said, _wall: said,
+        "replace": lambda said, **_: said,
+        "why_no_start": lambda _: "cannot stand",
+        "model_limits": lambda _: {},
+    }
+    for name, fake in fakes.items():
+        monkeypatch.setattr(simulated_run, name, fake)
+    try:
+        found = cast("Any", simulated_run.simulate)(None)
+    except SolverError as error:
+        found = str(error)
+    assert found == outcome
+
+
+@pytest.mark.parametrize(
+    ("edge", "above"), [(0.0, -0.01), (math.pi / 6.0, 0.01), (-math.pi / 6.0, 0.01), (math.pi / 2.0, 0.03)]
+)
+def test_a_sledge_begins_as_high_over_the_snow_as_its_lower_edges_are_deep(edge: float, above: float) -> None:
+    """A waist of 0.08 m, 10 mm deep: edged by 30° the middle of its base is 0.04 m sin 30° - 0.01 m over the snow."""
+    ski = SimpleNamespace(at=lambda _: SimpleNamespace(width=0.08))
+    parts: dict[str, Any] = {"slope": Plane(0.3), "ski": ski, "sledge": SimpleNamespace(edge_angle=edge)}
+    begun = SimpleNamespace(x=2.0, y=3.0, heading=math.pi / 3.0)
+    place, rotation = _start(cast("Any", SimpleNamespace(start=begun, **parts)), 0.01)
+    assert place == pytest.approx([2.0, 3.0, above], abs=1e-12)
+    cos, sin = 0.5, math.sqrt(0.75)
+    assert rotation == pytest.approx(np.array([[cos, -sin, 0.0], [sin, cos, 0.0], [0.0, 0.0, 1.0]]))
+
+
+@pytest.mark.parametrize(
+    ("parts", "flying", "skied", "outcome"),
+    [
+        ({"leaning": 1.04}, 0.29, False, None),
+        ({"leaning": 1.05}, 0.3, False, "tipped_over"),
+        ({"leaning": 1.05}, 0.3, True, "fell"),
+        ({"pitching": 0.7}, 0.3, False, "tipped_over"),
+        ({"pitching": 0.69, "height": -0.6}, 0.3, False, "airborne"),
+        ({"pitching": 0.7, "touches": False}, 0.3, False, "airborne"),
+        ({"height": -0.51, "past_end": True}, 0.0, False, "sunk"),
+        ({"height": -0.49, "past_end": True}, 0.0, False, "end_of_slope"),
+    ],
+)
+def test_what_ends_a_run_on_its_way(parts: dict[str, Any], flying: float, skied: bool, outcome: str | None) -> None:
+    """Leaning by more than 60°, on the snow by more than 40° ahead, 0.3 s in the air, sunk, off the slope, in order."""
+    scenario = SimpleNamespace(skier=object() if skied else None)
+    usual: dict[str, Any] = {"leaning": 0.0, "pitching": 0.0, "height": 0.0, "past_end": False}
+    usual |= {"touches": True, "drive": None}
+    stub = cast("Any", SimpleNamespace(scenario=scenario, **usual | parts))
+    assert simulated_run._ended(stub, flying) == outcome
+
+
+def test_boots_that_nothing_carries_turn_as_a_level_between_their_skis() -> None:
+    """Skis at 0.2 and 0.4 rad, one up and one down as much: ahead at 0.3, left, and off the snow."""
+    boots = np.zeros((2, 6, 3))
+    boots[:, 1] = [[math.cos(0.2), math.sin(0.2), 0.3], [math.cos(0.4), math.sin(0.4), -0.1]]
+    dynamics, drive = SimpleNamespace(boots=boots), SimpleNamespace(held=True)
+    normal = np.array([0.0, 0.0, 1.0])
+    stub = SimpleNamespace(dynamics=dynamics, drive=drive, place=np.zeros(3), slope_normal=lambda *_: normal)
+    cos, sin = math.cos(0.3), math.sin(0.3)
+    found = cast("Any", Setup.attitude).fget(stub)
+    assert found == pytest.approx(np.array([[cos, -sin, 0.0], [sin, cos, 0.0], [0.0, 0.0, 1.0]]))
+
+
+def test_a_ski_that_bends_in_short_waves_has_five_elements_to_each(monkeypatch: pytest.MonkeyPatch) -> None:
+    """1.8 m of giant-slalom ski and waves of 0.1 m: 90 elements, and a line of snow every centimetre."""
+    scenario, contact = load_scenario("carved-46m"), run_setup._contact
+    monkeypatch.setattr(run_setup, "_contact", lambda each: (*contact(each)[:2], 0.1))
+    found = laid_out(scenario).numbers
+    assert float(scenario.ski.station[0] - scenario.ski.station[-1]) == pytest.approx(1.8)
+    assert found["elements"] == 90.0
+    assert found["line_spacing_m"] == pytest.approx(0.01)
+
+
+@pytest.mark.parametrize("edge_deg", [0.0, 45.0])
+def test_elements_and_lines_follow_from_the_waves_of_a_beam_on_an_elastic_foundation(edge_deg: float) -> None:
+    """Hetényi: 1/λ = (4 EI/k)^(1/4), k = H_V times the width that bears.
+
+    Flat, all of the ski bears; edged by 45° as much as the wedge is deep, of which F = H_V L e²/2 over 0.8 of the ski.
+    """
+    given = scenario(ski=plain_ski(length=1.6, width=0.065, bending=300.0), hardness=20.0, edge_deg=edge_deg)
+    force = load(given) / 2.0
+    bears = math.sqrt(2.0 * force / (20e9 * 0.8 * 1.6)) if edge_deg else 0.065
+    wave = (4.0 * 300.0 / (20e9 * bears)) ** 0.25
+    found = laid_out(given).numbers
+    assert found["load_N"] == pytest.approx(force, rel=1e-9)
+    assert found["line_spacing_m"] == pytest.approx(wave / 10.0, rel=1e-9)
+    assert found["elements"] == math.ceil(5.0 * 1.6 / wave) > 40.0
+
+
+def test_in_soft_snow_an_element_is_four_and_a_half_centimetres_long() -> None:
+    """1.8 m of giant-slalom ski, and a line of snow every two centimetres."""
+    found = laid_out(load_scenario("carved-46m", changes={"snow.H_V_N_per_mm3": 0.02})).numbers
+    assert 1.8 / found["elements"] == pytest.approx(0.045)
+    assert found["line_spacing_m"] == 0.02
+
+
+def test_boots_are_moved_by_one_alone() -> None:
+    """A function, the table of the scenario (which holds the body in the slope's frame), or nothing."""
+
+    def control(_: BootMoment) -> list[BootPose]:
+        return []
+
+    def asked(*, frame: str = "", by: Any = None) -> Any:
+        boots = cast("Any", SimpleNamespace(frame=frame)) if frame else None
+        return _drive(cast("Any", SimpleNamespace(boots=boots, skier=None)), by)
+
+    assert asked() is None
+    assert (asked(by=control).control, asked(by=control).held) == (control, False)
+    assert (asked(frame="sledge").held, asked(frame="slope").held) == (False, True)
+    with pytest.raises(ParameterError, match=r"by boots\.file and by a function; give one of them"):
+        asked(frame="sledge", by=control)
+
+
+def test_the_strength_over_the_place_is_a_share_of_its_mean() -> None:
+    strength = Grid.along([0.0, 10.0], [0.3e6, 0.5e6])
+    for known, mean in ((None, 0.4e6), (strength, None)):
+        assert _strength_share(cast("Any", SimpleNamespace(failure_shear_stress=known, mean_stress=mean))) == 1.0
+    assert _strength_share(None) == 1.0
+    share = _strength_share(cast("Any", SimpleNamespace(failure_shear_stress=strength, mean_stress=0.4e6)))
+    assert isinstance(share, Grid)
+    assert share.values_at(np.array([0.0, 5.0, 10.0]), np.zeros(3)) == pytest.approx([0.75, 1.0, 1.25])
+
+
+def test_a_stiffness_factor_multiplies_both_stiffnesses() -> None:
+    """Sixteen times EI: waves, and with them the spacing of lines, of twice the length. 1 is the ski itself."""
+    plain = scenario(ski=plain_ski(length=1.6, width=0.065, bending=300.0), hardness=20.0)
+    stiff = plain.with_(stiffness_factor=16.0)
+    assert stiff.flexing_ski.torsional_stiffness == pytest.approx(16.0 * plain.ski.torsional_stiffness)
+    ratio = laid_out(stiff).numbers["line_spacing_m"] / laid_out(plain).numbers["line_spacing_m"]
+    assert ratio == pytest.approx(2.0, rel=1e-9)
+    assert plain.flexing_ski is plain.ski
+
+
+@pytest.mark.parametrize("law", ["constant", "by-angle", "machining"])
+def test_the_law_of_shear_is_that_of_the_scenarios_snow(law: str) -> None:
+    given = load_scenario("carved-46m", changes={"shear.law": law, "snow.S_f_N_per_mm2": 0.3})
+    found = run_setup._snow(given, Laws())
+    assert found.failure_shear_stress == pytest.approx(0.3e6)
+    assert found.shear == given.shear.of(0.3e6)
+    assert (found.shear is None) == (law == "constant")

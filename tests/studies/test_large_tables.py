@@ -1,0 +1,194 @@
+"""Tables whose rows stay in their file, and tables that are no CSV: what is read is what was computed."""
+
+from __future__ import annotations
+
+import json
+import sqlite3
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from skisnow._support.errors import OutputError, ParameterError, SkisnowError
+from skisnow._support.processes.kept_rows import KeptRows
+from skisnow.studies import Study, StudyState, StudyTable, read_study, read_table, run_study, study_state
+from skisnow.studies.computing import StudyRows
+from skisnow.studies.rows import CsvRows, DatabaseRows, StoredRows
+from skisnow.studies.run import kept_rows
+
+TEXT = """
+out = "table.csv"
+[fixed]
+published = "race-piste"
+unloading_ratio = 10
+elements = 40
+[grid]
+ski = ["slalom", "no-such\\nski"]
+at_rest = [true, false]
+edge_angle_deg = [0.5, 30, 95]
+"""
+
+
+@pytest.fixture
+def study(tmp_path: Path) -> Study:
+    path = tmp_path / "study.toml"
+    path.write_text(TEXT.replace("[fixed]", "[fixed]\nload_N = 700"), encoding="utf-8")
+    return read_study(path)
+
+
+@pytest.fixture
+def large(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Twelve rows are as a million."""
+    monkeypatch.setattr("skisnow.studies.run.MOST_ROWS_HELD", 3)
+    monkeypatch.setattr("skisnow.studies.table.MOST_ROWS_HELD", 3)
+    monkeypatch.setattr("skisnow.studies.table.MOST_BYTES_HELD", 100)
+    for module in ("rows", "writing", "table"):
+        monkeypatch.setattr(f"skisnow.studies.{module}.ROWS_OF_A_BLOCK", 5)
+    monkeypatch.setattr("skisnow.studies.writing.ROWS_OF_A_GROUP", 7)
+
+
+def small_table(study: Study) -> StudyTable:
+    table = run_study(study, workers=1)
+    assert isinstance(table.rows, list)
+    return table
+
+
+def test_large_table_is_read_as_it_is_used(study: Study, request: pytest.FixtureRequest) -> None:
+    small = small_table(study)
+    written = study.out.read_bytes()
+    study.out.unlink()
+    request.getfixturevalue("large")
+    fresh = run_study(study, workers=1)
+    assert study.out.read_bytes() == written
+    read = read_table(study.out, study.subject.keys, varied=study.varied)
+    for table in (fresh, read):
+        assert isinstance(table.rows, CsvRows)
+        assert table.rows == small.rows
+        assert (table.rows[-1], table.rows[3:9:2]) == (small.rows[-1], small.rows[3:9:2])
+        assert (table.counts(), table.answers(), table.csv()) == (small.counts(), small.answers(), written.decode())
+        assert (table.varied, len(table.rows)) == (study.varied, 12)
+    assert study_state(study) is StudyState.FINISHED
+    assert small.tally() == fresh.tally() == read.tally()
+    assert fresh.tally().first_failed == (3, small.rows[2]["reason"])
+
+
+@pytest.mark.parametrize(
+    ("damage", "told"),
+    [
+        (lambda lines: [*lines, "junk"], r"table.csv, line \d+: a row of this table has \d+ cells, this line has 1"),
+        (lambda lines: [lines[0], lines[1].replace(",700.0,", ",heavy,"), *lines[2:]], "line 2: load_N is 'heavy'"),
+        (lambda lines: [*lines[:-1], lines[-1].replace("error", "\udce4")], "no table of a study"),
+    ],
+)
+@pytest.mark.usefixtures("large")
+def test_damaged_large_table_is_told(study: Study, damage: Callable[[list[str]], list[str]], told: str) -> None:
+    run_study(study, workers=1)
+    lines = study.out.read_text(encoding="utf-8").splitlines()
+    study.out.write_bytes(("\n".join(damage(lines)) + "\n").encode("utf-8", "surrogateescape"))
+    with pytest.raises(ParameterError, match=f"{told}.*It is not replaced"):
+        study_state(study)
+
+
+@pytest.mark.usefixtures("large")
+def test_large_table_of_a_spreadsheet_program_is_read_at_once(study: Study) -> None:
+    study.out.write_text("sep=;\noutcome;study;load_N\n" + "carves;f;1,5\n" * 30, encoding="utf-8-sig")
+    assert read_table(study.out, study.subject.keys).rows == [{"outcome": "carves", "study": "f", "load_N": 1.5}] * 30
+
+
+@pytest.mark.usefixtures("large")
+def test_large_study_of_errors_alone_has_its_rows_and_no_file(study: Study) -> None:
+    study.file.write_text(study.file.read_text(encoding="utf-8").replace("[0.5, 30, 95]", "[94, 95]"), encoding="utf-8")
+    table = run_study(read_study(study.file), workers=1)
+    assert isinstance(table.rows, StoredRows)
+    assert [row["outcome"] for row in table.rows] == ["error"] * 8
+    assert not study.out.exists()
+
+
+@pytest.mark.parametrize("ending", [".sqlite", ".parquet"])
+def test_other_forms_hold_the_same_table(ending: str, study: Study, request: pytest.FixtureRequest) -> None:
+    if ending == ".parquet":
+        pytest.importorskip("pyarrow", reason="tables in Parquet need the extra parquet")
+    small = small_table(study)
+    text = study.file.read_text(encoding="utf-8").replace("table.csv", f"table{ending}")
+    study.file.write_text(text, encoding="utf-8")
+    other = read_study(study.file)
+    assert run_study(other, workers=1).rows == small.rows
+    request.getfixturevalue("large")
+    assert study_state(other) is StudyState.FINISHED
+    found = run_study(other, workers=1)
+    assert isinstance(found.rows, StoredRows)
+    assert found.rows == small.rows
+    assert found.rows[7] == small.rows[7]
+    assert [type(value) for value in found.rows[1].values()] == [type(value) for value in small.rows[1].values()]
+    assert found.tally() == small.tally()
+    other.file.write_text(text.replace("load_N = 700", "load_N = 701"), encoding="utf-8")
+    run_study(read_study(other.file), workers=1)
+    assert other.out.with_name(f"table.previous{ending}").is_file()
+
+
+def test_table_in_sqlite_is_asked_by_names(study: Study) -> None:
+    study.file.write_text(study.file.read_text(encoding="utf-8").replace("table.csv", "table.sqlite"), encoding="utf-8")
+    table = run_study(read_study(study.file), workers=1)
+    database = sqlite3.connect(study.out.with_name("table.sqlite"))
+    asked = "select load_N, at_rest from study where ski = 'slalom' and edge_angle_deg = 30"
+    found = database.execute(asked).fetchall()
+    database.close()
+    assert found == [(700.0, 1), (700.0, 0)]
+    assert isinstance(DatabaseRows(study.out.with_name("table.sqlite"), study.subject.keys)[0]["at_rest"], bool)
+    assert table.counts()["error"] == 8
+
+
+@pytest.mark.parametrize("ending", [".sqlite", ".parquet"])
+def test_what_is_no_table_is_not_replaced(ending: str, study: Study) -> None:
+    if ending == ".parquet":
+        pytest.importorskip("pyarrow", reason="tables in Parquet need the extra parquet")
+    text = study.file.read_text(encoding="utf-8").replace("table.csv", f"table{ending}")
+    study.file.write_text(text, encoding="utf-8")
+    other = read_study(study.file)
+    other.out.write_bytes(b"what somebody wrote" * 100)
+    with pytest.raises(ParameterError, match=r"It is not replaced"):
+        run_study(other, workers=1)
+    assert other.out.read_bytes().startswith(b"what somebody wrote")
+
+
+def test_parquet_without_its_library_is_told_before_the_work(study: Study, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "pyarrow", None)
+    text = study.file.read_text(encoding="utf-8").replace("table.csv", "table.parquet")
+    study.file.write_text(text, encoding="utf-8")
+    with pytest.raises(ParameterError, match=r"needs pyarrow.*pip install 'skisnow\[parquet\]'"):
+        run_study(read_study(study.file), workers=1)
+    assert sorted(path.name for path in study.file.parent.iterdir()) == ["study.toml"]
+
+
+def test_a_run_that_another_overtook_computes_nothing(study: Study, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Another run finishes between the look at the table and the opening of the kept points."""
+    opened = KeptRows.opened
+
+    def late(*words: Any, **named: Any) -> KeptRows:
+        study.out.write_text("outcome,study\ncarves,f\n", encoding="utf-8")
+        return opened(*words, **named)
+
+    monkeypatch.setattr(KeptRows, "opened", late)
+    with pytest.raises(OutputError, match="just written by another run"):
+        run_study(study, workers=1)
+
+
+def test_rows_of_workers_need_the_files_of_the_study(study: Study, tmp_path: Path) -> None:
+    own = tmp_path / "own.json"
+    own.write_text("{}", encoding="utf-8")
+    text = study.file.read_text(encoding="utf-8").replace('"no-such\\nski"', '"own.json"')
+    study.file.write_text(text, encoding="utf-8")
+    rows = StudyRows.of(read_study(study.file))
+    rows.require_files()
+    own.write_text("{ }", encoding="utf-8")
+    with pytest.raises(SkisnowError, match=r"has not the .*own\.json of this study.*all computers share"):
+        rows.require_files()
+
+
+def test_kept_rows_of_a_study_say_what_it_is(study: Study) -> None:
+    kept = kept_rows(study, study.partial, study.fingerprint())
+    assert kept.columns == study.columns[:-1]
+    assert (kept.about()["points"], json.loads(kept.about()["kinds"])["load_N"]) == ("12", "number")
+    kept.remove()

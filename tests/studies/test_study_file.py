@@ -1,0 +1,168 @@
+"""STUDY.toml: its points, and every mistake told."""
+
+import itertools
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from skisnow._support.errors import ParameterError
+from skisnow.studies import Study, read_study
+from skisnow.studies.study_file import TOP_KEYS
+
+FIXED = '[fixed]\nski = "slalom"\npublished = "race-piste"\nload_N = 800\nunloading_ratio = 10\n'
+GRID = "[grid]\nedge_angle_deg = [30, 45]\n"
+OUT = 'out = "table.csv"\n'
+
+
+def study(folder: Path, text: str) -> Study:
+    path = folder / "study.toml"
+    path.write_text(text, encoding="utf-8")
+    return read_study(path)
+
+
+def test_grid_has_every_combination_and_the_last_varies_fastest(tmp_path: Path) -> None:
+    fixed = FIXED.replace("load_N = 800\n", "")
+    found = study(
+        tmp_path, f"{OUT}{fixed}[grid]\nload_N = [400, 800]\nedge_angle_deg = {{ from = 30, to = 60, n = 4 }}\n"
+    )
+    pairs = [(point["load_N"], point["edge_angle_deg"]) for point in found.points]
+    assert pairs == [(load, angle) for load in (400.0, 800.0) for angle in (30.0, 40.0, 50.0, 60.0)]
+    assert all(point["ski"] == "slalom" for point in found.points)
+    assert found.varied == ("load_N", "edge_angle_deg")
+    assert found.out == tmp_path / "table.csv"
+
+
+def test_logarithmic_range_has_even_ratios_and_exact_ends(tmp_path: Path) -> None:
+    snow = FIXED.replace('published = "race-piste"', "S_f_N_per_mm2 = 0.3\nedge_angle_deg = 40")
+    found = study(tmp_path, f"{OUT}{snow}[grid]\nH_V_N_per_mm3 = {{ from = 0.02, to = 90, n = 5, log = true }}\n")
+    values = [point["H_V_N_per_mm3"] for point in found.points]
+    assert (values[0], values[-1]) == (0.02, 90.0)
+    ratios = [b / a for a, b in itertools.pairwise(values)]
+    assert ratios == pytest.approx([4500.0**0.25] * 4, rel=1e-12)
+
+
+def test_latin_hypercube_has_one_point_in_each_slice_and_follows_its_seed(tmp_path: Path) -> None:
+    fixed = FIXED.replace("load_N = 800\n", "").replace('ski = "slalom"\n', "")
+    ranges = 'load_N = { from = 300, to = 1500 }\nedge_angle_deg = { from = 10, to = 70 }\nski = ["slalom", "carver"]\n'
+    text = f"{OUT}{fixed}[latin_hypercube]\nn = 40\nseed = 5\n{ranges}"
+    found = study(tmp_path, text)
+    for name, low, high in (("load_N", 300.0, 1500.0), ("edge_angle_deg", 10.0, 70.0)):
+        share = (np.array([point[name] for point in found.points]) - low) / (high - low)
+        assert sorted(np.floor(share * 40).astype(int).tolist()) == list(range(40))
+    skis = [point["ski"] for point in found.points]
+    assert skis.count("slalom") == skis.count("carver") == 20
+    # a sample: angle and load are not sorted alike
+    load, angle = (np.array([point[name] for point in found.points]) for name in ("load_N", "edge_angle_deg"))
+    assert abs(np.corrcoef(load, angle)[0, 1]) < 0.5
+    assert study(tmp_path, text).points == found.points
+    assert study(tmp_path, text.replace("seed = 5", "seed = 6")).points != found.points
+
+
+def test_logarithmic_sample_is_even_in_the_logarithm(tmp_path: Path) -> None:
+    snow = FIXED.replace('published = "race-piste"', "S_f_N_per_mm2 = 0.3\nedge_angle_deg = 40")
+    ranges = "H_V_N_per_mm3 = { from = 0.01, to = 100, log = true }\n"
+    found = study(tmp_path, f"{OUT}{snow}[latin_hypercube]\nn = 100\nseed = 1\n{ranges}")
+    logarithms = [math.log10(point["H_V_N_per_mm3"]) for point in found.points]
+    # one in each hundredth of the four decades: the mean is off the middle by less than half a slice
+    assert np.mean(logarithms) == pytest.approx(0.0, abs=0.02)
+
+
+def test_paths_are_relative_to_the_study(tmp_path: Path) -> None:
+    fixed = FIXED.replace('ski = "slalom"\n', "")
+    found = study(tmp_path, f'{OUT}{fixed}{GRID}ski = ["mine/ski.toml", "slalom"]\n')
+    assert found.subject.files(found.numbered) == [tmp_path / "mine" / "ski.toml"]
+
+
+def test_fingerprint_follows_points_and_files_but_not_the_place_of_the_table(tmp_path: Path) -> None:
+    fixed = FIXED.replace('ski = "slalom"\n', "")
+    text = f'{OUT}{fixed}{GRID}ski = ["ski.toml"]\n'
+    (tmp_path / "ski.toml").write_text("one", encoding="utf-8")
+    first = study(tmp_path, text).fingerprint()
+    assert study(tmp_path, text.replace("800", "800.0").replace("table", "other")).fingerprint() == first
+    assert study(tmp_path, text.replace("[30, 45]", "[45, 30]")).fingerprint() != first
+    (tmp_path / "ski.toml").write_text("two", encoding="utf-8")
+    assert study(tmp_path, text).fingerprint() != first
+
+
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        (OUT + FIXED, r"either \[grid\] or \[latin_hypercube\]; neither"),
+        (OUT + FIXED + GRID + "[latin_hypercube]\nn = 3\nseed = 1\nload_N = { from = 1, to = 2 }", "both are there"),
+        (OUT + FIXED + "[grid]\n", "holds no input that varies"),
+        (OUT + FIXED + "[gird]\nload_N = [1]\n", "gird is no key of a study. Is grid meant"),
+        (OUT + FIXED + "[grid]\nedge_angel_deg = [30]\n", "grid.edge_angel_deg is no input. Is edge_angle_deg meant"),
+        (OUT + FIXED + "laod_N = 3\n" + GRID, "fixed.laod_N is no input. Is load_N meant"),
+        (OUT + FIXED + "[grid]\nload_N = [400]\n", r"load_N stands in \[grid\] and in \[fixed\]"),
+        (OUT + FIXED + "[grid]\nedge_angle_deg = []\n", "empty list"),
+        (OUT + FIXED + "[grid]\nedge_angle_deg = [30, 30.0]\n", "30.0 twice"),
+        (OUT + FIXED + '[grid]\nedge_angle_deg = [30, "forty"]\n', "'forty'; it must be a number"),
+        (OUT + FIXED + "[grid]\nedge_angle_deg = [true]\n", "True; it must be a number"),
+        (OUT + FIXED + "[grid]\nedge_angle_deg = { from = 3, to = 60 }\n", "n, the number of values, is missing"),
+        (OUT + FIXED + "[grid]\nedge_angle_deg = { from = 3, till = 60 }\n", "edge_angle_deg: there is no 'till'"),
+        (OUT + FIXED + "[grid]\nedge_angle_deg = { from = 3, n = 60 }\n", "to is missing"),
+        (OUT + FIXED + "[grid]\nedge_angle_deg = { from = 60, to = 3, n = 6 }\n", "from must be the smaller one"),
+        (OUT + FIXED.replace("race-piste", "race-pist") + GRID, "did you mean 'race-piste'"),
+        (OUT + FIXED.replace("slalom", "slalon") + GRID, "no ski named 'slalon'. Is slalom meant"),
+        (OUT + FIXED.replace("slalom", "mine.toml") + GRID, "mine.toml cannot be read"),
+        (OUT + FIXED.replace("_ratio = 10", "_ratio = 0.5") + GRID, "fixed.unloading_ratio is 0.5; allowed is 1 or"),
+        (OUT + FIXED.replace("= 800", "= -800") + GRID, "fixed.load_N is -800; allowed is above 0 N"),
+        (
+            OUT + FIXED.replace("slalom", "paper-tool") + GRID,
+            r"0.3 \(the default\); the ski paper-tool allows less than",
+        ),
+        (OUT + FIXED + "clamp_length_m = 300\n" + GRID, "or 0.3 if the number is in mm"),
+        (OUT + FIXED + 'results = "nowhere.json"\n' + GRID.replace("[grid]", "[grid]"), "in two ways"),
+        (OUT + FIXED.replace("published", "results") + GRID, "race-piste cannot be read"),
+        (OUT + FIXED + GRID + "S_f_N_per_mm2 = [0.2]\n", "which has its own S_f"),
+        (OUT + FIXED + "[grid]\nedge_angle_deg = { from = 3, to = 3, n = 6 }\n", r"under \[fixed\]"),
+        (
+            OUT + FIXED + "[grid]\nedge_angle_deg = { from = 3, to = nan, n = 6 }\n",
+            "to is nan; allowed is any finite number",
+        ),
+        (OUT + FIXED + "[grid]\nedge_angle_deg = { from = 0, to = 3, n = 6, log = true }\n", "both ends above 0"),
+        (
+            OUT + FIXED + "[grid]\nedge_angle_deg = { from = 3, to = 60, n = 1 }\n",
+            "n is 1; allowed is whole numbers 2 or more",
+        ),
+        (OUT + FIXED + '[grid]\nedge_angle_deg = { from = 3, to = 60, n = 6, log = "yes" }\n', "true or false"),
+        (OUT + FIXED + "[grid]\nedge_angle_deg = { from = 3, to = 60, n = 2000000 }\n", "2000000 points"),
+        (OUT + FIXED + "[grid]\ntwist = { from = 0, to = 1, n = 2 }\n", "twist has no range"),
+        (OUT + FIXED + "[grid]\nelements = [80, 80.5]\n", "80.5; it must be a whole number"),
+        (OUT + FIXED + "edge_angle_deg = [3]\n[grid]\nelements = [80]\n", "it takes one value"),
+        (OUT + FIXED + "[latin_hypercube]\nn = 5\nedge_angle_deg = { from = 3, to = 60 }\n", "seed is missing"),
+        (
+            OUT + FIXED + "[latin_hypercube]\nn = 0\nseed = 1\nelements = [80]\n",
+            "n is 0; allowed is whole numbers 1 or more",
+        ),
+        (
+            OUT + FIXED + "[latin_hypercube]\nn = 5\nseed = 1\nedge_angle_deg = { from = 3, to = 60, n = 3 }\n",
+            "n stands once",
+        ),
+        (FIXED + GRID, "out is missing"),
+        ('out = "table.xlsx"\n' + FIXED + GRID, "must end in .csv"),
+        (OUT + GRID, "ski is missing"),
+        (OUT + FIXED.replace('published = "race-piste"\n', "") + GRID, "no snow is given"),
+        (OUT + FIXED + "H_V_N_per_mm3 = 3\n" + GRID, "in two ways"),
+        (OUT + FIXED.replace("unloading_ratio = 10\n", "") + GRID, "unloading_ratio is missing"),
+        ("out = table.csv\n", "is no TOML"),
+    ],
+)
+def test_each_mistake_is_told_with_the_file(text: str, told: str, tmp_path: Path) -> None:
+    with pytest.raises(ParameterError, match=told) as caught:
+        study(tmp_path, text)
+    assert str(tmp_path / "study.toml") in str(caught.value)
+
+
+def test_file_that_is_not_there_or_not_text(tmp_path: Path) -> None:
+    with pytest.raises(ParameterError, match="cannot be read"):
+        read_study(tmp_path / "study.toml")
+    (tmp_path / "study.toml").write_bytes(b'out = "\xff"')
+    with pytest.raises(ParameterError, match="not UTF-8"):
+        read_study(tmp_path / "study.toml")
+
+
+def test_top_keys_are_those_of_the_contract() -> None:
+    assert set(TOP_KEYS) == {"out", "scenario", "fixed", "grid", "latin_hypercube"}

@@ -1,0 +1,284 @@
+"""Workers of a Dask scheduler, in processes of their own: the bytes of one process, even if some of them are killed."""
+
+from __future__ import annotations
+
+import importlib
+import os
+import signal
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+pytest.importorskip("distributed", reason="Dask is not installed: skisnow[dask]")
+
+from skisnow._support.errors import ParameterError, SkisnowError
+from skisnow._support.processes.batch import run_batch
+from skisnow._support.processes.dask_cluster import batch_cluster, scheduler_of
+from skisnow.cli import main
+from skisnow.identification import identify
+from skisnow.studies import Study, read_study, run_study
+from tests.identification.straight_tracks import SCENARIO, track
+
+pytestmark = pytest.mark.filterwarnings("ignore::ResourceWarning", "ignore::pytest.PytestUnraisableExceptionWarning")
+
+CARVE = """
+out = "table.csv"
+[fixed]
+ski = "slalom"
+published = "race-piste"
+unloading_ratio = 10
+elements = 40
+[grid]
+load_N = {{ from = 300, to = 1500, n = {loads} }}
+edge_angle_deg = {{ from = 10, to = 60, n = {angles} }}
+"""
+RUNS = """
+out = "table.csv"
+scenario = "carved-46m"
+[fixed]
+"run.duration_s" = {duration}
+[grid]
+"start.speed_m_per_s" = {{ from = 6, to = 9, n = {speeds} }}
+mu_0 = [0.02, 0.05]
+"""
+ALONE = {"OPENBLAS_NUM_THREADS": "1", "DASK_DISTRIBUTED__ADMIN__LOW_LEVEL_LOG_LENGTH": "0"}
+
+
+class Cluster:
+    """A scheduler and its workers; `further`: options of them all."""
+
+    def __init__(self, folder: Path, *further: str) -> None:
+        self._folder, self._further = folder, further
+        place = folder / "scheduler.json"
+        self.scheduler = self._started("dask_scheduler", "--port", "0", "--scheduler-file", str(place))
+        self.file = place
+        self.workers: list[subprocess.Popen[bytes]] = []
+        wait_for(place.exists)
+        self.address = __import__("json").loads(place.read_text(encoding="utf-8"))["address"]
+
+    def hire(self, count: int, security: Any = None) -> None:
+        """Start workers, and wait until they are there."""
+        begun = len(self.workers)
+        self.workers += [
+            self._started("dask_worker", self.address, "--nthreads", "1", "--no-nanny") for _ in range(count)
+        ]
+        distributed = importlib.import_module("distributed")
+        with distributed.Client(self.address, security=security) as client:
+            client.wait_for_workers(begun + count, timeout=120)
+
+    def kill(self, process: subprocess.Popen[bytes]) -> None:
+        """As the machine that loses its power."""
+        process.send_signal(signal.SIGKILL)
+
+    def close(self) -> None:
+        """End what was started."""
+        for process in (*self.workers, self.scheduler):
+            process.kill()
+            process.wait()
+
+    def _started(self, program: str, *words: str) -> subprocess.Popen[bytes]:
+        log = (self._folder / f"{program}.log").open("ab")
+        command = [sys.executable, "-m", f"distributed.cli.{program}", *words, "--no-dashboard", "--host", "127.0.0.1"]
+        command += self._further
+        with log:
+            return subprocess.Popen(command, cwd=self._folder, stdout=log, stderr=log, env={**os.environ, **ALONE})
+
+
+def wait_for(condition: Any, patience_s: float = 120.0) -> None:
+    end = time.monotonic() + patience_s
+    while not condition():
+        assert time.monotonic() < end, "it did not come to pass"
+        time.sleep(0.05)
+
+
+@pytest.fixture
+def cluster(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Cluster]:
+    made = Cluster(tmp_path_factory.mktemp("cluster"))
+    try:
+        made.hire(2)
+        yield made
+    finally:
+        made.close()
+
+
+def study_of(folder: Path, text: str) -> Study:
+    folder.mkdir(exist_ok=True)
+    path = folder / "study.toml"
+    path.write_text(text, encoding="utf-8")
+    return read_study(path)
+
+
+def bytes_of_one_process(folder: Path, text: str) -> bytes:
+    study = study_of(folder / "one", text)
+    run_study(study, workers=1)
+    found = study.out.read_bytes()
+    study.out.unlink()
+    return found
+
+
+def test_two_workers_give_the_bytes_of_one_process(tmp_path: Path, cluster: Cluster) -> None:
+    for text in (CARVE.format(loads=8, angles=8), RUNS.format(duration=0.2, speeds=3)):
+        wanted = bytes_of_one_process(tmp_path, text)
+        study = study_of(tmp_path / "dask", text)
+        run_study(study, executor=cluster.address)
+        assert study.out.read_bytes() == wanted
+        study.out.unlink()
+
+
+def test_by_the_command_line_a_plain_network_is_told(
+    tmp_path: Path, cluster: Cluster, capsys: pytest.CaptureFixture[str]
+) -> None:
+    text = CARVE.format(loads=3, angles=3)
+    wanted = bytes_of_one_process(tmp_path, text)
+    study = study_of(tmp_path / "dask", text)
+    assert main(["study", str(study.file), "--scheduler", cluster.address]) == 0
+    assert "for trusted networks alone" in capsys.readouterr().err
+    assert study.out.read_bytes() == wanted
+    assert main(["study", str(study.file), "--scheduler", cluster.address, "--workers", "2"]) == 1
+    assert "--workers counts processes of this computer" in capsys.readouterr().err
+
+
+def killing(cluster: Cluster, text: str, folder: Path, after: int) -> bytes:
+    """The table of a study during which a worker is killed and another one comes."""
+    study = study_of(folder / "killed", text)
+    killed = threading.Event()
+
+    def tell(done: int, _total: int) -> None:
+        if done >= after and not killed.is_set():
+            killed.set()
+            cluster.kill(cluster.workers[0])
+
+    run_study(study, executor=cluster.address, progress=tell)
+    assert killed.is_set()
+    return study.out.read_bytes()
+
+
+def test_a_worker_that_is_killed_loses_nothing(tmp_path: Path, cluster: Cluster) -> None:
+    text = RUNS.format(duration=0.5, speeds=10)
+    assert killing(cluster, text, tmp_path, after=3) == bytes_of_one_process(tmp_path, text)
+
+
+def test_a_scheduler_that_is_killed_is_told_and_the_study_goes_on(tmp_path: Path, cluster: Cluster) -> None:
+    text = RUNS.format(duration=0.5, speeds=10)
+    study = study_of(tmp_path / "killed", text)
+
+    def tell(done: int, _total: int) -> None:
+        if 3 <= done < 10:
+            cluster.kill(cluster.scheduler)
+
+    with pytest.raises(SkisnowError, match="finished points are kept"):
+        run_study(study, executor=cluster.address, progress=tell)
+    told: list[int] = []
+    run_study(study, workers=1, progress=lambda done, _: told.append(done))
+    assert told[0] >= 3
+    assert study.out.read_bytes() == bytes_of_one_process(tmp_path, text)
+
+
+def test_a_client_computes_what_a_scheduler_does(cluster: Cluster) -> None:
+    distributed = importlib.import_module("distributed")
+    with distributed.Client(cluster.address) as client:
+        assert run_batch([[("n", n)] for n in range(20)], dict, executor=client) == [{"n": n} for n in range(20)]
+        assert client.status == "running"
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("bootstrap", [0, 40])
+def test_an_identification_is_that_of_one_process(bootstrap: int, cluster: Cluster) -> None:
+    named: dict[str, Any] = {"changes": SCENARIO, "bootstrap": bootstrap}
+    here = identify("carved-46m", track(seed=5), "mu_0,speed", workers=1, **named)
+    there = identify("carved-46m", track(seed=5), "mu_0,speed", executor=cluster.address, **named)
+    assert there.values == here.values
+    drawn = [None if found.bootstrap is None else found.bootstrap.tolist() for found in (here, there)]
+    assert drawn[0] == drawn[1]
+
+
+def test_a_function_that_workers_have_not_is_told(
+    tmp_path: Path, cluster: Cluster, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "only_here.py").write_text("def row(point):\n    return {'n': point}\n", encoding="utf-8")
+    monkeypatch.syspath_prepend(tmp_path)
+    row = importlib.import_module("only_here").row
+    with pytest.raises(SkisnowError, match=r"a worker cannot load what it is to compute .*only_here"):
+        run_batch([1, 2, 3], row, executor=cluster.address)
+
+
+def test_a_scheduler_that_does_not_answer_is_told(tmp_path: Path) -> None:
+    path = tmp_path / "scheduler.toml"
+    path.write_text('address = "tcp://127.0.0.1:9"\nwait_s = 0.5\n', encoding="utf-8")
+    with pytest.raises(SkisnowError, match=r"no scheduler answers at tcp://127\.0\.0\.1:9"):
+        run_batch([[("n", 1)]], dict, executor=path)
+
+
+def test_certificates_are_passed_through(tmp_path: Path) -> None:
+    from skisnow._support.processes.dask_cluster import _security
+
+    path = tmp_path / "scheduler.toml"
+    path.write_text('address = "tls://a:1"\n[tls]\nca_file = "ca.pem"\ncert = "c.pem"\nkey = "k.pem"', encoding="utf-8")
+    security = _security(scheduler_of(path).tls)
+    assert security.require_encryption is True
+    files = (security.tls_ca_file, security.tls_client_cert, security.tls_worker_key)
+    assert files == tuple(str(tmp_path / name) for name in ("ca.pem", "c.pem", "k.pem"))
+    assert _security(None) is None
+
+
+SLURM = """
+[slurm]
+jobs = 4
+cores = 16
+memory = "32GB"
+walltime = "02:00:00"
+queue = "short"
+account = "snow"
+"""
+
+
+class TestJobs:
+    """What a batch system is handed."""
+
+    @pytest.fixture(autouse=True)
+    def _jobqueue(self) -> None:
+        pytest.importorskip("dask_jobqueue", reason="dask-jobqueue is not installed: skisnow[dask]")
+
+    def test_job_script_of_slurm(self, tmp_path: Path) -> None:
+        path = tmp_path / "slurm.toml"
+        path.write_text(SLURM, encoding="utf-8")
+        cluster = batch_cluster(scheduler_of(path))
+        try:
+            script = cluster.job_script()
+        finally:
+            cluster.close()
+        for line in ("-p short", "-A snow", "-n 1", "--cpus-per-task=16", "-t 02:00:00"):
+            assert f"#SBATCH {line}\n" in script
+        assert "--mem=30G" in script
+        assert all(words in script for words in ("--nthreads 1 ", "--nworkers 16 "))
+
+    def test_an_option_that_it_has_not_is_refused(self, tmp_path: Path) -> None:
+        path = tmp_path / "slurm.toml"
+        path.write_text(SLURM + "partition = 'a'\n", encoding="utf-8")
+        with pytest.raises(ParameterError, match=r"\[slurm\]: dask-jobqueue refuses it"):
+            batch_cluster(scheduler_of(path))
+
+
+@pytest.mark.slow
+def test_ten_thousand_points_and_many_runs_while_workers_are_killed(tmp_path: Path, cluster: Cluster) -> None:
+    for text, after in ((CARVE.format(loads=100, angles=100), 2000), (RUNS.format(duration=0.5, speeds=250), 100)):
+        cluster.hire(1)
+        wanted = bytes_of_one_process(tmp_path, text)
+        assert killing(cluster, text, tmp_path, after) == wanted
+        cluster.workers.pop(0)
+        (tmp_path / "killed" / "table.csv").unlink()
+
+
+@pytest.mark.slow
+def test_eight_workers_that_start_at_once_just_start(tmp_path: Path, cluster: Cluster) -> None:
+    text = CARVE.format(loads=30, angles=30)
+    cluster.hire(6)
+    study = study_of(tmp_path / "eight", text)
+    run_study(study, executor=cluster.address)
+    assert study.out.read_bytes() == bytes_of_one_process(tmp_path, text)

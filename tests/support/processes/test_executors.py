@@ -1,0 +1,249 @@
+"""Whoever computes, the rows are the same; what cannot compute is refused in words."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from concurrent.futures import BrokenExecutor, Executor, Future, ThreadPoolExecutor
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from skisnow._support.errors import ParameterError, SkisnowError
+from skisnow._support.processes import chunk, crews, dask_cluster
+from skisnow._support.processes.batch import run_batch
+from skisnow._support.processes.chunk import Identity
+from skisnow._support.processes.crews import LOST
+from skisnow._support.processes.executors import require_executor
+from skisnow._support.processes.kept_rows import KeptRows, row_text
+from skisnow._support.processes.pool import Pool
+from skisnow.identification import identify
+from tests.identification.straight_tracks import SCENARIO, track
+
+POINTS = [[("n", n), ("third", n / 3.0)] for n in range(40)]
+ROWS = [dict(point) for point in POINTS]
+
+
+class Here(Executor):
+    """Computes at once, in the order in which it is asked; tells how many chunks there were."""
+
+    num_workers = 3
+
+    def __init__(self) -> None:
+        self.chunks = 0
+
+    def submit(self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
+        self.chunks += 1
+        future: Future[Any] = Future()
+        try:
+            future.set_result(fn(*args, **kwargs))
+        except Exception as error:
+            future.set_exception(error)
+        return future
+
+
+@pytest.mark.parametrize("executor", ["threads", "processes"])
+def test_threads_and_processes_give_the_same_rows(executor: str) -> None:
+    assert run_batch(POINTS, dict, workers=2, executor=executor) == ROWS
+
+
+def test_any_executor_gives_the_same_rows_in_few_chunks_and_is_left_open() -> None:
+    executor = Here()
+    many = [[("n", n)] for n in range(20_000)]
+    assert run_batch(many, dict, executor=executor) == [{"n": n} for n in range(20_000)]
+    assert executor.chunks < 400  # never a future for each point
+    with ThreadPoolExecutor(2) as threads:
+        assert run_batch(POINTS, dict, executor=threads) == ROWS
+        assert threads.submit(len, "open").result() == 4
+
+
+def test_what_is_finished_is_not_handed_out_again() -> None:
+    """Nor chunks without a point, when some were finished before."""
+    kept, executor = KeptRows(), Here()
+    kept.add([(number, row_text(ROWS[number])) for number in range(36)])
+    assert run_batch(POINTS, dict, kept=kept, executor=executor) == ROWS
+    assert 1 <= executor.chunks <= 5
+
+
+@pytest.mark.slow
+def test_an_identification_takes_an_executor() -> None:
+    asked: dict[str, Any] = {"changes": SCENARIO}
+    here = identify("carved-46m", track(seed=5), "mu_0,speed", workers=1, **asked)
+    executor = Here()
+    assert identify("carved-46m", track(seed=5), "mu_0,speed", executor=executor, **asked).values == here.values
+    assert executor.chunks > 5
+
+
+def test_nothing_to_do_asks_nobody() -> None:
+    executor = Here()
+    assert run_batch([], dict, executor=executor) == []
+    assert executor.chunks == 0
+
+
+def slow(seconds: float) -> dict[str, Any]:
+    time.sleep(seconds)
+    return {}
+
+
+def test_what_waits_is_taken_back_at_the_end() -> None:
+    with ThreadPoolExecutor(1) as threads:
+        with Pool(slow, 1, advice="", executor=threads) as pool:
+            next(iter(pool.rows([(0, 0.0), *((n, 0.2) for n in range(1, 50))])))
+        begun = time.monotonic()
+    assert time.monotonic() - begun < 5.0  # of ten seconds
+
+
+def test_a_worker_with_another_skisnow_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    here = chunk.own_identity()
+    for other in (Identity("0.0.9", here.core), Identity(here.version, "0123456789abcdef")):
+        monkeypatch.setattr(chunk, "own_identity", lambda other=other: other)
+        with pytest.raises(SkisnowError, match=rf"has {other}, this computer has {here}\. Install the same on both"):
+            run_batch(POINTS, dict, executor=Here())
+
+
+class Needy:
+    """Needs files that are not there."""
+
+    def __call__(self, point: Any) -> dict[str, Any]:
+        return dict(point)
+
+    def require_files(self) -> None:
+        raise SkisnowError("the files are others here")
+
+
+def test_a_worker_with_other_files_is_refused() -> None:
+    with pytest.raises(SkisnowError, match="the files are others here"):
+        run_batch(POINTS, Needy(), executor=Here())
+
+
+@pytest.mark.parametrize(
+    ("error", "told"),
+    [
+        (BrokenExecutor("gone"), "a worker process ended unexpectedly"),
+        (ZeroDivisionError("of the function"), None),
+    ],
+)
+def test_errors_of_an_executor_are_told_and_those_of_the_function_passed_on(error: Exception, told: str | None) -> None:
+    class Failing(Here):
+        def submit(self, *_: Any, **__: Any) -> Future[Any]:
+            future: Future[Any] = Future()
+            future.set_exception(error)
+            return future
+
+    with pytest.raises(SkisnowError if told else ZeroDivisionError, match=told or "of the function"):
+        run_batch(POINTS, dict, executor=Failing())
+
+
+@pytest.mark.parametrize(("words", "added"), [("snow that is none", ""), (LOST, "; finished points are kept")])
+def test_advice_is_for_what_was_lost_and_not_for_what_the_function_refuses(words: str, added: str) -> None:
+    class Refusing(Here):
+        def submit(self, *_: Any, **__: Any) -> Future[Any]:
+            future: Future[Any] = Future()
+            future.set_exception(SkisnowError(words))
+            return future
+
+    with pytest.raises(SkisnowError) as told:
+        run_batch(POINTS, dict, executor=Refusing())
+    assert str(told.value).startswith(words + added)
+    assert added or str(told.value) == words
+
+
+def test_futures_that_a_lost_scheduler_cancels_are_told() -> None:
+    class Cancelling(Here):
+        def submit(self, *_: Any, **__: Any) -> Future[Any]:
+            future: Future[Any] = Future()
+            future.cancel()
+            future.set_running_or_notify_cancel()
+            return future
+
+    with pytest.raises(SkisnowError, match="the scheduler was lost, or gave the work up; finished points are kept"):
+        run_batch(POINTS, dict, executor=Cancelling())
+
+
+def test_folder_of_the_parent_is_that_of_a_worker(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    executor = Here()
+    monkeypatch.chdir(tmp_path)
+    crew = crews.GivenCrew(dict, executor, lambda: 1)
+    (tmp_path / "elsewhere").mkdir()
+    monkeypatch.chdir(tmp_path / "elsewhere")
+    crew.submit([(0, POINTS[0])]).result()
+    assert Path.cwd() == tmp_path
+
+
+@pytest.mark.parametrize(
+    ("executor", "told"),
+    [
+        (3, r"executor is 3; it must be one of processes, threads, a concurrent\.futures\.Executor"),
+        ("host:8786", r"the scheduler is 'host:8786'; it must be an address such as tcp://host:8786, a file"),
+    ],
+)
+def test_what_is_no_executor_is_refused(executor: Any, told: str) -> None:
+    with pytest.raises(ParameterError, match=told):
+        run_batch(POINTS, dict, executor=executor)
+
+
+def test_dask_that_is_not_installed_is_told_before_the_work(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(__import__("sys").modules, "distributed", None)
+    with pytest.raises(ParameterError, match=r"needs distributed.*pip install 'skisnow\[dask\]'"):
+        require_executor("tcp://127.0.0.1:8786")
+
+
+@pytest.mark.parametrize("executor", [None, "threads", "processes", Here()])
+def test_what_is_on_this_computer_needs_no_scheduler(executor: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    def refuse(_: object) -> None:
+        raise ParameterError("a scheduler was looked for")
+
+    monkeypatch.setattr(dask_cluster, "require_scheduler", refuse)
+    require_executor(executor)
+
+
+SLURM = '[slurm]\njobs = 4\ncores = 16\nmemory = "32GB"\nwalltime = "02:00:00"\n'
+
+
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        ("", "either an address or one of .*none is there"),
+        ('address = "tcp://a:1"\n' + SLURM, "address and slurm are there"),
+        ('adress = "tcp://a:1"', "adress is no key of a scheduler. Is address meant"),
+        ('address = "a:1"', "address is 'a:1'; it must be a text such as"),
+        ('address = "tcp://a:1"\nwait_s = 0', "wait_s is 0; it must be a number above 0"),
+        ('address = "tcp://a:1"\nwait_s = true', "wait_s is True; it must be a number above 0"),
+        ('address = "tcp://a:1"\nwait_s = "5"', "wait_s is '5'; it must be a number above 0"),
+        (SLURM.replace("4", "true"), "slurm.jobs is True; it must be a whole number"),
+        ('address = "tls://a:1"\ntls = 3', "it must be a table, begun by the line"),
+        ('address = "tls://a:1"\n[tls]\nca = "a.pem"', "tls.ca is no key"),
+        ('address = "tls://a:1"\n[tls]\nca_file = 3', "it must be the path of a PEM file"),
+        ("slurm = 3", "slurm is 3; it must be a table"),
+        (SLURM.replace("4", "0"), "slurm.jobs is 0; it must be a whole number"),
+        (SLURM.replace("cores = 16\n", ""), "slurm.cores is missing"),
+    ],
+)
+def test_a_slip_in_the_file_of_a_scheduler_is_told_with_the_file(text: str, told: str, tmp_path: Path) -> None:
+    path = tmp_path / "scheduler.toml"
+    path.write_text(text, encoding="utf-8")
+    with pytest.raises(ParameterError, match=rf"(?s)scheduler\.toml.*{told}"):
+        dask_cluster.scheduler_of(path)
+
+
+def test_the_file_of_a_scheduler_is_read(tmp_path: Path) -> None:
+    path = tmp_path / "scheduler.toml"
+    path.write_text(SLURM, encoding="utf-8")
+    asked = dask_cluster.scheduler_of(str(path))
+    assert (asked.system, asked.jobs, asked.address) == ("slurm", 4, None)
+    assert asked.options == {"processes": 16, "cores": 16, "memory": "32GB", "walltime": "02:00:00"}
+    assert dask_cluster.is_plain(path)
+    path.write_text('address = "tls://a:1"\nwait_s = 5\n[tls]\nca_file = "ca.pem"\ncert = "own.pem"', encoding="utf-8")
+    asked = dask_cluster.scheduler_of(path)
+    assert (asked.address, asked.wait_s) == ("tls://a:1", 5)
+    assert asked.tls == {"ca_file": str(tmp_path / "ca.pem"), "cert": str(tmp_path / "own.pem")}
+    assert [dask_cluster.is_plain(each) for each in (path, "tcp://a:1", "tls://a:1")] == [False, True, False]
+
+
+@pytest.mark.parametrize("key", ["ca_file", "cert"])
+def test_a_certificate_that_is_none_is_told_before_the_work_begins(key: str, tmp_path: Path) -> None:
+    nonsense = tmp_path / "own.pem"
+    nonsense.write_text("no certificate", encoding="utf-8")
+    with pytest.raises(ParameterError, match=r"own\.pem: no certificate can be read .* \[tls\] needs PEM files"):
+        dask_cluster._require_certificates({key: str(nonsense)})

@@ -1,0 +1,190 @@
+"""Finished rows on disk: what was taken is there once after a kill at any moment."""
+
+from __future__ import annotations
+
+import os
+import random
+import signal
+import sqlite3
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from skisnow._support.errors import OutputError, ParameterError
+from skisnow._support.processes.batch import run_batch
+from skisnow._support.processes.kept_rows import KeptRows, forget, row_text
+
+POINTS = [[("n", n), ("third", n / 3.0), ("text", 'a "quoted", ü\nline')] for n in range(25)]
+ROWS = [dict(point) for point in POINTS]
+
+
+@pytest.fixture
+def place(tmp_path: Path) -> Path:
+    return tmp_path / "rows.partial"
+
+
+def rows_in(path: Path, fingerprint: str = "f") -> dict[int, object]:
+    kept = KeptRows.opened(path, fingerprint)
+    try:
+        return dict(kept.rows())
+    finally:
+        kept.close()
+
+
+def test_a_row_that_cannot_be_kept_is_told_with_its_file(place: Path) -> None:
+    kept = KeptRows.opened(place, "f")
+    kept.add([(0, row_text(ROWS[0]))])
+    kept._database.execute("pragma max_page_count = 3")  # as a disk that is full
+    with pytest.raises(OutputError, match=r"rows\.partial cannot be written: database or disk is full"):
+        kept.add([(number, '{"text":"' + "x" * 9000 + '"}') for number in (1, 2)])
+    assert dict(kept.rows()) == {0: ROWS[0]}
+    kept.close()
+
+
+def test_rows_stay_in_a_file_of_their_own_and_go_with_it(place: Path) -> None:
+    kept = KeptRows.opened(place, "f", about={"points": "25"})
+    assert kept.add([(7, row_text(ROWS[7])), (3, row_text(ROWS[3]))]) == 2
+    assert (len(kept), list(kept.numbers()), 3 in kept, 4 in kept) == (2, [3, 7], True, False)
+    assert kept.row(7) == ROWS[7]
+    assert kept.about()["points"] == "25"
+    kept.remove()
+    assert not list(place.parent.iterdir())
+
+
+def test_values_of_columns_are_kept_in_place_of_names(place: Path) -> None:
+    kept = KeptRows.opened(place, "f", columns=("n", "third", "absent"))
+    kept.add([(0, kept.form(row_text(ROWS[1])))])
+    assert kept.row(0) == {"n": 1, "third": 1 / 3.0, "absent": None}
+    kept.close()
+    assert KeptRows.read(place).columns == ("n", "third", "absent")
+
+
+def test_the_same_row_is_not_taken_twice(place: Path) -> None:
+    kept = KeptRows.opened(place, "f")
+    kept.add([(0, "{}")])
+    with pytest.raises(ParameterError):
+        kept.add([(1, "{}"), (0, "{}")])
+    assert list(kept.numbers()) == [0]  # all of an addition or none
+    kept.close()
+
+
+def test_rows_of_another_batch_are_refused(place: Path) -> None:
+    KeptRows.opened(place, "f").close()
+    with pytest.raises(ParameterError, match="remove that file to begin anew"):
+        KeptRows.opened(place, "g")
+    KeptRows.opened(place, "f").close()
+
+
+def test_two_runs_at_once_are_refused(place: Path) -> None:
+    first = KeptRows.opened(place, "f")
+    for _ in range(2):
+        with pytest.raises(OutputError, match="another run"):
+            KeptRows.opened(place, "f")
+    assert first._database.execute("PRAGMA busy_timeout").fetchone() == (0,)  # nobody waits for the other
+    first.add([(0, "{}")])
+    first.close()
+    assert rows_in(place) == {0: {}}
+
+
+def test_rows_that_are_read_are_nobody_elses_meanwhile(place: Path) -> None:
+    KeptRows.opened(place, "f").close()
+    reader = KeptRows.read(place)
+    with pytest.raises(OutputError, match="another run"):
+        KeptRows.opened(place, "f")
+    reader.close()
+    KeptRows.opened(place, "f").close()
+
+
+@pytest.mark.parametrize("damage", [b"what hours have found", b"SQLite format 3\0" + b"\1" * 5000])
+def test_a_file_that_is_none_of_rows_is_told_and_left(damage: bytes, place: Path) -> None:
+    place.write_bytes(damage)
+    with pytest.raises(ParameterError, match=r"rows\.partial"):
+        KeptRows.opened(place, "f")
+    assert place.read_bytes() == damage
+    with pytest.raises(ParameterError, match=r"rows\.partial"):
+        KeptRows.read(place)
+
+
+def test_a_database_of_something_else_is_told_and_left(place: Path) -> None:
+    other = sqlite3.connect(place)
+    other.execute("create table about (name, value)")
+    other.commit()
+    other.close()
+    with pytest.raises(ParameterError, match=r"rows\.partial"):
+        KeptRows.opened(place, "f")
+    with pytest.raises(ParameterError, match=r"rows\.partial"):
+        KeptRows.read(place)
+
+
+def test_a_log_without_its_file_is_no_part_of_a_new_one(place: Path) -> None:
+    """Somebody removed the file that a kill left, and not the log beside it."""
+    script = "from skisnow._support.processes.kept_rows import *; from pathlib import Path; import os, signal, sys\n"
+    script += "kept = KeptRows.opened(Path(sys.argv[1]), 'f'); kept.add([(0, '{}')])\n"
+    script += "os.kill(os.getpid(), signal.SIGKILL)"
+    subprocess.run([sys.executable, "-c", script, str(place)], check=False)
+    log = place.with_name("rows.partial-wal")
+    left = log.read_bytes()
+    assert rows_in(place) == {0: {}}
+    forget(place)
+    log.write_bytes(left)
+    assert rows_in(place, "g") == {}
+
+
+def test_numbers_come_back_with_every_digit(place: Path) -> None:
+    def many() -> Iterator[float]:
+        yield from (0.1 + 0.2, 1e-320, 1.7976931348623157e308, -0.0, 1 / 3)
+
+    points = [[("x", x)] for x in many()]
+    kept = KeptRows.opened(place, "f")
+    run_batch(points, dict, kept=kept, workers=1)
+    kept.close()
+    opened = KeptRows.opened(place, "f")
+    assert [repr(opened.row(n)["x"]) for n in range(len(points))] == [repr(x) for x in many()]
+    opened.close()
+
+
+KEEPER = """
+import sys
+from pathlib import Path
+from skisnow._support.processes.kept_rows import KeptRows
+kept = KeptRows.opened(Path(sys.argv[1]), "f")
+number = len(kept)
+print(number, flush=True)
+while True:
+    new = range(number, number + 1 + number % 7)
+    kept.add((n, '{"n":%d,"text":"%s"}' % (n, "x" * (n % 3000))) for n in new)
+    number = new.stop
+    print(number, flush=True)
+"""
+
+
+def killed_again_and_again(place: Path, kills: int, seed: int) -> None:
+    """What the process said to be kept is there, and nothing half; each goes on where the one before was killed."""
+    rng, before = random.Random(seed), 0
+    for _ in range(kills):
+        with subprocess.Popen([sys.executable, "-c", KEEPER, str(place)], stdout=subprocess.PIPE) as keeper:
+            assert keeper.stdout is not None
+            assert int(keeper.stdout.readline()) >= before
+            said = [keeper.stdout.readline() for _ in range(rng.randrange(1, 60))]
+            os.kill(keeper.pid, signal.SIGKILL)
+            said += keeper.stdout.readlines()
+        whole = [line for line in said if line.endswith(b"\n")]
+        kept = KeptRows.opened(place, "f")
+        numbers = list(kept.numbers())
+        assert numbers == list(range(len(numbers)))
+        assert len(numbers) >= int(whole[-1])
+        assert all(row == {"n": n, "text": "x" * (n % 3000)} for n, row in kept.rows() if n >= before)
+        before = len(numbers)
+        kept.close()
+
+
+def test_killed_at_any_moment_nothing_taken_is_lost_and_none_is_there_twice(place: Path) -> None:
+    killed_again_and_again(place, 3, seed=1)
+
+
+@pytest.mark.slow
+def test_a_hundred_kills(place: Path) -> None:
+    killed_again_and_again(place, 100, seed=2)

@@ -1,0 +1,144 @@
+"""Processes that stay: the same ones for every call, ended with what uses them."""
+
+from __future__ import annotations
+
+import os
+import signal
+import time
+from concurrent.futures import Future
+from types import SimpleNamespace
+from typing import Any, cast
+
+import pytest
+
+from skisnow._support.errors import ParameterError, SkisnowError
+from skisnow._support.processes.chunk import computed
+from skisnow._support.processes.crews import LARGEST_FOR_A_PIPE, ProcessCrew, _in_worker
+from skisnow._support.processes.kept_rows import NumberedText
+from skisnow._support.processes.pool import Pool, workers_in_force
+
+
+def own_process(_point: Any) -> dict[str, Any]:
+    return {"process": os.getpid()}
+
+
+def waiting(seconds: float) -> dict[str, Any]:
+    time.sleep(seconds)
+    return {}
+
+
+def killed(_point: Any) -> dict[str, Any]:
+    os.kill(os.getpid(), signal.SIGTERM)
+    return {}
+
+
+def texts(rows: list[list[NumberedText]]) -> set[str]:
+    return {text for chunk in rows for _, text in chunk}
+
+
+def test_processes_stay_from_one_call_to_the_next() -> None:
+    with Pool(own_process, 2, advice="") as pool:
+        seen = [texts(list(pool.rows([(n, None) for n in range(4)]))) for _ in range(3)]
+    others = set().union(*seen)
+    assert 1 <= len(others) <= 2
+    assert f'{{"process":{os.getpid()}}}' not in others
+
+
+def test_what_still_runs_is_ended_with_the_pool() -> None:
+    """A point would take a minute; another is taken, and the rest is left."""
+    begun = time.monotonic()
+    with Pool(waiting, 2, advice="") as pool:
+        assert next(iter(pool.rows([(0, 0.0), (1, 60.0), (2, 60.0)]))) == [(0, "{}")]
+    assert time.monotonic() - begun < 40.0
+
+
+def test_a_process_that_is_killed_is_told_with_advice() -> None:
+    with (
+        pytest.raises(SkisnowError, match="ended unexpectedly, perhaps for lack of memory; take fewer"),
+        Pool(killed, 2, advice="take fewer") as pool,
+    ):
+        list(pool.rows([(0, None), (1, None)]))
+
+
+def test_workers_are_at_least_one_and_as_many_as_cores_where_left_out() -> None:
+    assert workers_in_force(3) == 3
+    assert 1 <= workers_in_force(None) <= (os.cpu_count() or 1)
+    with pytest.raises(ParameterError, match="workers is 0; at least 1 is needed"):
+        workers_in_force(0)
+
+
+@pytest.mark.parametrize(("counted", "cores"), [(6, 6), (None, 1)])
+def test_cores_of_a_system_that_does_not_say_which_are_ours(
+    counted: int | None, cores: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.delattr(os, "sched_getaffinity", raising=False)
+    monkeypatch.setattr(os, "cpu_count", lambda: counted)
+    assert workers_in_force(None) == cores
+
+
+def test_quick_points_are_handed_over_many_at_a_time() -> None:
+    """One by one until it is known how long they take, then in chunks that all fit through a pipe."""
+    with Pool(own_process, 2, advice="") as pool:
+        chunks = [len(chunk) for chunk in pool.rows([(n, None) for n in range(1000)])]
+    assert sum(chunks) == 1000
+    assert chunks[0] == 1
+    assert 10 < max(chunks) <= LARGEST_FOR_A_PIPE
+    assert len(chunks) < 500
+
+
+def test_only_a_pool_starts_a_worker() -> None:
+    with pytest.raises(SkisnowError, match="not started by a Pool"):
+        _in_worker([(0, None)])
+
+
+@pytest.mark.parametrize(("points", "each"), [([2.0], 2.0), ([1.0, 3.0], 2.0), ([], 0.0)])
+def test_a_chunk_tells_how_long_a_point_takes(
+    points: list[float], each: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    clock = [100.0]
+
+    def lasting(seconds: float) -> dict[str, Any]:
+        clock[0] += seconds
+        return {}
+
+    monkeypatch.setattr("skisnow._support.processes.chunk.time.perf_counter", lambda: clock[0])
+    assert computed(lasting, list(enumerate(points))).seconds_per_point == each
+
+
+@pytest.mark.parametrize(
+    ("error", "finished", "at_once"), [(None, True, False), (None, False, True), (KeyboardInterrupt, True, True)]
+)
+def test_workers_are_ended_at_once_where_work_is_left_or_an_error_came(
+    error: type[BaseException] | None, finished: bool, at_once: bool
+) -> None:
+    pool, said, future = Pool(dict, 2, advice=""), list[bool](), Future[Any]()
+    if finished:
+        future.set_result(None)
+
+    class Ends:
+        def end(self, *, at_once: bool) -> None:
+            said.append(at_once)
+
+    pool._crew, pool._running = cast("Any", Ends()), {future}
+    pool.__exit__(error, None, None)
+    assert said == [at_once]
+    assert future.cancelled() is not finished
+
+
+@pytest.mark.parametrize(("at_once", "order"), [(True, ["let go", "shut down"]), (False, ["shut down", "let go"])])
+def test_processes_are_let_go_before_or_behind_their_last_point(at_once: bool, order: list[str]) -> None:
+    """A process whose leash is closed ends; what waits is taken back, nothing of the crew stays, it may end twice."""
+    done: list[str] = []
+
+    def shut_down(*, wait: bool, cancel_futures: bool) -> None:
+        assert wait
+        assert cancel_futures
+        done.append("shut down")
+
+    crew: Any = ProcessCrew(dict, 2)
+    crew._leash = SimpleNamespace(close=lambda: done.append("let go"))
+    crew._executor = SimpleNamespace(shutdown=shut_down)
+    crew.end(at_once=at_once)
+    crew.end(at_once=at_once)
+    assert done == order
+    assert (crew._leash, crew._executor) == (None, None)

@@ -1,0 +1,73 @@
+"""Files are complete or not there."""
+
+from pathlib import Path
+
+import pytest
+
+from skisnow._support.errors import OutputError
+from skisnow._support.files import place_to_write, require_writable, write_file
+
+
+def test_text_and_bytes(tmp_path: Path) -> None:
+    write_file(tmp_path / "new" / "a.txt", "ϑ\n")
+    assert (tmp_path / "new" / "a.txt").read_bytes() == "ϑ\n".encode()
+    write_file(tmp_path / "new" / "a.txt", b"\x00")
+    assert (tmp_path / "new" / "a.txt").read_bytes() == b"\x00"
+    assert [path.name for path in (tmp_path / "new").iterdir()] == ["a.txt"]
+
+
+def test_a_full_disk_leaves_what_was_there(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    target = tmp_path / "a.txt"
+    target.write_text("before", encoding="utf-8")
+
+    def full(_handle: int) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr("os.fsync", full)
+    with pytest.raises(OutputError, match=r"a\.txt cannot be written: No space left on device"):
+        write_file(target, "after")
+    assert target.read_text(encoding="utf-8") == "before"
+    assert [path.name for path in tmp_path.iterdir()] == ["a.txt"]
+
+
+def test_an_interruption_leaves_no_part_of_a_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def interrupted(_handle: int) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("os.fsync", interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        write_file(tmp_path / "a.txt", "text")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_whoever_may_enter_the_folder_may_read_the_file(tmp_path: Path) -> None:
+    write_file(tmp_path / "a.txt", "text")
+    assert (tmp_path / "a.txt").stat().st_mode & 0o777 == 0o644
+
+
+def test_a_file_filled_by_its_name_has_a_hidden_one_until_it_is_whole(tmp_path: Path) -> None:
+    with place_to_write(tmp_path / "a.nc") as place:
+        assert place.parent == tmp_path
+        assert place.name.startswith(".a.nc.")
+        assert place.name.endswith(".partial")
+        place.write_bytes(b"whole")
+        assert not (tmp_path / "a.nc").exists()
+    assert [path.name for path in tmp_path.iterdir()] == ["a.nc"]
+    assert (tmp_path / "a.nc").read_bytes() == b"whole"
+
+
+def test_folders_above_a_file_are_made_and_nothing_stays_open(tmp_path: Path) -> None:
+    opened = Path("/proc/self/fd")
+    before = len(list(opened.iterdir())) if opened.is_dir() else 0
+    for number in range(5):
+        write_file(tmp_path / "far" / "away" / f"{number}.txt", "text")
+    assert len(list((tmp_path / "far" / "away").iterdir())) == 5
+    assert (len(list(opened.iterdir())) if opened.is_dir() else 0) == before
+
+
+def test_a_folder_is_tried_before_long_work(tmp_path: Path) -> None:
+    require_writable(tmp_path / "new" / "folder")
+    assert list((tmp_path / "new" / "folder").iterdir()) == []
+    (tmp_path / "file").write_text("", encoding="utf-8")
+    with pytest.raises(OutputError, match=r"file cannot be written: .*\. Choose another place or free some space\."):
+        require_writable(tmp_path / "file")

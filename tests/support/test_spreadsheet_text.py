@@ -1,0 +1,133 @@
+"""Texts in tables that people open: never a formula, always the same text again."""
+
+from __future__ import annotations
+
+import math
+import random
+
+import pytest
+
+from skisnow._support.spreadsheet_text import (
+    LONGEST_NUMBER,
+    NoTextError,
+    decimal_mark,
+    decoded,
+    encoding_of,
+    guarded,
+    is_number,
+    most_frequent_separator,
+    named_separator,
+    number,
+    unguarded,
+)
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["=1+1", '=HYPERLINK("http://x")', "+1+1", "-A1", "@SUM(A1)", "\tx", "\rx", "＝1", "-1 mm", "--1", "-", "=-1"],
+)
+def test_what_a_spreadsheet_takes_for_a_formula_begins_with_an_apostrophe(text: str) -> None:
+    assert guarded(text) == f"'{text}"
+
+
+@pytest.mark.parametrize("text", ["-1.5", "+2", "-1,5", "-1e-3", "0", "A-1", "it's", "'tis", "", " "])
+def test_numbers_and_harmless_texts_stay(text: str) -> None:
+    assert guarded(text) == text
+    assert unguarded(text) == text
+
+
+def test_every_text_comes_back() -> None:
+    random_ = random.Random(1)
+    cells = set()
+    for _ in range(5000):
+        text = "".join(random_.choices("'=+-@1. a\t", k=random_.randrange(6)))
+        cells.add((text, guarded(text)))
+        assert unguarded(guarded(text)) == text
+        assert guarded(text)[:1] not in tuple("=@\t")
+    assert len({cell for _, cell in cells}) == len(cells)  # no two texts share a cell
+
+
+@pytest.mark.parametrize(
+    ("data", "codec", "foreign"),
+    [
+        ("Höhe".encode(), "utf-8", None),
+        ("Höhe".encode("utf-8-sig"), "utf-8-sig", None),
+        ("Höhe".encode("utf-16"), "utf-16", "UTF-16"),
+        (b"\xfe\xff" + "Höhe".encode("utf-16-be"), "utf-16", "UTF-16"),
+        ("Höhe".encode("cp1252"), "cp1252", "Windows-1252"),
+    ],
+)
+def test_encodings(data: bytes, codec: str, foreign: str | None) -> None:
+    assert encoding_of(data) == (codec, foreign)
+    text = decoded(data)
+    assert (text.text, text.codec, text.foreign_encoding) == ("Höhe", codec, foreign)
+
+
+@pytest.mark.parametrize(
+    ("data", "place", "encoding"),
+    [
+        (b"ab\x81", "byte 3", "Windows-1252"),
+        (b"a\0b", "a NUL character", "UTF-8"),
+        (b"\xff\xfe" + "ab".encode("utf-16-le") + b"\x00\xdc", "byte 7", "UTF-16"),
+        (b"\xff\xfe\0\0", "a NUL character", "UTF-16"),
+    ],
+)
+def test_bytes_that_are_no_text_are_told_by_their_place(data: bytes, place: str, encoding: str) -> None:
+    with pytest.raises(NoTextError, match=f"^{place} is no {encoding} text$") as refused:
+        decoded(data)
+    assert (refused.value.place, refused.value.encoding) == (place, encoding)
+
+
+@pytest.mark.parametrize(
+    ("head", "separator"),
+    [
+        ("sep=;\na", ";"),
+        ("SEP=,,,\r\na", ","),
+        ('"sep=\t"\n', "\t"),
+        ("sep=;,\n", None),
+        ("a\nsep=;", None),
+        ("", None),
+    ],
+)
+def test_a_first_line_that_names_the_separator(head: str, separator: str | None) -> None:
+    assert named_separator(head) == separator
+
+
+@pytest.mark.parametrize(
+    ("head", "separator"),
+    [("a;b;c,d\n", ";"), ("a,b;c", ","), ("a\tb\n1,2,3,4", "\t"), (";;\n,\na,b", ","), ('"a;b;c"\td', "\t"), ("", ",")],
+)
+def test_the_separator_of_the_first_line_that_says_something(head: str, separator: str) -> None:
+    assert most_frequent_separator(head) == separator
+
+
+@pytest.mark.parametrize(
+    ("cell", "mark", "value"),
+    [
+        ("1.", ".", 1.0), (".5", ".", 0.5), ("+1.5E-3", ".", 1.5e-3), (" 2,5 ", ",", 2.5), ("7", ",", 7.0),
+        ("1.5", ",", math.nan), ("1,5", ".", math.nan), (".", ".", math.nan), ("1e", ".", math.nan),
+        ("0x1", ".", math.nan), ("-1e999", ".", math.nan),
+    ],
+)  # fmt: skip
+def test_numbers_as_they_are_written(cell: str, mark: str, value: float) -> None:
+    assert number(cell, mark) == pytest.approx(value, rel=0.0, nan_ok=True)
+
+
+def test_no_number_is_longer_than_the_longest() -> None:
+    assert is_number("1" * LONGEST_NUMBER, ".")
+    assert not is_number("1" * (LONGEST_NUMBER + 1), ".")
+
+
+@pytest.mark.parametrize(
+    ("groups", "separator", "mark"),
+    [
+        ([["1,5", "2,5", "3.5"]], ";", ","),
+        ([["1,5", "2.5", "3.5"]], ";", "."),
+        ([["1,5", "2.5"]], ";", ","),
+        ([["1,5", "2.5"]], ",", "."),
+        ([["1", "a,b"], ["2,5"], ["3.5", "4.5"]], "\t", ","),
+        ([["1", "2"], []], ";", "."),
+    ],
+)
+def test_the_first_fractions_tell_the_decimal_mark(groups: list[list[str]], separator: str, mark: str) -> None:
+    assert decimal_mark(groups, separator=separator) == mark

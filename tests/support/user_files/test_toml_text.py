@@ -1,0 +1,70 @@
+"""TOML beyond its limits is refused before it costs time or memory; what is within comes as tomllib gives it."""
+
+from __future__ import annotations
+
+import tomllib
+import tracemalloc
+
+import pytest
+
+from skisnow._support.user_files import GivenError, toml_values
+from skisnow._support.user_files.sound_values import DEEPEST, LONGEST_KEY, LONGEST_TEXT
+from skisnow._support.user_files.toml_text import MOST_DOTS, MOST_TOML_BYTES
+
+SOUND = '''# a.b.c.d "
+[a."b.c".d]
+x = [1.5, -2e3, 0x1F] # ]]]]
+y = { z = "\\"[[[[" , w = 'C:\\a.b.c' }
+text = """a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a "" [[[["""""
+plain = \'\'\'a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a ''[[[[\'\'\'
+day = 2013-02-01T10:00:00.5+01:00
+far = [inf, nan]
+[[list]]
+[[list]]
+'''
+
+
+def test_what_is_within_the_limits_is_as_tomllib_reads_it() -> None:
+    assert repr(toml_values(SOUND)) == repr(tomllib.loads(SOUND))
+    brackets = "[" * (DEEPEST - 1) + "]" * (DEEPEST - 1)
+    edge = f"a = {brackets}\n{'.'.join('b' * (MOST_DOTS + 1))} = 1\n{'c' * LONGEST_KEY} = 1"
+    assert toml_values(edge) == tomllib.loads(edge)
+
+
+@pytest.mark.parametrize(
+    ("text", "line", "told"),
+    [
+        ("x = 1\na = " + "[" * 3000 + "]" * 3000, 2, "nested more than 32 deep"),
+        ("a = " + "{a=" * 3000, 1, "nested more than 32 deep"),
+        ("\n\n[" + ".".join("a" * 20_000) + "]", 3, "more than 16 dots"),
+        (" . ".join('"a"' for _ in range(20_000)) + " = 1", 1, "more than 16 dots"),
+        ("a = 9" * 1 + "9" * 5000, 1, "5001 characters"),
+        ("a = 1" + "0" * 400, 1, "401 characters"),
+        ("a = 1" + "0" * 30, None, "a is beyond the whole numbers"),
+        ("[a]\nb = [1, -9223372036854775809]", None, r"a.b\[2\] is beyond the whole numbers"),
+        (r'profile = "\u0000.csv"', None, "profile has a NUL character"),
+        (r'"a\u0000" = 1', None, "NUL character"),
+        (f'"{"k" * 201}" = 1', None, "has 201 characters; allowed are 200"),
+        (f'a = "{"k" * (LONGEST_TEXT + 1)}"', None, "a has 100001 characters"),
+        ("a = 1\n" * MOST_TOML_BYTES, None, "allowed are 1048576"),
+        ("a = 1\nb == 2", 2, "Expected|Invalid"),
+        ("a = 2013-02-31", 1, "is no TOML: Invalid date"),
+    ],
+)
+def test_beyond_the_limits(text: str, line: int | None, told: str) -> None:
+    with pytest.raises(GivenError, match=told) as error:
+        toml_values(text, title="some.toml")
+    assert error.value.line == line
+    assert str(error.value).startswith("some.toml")
+
+
+def test_a_key_of_many_dots_costs_no_memory() -> None:
+    text = "a." * 20_000 + "a = 1"
+    tracemalloc.start()
+    try:
+        with pytest.raises(GivenError):
+            toml_values(text)
+        _, most = tracemalloc.get_traced_memory()
+    finally:
+        tracemalloc.stop()
+    assert most < 20 * len(text)

@@ -1,0 +1,275 @@
+"""Courses from their files: columns, sides, degrees against metres, and everything that is refused with its place."""
+
+from __future__ import annotations
+
+import math
+import re
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from skisnow._support.errors import ParameterError
+from skisnow.scenario import load_scenario
+from skisnow.simulation.run_gates import time_gates
+from skisnow.track.course import Course, Gate, MovingPoint, course_warnings, on_slope, passages, read_course
+from skisnow.track.course.course_file import _bends
+from skisnow.track.projection import GeodeticPoint
+from skisnow.track.read import read_track
+
+HEAD = "gate,x_m,y_m,side,outer_x_m,outer_y_m\n"
+ROWS = "1,10,-1,left,10,4\n2,20,1,right,20,-4\n3,30,-1,Left,,\n"
+LATITUDE, LONGITUDE = 47.0, 11.0
+
+
+def written(folder: Path, text: str, name: str = "course.csv") -> Path:
+    path = folder / name
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+def gpx(points: list[tuple[float, float, str]]) -> str:
+    """Waypoints at metres east and north of 47° N, 11° E, by the radii of curvature of WGS84 (Torge, Geodesy, 4.1)."""
+    a, e2, sine = 6378137.0, 0.00669437999014, math.sin(math.radians(LATITUDE))
+    w = math.sqrt(1.0 - e2 * sine**2)
+    meridian, normal = a * (1.0 - e2) / w**3, a / w
+    rows = "".join(
+        f'<wpt lat="{LATITUDE + math.degrees(north / meridian):.12f}" '
+        f'lon="{LONGITUDE + math.degrees(east / (normal * math.cos(math.radians(LATITUDE)))):.12f}">{rest}</wpt>'
+        for east, north, rest in points
+    )
+    return f'<?xml version="1.0"?><gpx version="1.1" xmlns="http://www.topografix.com/GPX/1/1">{rows}</gpx>'
+
+
+def test_table_is_read_as_it_stands(tmp_path: Path) -> None:
+    found = read_course(written(tmp_path, HEAD + ROWS), discipline="slalom")
+    assert [gate.name for gate in found.gates] == ["1", "2", "3"]
+    assert [gate.turning for gate in found.gates] == [(10.0, -1.0), (20.0, 1.0), (30.0, -1.0)]
+    assert [gate.side for gate in found.gates] == ["left", "right", "left"]
+    assert [gate.outer for gate in found.gates] == [(10.0, 4.0), (20.0, -4.0), None]
+    assert [gate.width for gate in found.gates] == [5.0, 5.0, math.inf]
+    assert found.length == pytest.approx(2.0 * math.hypot(10.0, 2.0))
+    assert (found.axes, found.discipline, found.warnings) == ("metres", "slalom", ())
+    assert repr(found).startswith("<Course slalom, 3 gates, 20.4 m from pole to pole")
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("gate,x_m,y_m\n", "row 1: there is no column side"),
+        (HEAD + ROWS.replace("left,10", "up,10"), "row 2, column side: 'up' must be left or right"),
+        (HEAD + ROWS.replace("2,20,1", "2,2o,1"), "row 3, column x_m: '2o' is no finite number"),
+        (HEAD + ROWS.replace("2,20,1", ",20,1"), "row 3, column gate: '' is no name"),
+        (HEAD + ROWS.replace("20,-4", "20,"), "row 3, column outer_x_m: '20' stands alone"),
+        (HEAD + ROWS.replace("2,20,1", "1,20,1"), "two gates are called '1'"),
+        (HEAD + "1,10,-1,left,10,4\n", "a course needs 2 gates or more, it has 1"),
+        (HEAD + ROWS.replace("2,20,1,right,20,-4", "2,10,-1,right,,"), "the gates 1 and 2 stand at one place"),
+        (HEAD + ROWS.replace("10,4", "10,-1"), "gate 1: both poles stand at"),
+        (
+            HEAD + ROWS.replace("right", "left"),
+            'gate 2: seen down the course the outer pole stands to the right of the turning pole, and side is "left"',
+        ),
+    ],
+)
+def test_what_is_wrong_is_told_with_its_place(tmp_path: Path, text: str, said: str) -> None:
+    path = written(tmp_path, text)
+    with pytest.raises(ParameterError, match=said) as error:
+        read_course(path)
+    assert str(error.value).startswith(str(path))
+
+
+POINTS = [(0.0, 0.0, "left"), (4.0, -12.0, "right"), (0.0, -24.0, "left"), (4.0, -36.0, "right")]
+"""East and north, m: down to the south. Passed on the left, the east, of a pole on the right... see the test."""
+
+
+def test_degrees_are_the_same_metres(tmp_path: Path) -> None:
+    """South is x, so east is y, to the left: on a plane of 20 degrees x goes down the incline."""
+    named = [(east, north, f"<name>{i}</name><type>gate {side}</type>") for i, (east, north, side) in enumerate(POINTS)]
+    found = read_course(
+        written(tmp_path, gpx(named), "course.gpx"),
+        latitude_deg=LATITUDE, longitude_deg=LONGITUDE, fall_line_azimuth_deg=180.0,
+    )  # fmt: skip
+    assert found.axes == "east_north_up"
+    np.testing.assert_allclose([gate.turning for gate in found.gates], [each[:2] for each in POINTS], atol=1e-3)
+    level = on_slope(found, slope_angle=None)
+    assert [gate.side for gate in level.gates] == ["left", "right", "left", "right"]
+    np.testing.assert_allclose([gate.turning for gate in level.gates], [(-n, e) for e, n, _ in POINTS], atol=1e-3)
+    inclined = on_slope(found, slope_angle=math.radians(20.0))
+    stretched = [(-n / math.cos(math.radians(20.0)), e) for e, n, _ in POINTS]
+    np.testing.assert_allclose([gate.turning for gate in inclined.gates], stretched, atol=1e-3)
+    assert on_slope(inclined, slope_angle=0.3) is inclined
+
+
+def test_the_same_track_passes_both_at_the_same_times(tmp_path: Path) -> None:
+    rows = "".join(f"{i},{e},{n},{side}\n" for i, (e, n, side) in enumerate(POINTS))
+    metres = read_course(written(tmp_path, "gate,x_m,y_m,side\n" + rows))
+    named = [(east, north, f"<desc>{side}</desc>") for east, north, side in POINTS]
+    degrees = read_course(written(tmp_path, gpx(named), "course.gpx"), latitude_deg=LATITUDE, longitude_deg=LONGITUDE)
+    time = np.arange(0.0, 6.0, 0.1)
+    track = MovingPoint(time, np.column_stack([np.full(len(time), 2.0), 5.0 - 9.0 * time]))
+    one, other = (passages(each, track, {}) for each in (metres, degrees))
+    assert [each.outcome for each in one.passages] == [each.outcome for each in other.passages] == ["passed"] * 4
+    known = [each for each in other.times if each is not None]
+    assert one.times == pytest.approx(known, abs=1e-4)
+    assert one.times[1] == pytest.approx(17.0 / 9.0)  # the chord from pole 1 to pole 3 is square to its line
+
+
+def test_sides_that_are_not_told_are_those_of_the_bends(tmp_path: Path) -> None:
+    """Going south a pole to the east lies to the left, and is passed on the left, outside the bend."""
+    found = read_course(written(tmp_path, gpx([(e, n, f"<name>g{n:.0f}</name>") for e, n, _ in POINTS]), "course.gpx"))
+    assert [gate.side for gate in found.gates] == ["right", "left", "right", "left"]
+    assert found.warnings == ("the side of 4 gates was taken from the bends of the course: g0, g-12, g-24, g-36",)
+    straight = gpx([(0.0, -10.0 * i, "") for i in range(4)])
+    with pytest.raises(ParameterError, match="waypoint 1, '1', does not say on which side it is passed"):
+        read_course(written(tmp_path, straight, "course.gpx"))
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("<gpx></gpx>", "there is no waypoint"),
+        ("<gpx><wpt lat='95' lon='11'/></gpx>", "waypoint 1, lat: '95' is no number from -90 to 90"),
+        ("<gpx><wpt lat='nan' lon='11'/></gpx>", "waypoint 1, lat: 'nan' is no number from -90 to 90"),
+        (
+            "<gpx><wpt lat='47' lon='11'><ele>1e6</ele></wpt></gpx>",
+            "waypoint 1, ele: '1e6' is no number from -100000 to 100000",
+        ),
+        ("<gpx><wpt lat='47'/></gpx>", "waypoint 1, lon: None is no number from -180 to 180"),
+        ("<gpx><wpt lat='47' lon='11'>", "is no GPX that can be read"),
+        ('<!DOCTYPE gpx [<!ENTITY a "b">]><gpx/>', "the declaration of an entity, a"),
+    ],
+)
+def test_what_is_no_gpx_course_is_refused(tmp_path: Path, text: str, said: str) -> None:
+    path = written(tmp_path, text, "course.gpx")
+    with pytest.raises(ParameterError, match=said) as error:
+        read_course(path)
+    assert str(error.value).startswith(str(path))
+
+
+def test_16_mib_of_gpx_are_read(tmp_path: Path) -> None:
+    """A file of zeros, which is no GPX, but not too large before it has a byte more."""
+    path = tmp_path / "course.gpx"
+    for size, said in ((2**24, "is no GPX that can be read"), (2**24 + 1, "is too large: at most 16 MiB are read")):
+        with path.open("wb") as stream:
+            stream.truncate(size)
+        with pytest.raises(ParameterError, match=said):
+            read_course(path)
+
+
+def test_degrees_need_to_know_where_x_points(tmp_path: Path) -> None:
+    named = [(east, north, f"<desc>{side}</desc>") for east, north, side in POINTS]
+    path = written(tmp_path, gpx(named), "course.gpx")
+    with pytest.raises(ParameterError, match=r"give course\.fall_line_azimuth_deg"):
+        on_slope(read_course(path), slope_angle=None)
+    with pytest.raises(ParameterError, match="latitude and longitude of the origin go together"):
+        read_course(path, latitude_deg=47.0)
+
+
+def giant(*, apart: float = 24.0, width: float = 6.0, number: int = 5) -> Course:
+    gates = []
+    for i in range(number):
+        side, y = ("left", 3.0) if i % 2 else ("right", -3.0)
+        outer = (apart * i, y + (width if i % 2 else -width))
+        gates.append(Gate(name=str(i + 1), turning=(apart * i, y), side=side, outer=outer))  # type: ignore[arg-type]
+    return Course(gates=tuple(gates), discipline="giant-slalom")
+
+
+def test_rules_of_giant_slalom() -> None:
+    """ICR 901.2.3: 4 to 8 m wide, 10 m apart; 901.2.4: 4 changes of direction fit 27 to 36 m of drop."""
+    assert course_warnings(giant(), drop=30.0) == ()
+    assert course_warnings(giant(), drop=None) == course_warnings(giant(), drop=0.0) == ()
+    assert "4 times over 1 m of drop; FIS ICR 901.2 asks for 0 to 0" in course_warnings(giant(), drop=0.8)[0]
+    assert course_warnings(giant(width=3.0))[0] == "gate 1 is 3.00 m wide; FIS ICR 901.2 asks for 4 to 8 m"
+    assert len(course_warnings(giant(width=9.0))) == 5
+    near = course_warnings(giant(apart=7.0))
+    assert near[0].startswith("gates 1 and 2 are 9.22 m apart")  # 7 m down and 6 m across
+    assert len(near) == 4
+    assert "4 times over 60 m of drop; FIS ICR 901.2 asks for 7 to 9" in course_warnings(giant(), drop=60.0)[0]
+
+    assert course_warnings(replace(giant(width=3.0), discipline="slalom"), drop=60.0) == ()
+    assert course_warnings(replace(giant(width=3.0), discipline=None), drop=60.0) == ()
+
+
+def test_a_scenario_lays_degrees_on_its_slope(tmp_path: Path) -> None:
+    """Down a plane the incline is longer than the map; over a profile x stays horizontal."""
+    named = [(east, north, f"<name>{i}</name><type>gate {side}</type>") for i, (east, north, side) in enumerate(POINTS)]
+    file = str(written(tmp_path, gpx(named), "course.gpx"))
+    heights = "".join(f"{x},{-x / 5}\n" for x in range(0, 101, 5))
+    (tmp_path / "profile.csv").write_text(f"x,y\n{heights}", encoding="utf-8")
+    place = {"latitude_deg": LATITUDE, "longitude_deg": LONGITUDE, "fall_line_azimuth_deg": 180.0}
+    changes = {"course.file": file} | {f"course.{name}": value for name, value in place.items()}
+    plane = load_scenario("carved-46m", changes={**changes, "slope.angle_deg": 20.0}).course
+    bent = {"slope.kind": "profile", "slope.profile": str(tmp_path / "profile.csv")}
+    profile = load_scenario("carved-46m", changes={**changes, **bent}).course
+    for found, stretched in ((plane, 1.0 / math.cos(math.radians(20.0))), (profile, 1.0)):
+        assert found is not None
+        np.testing.assert_allclose(
+            [gate.turning for gate in found.gates], [(-n * stretched, e) for e, n, _ in POINTS], atol=1e-3
+        )
+
+
+def test_a_course_in_degrees_is_laid_on_the_slope_of_a_scenario_that_is_changed(tmp_path: Path) -> None:
+    file = str(written(tmp_path, gpx([(e, n, f"<desc>{side}</desc>") for e, n, side in POINTS]), "course.gpx"))
+    degrees = read_course(file, latitude_deg=LATITUDE, longitude_deg=LONGITUDE, fall_line_azimuth_deg=180.0)
+    plane = load_scenario("carved-46m", changes={"slope.angle_deg": 20.0})
+    changed = plane.with_(course=degrees).course
+    assert changed is not None
+    stretched = 1.0 / math.cos(math.radians(20.0))
+    np.testing.assert_allclose(
+        [gate.turning for gate in changed.gates], [(-n * stretched, e) for e, n, _ in POINTS], atol=1e-3
+    )
+    with pytest.raises(ParameterError, match="fall_line_azimuth_deg"):
+        plane.with_(course=replace(degrees, fall_line_azimuth_deg=None))
+
+
+def test_a_track_and_a_course_in_degrees_with_their_own_origins_are_brought_together(tmp_path: Path) -> None:
+    """The track begins 20 m before the first gate: its own origin is its first point, the course's its first gate."""
+    file = written(tmp_path, gpx([(e, n, f"<desc>{side}</desc>") for e, n, side in POINTS]), "course.gpx")
+    north = 25.0 - 9.0 * np.arange(0.0, 8.0, 0.1)
+    way = gpx([(2.0, float(n), f"{i / 10.0!r}") for i, n in enumerate(north)])
+    rows = [f"{time},{lat},{lon}" for lat, lon, time in re.findall(r'lat="([^"]+)" lon="([^"]+)">([^<]+)<', way)]
+    track = read_track(written(tmp_path, "\n".join(["time,lat,lon", *rows]), "track.csv"))
+    course = read_course(file)
+    result = time_gates(course, track)
+    assert [each.outcome for each in result.passages] == ["passed"] * 4
+    shared = read_track(tmp_path / "track.csv", origin=GeodeticPoint(course.latitude_deg, course.longitude_deg))  # type: ignore[arg-type]
+    assert result.times == pytest.approx(list(time_gates(course, shared).times), abs=1e-6)
+    assert result.times[1] == pytest.approx(37.0 / 9.0, abs=1e-3)
+    with pytest.raises(ParameterError, match="local metres"):
+        time_gates(course, replace(track, origin=None))
+
+
+@pytest.mark.parametrize(
+    ("bend", "side"), [(0.04, None), (0.06, "right"), (-0.04, None), (-0.06, "left"), (2.0, "right")]
+)
+def test_a_bend_tells_a_side_from_a_twentieth_of_a_radian_on(bend: float, side: str | None) -> None:
+    """The turning pole of a bend to the left is passed on the right; an end is passed on the other side."""
+    place = np.array([(0.0, 0.0), (9.0, 3.0)])
+    angle = math.atan2(3.0, 9.0) + bend
+    place = np.vstack([place, place[1] + 20.0 * np.array([math.cos(angle), math.sin(angle)])])
+    other = {"left": "right", "right": "left", None: None}[side]
+    assert _bends(place) == [other, side, other]
+
+
+def test_a_straight_stretch_has_no_sides_whichever_way_it_goes() -> None:
+    """East, north, and then west over three poles: two bends to the left, and none."""
+    assert _bends(np.array([(0.0, 0.0), (9.0, 0.0), (9.0, 9.0), (0.0, 9.0), (-9.0, 9.0)])) == [
+        "left", "right", "right", None, None,
+    ]  # fmt: skip
+
+
+def test_gates_that_lead_back_to_one_place_have_no_direction() -> None:
+    places = (("a", (0.0, 0.0)), ("b", (10.0, 0.0)), ("c", (0.0, 0.0)))
+    gates = tuple(Gate(name=name, turning=place, side="left") for name, place in places)
+    with pytest.raises(ParameterError, match="gates before and behind b stand at one place"):
+        Course(gates=gates)
+
+
+def test_gates_without_a_height_lie_on_the_ellipsoid(tmp_path: Path) -> None:
+    """East of 47° N, 11° E by 0.001°: N cos φ sin Δλ, N = a/√(1 - e² sin² φ)."""
+    points = "".join(f'<wpt lat="47" lon="{lon}"><desc>left</desc></wpt>' for lon in ("11", "11.001"))
+    found = read_course(written(tmp_path, f"<gpx>{points}</gpx>", "course.gpx"))
+    normal = 6378137.0 / math.sqrt(1.0 - 0.00669437999014 * math.sin(math.radians(47.0)) ** 2)
+    east = normal * math.cos(math.radians(47.0)) * math.sin(math.radians(0.001))
+    assert found.gates[1].turning[0] == pytest.approx(east, rel=1e-8)

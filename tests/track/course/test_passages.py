@@ -1,0 +1,225 @@
+"""Gates passed, missed and straddled, and when: every answer by hand."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+
+from skisnow._support.errors import ParameterError
+from skisnow.track.course import Course, CourseResult, Gate, MovingPoint, passages
+from skisnow.track.course.gate import Point, Side
+
+FloatArray = npt.NDArray[np.float64]
+
+
+def course(*gates: tuple[Point, Side] | tuple[Point, Side, Point]) -> Course:
+    made = (
+        Gate(name=str(i), turning=gate[0], side=gate[1], outer=gate[2] if len(gate) == 3 else None)
+        for i, gate in enumerate(gates, start=1)
+    )
+    return Course(gates=tuple(made))
+
+
+def along_x(*, y: float = 0.0, speed: float = 10.0, start: float = -5.0, seconds: float = 5.0) -> MovingPoint:
+    time = np.arange(0.0, seconds, 0.07)
+    return MovingPoint(time, np.column_stack([start + speed * time, np.full(len(time), y)]))
+
+
+def outcomes(result: CourseResult) -> list[str]:
+    return [each.outcome for each in result.passages]
+
+
+ZIGZAG = course(((10.0, -1.0), "left"), ((20.0, 1.0), "right"), ((30.0, -1.0), "left"))
+WIDE = course(
+    ((10.0, -1.0), "left", (10.0, 4.0)), ((20.0, 1.0), "right", (20.0, -4.0)), ((30.0, -1.0), "left", (30.0, 4.0))
+)
+
+
+def test_times_on_a_straight_line_at_constant_speed() -> None:
+    """Between the poles at x = 10, 20, 30 from x = -5 at 10 m/s: 1.5, 2.5, 3.5 s. Both poles a metre or three away."""
+    result = passages(WIDE, along_x(), {})
+    assert outcomes(result) == ["passed"] * 3
+    assert result.times == pytest.approx((1.5, 2.5, 3.5), abs=1e-12)
+    assert [each.clearance for each in result.passages] == pytest.approx([1.0, 1.0, 1.0])
+    assert [each.speed for each in result.passages] == pytest.approx([10.0] * 3)
+    assert (result.passed, result.missed, result.fault) == (3, (), None)
+
+
+def test_time_through_the_course_is_told_where_both_ends_were_reached() -> None:
+    assert "first to last gate  2 s" in repr(passages(WIDE, along_x(), {}))
+    assert "first to last gate" not in repr(passages(WIDE, along_x(seconds=3.0), {}))
+
+
+def test_a_side_is_left_or_right() -> None:
+    with pytest.raises(ParameterError, match="gate 1: side is 'up'; it must be left or right"):
+        course(((10.0, -1.0), "up"))  # type: ignore[arg-type]
+
+
+def test_two_points_are_enough() -> None:
+    """A way of 60 m in 6 s."""
+    result = passages(WIDE, MovingPoint(np.array([0.0, 6.0]), np.array([(-5.0, 0.0), (55.0, 0.0)])), {})
+    assert result.times == pytest.approx((1.5, 2.5, 3.5), abs=1e-12)
+    with pytest.raises(ParameterError):
+        MovingPoint(np.array([0.0]), np.array([(-5.0, 0.0)]))
+
+
+def test_without_outer_poles_the_line_is_square_to_the_course() -> None:
+    """At the ends the course goes from pole to pole, (10, ±2): 10 (x - 10) + 2 (0 + 1) = 0 at x = 9.8, and x = 30.2."""
+    result = passages(ZIGZAG, along_x(), {})
+    assert outcomes(result) == ["passed"] * 3
+    assert result.times == pytest.approx((1.48, 2.5, 3.52), abs=1e-12)
+    # from the pole along the line: 1 m over the cosine of atan(2/10)
+    assert result.passages[0].clearance == pytest.approx(math.hypot(10.0, 2.0) / 10.0)
+
+
+def test_times_under_constant_acceleration_have_all_their_digits() -> None:
+    """x = 2 t + 3 t²/2 is 10 m after 2 s, 22 m after 3.2749 s; points come at uneven times."""
+    time = np.array([0.0, 0.4, 0.9, 1.3, 1.9, 2.2, 2.8, 3.1, 3.7])
+    place = np.column_stack([2.0 * time + 1.5 * time**2, np.zeros(len(time))])
+    result = passages(
+        course(((10.0, -1.0), "left", (10.0, 3.0)), ((22.0, 1.0), "right", (22.0, -3.0))), MovingPoint(time, place), {}
+    )
+    assert result.times == pytest.approx((2.0, (-2.0 + math.sqrt(4.0 + 6.0 * 22.0)) / 3.0), abs=1e-12)
+    assert [each.speed for each in result.passages] == pytest.approx([8.0, math.sqrt(136.0)], rel=1e-12)
+    # between 1.9 and 2.2 s a straight way is 3/2 · 0.1 · 0.2 m = 30 mm behind, and the mean speed is 8.15 m/s
+    assert result.passages[0].doubt == pytest.approx(0.03 / 8.15, rel=1e-9)
+
+
+@pytest.mark.parametrize("turned", np.linspace(0.0, 2.0 * math.pi, 7, endpoint=False).tolist())
+def test_no_direction_of_the_plane_is_another(turned: float) -> None:
+    """The same course and track in each direction; times stay, sides stay, what is missed is missed."""
+    matrix = np.array([[math.cos(turned), -math.sin(turned)], [math.sin(turned), math.cos(turned)]])
+
+    def moved(point: Point) -> Point:
+        x, y = matrix @ np.array(point) + [300.0, -70.0]
+        return float(x), float(y)
+
+    gates = [(moved(gate.turning), gate.side, moved(gate.outer)) for gate in WIDE.gates if gate.outer is not None]
+    for y, expected in ((0.0, ["passed"] * 3), (2.0, ["passed", "missed", "passed"])):
+        track = along_x(y=y)
+        result = passages(course(*gates), MovingPoint(track.time, track.place @ matrix.T + [300.0, -70.0]), {})
+        assert outcomes(result) == expected
+        assert result.times == pytest.approx((1.5, 2.5, 3.5), abs=1e-9)
+
+
+def test_a_mirrored_course_is_passed_on_the_other_sides() -> None:
+    other: dict[Side, Side] = {"left": "right", "right": "left"}
+    mirrored = course(*(((gate.turning[0], -gate.turning[1]), other[gate.side]) for gate in ZIGZAG.gates))
+    assert passages(mirrored, along_x(), {}).times == pytest.approx((1.48, 2.5, 3.52), abs=1e-12)
+    wrong = course(*((gate.turning, other[gate.side]) for gate in ZIGZAG.gates))
+    assert outcomes(passages(wrong, along_x(), {})) == ["missed"] * 3
+
+
+def test_what_is_missed_says_by_how_much_and_where() -> None:
+    result = passages(WIDE, along_x(y=1.25), {})
+    assert outcomes(result) == ["passed", "missed", "passed"]
+    assert result.missed == ("2",)
+    fault = result.fault
+    assert fault is not None
+    assert fault.words == "gate 2 was missed: 0.25 m to the left of its turning pole"
+    assert fault.clearance == pytest.approx(-0.25)
+    assert fault.time == pytest.approx(2.5)  # its line was crossed all the same
+    beyond = passages(WIDE, along_x(y=4.5), {}).passages[0]
+    assert beyond.words == "gate 1 was missed: 0.50 m beyond its outer pole"
+    assert beyond.clearance == pytest.approx(-0.5)
+
+
+def test_a_course_that_is_gone_up_is_not_passed() -> None:
+    up = along_x(start=40.0, speed=-10.0)
+    result = passages(WIDE, up, {})
+    assert outcomes(result) == ["backwards"] * 3
+    assert result.times == (None, None, None)
+    assert result.passages[0].words == "gate 1 was crossed against the course only"
+    assert outcomes(passages(WIDE, along_x(y=-3.0, start=40.0, speed=-10.0), {}))[0] == "not_reached"
+
+
+@pytest.mark.parametrize(("y", "words"), [(-1.0, "to the right of its turning pole"), (4.0, "beyond its outer pole")])
+def test_over_a_pole_is_not_between_the_poles(y: float, words: str) -> None:
+    """A point of the track stands on the pole itself: nothing is rounded."""
+    time, down = np.array([0.0, 1.0, 2.0]), np.array([(9.0, y), (10.0, y), (11.0, y)])
+    found = passages(WIDE, MovingPoint(time, down), {}).passages[0]
+    assert (found.outcome, found.clearance) == ("missed", 0.0)
+    assert found.words == f"gate 1 was missed: 0.00 m {words}"
+    assert passages(WIDE, MovingPoint(time, down[::-1]), {}).passages[0].outcome == "not_reached"
+
+
+def test_a_track_that_ends_leaves_gates_not_reached() -> None:
+    result = passages(WIDE, along_x(seconds=2.0), {})
+    assert outcomes(result) == ["passed", "not_reached", "not_reached"]
+    assert result.passages[1].words == "gate 2 was not reached"
+    assert result.missed == ("2", "3")
+
+
+def climbing(pause: float) -> MovingPoint:
+    """Beside gate 1 at y = -2 to x = 12, back up to x = 8, over to y = 1, and down again through all three."""
+    corners = np.array([(-5.0, -2.0), (12.0, -2.0), (8.0, -2.0), (8.0, 1.0), (40.0, 0.5)])
+    times = np.cumsum([0.0, 1.7, pause, 3.0, 3.2])
+    return MovingPoint(times, corners, velocity=np.zeros((5, 2)))
+
+
+def test_who_climbs_back_passes_later() -> None:
+    result = passages(WIDE, climbing(6.0), {})
+    assert result.passages[0].outcome == "passed"
+    assert result.passages[0].time is not None
+    assert result.passages[0].time > 1.7 + 6.0 + 3.0
+    assert passages(WIDE, climbing(130.0), {}).passages[0].outcome == "missed"
+
+
+def test_gates_are_passed_in_their_order() -> None:
+    """Who goes through gate 3 first and then back to the start, far beside the course, has not passed it yet."""
+    corners = [(25.0, 0.0), (32.0, 0.0), (32.0, -90.0), (-5.0, -90.0), (-5.0, 0.0), (45.0, 0.0)]
+    track = MovingPoint(np.array([0.0, 1.0, 10.0, 15.0, 24.0, 29.0]), np.array(corners), np.zeros((6, 2)))
+    result = passages(WIDE, track, {})
+    assert outcomes(result) == ["passed"] * 3
+    assert all(time is not None and time > 24.0 for time in result.times)
+
+
+def parts(*tracks: tuple[float, float]) -> dict[str, MovingPoint]:
+    """Feet and tips at places ahead of and beside the middle."""
+    return {f"part {i}": along_x(y=y, start=-5.0 + ahead) for i, (ahead, y) in enumerate(tracks)}
+
+
+@pytest.mark.parametrize(
+    ("places", "outcome", "clearance"),
+    [
+        ([(0.0, 0.2), (0.0, -0.2), (0.9, 0.2), (0.9, -0.2)], "passed", 0.8),
+        ([(0.0, -0.8), (0.0, -1.2), (0.9, -0.8), (0.9, -1.2)], "straddled", -0.2),
+        ([(0.0, -0.8), (0.0, -0.9), (0.9, -0.8), (0.9, -1.2)], "straddled", -0.2),  # one tip hooks
+        ([(0.0, -1.2), (0.0, -1.6), (0.9, -1.2), (0.9, -1.6)], "missed", -0.2),
+        ([(0.0, 4.2), (0.0, 3.8), (0.9, 4.2), (0.9, 3.8)], "straddled", -0.2),  # the outer pole
+        ([(0.0, 4.2), (0.0, 4.6), (0.9, 4.2), (0.9, 4.6)], "missed", -0.2),
+    ],
+)
+def test_feet_and_tips_on_both_sides_of_a_pole_straddle_it(
+    places: list[tuple[float, float]], outcome: str, clearance: float
+) -> None:
+    """The turning pole stands at y = -1, the outer one at y = 4. The time is that of the middle."""
+    middle = along_x(y=sum(y for _, y in places) / len(places))
+    found = passages(WIDE, middle, parts(*places)).passages[0]
+    assert found.outcome == outcome
+    assert found.clearance == pytest.approx(clearance)
+    assert found.time == pytest.approx(1.5, abs=1e-12)
+    if outcome == "straddled":
+        pole = "outer" if places[0][1] > 0.0 else "turning"
+        assert found.words == f"the {pole} pole of gate 1 was straddled: it passed between the skis"
+
+
+def test_a_vertical_gate_has_its_own_direction() -> None:
+    """Both poles down the fall line: it is passed from left to right, below its upper pole."""
+    vertical = course(
+        ((10.0, -3.0), "left", (10.0, 2.0)),
+        ((20.0, 0.0), "left", (25.0, 0.0)),
+        ((30.0, 3.0), "right", (30.0, -2.0)),
+    )
+    line = vertical.lines[1]
+    np.testing.assert_allclose(line.across, [1.0, 0.0])
+    np.testing.assert_allclose(line.along, [0.0, -1.0])  # with x ahead, left is y: what has x to its left goes to -y
+    time = np.linspace(0.0, 4.0, 81)
+    track = MovingPoint(time, np.column_stack([5.0 + 6.0 * time, 2.0 - time]))
+    found = passages(vertical, track, {}).passages[1]
+    # y = 2 - t is 0 after 2 s, at x = 17: before the gate, whose poles stand at 20 and 25
+    assert found.outcome == "missed"
+    assert found.time == pytest.approx(2.0, abs=1e-12)
