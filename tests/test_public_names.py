@@ -6,6 +6,7 @@ import ast
 import re
 import subprocess
 import sys
+from importlib.metadata import version
 from pathlib import Path
 
 import pytest
@@ -16,6 +17,7 @@ PACKAGE = Path(skisnow.__file__).parent
 
 IMPORT_ALONE = """
 import sys
+from importlib.metadata import version
 import skisnow
 heavy = {"numpy", "scipy", "matplotlib", "pandas", "xarray", "skisnow.simulation", "skisnow.scenario"}
 assert not heavy & set(sys.modules), heavy & set(sys.modules)
@@ -51,6 +53,10 @@ def test_errors_derive_from_one_class() -> None:
     errors = [getattr(skisnow, name) for name in skisnow.__all__ if name.endswith("Error")]
     assert len(errors) == 7
     assert all(issubclass(each, skisnow.SkisnowError) for each in errors)
+
+
+def test_the_version_is_that_of_the_installed_package() -> None:
+    assert skisnow.__version__ == version("skisnow")
 
 
 def test_an_unknown_name_is_an_attribute_error() -> None:

@@ -261,6 +261,8 @@ _PLACES["study"] = _PLACES.pop("run_study")
 
 
 def __getattr__(name: str) -> Any:
+    if name == "__version__":
+        return import_module("importlib.metadata").version(__name__)
     if name not in _PLACES:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     package, own_name = _PLACES[name]
