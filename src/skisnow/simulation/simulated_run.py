@@ -179,7 +179,7 @@ def _loop(setup: Setup, record: Record, progress: Progress | None) -> Outcome:
     number, nearing, watch = 0, False, _Watch(setup)
     while watch.outcome is None:
         now = setup.time
-        if now >= duration - SAME_TIME:
+        if duration - now <= SAME_TIME:
             return "finished"
         left = length - record.run_length
         if left <= _REACHED:
@@ -187,9 +187,9 @@ def _loop(setup: Setup, record: Record, progress: Progress | None) -> Outcome:
         moment = min((number + 1) * interval, duration)
         was_near, nearing = nearing, setup.speed * (moment - now) > left
         if nearing:
-            moment = now + max(left / setup.speed, 1e-9)
+            moment = now + max(left / setup.speed, 2.0 * SAME_TIME)
         ended = record.advance(moment, replace=was_near, is_over=watch.look)
-        number = math.floor(setup.time / interval + 1e-9)
+        number = math.floor((setup.time + 2.0 * SAME_TIME) / interval)  # a time just below an output has reached it
         if record.gains_energy:
             record.drop()
             return "not_finite"

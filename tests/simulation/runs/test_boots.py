@@ -235,3 +235,24 @@ def test_a_control_may_push() -> None:
     gained = 0.5 * mass * (run.speed[-1] ** 2 - alone.speed[-1] ** 2)
     assert run.energies["push"][-1] == pytest.approx(gained, rel=0.02)
     assert run.energy_balance_error == pytest.approx(0.0, abs=1e-4)
+
+
+@pytest.mark.parametrize("short_by", [2e-11, 9.9e-10, -9.9e-10])
+def test_a_control_that_is_due_within_rounding_of_an_output_ends(short_by: float) -> None:
+    """Rows a millisecond apart differ by rounding; 1e-9 s is no step, so such an output is reached without one."""
+    looks = []
+
+    def look(at: float, _: float) -> None:
+        looks.append(at)
+        assert len(looks) < 100, "the time stands still"
+
+    class Still:
+        period = 0.01 - short_by
+
+        def __call__(self, _: BootMoment) -> list[BootPose]:
+            return [BootPose.of([0.0, 0.25, 0.0], 0.0), BootPose.of([0.0, -0.25, 0.0], 0.0)]
+
+    flat = turn(run__duration_s=0.05, sledge__edge_angle_deg=0.0, start__heading_deg=0.0)
+    run = simulate(flat, boots=Still(), progress=look)
+    assert run.outcome == "finished"
+    assert run.time == pytest.approx(0.01 * np.arange(6.0), abs=5e-9)
