@@ -107,7 +107,8 @@ double edge_side(const Base& s, int i) { return s[HALF_WIDTH][i] > 0.0 ? s[EDGE_
 void keep_anchor(const Base& s, int i, double eased, const Snow& snow, GrooveLines& lines, int slot) {
   auto& v = lines.values;
   const double edge = s[EDGE_PLACE][i], depth = s[DEEPEST][i], reach = snow.shear_displacement;
-  const double moved = (s[HALF_WIDTH][i] * v[EDGE_SIDE][slot] - s[EDGE_REACH][i]) / s[BASE_WIDENING][i];
+  const double off = s[HALF_WIDTH][i] * v[EDGE_SIDE][slot] - s[EDGE_REACH][i];
+  const double moved = off != 0.0 ? off / s[BASE_WIDENING][i] : 0.0;
   double anchor = edge;
   if (v[ANCHORED][slot] > 0.5)
     anchor = v[ANCHOR][slot] - moved;

@@ -228,7 +228,7 @@ struct Pressed {
 // [material_edge] Place across of the point of the base at which the shear acted at the last accepted pose. While a
 // nearly level base rolls, the blend moves the shear to another point. This motion is not one of the base.
 template <class V>
-V material_edge(const GrooveLines& lines, int j, const Cut<V>& c) {
+SKISNOW_INLINE V material_edge(const GrooveLines& lines, int j, const Cut<V>& c) {
   const V moved = c.half * load<V>(lines.values[EDGE_SIDE] + j) - c.reach;
   return any(absolute(moved) > 0.0) ? c.place + moved / c.widening : c.place;
 }
@@ -236,12 +236,15 @@ V material_edge(const GrooveLines& lines, int j, const Cut<V>& c) {
 // [shear_used] The share of the way to full strength by which the edge is displaced. It holds where it did before, else
 // where it came through the surface since it was last looked at.
 template <class V>
-V shear_used(const Snow& snow, const GrooveLines& lines, int j, const Cut<V>& c) {
-  const V above = load<V>(lines.values[DEPTH_ABOVE] + j), edge_above = load<V>(lines.values[EDGE_ABOVE] + j);
+SKISNOW_INLINE V shear_used(const Snow& snow, const GrooveLines& lines, int j, const Cut<V>& c) {
   const V place = material_edge(lines, j, c);
-  const V through = place - c.deepest / (c.deepest - above) * (place - edge_above);
-  const V anchor = select(load<V>(lines.values[ANCHORED] + j) > 0.5, load<V>(lines.values[ANCHOR] + j),
-                          select(load<V>(lines.values[ABOVE] + j) > 0.5, through, place));
+  const V anchored = load<V>(lines.values[ANCHORED] + j);
+  const MaskOf<V> enters = (anchored <= 0.5) & (load<V>(lines.values[ABOVE] + j) > 0.5);
+  V anchor = select(anchored > 0.5, load<V>(lines.values[ANCHOR] + j), place);
+  if (any(enters)) {
+    const V above = load<V>(lines.values[DEPTH_ABOVE] + j), edge_above = load<V>(lines.values[EDGE_ABOVE] + j);
+    anchor = select(enters, V(place - c.deepest / (c.deepest - above) * (place - edge_above)), anchor);
+  }
   return (anchor - place) / snow.shear_displacement;
 }
 
@@ -249,7 +252,7 @@ V shear_used(const Snow& snow, const GrooveLines& lines, int j, const Cut<V>& c)
 // this energy: the share u of the displacement shrinks so that the force stays. And the thrust of a cut presses on the
 // same face as the shear: an edge that rises by z leaves that face by z times thrust over shear.
 template <class V>
-V eased(const Snow& snow, const GrooveLines& lines, int j, V used, V strength, V thrust, V edge_depth) {
+SKISNOW_INLINE V eased(const Snow& snow, const GrooveLines& lines, int j, V used, V strength, V thrust, V edge_depth) {
   const auto kept = [&](LineField field) { return load<V>(lines.values[field] + j); };
   const double per_reach = 1.0 / snow.shear_displacement;
   const V before = kept(STRENGTH_HELD), risen = kept(DEPTH_HELD) - edge_depth, none{};

@@ -26,11 +26,12 @@ inline V table_place(const Runner& runner, V station) {
 template <class V>
 inline void look_up_shape(const Runner& runner, V place, V (&out)[ROW]) {
   Row rows[WIDTH<V>];
+  const WholeParts<V> at(minimum(place, all<V>(runner.places - 2.0)));
+  const V beyond = place - at.value();
   for (int lane = 0; lane < WIDTH<V>; lane++) {
-    const int at = std::min(int(place[lane]), runner.places - 2);
-    const double* row = runner.table.data() + ROW * at;
+    const double* row = runner.table.data() + ROW * at[lane];
     const Row here = load<Row>(row);
-    rows[lane] = here + (place[lane] - at) * (load<Row>(row + ROW) - here);
+    rows[lane] = here + beyond[lane] * (load<Row>(row + ROW) - here);
   }
   transpose<V>(rows, out);
 }
@@ -124,8 +125,9 @@ struct BentBase {
     const bool bends = !pose.beam.empty();
     look_up_shape<V>(runner, place, shape);
     Row nodes[WIDTH<V>], front[WIDTH<V>], rear[WIDTH<V>];
+    const WholeParts<V> at(place);
     for (int lane = 0; lane < WIDTH<V>; lane++) {
-      int e = runner.element[std::size_t(place[lane])];
+      int e = runner.element[std::size_t(at[lane])];
       if (station[lane] > runner.node[std::size_t(e)] && e > 0) e--;
       nodes[lane] = load<Row>(runner.element_rows.data() + ROW * e);
       if (!bends) continue;

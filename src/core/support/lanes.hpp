@@ -7,6 +7,9 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#ifdef __AVX__
+#include <immintrin.h>
+#endif
 
 // Each instruction set has these for itself: a function that is not part of its caller would be shared between them.
 #define SKISNOW_INLINE inline __attribute__((always_inline))
@@ -19,6 +22,7 @@ template <int N>
 struct LaneTypes {
   typedef double Value __attribute__((vector_size(N * 8)));
   typedef std::int64_t Mask __attribute__((vector_size(N * 8)));
+  typedef std::int32_t Indices __attribute__((vector_size(N * 4)));
 };
 
 template <>
@@ -91,10 +95,27 @@ SKISNOW_INLINE bool any(bool mask) { return mask; }
 
 template <class M>
 SKISNOW_INLINE bool any(M mask) {
+#ifdef __AVX__
+  if constexpr (sizeof(M) == 32) return _mm256_movemask_pd((__m256d)mask) != 0;
+#endif
+#ifdef __AVX512DQ__
+  if constexpr (sizeof(M) == 64) return _mm512_movepi64_mask((__m512i)mask) != 0;
+#endif
   std::int64_t found = 0;
   for (unsigned i = 0; i < sizeof(M) / 8; i++) found |= mask[i];
   return found != 0;
 }
+
+// Whole parts of numbers that are not negative, one for each lane.
+template <class V>
+struct WholeParts {
+  using Indices = typename LaneTypes<WIDTH<V>>::Indices;
+  Indices index;
+
+  explicit WholeParts(V value) : index(__builtin_convertvector(value, Indices)) {}
+  int operator[](int lane) const { return index[lane]; }
+  V value() const { return __builtin_convertvector(index, V); }
+};
 
 // Numbers side by side in memory, one row for each lane.
 constexpr int ROW = 4;
