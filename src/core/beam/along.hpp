@@ -8,7 +8,7 @@
 namespace skisnow {
 
 struct Along {
-  std::vector<double> depth, force, shear;  // of the deeper edge (m); per length of ski (N/m)
+  std::vector<double> depth, force, shear;  // depth of the deeper edge (m); forces per length of ski (N/m)
 };
 
 Along along_nodes(const Runner& runner, const Sections& sections);

@@ -14,7 +14,7 @@ using Vector3 = std::array<double, 3>;
 struct Runner {
   double tail = 0.0, tip = 0.0;
   double reach = 0.0;                // greatest half width and height of the base (m)
-  int places = 0;                    // of the table, evenly spaced from tail to tip
+  int places = 0;                    // number of rows of the table, evenly spaced from tail to tip
   std::vector<double> table;         // (places, 4): half width, its slope, height of the base, its slope
   std::vector<double> node;          // beam nodes, tip to tail; a rigid runner has the two ends
   std::vector<int> element;          // (places,) the beam element of each place of the table

@@ -15,7 +15,7 @@
 namespace skisnow {
 namespace {
 
-// Of each station (rows): place, weight, width, base height, first unknown, shapes of deflection (6) and twist (6).
+// One row for each station: place, weight, width, base height, first unknown, shapes of deflection (6) and twist (6).
 void set_stations(CarvedSki& ski, const Array& rows) {
   constexpr int DEFLECTION = 5, TWIST = 11, COLUMNS = 17;
   constexpr int BENDS[4] = {0, 1, 3, 4}, TURNS[2] = {2, 5};
@@ -49,7 +49,7 @@ CarvedSki carved_ski(const Array& stations, int front, const Array& stiffness, d
   return out;
 }
 
-// While a search takes long Python's signals are answered; the lock is held for that alone.
+// A long search handles Python's signals; it holds the lock only for that.
 std::function<void()> answering_signals() {
   using Clock = std::chrono::steady_clock;
   return [last = Clock::now()]() mutable {

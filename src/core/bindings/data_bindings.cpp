@@ -1,4 +1,4 @@
-// What models are made of, as text, for programs that have no Python.
+// Parts of models as text, for programs without Python.
 #include <nanobind/nanobind.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>

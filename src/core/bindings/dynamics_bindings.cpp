@@ -50,7 +50,7 @@ Body body(const Array& inertia, double mass, const Array& first_moment, std::vec
   return out;
 }
 
-// Of each boot, start, place (4, 3), turn (3, 3) and axes (3, 3): (skis, 31).
+// Rows of (skis, 31), one for each boot: start, place (4, 3), turn (3, 3) and axes (3, 3).
 void move_boots(Dynamics& self, const Array& motions) {
   constexpr std::size_t ROW = 31;
   std::vector<BootMotion> out(motions.size() / ROW);
@@ -68,7 +68,7 @@ void set_push(Dynamics& self, const Array& force, const Array& at) {
   self.set_push({force.data()[0], force.data()[1], force.data()[2]}, {at.data()[0], at.data()[1], at.data()[2]});
 }
 
-// What each ski does to its boot, (skis, 6), in its axes.
+// Force and moment of each ski on its boot, (skis, 6), in its axes.
 Result boot_wrench(const Dynamics& self) {
   std::vector<double> all;
   for (int k = 0; k < self.layout().beams(); k++)
@@ -77,7 +77,7 @@ Result boot_wrench(const Dynamics& self) {
   return array(std::move(all), {std::size_t(self.layout().beams()), BODY});
 }
 
-// Of the boots against the body: place, rows of the axes, velocity and angular velocity, (skis, 18).
+// Motion of the boots against the body: place, rows of the axes, velocity and angular velocity, (skis, 18).
 Result boots(const Dynamics& self) {
   std::vector<double> all;
   for (int k = 0; k < self.layout().beams(); k++) {

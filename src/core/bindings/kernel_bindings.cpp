@@ -11,7 +11,7 @@ namespace skisnow {
 namespace {
 
 // Minus the derivatives of the only runner's force and moment about the boot, both in the ski's moving axes, by a way
-// of the boot and a rotation about it (6, 6), weighted by pose and by motion; and the wrench there (6).
+// movements of the boot and a rotation about it (6, 6), weighted by pose and by motion; and the wrench there (6).
 nb::tuple runner_tangent(SnowContact& self, const Array& position, const Array& rotation, const Array& velocity,
                          double dt, double stiffness, double damping) {
   if (self.runners() != 1) throw std::invalid_argument("the tangent is of one runner");

@@ -315,7 +315,7 @@ void bind_kernels(nb::module_& m);
 }  // namespace skisnow
 
 NB_MODULE(_core, m) {
-  nb::set_leak_warnings(false);  // a script's contact with a law of its own lives as long as the interpreter
+  nb::set_leak_warnings(false);  // a script's contact with a Python law lives as long as the interpreter
   using namespace skisnow;
   m.attr("SOURCE_HASH") = SKISNOW_SOURCE_HASH;
   m.def("instruction_sets", [] {

@@ -7,16 +7,16 @@ namespace skisnow {
 
 namespace {
 
-// What the snow does to a section, per length of ski, and how it grows with the depth of the section, its twist and τ.
+// Forces of the snow on a section, per length of ski, and their growth with the depth of the section, its twist and τ.
 struct Load {
   double normal, moment;  // force normal to the base; growth of the edge angle
   double normal_by_depth, normal_by_twist, normal_by_stress;
   double moment_by_depth, moment_by_twist, moment_by_stress;
   double force, force_by_depth, force_by_twist;  // along the snow normal
-  // what τ draws the side force from: depth of the edge where it is below the surface, or the snow's force
+  // the side force is τ times this: depth of the edge where it is below the surface, or the snow's force
   double bite, bite_by_depth, bite_by_twist;
-  // of a force that a deeper groove adds: to the force normal to the base, the moment besides that of its place, and
-  // the balance of moments
+  // parts of a force that a deeper groove adds: to the force normal to the base, the moment besides that of its place,
+  // and the balance of moments
   double pulled_normal, pulled_moment, pulled_pitch;
 };
 
@@ -48,8 +48,8 @@ class Pass {
   CarvePressure& pressure_;
   const CarveState& at_;
   CarveEquations& out_;
-  double sine_, cosine_;            // of the boot's edge angle
-  std::vector<Strength> strength_;  // of each station, where a law gives it
+  double sine_, cosine_;            // edge angle of the boot
+  std::vector<Strength> strength_;  // one for each station, if a law gives it
 
   void begin();
   double twist(const CarveStation& station) const;

@@ -19,7 +19,7 @@ constexpr int CARVE_BAND = 11;  // columns of a row: five to each side
 
 // One place along the ski at which the snow is felt.
 struct CarveStation {
-  double place, weight, half_width, base_height;  // from the boot, length that it stands for (m)
+  double place, weight, half_width, base_height;  // from the boot; length of ski of the station (m)
   double deflection[4], twist[2];                 // shapes of its element's unknowns 0, 1, 3, 4 and 2, 5
   int first;                                      // unknown of its element
 };
@@ -35,7 +35,7 @@ struct CarvedSki {
   double waist = 0.0, running_length = 0.0, greatest_width = 0.0;
   Column bent_by_width, bent_by_height;  // the ski bent onto the snow: tan ϑ times the first less the second
 
-  Column spread(const double* free) const;                // of the free unknowns, room for the held ones between
+  Column spread(const double* free) const;                // free unknowns, with room for the held ones between
   std::vector<double> gathered(const Column& all) const;  // and back
 };
 
@@ -43,12 +43,12 @@ struct CarveConditions {
   double edge_angle, hardness, excess;  // ϑ (rad), H_V, k_u - H_V (N/m³)
   double load, moment, side_force;      // at the boot (N, N m, N)
   bool side_force_bending, twists;
-  double bevel, bevel_width;              // of the base along its edge (rad, m)
+  double bevel, bevel_width;              // angle and width along the edge of the base (rad, m)
   double pitch_of_force, pitch_of_shear;  // shares of snow force and side force in the balance of moments
   bool by_reaction = false;         // the side force goes along the edge as the force on the base, not as its depth
   const CarveLaws* laws = nullptr;  // from outside; hardness and excess are then where the search begins
-  double law_share = 1.0;           // of the pressure that is theirs
-  double law_memory = 1.0;          // share of the groove's lead over the base that they are told of
+  double law_share = 1.0;           // share of the pressure from these laws
+  double law_memory = 1.0;          // share of the groove's lead over the base that they see
 };
 
 struct CarveState {

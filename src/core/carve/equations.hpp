@@ -13,7 +13,7 @@ namespace skisnow {
 
 constexpr int BENDS[4] = {0, 1, 3, 4}, TURNS[2] = {2, 5};  // an element's unknowns of deflection and of twist
 
-// What binds depth and twist of one linked station to beam and boot.
+// Row that links depth and twist of one station to beam and boot.
 struct CarveLinkRow {
   int first;                          // unknown of its element
   double place;                       // along the ski (m)
@@ -24,8 +24,8 @@ struct CarveLinkRow {
 struct CarveEquations {
   explicit CarveEquations(const CarvedSki& ski);
 
-  Column matrix, residual;  // of the beam: banded rows
-  Column rows;              // of the border, `BAND_TILE` to each unknown of the beam, the last one zero
+  Column matrix, residual;  // banded rows of the beam
+  Column rows;              // border rows, `BAND_TILE` to each unknown of the beam, the last one zero
   Column columns;           // of border and links, in tiles: `BAND_TILE` of them to each unknown of the beam
   double corner[CARVE_BORDER][CARVE_BORDER], border_residual[CARVE_BORDER];
   std::vector<double> link_corner;   // rows 0 and 1 of each link column
@@ -36,13 +36,13 @@ struct CarveEquations {
   int used() const { return CARVE_BORDER + 2 * int(links.size()); }
   // Where a tile begins, and where in it a column: its numbers lie `BAND_TILE` apart.
   std::size_t tile(int number) const { return std::size_t(number) * BAND_TILE * residual.size(); }
-  double deepest() const { return *std::max_element(depth.begin(), depth.end()); }  // of the depths
+  double deepest() const { return *std::max_element(depth.begin(), depth.end()); }
   double* column(int k) { return columns.data() + tile(k / BAND_TILE) + k % BAND_TILE; }
 };
 
 constexpr int tiles_for(int columns) { return (columns + BAND_TILE - 1) / BAND_TILE; }
 
-// The groove, and what is used while the equations are put together.
+// The groove, and scratch space of the assembly.
 struct CarveGroove {
   explicit CarveGroove(std::size_t stations) : links(stations) {}
 
@@ -70,7 +70,7 @@ class CarveFactors {
   std::size_t room_ = 0;      // rows of a tile
   Column band_, rows_;
   Column influence_;              // tiles: the beam's answer to each of them
-  std::vector<BandBlock> block_;  // of each tile
+  std::vector<BandBlock> block_;  // one for each tile
   std::vector<CarveLinkRow> links_;
   std::vector<double> schur_, border_;
   std::vector<int> order_;

@@ -64,7 +64,7 @@ void CarveFactors::factor(const CarvedSki& ski, CarveEquations& system) {
   factor_dense(schur_, order_, used_, tiles_ * BAND_TILE);
 }
 
-// A link whose groove only stations behind the clamp meet leaves the ski before it alone.
+// A link whose groove only stations behind the clamp meet does not act on the ski before the clamp.
 void CarveFactors::solve_tiles(const CarvedSki& ski, const CarveEquations& system) {
   block_.assign(std::size_t(tiles_), {0, 0, ski.size});
   for (int t = 1; t < tiles_; t++) {

@@ -4,7 +4,7 @@ namespace skisnow {
 
 namespace {
 
-constexpr double FAR_ABOVE = -1e3;  // depth (m) that stands for snow never touched
+constexpr double FAR_ABOVE = -1e3;  // depth (m) that marks untouched snow
 
 // Growth of the pressure on a bevelled interval with the edge angle, beyond that of a straight base. `growth`: moments
 // of ∂p/∂ε over the interval; the bend of the base's own growth is straight between its ends.

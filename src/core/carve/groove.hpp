@@ -12,10 +12,10 @@ namespace skisnow {
 // One section of the ski in the snow. ξ: distance from the edge in the snow surface (m).
 struct CarveSection {
   double half;                   // half its width
-  double sine, cosine, tangent;  // of its own edge angle, twist included
+  double sine, cosine, tangent;  // functions of its edge angle, twist included
   double corner;                 // depth that the edge would have without a bevel
-  double depth;                  // of the edge
-  double reach;                  // of the base across
+  double depth;                  // depth of the edge (m)
+  double reach;                  // reach of the base across (m)
   double strip, rise;            // width of the bevelled strip; its rise against the base, per length
   double rise_by_angle;          // derivative of that rise by the edge angle
 
@@ -24,7 +24,7 @@ struct CarveSection {
     const double bevel = strip > 0.0 ? std::max(0.0, strip - xi / cosine) * rise : 0.0;
     return corner - xi * tangent - bevel;
   }
-  // Derivative of that depth by the edge angle α, the corner held: -ξ/cos² α, and where ξ lies under the strip of width
+  // Derivative of that depth by the edge angle α, the corner held: -ξ/cos² α, and, if ξ is under the strip of width
   // b also ξ sin α/cos² α · rise - (b - ξ/cos α) ∂rise/∂α.
   double base_by_angle(double xi) const {
     const double growth = -xi * (1.0 + tangent * tangent), left = strip > 0.0 ? strip - xi / cosine : 0.0;
@@ -39,21 +39,21 @@ struct CarvePull {
   double force_by_depth = 0.0, moment_by_depth = 0.0, force_by_twist = 0.0, moment_by_twist = 0.0;
 };
 
-// The stations whose groove carries a station behind them: depth and twist of each are unknowns of their own.
+// The stations whose groove carries a station behind them: depth and twist of each are separate unknowns.
 class CarveLinks {
  public:
   explicit CarveLinks(std::size_t stations) : number_(stations, -1) {}
 
-  std::vector<int> station;      // of each link
-  std::vector<CarvePull> pulls;  // of each link on the section at hand
+  std::vector<int> station;      // one for each link
+  std::vector<CarvePull> pulls;  // of links on the present section
 
   void clear();
   void next_section() { std::fill(pulls.begin(), pulls.end(), CarvePull{}); }
-  // What a deeper groove does; `by_angle`: growth of its depth with the twist of the station that left it.
+  // Effect of a deeper groove; `by_angle`: growth of its depth with the twist of the station that left it.
   void pull(int source, double by_angle, double force, double moment);
 
  private:
-  std::vector<int> number_;  // of each station's link, or -1
+  std::vector<int> number_;  // number of the link of a station, or -1
 };
 
 // The groove under the edge of the stations that follow: its depth at some places ξ, each of one station.
@@ -74,8 +74,8 @@ struct GrooveAlongEdge {
 // left to right, each as deep as one station's base reaches, as the depth that this base would have at the path. The
 // bases are taken parallel to each other there.
 struct GrooveAlongPath {
-  std::vector<double> offset;  // of each station
-  double tangent = 0.0;        // of the boot's edge angle
+  std::vector<double> offset;  // one for each station
+  double tangent = 0.0;        // tangent of the edge angle of the boot
 
   void clear() { steps_.clear(); }
   void across(const CarveSection& section, int station, CarvePressure& pressure, StripSums& sums,

@@ -11,7 +11,7 @@
 
 namespace skisnow {
 
-// What laws answer, for many points at once; depths in m, angles of the edge in rad.
+// Answers of laws for many points at once; depths in m, angles of the edge in rad.
 struct CarveLaws {
   using Values = std::vector<double>;
 
@@ -28,7 +28,7 @@ struct CarveLaws {
 struct CarveInterval {
   double start, length;                     // from the edge (m)
   double depth0, depth1, groove0, groove1;  // at both ends (m)
-  double sine;                              // of the section's own edge angle
+  double sine;                              // sine of the edge angle of the section
 };
 
 // Pressure across all sections of a pass, by the core's law, by one from outside, or by both in shares.
@@ -37,7 +37,7 @@ struct CarveInterval {
 // order.
 class CarvePressure {
  public:
-  // Of a pass that begins: `share` is that of the law from outside, `memory` that of the groove's lead that it is told.
+  // Begin a pass: `share` of the law from outside, `memory`: share of the groove's lead that it sees.
   void begin(const CarveLaws* laws, double share, double memory, double hardness, double excess);
   bool gathers() const { return share_ > 0.0; }
   void ask();
@@ -87,7 +87,7 @@ class CarvePressure {
   double share_ = 0.0, memory_ = 1.0, hardness_ = 0.0, excess_ = 0.0;
   bool gathering_ = false;
   std::vector<Part> parts_;
-  std::vector<std::size_t> ends_;  // of each interval's parts
+  std::vector<std::size_t> ends_;  // end of the parts of each interval
   std::size_t interval_ = 0, part_ = 0;
   CarveLaws::Values cuts_, depth_, deepest_, angle_, found_;
 

@@ -13,7 +13,7 @@ namespace {
 constexpr int MOST_STAGES = 40;
 constexpr double SOFTENINGS[] = {1000.0, 30.0, 3.0};
 constexpr double SHALLOWEST_WEDGE = 0.01;  // (rad) flatter than this the first guess treats the base as flat
-constexpr double CONTACT_SHARE = 0.9;      // of the running length that the first guess loads evenly
+constexpr double CONTACT_SHARE = 0.9;      // share of the running length that the first guess loads evenly
 
 // Places across at which the groove is kept: about the waterline, and at the ends of bevel and base.
 std::vector<double> places_across(const CarvedSki& ski, const CarveConditions& conditions, double deepest) {
@@ -111,7 +111,7 @@ class Search {
     return conditions.laws != nullptr && conditions.laws->pressure;
   }
 
-  // A law from outside: its share of the pressure grows on elastic snow, then that of the groove that it is told of.
+  // A law from outside: its share of the pressure grows on elastic snow, then its share of the groove.
   bool presses(const CarveConditions& conditions) {
     CarveConditions elastic = conditions, virgin = conditions;
     elastic.excess = elastic.law_share = 0.0;
@@ -120,14 +120,14 @@ class Search {
     const std::vector<double> linear = places_across(ski_, conditions_, newton.at.deepest());
     if (!takes_law(virgin)) return false;
     const CarveState before = newton.state;
-    keep_groove_at_waterline();  // of the law on virgin snow, which does not hang on where the search began
+    keep_groove_at_waterline();  // result of the law on virgin snow, independent of the start of the search
     if (takes_memory(conditions)) return true;
     newton.state = before;
     groove_.edge.place = linear;
     return takes_memory(conditions);
   }
 
-  // The law from outside is told of a growing share of the groove, as fast as the logarithm of the unloading ratio.
+  // The law from outside sees a growing share of the groove, as fast as the logarithm of the unloading ratio.
   bool takes_memory(const CarveConditions& conditions) {
     const double ratio = conditions.excess / conditions.hardness, goal = std::log1p(ratio);
     return follows([&](double share) {
@@ -146,7 +146,7 @@ class Search {
     });
   }
 
-  // Of the present state.
+  // Forces at the present state.
   void keep_groove_at_waterline() { groove_.edge.place = places_across(ski_, conditions_, newton.at.deepest()); }
 
   // To the equilibrium under these conditions; stays where it was if that fails.

@@ -59,7 +59,7 @@ struct Pressing {
   }
 };
 
-constexpr long MOST_PLACES = 24;  // of a delayed depth that are pressed into a ground, which keeps fewer knots
+constexpr long MOST_PLACES = 24;  // places of a delayed depth that are pressed into a ground, which keeps fewer knots
 
 // Press into a ground what of the depths is not delayed.
 bool press_undelayed(const Pressing& pressing, const DelayedGround& delayed, Ground& ground) {

@@ -52,8 +52,8 @@ Straight depth_rate(const Section& c, const BaseMotion& m) {
 // The snow of one line over a step: what it answers to a depth less the delayed one that is known before the step ends.
 struct PointLaw {
   double hardness, unloading, damping;  // H_V, k_u (N/m³), c (N s/m³)
-  // stress (Pa) from which on all of c acts: what one line more or less makes of it. Lines that a ski reaches one after
-  // the other come in as its base between them would.
+  // stress (Pa) above which all of c acts: the change of stress by one line more or less. Lines that a ski reaches one
+  // after the other come in as its base between them would.
   double full;
   KelvinStep step;
 
@@ -130,7 +130,7 @@ struct BaseOnLine {
   const DelayedGround& delayed;
   PointLaw law;
   Ground ground;
-  double from, to;  // of the wet base
+  double from, to;  // ends of the wet base
 
   BaseOnLine(const Snow& snow, const GrooveLines& lines, int slot, const Section& base, double dt)
       : c(base),
@@ -186,7 +186,7 @@ struct BaseOnLine {
   }
 };
 
-// Of a section that was looked at: what the laws gave, with other forces and another place of its edge.
+// Answers of the laws at a section, with other forces and another place of its edge.
 Acting<double> acting(const Snow& snow, const GrooveLines& lines, const Sections& s, int i, const Section& c,
                       const Sums& sums) {
   const double share = s[SHARE][i];

@@ -117,8 +117,8 @@ struct Shapes {
 template <class V>
 struct BentBase {
   V shape[ROW];                     // half width, its slope, height of the base, its slope
-  V element, length, in_element;    // of the beam: its element, that element's length, place in it from the front
-  V sine{}, cosine, twist_slope{};  // of the twist
+  V element, length, in_element;    // element of the beam, its length, place in it from the front
+  V sine{}, cosine, twist_slope{};  // sine, cosine and slope of the twist
 
   BentBase(const Runner& runner, const Pose& pose, V station) : cosine(all<V>(1.0)) {
     const V place = table_place(runner, station);
@@ -160,7 +160,7 @@ struct BentBase {
 // The section of one line through the base.
 template <class V>
 struct Cut {
-  // of the bent base: the section's place along the ski, half width and its slope, height and its slope, sine and
+  // bent base: the section's place along the ski, half width and its slope, height and its slope, sine and
   // cosine of the twist and its slope; how far its middle lies to the left of the ski's axis (for differences)
   V station, half, flare, height, rise, sp, cp, twist_slope, aside{};
   Vector<V> from, ahead, normal, left;  // the line
@@ -278,8 +278,9 @@ struct Cut {
 
 // [cross_bent_edge] The straight ski's stations, which `cross_lines` gives, miss the lines under a bent ski that is
 // pitched against the surface: by its deflection times `ahead.z / ahead.x`. What is missed, m, leaves the place of a
-// curved edge wrong by ½ κ m², and its rate by m dκ/dt: a shovel that ploughs would gain energy from the shear. Newton's
-// method on the bent edge corrects the stations. At a slope below STEEP both are lost in the other errors of a place.
+// curved edge wrong by ½ κ m², and its rate by m dκ/dt: a shovel that ploughs would gain energy from the shear.
+// Newton's method on the bent edge corrects the stations. At a slope below STEEP both are lost in the other errors of a
+// place.
 template <class V>
 void cross_bent_edge(const Runner& runner, const Pose& pose, const Snow& snow, const GrooveLines& lines, Base& s) {
   constexpr double STEEP = 0.25, FULLY = 0.35, LONGEST = 0.1;  // LONGEST: of a correction (m)

@@ -16,7 +16,7 @@ namespace skisnow {
 struct FlexibleSki {
   Vector3 boot{};                       // in the body's frame
   Vector3 axes[3] = {};                 // ahead, left across the base, off the base, in the body's frame
-  Vector3 velocity{}, turning{};        // of a boot that moves, against the body, in the body's frame
+  Vector3 velocity{}, turning{};        // motion of a boot that moves, against the body, in the body's frame
   std::vector<int> unknown;             // (nodes,) the first of each node, -1 where it is held
   std::vector<double> mass, stiffness;  // (n, 6): [i, j] is A[i, i - j]
   std::vector<double> coupling;         // (n, 6) of the mass matrix, with the body
@@ -85,6 +85,6 @@ struct Energies {
 Energies energies(const Body& body, const Layout& layout, const BodyState& state);
 double drag_power(const Body& body, const BodyState& state);                           // (W), taken by the air
 double push_power(const Body& body, const BodyState& state);                           // (W), given by the push
-double damping_power(const Body& body, const Layout& layout, const BodyState& state);  // (W), taken in the skis
+double damping_power(const Body& body, const Layout& layout, const BodyState& state);  // (W) that the skis dissipate
 
 }  // namespace skisnow

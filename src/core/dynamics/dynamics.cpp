@@ -24,7 +24,8 @@ constexpr double FARTHEST = 1.0;                         // way (m), turn (rad),
 constexpr double SAFETY = 0.85, UP = 1.35, DOWN = 0.93;  // safety and hysteresis of the choice of steps
 constexpr std::chrono::milliseconds LONGEST_STAY(50);    // within the core, before it pauses to hear an interrupt
 constexpr double ROUNDING = 1e-9;                        // share of a step's length
-// of the energy exchanged: the open balance from which on steps get shorter; and the energy (J) below which it is left
+// share of the energy exchanged by which a balance may be open before steps get shorter; and the smallest open energy
+// (J)
 constexpr double MOST_OPEN = 2e-3, LEAST_OPEN = 0.01;
 constexpr int MOST_NARROWED = 12;  // rungs by which steps get shorter: three octaves
 constexpr double MILNE = 0.35;     // error of BDF2 over its distance from the predictor, at equal steps 8/23

@@ -85,13 +85,13 @@ class Dynamics {
   StepRule rule_;
   Layout layout_;
   Counts counts_;
-  Work work_, last_work_;  // of the last step alone
+  Work work_, last_work_;  // last_work_: work of only the last step
   double step_;
 
   // the last accepted step: rates before it, its increments in the frame of its end, its length (s)
   Numbers rate_before_, moved_;
   double last_step_ = 0.0;
-  double share_ = 1.0;  // of a fixed step, less than 1 where Newton's method has failed
+  double share_ = 1.0;  // share of a fixed step, less than 1 if Newton's method has failed
   // energies at the start and in the snow; rungs of the ladder by which steps are shorter for the balance of energy
   Energies start_{0.0, 0.0, 0.0};
   SnowStore store_;
@@ -116,7 +116,7 @@ class Dynamics {
 
   struct Formula {
     double h, reach, keep;       // β = h/a₁; share of the last increments
-    double newest, now, before;  // of the rates: a₁, 1 + ω, a₋, over h
+    double newest, now, before;  // weights of the rates: a₁, 1 + ω, a₋, over h
     double ratio;                // ω, 0 for Euler's step
   };
   Formula formula(double h) const;

@@ -19,7 +19,7 @@ struct SnowStore {
 struct Loss {
   double total = 0.0, open = 0.0;
 
-  // Of the losses so far, what is beyond a band of errors and is to be entered.
+  // Part of the losses so far that exceeds a band of errors and is to be entered.
   double due(double loss, double band) {
     open += loss;
     const double out = std::max(open - band, 0.0);
@@ -51,7 +51,7 @@ struct SnowAccount {
   double owed() const { return penetration.owed() + shear.owed() + rate.owed(); }
 
  private:
-  static constexpr double BAND = 1e-3, LEFT_OWED = 0.1;  // of the energy that the snow stores
+  static constexpr double BAND = 1e-3, LEFT_OWED = 0.1;  // shares of the energy that the snow stores
 };
 
 }  // namespace skisnow

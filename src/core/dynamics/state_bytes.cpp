@@ -18,7 +18,7 @@ constexpr double FARTHEST = 1e7;                   // (m) from the origin; the s
 constexpr double UNIT = 1e-6;                      // by which a direction's length may differ from 1
 constexpr double MOST_ACROSS = 1e4;                // (m) along a line, and into the snow
 constexpr double MOST_STRESS = 1e18;               // (Pa), (N/m³)
-constexpr std::int64_t MOST_PLACES = 100'000'000;  // of a line's delayed depth, from its origin
+constexpr std::int64_t MOST_PLACES = 100'000'000;  // places of a line's delayed depth, from its origin
 
 void read_place(ByteReader& in, Vector3& out) { in.all(out, FARTHEST); }
 
@@ -229,7 +229,7 @@ void MovingSki::write(ByteWriter& out) const { write_body(state_, out), out.all(
 
 void MovingSki::read(ByteReader& in) { read_body(in, state_), in.all(now_, FARTHEST), in.all(before_, FARTHEST); }
 
-// All but what is found again before it is asked for.
+// All except values that are computed again before they are used.
 void Dynamics::write(ByteWriter& out) const {
   if (!motions_.empty() || held_) throw std::logic_error("a body whose boots move has no form in bytes");
   write_body(state, out);

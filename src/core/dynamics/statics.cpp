@@ -1,5 +1,5 @@
 // Static equilibrium: depth, roll, pitch and bend, place and heading held. Newton's method with the whole tangent,
-// beside which stands a share of the mass matrix while the way is long (pseudo-transient continuation).
+// plus a share of the mass matrix while the way is long (pseudo-transient continuation).
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -13,7 +13,7 @@ namespace {
 constexpr int MOST_STEPS = 300;
 constexpr double LONGEST = 0.02;       // step (m)
 constexpr double SETTLED = 1e-11;      // last step (m) that counts as equilibrium
-constexpr double ROUNDING = 1e-8;      // step (m) from which on one that does not shrink is rounding
+constexpr double ROUNDING = 1e-8;      // a step (m) below this that does not shrink is rounding
 constexpr double FIRST_INERTIA = 1e4;  // factor of the mass matrix (1/s²)
 constexpr double LEAST_INERTIA = 1e-6, LITTLE_INERTIA = 1.0, MOST_INERTIA = 1e12;
 constexpr double LIFT = 1e-3, LIFT_EXACT = 1e-9;  // (m) of the search for the height at which rigid skis bear

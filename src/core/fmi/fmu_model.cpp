@@ -110,7 +110,7 @@ Situation FmuContact::situation(double time) {
 
 void FmuContact::meet(double time) {
   const Situation at = situation(time);
-  if (!contact_) return;  // before begin() there is none
+  if (!contact_) return;  // no contact before begin()
   auto& contact = *contact_;
   double* to = output();
   for (const Reaction& each : contact.force(at)) to = std::copy_n(each.moment, 3, std::copy_n(each.force, 3, to));

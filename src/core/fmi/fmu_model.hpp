@@ -1,6 +1,6 @@
-// What an FMU computes: variables by their numbers, and steps from one time to another.
+// Model of an FMU: variables by their numbers, and steps from one time to another.
 //
-// Equations: docs/how-to/fmu.md; the variables' names stand in skisnow.interop, which writes the FMU.
+// Equations: docs/how-to/fmu.md; skisnow.interop, which writes the FMU, has the names of the variables.
 #pragma once
 
 #include <memory>

@@ -9,7 +9,7 @@
 namespace skisnow {
 
 constexpr int BODY = 6;        // unknowns of the body
-constexpr int HALF_BAND = 5;   // of a beam with three unknowns to a node
+constexpr int HALF_BAND = 5;   // half bandwidth of a beam with three unknowns to a node
 constexpr int BORDER_ROW = 8;  // doubles, the last two zero
 constexpr int BAND_ROW = 16;   // doubles: 2 × 5 + 1, and zeros, so that eight of a row go at once
 
@@ -30,7 +30,7 @@ class Layout {
   int length_ = BORDER_ROW;
 };
 
-using Numbers = Column;  // of a layout: 0 to 5 the body, then each beam from `first`
+using Numbers = Column;  // ordered by a layout: 0 to 5 the body, then each beam from `first`
 
 // The rows of one beam.
 struct BeamRows {

@@ -19,7 +19,7 @@ Vector3 along(const Vector3& origin, const Vector3& direction, double y) {
 
 std::uint64_t key_of(int x, int y) { return std::uint64_t(std::uint32_t(x)) << 32 | std::uint32_t(y); }
 
-// Of a square: eight by eight of them are a region, of which it is known whether any track lies in it.
+// Key of a square. Eight by eight squares are a region; a region without any track is skipped.
 std::uint64_t region_of(int x, int y) { return key_of(x >> 3, y >> 3); }
 
 int cell_of(double v, double side) { return int(std::floor(v / side)); }
@@ -53,7 +53,7 @@ struct Strip {
 
   struct Found {
     double ahead;  // from 0 at the one before to 1 at the one after
-    double share;  // of the width there, inside from 0 to 1
+    double share;  // share of the width there, inside from 0 to 1
   };
 
   Found find(const Vector3& point) const {
@@ -80,7 +80,7 @@ struct Strip {
 constexpr double MOST_AREA = 1e4;  // (m²) around two neighbouring lines
 constexpr int MOST_TRIES = 60;
 constexpr double EXACT = 1e-14;     // (m)
-constexpr double AT_BORDER = 1e-9;  // share of a strip that is rounding: a line along its border lies in it
+constexpr double AT_BORDER = 1e-9;  // share of a strip that is rounding: a line along its border is inside
 constexpr int PARTS = 4;  // between the places where either ground has a knot; a crossing groove is bilinear there
 
 // Where a rising or falling quantity passes a value between two places: false position, with half the weight of an end
@@ -214,7 +214,7 @@ void Archive::recall(const Vector3& origin, const Vector3& lateral, double from,
                      DelayedRecall* delayed) const {
   if (tracks_.empty()) return;
   std::vector<int> near;
-  std::optional<std::uint64_t> region;  // the one met last, and whether any track lies there
+  std::optional<std::uint64_t> region;  // the region met last, and whether it has any track
   bool inhabited = false;
   walk_squares(along(origin, lateral, from), along(origin, lateral, to), SQUARE, [&](int x, int y) {
     const std::uint64_t here = region_of(x, y);

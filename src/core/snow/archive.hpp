@@ -25,14 +25,14 @@ struct Track {
   double delayed[KNOTS] = {}, left_at = 0.0;  // delayed depth (m) when it was left (s)
 
   double width() const { return place[count - 1] - place[0]; }
-  double depth_at(double share) const { return at(depth, share); }  // of the width, from 0 to 1
+  double depth_at(double share) const { return at(depth, share); }  // share of the width, from 0 to 1
   double delayed_at(double share) const { return at(delayed, share); }
 
  private:
   double at(const double* values, double share) const;
 };
 
-// What a line takes over of the delayed depth of older tracks, which springs back since they were left.
+// Delayed depth that a line takes over from older tracks. It springs back after they were left.
 struct DelayedRecall {
   double retardation;  // (s)
   DelayedGround ground;
@@ -79,7 +79,7 @@ class Archive {
   std::vector<Track> tracks_;
   std::unordered_map<std::uint64_t, std::vector<int>> squares_;  // later track of each pair, by square
   std::unordered_set<std::uint64_t> regions_;
-  std::vector<std::int64_t> numbers_;  // of the tracks, in the order in which any were ever added, from 1
+  std::vector<std::int64_t> numbers_;  // numbers of the tracks, in the order in which any were ever added, from 1
   std::int64_t added_ = 0;
   int strips_ = 0;
   double energy_ = 0.0;

@@ -64,7 +64,7 @@ class Merge {
 
   bool changed() const { return changed_; }
 
-  // Up to a place where either has a knot; whether the ground and what is pressed have one at the place reached.
+  // Up to a place where either has a knot; whether the ground and the polyline have one at the place reached.
   void advance(double y, const Both& from, const Both& to, bool knot, bool pressed_knot) {
     const double over = from.over(), over_end = to.over();
     const bool any = over > THIN || over_end > THIN, all = over >= -THIN && over_end >= -THIN;
@@ -80,7 +80,7 @@ class Merge {
     y_ = y;
   }
 
-  // At the place reached: the depth on its right, whether that is of what is pressed, and whether it has a knot here.
+  // At the place reached: the depth on its right, whether that is the pressed polyline, and whether it has a knot here.
   void turn(double depth, bool is_pressed, bool knot) {
     if (!knot && is_pressed == is_pressed_ && depth == depth_) return;
     end();

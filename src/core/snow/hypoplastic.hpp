@@ -7,7 +7,7 @@
 
 namespace skisnow {
 
-// Of a straight piece of base: where the ground was pressed deeper before, and where it bears there.
+// Parts of a straight piece of base: where the ground was pressed deeper before, and where it bears there.
 template <class V>
 struct Pressed {
   V from, to, bears_from, bears_to;
@@ -21,7 +21,7 @@ SKISNOW_INLINE Pressed<V> pressed_part(V a, V b, V depth, V fall, V lift, V slop
   const MaskOf<V> at_a = lift + slope * a > thin, at_b = lift + slope * b > thin;
   const V middle = minimum(maximum(zero, a), b);
   const V c = select(at_a, a, select(at_b, middle, b)), d = select(at_b, b, select(at_a, middle, b));
-  // what bears: the pressure r there is above zero
+  // the part that bears: the pressure r there is above zero
   const V r = hardness * depth - excess * lift, r_slope = hardness * fall - excess * slope;
   V none = -r / select(absolute(r_slope) > 1e-30, r_slope, all<V>(1e-30));
   none = minimum(maximum(none, c), d);

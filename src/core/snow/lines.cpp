@@ -10,10 +10,10 @@ namespace {
 constexpr double MARGIN = 0.12;      // (m) before tip and behind tail in which lines are laid: more than a step's way
 constexpr double EDGE_ASIDE = 0.04;  // half a ski's width (m), about: where an edge will cross; no accuracy hangs on it
 constexpr int NEWTON_STEPS = 3;      // to the place on a curved surface
-constexpr double MOST_UNEVEN = 0.25;  // of the spacing, between neighbours
+constexpr double MOST_UNEVEN = 0.25;  // share of the spacing, between neighbours
 constexpr double MOST_TURN = 0.3;     // (rad) between a line's direction ahead and the ski
 constexpr double MOST_OFF = 2e-4;     // (m) between a line and the surface under the ski
-constexpr double FURTHER = 0.03;      // (m) beyond what is needed, over which older tracks are looked for
+constexpr double FURTHER = 0.03;      // (m) beyond what is needed, over which older tracks are searched for
 
 double dot(const Vector3& a, const Vector3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
@@ -121,7 +121,7 @@ void GrooveLines::keep(int slot, const Ground& ground) {
   fill(slot, ground.count, filled_[block]);
 }
 
-// What lies beyond the last knot repeats it, so that a block's lines may be summed together.
+// Places beyond the last knot repeat it, so that a block's lines may be summed together.
 void GrooveLines::fill(int slot, int from, int to) {
   const int last = knots[std::size_t(slot)] - 1;
   for (int j = from; j < to; j++) {

@@ -55,7 +55,7 @@ class GrooveLines {
   int tile(int slot, int knot) const { return ((slot / BLOCK) * KNOTS + knot) * BLOCK + slot % BLOCK; }
   Column place, depth, slope;
   std::vector<std::uint8_t> knots;
-  std::vector<DelayedGround> delayed;  // (capacity,), empty where the snow has none
+  std::vector<DelayedGround> delayed;  // (capacity,), empty if the snow has no delayed depth
 
   Vector3 origin(int slot) const;
   Vector3 lateral(int slot) const;  // unit vector along the line, to the left
@@ -93,10 +93,10 @@ class GrooveLines {
   // Take hardness and strength of a place (m) across a line; its ground stays as it is.
   void follow_snow(int slot, double place, const Snow& snow);
 
-  // Of a ground, for each metre of ski (J/m); empty: that of the core's own law.
+  // Energy lost in a ground, for each metre of ski (J/m); empty: by the core's law.
   std::function<double(const Ground&)> lost;
   // Energy lost in the grooves under the ski (J): what pressed a line's ground since it was counted last counts for the
-  // length of ski that the line stands for.
+  // length of ski of the line.
   double groove_energy() const;
   void count_energy(int slot, double length);
   // The same, where ∫ depth² over the line's ground is known (m³) and the core's own law holds.

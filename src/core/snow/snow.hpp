@@ -1,4 +1,4 @@
-// What the snow is: its surface, its strength over the place, its laws, and the tracks that are left in it.
+// Snow: its surface, its strength over the place, its laws, and the tracks that are left in it.
 #pragma once
 
 #include "snow/archive.hpp"
@@ -30,7 +30,7 @@ struct RateLaw {
   double damping = 0.0;        // c (N s/m³)
   double delayed_share = 0.0;  // H_V/H₂: delayed depth under a load that stays, over that at once
   double retardation = 0.1;    // c₂/H₂ (s)
-  double spacing = 1e-3;       // of the places on a line that keep their delayed depth (m)
+  double spacing = 1e-3;       // between the places on a line that keep their delayed depth (m)
 
   bool is_delayed() const { return delayed_share > 0.0; }
   bool acts() const { return damping > 0.0 || is_delayed(); }
@@ -41,7 +41,7 @@ struct Snow {
   Grid hardness, strength;              // H_V (N/m³), S_f (Pa)
   double strength_share = 1.0;          // of S_f everywhere, which may change during a run
   double unloading_ratio = 1.0;         // k_u/H_V
-  double shear_displacement = 0.02e-3;  // of the edge across, to full strength (m)
+  double shear_displacement = 0.02e-3;  // displacement of the edge across, to full strength (m)
   // sine of the edge angle (2°) above which the shear acts at the edge alone
   double edge_blend_sine = 0.03489949670250097;
   bool compaction_resistance = true;

@@ -18,7 +18,7 @@ class Fields {
     numbers_[name].assign(std::begin(values), std::end(values));
   }
 
-  // Each throws std::invalid_argument where the text has none of this name, or not as many.
+  // Each throws std::invalid_argument if the name is missing or has another number of values.
   const std::vector<double>& at(const std::string& name) const;
   const std::vector<double>& at(const std::string& name, std::size_t count) const;
   double number(const std::string& name) const { return at(name, 1)[0]; }

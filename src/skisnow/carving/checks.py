@@ -16,7 +16,7 @@ SIDE_FORCE_SPREADS: Final = ("depth", "base-reaction")
 
 
 def require_kinds(ski: object, snow: object) -> None:
-    """Refuse what is no ski, or no snow."""
+    """Reject arguments of another type than a ski and snow."""
     if not isinstance(ski, Ski):
         raise ParameterError(f"ski is {ski!r}; it must be a Ski: read_ski gives one, from a name or a file")
     if not isinstance(snow, SnowProperties):
@@ -50,7 +50,7 @@ def require_within(ski: Ski, load: float, moment: float) -> None:
 
 
 def require_choices(groove: str, moment_balance: str, side_force_spread: str) -> None:
-    """Refuse a word that is no choice."""
+    """Reject an unknown choice."""
     if groove not in GROOVES:
         raise ParameterError(f"groove is {groove!r}; it must be 'edge' or 'path'")
     if moment_balance not in MOMENT_BALANCES:

@@ -69,7 +69,7 @@ class EdgeLine:
         y_front, y_rear = (float(y) for y in self.at([BOOT_REACH, -BOOT_REACH]))
         heading = math.atan2(y_front - y_rear, 2.0 * BOOT_REACH)
         middle_x, middle_y = 0.0, (y_front + y_rear) / 2.0
-        # the centre lies on the chord's normal, on the inner side
+        # the centre is on the chord's normal, on the inner side
         chord = math.hypot(2.0 * BOOT_REACH, y_front - y_rear)
         away = math.copysign(math.sqrt(radius**2 - chord**2 / 4.0), radius)
         centre_x, centre_y = middle_x - away * math.sin(heading), middle_y + away * math.cos(heading)

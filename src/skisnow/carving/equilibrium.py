@@ -81,12 +81,12 @@ def carve(
         Force on this ski along the snow normal, at the boot (N), > 0.
     unloading_ratio
         k_u/H_V ≥ 1: 1 is elastic snow, `math.inf` rigid-plastic snow (computed as 1000). Where such steep unloading
-        does not converge, 500, 300 or 200 is taken and a warning says so. Left out: that of the snow.
+        does not converge, 500, 300 or 200 is used, with a warning (default: that of the snow).
     shear
-        A law of `skisnow.forces.shear`, or one of yours, in place of S_f; one with a thrust is refused.
+        A law of `skisnow.forces.shear`, or one of yours, instead of S_f; a law with a thrust is rejected.
     penetration
-        A `PointLaw` of `skisnow.forces.penetration`, or one of yours, in place of H_V and k_u. One that acts along the
-        base's normal holds the edge by its pressure's part across: neither S_f nor a shear law stands beside it.
+        A `PointLaw` of `skisnow.forces.penetration`, or one of yours, instead of H_V and k_u. One that acts along the
+        base's normal holds the edge by its pressure's part across; it excludes S_f and a shear law.
     moment
         At the boot, positive where it presses the tip down (N m); about which axis, `moment_balance` says.
     clamp_length, footprint_stiffness
@@ -98,7 +98,7 @@ def carve(
         How the side force goes along the edge: "depth", in proportion to the edge's depth, or "base-reaction", in
         proportion to the snow's force on the base, whose whole reaction is then normal to the base everywhere.
     groove
-        "edge": the groove of the forebody lies under the edge of the afterbody. "path": it lies on the circle through
+        "edge": the groove of the forebody is under the edge of the afterbody. "path": it is on the circle through
         the edge line at the boot and 0.4 m before and behind, and each edge beside it by what its edge line differs.
     moment_balance
         "boot": `moment` is about the horizontal cross axis and balances the load alone; what the side force does about
@@ -107,7 +107,7 @@ def carve(
     twist
         Whether the ski twists (GJ) or keeps its edge angle everywhere.
     elements
-        Of the whole ski.
+        Number of beam elements of the whole ski.
 
     Returns
     -------
@@ -117,20 +117,20 @@ def carve(
     Raises
     ------
     ParameterError
-        An argument is outside its range, or the snow has no S_f; neither argument nor snow say k_u/H_V; what was given
-        as a law is none, or gives no finite answer.
+        An argument is outside its range, or the snow has no S_f; neither argument nor snow state k_u/H_V; an
+        object is not a law, or a law gives no finite answer.
 
     See Also
     --------
     skisnow.rest : a ski that is set down and does not turn.
-    skisnow.simulate : a whole turn in place of a steady one.
+    skisnow.simulate : a whole turn instead of a steady one.
     skisnow.study : many such answers in one table.
 
     Notes
     -----
     The balance is linear in the ski's deflection (small slopes) and exact in edge angle and twist. The ski's own weight
     is left out. With ``side_force_spread`` "depth" the side force draws the same share of the shear strength
-    everywhere along the edge (modelling assumption): τ e per length. Nobody has measured how it goes.
+    everywhere along the edge (modelling assumption): τ e per length. No measurement of its distribution is known.
 
     References
     ----------

@@ -20,7 +20,7 @@ FloatArray: TypeAlias = npt.NDArray[np.float64]
 
 STEEPEST_RATIO: Final = 1000.0
 """Unloading ratio of the linear snow from which the search for another law's equilibrium begins, at most."""
-_LOADED_SHARE: Final = 0.9  # of the running length, on a straight edge
+_LOADED_SHARE: Final = 0.9  # share of the running length, on a straight edge
 _SOME_DEPTH: Final = 1e-3  # m, at which strengths are compared
 _DEPTHS: Final = np.geomspace(1e-6, 1.0, 600)  # m, of a straight edge
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(64)
@@ -51,7 +51,7 @@ class StrengthLaw:
         self.refused = ""
 
     def share(self, depth: FloatArray, edge_angle: FloatArray, /) -> FloatArray:
-        """Of depths (m), 0 where there is none, and edge angles (rad)."""
+        """Stress at depths (m), 0 at depths that are not positive, and at edge angles (rad)."""
         found = self._asked(depth, edge_angle)[0] / self._unit
         self.refused = self.refused or self._asked.refused
         return found
@@ -74,7 +74,7 @@ class SnowLaws:
     def side_force_limit(
         self, depth: FloatArray, force: FloatArray, edge_angle: FloatArray, length: FloatArray
     ) -> float | None:
-        """What the edge holds (N), by its depths (m), the snow's force per length (N/m), edge angles and lengths.
+        """Side force of the edge (N), by its depths (m), the snow's force per length (N/m), edge angles and lengths.
 
         None where S_f of the snow says it, or no strength is finite.
         """
@@ -101,12 +101,12 @@ def snow_laws(shear: object, penetration: object, edge_angle: float) -> SnowLaws
     shear, penetration
         A `ShearLaw` and a `PointLaw`, or None.
     edge_angle
-        Of the base under the boot (rad).
+        Edge angle of the base under the boot (rad).
 
     Raises
     ------
     ParameterError
-        An object is no such law, two laws hold the edge, or a shear law has a thrust or no strength.
+        An object is not such a law, two laws hold the edge, or a shear law has a thrust or no strength.
     """
     if shear is None and penetration is None:
         return None
@@ -168,7 +168,7 @@ def equivalent_snow(law: PointLaw, ski: Ski, edge_angle: float, load: float) -> 
     Parameters
     ----------
     law
-        Of a place on the snow.
+        Penetration law of a place on the snow.
     ski, edge_angle, load
         The ski, ϑ (rad), force along the snow normal (N).
 

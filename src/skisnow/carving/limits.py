@@ -1,4 +1,4 @@
-"""What the parts of a question must have in common, and which numbers are implausible, in users' words."""
+"""Consistency of the parts of a question, and limits of plausible numbers, in units of users."""
 
 from __future__ import annotations
 

@@ -37,7 +37,7 @@ def carve_question(values: Mapping[str, object]) -> CarveQuestion:
 
 
 def require_known(names: Iterable[str]) -> None:
-    """Refuse a name that is none, and name the nearest."""
+    """Reject an unknown name, and suggest the nearest one."""
     for name in names:
         if name not in CARVE_KEYS:
             raise ParameterError(f"{name} is no input of a carved turn. {nearest(name, CARVE_KEYS)}")

@@ -1,4 +1,4 @@
-"""What carving steadily, or standing at rest, comes to: the numbers of an equilibrium, its outcome, what to do."""
+"""Result of a steady carve or a ski at rest: numbers of the equilibrium, its outcome, remedies."""
 
 from __future__ import annotations
 
@@ -69,20 +69,20 @@ class Equilibrium(Shown):
         Between the first and the last place at which the edge is below the undisturbed surface (m): there it meets
         snow or its groove, and can hold side force.
     bearing_length
-        Of the places that carry force (m): in a groove that does not spring back, parts of the contact carry none.
+        Length of the places that carry force (m): without a rebound of the groove, parts of the contact carry none.
     afterbody_depth_ratio
         Mean edge depth of the contact behind the boot over that before it.
     forebody_load, afterbody_load
-        What the snow bears before and behind the boot, along its normal (N).
+        Force of the snow before and behind the boot, along its normal (N).
     boot_pitch_moment
-        What boot and skier hold about the ski's cross axis, positive where they press the tip down (N m):
+        Moment of boot and skier about the ski's cross axis, positive where they press the tip down (N m):
         ∫ s (f cos ϑ + τ e sin ϑ) ds.
     station
         Places along the ski, from the boot, positive forward, tip to tail (m), shape (n,), as all that follow.
     edge_depth
-        Of the edge below the undisturbed surface (m); negative: above it.
+        Depth of the edge below the undisturbed surface (m); negative: above it.
     force_per_length
-        Of the snow, along the snow normal (N/m).
+        Force of the snow, along its normal (N/m).
     bending
         Deflection of the base against the ski held straight at the boot, away from the snow (m).
     twist
@@ -90,8 +90,8 @@ class Equilibrium(Shown):
     edge_line
         Position of the edge in the snow surface, towards the inside of the turn (m).
     residual_force, residual_moment
-        What the snow's force and its moment about the boot differ by from load and moment (N, N m); the moment is that
-        which was balanced.
+        Differences of the snow's force and its moment about the boot from load and moment (N, N m); the moment is the
+        balanced one.
     warnings
         Where the answer is outside what the model can say, in words.
     iterations
@@ -218,7 +218,7 @@ def equilibrium_of(
 def _side_force_limit(
     conditions: Conditions, snow: SnowProperties, solution: Solution, weight: FloatArray, edge_angle: FloatArray
 ) -> float | None:
-    """What the edge holds (N): by a law where one was given, else S_f ∫ e ds."""
+    """Largest side force of the edge (N): by the law if given, else S_f ∫ e ds."""
     depth, stress = solution.edge_depth, snow.failure_shear_stress
     if conditions.laws is not None and (conditions.laws.shear is not None or conditions.laws.along_base_normal):
         return conditions.laws.side_force_limit(depth, solution.force_per_length, edge_angle, weight)
@@ -234,7 +234,7 @@ def _holds(conditions: Conditions, limit: float | None) -> bool:
 
 
 def radius_at_boot(model: ClampedSki, conditions: Conditions, solution: Solution) -> float | None:
-    """Of the circle through the edge line there (m); None where there is no balance."""
+    """Radius of the circle through the edge line there (m); None without an equilibrium."""
     if not solution.converged or float(np.max(solution.edge_depth)) > SINKING_DEPTH:
         return None
     return EdgeLine(model, conditions.edge_angle, solution).radius_at_boot()

@@ -17,8 +17,8 @@ from .laws import STEEPEST_RATIO, SnowLaws
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 
 RIGID_PLASTIC: Final = STEEPEST_RATIO
-"""Unloading ratio that stands for rigid-plastic snow: the groove springs back by a thousandth of its depth."""
-_CONFORMING_SHARE: Final = 0.9  # of the running length that the first guess bends onto the snow
+"""Unloading ratio that represents rigid-plastic snow: the groove springs back by a thousandth of its depth."""
+_CONFORMING_SHARE: Final = 0.9  # share of the running length that the first guess bends onto the snow
 _NEAR: Final = 1e-4  # m, over which the first guess takes the slope of the base
 
 
@@ -38,7 +38,7 @@ class Conditions(NamedTuple):
     pitch_of_force: float  # share with which the snow's force takes part in the balance of moments about the boot
     pitch_of_shear: float  # share of the side force
     by_reaction: bool  # the side force goes along the edge as the snow's force, not as the depth
-    laws: SnowLaws | None = None  # given in place of the snow's numbers; with a penetration law the search begins there
+    laws: SnowLaws | None = None  # replace the snow's numbers; with a penetration law the search begins at those
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -121,7 +121,7 @@ def _core_ski(model: ClampedSki) -> core.CarvedSki:
 
 
 def _first_unknown(dof: npt.NDArray[np.int64], front: int) -> FloatArray:
-    """Of each station's element, where six that are held stand between the unknowns before and behind the clamp."""
+    """First unknown of each station's element; six held unknowns are between those before and behind the clamp."""
     before, behind = dof[:, 0], dof[:, 3]
     first = np.where(before >= front, before + 6, np.where(behind >= front, behind + 3, front))
     return np.where((before >= 0) & (before < front), before, first).astype(float)

@@ -1,7 +1,7 @@
 """Skis in history-dependent (plastic) snow: forces at a pose, and what a step leaves behind.
 
 ``SnowField`` is the snow, ``Runner`` the shape of what slides on it, ``SnowContact`` any number of runners in one snow,
-each with its own pose. Friction, shear and penetration follow any law of `skisnow.forces`, also one of your own;
+each with its own pose. Friction, shear and penetration follow any law of `skisnow.forces`, also your own;
 ``Laws`` hands them to a simulated turn.
 """
 

@@ -10,7 +10,7 @@ from typing import Final
 from .. import compiled
 
 NAMES: Final = ("libskisnow_contact.so", "libskisnow_contact.dylib", "skisnow_contact.dll")
-"""Of the library, on Linux, on macOS and on Windows."""
+"""Name of the library on Linux, macOS and Windows."""
 HEADER: Final = "skisnow_contact.h"
 
 

@@ -1,4 +1,4 @@
-"""What a contact remembers, to go back to, in this process or as bytes in another one."""
+"""History of a contact, to go back to it in this process or from bytes in another one."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ class ContactState(Shown):
     """The history of a contact at one moment; `skisnow.SnowContact.state` gives it, ``restore`` takes it.
 
     It can be pickled and copied. A state that comes from bytes serves any contact of equal runners and spacing in equal
-    snow, on any machine; laws of your own in Python are not in the bytes: that they are the same is yours to see to.
+    snow, on any machine; laws of yours in Python are not in the bytes: make sure that they are the same.
 
     See Also
     --------
@@ -67,7 +67,7 @@ class ContactState(Shown):
         return self._kept
 
     def restore_in(self, contact: core.Contact) -> None:
-        """Take a compiled contact to this state; ValueError where it is none of its own."""
+        """Take a compiled contact to this state; ValueError if it is of another contact."""
         if self._compiled is not None:
             contact.restore(self._compiled)
         else:

@@ -15,16 +15,16 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class Laws(Shown):
-    """Laws, each in place of a scenario's; ``None`` leaves the scenario's. Any class of yours may be one.
+    """Laws, each instead of a scenario's; ``None`` leaves the scenario's. Any class of yours may be one.
 
     Attributes
     ----------
     friction
         μ over the sliding speed.
     shear
-        Strength of the edge over its depth and edge angle, with the thrust that comes with it; in place of S_f.
+        Strength of the edge over its depth and edge angle, with the thrust that comes with it; replaces S_f.
     penetration
-        Stress at a place over its depth and its maximum depth so far; in place of H_V and k_u. One that acts along
+        Stress at a place over its depth and its maximum depth so far; replaces H_V and k_u. One that acts along
         the base's normal carries the side force by itself, and S_f is 0 with it.
     """
 

@@ -30,7 +30,7 @@ class Runner(Shown):
     half_width
         From the middle to each edge (m), > 0. (n,).
     base_height
-        Of the unloaded base off the snow, 0 at the boot (m): camber, shovel. (n,).
+        Height of the unloaded base off the snow, 0 at the boot (m): camber, shovel. (n,).
     nodes
         Positions (m) of the nodes of a beam, falling, the first at the tip, the last at the tail; ``None``: rigid.
 
@@ -99,7 +99,7 @@ class Runner(Shown):
         return float(self.position[-1])
 
     def compiled(self) -> core.Runner:
-        """What the core takes."""
+        """The runner as the core's type."""
         nodes = np.array([self.tip, self.tail]) if self.nodes is None else self.nodes
         return core.runner(
             *(np.ascontiguousarray(each) for each in (self.position, self.half_width, self.base_height, nodes))

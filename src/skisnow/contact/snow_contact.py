@@ -23,14 +23,14 @@ FloatArray: TypeAlias = npt.NDArray[np.float64]
 Beams: TypeAlias = Sequence[npt.ArrayLike] | None
 
 SPACING: Final = 0.02
-"""Of the lines of snow along a runner (m) (modelling assumption, as in the simulated turns)."""
+"""Spacing of the lines of snow along a runner (m) (modelling assumption, as in the simulated turns)."""
 ORTHONORMAL: Final = 1e-9
 """By how much a rotation may fail to be one."""
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class ContactForces(Shown):
-    """What the snow does to k runners.
+    """Forces of the snow on k runners.
 
     Attributes
     ----------
@@ -59,11 +59,11 @@ class Sections(Shown):
     Attributes
     ----------
     position_along_ski, length
-        From the boot, and the length of runner that it stands for (m).
+        Position from the boot, and the length of runner of the section (m).
     depth, edge_sine, edge_place
         Depth of the deeper edge (m, < 0 above the snow), sine of the edge angle, place of the edge on its line (m).
     normal_force, shear, push
-        Of the pressure, of the edge across, and along the edge (N).
+        Forces of the pressure, of the edge across, and along the edge (N).
     sliding, friction, friction_load
         Speed along the edge (m/s), μ with the sign of the sliding, and the load that it acts on (N).
     strength, shear_used
@@ -106,7 +106,7 @@ class SnowContact(Shown):
     runners
         One or more.
     spacing
-        Of the lines on which the contact is integrated (m), > 0.
+        Spacing of the lines on which the contact is integrated (m), > 0.
 
     See Also
     --------
@@ -152,7 +152,7 @@ class SnowContact(Shown):
 
     @property
     def instruction_set(self) -> str:
-        """Of the core's loops on this machine; all give the same bits."""
+        """Instruction set of the core's loops on this machine; all give the same bits."""
         return self.compiled.instruction_set
 
     def force(
@@ -201,7 +201,7 @@ class SnowContact(Shown):
             raise ParameterError(self._shear.refused)
 
     def sections(self, runner: int = 0) -> Sections:
-        """What was found along a runner at the last ``force`` or ``update``."""
+        """Sections along a runner at the last ``force`` or ``update``."""
         return Sections(**self.compiled.sections(runner))
 
     def tracks(self) -> FloatArray:
@@ -224,7 +224,7 @@ class SnowContact(Shown):
 
     @property
     def delayed_energy(self) -> float:
-        """Energy (J) that the delayed depth of the snow has taken and not given back, lost or stored."""
+        """Energy (J) that the delayed depth of the snow has taken and not returned, lost or stored."""
         return self.compiled.delayed_energy()
 
     def state(self) -> ContactState:

@@ -25,7 +25,7 @@ from ..geometry.surfaces import Grid, Plane
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 
 EDGE_BLEND: Final = math.radians(2.0)
-"""Edge angle (rad) above which the shear acts at the edge alone; below it moves to the middle (assumption)."""
+"""Edge angle (rad) above which the shear acts only at the edge; below, it moves to the middle (assumption)."""
 FADE_SPEED: Final = 0.01
 """Sliding speed (m/s) below which friction fades to zero (modelling assumption): Coulomb's law, regularised."""
 KNOT_AREA: Final = 1e-4
@@ -53,9 +53,9 @@ class SnowField(Shown):
     shear
         A law for the strength over depth and edge angle, with the thrust that comes with it; ``None``: S_f.
     strength_share
-        What the strength, by S_f or by a law, is multiplied with: a number > 0 or a `Grid` over the place.
+        Factor of the strength, by S_f or by a law: a number > 0 or a `Grid` over the place.
     friction_acts_on
-        What μ is multiplied with: the pressure along the snow's normal, or what presses square on the base, side force
+        Load that μ acts on: the pressure along the snow's normal, or what presses square on the base, side force
         included.
     residual_ratio, slip_weakening
         Share of the strength that is left where an edge has slipped, 0 to 1, and the slip (m) over which it is reached.
@@ -243,7 +243,7 @@ class SnowField(Shown):
 
     @property
     def shear_in_python(self) -> ShearLaw | None:
-        """The shear law, if it is none that the core knows."""
+        """The shear law, if the core does not have it."""
         known = (AngleShear, ConstantShear, DensityShear, NaturalDensityShear)
         if isinstance(self.shear, known) or (isinstance(self.shear, MachiningShear) and self._shear().cuts):
             return None
@@ -251,7 +251,7 @@ class SnowField(Shown):
 
     @property
     def friction_in_python(self) -> FrictionLaw | None:
-        """The friction law, if it is none that the core knows."""
+        """The friction law, if the core does not have it."""
         known = (ConstantFriction, LinearFriction, QuadraticFriction, WaterFilmFriction)
         return (
             self.friction if isinstance(self.friction, FrictionLaw) and not isinstance(self.friction, known) else None

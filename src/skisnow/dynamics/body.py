@@ -32,7 +32,7 @@ class FlexibleSki(ShownFields):
     Attributes
     ----------
     boot
-        Of the ski, in the body's frame (m), (3,).
+        Position of the ski's boot in the body's frame (m), (3,).
     axes
         Ahead, left across the base, off the base, as rows in the body's frame, (3, 3).
     unknown
@@ -40,12 +40,12 @@ class FlexibleSki(ShownFields):
     mass, stiffness
         Symmetric bands, lower half: [i, j] is A[i, i - j], (n, 6).
     coupling
-        Of the mass matrix between the beam's unknowns and the body's six, (n, 6).
+        Block of the mass matrix between the beam's unknowns and the body's six, (n, 6).
     damping
         Times the stiffness (s): Kelvin–Voigt damping.
     inertia
         Mass matrix of the undeformed ski about its boot, in its own axes, (6, 6): part of the body's, too. Without it
-        nobody knows what the ski does to its boot, and its boot cannot move.
+        the force of the ski on its boot is unknown, and its boot cannot move.
 
     Raises
     ------

@@ -30,7 +30,7 @@ class BootPose(Shown):
     place
         (m), (3,): ahead, left, up.
     axes
-        Of the ski, ahead, left across the base, off the base as rows, (3, 3).
+        Axes of the ski: ahead, left across the base, off the base as rows, (3, 3).
     velocity, turning
         (m/s) and (rad/s), (3,) each.
 
@@ -108,7 +108,7 @@ class BootMotion(ShownFields):
 
     @property
     def numbers(self) -> FloatArray:
-        """What the core takes: start, place (4, 3), rotation vector (3, 3), axes (3, 3), in a row of 31."""
+        """Row of 31 numbers for the core: start, place (4, 3), rotation vector (3, 3), axes (3, 3)."""
         span, first, last = self.end - self.start, self.first, self.last
         turn = self._turn
         rate_last = np.asarray(np.linalg.solve(_jacobian(turn), last.axes @ last.turning), float)

@@ -77,7 +77,7 @@ class StepControl:
             )
 
     def compiled(self) -> core.StepRule:
-        """What the core takes."""
+        """The rule as the core's type."""
         rule = core.StepRule()
         rule.first, rule.fixed = self.first if self.fixed else min(self.first, self.longest), self.fixed
         rule.tolerance = self.tolerance
@@ -102,12 +102,12 @@ class Dynamics:
     body
         Its masses and skis.
     contact
-        Of the same number of runners, with the nodes of the skis' beams. The dynamics take it over: it must not be
-        updated by others.
+        Contact of the same number of runners, with the nodes of the skis' beams. The dynamics take it over: others must
+        not update it.
     position, rotation
-        Of the body's origin in space (m), (3,), and its axes as columns, (3, 3).
+        Position of the body's origin in space (m), (3,), and its axes as columns, (3, 3).
     control
-        Of the steps.
+        Rule for the length of the steps.
 
     Raises
     ------
@@ -135,18 +135,18 @@ class Dynamics:
 
     @property
     def compiled(self) -> core.Dynamics:
-        """What the core has of it."""
+        """The motion as the core's type."""
         return self._core
 
     def move_boots(self, motions: Sequence[BootMotion]) -> None:
-        """Let the boots move against the body from now on, each as one of these says; to be given anew before its end.
+        """Let each boot move against the body by its motion. Set new motions before these end.
 
         Before `find_equilibrium` they say where the boots are at rest.
 
         Raises
         ------
         ParameterError
-            There is not one for each ski, or a ski has no inertia of its own.
+            Skis and motions differ in number, or a ski has no inertia.
         """
         if not self.feels_boots:
             raise ParameterError("boots can move where each FlexibleSki has its inertia; one has none")
@@ -155,7 +155,7 @@ class Dynamics:
         self._core.move_boots(np.array([each.numbers for each in motions]))
 
     def hold_body(self) -> None:
-        """Let the body stay where it is from the start on: boots that move carry the skis alone."""
+        """Hold the body at its place: only boots that move carry the skis."""
         self._core.hold_body()
 
     def push(self, force: npt.ArrayLike, at: npt.ArrayLike) -> None:
@@ -164,7 +164,7 @@ class Dynamics:
 
     @property
     def boots(self) -> FloatArray:
-        """Of each boot against the body, in its frame, (skis, 6, 3).
+        """Motion of each boot against the body, in its frame, (skis, 6, 3).
 
         Place (m), axes ahead, left and off the base, velocity (m/s), angular velocity (rad/s).
         """
@@ -172,9 +172,9 @@ class Dynamics:
 
     @property
     def boot_wrench(self) -> FloatArray:
-        """What each ski did to its boot at the last time reached, (skis, 6): force (N), moment about the boot (N m).
+        """Force (N) and moment (N m) of each ski on its boot at the last time reached, (skis, 6).
 
-        In the ski's axes; not a number where a ski has no inertia of its own.
+        In the ski's axes, about the boot; not a number for a ski without inertia.
         """
         if not self.feels_boots:
             return np.full((len(self.body.skis), 6), np.nan)
@@ -227,7 +227,7 @@ class Dynamics:
 
     @property
     def position(self) -> FloatArray:
-        """Of the body's origin in space (m), (3,)."""
+        """Position of the body's origin in space (m), (3,)."""
         return self._core.position
 
     @property

@@ -55,7 +55,7 @@ class AirDrag:
         velocity
             m/s, shape (..., d) with d components.
         wind
-            Velocity of the air (m/s) in the same components; left out: still air.
+            Velocity of the air (m/s) in the same components (default: still air).
 
         Returns
         -------

@@ -1,4 +1,4 @@
-"""What the force laws refuse: parameters that no snow can have, and angles that look like degrees."""
+"""Checks of the force laws: parameters that no snow can have, and angles that look like degrees."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def require_not_below_zero(owner: object, **parameters: float) -> None:
 
 
 def require_finite(owner: object, **parameters: float) -> None:
-    """Refuse a parameter that is no finite number."""
+    """Reject a parameter that is not a finite number."""
     for name, value in parameters.items():
         if not math.isfinite(value):
             raise ParameterError(f"{type(owner).__name__}: {name} is {value!r}; it must be a finite number")

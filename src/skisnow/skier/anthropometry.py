@@ -30,7 +30,7 @@ class Body:
     mass, height
         As asked.
     standing_height
-        Of the centre of mass above the soles, upright.
+        Height of the centre of mass above the soles, upright.
     inertia
         Roll, pitch, yaw at the centre of mass, in the middle between standing and crouched.
     """

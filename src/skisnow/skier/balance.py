@@ -29,14 +29,14 @@ FloatArray: TypeAlias = npt.NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True)
 class BalanceRecord:
-    """What the control saw and did at one moment.
+    """Input and output of the control at one moment.
 
     Attributes
     ----------
     time
         (s).
     seen
-        What it saw.
+        Measured state.
     balanced, capture
         Where the centre of mass would be in balance, and the capture point that is wanted, from the middle of the feet
         to the left (m).
@@ -63,7 +63,7 @@ class BalancedSkier:
     Attributes
     ----------
     records
-        What it saw and did.
+        Input and output of the control at each moment.
 
     Raises
     ------
@@ -95,10 +95,10 @@ class BalancedSkier:
     _gives: float = 0.0  # rate aside by legs that give way (m/s)
     _pressure: float = 0.0  # asked for, from the middle of the feet to the left (m)
     _asked: float = 0.0  # acceleration that balance asks for
-    _acceleration: float = 0.0  # of the feet to the left
+    _acceleration: float = 0.0  # acceleration of the feet to the left
     _correction: float = 0.0
     _slip: float = 0.0  # angle between skis and path, since the snow did not hold what was wanted (rad)
-    _holds: float = field(init=False)  # of the load, aside, edged for balance
+    _holds: float = field(init=False)  # share of the load aside, edged for balance
     _held: float = 1.0  # share of what the edges would take aside that the snow holds
     _gravity: float = field(init=False)
     _downhill: float = field(init=False)
@@ -115,7 +115,7 @@ class BalancedSkier:
         self._rate = self._rate_at(0.0)
 
     def _rate_at(self, aside: float) -> float:
-        """Of the pendulum (1/s), its centre of mass so far aside (m): the more it leans the less its body rolls."""
+        """Rate of the pendulum (1/s), its centre of mass so far aside (m): the more it leans, the less it rolls."""
         sledge, height = self.scenario.sledge, self._height
         roll = sledge.inertia[0] * height**2 / (height**2 + aside**2)
         return math.sqrt(self._gravity * height * sledge.mass / (roll + sledge.mass * height**2))
@@ -291,5 +291,5 @@ class BalancedSkier:
 
 
 def _share_of(dt: float, rate: float) -> float:
-    """Of a step towards its input that a filter of first order takes, of that corner (rad/s)."""
+    """Share of a step towards its input by a filter of first order with that corner frequency (rad/s)."""
     return dt / (dt + 1.0 / rate)

@@ -16,7 +16,7 @@ class Edges:
     Attributes
     ----------
     radius
-        Of the sidecut (m).
+        Radius of the sidecut (m).
     gravity
         Along the snow's normal (m/s²).
     softness
@@ -24,7 +24,7 @@ class Edges:
     greatest
         Edge angle (rad).
     carving_share
-        Share of the straightest carve's acceleration from which on the edges go over to those of a carve.
+        Share of the straightest carve's acceleration above which the edges change to those of a carve.
     beyond_lean
         Edge angle beyond the lean in a carve (rad).
     """
@@ -46,7 +46,7 @@ class Edges:
         return cls(radius, gravity, softness, skier.greatest_edge, skier.carving_share, skier.edge_beyond_lean)
 
     def carving_acceleration(self, speed: float) -> float:
-        """Of a carve in balance at a speed (m/s), with the edge angle of its lean: sin ϑ = v²/(R_sc g) (m/s²)."""
+        """Acceleration (m/s²) of a balanced carve at a speed (m/s), its lean as edge angle: sin ϑ = v²/(R_sc g)."""
         lean = math.asin(min(math.sin(self.greatest), speed**2 / (self.radius * self.gravity)))
         return speed**2 / (self.radius * math.cos(lean))
 
@@ -71,7 +71,7 @@ class Edges:
         return math.sqrt(2.0 * self.softness * math.tan(edge) / load)
 
     def held(self, acceleration: float, slope: float, load: float) -> float:
-        """What of an acceleration to the left the snow gives a carve (m/s²).
+        """Part of an acceleration to the left that the snow gives a carve (m/s²).
 
         Parameters
         ----------

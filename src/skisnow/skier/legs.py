@@ -23,11 +23,11 @@ def leg_poses(
     Parameters
     ----------
     aside
-        Of the centre of mass from the middle of the feet, to the left (m), and its rate (m/s).
+        Offset of the centre of mass from the middle of the feet, to the left (m), and its rate (m/s).
     edge
         Angle against the snow (rad), and its rate (rad/s).
     height
-        Of the centre of mass above the snow (m), which stays, and in the body above its boots at the start.
+        Height of the centre of mass above the snow (m), constant, and in the body above its boots at the start.
     stance, half_width
         Between the skis, and of a ski (m).
     blunt

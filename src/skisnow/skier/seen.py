@@ -1,4 +1,4 @@
-"""What a skier knows of itself: lean, loads, speed, from what a run tells whoever moves its boots."""
+"""State that a skier measures: lean, loads, speed, from the moments of a run."""
 
 from __future__ import annotations
 
@@ -40,13 +40,13 @@ class Seen:
     Attributes
     ----------
     aside, aside_rate, height
-        Of the centre of mass from the middle of the feet: to the left (m), its rate (m/s), above it (m).
+        Offset of the centre of mass from the middle of the feet: to the left (m), its rate (m/s), above it (m).
     pressure
         How far the centre of pressure is to the left of that middle (m); 0 where nothing bears.
     left, right
         Loads of the skis (N).
     place, speed, heading, course
-        Of the middle of the feet: x, y (m), (m/s), the skis' and the path's heading from the fall line (rad).
+        State of the middle of the feet: x, y (m), (m/s), the skis' and the path's heading from the fall line (rad).
     bears, lifted
         Whether the loads tell anything, and whether one ski is off the snow.
     """
@@ -71,21 +71,21 @@ class Seen:
 
     @property
     def lean(self) -> float:
-        """Of the line from the middle of the feet to the centre of mass, positive left (rad)."""
+        """Angle of the line from the middle of the feet to the centre of mass, positive left (rad)."""
         return math.atan2(self.aside, self.height)
 
 
 def seen_at(moment: Moment, centre_height: float, normal: FloatArray, least_load: float, lifted_share: float) -> Seen:
-    """What the skier sees at a moment.
+    """State that the skier measures at a moment.
 
     Parameters
     ----------
     moment
-        Of the run.
+        Moment of the run.
     centre_height
-        Of the centre of mass in the body (m).
+        Height of the centre of mass in the body (m).
     normal
-        Of the snow, (3,).
+        Normal of the snow, (3,).
     least_load
         Below which the loads tell nothing (N).
     lifted_share

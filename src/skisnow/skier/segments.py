@@ -42,7 +42,7 @@ FOREARM: Final = Segment(0.146, 0.022, 0.682)
 """With the mass of the hand."""
 SHOULDER_WIDTH: Final = 0.259
 HIP_WIDTH: Final = 0.191
-"""Of the body, over its height; the hip joints are half as far apart (modelling assumption)."""
+"""Share of the body's height; the hip joints are half as far apart (modelling assumption)."""
 
 
 def height_of(mass: float, roll_inertia: float) -> float:

@@ -1,4 +1,4 @@
-"""What a skier steers by: turns planned over time, or a line through gates."""
+"""Steering of a skier: turns planned over time, or a line through gates."""
 
 from __future__ import annotations
 

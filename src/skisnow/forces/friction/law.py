@@ -15,14 +15,14 @@ from ..measured_ranges import GLIDE_FRICTION
 FloatArray = npt.NDArray[np.float64]
 
 COMPARISON_SPEED: Final = 10.0
-"""Speed (m/s) at which a law is held against the measured range when it is made (modelling assumption: an ordinary
+"""Speed (m/s) at which a new law is compared with the measured range (modelling assumption: an ordinary
 speed on skis)."""
 
 
 class FrictionLaw(abc.ABC):
     """Friction of a ski that glides along its length: μ(v) times the normal force, against the sliding.
 
-    A rival law is one frozen dataclass in a file of its own, entered in ``LAWS``; it gives ``_coefficient``.
+    A rival law is one frozen dataclass in a separate file, entered in ``LAWS``; it gives ``_coefficient``.
     Measured on skis: 0.023-0.139 over more than 200 runs (Wolfsperger and others 2021). When a law is made, its μ at
     10 m/s is compared with that; μ = 0 is friction switched off and not warned of.
     """
@@ -82,7 +82,7 @@ class FrictionLaw(abc.ABC):
         return result
 
     def _warn_outside(self) -> None:
-        """Compare μ at the comparison speed with what was measured; called when a law is made."""
+        """Compare μ at the comparison speed with the measured range; called when a law is made."""
         mu = self._coefficient(np.asarray(COMPARISON_SPEED))
         if np.any(mu != 0):
             GLIDE_FRICTION.warn_outside(mu, f"{type(self).__name__} at {COMPARISON_SPEED:g} m/s", stacklevel=4)

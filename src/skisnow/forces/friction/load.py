@@ -1,4 +1,4 @@
-"""What glide friction may be multiplied with."""
+"""Loads that glide friction may act on."""
 
 from __future__ import annotations
 

@@ -27,7 +27,7 @@ class ElasticPoint(PointLaw):
 
     Notes
     -----
-    Range: that of `VolumeLaw`. Source: Mössner and others (2013), who measured loading alone. No groove is left and no
+    Range: that of `VolumeLaw`. Source: Mössner and others (2013), who measured only loading. No groove is left and no
     energy is lost: snow does not behave so, but most simulations of skiing do.
 
     References

@@ -20,7 +20,7 @@ FloatArray = npt.NDArray[np.float64]
 class PenetrationLaw(abc.ABC):
     """Force of snow against a tool pressed into it, normal to the snow surface.
 
-    A rival law is one frozen dataclass in a file of its own, entered in ``LAWS``; it gives ``_force_in_contact`` and,
+    A rival law is one frozen dataclass in a separate file, entered in ``LAWS``; it gives ``_force_in_contact`` and,
     where it fails one of the shared checks of physics, says so in ``exceptions``.
     """
 

@@ -19,7 +19,7 @@ class PointLaw(abc.ABC):
     to the ski: what comes behind meets the groove that came before. Along any path the work done on the place is
     ``stored_energy`` plus ``lost_energy``, exactly.
 
-    A rival law is one frozen dataclass in a file of its own, entered in ``POINT_LAWS``. It runs in a contact and in a
+    A rival law is one frozen dataclass in a separate file, entered in ``POINT_LAWS``. It runs in a contact and in a
     turn as it is: `skisnow.contact.SnowField` takes it.
     """
 

@@ -10,13 +10,13 @@ import numpy.typing as npt
 FloatArray = npt.NDArray[np.float64]
 
 DAMPING: Final = 0.0
-"""c of p = H_V ε + c ε̇ (N s/m³) (modelling assumption: the paper's law has none)."""
+"""c of p = H_V ε + c ε̇ (N s/m³) (modelling assumption, not in the paper's law)."""
 DELAYED_SHARE: Final = 0.0
 """H_V/H₂: the delayed depth under a load that stays, over the depth at once (modelling assumption: none)."""
 RETARDATION_TIME: Final = 0.1
-"""c₂/H₂ (s), in which 1 - 1/e of the delayed depth has come (modelling assumption; no effect while there is none)."""
+"""c₂/H₂ (s), in which 1 - 1/e of the delayed depth has come (modelling assumption; only for a delayed depth)."""
 DELAYED_SPACING: Final = 1e-3
-"""Of the places across a groove that keep their delayed depth (m) (modelling assumption, see the tests of convergence).
+"""Spacing of places across a groove that keep their delayed depth (m) (modelling assumption, see tests of convergence).
 """
 
 
@@ -29,7 +29,7 @@ def creep_depth(
     delayed_share: float = DELAYED_SHARE,
     retardation_time: float = RETARDATION_TIME,
 ) -> FloatArray:
-    """Depth (m) under a pressure that stays, of snow that was never pressed: p/H_V at once and what comes later.
+    """Depth (m) under a pressure that stays, of snow that was never pressed: p/H_V at once and the delayed depth later.
 
     Parameters
     ----------

@@ -18,7 +18,7 @@ FloatArray = npt.NDArray[np.float64]
 class ShearLaw(abc.ABC):
     """Force along the snow surface, across the edge, at which snow fails.
 
-    A rival law is one frozen dataclass in a file of its own, entered in ``LAWS``; it gives ``_stress`` and, where it
+    A rival law is one frozen dataclass in a separate file, entered in ``LAWS``; it gives ``_stress`` and, where it
     fails one of the shared checks of physics, says so in ``exceptions``. The force acts against the side on which the
     edge presses; it is the same to both sides (modelling assumption).
     """
@@ -26,7 +26,7 @@ class ShearLaw(abc.ABC):
     __slots__ = ()
     edge_depth_range: ClassVar[MeasuredRange | None] = None
     edge_angle_range: ClassVar[MeasuredRange | None] = None
-    """What was measured, where it is known; outside, `RangeWarning`."""
+    """Measured range, if known; outside it, `RangeWarning`."""
 
     @property
     def exceptions(self) -> Mapping[str, str]:
