@@ -55,7 +55,7 @@ def undrawn(monkeypatch: pytest.MonkeyPatch) -> None:
 
 @contextmanager
 def without_png() -> Iterator[None]:
-    """It and PDF, EPS and the telephone's SVG take most of a figure's time: for tests of what SVG and words say."""
+    """PNG, PDF and EPS take most of a figure's time: for tests of what SVG and words say."""
     with only_drawn("svg"):
         yield
 
@@ -68,10 +68,7 @@ def only_drawn(*forms: figure_drawing.Form) -> Iterator[None]:
     def drawn(form: figure_drawing.Form, drawing: Drawing) -> bytes:
         return drawn_as(form, drawing) if form in forms else b""
 
-    def no_narrow_svg(_: Drawing) -> str:
-        return ""
-
-    with patch.multiple(figure_drawing, _drawn_as=drawn, _narrow_svg=no_narrow_svg):
+    with patch.object(figure_drawing, "_drawn_as", drawn):
         yield
 
 

@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 
 WIDER_THAN_THEIR_BOX = """() =>
     [...document.querySelectorAll("table, td, tbody th, caption, figure, img, dd, .key li, p")]
+    .filter((each) => !each.closest(".scroll"))
     .filter((each) => each.getBoundingClientRect().width > 0)
     .filter((each) => each.scrollWidth > each.clientWidth + 1 && getComputedStyle(each).display !== "inline"
         || each.getBoundingClientRect().right > document.documentElement.clientWidth + 1)
@@ -61,6 +62,8 @@ def test_a_telephone_shows_figures_and_tables_whole(page: Page, reports: tuple[P
     wide = page.locator("figure.wide img").first
     drawn = wide.evaluate("(each) => [each.naturalWidth, each.clientWidth]")
     assert drawn[1] > 0.9 * drawn[0]  # the words of the figure have their own size, within a tenth
+    box = page.locator(".scroll").first
+    assert box.evaluate("(each) => { each.scrollTo(1000, 0); return each.scrollLeft + each.clientWidth }") == drawn[1]
 
 
 @pytest.mark.slow

@@ -19,7 +19,7 @@ from ..report.campaign.figures import DRAWERS
 from ..report.campaign.key_results import key_results
 from ..report.campaign.page import tables_html
 from ..report.campaign.tables import campaign_tables
-from ..report.figures.drawing import Drawing, data_uri, svgs_of
+from ..report.figures.drawing import Drawing, data_uri, drawing_svg
 from ..report.figures.style import journal_style, site_styles
 from ..report.figures.translated import translate_figure
 from ..report.symbols import figure_text
@@ -76,13 +76,13 @@ class Numbers:
 
 @dataclass(frozen=True, slots=True)
 class Shown:
-    """A figure: name, words for who cannot see it, caption as HTML, addresses of its image and, if wide, a phone's."""
+    """A figure: name, words for who cannot see it, caption as HTML, address of its image; ``wide``: it scrolls."""
 
     name: str
     alt: str
     caption: str
     image: str
-    narrow: str
+    wide: bool
 
 
 @dataclass(frozen=True, slots=True)
@@ -119,7 +119,7 @@ def figure(analysis: Analysis, number: int, language: str) -> Shown | None:
         if not isinstance(drawn, Drawing):
             return None
         translate_figure(drawn.figure, language, names=frozenset(map(figure_text, data.names)))
-        return Shown(drawn.name, drawn.alt, str(drawn.whole_caption), *map(data_uri, svgs_of(drawn)))
+        return Shown(drawn.name, drawn.alt, str(drawn.whole_caption), data_uri(drawing_svg(drawn)), drawn.wide)
 
 
 def ready() -> None:

@@ -250,10 +250,10 @@ def _counts(found: Numbers) -> str:
 
 def _figure(shown: Shown, names: Set[str]) -> None:
     with ui.element("figure"):
-        with ui.element("picture"):
-            if shown.narrow:
-                ui.element("source").props('media="(max-width: 46rem)"').props["srcset"] = shown.narrow
+        with ui.element("div") as box:
             image = ui.element("img")
+        if shown.wide:
+            box.classes("scroll").props("tabindex=0 role=region").props["aria-label"] = said(shown.alt)
         image.props["src"] = shown.image
         image.props["alt"] = said(shown.alt)
         with ui.element("figcaption"):

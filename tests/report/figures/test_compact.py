@@ -10,7 +10,7 @@ import pytest
 from markupsafe import Markup
 
 from skisnow.report.figures.compact import compact_svg
-from skisnow.report.figures.drawing import Drawing, svgs_of
+from skisnow.report.figures.drawing import Drawing, drawing_svg
 from skisnow.report.figures.style import journal_style, new_figure
 
 NUMBER = re.compile(r"-?\d+(?:\.\d+)?")
@@ -27,7 +27,7 @@ def svg() -> str:
         axes.plot(x, np.cos(9.0 * x))
         axes.imshow([[0.0, 1.0], [0.5, 0.2]], extent=(0.0, 0.5, 0.0, 0.5))
         axes.set_xlabel("0.123456 < a word")
-        return svgs_of(Drawing("name", Markup(""), "words", figure))[0]
+        return drawing_svg(Drawing("name", Markup(""), "words", figure))
 
 
 def elements(text: str) -> list[ElementTree.Element]:
@@ -63,19 +63,3 @@ def paths_of_uses(text: str, href: str) -> list[float]:
     paths = {each.get("id"): each.get("d", "") for each in elements(text)}
     used = [paths[each.get(href, "")[1:]] for each in elements(text) if each.tag == f"{TAG}use"]
     return [float(number) for path in used for number in NUMBER.findall(path)]
-
-
-@pytest.mark.parametrize("wide", [True, False])
-def test_a_wide_one_is_drawn_for_a_phone_too(wide: bool) -> None:
-    with journal_style():
-        figure = new_figure(width_mm=180.0)
-        for axes in figure.subplots(1, 2):
-            axes.plot([0.0, 1.0], [2.0, 3.0])
-        one, phone = svgs_of(Drawing("name", Markup(""), "words", figure, wide=wide))
-    assert bool(phone) is wide
-    if wide:
-        width, height, narrow, high = (
-            float(size) for svg in (one, phone) for size in re.findall(r'="([\d.]+)pt"', svg)[:2]
-        )
-        assert narrow < 0.6 * width
-        assert high > height  # its panels stand below one another

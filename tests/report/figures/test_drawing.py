@@ -1,4 +1,4 @@
-"""A figure becomes its files: of print, of screens, of a telephone."""
+"""A figure becomes its files: of print, of screens."""
 
 from __future__ import annotations
 
@@ -36,7 +36,6 @@ def test_each_file_is_drawn_once_after_the_axes_were_placed(monkeypatch: pytest.
     assert picture.svg.lstrip().startswith("<?xml") and picture.png.startswith(b"\x89PNG")
     assert len(drawn) == 4  # each form once
     assert drawn[0] == drawn[1] == drawn[2] != before  # of what the layout made of it
-    assert picture.narrow == ""
 
 
 def two_panels() -> Figure:
@@ -64,24 +63,6 @@ def test_panels_have_letters_and_scales_of_colour_have_none() -> None:
     assert right.get_title(loc="left") == "(b)"
     assert [axes.get_title(loc="left") for axes in others] == ["", ""]
     assert single.axes[0].get_title(loc="left") == ""
-
-
-def test_a_telephone_sees_all_words_in_their_size() -> None:
-    """96 mm are 363 pixels of a page; nothing reaches over the rim, and two panels of a row stand below each other."""
-    with journal_style():
-        figure = new_figure(width_mm=DOUBLE_MM)
-        left, right = figure.subplots(1, 2, sharey=True)
-        left.set_title("a title that takes more room than a telephone has for it beside another one", loc="left")
-        left.set_ylabel("depth (mm)")
-        legend_below(figure, [left.plot([0, 1], label=f"a long name of a line, number {i}")[0] for i in range(4)])
-        picture = pictured(Drawing("name", Markup(""), "words", figure, wide=True))
-        extent = figure.get_tightbbox()
-    assert 'width="272.1' in picture.narrow  # points
-    assert 'width="510.2' in picture.svg
-    assert extent.x0 > -0.02 and extent.x1 < 96.0 / 25.4 + 0.02
-    assert left.get_position().y0 > right.get_position().y1
-    assert right.get_ylabel() == "depth (mm)"
-    assert "number 3" in picture.narrow
 
 
 def test_eps_has_no_transparency_but_its_colour_on_white() -> None:

@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Any, Final, Literal, TypeAlias
 
 from ..symbols import html
 from .compact import compact_svg
-from .narrowed import narrow
 from .opaque import make_opaque
 from .panels import letter_panels
 from .style import thinning_sentence
@@ -60,7 +59,7 @@ class LeftOut:
 
 @dataclass(frozen=True)
 class Picture:
-    """A drawing as files; ``narrow``: the SVG of a wide one for a telephone, empty where there is none."""
+    """A drawing as files."""
 
     name: str
     caption: Markup
@@ -70,17 +69,11 @@ class Picture:
     png: bytes
     pdf: bytes = b""
     eps: bytes = b""
-    narrow: str = ""
 
     @property
     def data_uri(self) -> str:
         """The SVG inside an attribute of the HTML, in fewer bytes than its file."""
         return data_uri(self.svg)
-
-    @property
-    def narrow_data_uri(self) -> str:
-        """The same for a telephone; empty where there is none."""
-        return data_uri(self.narrow)
 
     @property
     def files(self) -> dict[str, str | bytes]:
@@ -93,8 +86,8 @@ Form: TypeAlias = Literal["png", "svg", "pdf", "eps"]
 
 
 def data_uri(svg: str) -> str:
-    """A drawing inside an attribute of HTML; empty where there is none."""
-    return "data:image/svg+xml;base64," + base64.b64encode(compact_svg(svg).encode()).decode("ascii") if svg else ""
+    """Address of an SVG that contains the SVG itself, compacted, for an attribute of HTML."""
+    return "data:image/svg+xml;base64," + base64.b64encode(compact_svg(svg).encode()).decode("ascii")
 
 
 def pictured(drawing: Drawing) -> Picture:
@@ -104,18 +97,13 @@ def pictured(drawing: Drawing) -> Picture:
     make_opaque(drawing.figure)
     eps = _EPS_DATE.sub(b"", _drawn_as("eps", drawing))
     words = drawing.name, drawing.whole_caption, drawing.alt, drawing.wide
-    return Picture(*words, svg, png, pdf, eps, _narrow_svg(drawing) if drawing.wide else "")
+    return Picture(*words, svg, png, pdf, eps)
 
 
-def _narrow_svg(drawing: Drawing) -> str:
-    narrow(drawing.figure)
-    return _svg(drawing)
-
-
-def svgs_of(drawing: Drawing) -> tuple[str, str]:
-    """Draw it for a page alone, and a wide one once more for a telephone (empty where there is none)."""
+def drawing_svg(drawing: Drawing) -> str:
+    """SVG of a drawing, for a page that needs no other format."""
     letter_panels(drawing.figure)
-    return _svg(drawing), _narrow_svg(drawing) if drawing.wide else ""
+    return _svg(drawing)
 
 
 def _svg(drawing: Drawing) -> str:

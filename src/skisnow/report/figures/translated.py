@@ -10,7 +10,7 @@ from matplotlib.ticker import Formatter
 
 from ..._support.language import ENGLISH, catalogue
 from ..._support.language.catalogue import FIRST, LAST
-from .narrowed import legends_again
+from .style import legend_below
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence, Set
@@ -44,7 +44,17 @@ def translate_figure(figure: Figure, language: str, *, names: Set[str] = frozens
         assert isinstance(text, Text)
         if text.get_text():
             text.set_text(said(text.get_text()))
-    legends_again(figure)
+    _lay_out_legends(figure)
+
+
+def _lay_out_legends(figure: Figure) -> None:
+    """Lay out the legends below a figure again: translated entries are longer or shorter."""
+    for legend in list(figure.legends):
+        handles = [handle for handle in legend.legend_handles if handle is not None]
+        for handle, text in zip(handles, legend.get_texts(), strict=True):
+            handle.set_label(text.get_text())
+        legend.remove()
+        legend_below(figure, handles)
 
 
 def _sayer(language: str, names: Set[str]) -> Callable[[str], str]:

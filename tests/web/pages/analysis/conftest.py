@@ -18,16 +18,15 @@ from .shared import Drawing, points
 
 @pytest.fixture
 def drawing(monkeypatch: pytest.MonkeyPatch) -> Drawing:
-    """The gate is open at first. Of three figures the second has no data; the third has an image for a phone."""
+    """The gate is open at first. Of three figures the second has no data; the third is wide."""
     made = Drawing()
     made.gate.set()
 
     def drawn(analysis: Any, number: int, _language: str) -> Shown | None:
         if number == 1:
             return None
-        narrow = "data:narrow" if number == 2 else ""
         return Shown(
-            f"fig{number}", f"{points(analysis)} points", f"<b>Figure {number}.</b> A", f"data:{number}", narrow
+            f"fig{number}", f"{points(analysis)} points", f"<b>Figure {number}.</b> A", f"data:{number}", number == 2
         )
 
     def written(analysis: Any, out: str, language: str) -> None:

@@ -239,13 +239,13 @@ def test_the_report_of_the_page_is_that_of_the_library(tmp_path: Path, monkeypat
 
 
 def test_a_figure_has_its_images_and_words(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(analysing, "svgs_of", lambda drawn: [b"<svg>", drawn.name.encode()])
-    monkeypatch.setattr(analysing, "data_uri", lambda svg: svg.decode())
+    monkeypatch.setattr(analysing, "drawing_svg", lambda drawn: drawn.name)
+    monkeypatch.setattr(analysing, "data_uri", str.upper)
     analysis = numbers(Choice()).analysis
     number = [drawer.__name__ for drawer in DRAWERS].index("force_depth")
     found = figure(analysis, number, "en")
     assert found is not None
-    assert (found.name, found.image, found.narrow) == ("fig05_force_depth", "<svg>", "fig05_force_depth")
+    assert (found.name, found.image, found.wide) == ("fig05_force_depth", "FIG05_FORCE_DEPTH", False)
     assert found.alt and found.caption.startswith("Load against penetration depth")
 
 
