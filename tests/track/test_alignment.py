@@ -71,17 +71,16 @@ def test_the_answer_is_a_least_square() -> None:
             assert mean_square(moved, motion.turned + sign * step[2] / 10.0) > best
 
 
-def test_straight_lines_are_moved_along_only_for_the_overlap() -> None:
-    """Across by 0.8 m. Along, 3 m give the overlap of all 50 m; on a line that is long enough nothing moves."""
+def test_straight_lines_do_not_tell_how_far_along() -> None:
+    """Across by 0.8 m, along by nothing: the 3 m along the lines cannot be known and stay."""
     measured = line_of(np.array([[0.0, 0.0], [50.0, 0.0]]))
     simulated = line_of(np.array([[3.0, 0.8], [53.0, 0.8]]))
     motion = fitted_motion(simulated, measured, start=True, heading=True)
-    assert motion.moved == pytest.approx([-3.0, -0.8], abs=1e-8)
+    assert motion.moved == pytest.approx([0.0, -0.8], abs=1e-8)
     assert motion.turned == pytest.approx(0.0, abs=1e-9)
     assert motion.undetermined == 1
-    assert motion.share == 1.0
     longer = line_of(np.array([[-30.0, 0.8], [80.0, 0.8]]))
-    assert fitted_motion(longer, measured, start=True, heading=True).moved[1] == pytest.approx(-0.8, abs=1e-8)
+    assert fitted_motion(longer, measured, start=True, heading=True).moved == pytest.approx([0.0, -0.8], abs=1e-8)
 
 
 def test_a_fit_neither_scales_nor_mirrors() -> None:
@@ -138,15 +137,17 @@ def test_less_overlap_is_no_advantage() -> None:
 
 
 def test_the_interval_of_a_heading_grows_with_noise_and_holds_the_truth() -> None:
+    """Of 40 intervals with a coverage of 95 % at least 34 contain the truth in 997 of 1000 cases."""
     inside, errors = [], []
     for seed in range(20):
         for size in (0.01, 0.1):
             noise = size * np.random.default_rng(seed).normal(size=(100, 2))
             measured = turned(slalom(ALONG[::5]), 0.4, (40.0, -7.0, 0.0))[:, :2] + noise
             motion = fitted_motion(line_of(slalom(ALONG)[:, :2]), line_of(measured), start=True, heading=True)
+            assert motion.turned_error is not None
             inside.append(abs(motion.turned - 0.4) < motion.turned_error)
             errors.append(motion.turned_error)
-    assert np.mean(inside) > 0.8
+    assert sum(inside) >= 34
     assert np.mean(errors[1::2]) == pytest.approx(10.0 * np.mean(errors[::2]), rel=0.3)
 
 
@@ -181,6 +182,7 @@ def test_arcs_of_one_circle_have_a_rival() -> None:
     assert motion.rival is not None
     assert abs(math.remainder(motion.rival.turned - motion.turned, math.tau)) > math.radians(5.0)
     assert 0.99 * motion.rms < motion.rival.rms < 2.0 * motion.rms
+    assert motion.turned_error is None
 
 
 def test_an_answer_among_few_places_is_none_among_all_that_lie_beyond() -> None:

@@ -12,7 +12,9 @@ from typing import Final, Literal, TypeAlias, get_args
 
 import numpy as np
 import numpy.typing as npt
+from scipy.special import stdtrit
 
+from .._support.constants import CONFIDENCE
 from .._support.errors import FitError, ParameterError
 from .._support.units import DEGREE
 from .nearest_place import NearestPlaces, Path
@@ -70,7 +72,8 @@ class Motion:
     share
         Share of the measured track that has the simulated one beside it.
     turned_error
-        Half of the 95 % interval of `turned` (rad), at most π; 0 if no heading was fitted.
+        Half of the 95 % interval of `turned` (rad), at most π; 0 if no heading was fitted, None if `rival` has another
+        heading.
     rival
         The best answer elsewhere, if it is about as good.
     """
@@ -80,7 +83,7 @@ class Motion:
     undetermined: int = 0
     rms: float = math.inf
     share: float = 0.0
-    turned_error: float = 0.0
+    turned_error: float | None = 0.0
     rival: Motion | None = None
 
     def applied(self, line: Polyline) -> Polyline:
@@ -146,11 +149,18 @@ def fitted_motion(simulated: Polyline, measured: Polyline, *, start: bool, headi
     for each in answers[1:]:
         if score(each) < _BETTER * score(best):
             best = each
+    if best.undetermined:
+        as_it_was = _settled(path, places, rough[0], start=start, heading=heading)
+        if as_it_was.rms <= best.rms + EXACTNESS * measured.length and not _is_another(as_it_was, best, simulated):
+            best = as_it_was  # nothing is moved along what the tracks do not determine
     others = [each for each in answers if _is_another(each, best, simulated)]
     rival = min(others, key=score, default=None)
-    error = _turned_error(path, places, best, start=start, points=len(measured.time)) if heading else 0.0
-    near = rival is not None and score(rival) < RIVAL * score(best)
-    return replace(best, turned_error=error, rival=rival if near else None)
+    error: float | None = _turned_error(path, measured, best, start=start) if heading else 0.0
+    if rival is None or score(rival) >= RIVAL * score(best):
+        return replace(best, turned_error=error)
+    if heading and abs(math.remainder(rival.turned - best.turned, math.tau)) > _ANOTHER:
+        error = None  # the likelihood has several maxima
+    return replace(best, turned_error=error, rival=rival)
 
 
 def _score(motion: Motion, length: float) -> float:
@@ -269,21 +279,37 @@ def _equations(
     return across, -_across(apart, along).ravel()
 
 
-def _turned_error(path: Path, places: FloatArray, motion: Motion, *, start: bool, points: int) -> float:
-    """Half of the 95 % interval of the heading (rad), from the covariance of the linear equations.
+def _turned_error(path: Path, measured: Polyline, motion: Motion, *, start: bool) -> float:
+    """Half of the 95 % interval of the heading (rad), at most π, from the errors of the measured points.
 
-    The errors of different points of the measured track count as independent; errors that change slowly along the
-    track, as a receiver's often do, are not in it (modelling assumption).
+    The fit is linear in the errors across the path: turned = Σ gᵢ εᵢ over the points, each with the length of track
+    that it stands for as its weight. With equal variances σ² = Σ r²/(n (d - 1) - parameters) and the correlation ρ of
+    the residuals of neighbouring points, the variance is σ² Σ gᵢ² (1 + ρ)/(1 - ρ): that of an autoregressive error
+    whose influence changes slowly (Bartlett 1935, doi 10.2307/2342284). Student's factor.
     """
-    local, found = _seen(path, places, motion)
+    local, found = _seen(path, measured.place, motion)
     inside = ~found.beyond
     matrix, rest = _equations(path, local, found, inside, motion, start=start, heading=True)
-    count = int(inside.sum())
-    variance = float(rest @ rest) / (count * (places.shape[1] - 1)) * count / max(1.0, points * inside.mean())
-    _, values, right = np.linalg.svd(matrix, full_matrices=False)
-    exact = EXACTNESS * np.sqrt(count)
-    turned = math.sqrt(variance * float(((right[:, -1] / np.maximum(values, exact)) ** 2).sum())) / path.length
-    return min(1.96 * turned, math.pi)
+    dimensions = local.shape[1]
+    freedom = int(inside.sum()) * (dimensions - 1) - matrix.shape[1]
+    if freedom < 1:
+        return math.pi
+    steps = np.diff(measured.arc_length, prepend=0.0, append=measured.length)
+    root = np.sqrt(np.repeat((steps[1:] + steps[:-1])[inside] / (2.0 * measured.length), dimensions))
+    left, values, right = np.linalg.svd(root[:, None] * matrix, full_matrices=False)
+    influence = root * (left @ (right[:, -1] / np.maximum(values, EXACTNESS)))
+    correlation = _correlation(rest.reshape(-1, dimensions))
+    variance = float(rest @ rest) / freedom * float(influence @ influence)
+    variance *= (1.0 + correlation) / (1.0 - correlation)
+    half = float(stdtrit(freedom, 0.5 + CONFIDENCE / 2.0)) * math.sqrt(variance)
+    cut_turns = abs(float(influence @ rest))  # shift of a fit to the points alone: chords cut the turns
+    return min((half + cut_turns) / path.length, math.pi)
+
+
+def _correlation(rest: FloatArray) -> float:
+    """Correlation of the residuals (n, d) of neighbouring points, from 0 to 0.95."""
+    squares = float((rest**2).sum())
+    return min(max(float((rest[1:] * rest[:-1]).sum()) / squares, 0.0), 0.95) if squares > 0.0 else 0.0
 
 
 def _across(vectors: FloatArray, along: FloatArray) -> FloatArray:

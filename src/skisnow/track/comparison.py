@@ -92,7 +92,7 @@ class Fitted(Shown):
     turned
         About the vertical through its first point (rad), positive to the left.
     turned_error
-        Half of the 95 % interval of `turned` (rad), for independent errors of the measured points.
+        Half of the 95 % interval of `turned` (rad); 0 if no heading was fitted, None if `rival` has another heading.
     later
         How much later (s) the simulated track's places are looked up than before the fit.
     undetermined
@@ -117,7 +117,7 @@ class Fitted(Shown):
     rms: float | None
     rival: Motion | None
     before: Comparison
-    turned_error: float = 0.0
+    turned_error: float | None = 0.0
     slope_angle: float | None = None
     azimuth: float | None = None
 
@@ -399,8 +399,9 @@ def _pointing(fitted: Fitted, laid: Laid, simulated: Track, measured: Track) -> 
     """Direction of x of the track in the slope's axes, and the inclination by which it was laid on the map."""
     name = (simulated if measured.axes == "east_north_up" else measured).name
     slope = "from above" if not laid.angle else f"on a slope of {laid.angle / DEGREE:.1f}° ({laid.source})"
-    azimuth, error = (fitted.azimuth or 0.0) / DEGREE, fitted.turned_error / DEGREE
-    return f"laid on the map {slope}, x of {name} points {azimuth:.1f}° from north (± {error:.2g}°)"
+    azimuth = (fitted.azimuth or 0.0) / DEGREE
+    error = "other directions fit too" if fitted.turned_error is None else f"± {fitted.turned_error / DEGREE:.2g}°"
+    return f"laid on the map {slope}, x of {name} points {azimuth:.1f}° from north ({error})"
 
 
 def _in_one_frame(simulated: Track, measured: Track) -> bool:
@@ -424,7 +425,7 @@ def _rivalled(found: Comparison) -> list[str]:
     fitted, warnings = found.fitted, []
     if fitted is None:
         return []
-    if fitted.turned_error > UNCERTAIN:
+    if fitted.turned_error is not None and fitted.turned_error > UNCERTAIN:
         warnings.append(
             f"the fitted heading is uncertain: ± {fitted.turned_error / DEGREE:.2g}° (95 %). Give the direction in "
             "which the slope falls, or compare a longer stretch"
@@ -434,9 +435,10 @@ def _rivalled(found: Comparison) -> list[str]:
         other, chosen = (f"{each.turned / DEGREE:.0f}°" for each in (rival, fitted))
         there, here = (" and ".join(f"{each:.1f}" for each in one.moved[:2]) for one in (rival, fitted))
         rms, own = amount(rival.rms, "m"), amount(fitted.rms, "m")
+        interval = " The heading has no interval." if fitted.turned_error is None else ""
         warnings.append(
             f"the place of the simulated track is uncertain: moved by {there} m and turned by {other}, instead of "
             f"{here} m and {chosen}, it is about as near (rms {rms} instead of {own}, {100 * rival.share:.0f} % "
-            "compared). Give the direction in which the slope falls, or compare a longer stretch"
+            f"compared).{interval} Give the direction in which the slope falls, or compare a longer stretch"
         )
     return warnings

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any, Final
 
 from .._support.units import DEGREE
+from .alignment import Motion
 from .comparison import MEANS, Comparison, Distances, Fitted
 
 Json = dict[str, Any]
@@ -57,6 +58,16 @@ def _distances(found: Distances, length: float) -> Json:
     }
 
 
+def _rival(rival: Motion) -> Json:
+    return {
+        "moved_x_m": float(rival.moved[0]),
+        "moved_y_m": float(rival.moved[1]),
+        "turned_deg": rival.turned / DEGREE,
+        "rms_m": rival.rms,
+        "compared_share": rival.share,
+    }
+
+
 def _fitted(fitted: Fitted) -> Json:
     height = fitted.moved[2] if len(fitted.moved) > 2 else None
     return {
@@ -66,7 +77,8 @@ def _fitted(fitted: Fitted) -> Json:
         "moved_z_m": height,
         "turned_deg": fitted.turned / DEGREE,
         "later_s": fitted.later,
-        "turned_error_deg": fitted.turned_error / DEGREE,
+        "turned_error_deg": None if fitted.turned_error is None else fitted.turned_error / DEGREE,
+        "rival": None if fitted.rival is None else _rival(fitted.rival),
         "slope_angle_deg": None if fitted.slope_angle is None else fitted.slope_angle / DEGREE,
         "fall_line_azimuth_deg": None if fitted.azimuth is None else fitted.azimuth / DEGREE,
         "undetermined": fitted.undetermined,
