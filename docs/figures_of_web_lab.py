@@ -152,11 +152,14 @@ def main() -> None:
         command = [sys.executable, "-m", "skisnow", "serve", "--port", "0", "--store", f"{folder}/store.sqlite3"]
         with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as server:
             assert server.stdout is not None
-            address = server.stdout.readline().strip()
-            browser = playwright.chromium.launch(executable_path=shutil.which("chromium"), args=["--no-sandbox"])
-            take(browser.new_page(viewport=DESK), address)  # type: ignore[arg-type]
-            browser.close()
-            server.kill()
+            try:
+                address = server.stdout.readline().strip()
+                place = shutil.which("chromium-headless-shell") or shutil.which("chromium")
+                browser = playwright.chromium.launch(executable_path=place, args=["--no-sandbox"])
+                take(browser.new_page(viewport=DESK), address)  # type: ignore[arg-type]
+                browser.close()
+            finally:
+                server.kill()
 
 
 if __name__ == "__main__":
