@@ -225,26 +225,24 @@ def swing(legs: float) -> float:
 
 
 def test_loads_do_not_chatter_from_ski_to_ski() -> None:
-    """Legs that do not give way let the load go to and fro some six times a second, by 50 N and more in the mean.
+    """Legs that do not give way let the load go to and fro some six times a second.
 
-    The contact adds nothing to it: an edge that rolls over gives back no more than it stored.
+    Legs that give way take at least four fifths of that.
     """
-    assert swing(0.0) > 50.0
-    assert swing(Skier().leg_yielding) < 20.0
+    left = swing(Skier().leg_yielding)
+    assert left < 20.0
+    assert left < 0.2 * swing(0.0)
 
 
 def test_left_and_right_mirror() -> None:
-    """The first turn. Rounding leads both runs to other steps, so they agree within the solver's error.
-
-    That error is at most 7 mm after 46 m, so 0.8 mm after these 5.6 m.
-    """
+    """The first turn."""
     ends = []
     for to_left in (True, False):
         turn = tall(Skier(first_turn=0.3, first_to_left=to_left), duration_s=1.2)
         ends.append(simulate(turn).place[-1])
     assert abs(ends[0][1]) > 0.02
-    assert ends[0][0] == pytest.approx(ends[1][0], abs=8e-4)
-    assert ends[0][1] == pytest.approx(-ends[1][1], abs=8e-4)
+    assert ends[0][0] == pytest.approx(ends[1][0], abs=1e-4)
+    assert ends[0][1] == pytest.approx(-ends[1][1], abs=1e-4)
 
 
 def test_who_carves_too_fast_falls() -> None:

@@ -64,17 +64,20 @@ class Root(PointLaw):
 def test_the_scenario_s_laws_from_python_give_its_run() -> None:
     """Three points of Gauss are exact for straight pressure, and parts end where it bends: the same forces to rounding.
 
-    Newton's method has the pressure's derivative in closed form or by differences. It ends within a fifth of a step's
-    error, which counts for at least 1e-7 m: so places and depths agree within 2e-8 m.
+    For a penetration law Newton's method has the pressure's derivative by differences instead of in closed form. It
+    ends within a fifth of a step's error, which counts for at least 1e-7 m: so places and depths agree within 2e-8 m.
     """
     first = carve(1.0)
-    for laws in (Laws(penetration=HypoplasticPoint(H, 10.0)), Laws(friction=Own(), shear=ConstantShear(S))):
+    for laws, bound in (
+        (Laws(penetration=HypoplasticPoint(H, 10.0)), 2e-8),
+        (Laws(friction=Own(), shear=ConstantShear(S)), 1e-9),
+    ):
         again = carve(1.0, laws)
-        assert np.abs(again.place - first.place).max() < 2e-8
+        assert np.abs(again.place - first.place).max() < bound
         assert again.steps == first.steps
         for name, energy in first.energies.items():
             assert again.energies[name] == pytest.approx(energy, abs=1e-6)
-        assert again.groove.residual_depth == pytest.approx(first.groove.residual_depth, abs=2e-8)
+        assert again.groove.residual_depth == pytest.approx(first.groove.residual_depth, abs=bound)
 
 
 @pytest.mark.parametrize(
