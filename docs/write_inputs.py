@@ -22,11 +22,9 @@ from skisnow.campaign.snow_micro_pen_records import SnowMicroPenSettings
 from skisnow.campaign.weather_records import WeatherSettings
 from skisnow.carving.keys import CARVE_KEYS
 from skisnow.parameters import own_quantities
-from skisnow.parameters.json_schema import Schema, output_schema, schema_text
-from skisnow.parameters.page_table import page_table
+from skisnow.parameters.json_schema import Schema, output_schema, page_table, schema_text
 from skisnow.scenario import schema as scenario
-from skisnow.scenario.free_keys import FREE_KEYS
-from skisnow.scenario.keys import SCENARIO_KEYS
+from skisnow.scenario.keys import FREE_KEYS, SCENARIO_KEYS
 from skisnow.ski.file_keys import COLUMNS, SKI_KEYS
 
 DOCS = Path(__file__).resolve().parent

@@ -13,7 +13,7 @@ from skisnow.replay import moving_replay_model, replay_bytes, replay_model, repl
 from skisnow.report.run_file import write_run_file
 from skisnow.report.run_report import run_page
 from skisnow.scenario import scenario_values
-from skisnow.scenario.values import in_sections
+from skisnow.scenario.keys import in_sections
 
 from ..replay.held import held_replay
 from ..report.runs import circle_run

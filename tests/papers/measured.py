@@ -11,7 +11,7 @@ from typing import Any, Final
 import numpy as np
 
 from skisnow import carve, read_ski
-from skisnow._support.files import write_file
+from skisnow._support.staging import write_file
 from skisnow.carving.result import Equilibrium
 from skisnow.ski import Ski
 from skisnow.snow import published_snow

@@ -12,8 +12,7 @@ import pytest
 
 from skisnow._support.errors import ParameterError
 from skisnow.parameters import Quantity, Section, Word, made, quantities, require_declared, values_of
-from skisnow.parameters.json_schema import table_schema
-from skisnow.parameters.page_table import page_table
+from skisnow.parameters.json_schema import page_table, table_schema
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -25,9 +25,9 @@ ASKED = """
 from dataclasses import replace
 
 from skisnow._support.errors import ParameterError
-from skisnow.parameters.page_table import page_table
+from skisnow.parameters.json_schema import page_table
 from skisnow.scenario import load_scenario, scenario_file, scenario_text
-from skisnow.scenario.free_keys import free_key
+from skisnow.scenario.keys import free_key
 from skisnow.scenario.keys import parse_change
 from skisnow.scenario.keys import SCENARIO_KEYS
 from skisnow.scenario.schema import scenario_schema, output_scenario_schema

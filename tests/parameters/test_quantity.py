@@ -12,8 +12,7 @@ import pytest
 from skisnow._support.errors import ParameterError
 from skisnow._support.units import unit_of_name, without_unit
 from skisnow.parameters import Quantity, Search, checked_table, made, own_quantities
-from skisnow.parameters.json_schema import output_schema, schema_of, schema_text
-from skisnow.parameters.page_table import page_table
+from skisnow.parameters.json_schema import output_schema, page_table, schema_of, schema_text
 
 ANGLE = Quantity("edge_angle_deg", "edge angle", lowest=0.0, highest=90.0, below=True)
 LOAD = Quantity("load_N", "load", lowest=0.0, above=True)

@@ -18,7 +18,7 @@ from skisnow.replay import measured_track, replay_bytes, replay_of_file, replay_
 from skisnow.replay.of_run import facts_of
 from skisnow.report.run_file import write_run_file
 from skisnow.scenario import Profile, scenario_values
-from skisnow.scenario.values import in_sections
+from skisnow.scenario.keys import in_sections
 from skisnow.simulation.run import Run
 from skisnow.simulation.run_gates import run_gates
 from skisnow.ski import ski_named, write_ski

@@ -26,8 +26,7 @@ from skisnow.report.turn_numbers import (
 )
 from skisnow.report.turn_report import FIGURES, write_turn_report
 from skisnow.report.turn_sentences import contrast, ensemble_sentence, key_sentences, meaning
-from skisnow.scenario.measured import measured_of
-from skisnow.scenario.prior import Prior
+from skisnow.scenario.prior import Prior, measured_of
 from skisnow.simulation.run import Run
 from skisnow.snow import SnowProperties
 

@@ -11,7 +11,7 @@ import matplotlib
 import pytest
 
 from skisnow._support.errors import OutputError
-from skisnow._support.files import write_file
+from skisnow._support.staging import write_file
 from skisnow.campaign import Campaign
 from skisnow.estimation.results_text import results_json
 from skisnow.report import write_report

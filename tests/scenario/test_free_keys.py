@@ -7,7 +7,7 @@ import re
 import pytest
 
 from skisnow._support.errors import ParameterError
-from skisnow.scenario.free_keys import FREE_KEYS, free_key, free_keys, short_name
+from skisnow.scenario.keys import FREE_KEYS, free_key, free_keys, short_name
 
 
 @pytest.mark.parametrize(

@@ -10,7 +10,7 @@ import jsonschema
 import pytest
 
 from skisnow._support.errors import ParameterError
-from skisnow.scenario import Solver, free_keys, load_scenario, scenario_names, scenario_text
+from skisnow.scenario import Solver, keys, load_scenario, scenario_names, scenario_text
 from skisnow.scenario.keys import SCENARIO_KEYS
 from skisnow.scenario.schema import scenario_schema
 
@@ -92,10 +92,10 @@ def test_factors_lead_to_si() -> None:
 def test_a_word_that_may_mean_two_keys_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     """No two keys that can be looked for share a word now; a further one may."""
     two = ("friction.mu_0", "snow.S_f_N_per_mm2")
-    monkeypatch.setattr(free_keys, "_KEYS_BY_WORD", {"both": two, "one": two[:1]})
-    assert free_keys.free_key("one") == "friction.mu_0"
+    monkeypatch.setattr(keys, "_KEYS_BY_WORD", {"both": two, "one": two[:1]})
+    assert keys.free_key("one") == "friction.mu_0"
     with pytest.raises(ParameterError, match=r"both may mean friction\.mu_0 or snow\.S_f_N_per_mm2\. Write one"):
-        free_keys.free_key("both")
+        keys.free_key("both")
 
 
 def test_the_written_schema_is_that_of_the_dataclasses() -> None:

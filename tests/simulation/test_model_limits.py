@@ -14,7 +14,7 @@ from skisnow import BootMoment, BootPose, Scenario, load_scenario, simulate
 from skisnow._support.errors import ModelLimitWarning, ParameterError
 from skisnow._support.units import DEGREE
 from skisnow.cli import main
-from skisnow.scenario.model_limits import model_limits
+from skisnow.scenario.plausibility import model_limits
 from skisnow.ski import ski_named
 from skisnow.ski.editing import SkiEdit, edit_stations
 

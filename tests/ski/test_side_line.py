@@ -16,7 +16,7 @@ from skisnow.ski import read_ski
 from skisnow.ski.layout import layout_of_lengths
 from skisnow.ski.outline import ArcOutline
 from skisnow.ski.side_line import width_of_table
-from skisnow.ski.station_table import StationTable
+from skisnow.ski.table_file import StationTable
 from skisnow.snow import SnowProperties
 
 if TYPE_CHECKING:

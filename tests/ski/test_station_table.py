@@ -8,7 +8,7 @@ from hypothesis.extra.numpy import arrays
 from scipy.interpolate import PchipInterpolator
 
 from skisnow._support.errors import ParameterError
-from skisnow.ski.station_table import StationTable, evenly_spread
+from skisnow.ski.table_file import StationTable, evenly_spread
 
 
 @given(arrays(float, st.integers(1, 9), elements=st.floats(0.01, 1e4)), st.floats(-1.5, 1.5))

@@ -9,7 +9,7 @@ import pytest
 
 from skisnow._support.errors import ParameterError
 from skisnow.snow import SnowProperties
-from skisnow.snow.drawn import drawn_snows, log_normal
+from skisnow.snow.mean_snow import drawn_snows, log_normal
 
 SNOW = SnowProperties(
     2.0e8, 1.4e5, source="site X", snow_hardness_interval=(1.0e8, 4.0e8), failure_shear_stress_interval=(1.0e5, 1.8e5)

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from skisnow._support.errors import OutputError
-from skisnow._support.files import place_to_write, require_writable, write_file
+from skisnow._support.staging import place_to_write, require_writable, write_file
 
 
 def test_text_and_bytes(tmp_path: Path) -> None:

@@ -76,7 +76,7 @@ class ModelLimitWarning(UserWarning):
     text
         The reason, and what to do.
     code
-        One of the codes of `skisnow.scenario.model_limits`.
+        One of the codes of `skisnow.scenario.plausibility`.
     """
 
     def __init__(self, text: str, code: str) -> None:

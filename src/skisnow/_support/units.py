@@ -6,6 +6,8 @@ The only place where 1 N/mm³ = 10⁹ N/m³ and its likes are written.
 200000000.0
 """
 
+from __future__ import annotations
+
 import math
 from functools import cache
 from typing import Final, NamedTuple
@@ -109,3 +111,16 @@ def in_degrees_if_radians(angle_deg: float) -> float | None:
     (45.0, None, None)
     """
     return math.degrees(angle_deg) if 0.0 < angle_deg < _LIKE_RADIANS_DEG else None
+
+
+STANDARD_GRAVITY: Final = 9.81
+"""Acceleration of gravity in m/s² (modelling assumption: the value the skiing literature computes with)."""
+
+ICE_DENSITY: Final = 917.0
+"""Density of ice at 0 °C in kg/m³ (Mössner and others 2013, introduction): no snow is denser."""
+
+ZERO_CELSIUS: Final = 273.15
+"""0 °C in K (exact: the definition of the degree Celsius)."""
+
+CONFIDENCE: Final = 0.95
+"""Coverage that every interval of this package claims."""

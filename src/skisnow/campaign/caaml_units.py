@@ -6,8 +6,7 @@ import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
-from .._support.constants import ZERO_CELSIUS
-from .._support.units import CM, DEGREE, MM
+from .._support.units import CM, DEGREE, MM, ZERO_CELSIUS
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

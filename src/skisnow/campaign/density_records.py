@@ -12,9 +12,8 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from .._support.constants import ICE_DENSITY
 from .._support.errors import FieldDataError
-from .._support.units import CM
+from .._support.units import CM, ICE_DENSITY
 from ..parameters import Quantity
 from .problems import error
 from .reading.campaign_files import FilesOfFolder

@@ -9,8 +9,8 @@ from ..forces.measured_ranges import FAILURE_SHEAR_STRESS, PENETRATION_EDGE_ANGL
 from ..ski import Ski
 from ..ski.sources import Sources
 from ..snow import SnowProperties
-from ..snow.given_stress import require_stress, with_stress
 from ..snow.measured_range import with_range_warnings
+from ..snow.properties import require_stress, with_stress
 from .equilibrium import carve, rest
 from .keys import CARVE_KEYS, CarveQuestion
 from .limits import implausible_values, require_clamp

@@ -12,7 +12,7 @@ import numpy.typing as npt
 
 from .._support.json_number import json_number
 from .._support.units import DEGREE, MM, N_PER_MM2, N_PER_MM3
-from ..snow.snow_dict import snow_dict
+from ..snow.from_results import snow_dict
 from .answer import CarveAnswer
 from .result import Equilibrium
 from .solve import RIGID_PLASTIC

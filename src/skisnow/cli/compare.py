@@ -172,8 +172,7 @@ def _in_slope(track: Track, options: argparse.Namespace, slope_angle: float | No
 
 
 def _write(folder: Path, found: Comparison, text: str, language: str, gaps: tuple[GateGap, ...] | None) -> None:
-    from .._support.files import write_file
-    from .._support.staging import staged
+    from .._support.staging import staged, write_file
     from ..report.figures.track_comparison import comparison_drawing
     from ..report.gaps_report import FILES, write_gaps
     from ..report.pictures import write_pictures

@@ -8,10 +8,9 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 import numpy.typing as npt
 
-from .._support.constants import CONFIDENCE
+from .._support.content import numbered
 from .._support.errors import FitError
-from .._support.numbered_names import numbered
-from .._support.units import N_PER_MM2, N_PER_MM3
+from .._support.units import CONFIDENCE, N_PER_MM2, N_PER_MM3
 from ..snow.published import domine_2011, federolf_2006, moessner_2013
 from ..statistics.clusters import cluster_intervals
 from ..statistics.combined_uncertainty import expanded_factor

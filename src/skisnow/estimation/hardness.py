@@ -22,9 +22,8 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 import numpy.typing as npt
 
-from .._support.constants import CONFIDENCE
 from .._support.display import ShownFields
-from .._support.units import N_PER_MM, N_PER_MM2, N_PER_MM3
+from .._support.units import CONFIDENCE, N_PER_MM, N_PER_MM2, N_PER_MM3
 from ..statistics.combined_uncertainty import expanded_factor
 
 if TYPE_CHECKING:

@@ -14,8 +14,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 import numpy.typing as npt
 
-from .._support.constants import CONFIDENCE
-from .._support.units import MM
+from .._support.units import CONFIDENCE, MM
 from ..statistics.combined_uncertainty import expanded_factor
 
 if TYPE_CHECKING:

@@ -12,9 +12,9 @@ from typing import TYPE_CHECKING, Final, Literal, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
+from .._support.content import numbered
 from .._support.display import ShownFields
 from .._support.errors import FitError
-from .._support.numbered_names import numbered
 from ..statistics.clusters import cluster_intervals
 from ..statistics.linear import LinearFit, linear_fit
 from .observations import (

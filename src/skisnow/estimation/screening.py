@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 import numpy.typing as npt
 
+from .._support.content import numbered
 from .._support.display import ShownFields
-from .._support.numbered_names import numbered
 from .._support.units import N_PER_MM3
 from ..campaign.screening import flag_problems, screen_penetration, screen_shear
 from .hardness import DEFINITIONS, ReadingUncertainty, hardness, hardness_at_largest_load

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
-from .._support.constants import CONFIDENCE
 from .._support.display import ShownFields
+from .._support.units import CONFIDENCE
 from ..statistics.combined_uncertainty import expanded_factor
 
 if TYPE_CHECKING:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
-from .._support.numbered_names import numbered
+from .._support.content import numbered
 from ..statistics.two_groups import ratio_of_means, tests_per_group
 from .comparisons import OwnValue, own_mean
 

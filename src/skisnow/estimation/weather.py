@@ -10,10 +10,9 @@ from typing import TYPE_CHECKING, Final, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from .._support.constants import ZERO_CELSIUS
+from .._support.content import numbered
 from .._support.display import Facts, Shown
-from .._support.numbered_names import numbered
-from .._support.units import HOUR, PERCENT
+from .._support.units import HOUR, PERCENT, ZERO_CELSIUS
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence

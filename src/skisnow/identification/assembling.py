@@ -12,8 +12,7 @@ from .._support.errors import ParameterError
 from .._support.user_files import is_file
 from ..parameters import nearest
 from ..scenario import ScenarioFile
-from ..scenario.free_keys import EACH, free_key
-from ..scenario.keys import SCENARIO_KEYS
+from ..scenario.keys import EACH, SCENARIO_KEYS, free_key
 from ..scenario.resolution import ScenarioInput
 from ..track.track import Track
 from .data import Data, read_data, taken_for

@@ -16,8 +16,8 @@ from .._support.processes.executors import ExecutorLike, require_executor
 from .._support.processes.kept_rows import KeptRows, forget
 from ..parameters import values_of
 from ..scenario import Scenario, ScenarioFile
-from ..scenario.free_keys import free_keys
 from ..scenario.identify_section import given_parameters
+from ..scenario.keys import free_keys
 from ..scenario.reading import build_input, load_input
 from ..scenario.resolution import ScenarioInput
 from .assembling import Collected, collected, values_to_begin_with

@@ -12,7 +12,7 @@ import numpy.typing as npt
 from .._support.display import ShownFields
 from .._support.errors import ParameterError
 from ..parameters import nearest
-from ..scenario.free_keys import EACH
+from ..scenario.keys import EACH
 
 FloatArray = npt.NDArray[np.float64]
 Values: TypeAlias = Mapping[str, float]

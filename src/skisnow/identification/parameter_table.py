@@ -6,8 +6,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from .._support.errors import ParameterError
-from ..scenario.free_keys import short_name
-from ..scenario.keys import SCENARIO_KEYS
+from ..scenario.keys import SCENARIO_KEYS, short_name
 from .parameter import Parameter
 from .usual_sizes import usual
 

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy.stats import norm, t
 
-from .._support.constants import CONFIDENCE
+from .._support.units import CONFIDENCE
 
 FloatArray = npt.NDArray[np.float64]
 

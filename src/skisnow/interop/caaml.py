@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Final
 from xml.sax.saxutils import escape, quoteattr
 
 from .._support.errors import ParameterError
-from .._support.files import write_file
+from .._support.staging import write_file
 from .._support.units import CM, MM
 from ..campaign.caaml import OWN_NAMESPACE
 

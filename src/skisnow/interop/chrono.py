@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from .._support.errors import ParameterError
-from .._support.files import require_writable, write_file
+from .._support.staging import require_writable, write_file
 from ..scenario import Plane, Scenario
 
 SOIL: Final = "snow.json"

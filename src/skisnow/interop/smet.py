@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from .._support.errors import ParameterError
-from .._support.files import write_file
+from .._support.staging import write_file
 from ..estimation.weather import QUANTITIES
 
 if TYPE_CHECKING:

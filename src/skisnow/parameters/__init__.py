@@ -5,6 +5,7 @@ from .declared import (
     Section,
     Word,
     changed,
+    checked_table,
     declared_text,
     made,
     own_quantities,
@@ -13,7 +14,6 @@ from .declared import (
     values_of,
 )
 from .quantity import SMALLEST, InputValue, Kind, Quantity, Search
-from .table import checked_table
 
 __all__ = [
     "SMALLEST",

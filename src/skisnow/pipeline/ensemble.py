@@ -15,14 +15,13 @@ from ..report.turn_chain import EnsembleRun
 from ..report.turn_numbers import used_grip
 from ..simulation.simulated_run import simulate
 from ..simulation.verification import NUDGED, limit_sentences, nudged_scenarios
-from ..snow.drawn import drawn_snows
+from ..snow.mean_snow import drawn_snows
 from .priors import MEASURED
 
 if TYPE_CHECKING:
     from .._support.processes.kept_rows import Row
     from ..scenario import Scenario
-    from ..scenario.measured import Measured
-    from ..scenario.prior import Prior
+    from ..scenario.prior import Measured, Prior
     from ..simulation.run import Run
 
 OUTPUT: Final = 0.05

@@ -6,8 +6,7 @@ from collections.abc import Iterable
 from typing import Final
 
 from .._support.errors import ParameterError
-from ..scenario.measured import Measured, measured_of
-from ..scenario.prior import Prior
+from ..scenario.prior import Measured, Prior, measured_of
 from ..snow import SnowProperties
 
 PRIORS: Final = (

@@ -17,13 +17,11 @@ from ..report.figures.track_band import FEWEST
 from ..report.turn_chain import TurnChain
 from ..scenario import Scenario, load_scenario
 from ..scenario.contact import ELASTIC
-from ..scenario.measured import measured_of
-from ..scenario.prior import Prior
+from ..scenario.prior import Prior, measured_of
 from ..simulation import Run
 from ..simulation.simulated_run import simulate
 from ..ski import Ski
-from ..snow.drawn import measured_intervals
-from ..snow.mean_snow import known_sites, site_in_words
+from ..snow.mean_snow import known_sites, measured_intervals, site_in_words
 from .ensemble import drawn_scenarios, ensemble_of
 from .priors import MEASURED, inputs_with
 

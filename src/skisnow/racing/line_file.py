@@ -10,7 +10,7 @@ from typing import Final
 
 from .._support.csv_rows import csv_rows
 from .._support.errors import ParameterError
-from .._support.files import write_file
+from .._support.staging import write_file
 from ..track.course import Course
 from .line import LineTurn, RacingLine
 

@@ -22,7 +22,7 @@ from .._support.processes.kept_rows import KeptRows
 from ..scenario import Scenario
 from ..ski import Ski
 from ..snow import SnowProperties
-from ..snow.drawn import drawn_snows
+from ..snow.mean_snow import drawn_snows
 from ..track.course.gate_gaps import GateGap, gaps_of
 from .line import RacingLine
 from .racers import LinePoint, Racer, RacerModel, ScoredLine, score_in

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from .._support.files import write_file
+from .._support.staging import write_file
 from .glb import Glb
 from .meshes import groove_mesh, ski_mesh, snow_mesh, upright
 from .replay import SKI_NAMES

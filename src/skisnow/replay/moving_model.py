@@ -16,7 +16,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy.spatial.transform import Rotation
 
-from .._support.files import write_file
+from .._support.staging import write_file
 from .binary import at_moments, thinned
 from .colours import end_of_force_scale
 from .glb import Glb

@@ -14,8 +14,8 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 
 from .._support.errors import ParameterError
-from .._support.files import write_file
 from .._support.language import ENGLISH, catalogue, require_language
+from .._support.staging import write_file
 from ..simulation.run import Run
 from .binary import replay_bytes
 from .of_file import replay_of_file

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Final
 from markupsafe import Markup
 
 from .._support.errors import ParameterError
-from .._support.files import write_file
 from .._support.language import ENGLISH
+from .._support.staging import write_file
 from ..track.course.gate_gaps import COLUMNS, gap_rows, gaps_csv, gate_gaps
 from .figures.drawing import FORMS, pictured
 from .figures.gate_gaps import gate_gaps_drawing, last_words

@@ -12,10 +12,9 @@ from typing import TYPE_CHECKING, Any, Final
 
 from markupsafe import Markup
 
-from .._support.files import require_writable, write_file
 from .._support.language import ENGLISH, require_language
 from .._support.spreadsheet_text import guarded
-from .._support.staging import staged
+from .._support.staging import require_writable, staged, write_file
 from .figures.drawing import Drawing
 from .figures.identify_fits import residuals_along, tracks_above
 from .figures.identify_profiles import profiles_drawn

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from .._support.files import write_file
 from .._support.language import ENGLISH
+from .._support.staging import write_file
 from .figures.drawing import FORMS, pictured
 from .figures.style import journal_style
 from .figures.translated import translate_figure

@@ -6,7 +6,7 @@ import json
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from .._support.files import write_file
+from .._support.staging import write_file
 from ..racing import write_line
 from ..track.course.gate_gaps import gaps_csv
 from .figures.figure_file import write_figure

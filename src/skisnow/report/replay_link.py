@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import Final
 
 from .._support.errors import OutputError
-from .._support.files import write_file
 from .._support.language import ENGLISH, codes
+from .._support.staging import write_file
 from .._support.user_files import GivenError, plain_text
 from .run_report import REPLAY, REPLAY_FACT
 from .translated import translated_html

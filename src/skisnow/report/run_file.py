@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 from scipy.io import netcdf_file
 
-from .._support.files import write_file
+from .._support.staging import write_file
 from ..scenario.keys import SCENARIO_KEYS
 from .run_variables import PIECE, SKI, STATION, TIME, variables_of
 

@@ -6,9 +6,8 @@ import json
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
-from .._support.files import write_file
 from .._support.language import ENGLISH, require_language
-from .._support.staging import staged, tidied
+from .._support.staging import staged, tidied, write_file
 from ..scenario.plausibility import implausible_values
 from ..simulation.run_gates import run_gates
 from ..simulation.run_summary import summary_dict

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from .._support.optional_packages import needed
-from ..scenario.values import in_sections, scenario_values
+from ..scenario.keys import in_sections, scenario_values
 from ..simulation.track_table import track_columns, track_table
 from .run_file import SKI_NAMES
 from .run_variables import SKI, variables_of

@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 from markupsafe import Markup
 
-from .._support.files import require_writable, write_file
 from .._support.json_number import json_number
 from .._support.language import ENGLISH
+from .._support.staging import require_writable, write_file
 from .._support.units import DEGREE, MM, N_PER_MM2, N_PER_MM3
 from ..scenario.keys import SCENARIO_KEYS
-from ..scenario.model_limits import model_limits
+from ..scenario.plausibility import model_limits
 from ..simulation.run_gates import run_gates
 from ..simulation.run_summary import run_warnings
 from ..track.course.gates_table import time_warnings

@@ -8,9 +8,8 @@ from typing import TYPE_CHECKING, Any, Final
 
 from markupsafe import Markup
 
-from .._support.files import require_writable, write_file
 from .._support.language import ENGLISH
-from .._support.staging import staged
+from .._support.staging import require_writable, staged, write_file
 from ..track.course.gates_table import gates_csv
 from ..track.summary import summary_dict
 from .figures.course_line import course_line

@@ -12,8 +12,7 @@ from .._support.language import ENGLISH
 
 if TYPE_CHECKING:
     from ..estimation import Analysis
-    from ..scenario.measured import Measured
-    from ..scenario.prior import Prior
+    from ..scenario.prior import Measured, Prior
     from ..simulation.run import Run
     from ..snow import SnowProperties
     from .figures.track_band import TimedTrack

@@ -8,7 +8,7 @@ from .._support.json_number import json_number
 from .._support.units import MM, N_PER_MM2, N_PER_MM3
 from ..scenario.plausibility import implausible_values
 from ..simulation.run_summary import summary_dict
-from ..snow.snow_dict import snow_dict
+from ..snow.from_results import snow_dict
 from .turn_inputs import band_inputs
 from .turn_numbers import afterbody_depth_ratio, band_width, maximum_distance, middle_track, used_grip
 

@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING, Final
 from markupsafe import Markup
 
 from .._support.errors import ParameterError
-from .._support.files import require_writable, write_file
 from .._support.language import ENGLISH, require_language
-from ..scenario.values import scenario_values
+from .._support.staging import require_writable, write_file
+from ..scenario.keys import scenario_values
 from .figures.drawing import Drawing
 from .figures.run_along_ski import run_along_ski
 from .figures.run_grip import run_grip

@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from .._support.errors import OutputError
-from .._support.files import require_writable, write_file
-from .._support.staging import staged
+from .._support.staging import require_writable, staged, write_file
 from ..campaign import write_reference
 from .glides import photo_cell_times
 from .runs import run_samples

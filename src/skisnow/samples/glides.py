@@ -6,8 +6,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from .._support.constants import STANDARD_GRAVITY
-from .._support.units import DEGREE
+from .._support.units import DEGREE, STANDARD_GRAVITY
 
 if TYPE_CHECKING:
     import numpy.typing as npt

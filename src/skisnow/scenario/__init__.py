@@ -6,20 +6,17 @@ from .air import Air
 from .boots import Boots
 from .built_in import scenario_names, scenario_text
 from .contact import Contact
-from .profile_file import read_profile
+from .keys import scenario_values
 from .reading import ScenarioFile, load_scenario, scenario_file
 from .scenario import Scenario
 from .skier import Skier
 from .sledge import RigidSledge
-from .slope import Plane, Profile
+from .slope import Plane, Profile, read_profile
 from .slope_surface import Slope
-from .snow_map import SnowMap
-from .snow_map_file import read_snow_map
+from .snow_map import SnowMap, read_snow_map
 from .solver import Solver
 from .start import Start, Stop
-from .terrain import Terrain
-from .terrain_file import read_terrain
-from .values import scenario_values
+from .terrain import Terrain, read_terrain
 
 __all__ = [
     "Air",

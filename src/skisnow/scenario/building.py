@@ -14,20 +14,19 @@ from ..parameters import Word, changed, made, meant, values_of
 from ..ski import Ski, read_ski, ski_names
 from ..ski.sources import Sources
 from ..snow import SnowProperties, published_snow
-from ..snow.given_stress import require_stress
 from ..snow.mean_snow import without_measured
+from ..snow.properties import require_stress
 from ..track.course import Course, course_names, read_course
 from .boots import Boots
 from .boots_file import read_boots
 from .contact import ELASTIC, Contact
 from .keys import SCENARIO_KEYS, full_name
-from .profile_file import read_profile
 from .resolution import DISPLACEMENT, H_V, KEYS_OF_KIND, S_F, UNLOADING, Resolution
 from .scenario import Scenario, course_on_slope
-from .slope import Plane
+from .slope import Plane, read_profile
 from .slope_surface import Slope
 from .snow_map import SnowMap
-from .terrain_file import read_terrain
+from .terrain import read_terrain
 
 SNOW_CHOICES = "Give snow.H_V_N_per_mm3 and snow.S_f_N_per_mm2, or snow.results, or snow.published"
 

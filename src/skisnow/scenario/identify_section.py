@@ -9,7 +9,7 @@ from typing import Annotated, Any, Final
 
 from .._support.errors import ParameterError
 from ..parameters import Quantity, checked_table, nearest, quantities
-from .free_keys import free_key
+from .keys import free_key
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

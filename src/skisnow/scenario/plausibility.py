@@ -1,13 +1,13 @@
-"""What of a scenario is implausible, or lies beyond what was measured, in users' words."""
+"""Warnings about a scenario: implausible values, values outside measured ranges, known limits of the model."""
 
 from __future__ import annotations
 
 import math
 import warnings
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 from .._support.errors import RangeWarning
-from .._support.units import N_PER_MM3, in_degrees_if_radians
+from .._support.units import DEGREE, N_PER_MM3, in_degrees_if_radians
 from ..forces.measured_ranges import (
     DRAG_AREA,
     FAILURE_SHEAR_STRESS,
@@ -17,10 +17,12 @@ from ..forces.measured_ranges import (
 )
 from ..snow.properties import GREATEST_LIKELY_HARDNESS
 from ..track.course import course_warnings
-from .model_limits import model_limits
 from .scenario import Scenario
 from .slope import Plane
 from .slope_surface import heights_of
+
+if TYPE_CHECKING:
+    from .scenario import Scenario
 
 
 def implausible_values(scenario: Scenario) -> tuple[str, ...]:
@@ -97,3 +99,31 @@ def _outside_ranges(scenario: Scenario) -> list[str]:
         if scenario.air.drag_area > 0.0:
             DRAG_AREA.warn_outside(scenario.air.drag_area, ABOUT)
     return [" ".join(str(each.message).split()) for each in caught if issubclass(each.category, RangeWarning)]
+
+
+FLAT: Final = 3.0 * DEGREE
+"""Edge angle (rad) from which the shear acts at one edge; below it the run ends at a wrong place."""
+
+
+def model_limits(scenario: Scenario) -> dict[str, str]:
+    """Warnings by code: `nearly_flat_ski`, `base_bevel_ignored`.
+
+    Parameters
+    ----------
+    scenario
+        Of a run.
+    """
+    limits = {}
+    edge_angle, ski = scenario.sledge.edge_angle, scenario.ski
+    if scenario.skier is None and scenario.boots is None and 0.0 < abs(edge_angle) < FLAT:
+        limits["nearly_flat_ski"] = (
+            f"sledge.edge_angle_deg is {math.degrees(edge_angle):.4g}: between 0 and 3 degrees the run ends at a wrong "
+            "place. The model moves the shear from one edge across the base to the other, so that the ski can turn to "
+            "the wrong side. Use 0 degrees, or 3 degrees and more"
+        )
+    if ski.base_bevel != 0.0:
+        limits["base_bevel_ignored"] = (
+            f"base_bevel_deg of ski {ski.name} is {ski.base_bevel / DEGREE:.3g}: runs ignore it; only skisnow carve "
+            "computes with it"
+        )
+    return limits

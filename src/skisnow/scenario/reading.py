@@ -18,11 +18,10 @@ from ..ski.sources import Sources
 from .building import build, changed_scenario
 from .built_in import scenario_names, scenario_text
 from .identify_section import require_known
-from .keys import PATH_KEYS, flatten_sections, validate
+from .keys import PATH_KEYS, flatten_sections, scenario_values, validate
 from .plausibility import implausible_values
 from .resolution import ContradictionError, Layer, Resolution, ScenarioInput, resolve
 from .scenario import Scenario
-from .values import scenario_values
 
 IDENTIFY: Final = "identify"
 """Section with the unknowns of an identification, which a run ignores."""

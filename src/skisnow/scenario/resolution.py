@@ -25,8 +25,7 @@ from ..ski.sources import Sources
 from ..snow import SnowProperties
 from .keys import PATH_KEYS, SCENARIO_KEYS, validate
 from .scenario import Scenario
-from .snow_map import SnowMap
-from .snow_map_file import read_snow_map
+from .snow_map import SnowMap, read_snow_map
 
 H_V: Final = "snow.H_V_N_per_mm3"
 S_F: Final = "snow.S_f_N_per_mm2"

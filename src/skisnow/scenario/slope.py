@@ -7,14 +7,17 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Final, Literal, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 
+from .._support.csv_rows import csv_rows
 from .._support.display import Facts, Shown, ends
 from .._support.errors import ParameterError
 from ..parameters import Quantity, Search, Word, declared_text, require_declared
+from .raster import number_within, profile_limits
 
 if TYPE_CHECKING:
     from scipy.interpolate import PchipInterpolator
@@ -198,3 +201,34 @@ def _require_no_cliff(x: FloatArray, coefficients: FloatArray) -> None:
             f"most {STEEPEST_DEG:g} degrees are allowed, a ski cannot follow more. Correct its heights or "
             "end it there"
         )
+
+
+COLUMNS: Final = ("x", "y")
+_ACTION: Final = "write horizontal distance and height in m, with a decimal point, under a first line x,y"
+
+
+def read_profile(path: str | Path, *, gap: Gap = "error") -> Profile:
+    """Read a profile.
+
+    Parameters
+    ----------
+    path
+        A CSV file with a first line ``x,y``: horizontal distance, rising, and height, both in m. Commas, semicolons or
+        tabs between cells; decimal points, or commas where cells are parted otherwise. Other columns are not read.
+    gap
+        What to do where neighbouring points are more than 5 m apart: "error", or "interpolate" over it.
+
+    Raises
+    ------
+    ParameterError
+        The file cannot be read, a column is missing, a cell holds no finite number or an impossible one (file, row,
+        column and value are named), or it is no profile: too few points, x that does not rise, a gap, a cliff.
+    """
+    limits = profile_limits(COLUMNS)
+    rows = csv_rows(path, COLUMNS, action=_ACTION)
+    numbers = [[number_within(row, name, limits[name]) for name in COLUMNS] for row in rows]
+    table = np.array(numbers, dtype=float).reshape(-1, 2)
+    try:
+        return Profile(table[:, 0], table[:, 1], gap=gap, source=str(path))
+    except ParameterError as error:
+        raise ParameterError(f"{path}: {error}") from error

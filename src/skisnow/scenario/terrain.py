@@ -1,9 +1,10 @@
-"""Measured terrain: heights over a grid of places."""
+"""Measured terrain: heights over a grid, from a CSV table, an ESRI ASCII grid or a GeoTIFF."""
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Annotated, Final, TypeAlias
 
 import numpy as np
@@ -14,6 +15,8 @@ from .._support.errors import ParameterError
 from ..geometry.smoothing import smoothed
 from ..geometry.surfaces import Grid
 from ..parameters import Quantity, Word, require_declared
+from .raster import PlacedValues
+from .raster_formats import read_esri_ascii, read_geotiff, read_grid_table
 from .slope import STEEPEST_DEG
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
@@ -145,3 +148,44 @@ def _require_no_cliff(surface: Grid) -> None:
                 f"{STEEPEST_DEG:g} degrees are allowed, a ski cannot follow more. Correct its heights, smooth it over "
                 "more metres, or cut out a part without it"
             )
+
+
+HEIGHT: Final = "z_m"
+_ACTION: Final = (
+    "write one row for each place of an even grid, with a decimal point, in m, under a first line x_m,y_m,z_m"
+)
+
+
+def read_terrain(path: str | Path, *, smoothing: float = 0.0, origin_x: float = 0.0, origin_y: float = 0.0) -> Terrain:
+    """Read measured terrain.
+
+    Parameters
+    ----------
+    path
+        ``.asc`` or ``.agr``: ESRI ASCII grid. ``.tif`` or ``.tiff``: GeoTIFF, whose first band are the heights. Any
+        other: CSV with the columns ``x_m``, ``y_m``, ``z_m``, rows in any order.
+    smoothing, origin_x, origin_y
+        As of `Terrain` (m).
+
+    Raises
+    ------
+    ParameterError
+        The file cannot be read or is no grid; file, row, column and value are named.
+    """
+    found = _placed(Path(path))
+    try:
+        return Terrain(
+            found.x, found.y, found.columns[HEIGHT],
+            source=str(path), smoothing=smoothing, origin_x=origin_x, origin_y=origin_y,
+        )  # fmt: skip
+    except ParameterError as error:
+        raise ParameterError(f"{path}: {error}") from error
+
+
+def _placed(path: Path) -> PlacedValues:
+    kind = path.suffix.lower()
+    if kind in (".asc", ".agr"):
+        return read_esri_ascii(path, column=HEIGHT)
+    if kind in (".tif", ".tiff"):
+        return read_geotiff(path, column=HEIGHT)
+    return read_grid_table(path, (HEIGHT,), action=_ACTION)

@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .._support.errors import ParameterError
-from .._support.files import write_file
+from .._support.staging import write_file
 from .._support.units import DEGREE
 from ..scenario.boots_file import ANGLES, OF_SLOPE, SIDES
 from .boot_history import BootHistory

@@ -19,8 +19,8 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from ..contact import Laws
-    from .balance_history import BalanceHistory
     from .boot_history import BootHistory
+    from .run_balance import BalanceHistory
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 Outcome: TypeAlias = Literal[

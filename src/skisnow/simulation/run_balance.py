@@ -1,16 +1,17 @@
-"""How the body of a run leant over its skis, from places, forces and attitude."""
+"""How the body of a run leans over its skis, at one moment and over the run."""
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 
+from .._support.display import Facts, Shown, field_facts
 from .._support.errors import ParameterError
 from ..scenario import Plane
 from ..scenario.slope_surface import down_and_left, normals_of
-from .balance_history import BalanceHistory
 
 if TYPE_CHECKING:
     from .run import Run
@@ -101,3 +102,48 @@ def _rolling(run: Run) -> FloatArray:
     axis = run.attitude[:, :, 2]
     spin = np.cross(axis, np.gradient(axis, run.time, axis=0))
     return np.asarray(np.gradient(-np.einsum("na,na->n", spin, run.attitude[:, :, 0]), run.time))
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True, repr=False)
+class BalanceHistory(Shown):
+    """Over time, (n,) each, in axes along the skis, to their left and out of the snow; leans are positive to the left.
+
+    Attributes
+    ----------
+    lean
+        Of the line from the middle of the boots to the centre of mass, from the snow's normal (rad).
+    pressure_lean
+        Of the line from the centre of pressure to it (rad); NaN where the skis do not bear.
+    balanced_lean
+        Of a body in balance with speed v and path radius R of the centre of mass:
+        tan Ψ = v²/(R g cos α) - tan α cos χ, χ from the horizontal (rad); NaN at both ends of a run.
+    rolling_lean
+        The same with what the body's roll and the rise of its centre of mass take: tan Ψ = (a_l + I φ''/(m z))/(a_n),
+        a_l and a_n the accelerations to the left and off the snow without gravity's share, φ the body's roll, z the
+        height of the centre of mass (rad); NaN at both ends.
+    angulation
+        Mean edge angle less the lean (rad).
+    leg
+        From the middle of the boots to the centre of mass (m).
+    pressure
+        Centre of pressure from the middle of the boots, to the left (m); NaN where the skis do not bear.
+    load
+        (n, 2) force of each ski on its boot along the snow's normal (N).
+
+    See Also
+    --------
+    skisnow.simulate
+    """
+
+    lean: FloatArray
+    pressure_lean: FloatArray
+    balanced_lean: FloatArray
+    rolling_lean: FloatArray
+    angulation: FloatArray
+    leg: FloatArray
+    pressure: FloatArray
+    load: FloatArray
+
+    def _facts(self) -> Facts:
+        units = dict.fromkeys(("lean", "pressure_lean", "balanced_lean", "rolling_lean", "angulation"), "rad")
+        return field_facts(self, units | {"leg": "m", "pressure": "m", "load": "N"})

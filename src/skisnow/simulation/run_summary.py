@@ -14,8 +14,8 @@ import numpy as np
 
 from .._support.json_number import json_number
 from .._support.units import DEGREE
-from ..scenario.values import in_sections, scenario_values
-from ..snow.snow_dict import snow_dict
+from ..scenario.keys import in_sections, scenario_values
+from ..snow.from_results import snow_dict
 from ..track.course.gates_table import gates_dict
 from .run import GIVEN, LEAST_OPEN, LOST, OPEN_SHARE, STORED, Run
 from .run_gates import run_gates

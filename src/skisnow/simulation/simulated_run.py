@@ -14,7 +14,7 @@ import numpy as np
 from .._support.errors import ModelLimitWarning, SolverError
 from ..contact import Laws
 from ..scenario import Scenario
-from ..scenario.model_limits import model_limits
+from ..scenario.plausibility import model_limits
 from .moving_boots import SAME_TIME, BootControl
 from .run import OPEN_SHARE, Groove, Outcome, Run, Strength
 from .run_gates import GatesAhead, run_gates

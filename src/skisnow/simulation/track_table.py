@@ -11,7 +11,7 @@ from typing import Final
 import numpy as np
 import numpy.typing as npt
 
-from .._support.files import write_file
+from .._support.staging import write_file
 from .._support.units import DEGREE, MM
 from .run import Run
 

@@ -2,10 +2,9 @@
 
 from .assembling import arc_ski
 from .base_profile import BaseShape
-from .layout import Layout, layout_of_lengths
+from .layout import Layout, SkiSections, layout_of_lengths
 from .monkeycam import read_monkeycam
 from .reading import read_ski, ski_named, ski_names
-from .sections import SkiSections
 from .ski import Ski
 from .writing import write_ski
 

@@ -13,7 +13,7 @@ from .base_profile import BaseShape
 from .checks import GREATEST_SPACING
 from .outline import ArcOutline
 from .ski import Ski
-from .station_table import StationTable, evenly_spread
+from .table_file import StationTable, evenly_spread
 
 if TYPE_CHECKING:
     from .layout import Layout

@@ -10,7 +10,7 @@ import numpy as np
 from .._support.errors import ParameterError
 
 if TYPE_CHECKING:
-    from .sections import FloatArray, SkiSections
+    from .layout import FloatArray, SkiSections
 
 GREATEST_SPACING: Final = 2.5e-3
 """Greatest distance of neighbouring stations (m): linear interpolation of a sidecut is then good to 0.1 micrometre."""

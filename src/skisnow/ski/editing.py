@@ -11,7 +11,7 @@ import numpy.typing as npt
 from .._support.errors import ParameterError
 from ..parameters import nearest
 from .file_keys import COLUMNS
-from .station_table import StationTable
+from .table_file import StationTable
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from .assembling import Along
     from .file_values import FileValues
     from .ski import Ski
-    from .station_table import StationTable
+    from .table_file import StationTable
 
 _LEAST_LENGTH_IN_WIDTHS = 2.5  # 159.3 instead of 1593 beside a width of 116 is caught, the 200 × 62 of a tool passes
 _LEAST_SHARE_OF_LENGTH = 0.3  # of running and sidecut length: a tenth is another unit, a half a ski with long rocker

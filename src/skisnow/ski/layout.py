@@ -1,10 +1,14 @@
-"""Where along a ski its tip, its tail, its widest points and its contact points are."""
+"""Where along a ski its tip, tail, widest points and contact points are, and its sections between them."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Final
+from typing import Final, TypeAlias
 
+import numpy as np
+import numpy.typing as npt
+
+from .._support.display import ShownFields
 from .._support.errors import ParameterError
 
 LONGEST: Final = 6.0
@@ -96,3 +100,42 @@ def layout_of_lengths(
         running_length=running_length,
         sidecut_length=sidecut_length,
     )
+
+
+FloatArray: TypeAlias = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class SkiSections(ShownFields):
+    """Cross sections of a ski at chosen stations; every array has the shape of ``station``.
+
+    Attributes
+    ----------
+    station
+        From the boot, positive forward (m).
+    width, base_height, bending_stiffness, torsional_stiffness, mass_per_length
+        As in `Ski`.
+    """
+
+    station: FloatArray
+    width: FloatArray
+    base_height: FloatArray
+    bending_stiffness: FloatArray
+    torsional_stiffness: FloatArray
+    mass_per_length: FloatArray
+
+    def at(self, station: FloatArray) -> SkiSections:
+        """Sections at other stations (m, any shape) between these, which fall, interpolated linearly."""
+        rising = self.station[::-1]
+
+        def along(table: FloatArray) -> FloatArray:
+            return np.asarray(np.interp(station, rising, table[::-1]))
+
+        return SkiSections(
+            station,
+            along(self.width),
+            along(self.base_height),
+            along(self.bending_stiffness),
+            along(self.torsional_stiffness),
+            along(self.mass_per_length),
+        )

@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from .._support.errors import ParameterError
 from .checks import GREATEST_SPACING
-from .station_table import StationTable
+from .table_file import StationTable
 
 if TYPE_CHECKING:
     from .assembling import Along

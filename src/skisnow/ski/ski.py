@@ -19,7 +19,7 @@ from .checks import (
     require_tables,
 )
 from .edge_line import radius_of_least_squares_circle
-from .sections import SkiSections
+from .layout import SkiSections
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from .._support.errors import OutputError
-from .._support.files import write_file
+from .._support.staging import write_file
 from .._support.units import DEGREE, MM
 from ..parameters import SMALLEST
 from .file_keys import COLUMNS, RIGID

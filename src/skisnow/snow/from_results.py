@@ -1,4 +1,4 @@
-"""The snow of an analysed campaign, from its results.json."""
+"""The snow of an analysed campaign from its results.json, and snow as a dictionary for JSON."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .._support.errors import ParameterError
+from .._support.units import MM, N_PER_MM2, N_PER_MM3
 from .._support.user_files import GivenError, read_json
 from .mean_snow import (
     known_sites,
@@ -129,3 +130,21 @@ def _used(results: dict[str, Any], part: str, key: str, site: str | None, path: 
             f"{path}: {part}.experiments is not a list of experiments with used, site and {key} ({error!r}); "
             "give the results.json that `skisnow analyse` wrote"
         ) from error
+
+
+def snow_dict(snow: SnowProperties) -> dict[str, Any]:
+    """Where a snow comes from, and its intervals in the units of the contract; of k_u/H_V where it was measured."""
+
+    def interval(ends: tuple[float, float] | None, unit: float) -> list[float] | None:
+        return None if ends is None else [end / unit for end in ends]
+
+    told = {
+        "source": snow.source,
+        "H_V_interval_N_per_mm3": interval(snow.snow_hardness_interval, N_PER_MM3),
+        "S_f_interval_N_per_mm2": interval(snow.failure_shear_stress_interval, N_PER_MM2),
+    }
+    if snow.unloading_ratio_interval is not None:
+        told["unloading_ratio_interval"] = list(snow.unloading_ratio_interval)
+    if snow.shear_displacement_interval is not None:
+        told["shear_displacement_interval_mm"] = interval(snow.shear_displacement_interval, MM)
+    return told

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from .._support.constants import CONFIDENCE
+from .._support.units import CONFIDENCE
 from .combined_uncertainty import expanded_factor
 
 if TYPE_CHECKING:

@@ -22,7 +22,7 @@ from ..carving.question import carve_question, require_complete
 from ..parameters import Quantity
 from ..ski.beam.clamped import CLAMP_LENGTH
 from ..ski.sources import Sources
-from ..snow.given_stress import require_stress
+from ..snow.properties import require_stress
 from .points import Point, Points
 
 RESULTS: Final = (

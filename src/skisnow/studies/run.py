@@ -11,11 +11,11 @@ from pathlib import Path
 from typing import Any, Protocol
 
 from .._support.errors import OutputError, ParameterError
-from .._support.files import cannot_write
 from .._support.processes.batch import Progress, compute_missing
 from .._support.processes.executors import ExecutorLike, require_executor
 from .._support.processes.kept_rows import KeptRows, Row, json_text
 from .._support.processes.pool import workers_in_force
+from .._support.staging import cannot_write
 from ..parameters import Quantity
 from .computing import StudyRows
 from .study import Study

@@ -13,8 +13,8 @@ from pathlib import Path
 from typing import IO, Any, Final, TypeAlias
 
 from .._support.errors import ParameterError
-from .._support.files import cannot_write, place_to_write
 from .._support.sqlite_file import connect
+from .._support.staging import cannot_write, place_to_write
 from .cells import cell, cells
 from .rows import ROWS_OF_A_BLOCK, require_pyarrow
 

@@ -9,8 +9,8 @@ import numpy as np
 import numpy.typing as npt
 from scipy.stats import norm
 
-from .._support.constants import CONFIDENCE
 from .._support.display import ShownFields
+from .._support.units import CONFIDENCE
 from .path_estimate import PathEstimate, estimate_path
 from .smoothing import SmoothedTrack, filled, smoothed_track
 from .track import Track

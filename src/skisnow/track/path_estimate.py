@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy.linalg import lapack
 
-from .._support.constants import CONFIDENCE
+from .._support.units import CONFIDENCE
 from .climb import climb_samples
 from .path_model import STATES, PathFit, PathModel
 from .path_search import WeightedParameters, likely_parameters

@@ -10,8 +10,8 @@ from typing import Final, Literal
 import numpy as np
 import numpy.typing as npt
 
-from .._support.constants import STANDARD_GRAVITY
 from .._support.display import ShownFields
+from .._support.units import STANDARD_GRAVITY
 from .curvature import TrackMotion, running_mean, segments
 from .phases import turning_points
 from .track import Track

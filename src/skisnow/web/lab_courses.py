@@ -14,7 +14,7 @@ from starlette.requests import Request
 from starlette.responses import RedirectResponse, Response
 
 from .._support.errors import ParameterError, SkisnowError
-from .._support.files import cannot_write, write_file
+from .._support.staging import cannot_write, write_file
 from ..track.course import course_names, read_course
 from .confined import BOUNDS, confined
 from .error_pages import error_sentence, plain_page

@@ -10,7 +10,7 @@ from tempfile import TemporaryDirectory, mkdtemp
 from typing import TYPE_CHECKING, Final
 
 from .._support.errors import OutputError, ParameterError
-from .._support.files import cannot_write, write_file
+from .._support.staging import cannot_write, write_file
 from .._support.user_files import GivenError, toml_values
 from ..ski import read_ski, ski_names, write_ski
 from ..snow.measured_range import with_range_warnings

@@ -20,8 +20,8 @@ from datetime import UTC, datetime
 from typing import TYPE_CHECKING, Final, Literal, TypeAlias
 
 from .._support.errors import ParameterError
-from .._support.files import write_file
 from .._support.language import ENGLISH
+from .._support.staging import write_file
 from .._support.user_files import GivenError, read_record
 
 if TYPE_CHECKING:

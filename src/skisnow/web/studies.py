@@ -17,11 +17,11 @@ from tempfile import mkdtemp
 from typing import TYPE_CHECKING, Final
 
 from .._support.errors import ParameterError, SkisnowError
-from .._support.files import write_file
 from .._support.language import ENGLISH
 from .._support.processes.executors import LOCAL
 from .._support.processes.kept_rows import KeptRows
 from .._support.processes.pool import available_cores
+from .._support.staging import write_file
 from .runs import JOB, Job, Runs, new_name
 from .study_asked import CARVE, STUDY, TABLE, most_points_refused
 from .unpacking import files_below

@@ -20,7 +20,7 @@ from skisnow.scenario.boots_file import read_boots
 from skisnow.scenario.identify_section import given_parameters
 from skisnow.scenario.keys import parse_change
 from skisnow.scenario.reading import load_input
-from skisnow.scenario.snow_map_file import read_snow_map
+from skisnow.scenario.snow_map import read_snow_map
 
 from ..binaries import BINARY
 from ..reader import Reader
@@ -215,17 +215,17 @@ READERS = (
         read=lambda folder: _used_ski(folder / "ski.toml"), covers=("ski.monkeycam:_board",),
     ),
     _of("results.json", _RESULTS, lambda path: repr(snow_from_results(path)), JSON, "snow.from_results:_results"),
-    _of("profile.csv", _PROFILE, _used_profile, TABLE, "scenario.profile_file:read_profile"),
-    _of("terrain.csv", _TERRAIN, _used_terrain, TABLE, "scenario.grid_table:read_grid_table"),
-    _of("terrain.asc", _ESRI, _used_terrain, TEXT, "scenario.esri_ascii:read_esri_ascii"),
+    _of("profile.csv", _PROFILE, _used_profile, TABLE, "scenario.slope:read_profile"),
+    _of("terrain.csv", _TERRAIN, _used_terrain, TABLE, "scenario.raster_formats:read_grid_table"),
+    _of("terrain.asc", _ESRI, _used_terrain, TEXT, "scenario.raster_formats:read_esri_ascii"),
     Reader(
         name="terrain.prj", target="terrain.prj", files=lambda: {"terrain.asc": _ESRI, "terrain.prj": _SYSTEM},
         read=lambda folder: _used_terrain(folder / "terrain.asc"), mutations=TEXT,
-        covers=("scenario.esri_ascii:_system",),
+        covers=("scenario.raster_formats:_coordinates_of_prj",),
     ),
-    _of("heights.tif", _geotiff, _used_terrain, BINARY, "scenario.geotiff:read_geotiff", needs=("rasterio",)),
-    _of("map.csv", _MAP, _used_map, TABLE, "scenario.snow_map_file:read_snow_map"),
-    _of("along.csv", _ALONG, _used_map, TABLE, "scenario.snow_map_file:read_snow_map"),
+    _of("heights.tif", _geotiff, _used_terrain, BINARY, "scenario.raster_formats:read_geotiff", needs=("rasterio",)),
+    _of("map.csv", _MAP, _used_map, TABLE, "scenario.snow_map:read_snow_map"),
+    _of("along.csv", _ALONG, _used_map, TABLE, "scenario.snow_map:read_snow_map"),
     _of("boots.csv", _BOOTS, _used_boots, TABLE, "scenario.boots_file:read_boots"),
     _of("boots.mot", _MOT, _used_boots, TEXT, "scenario.boots_file:read_boots"),
 )  # fmt: skip

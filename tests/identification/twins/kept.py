@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TypeAlias
 
-from skisnow._support.files import write_file
+from skisnow._support.staging import write_file
 
 Key: TypeAlias = tuple[str, int]
 Row: TypeAlias = Mapping[str, str]

@@ -11,7 +11,7 @@ from typing import Final
 import numpy as np
 from scipy.stats import binomtest
 
-from skisnow._support.files import write_file
+from skisnow._support.staging import write_file
 
 from . import glides, grooves, shears
 from .kept import KeptTwins

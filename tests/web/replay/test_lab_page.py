@@ -11,7 +11,7 @@ from skisnow.cli import main
 from skisnow.replay import moving_replay_model, replay_model, replay_of_file
 from skisnow.report.run_file import write_run_file
 from skisnow.scenario import scenario_values
-from skisnow.scenario.values import in_sections
+from skisnow.scenario.keys import in_sections
 
 from ...report.runs import circle_run
 from .browsers import slowly

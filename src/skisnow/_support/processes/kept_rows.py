@@ -12,8 +12,8 @@ from pathlib import Path
 from typing import Any, Final, Self, TypeAlias
 
 from ..errors import OutputError, ParameterError
-from ..files import cannot_write
 from ..sqlite_file import connect, first_damage, place_reason, primary_code, require_schema, require_sound_pages
+from ..staging import cannot_write
 from ..user_files import own_json
 
 Row: TypeAlias = dict[str, Any]

@@ -6,8 +6,7 @@ import re
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Final
 
-from ..._support.constants import ZERO_CELSIUS
-from ..._support.units import DEGREE, KILOGRAM_FORCE
+from ..._support.units import DEGREE, KILOGRAM_FORCE, ZERO_CELSIUS
 
 if TYPE_CHECKING:
     from ..records import FloatArray

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated, Final
 
-from ..._support.constants import ICE_DENSITY
+from ..._support.units import ICE_DENSITY
 from ...parameters import Quantity, own_quantities
 
 if TYPE_CHECKING:

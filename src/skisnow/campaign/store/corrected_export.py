@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from ..._support.errors import StoreError
-from ..._support.files import write_file
+from ..._support.staging import write_file
 from ..reading.corrections import STATUS
 from ..reading.table_forms import CORRECTIONS
 from ..reading.text import UnreadableTextError, inspect_csv

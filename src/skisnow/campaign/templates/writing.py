@@ -8,8 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from ..._support.errors import OutputError
-from ..._support.files import write_file
-from ..._support.staging import staged, tidied
+from ..._support.staging import staged, tidied, write_file
 from ..reading.campaign import CAMPAIGN_FILES
 from ..reading.campaign_file import CAMPAIGN_FILE
 from ..reading.workbook_files import is_workbook

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..._support.constants import ICE_DENSITY
 from ..._support.errors import ParameterError
+from ..._support.units import ICE_DENSITY
 from ...snow.published.domine_2011 import LEAST_DENSITY, failure_shear_stress_from_density
 from ..measured_ranges import NATURAL_SNOW_DENSITY
 from .law import FloatArray, ShearLaw

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Final
 
 from ..._support.errors import ParameterError
-from ..._support.files import write_file
+from ..._support.staging import write_file
 from ...contact import c_library
 from ...scenario import Scenario
 from .description import IDENTIFIER, Version, description

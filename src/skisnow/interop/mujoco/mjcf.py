@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..._support.errors import ParameterError
-from ..._support.files import write_file
+from ..._support.staging import write_file
 from ...ski import Ski
 from ...ski.beam.clamped import CLAMP_LENGTH
 

@@ -12,8 +12,8 @@ from typing import Any, Final
 import numpy as np
 
 from ..._support.errors import OutputError, ParameterError
-from ..._support.files import write_file
 from ..._support.optional_packages import needed
+from ..._support.staging import write_file
 from ..._support.user_files import GivenError, plain_bytes
 from .c3d_content import Values, c3d_content
 from .markers import METRES, FloatArray, Markers

@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from ..._support.display import Facts, Shown, amount
 from ..._support.errors import ParameterError
-from ..._support.files import write_file
+from ..._support.staging import write_file
 from ..._support.user_files import plain_text
 from .table import MOST_BYTES, number_of, require_rising
 

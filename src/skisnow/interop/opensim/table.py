@@ -12,7 +12,7 @@ import numpy.typing as npt
 
 from ..._support.display import Facts, Shown, amount
 from ..._support.errors import ParameterError
-from ..._support.files import write_file
+from ..._support.staging import write_file
 from ..._support.user_files import plain_text
 from ..._support.user_files.motion_head import HEAD_END, head_of_motion, is_in_degrees, require_whole
 

@@ -13,10 +13,9 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 
 from ..._support.errors import ParameterError
-from ..._support.files import write_file
 from ..._support.language import ENGLISH, require_language
 from ..._support.memory import paused_collector
-from ..._support.staging import staged, tidied
+from ..._support.staging import staged, tidied, write_file
 from ...estimation import Analysis
 from ...estimation.results_text import results_json
 from ..dates import days_words, moment_words

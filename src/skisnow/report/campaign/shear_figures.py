@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 from matplotlib.lines import Line2D
 
-from ..._support.constants import CONFIDENCE
-from ..._support.units import DEGREE
+from ..._support.units import CONFIDENCE, DEGREE
 from ...estimation.observations import HARDNESS_KEY, STRESS_KEY
 from ...forces.cutting import cutting_stress
 from ...statistics.combined_uncertainty import expanded_factor

@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from ..._support.errors import ParameterError
-from ..._support.files import require_writable, write_file
 from ..._support.language import ENGLISH
+from ..._support.staging import require_writable, write_file
 from .style import journal_style
 from .translated import translate_figure
 

@@ -18,8 +18,7 @@ from typing import Final
 import numpy as np
 import numpy.typing as npt
 
-from ..._support.constants import ICE_DENSITY
-from ..._support.units import MM
+from ..._support.units import ICE_DENSITY, MM
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -11,7 +11,7 @@ from tempfile import mkdtemp
 from typing import IO, TYPE_CHECKING, Final
 
 from ..._support.errors import FieldDataError, ParameterError
-from ..._support.files import cannot_write, write_file
+from ..._support.staging import cannot_write, write_file
 from ..._support.units import DEGREE
 from ..._support.user_files import read_record
 from ...replay.replay import measured_track

@@ -9,7 +9,7 @@ import pytest
 
 from skisnow.report.run_file import write_run_file
 from skisnow.scenario import scenario_values
-from skisnow.scenario.values import in_sections
+from skisnow.scenario.keys import in_sections
 from skisnow.simulation.run_summary import summary_dict
 
 from ....report.runs import circle_run

@@ -1,0 +1,339 @@
+"""Readers of heights: GeoTIFF (needs ``skisnow[geotiff]``), ESRI ASCII grid, table of x, y and value."""
+
+from __future__ import annotations
+
+import math
+import re
+import warnings
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any, Final, NoReturn
+
+import numpy as np
+import numpy.typing as npt
+
+from .._support.csv_rows import CsvRow, csv_rows
+from .._support.errors import ParameterError
+from .._support.optional_packages import needed
+from .._support.user_files import is_file, plain_text
+from .map_system import LENGTHS, MapSystem, length_unit, map_system
+from .raster import FloatArray, PlacedValues, Raster, number_within, placed_heights, require_places, require_size
+
+
+def read_geotiff(path: str | Path, *, column: str) -> PlacedValues:
+    """Read the first band: x is east, y is north, in the map's coordinates (m); places are the middles of the cells.
+
+    Heights are the band's numbers times its scale, plus its offset, in the band's unit, else in the unit of the
+    vertical system, else in m.
+
+    Raises
+    ------
+    ParameterError
+        rasterio is not installed, the file cannot be read, it does not say where it lies, its rows do not run east, or
+        the grid breaks a rule of `raster`.
+    """
+    if not is_file(path):
+        raise ParameterError(f"{path} cannot be read: there is no such file. Check the path.")
+    rasterio = _rasterio(path)
+    try:
+        with warnings.catch_warnings(action="ignore"), rasterio.open(path) as source:  # without a place: rejected below
+            require_size(path, source.width, source.height)
+            heights = _heights(path, source)
+            transform, system = source.transform, _coordinates_of_crs(source)
+            unit = _height_unit(path, source.units[0], system)
+    except (rasterio.errors.RasterioError, UnicodeDecodeError, MemoryError) as error:  # the second from a damaged text
+        raise ParameterError(f"{path} cannot be read as a GeoTIFF: {error}. Export it again.") from error
+    _require_north_up(path, transform, system)
+    raster = Raster(
+        path=path,
+        values=heights,
+        first=(transform.c + transform.a / 2.0, transform.f + transform.e / 2.0),
+        step=(transform.a, transform.e),
+        height_unit=unit,
+        system=system,
+        where=lambda row, at: f"row {row + 1}, column {at + 1}",
+    )
+    return placed_heights(raster, column=column)
+
+
+def _rasterio(path: str | Path) -> Any:
+    grid = ", or write the heights as an ESRI ASCII grid, such as by gdal_translate -of AAIGrid"
+    return needed("rasterio", extra="geotiff", what=f"{path}: a GeoTIFF", instead=grid)
+
+
+def _heights(path: str | Path, source: Any) -> FloatArray:
+    """The first band in its unit, NaN where it is masked."""
+    band = source.read(1, masked=True)
+    if np.iscomplexobj(band):
+        raise ParameterError(f"{path}: The first band has complex numbers. Allowed: heights. Export them again.")
+    scale, offset = float(source.scales[0]), float(source.offsets[0])
+    if not (np.isfinite([scale, offset]).all() and scale != 0.0):
+        raise ParameterError(
+            f"{path}: The first band has scale {scale:g} and offset {offset:g}. Allowed: finite numbers."
+        )
+    with np.errstate(over="ignore", invalid="ignore"):  # huge values are rejected as heights
+        return np.asarray(np.ma.filled(band.astype(float), np.nan) * scale + offset)
+
+
+def _coordinates_of_crs(source: Any) -> MapSystem | None:
+    return None if source.crs is None else map_system(source.crs.to_wkt())
+
+
+def _height_unit(path: str | Path, name: str | None, system: MapSystem | None) -> float:
+    """Length (m) of one unit of the heights."""
+    vertical = None if system is None else system.height_unit
+    if not (name or "").strip():
+        return 1.0 if vertical is None else vertical
+    unit = length_unit(str(name))
+    if unit is None:
+        raise ParameterError(
+            f"{path}: The unit of the first band is {name!r}. Allowed: {', '.join(LENGTHS)}. Fix: gdal_edit -units m."
+        )
+    if vertical is not None and abs(unit - vertical) > 1e-4 * vertical:
+        raise ParameterError(
+            f"{path}: The first band is in {name}, but one unit of its vertical system is {vertical:g} m. Fix: state "
+            "one unit, such as by gdal_edit -units or -a_srs."
+        )
+    return unit
+
+
+def _require_north_up(path: str | Path, transform: Any, system: MapSystem | None) -> None:
+    if transform.b != 0.0 or transform.d != 0.0:
+        raise ParameterError(
+            f"{path}: its rows do not run east; warp it, such as by gdalwarp, to a grid that is not turned"
+        )
+    if system is None and (transform.a, transform.c, transform.e, transform.f) == (1.0, 0.0, 1.0, 0.0):
+        raise ParameterError(
+            f"{path}: The file does not say where it lies and how large its cells are. Export it again."
+        )
+
+
+MOST_BYTES: Final = 1 << 28
+_MOST_BYTES_OF_SYSTEM: Final = 1 << 20
+_WORDS: Final = (
+    "ncols", "nrows", "xllcorner", "xllcenter", "yllcorner", "yllcenter", "cellsize", "dx", "dy",
+    "nodata_value", "nodata",
+)  # fmt: skip
+_ENTRY: Final = re.compile(r"\s*([A-Za-z_]+)[ \t]+(\S+)")
+
+
+def read_esri_ascii(path: str | Path, *, column: str) -> PlacedValues:
+    """Read a grid: x is east, y is north, in the file's coordinates (m); places are the middles of the cells.
+
+    Line breaks between values do not matter. A ``.prj`` file of the same name gives the map system.
+
+    Raises
+    ------
+    ParameterError
+        The file cannot be read, its header lacks an entry, there are more or fewer numbers than cells, a cell is a
+        hole, or the grid breaks a rule of `raster`; line and column are named.
+    """
+    text = plain_text(path, most_bytes=MOST_BYTES)
+    header, first = _header(path, text)
+    for word in ("ncols", "nrows"):
+        if word not in header:
+            _refuse(path, f"The header has no {word}. Is it an ESRI ASCII grid? Export it again")
+    require_size(path, header["ncols"], header["nrows"])
+    counts = int(header["ncols"]), int(header["nrows"])
+    steps = _cell(path, header, "dx"), _cell(path, header, "dy")
+    west, south = (_lower_left(path, header, axis, size) for axis, size in zip("xy", steps, strict=True))
+    system = _coordinates_of_prj(path)
+    raster = Raster(
+        path=path,
+        values=_values(path, text, first, counts, header.get("nodata_value", header.get("nodata"))),
+        first=(west, south + (counts[1] - 1) * steps[1]),
+        step=(steps[0], -steps[1]),
+        height_unit=1.0 if system is None or system.height_unit is None else system.height_unit,
+        system=system,
+        where=lambda row, at: _where(text, first, row * counts[0] + at),
+    )
+    return placed_heights(raster, column=column)
+
+
+def _refuse(path: str | Path, what: str) -> NoReturn:
+    raise ParameterError(f"{path}: {what}")
+
+
+def _header(path: str | Path, text: str) -> tuple[dict[str, float], int]:
+    """Numbers by lower-case word, and the place in the text at which the values begin."""
+    found: dict[str, float] = {}
+    at = 0
+    while (entry := _ENTRY.match(text, at)) and entry[1].lower() in _WORDS:
+        try:
+            found[entry[1].lower()] = float(entry[2])
+        except ValueError:
+            line = text.count("\n", 0, entry.start(2)) + 1
+            raise ParameterError(f"{path}, line {line}: {entry[1]} is {entry[2]!r}. Allowed: a number.") from None
+        at = entry.end()
+    return found, at
+
+
+def _cell(path: str | Path, header: Mapping[str, float], word: str) -> float:
+    """Width of the cells in x (dx) or y (dy)."""
+    sizes = {header[name] for name in (word, "cellsize") if name in header}
+    if not sizes:
+        _refuse(path, f"The header has no cellsize, and no {word}. Is it an ESRI ASCII grid? Export it again")
+    if len(sizes) > 1:
+        _refuse(path, f"cellsize is {header['cellsize']:g}, but {word} is {header[word]:g}. Remove one of them")
+    (size,) = sizes
+    if not size > 0.0:
+        _refuse(path, f"{word if word in header else 'cellsize'} is {size:g}. Allowed: above 0, in m")
+    return size
+
+
+def _lower_left(path: str | Path, header: Mapping[str, float], axis: str, size: float) -> float:
+    """The middle of the first cell."""
+    corner, middle = (header.get(f"{axis}ll{word}") for word in ("corner", "center"))
+    if corner is None and middle is None:
+        _refuse(path, f"The header has no {axis}llcorner and no {axis}llcenter. Add the one that the grid begins with")
+    found = middle if middle is not None else (corner or 0.0) + size / 2.0
+    if not math.isfinite(found):
+        _refuse(path, f"{axis} of the lower left is {found}. Allowed: a finite number in m")
+    return found
+
+
+def _values(path: str | Path, text: str, first: int, counts: tuple[int, int], no_data: float | None) -> FloatArray:
+    """(rows, columns), the northern row first; NaN in a hole."""
+    cells = counts[0] * counts[1]
+    if len(text) - first < 2 * cells - 1:  # before memory is allocated
+        _refuse_number(path, len(text[first:].split()), counts)
+    values = np.empty(cells)
+    count, line = 0, text.count("\n", 0, first) + 1
+    for line, words in enumerate((part.split() for part in text[first:].split("\n")), start=line):  # noqa: B020
+        if count + len(words) > cells:
+            _refuse_number(path, len(text[first:].split()), counts)
+        try:
+            values[count : count + len(words)] = [float(word) for word in words]
+        except ValueError:
+            _refuse_word(path, line, words)
+        count += len(words)
+    if count < cells:
+        _refuse_number(path, count, counts)
+    if no_data is not None:
+        values[values == no_data] = np.nan
+    return values.reshape(counts[1], counts[0])
+
+
+def _refuse_number(path: str | Path, found: int, counts: tuple[int, int]) -> NoReturn:
+    _refuse(
+        path,
+        f"The file has {found} values. Allowed: ncols × nrows = {counts[0]} × {counts[1]} = {counts[0] * counts[1]}. "
+        "Export it again",
+    )
+
+
+def _refuse_word(path: str | Path, line: int, words: list[str]) -> NoReturn:
+    for column, word in enumerate(words, start=1):
+        try:
+            float(word)
+        except ValueError:
+            raise ParameterError(
+                f"{path}, line {line}, column {column}: {word!r} is not a number. Use digits and a decimal point."
+            ) from None
+    raise AssertionError(words)
+
+
+def _where(text: str, first: int, cell: int) -> str:
+    """Line and column of a value by its number (0 or more)."""
+    for line, words in enumerate(map(str.split, text[first:].split("\n")), start=text.count("\n", 0, first) + 1):
+        if cell < len(words):
+            return f"line {line}, column {cell + 1}"
+        cell -= len(words)
+    raise AssertionError(cell)
+
+
+def _coordinates_of_prj(path: str | Path) -> MapSystem | None:
+    file = Path(path).with_suffix(".prj")
+    return map_system(plain_text(file, most_bytes=_MOST_BYTES_OF_SYSTEM)) if is_file(file) else None
+
+
+ROUNDED: Final = 0.01
+"""Share of the spacing by which a place may lie off its even place: it was written rounded (modelling assumption)."""
+
+SPARSE: Final = 10
+"""Places for each row beyond which rows lie on no grid at all."""
+
+
+def read_grid_table(path: str | Path, columns: Sequence[str], *, action: str) -> PlacedValues:
+    """Read columns over ``x_m, y_m``: rows in any order, one for each place of a grid.
+
+    Raises
+    ------
+    ParameterError
+        The file cannot be read, a column is missing, a cell holds no finite number or one outside `LIMITS`, a
+        place is listed twice or not at all, places are not evenly spaced, or x and y look like degrees; file, row,
+        column and value are named.
+    """
+    names, rows, cells = ("x_m", "y_m", *columns), [], []
+    for row in csv_rows(path, names, action=action):
+        rows.append(row)
+        cells.append([number_within(row, name) for name in names])
+    numbers = dict(zip(names, np.array(cells, dtype=float).reshape(-1, len(names)).T, strict=True))
+    x, i = _even(path, numbers["x_m"], rows, "x_m")
+    y, j = _even(path, numbers["y_m"], rows, "y_m")
+    _require_each_once(path, rows, (x, i), (y, j), action)
+    steps = float(x[1] - x[0]), float(y[1] - y[0])
+    require_places(path, (float(x[0]), float(y[0])), steps, (len(x), len(y)))
+    filled = {}
+    for name in columns:
+        values = np.empty((len(x), len(y)))
+        values[i, j] = numbers[name]
+        filled[name] = values
+    return PlacedValues(x, y, filled)
+
+
+def _even(
+    path: str | Path, places: FloatArray, rows: Sequence[CsvRow], column: str
+) -> tuple[FloatArray, npt.NDArray[np.intp]]:
+    """Even places and the number of each row's place among them."""
+    different = np.unique(places)
+    if len(different) < 2:
+        raise ParameterError(f"{path}, column {column}: there is only {_listed(different)}; a grid needs two or more")
+    step = float(np.min(np.diff(different)))
+    close = np.diff(different) > ROUNDED * (different[-1] - different[0]) / len(different)
+    kept = different[np.append(True, close)]  # places that differ by rounding are one
+    step = float(kept[-1] - kept[0]) / (len(kept) - 1)
+    number = np.rint((places - kept[0]) / step).astype(np.intp)
+    off = np.abs(places - kept[0] - number * step)
+    worst = int(np.argmax(off))
+    if off[worst] > ROUNDED * step:
+        raise rows[worst].refused(
+            column,
+            f"is off the even places from {kept[0]:g} to {kept[-1]:g} m, which are {step:.6g} m apart on average",
+            action="interpolate onto evenly spaced places, or add what is missing",
+        )
+    return kept[0] + step * np.arange(len(kept)), number
+
+
+def _listed(values: FloatArray) -> str:
+    return ", ".join(f"{value:g} m" for value in values) or "nothing"
+
+
+def _require_each_once(
+    path: str | Path,
+    rows: Sequence[CsvRow],
+    of_x: tuple[FloatArray, npt.NDArray[np.intp]],
+    of_y: tuple[FloatArray, npt.NDArray[np.intp]],
+    action: str,
+) -> None:
+    (x, i), (y, j) = of_x, of_y
+    if len(x) * len(y) > SPARSE * len(rows):
+        raise ParameterError(
+            f"{path}: {len(rows)} rows have {len(x)} different x_m and {len(y)} different y_m, so that they lie on no "
+            f"grid; interpolate onto one. {action[0].upper()}{action[1:]}"
+        )
+    place = i * len(y) + j
+    count = np.bincount(place, minlength=len(x) * len(y))
+    if np.any(count > 1):
+        twice = np.flatnonzero(place == int(np.argmax(count > 1)))[:2]
+        first, again = (rows[int(each)] for each in twice)
+        raise ParameterError(
+            f"{path}, row {again.row}: x_m = {again.cells['x_m']}, y_m = {again.cells['y_m']} stand in row "
+            f"{first.row}, too; keep one of them"
+        )
+    if np.any(count == 0):
+        gap = int(np.argmin(count))
+        raise ParameterError(
+            f"{path}: no row has x_m = {x[gap // len(y)]:g} and y_m = {y[gap % len(y)]:g}, of {len(x)} places in x and "
+            f"{len(y)} in y; {action}"
+        )
