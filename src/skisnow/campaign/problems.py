@@ -37,6 +37,8 @@ WARNING_CODES = (
 )
 _SHOWN = {"mark": "flag"}
 """What a severity is called on a terminal, where it is not its own word."""
+LONGEST_VALUE: Final = 200
+"""Characters of a value that its sentence shows."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,7 +68,7 @@ class Problem:
             place += f", column {self.column}"
         if self.experiment is not None:
             place += f" (experiment {self.experiment})"
-        found = "" if self.value is None else f" found {self.value!r};"
+        found = "" if self.value is None else f" found {_shortened(self.value)!r};"
         shown = _SHOWN.get(self.severity, self.severity)
         return f"{shown} {self.code}: {place}:{found} allowed: {self.allowed}. {self.action}"
 
@@ -75,6 +77,10 @@ class Problem:
         entry = asdict(self)
         del entry["needs_action"]
         return entry
+
+
+def _shortened(value: str) -> str:
+    return value if len(value) <= LONGEST_VALUE else f"{value[:LONGEST_VALUE]}…"
 
 
 def error(

@@ -10,6 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from skisnow.campaign.problems import error
 from skisnow.campaign.reading.number_cells import decimal_mark, is_number, number, numbers
 
 GOOD = {"1": 1.0, "-2.5": -2.5, "+.5": 0.5, "3.": 3.0, "1e3": 1000.0, "2.5E-1": 0.25, " 7.5\u00a0": 7.5, "007": 7.0}
@@ -90,3 +91,12 @@ def test_every_number_in_double_precision_can_be_written_in_full() -> None:
     longest = format(Decimal(-math.nextafter(2.0**-1022, 0.0)), "f")
     assert len(longest) == 1077
     assert number(longest) == -math.nextafter(2.0**-1022, 0.0)
+
+
+@pytest.mark.parametrize("length", [200, 201, 30_000])
+def test_a_long_cell_is_kept_and_its_sentence_is_short(length: int) -> None:
+    cell = "9" * length
+    problem = error("not_a_number", "shear.csv", row=3, column="depth_mm", value=cell, allowed="a number", action="")
+    assert problem.value == cell
+    assert str(problem).count("9") == 200
+    assert ("…" in str(problem)) is (length > 200)
