@@ -17,7 +17,7 @@ import skisnow.campaign.store.migrations
 from skisnow._support.errors import StoreError
 from skisnow.campaign.store import Store
 from skisnow.campaign.store.engine import writing
-from skisnow.campaign.store.migrations import alembic_config, downgrade, knows, upgrade
+from skisnow.campaign.store.migrations import alembic_config, downgrade, is_known, upgrade
 from skisnow.campaign.store.schema import APPLICATION_ID, REVISION, metadata
 
 HERE = Path(skisnow.campaign.store.migrations.__file__).parent
@@ -42,6 +42,16 @@ def test_tables_equal_migrations(place: Path) -> None:
         assert compare_metadata(context, metadata) == []
 
 
+def test_an_upgraded_empty_store_has_the_schema_of_a_new_one(place: Path, tmp_path: Path) -> None:
+    with Store.open(place) as store, writing(store.engine) as connection:
+        downgrade(connection, "base")
+    assert schema(place) == {}
+    Store.open(place).close()
+    Store.open(tmp_path / "new.sqlite3").close()
+    assert schema(place) == schema(tmp_path / "new.sqlite3")
+    assert {"campaign", "content", "chunk", "campaign_file", "journal", "journal_entry"} <= schema(place).keys()
+
+
 def test_constraints_equal_migrations(place: Path, tmp_path: Path) -> None:
     """Also what alembic does not compare: checks, names of constraints, what deleting does."""
     Store.open(place).close()
@@ -57,8 +67,8 @@ def test_constraints_equal_migrations(place: Path, tmp_path: Path) -> None:
 def test_the_program_knows_its_newest_migration() -> None:
     script = ScriptDirectory.from_config(alembic_config())
     assert script.get_heads() == [REVISION]
-    assert knows(REVISION)
-    assert not any(map(knows, ("9999", "", REVISION[:2])))
+    assert is_known(REVISION)
+    assert not any(map(is_known, ("9999", "", REVISION[:2])))
 
 
 def test_every_migration_goes_down_and_up_again(place: Path) -> None:

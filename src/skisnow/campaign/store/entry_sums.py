@@ -1,7 +1,7 @@
 """Checksums of an entry of a journal: one that shows whether it is what was written down, and one for each part of it.
 
-They are taken from the bytes that the store holds, so that an entry which is no text any more can be checked, too. What
-is written down here must stay as it is: stores hold it (migrations 0004 and 0005 have copies).
+They are taken from the bytes that the store holds, so that an entry with invalid text can be checked, too.
+The format must not change without a migration: stores hold these checksums.
 """
 
 from __future__ import annotations

@@ -198,9 +198,9 @@ def needs_migration(revision: str | None, place: object) -> bool:
     """
     if revision == REVISION:
         return False  # the usual case: alembic need not even be imported
-    from .migrations import knows
+    from .migrations import is_known
 
-    if revision is not None and not knows(revision):
+    if revision is not None and not is_known(revision):
         raise StoreError(
             f"{place} was written by a newer skisnow (schema {revision}; this one knows up to {REVISION}); "
             "update skisnow, or name another store."

@@ -1,6 +1,6 @@
-"""Migrations of the store: how its tables came about, one step per file of ``versions``.
+"""Migrations of the store's schema, one file of ``versions`` each: a baseline with all tables, then later changes.
 
-They travel with the package and are run by it, never through an ``alembic.ini`` of the working directory.
+skisnow runs them itself and reads no ``alembic.ini`` of the working directory.
 """
 
 from __future__ import annotations
@@ -28,9 +28,9 @@ def alembic_config(connection: Connection | None = None) -> Config:
     return config
 
 
-def knows(revision: str) -> bool:
-    """Tell whether a store's revision is one of ours; an unknown one comes from a newer program."""
-    return revision in {each.revision for each in ScriptDirectory.from_config(alembic_config()).walk_revisions()}
+def is_known(revision: str) -> bool:
+    """True if a store's revision is one of these migrations; an unknown revision comes from another version."""
+    return revision in {script.revision for script in ScriptDirectory.from_config(alembic_config()).walk_revisions()}
 
 
 def upgrade(connection: Connection, revision: str = "head") -> None:
@@ -40,6 +40,6 @@ def upgrade(connection: Connection, revision: str = "head") -> None:
 
 
 def downgrade(connection: Connection, revision: str) -> None:
-    """Take migrations back inside the connection's transaction."""
+    """Revert migrations down to a revision, inside the connection's transaction."""
     with _ALEMBIC:
         command.downgrade(alembic_config(connection), revision)
