@@ -59,7 +59,7 @@ def test_units_come_from_the_names() -> None:
         "mu_1_s_per_m": "s/m",
     }
     assert (found["gravity_m_per_s2"], found["air_density_kg_per_m3"]) == ("m/s²", "kg/m³")
-    assert (found["step_ms"], found["cell_mm"], found["heading_deg"], found["x_m"]) == ("ms", "mm", "°", "m")
+    assert (found["step_ms"], found["delayed_spacing_mm"], found["heading_deg"], found["x_m"]) == ("ms", "mm", "°", "m")
     numbers = {name.rpartition(".")[2] for name, key in SCENARIO_KEYS.items() if key.kind == "number"}
     assert {name for name in numbers if not found[name]} == {
         "unloading_ratio",
@@ -85,7 +85,7 @@ def test_factors_lead_to_si() -> None:
     assert SCENARIO_KEYS["snow.H_V_N_per_mm3"].in_si(0.2) == 2e8
     assert SCENARIO_KEYS["snow.S_f_N_per_mm2"].in_si(0.5) == 5e5
     assert SCENARIO_KEYS["sledge.edge_angle_deg"].in_si(30.0) == pytest.approx(math.pi / 6.0, rel=1e-15)
-    assert SCENARIO_KEYS["solver.cell_mm"].in_si(4.0) == 0.004
+    assert SCENARIO_KEYS["solver.delayed_spacing_mm"].in_si(4.0) == 0.004
     assert SCENARIO_KEYS["run.output_ms"].in_si(10.0) == 0.01
 
 

@@ -17,7 +17,6 @@ OUT_OF_RANGE: list[tuple[str, str, object, str, object]] = [
     ("solver", "elements", 40.5, "solver.elements", 40.5),
     ("solver", "fixed", 1, "solver.fixed", 1),
     ("solver", "line_spacing", 0.0, "solver.line_spacing_mm", 0),
-    ("solver", "cell", 0.5, "solver.cell_mm", 500),
     ("contact", "compaction_resistance", "yes", "snow.compaction_resistance", "yes"),
     ("contact", "friction_by_speed", 0.5, "friction.mu_1_s_per_m", 0.5),
     ("contact", "unloading_ratio", math.inf, "snow.unloading_ratio", math.inf),
@@ -62,7 +61,7 @@ def test_snow_that_is_none_is_refused(values: tuple[float, float]) -> None:
     [
         ("start", {"heading": math.pi}),
         ("slope", {"angle": math.radians(75.0)}),
-        ("solver", {"step": 5e-3, "tolerance": 1e-2, "line_spacing": 0.2, "cell": 0.1, "elements": 4000}),
+        ("solver", {"step": 5e-3, "tolerance": 1e-2, "line_spacing": 0.2, "elements": 4000}),
         ("sledge", {"centre_of_mass": (-1.0, 3.0), "stance_width": 3.0}),
         ("stop", {"duration": 3600.0, "length": 1e5}),
     ],

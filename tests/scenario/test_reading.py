@@ -17,7 +17,7 @@ from skisnow.estimation.shear_displacement import SiteDisplacement
 from skisnow.scenario import Plane, Profile, load_scenario, scenario_file, scenario_text, scenario_values
 from skisnow.scenario.keys import SCENARIO_KEYS, parse_change
 from skisnow.scenario.reading import build_input, load_input
-from skisnow.scenario.resolution import ContradictionError
+from skisnow.scenario.resolution import COMPANIONS, ContradictionError
 from skisnow.scenario.skier import Skier
 
 PROFILE = "x,y\n" + "".join(f"{x},{-0.2 * x}\n" for x in range(0, 60, 3))
@@ -73,7 +73,7 @@ def test_every_value_of_a_built_in_scenario_says_where_it_is_from(name: str) -> 
         if comment.startswith("default"):
             (full,) = [each for each in SCENARIO_KEYS if each.endswith(f".{key}")]
             assert load_input(name).values[full] == SCENARIO_KEYS[full].default
-    left_out = {"elements", "line_spacing_mm", "cell_mm", "footprint_stiffness_N_per_mm2"}
+    left_out = {"elements", "line_spacing_mm", "footprint_stiffness_N_per_mm2"}
     left_out |= {"snow_density_kg_per_m3", "dynamic_shear_strength_N_per_mm2"}  # of laws other than the default
     given = {line.split(" = ")[0] for line in lines}
     assert not left_out & given  # from ski and snow
@@ -92,6 +92,8 @@ def test_every_value_of_a_built_in_scenario_says_where_it_is_from(name: str) -> 
         "map_file",
     }
     other_ways |= {"file"}
+    values = scenario_values(load_scenario(name))
+    other_ways |= {key.split(".")[1] for key, (main, needed) in COMPANIONS.items() if values.get(main) != needed}
     snow = {"published"} if "H_V_N_per_mm3" in given else {"H_V_N_per_mm3", "S_f_N_per_mm2"}
     stop = {"length_m"} if "duration_s" in given else {"duration_s"}
     assert given == every - other_ways - snow - stop

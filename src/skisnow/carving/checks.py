@@ -6,6 +6,7 @@ import math
 from typing import Final
 
 from .._support.errors import ParameterError
+from .._support.nearest import require_choice
 from ..ski.ski import Ski
 from ..snow.properties import SnowProperties
 
@@ -50,13 +51,10 @@ def require_within(ski: Ski, load: float, moment: float) -> None:
 
 
 def require_choices(groove: str, moment_balance: str, side_force_spread: str) -> None:
-    """Reject an unknown choice."""
-    if groove not in GROOVES:
-        raise ParameterError(f"groove is {groove!r}; it must be 'edge' or 'path'")
-    if moment_balance not in MOMENT_BALANCES:
-        raise ParameterError(f"moment_balance is {moment_balance!r}; it must be 'boot' or 'free'")
-    if side_force_spread not in SIDE_FORCE_SPREADS:
-        raise ParameterError(f"side_force_spread is {side_force_spread!r}; it must be 'depth' or 'base-reaction'")
+    """Reject a word that is not a choice."""
+    require_choice("groove", groove, GROOVES)
+    require_choice("moment_balance", moment_balance, MOMENT_BALANCES)
+    require_choice("side_force_spread", side_force_spread, SIDE_FORCE_SPREADS)
 
 
 def require_strength(snow: SnowProperties) -> None:

@@ -11,11 +11,12 @@ from __future__ import annotations
 
 import abc
 from dataclasses import dataclass
-from typing import Annotated, Final, Literal, TypeAlias
+from typing import Annotated, Final, Literal, TypeAlias, get_args
 
 import numpy as np
 import numpy.typing as npt
 
+from .._support.nearest import require_choice
 from ..parameters import Quantity, require_declared
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
@@ -286,7 +287,14 @@ class LyingCylinder(Tool):
 
 
 def in_form(tool: Tool, form: GeometryForm) -> Tool:
-    """Return the tool in the chosen form: a ski piece becomes the paper's plain wedge, any other tool stays itself."""
+    """Return the tool in the chosen form: a ski piece becomes the paper's plain wedge, any other tool stays itself.
+
+    Raises
+    ------
+    ParameterError
+        The form is not a `GeometryForm`.
+    """
+    require_choice("geometry", form, get_args(GeometryForm))
     if form == "paper" and isinstance(tool, SkiPiece):
         return PlainWedge(length=tool.length, width=tool.width)
     return tool

@@ -12,6 +12,7 @@ from typing import get_args
 from .._support.content import pieces_of
 from .._support.display import Facts, Shown, amount
 from .._support.errors import ParameterError
+from .._support.nearest import require_choice
 from .._support.processes.executors import ExecutorLike, require_executor
 from .._support.processes.kept_rows import KeptRows
 from .._support.processes.pool import Pool, workers_in_force
@@ -169,6 +170,7 @@ def quickest_line(
       Global Optimization 13, 455-492, doi 10.1023/A:1008306431147.
     * The page docs/how-to/race.md.
     """
+    require_choice("model", model, get_args(RacerModel))
     begun = _begun(scenario, gates, start)
     window, step = _window(len(begun.turns), window, step, ahead)
     _require(evaluations=evaluations, population=population, spread=spread, settled=settled, room=room)
@@ -229,8 +231,7 @@ def _window(gates: int, window: int | None, step: int, ahead: int) -> tuple[int,
 def _search(search: Search | None, model: RacerModel) -> Search:
     if search is None:
         return "surrogate" if model == "skier" else "cma"
-    if search not in get_args(Search):
-        raise ParameterError(f"search is {search!r}; it must be one of {', '.join(get_args(Search))}")
+    require_choice("search", search, get_args(Search))
     return search
 
 

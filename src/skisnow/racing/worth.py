@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from importlib.metadata import version
 from pathlib import Path
-from typing import Any, Final
+from typing import Any, Final, get_args
 
 import numpy as np
 import numpy.typing as npt
@@ -16,6 +16,7 @@ from scipy.stats import qmc
 from .._support.content import pieces_of
 from .._support.display import Facts, Shown, amount
 from .._support.errors import ParameterError
+from .._support.nearest import require_choice
 from .._support.processes.batch import run_batch
 from .._support.processes.executors import ExecutorLike
 from .._support.processes.kept_rows import KeptRows
@@ -130,6 +131,9 @@ def compared(
     ParameterError
         There is no snow or no variant, or the checkpoint is of another comparison.
     """
+    require_choice("model", model, get_args(RacerModel))
+    if AS_IT_IS in others:
+        raise ParameterError(f"others has the name {AS_IT_IS!r}, which the scenario itself has. Rename the variant.")
     if not snows or not others:
         raise ParameterError("a comparison needs one snow or more, and one variant or more")
     named = {AS_IT_IS: scenario, **others}

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Final, Literal, TypeAlias
+from typing import TYPE_CHECKING, Final, Literal, TypeAlias, get_args
 
 import numpy as np
 import numpy.typing as npt
 
 from .._support.display import Facts, Shown, ends
 from .._support.errors import ParameterError
+from .._support.nearest import require_choice
 
 if TYPE_CHECKING:
     from scipy.interpolate import CubicSpline
@@ -133,6 +134,8 @@ class Boots(Shown):
         off = np.abs(self.axes @ np.swapaxes(self.axes, -1, -2) - np.eye(3)).max()
         if off > 1e-9 or np.any(np.linalg.det(self.axes) < 0.0):
             raise ParameterError(f"boots: axes are off by {off:.1e} from right-handed orthonormal ones")
+        require_choice("boots: frame", self.frame, get_args(Frame))
+        require_choice("boots: over", self.over, get_args(Over))
         if self.frame == "slope" and self.over == "distance":
             raise ParameterError("boots in the slope's frame go over time: the distance run is what they make it")
 

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import fields, replace
 from pathlib import Path
 from typing import Any
 
 from .._support.errors import ParameterError
 from .._support.units import N_PER_MM2, N_PER_MM3
-from ..parameters import Word, changed, made, meant, values_of
+from ..parameters import Word, changed, made, meant, nearest, values_of
 from ..ski import Ski, read_ski, ski_names
 from ..ski.sources import Sources
 from ..snow import SnowProperties, published_snow
@@ -21,7 +21,7 @@ from .boots import Boots
 from .boots_file import read_boots
 from .contact import ELASTIC, Contact
 from .keys import SCENARIO_KEYS, full_name
-from .resolution import DISPLACEMENT, H_V, KEYS_OF_KIND, S_F, UNLOADING, Resolution
+from .resolution import COMPANIONS, DISPLACEMENT, H_V, KEYS_OF_KIND, S_F, UNLOADING, ContradictionError, Resolution
 from .scenario import Scenario, course_on_slope
 from .slope import Plane, read_profile
 from .slope_surface import Slope
@@ -175,7 +175,7 @@ def changed_scenario(scenario: Scenario, changes: Mapping[str, object]) -> Scena
     """A scenario with other parts and values; see `Scenario.with_`."""
     part_names = {field.name for field in fields(scenario)} | {"snow", "snow_map"}
     parts: dict[str, Any] = {name: value for name, value in changes.items() if name in part_names}
-    numbers = {full_name(name): value for name, value in changes.items() if name not in part_names}
+    numbers = {_full_name(name, part_names): value for name, value in changes.items() if name not in part_names}
     for name in numbers:
         if isinstance(SCENARIO_KEYS[name], Word):
             raise ParameterError(
@@ -190,11 +190,28 @@ def changed_scenario(scenario: Scenario, changes: Mapping[str, object]) -> Scena
         parts["contact"] = _on_map(parts.get("contact", scenario.contact), parts.pop("snow_map"))
     scenario = replace(scenario, **parts)
     _require_changeable(scenario, numbers)
+    _require_companions(scenario, numbers)
     measured = {"unloading": UNLOADING in numbers, "displacement": DISPLACEMENT in numbers}
     snow = with_numbers(without_measured(scenario.contact.snow, **measured), _in_range(numbers))
     if snow is not scenario.contact.snow:
         scenario = replace(scenario, contact=replace(scenario.contact, snow=snow))
     return changed(scenario, numbers)
+
+
+def _full_name(name: str, part_names: Collection[str]) -> str:
+    try:
+        return full_name(name)
+    except ParameterError as error:
+        raise ParameterError(f"{error} Parts: {nearest(name, part_names)}.") from error
+
+
+def _require_companions(scenario: Scenario, numbers: Mapping[str, object]) -> None:
+    """Reject a number that has no effect with the scenario's law of shear or kind of steering."""
+    actual = {"shear.law": scenario.shear.law, "skier.steers": scenario.skier and scenario.skier.steers, **numbers}
+    for name in numbers:
+        main, needed = COMPANIONS.get(name, ("", ""))
+        if main in actual and actual[main] != needed:
+            raise ContradictionError((name, main), f'{name} goes with {main} = "{needed}"; it is "{actual[main]}".')
 
 
 def _in_range(numbers: Mapping[str, object]) -> dict[str, Any]:

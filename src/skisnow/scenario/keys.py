@@ -7,10 +7,11 @@ from collections.abc import Iterable, Mapping
 from typing import Any, Final
 
 from .._support.errors import ParameterError
+from .._support.nearest import meant, most_like
 from .._support.spreadsheet_text import is_number
 from .._support.units import without_unit
 from .._support.user_files import GivenError, toml_values
-from ..parameters import InputValue, Word, meant, quantities, values_of
+from ..parameters import InputValue, Word, quantities, values_of
 from .scenario import Scenario
 
 SCENARIO_KEYS: Final = {key.name: key for key in quantities(Scenario)}
@@ -50,7 +51,8 @@ def full_name(name: str) -> str:
 
 def _suggestion(name: str, key: str, keys: Iterable[str]) -> str:
     candidates = list(keys)
-    question = meant(name, candidates or SCENARIO_KEYS) or meant(key, _FULL_NAMES)
+    short = most_like(key, _FULL_NAMES)
+    question = meant(name, candidates) or (f"Is {_FULL_NAMES[short]} meant? " if short else meant(name, SCENARIO_KEYS))
     return f"{question}There are {', '.join(candidates)}" if candidates else question
 
 

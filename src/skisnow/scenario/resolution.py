@@ -50,7 +50,28 @@ KEYS_OF_KIND: Final = {
 }
 """Keys that only one kind of slope has."""
 
-COMPANIONS: Final = {name: ("slope.kind", kind) for kind, names in KEYS_OF_KIND.items() for name in names}
+KEYS_OF_LAW: Final = {
+    "by-angle": ("shear.relative_decrease_per_rad",),
+    "by-density": ("shear.snow_density_kg_per_m3",),
+    "machining": (
+        "shear.dynamic_shear_strength_N_per_mm2",
+        "shear.transverse_friction",
+        "shear.least_shear_plane_deg",
+    ),
+}
+"""Keys that only one law of the shear strength has."""
+
+KEYS_OF_STEERING: Final = {
+    "turns": ("skier.first_turn_s", "skier.turn_time_s", "skier.turns", "skier.first_to_left"),
+}
+"""Keys that only one kind of steering has."""
+
+COMPANIONS: Final = {
+    name: (main, value)
+    for main, groups in (("slope.kind", KEYS_OF_KIND), ("shear.law", KEYS_OF_LAW), ("skier.steers", KEYS_OF_STEERING))
+    for value, names in groups.items()
+    for name in names
+}
 """Keys that need a certain value of another key."""
 
 

@@ -105,16 +105,6 @@ class Solver:
             origin="choice: see the page on rate",
         ),
     ] = DELAYED_SPACING
-    cell: Annotated[
-        float | None,
-        Quantity(
-            "solver.cell_mm",
-            "has no effect since the groove is kept as straight pieces; read so that older files stay good",
-            label="cells of the snow",
-            lowest=0.01,
-            highest=100.0,
-        ),
-    ] = None
     output_interval: Annotated[
         float,
         Quantity(

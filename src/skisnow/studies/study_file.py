@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any, Final
@@ -18,6 +18,8 @@ from .study import ModelReader, Study, StudyModel
 from .writing import WRITERS
 
 FORMS: Final = ("grid", "latin_hypercube")
+OWN_KEYS: Final[Mapping[str, tuple[str, ...]]] = {"grid": (), "latin_hypercube": ("n", "seed")}
+"""Keys of each form that are not inputs."""
 TOP_KEYS: Final = ("out", "scenario", "fixed", *FORMS)
 
 
@@ -77,8 +79,7 @@ def _study(path: Path, values: Mapping[str, Any], subject: ModelReader) -> Study
     form = _form(values)
     fixed = _fixed(asked.named(_table(values, "fixed")), asked.keys)
     varying = _table(values, form)
-    own = ("n", "seed") if form == "latin_hypercube" else ()
-    inputs = asked.named({name: value for name, value in varying.items() if name not in own})
+    inputs = asked.named({name: value for name, value in varying.items() if name not in OWN_KEYS[form]})
     axes = [_axis(form, name, value, asked.keys, fixed) for name, value in inputs.items()]
     if not axes:
         raise ParameterError(f"[{form}] holds no input that varies; write one, such as edge_angle_deg = [30, 45, 60]")
@@ -129,13 +130,13 @@ def _in_range(key: Quantity, value: object) -> InputValue:
 
 
 def _axis(form: str, name: str, value: object, keys: Mapping[str, Quantity], fixed: Point) -> Axis:
-    _require_key(form, name, keys)
+    _require_key(form, name, (*OWN_KEYS[form], *keys))
     if name in fixed:
         raise ParameterError(f"{name} stands in [{form}] and in [fixed]. Remove one of them")
     return Axis.of(keys[name], value)
 
 
-def _require_key(table: str, name: str, keys: Mapping[str, Quantity]) -> None:
+def _require_key(table: str, name: str, keys: Collection[str]) -> None:
     if name not in keys:
         raise ParameterError(f"{table}.{name} is no input. {nearest(name, keys)}")
 

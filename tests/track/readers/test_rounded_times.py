@@ -59,3 +59,10 @@ def test_points_recorded_twice_stay() -> None:
 def test_standing_still_stays() -> None:
     time = np.repeat(np.arange(10.0), 5)
     assert not spread_times(time, np.zeros((50, 2)))[1].any()
+
+
+@pytest.mark.filterwarnings("error")
+def test_places_known_only_between_stamps_say_nothing() -> None:
+    time, place = np.repeat(np.arange(6.0), 4), np.full((24, 2), np.nan)
+    place[[3, 4]] = [[0.0, 0.0], [1.0, 0.0]]  # the only step that is known begins a stamp
+    assert not spread_times(time, place)[1].any()

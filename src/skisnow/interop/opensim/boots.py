@@ -12,6 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..._support.errors import ParameterError
+from ..._support.nearest import require_choice
 from ..._support.units import DEGREE
 from ...geometry.boot_axes import angles_of
 from ...scenario.boots import LARGEST, Boots
@@ -70,8 +71,7 @@ def boots_of_markers(
     ParameterError
         A marker is missing, was not seen in a frame (name and time are told), or three lie on one line.
     """
-    if up not in ("y", "z"):
-        raise ParameterError(f"up is {up!r}; it must be 'y' or 'z'")
+    require_choice("up", up, ("y", "z"))
     c, s = np.cos(slope_angle), np.sin(slope_angle)
     turned = np.array([[c, 0.0, -s], [0.0, 1.0, 0.0], [s, 0.0, c]]) @ (FROM_OPENSIM if up == "y" else np.eye(3))
     poses = [_pose(markers, each, turned) for each in (left, right)]

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections import Counter
 from dataclasses import dataclass, field
-from typing import Annotated, Final, Literal, NamedTuple, TypeAlias
+from typing import Annotated, Final, Literal, NamedTuple, TypeAlias, get_args
 
 import numpy as np
 import numpy.typing as npt
 
 from ..._support.display import Facts, Shown, amount
 from ..._support.errors import ParameterError
+from ..._support.nearest import require_choice
 from ...parameters import Quantity, Word, require_declared
 from .built_in import file_of_course, name_in_catalogue
 from .gate import Gate
@@ -120,6 +121,7 @@ class Course(Shown):
 
     def __post_init__(self) -> None:
         require_declared(self)
+        require_choice("axes", self.axes, get_args(CourseAxes))
         if len(self.gates) < FEWEST_GATES:
             raise ParameterError(
                 f"a course needs {FEWEST_GATES} gates or more, it has {len(self.gates)}: its direction comes from them"

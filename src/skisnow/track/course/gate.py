@@ -8,6 +8,7 @@ from typing import Literal, TypeAlias, get_args
 
 from ..._support.display import ShownFields
 from ..._support.errors import ParameterError
+from ..._support.nearest import require_choice
 
 Side: TypeAlias = Literal["left", "right"]
 Point: TypeAlias = tuple[float, float]
@@ -45,8 +46,7 @@ class Gate(ShownFields):
     outer: Point | None = None
 
     def __post_init__(self) -> None:
-        if self.side not in get_args(Side):
-            raise ParameterError(f"gate {self.name}: side is {self.side!r}; it must be {' or '.join(get_args(Side))}")
+        require_choice(f"gate {self.name}: side", self.side, get_args(Side))
         for pole, place in (("turning", self.turning), ("outer", self.outer)):
             if place is not None and not all(math.isfinite(each) for each in place):
                 raise ParameterError(f"gate {self.name}: the {pole} pole stands at {place}; both must be finite, in m")

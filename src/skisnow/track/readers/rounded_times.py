@@ -73,6 +73,8 @@ def _advance(place: FloatArray, begins: BoolArray) -> float:
     if not 0.0 < whole < np.inf:
         return 0.0
     within = known & ~begins[1:]
+    if not within.any():
+        return 0.0
     return float(np.sum(steps[within])) / whole / (np.count_nonzero(within) / np.count_nonzero(known))
 
 

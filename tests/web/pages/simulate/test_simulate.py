@@ -88,7 +88,6 @@ EXPERT_OF_A_SLEDGE = {
     "Solver": [
         "Method", "Time step (ms)", "Tolerance (mm)", "Fixed time step", "Elements of a ski",
         "Distance of the snow lines (mm)", "Tolerance of the groove", "Spacing of delayed depths (mm)",
-        "Cells of the snow (mm)",
     ],
     "Course": [
         "Discipline", "Latitude of the origin (°)", "Longitude of the origin (°)", "Direction of the fall line (°)",

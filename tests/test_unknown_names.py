@@ -1,0 +1,154 @@
+"""A misspelt name is an error that names the nearest one: in Python, in changes and in every kind of TOML file."""
+
+from __future__ import annotations
+
+import inspect
+import re
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import skisnow
+from skisnow import Course, Gate, Profile, SnowField, carve, check_campaign, load_scenario, read_ski, run_batch
+from skisnow._support.errors import ParameterError, SkisnowError
+from skisnow.geometry import SkiPiece, in_form
+from skisnow.interop.opensim import BootMarkers, Markers, boots_of_markers
+from skisnow.racing import compared
+from skisnow.scenario import Boots, Solver
+from skisnow.scenario.keys import SCENARIO_KEYS
+from skisnow.scenario.resolution import COMPANIONS, ContradictionError
+from skisnow.ski.editing import SkiEdit, edit_stations
+from tests.fuzzing.reader import Reader
+from tests.fuzzing.registry import BY_NAME
+
+TURN = load_scenario("carved-46m")
+SKI, SNOW = read_ski("slalom"), skisnow.published_snow("race-piste")
+MARKED = BootMarkers("heel", "toe", "left")
+MARKERS = Markers(time=np.arange(4.0), names=("heel", "toe", "left"), place=np.zeros((4, 3, 3)), rate=100.0)
+FREE_NAMES = ('"first"', "cores", "memory", "jobs", "queue")
+"""Names of the user, and options that skisnow passes on to dask-jobqueue, which checks them."""
+
+
+def misspelt(name: str) -> str:
+    """One letter too many."""
+    return name[:1] + name
+
+
+TOML = [
+    pytest.param(reader, number, id=f"{reader.name}, line {number + 1}")
+    for reader in BY_NAME.values()
+    if reader.target.endswith(".toml")
+    for number, line in enumerate(reader.files()[reader.target].decode().splitlines())
+    if re.match(r"\s*(\w+\s*=|\[)", line) and not any(name in line for name in FREE_NAMES)
+]
+
+
+@pytest.mark.parametrize(("reader", "number"), TOML)
+def test_misspelt_key_of_a_toml_file(reader: Reader, number: int, tmp_path: Path) -> None:
+    lines = reader.files()[reader.target].decode().splitlines()
+    (key,) = re.findall(r"^\s*(\w+)\s*=", lines[number]) or re.findall(r"(\w+)\"?\]+$", lines[number])
+    lines[number] = lines[number].replace(key, misspelt(key), 1)
+    reader.lay(tmp_path, "\n".join(lines).encode())
+    if reader.target.endswith("campaign.toml"):
+        said = "\n".join(map(str, check_campaign((tmp_path / reader.target).parent)))
+    else:
+        with pytest.raises(SkisnowError) as caught:
+            reader.read(tmp_path)
+        said = str(caught.value)
+    assert key in said.replace(misspelt(key), "")
+
+
+@pytest.mark.parametrize("key", SCENARIO_KEYS)
+def test_misspelt_key_of_a_scenario(key: str) -> None:
+    section, _, name = key.partition(".")
+    matches = rf"\b{re.escape(name)}\b"
+    with pytest.raises(ParameterError, match=matches):
+        TURN.with_(**{misspelt(name): 1.0})
+    for word in (f"{section}.{misspelt(name)}", misspelt(name)):
+        with pytest.raises(ParameterError, match=matches):
+            load_scenario("carved-46m", changes={word: 1.0})
+
+
+def public_names() -> Iterator[tuple[str, Any]]:
+    for name in skisnow.__all__:
+        thing = getattr(skisnow, name)
+        if inspect.isclass(thing) and not issubclass(thing, BaseException):
+            yield from ((f"{name}.{each}", getattr(thing, each)) for each in dir(thing) if not each.startswith("_"))
+        if not (inspect.isclass(thing) and issubclass(thing, BaseException)):
+            yield name, thing
+
+
+def test_no_public_callable_takes_any_keyword() -> None:
+    """Of `Scenario.with_` the test above; all others have named parameters, so that Python rejects unknown ones."""
+    catch_all = {
+        name
+        for name, thing in public_names()
+        if callable(thing)
+        and any(each.kind is each.VAR_KEYWORD for each in inspect.signature(thing).parameters.values())
+    }
+    assert catch_all == {"Scenario.with_"}
+
+
+CHOICES: dict[str, tuple[Callable[[], object], str]] = {
+    "in_form": (lambda: in_form(SkiPiece(0.1, 0.06), "extendet"), "extended"),  # type: ignore[arg-type]
+    "method": (lambda: Solver(method="fastt"), "fast"),  # type: ignore[arg-type]
+    "acts_on": (lambda: SnowField(2e8, 3e5, 10.0, friction_acts_on="snow-norml"), "snow-normal"),  # type: ignore[arg-type]
+    "gap": (lambda: Profile(np.arange(4.0), -np.arange(4.0), gap="eror"), "error"),  # type: ignore[arg-type]
+    "groove": (lambda: carved(groove="edg"), "edge"),
+    "spread": (lambda: carved(side_force_spread="dept"), "depth"),
+    "balance": (lambda: carved(moment_balance="bot"), "boot"),
+    "side": (lambda: Gate(name="1", turning=(0.0, 0.0), side="lefft"), "left"),  # type: ignore[arg-type]
+    "axes": (lambda: Course(gates=gates(), axes="metre"), "metres"),  # type: ignore[arg-type]
+    "frame": (lambda: still(frame="slop"), "slope"),
+    "over": (lambda: still(over="tim"), "time"),
+    "up": (lambda: boots_of_markers(MARKERS, MARKED, MARKED, up="yy"), "y"),  # type: ignore[arg-type]
+    "model": (lambda: skisnow.quickest_line(TURN, model="skierr"), "skier"),  # type: ignore[arg-type]
+    "compared": (lambda: compared(TURN, {"a": TURN}, None, [SNOW], model="poin"), "point"),  # type: ignore[arg-type]
+    "executor": (lambda: run_batch([1], str, executor="thread"), "threads"),  # type: ignore[arg-type]
+    "factors": (lambda: SkiEdit(edit_stations(SKI), {"sidecut": 1.1}), "sidecut_depth"),
+    "values": (lambda: SkiEdit(edit_stations(SKI), values={"widht_mm": edit_stations(SKI)}), "width_mm"),
+    "part": (lambda: TURN.with_(contct=TURN.contact), "contact"),
+    "ski": (lambda: TURN.with_(ski="slalmo"), "slalom"),
+    "snow": (lambda: TURN.with_(snow="race-pist"), "race-piste"),
+    "scenario": (lambda: load_scenario("carved-46"), "carved-46m"),
+}
+
+
+def carved(**choice: Any) -> object:
+    return carve(SKI, SNOW, edge_angle=0.7, load=400.0, unloading_ratio=10.0, **choice)
+
+
+def gates() -> tuple[Gate, ...]:
+    return tuple(Gate(name=str(n), turning=(10.0 * n, 0.0), side="left") for n in range(4))
+
+
+def still(**choice: Any) -> Boots:
+    return Boots(np.arange(4.0), np.zeros((4, 2, 3)), np.tile(np.eye(3), (4, 2, 1, 1)), **choice)
+
+
+@pytest.mark.parametrize(("call", "nearest"), CHOICES.values(), ids=CHOICES)
+def test_misspelt_choice(call: Callable[[], object], nearest: str) -> None:
+    with pytest.raises(ParameterError, match=rf"\b{re.escape(nearest)}\b"):
+        call()
+
+
+@pytest.mark.parametrize("key", [key for key, (main, _) in COMPANIONS.items() if main != "slope.kind"])
+def test_key_without_effect(key: str) -> None:
+    """A key of one law of shear or one kind of steering is rejected with another, unless a later change replaced it."""
+    main, value = COMPANIONS[key]
+    other = {"shear.law": "constant", "skier.steers": "gates"}[main]
+    base = {"shear.law": "carved-46m", "skier.steers": "slalom-20-gates"}[main]
+    quantity = SCENARIO_KEYS[key]
+    given = True if quantity.kind == "switch" else max(quantity.lowest or 0.0, 0.0) + 0.05
+    with pytest.raises(ContradictionError) as caught:
+        load_scenario(base, changes={key: given, main: other})
+    assert caught.value.keys == (key, main)
+    with pytest.raises(ContradictionError) as caught:
+        load_scenario(base, changes={main: other}).with_(**{key.partition(".")[2]: given})
+    assert caught.value.keys == (key, main)
+    needed = {"shear.snow_density_kg_per_m3": 300.0} if value == "by-density" else {}
+    found = load_scenario(base, changes={**needed, key: needed.get(key, given), main: value})
+    assert found.with_(**{main.partition(".")[2]: other}) is not None
