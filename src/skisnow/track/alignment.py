@@ -14,9 +14,8 @@ import numpy as np
 import numpy.typing as npt
 from scipy.special import stdtrit
 
-from .._support.constants import CONFIDENCE
 from .._support.errors import FitError, ParameterError
-from .._support.units import DEGREE
+from .._support.units import CONFIDENCE, DEGREE
 from .nearest_place import NearestPlaces, Path
 from .polyline import Polyline, polyline
 from .three_distances import EXACTNESS
