@@ -16,7 +16,7 @@ import numpy as np
 from skisnow._support.processes.batch import compute_missing
 from skisnow._support.processes.kept_rows import KeptRows
 from skisnow.studies import read_study
-from skisnow.studies.computing import StudyRows
+from skisnow.studies.run import StudyRows
 
 TASK_S: Final = 0.05
 WORKERS: Final = 2

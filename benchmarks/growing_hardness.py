@@ -11,8 +11,8 @@ from itertools import product
 
 import numpy as np
 
-from skisnow.estimation.growing_hardness import growing_hardness, site_growth
 from skisnow.estimation.hardness import DEFINITIONS, ReadingUncertainty, hardness_at_largest_load
+from skisnow.estimation.layering import growing_hardness, site_growth
 from skisnow.estimation.readings import Readings
 from skisnow.geometry import SkiPiece
 

@@ -15,7 +15,7 @@ from skisnow.estimation.observations import penetration_observations, shear_obse
 from skisnow.estimation.readings import readings_of
 from skisnow.estimation.regressions import Regression, regressions
 from skisnow.estimation.screening import screened_penetration, screened_shear
-from skisnow.estimation.shear_stress import shear_stress
+from skisnow.estimation.shear import shear_stress
 
 LEVELS = (0.05, 0.01)
 """The usual one, and the paper's: it prints p < 0.01 for Eqns 13 and 14."""

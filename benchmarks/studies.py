@@ -21,10 +21,9 @@ from skisnow._support.processes.batch import compute_missing
 from skisnow.carving.keys import CARVE_KEYS
 from skisnow.parameters import Quantity
 from skisnow.studies import Study, read_study, run_study
-from skisnow.studies.carve_subject import RESULTS, CarveModel
-from skisnow.studies.computing import StudyRows
 from skisnow.studies.points import Point, Points
-from skisnow.studies.run import kept_rows
+from skisnow.studies.run import StudyRows, kept_rows
+from skisnow.studies.subjects import CARVE_RESULTS, CarveModel
 
 TEXT: Final = """
 out = "table.csv"
@@ -50,7 +49,7 @@ class Costless:
 
     @property
     def results(self) -> tuple[str, ...]:
-        return RESULTS
+        return CARVE_RESULTS
 
     def named(self, table: Mapping[str, Any]) -> dict[str, Any]:
         return self.carve.named(table)
@@ -63,7 +62,7 @@ class Costless:
 
     def __call__(self, point: Point) -> dict[str, Any]:
         number = point["load_N"] / 3.0 + point["edge_angle_deg"] / 7.0
-        results = {name: number + place for place, name in enumerate(RESULTS)}
+        results = {name: number + place for place, name in enumerate(CARVE_RESULTS)}
         texts = {"outcome": "equilibrium", "holds": True, "ski_name": "slalom", "warnings": "", "reason": ""}
         return {**dict.fromkeys(CARVE_KEYS), **point, **results, **texts}
 

@@ -19,7 +19,7 @@ from skisnow import Analysis, Run, SnowProperties
 from skisnow._support.errors import ParameterError
 from skisnow.campaign import Campaign
 from skisnow.campaign.reference import reference_campaign
-from skisnow.estimation.results_text import results_json
+from skisnow.estimation.results import results_json
 
 from .conftest import without_png
 from .report.runs import RADIUS, SPEED, circle_run

@@ -78,7 +78,7 @@ if TYPE_CHECKING:
     from .dynamics import BootPose
     from .estimation import Analysis, analyse, results_dict
     from .identification import Identification
-    from .identification.identifying import identify
+    from .identification.fitting import identify
     from .pipeline.turn import turn
     from .racing import QuickestLine, quickest_line
     from .report import TurnChain, write_report

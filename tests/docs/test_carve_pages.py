@@ -10,7 +10,7 @@ import skisnow
 from skisnow.carving.keys import CARVE_KEYS
 from skisnow.cli import build_parser
 from skisnow.studies import read_study
-from skisnow.studies.carve_subject import RESULTS
+from skisnow.studies.subjects import CARVE_RESULTS
 
 DOCS = Path(__file__).resolve().parents[2] / "docs"
 PAGE = (DOCS / "files" / "carve.md").read_text(encoding="utf-8")
@@ -25,7 +25,7 @@ def keys_of(schema: Any) -> Iterator[str]:
 
 def test_every_key_of_the_json_and_every_column_is_told() -> None:
     path = Path(skisnow.__file__).parent / "carving/schemas/carve.schema.json"
-    keys = {*keys_of(json.loads(path.read_text(encoding="utf-8"))), *RESULTS}
+    keys = {*keys_of(json.loads(path.read_text(encoding="utf-8"))), *CARVE_RESULTS}
     assert {key for key in keys if f"`{key}`" not in PAGE and f"`{{{key!r}: " not in PAGE} <= {"skis"}
 
 

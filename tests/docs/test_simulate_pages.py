@@ -13,7 +13,7 @@ from skisnow.scenario import load_scenario, scenario_file
 from skisnow.simulation.run import Outcome
 from skisnow.simulation.track_table import COLUMNS
 from skisnow.studies import read_study
-from skisnow.studies.scenario_subject import RESULTS
+from skisnow.studies.subjects import RUN_RESULTS
 
 DOCS = Path(__file__).resolve().parents[2] / "docs"
 PAGE = (DOCS / "files" / "scenario.md").read_text(encoding="utf-8")
@@ -34,7 +34,7 @@ def test_every_key_of_the_summary_and_every_column_is_told() -> None:
     del schema["properties"]["scenario"]["properties"]  # the table's
     keys = {key.replace("_start_J", "_J") for key in keys_of(schema)}  # the page says how the start is named
     assert {key for key in (*keys, *COLUMNS) if f"`{key}`" not in RUNS} == set()
-    assert {column for column in RESULTS if f"`{column}`" not in PAGE} == set()
+    assert {column for column in RUN_RESULTS if f"`{column}`" not in PAGE} == set()
 
 
 @pytest.mark.parametrize("outcome", get_args(Outcome))

@@ -10,8 +10,8 @@ from benchmarks.growing_hardness import ANGLE, TOOL, growing
 
 import skisnow
 from skisnow.campaign import reference_campaign
-from skisnow.estimation.growing_hardness import growing_hardness, second_moment, site_growth
 from skisnow.estimation.hardness import DEFINITIONS, ReadingUncertainty, hardness_at_largest_load
+from skisnow.estimation.layering import growing_hardness, second_moment, site_growth
 
 from .conftest import MakeCampaign
 from .test_errors_in_depth import series

@@ -11,11 +11,11 @@ from scipy import optimize
 
 import skisnow
 from skisnow._support.language import catalogue
-from skisnow.estimation.fit_warnings import fit_warnings
 from skisnow.estimation.hardness import DEFINITIONS, hardness_at_largest_load
 from skisnow.estimation.model_choice import bootstrap_intervals, compare_nested_rows
 from skisnow.estimation.models import MODELS, NESTED_PAIRS, Model, ModelFit, fit_models, select_model, why_no_choice
 from skisnow.estimation.readings import Readings
+from skisnow.estimation.regressions import fit_warnings
 from skisnow.geometry import SkiPiece
 from skisnow.snow.published.moessner_2013 import PRINTED_RMSE_N
 

@@ -4,7 +4,7 @@ from pathlib import Path
 
 from skisnow.campaign import read_campaign, write_reference
 from skisnow.estimation import analyse, results_dict
-from skisnow.estimation.quick_results import experiment_results
+from skisnow.estimation.result_rows import experiment_results
 
 
 def test_the_numbers_are_those_of_the_analysis(tmp_path: Path) -> None:

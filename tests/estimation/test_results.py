@@ -11,7 +11,7 @@ import pytest
 
 import skisnow
 from skisnow.campaign import Campaign, read_campaign, write_reference
-from skisnow.estimation.results_text import results_json
+from skisnow.estimation.results import results_json
 
 from .conftest import MakeCampaign
 

@@ -12,7 +12,7 @@ import pytest
 
 import skisnow
 from skisnow.estimation import results_dict
-from skisnow.estimation.shear_displacement import shear_displacement, site_displacement
+from skisnow.estimation.shear import shear_displacement, site_displacement
 
 from .conftest import MakeCampaign
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from skisnow.campaign import Campaign
-from skisnow.estimation.shear_stress import shear_stress
+from skisnow.estimation.shear import shear_stress
 
 from .conftest import MakeCampaign
 

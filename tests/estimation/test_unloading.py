@@ -15,8 +15,8 @@ import skisnow
 from skisnow.campaign import reference_campaign, write_reference
 from skisnow.estimation import results_dict
 from skisnow.estimation.hardness import DEFINITIONS, ReadingUncertainty, hardness
-from skisnow.estimation.quick_results import experiment_results
 from skisnow.estimation.readings import readings_of
+from skisnow.estimation.result_rows import experiment_results
 from skisnow.estimation.screening import quality_flags
 from skisnow.estimation.unloading import site_unloading, unloading
 from skisnow.forces.penetration import HypoplasticPoint

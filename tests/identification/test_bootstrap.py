@@ -14,10 +14,9 @@ from scipy.optimize import least_squares
 from skisnow._support.errors import ParameterError
 from skisnow.identification import Identification, identify
 from skisnow.identification.bootstrap import BootstrapBy, _resampled, bootstrapped
-from skisnow.identification.observations import Fit, Kind, Values
 from skisnow.identification.parameter import Parameter
-from skisnow.identification.problem import problem_of
-from skisnow.identification.result import identification_of
+from skisnow.identification.problem import Fit, Kind, Values, problem_of
+from skisnow.identification.solution import identification_of
 from skisnow.identification.solving import Request, solution_of
 
 from . import straight_tracks

@@ -9,7 +9,7 @@ import pytest
 from skisnow._support.errors import FieldDataError, ParameterError
 from skisnow.identification import identify
 from skisnow.identification.data import read_data, taken_for
-from skisnow.identification.photo_cells import PhotoCells
+from skisnow.identification.data_tables import PhotoCells
 from skisnow.simulation.track_table import COLUMNS
 from skisnow.track.track import Track
 

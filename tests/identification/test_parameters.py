@@ -8,8 +8,7 @@ from pathlib import Path
 import pytest
 
 from skisnow._support.errors import ParameterError
-from skisnow.identification.parameter import Parameter
-from skisnow.identification.parameter_table import parameter_table
+from skisnow.identification.parameter import Parameter, parameter_table
 from skisnow.scenario import scenario_file, scenario_text
 from skisnow.scenario.identify_section import given_parameters
 from skisnow.scenario.keys import FREE_KEYS, free_key, free_keys, short_name

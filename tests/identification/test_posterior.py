@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from skisnow._support.errors import ParameterError
-from skisnow.identification import posterior
+from skisnow.identification import intervals
 from skisnow.identification.parameter import Parameter
 
 DESIGN = np.array([[1.0, 0.0], [0.0, 2.0], [1.0, 1.0]])
@@ -39,7 +39,7 @@ def solution(kind: str, *, bend: float = 0.0) -> Any:
     return SimpleNamespace(problem=problem, found=found, widening=WIDENING, known=lambda: known)
 
 
-@pytest.mark.parametrize("likelihood", [posterior._quadratic, posterior._true])
+@pytest.mark.parametrize("likelihood", [intervals._quadratic, intervals._true])
 def test_likelihoods_of_normal_noise(likelihood: Any) -> None:
     """-χ²/2 over the square of the widening; outside the bounds nothing is likely."""
     found = likelihood(solution("track", bend=0.4))
@@ -53,7 +53,7 @@ def test_likelihoods_of_normal_noise(likelihood: Any) -> None:
 
 
 def test_where_there_are_no_residuals_nothing_is_likely() -> None:
-    assert posterior._true(solution("marks"))(np.array([[-1.5, 0.0], [-0.5, 0.0]])).tolist()[0] == -np.inf
+    assert intervals._true(solution("marks"))(np.array([[-1.5, 0.0], [-0.5, 0.0]])).tolist()[0] == -np.inf
 
 
 class Sampler:
@@ -84,10 +84,10 @@ def sampler(monkeypatch: pytest.MonkeyPatch) -> list[Sampler]:
     return Sampler.made
 
 
-@pytest.mark.parametrize(("kind", "told"), [("track", posterior.SIMULATED), ("marks", posterior.TRUE)])
+@pytest.mark.parametrize(("kind", "told"), [("track", intervals.SIMULATED), ("marks", intervals.TRUE)])
 def test_about_so_many_samples_are_drawn_about_the_best_place(kind: str, told: str, sampler: list[Sampler]) -> None:
     said: list[str] = []
-    places, words = posterior.posterior_places(solution(kind), 4000, np.random.default_rng(1), said.append)
+    places, words = intervals.posterior_places(solution(kind), 4000, np.random.default_rng(1), said.append)
     assert words == told
     assert places is not None
     (made,) = sampler
@@ -102,7 +102,7 @@ def test_about_so_many_samples_are_drawn_about_the_best_place(kind: str, told: s
 def test_a_parameter_that_is_open_has_no_posterior(sampler: list[Sampler]) -> None:
     unknown = solution("marks")
     unknown.known = lambda: SimpleNamespace(standard_errors=np.full(2, np.inf), groups=((0, 1),))
-    places, words = posterior.posterior_places(unknown, 100, np.random.default_rng(1), lambda _: None)
+    places, words = intervals.posterior_places(unknown, 100, np.random.default_rng(1), lambda _: None)
     assert (places, words) == (None, "no posterior: the data leave a parameter open")
     assert sampler == []
 
@@ -110,4 +110,4 @@ def test_a_parameter_that_is_open_has_no_posterior(sampler: list[Sampler]) -> No
 def test_what_to_install_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "emcee", None)
     with pytest.raises(ParameterError, match=r"skisnow\[posterior\]"):
-        posterior.require_emcee()
+        intervals.require_emcee()

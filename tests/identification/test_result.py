@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from skisnow.identification.result import _likeness
+from skisnow.identification.solution import _likeness
 
 
 def solution(residuals: Any, *series: tuple[str, int]) -> Any:

@@ -31,7 +31,7 @@ from skisnow.scenario.keys import free_key
 from skisnow.scenario.keys import parse_change
 from skisnow.scenario.keys import SCENARIO_KEYS
 from skisnow.scenario.schema import scenario_schema, output_scenario_schema
-from skisnow.studies.axes import Axis
+from skisnow.studies.points import Axis
 
 print(load_scenario("carved-46m", changes=dict([parse_change("crust_mm=4")])).contact.crust)
 print(scenario_file("carved-46m").values["snow.crust_mm"])

@@ -24,7 +24,7 @@ from skisnow.forces.shear.displacement import SHEAR_DISPLACEMENT
 from skisnow.parameters import values_of
 from skisnow.pipeline import ensemble
 from skisnow.pipeline import turn as pipeline_turn
-from skisnow.pipeline.priors import MEASURED, PRIORS, inputs_with
+from skisnow.pipeline.ensemble import MEASURED, PRIORS, inputs_with
 from skisnow.report.turn_dict import turn_dict
 from skisnow.scenario.prior import prior_of
 from skisnow.snow import SnowProperties
@@ -111,7 +111,7 @@ def test_all_that_is_not_known_is_drawn_over_its_prior(analysis: Analysis) -> No
 def test_the_ensemble_is_computed_quickly_whatever_the_turn_asks_for(asked: list[Scenario]) -> None:
     """Rows of 0.05 s of an error-controlled run, and what they are kept for."""
     turn = skisnow.load_scenario("carved-46m").with_(duration_s=1.0)
-    row = ensemble.quickly(turn.with_(solver=replace(turn.solver, fixed=True, output_interval=0.01)))
+    row = ensemble.simulate_fast(turn.with_(solver=replace(turn.solver, fixed=True, output_interval=0.01)))
     (solver,) = (each.solver for each in asked)
     assert (solver.method, solver.fixed, solver.output_interval) == ("fast", False, 0.05)
     run = circle_run(radius=10.0 * (turn.contact.snow.snow_hardness / 4.42e8) ** 0.1, count=61)

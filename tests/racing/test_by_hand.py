@@ -17,13 +17,13 @@ from skisnow import load_scenario, read_ski
 from skisnow._support.errors import ParameterError
 from skisnow._support.processes.kept_rows import KeptRows
 from skisnow._support.processes.pool import Pool
-from skisnow.racing import LineTurn, RacingLine, by_surrogate, follower_line, quickest_line
-from skisnow.racing.by_surrogate import BATCH, Daring, SurrogateSearch, _best_within
+from skisnow.racing import LineTurn, RacingLine, follower_line, quickest_line, surrogate_search
 from skisnow.racing.line import cut, ways
 from skisnow.racing.quickest import _begun, _require, _search, _window
 from skisnow.racing.racers import Racer, run_score, skied
 from skisnow.racing.score import score_of
 from skisnow.racing.search import Evaluations, optimiser_within
+from skisnow.racing.surrogate_search import BATCH, Daring, SurrogateSearch, _best_within
 from skisnow.racing.worth import wider
 from skisnow.track.course import MovingPoint, passages
 
@@ -72,7 +72,7 @@ def test_a_batch_is_asked_about_its_centre(monkeypatch: pytest.MonkeyPatch) -> N
         asked.append(told)
         return optimiser_within(*told)
 
-    monkeypatch.setattr(by_surrogate, "optimiser_within", kept)
+    monkeypatch.setattr(surrogate_search, "optimiser_within", kept)
     least_of_bowl(Bowl((0.5, 0.5), (0.0, 0.0)), (0.95, 0.5), 0.1, 0.0)
     ((limits, mean, spread, seed),) = asked
     assert limits == pytest.approx(np.array([[0.85, 1.0], [0.4, 0.6]]))

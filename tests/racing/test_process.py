@@ -9,9 +9,8 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from skisnow.racing.prospects import times_of
 from skisnow.racing.search import Evaluated
-from skisnow.racing.surrogate import Surrogate
+from skisnow.racing.surrogate import Surrogate, times_of
 
 FloatArray = npt.NDArray[np.float64]
 DRAWN = np.random.default_rng(4).random((9, 2))

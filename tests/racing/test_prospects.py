@@ -12,9 +12,9 @@ import pytest
 from scipy.special import erfcx
 from scipy.stats import norm
 
-from skisnow.racing.prospects import MOST_MARGIN, Prospects, margins_of, times_of
 from skisnow.racing.score import Score, with_room
 from skisnow.racing.search import Evaluated
+from skisnow.racing.surrogate import MOST_MARGIN, Prospects, margins_of, times_of
 
 RNG = np.random.default_rng(4)
 
@@ -77,7 +77,7 @@ def test_where_nothing_fails_all_come_through() -> None:
 
 @pytest.mark.parametrize("hope", [-30.0, -11.0, -9.0, -3.0, -0.5, 0.0, 0.7, 6.0, 60.0])
 def test_the_improvement_is_that_of_a_normal_value(hope: float) -> None:
-    from skisnow.racing.prospects import _log_improvement
+    from skisnow.racing.surrogate import _log_improvement
 
     steps = np.linspace(max(-hope, -hope), 45.0 + abs(hope), 400_001)
     exact = norm.logpdf(steps) + np.log(np.maximum(hope + steps, 1e-300))
@@ -106,7 +106,7 @@ def test_a_gate_has_to_be_passed_with_room() -> None:
 
 def test_far_below_0_an_improvement_is_that_of_the_scaled_error_function() -> None:
     """φ(z) (1 - |z| √(π/2) erfcx(|z|/√2)); what the series leaves out at -30 is 105/30⁶."""
-    from skisnow.racing.prospects import _log_improvement
+    from skisnow.racing.surrogate import _log_improvement
 
     rest = 1.0 - 30.0 * math.sqrt(math.pi / 2.0) * float(erfcx(30.0 / math.sqrt(2.0)))
     expected = -450.0 - 0.5 * math.log(2.0 * math.pi) + math.log(rest)

@@ -11,9 +11,9 @@ from scipy.optimize import minimize
 
 from skisnow._support.processes.kept_rows import KeptRows
 from skisnow._support.processes.pool import Pool
-from skisnow.racing.by_surrogate import SurrogateSearch
 from skisnow.racing.search import Evaluations
 from skisnow.racing.surrogate import Surrogate
+from skisnow.racing.surrogate_search import SurrogateSearch
 
 from .test_search import EASY, SLALOM, Polyline, batches, cycloid, raced
 

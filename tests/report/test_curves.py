@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from skisnow.campaign import read_campaign
-from skisnow.estimation.quick_results import experiment_hardness, experiment_results
+from skisnow.estimation.result_rows import experiment_hardness, experiment_results
 from skisnow.report.curves import series_curves
 
 

@@ -10,9 +10,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from skisnow.identification.identification import Effort, Identification, Identified, Profile, identification_dict
-from skisnow.identification.observations import Fit
 from skisnow.identification.parameter import Parameter
+from skisnow.identification.problem import Fit
+from skisnow.identification.result import Effort, Identification, Identified, Profile, identification_dict
 from skisnow.report.figures.drawing import FORMS
 from skisnow.report.figures.identify_fits import residuals_along, tracks_above
 from skisnow.report.figures.identify_profiles import profiles_drawn

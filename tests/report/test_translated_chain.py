@@ -11,7 +11,7 @@ import pytest
 from skisnow._support.errors import ParameterError
 from skisnow._support.language import catalogue
 from skisnow.identification import words
-from skisnow.identification.identification import Identification
+from skisnow.identification.result import Identification
 from skisnow.report import gaps_report, identify_report, turn_report
 from skisnow.report.figures.drawing import Drawing, Picture
 from skisnow.report.figures.style import journal_style

@@ -13,7 +13,7 @@ import pytest
 from skisnow._support.errors import OutputError
 from skisnow._support.staging import write_file
 from skisnow.campaign import Campaign
-from skisnow.estimation.results_text import results_json
+from skisnow.estimation.results import results_json
 from skisnow.report import write_report
 from skisnow.report.figures.drawing import FORMS
 

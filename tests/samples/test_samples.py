@@ -19,7 +19,7 @@ from skisnow.campaign.caaml import read_caaml
 from skisnow.campaign.smet import read_smet
 from skisnow.cli import main
 from skisnow.identification import read_measured_grooves
-from skisnow.identification.photo_cells import read_photo_cells
+from skisnow.identification.data_tables import read_photo_cells
 from skisnow.samples import write_samples
 from skisnow.samples.glides import glide_time
 

@@ -12,8 +12,8 @@ import skisnow
 from skisnow import Analysis, scenario_names
 from skisnow._support.errors import ParameterError
 from skisnow.campaign.reference import reference_campaign
-from skisnow.estimation.results_text import results_json
-from skisnow.estimation.shear_displacement import SiteDisplacement
+from skisnow.estimation.results import results_json
+from skisnow.estimation.shear import SiteDisplacement
 from skisnow.scenario import Plane, Profile, load_scenario, scenario_file, scenario_text, scenario_values
 from skisnow.scenario.keys import SCENARIO_KEYS, parse_change
 from skisnow.scenario.reading import build_input, load_input

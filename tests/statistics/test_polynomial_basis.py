@@ -6,7 +6,7 @@ from fractions import Fraction
 
 import numpy as np
 
-from skisnow.statistics.polynomial_basis import chebyshev_columns, exact_way_back
+from skisnow.statistics.linear import chebyshev_columns, exact_way_back
 
 
 def test_first_chebyshev_polynomials() -> None:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from skisnow.statistics import expanded_factor
-from skisnow.statistics.random_effects import random_effects_mean
+from skisnow.statistics.combined_uncertainty import random_effects_mean
 
 LOG_RISK_RATIO = (
     *(-0.8893, -1.5854, -1.3481, -1.4416, -0.2175, -0.7861, -1.6209),

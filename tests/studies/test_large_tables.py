@@ -14,9 +14,8 @@ import pytest
 from skisnow._support.errors import OutputError, ParameterError, SkisnowError
 from skisnow._support.processes.kept_rows import KeptRows
 from skisnow.studies import Study, StudyState, StudyTable, read_study, read_table, run_study, study_state
-from skisnow.studies.computing import StudyRows
 from skisnow.studies.rows import CsvRows, DatabaseRows, StoredRows
-from skisnow.studies.run import kept_rows
+from skisnow.studies.run import StudyRows, kept_rows
 
 TEXT = """
 out = "table.csv"

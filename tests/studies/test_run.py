@@ -151,7 +151,7 @@ def test_an_error_that_nobody_foresaw_is_the_reason_of_its_point(
     def broken(*_: object, **__: object) -> None:
         raise ZeroDivisionError("by nothing")
 
-    monkeypatch.setattr("skisnow.studies.carve_subject.answered", broken)
+    monkeypatch.setattr("skisnow.studies.subjects.answered", broken)
     (row, *_) = run_study(read_study(study_file), workers=1).rows
     assert (row["outcome"], row["reason"]) == ("error", "unexpected ZeroDivisionError: by nothing")
     assert (row["ski"], row["load_N"]) == ("slalom", 400.0)

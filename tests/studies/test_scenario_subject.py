@@ -12,7 +12,7 @@ from skisnow._support.errors import ParameterError
 from skisnow.scenario import scenario_text
 from skisnow.scenario.keys import SCENARIO_KEYS
 from skisnow.studies import read_study, read_table, run_study
-from skisnow.studies.scenario_subject import RESULTS
+from skisnow.studies.subjects import RUN_RESULTS
 
 from ..simulation.straight_run import straight_run
 
@@ -68,7 +68,7 @@ def test_table_has_every_key_and_comes_back_as_it_was(tmp_path: Path) -> None:
     study = read_study(study_file(tmp_path))
     table = run_study(study, workers=1)
     back = read_table(study.out, study.subject.keys, varied=study.varied)
-    assert back.columns == table.columns == (*SCENARIO_KEYS, *RESULTS, "study")
+    assert back.columns == table.columns == (*SCENARIO_KEYS, *RUN_RESULTS, "study")
     assert back.rows == table.rows
 
 

@@ -9,7 +9,7 @@ import pytest
 
 from skisnow._support.errors import ParameterError
 from skisnow.studies import Study, read_study
-from skisnow.studies.study_file import TOP_KEYS
+from skisnow.studies.study import TOP_KEYS
 
 FIXED = '[fixed]\nski = "slalom"\npublished = "race-piste"\nload_N = 800\nunloading_ratio = 10\n'
 GRID = "[grid]\nedge_angle_deg = [30, 45]\n"

@@ -12,7 +12,7 @@ from skisnow._support.units import N_PER_MM2, N_PER_MM3
 from skisnow.campaign import read_campaign, write_reference
 from skisnow.campaign.store import Journals, Store
 from skisnow.estimation import analyse, results_dict
-from skisnow.estimation.results_text import results_json
+from skisnow.estimation.results import results_json
 from skisnow.report.number_formatting import significant
 from skisnow.snow import snow_from_results
 from skisnow.web.lab_skis import LabSkis

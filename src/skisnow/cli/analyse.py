@@ -39,7 +39,7 @@ def run(options: argparse.Namespace) -> int:
     from .._support.memory import paused_collector
     from ..campaign import read_campaign
     from ..estimation import analyse
-    from ..estimation.results_text import results_json
+    from ..estimation.results import results_json
     from .progress import Progress
 
     chosen: dict[str, Any] = {}

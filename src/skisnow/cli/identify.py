@@ -91,7 +91,7 @@ def _prepared(options: argparse.Namespace) -> ScenarioFile:
     """What can be refused is refused before the work."""
     with announced("loading"):
         from ..identification.bootstrap import require_bootstrap
-        from ..identification.posterior import require_emcee
+        from ..identification.intervals import require_emcee
         from ..scenario import scenario_file
 
         require_bootstrap(options.bootstrap, options.bootstrap_by)

@@ -18,9 +18,8 @@ from ..campaign.records import Campaign
 from ..snow import SnowProperties
 from .comparisons import Comparison, OwnValue, compare_with_published, own_mean
 from .errors_in_depth import fit_models_with_depth_errors, fitted_hardness
-from .fit_warnings import fit_warnings
-from .growing_hardness import growing_hardness, site_growth
 from .hardness import DEFINITIONS, ReadingUncertainty, hardness
+from .layering import growing_hardness, site_growth
 from .model_choice import bootstrap_intervals, compare_nested_rows
 from .models import Model, fit_models, select_model, why_no_choice
 from .observations import (
@@ -34,13 +33,11 @@ from .observations import (
 )
 from .parts import ModelTable, PenetrationAnalysis, ShearAnalysis, used_of
 from .readings import readings_of
-from .regressions import Regression, Source, regressions
+from .regressions import Regression, Source, fit_warnings, regressions
 from .screening import screened_penetration, screened_shear
 from .seating import seating
-from .shear_displacement import shear_displacement, site_displacement
-from .shear_stress import shear_stress
-from .site_snow import site_snow
-from .sites import SiteComparison, SiteMean, compare_sites, site_means
+from .shear import shear_displacement, shear_stress, site_displacement
+from .sites import SiteComparison, SiteMean, compare_sites, site_means, site_snow
 from .snow_micro_pen import SnowMicroPenAnalysis, evaluate_recordings
 from .unloading import NOT_FALLING, site_unloading, unloading
 from .weather import WeatherAtTests, weather_at_tests

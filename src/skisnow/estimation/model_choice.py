@@ -14,7 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..statistics.bounded import non_negative_fits
-from ..statistics.nested import nested_f_test
+from ..statistics.f_tests import nested_f_test
 from ..statistics.resampling import percentile_interval, resampling_counts
 from .hardness import DEFINITIONS
 from .models import MODELS, NESTED_PAIRS, EndBasis, Model, ModelFit, end_basis

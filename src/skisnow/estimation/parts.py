@@ -9,15 +9,14 @@ import numpy.typing as npt
 
 from .._support.display import Facts, Shown, amount, field_facts
 from .errors_in_depth import FittedHardness
-from .growing_hardness import GrowingHardness, SiteGrowth
 from .hardness import Hardness
+from .layering import GrowingHardness, SiteGrowth
 from .model_choice import NestedRows
 from .models import Model, ModelFit
 from .readings import Readings
 from .screening import Screened
 from .seating import Seating
-from .shear_displacement import ShearDisplacement, SiteDisplacement
-from .shear_stress import ShearStress
+from .shear import ShearDisplacement, ShearStress, SiteDisplacement
 from .unloading import SiteUnloading, Unloading
 
 FloatArray = npt.NDArray[np.float64]

@@ -28,8 +28,9 @@ from .observations import (
 )
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterator, Mapping
 
+    from .models import ModelFit
     from .observations import Observations
 
 FloatArray = npt.NDArray[np.float64]
@@ -40,6 +41,10 @@ FEWEST_ANGLES: Final = 3
 FEWEST_VALUES: Final = 4
 """A predictor that takes fewer values does not show a relation: what differs between them may be anything (modelling
 assumption)."""
+POOR: Final = 0.5
+"""A selected law whose rmse is above this share of the loads' rms leaves a quarter of their squares open (modelling
+assumption)."""
+_ACTION: Final = "Look for wrong units, depths or tools, and for snow that follows none of these laws."
 
 
 @dataclass(frozen=True, slots=True)
@@ -126,3 +131,29 @@ def _fit(response: FloatArray, predictor: FloatArray) -> LinearFit | None:
         return linear_fit(response, predictor)
     except FitError:  # the predictor does not vary: there is no slope, and the entry says so by its nulls
         return None
+
+
+def fit_warnings(
+    fits: tuple[ModelFit, ...], selected: ModelFit | None, load: npt.NDArray[np.float64]
+) -> tuple[str, ...]:
+    """Sentence about a selected model that misses the loads (N), or about all models where none fits them."""
+    size = float(np.sqrt(np.mean(load**2)))
+    if fits and all(fit.rmse > size for fit in fits):
+        return tuple(_all_fail(fits, size))
+    return tuple(_poor(selected, size))
+
+
+def _poor(selected: ModelFit | None, size: float) -> Iterator[str]:
+    if selected is not None and selected.rmse > POOR * size:
+        yield (
+            f"Even the selected law misses the loads by {100.0 * selected.rmse / size:.0f} % of their root mean square "
+            f"({selected.rmse:.4g} N of {size:.4g} N). {_ACTION}"
+        )
+
+
+def _all_fail(fits: tuple[ModelFit, ...], size: float) -> Iterator[str]:
+    best = min(fits, key=lambda fit: fit.rmse)
+    yield (
+        f"All candidate models miss the loads by more than their root mean square, {size:.4g} N; the smallest rmse is "
+        f"{best.rmse:.5g} N, of {best.model.words}. No force at all would describe the readings better. {_ACTION}"
+    )

@@ -6,7 +6,6 @@ not rounded.
 
 from __future__ import annotations
 
-import math
 import platform
 from dataclasses import asdict
 from importlib.metadata import version
@@ -14,27 +13,31 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
+import orjson
 
-from .._support.units import DEGREE, MM, N_PER_MM2, N_PER_MM3
-from .campaign_notes import campaign_notes
-from .hardness import DEFINITIONS
-from .model_rows import model_rows, nested_row, selected_model
-from .snow_micro_pen_results import snow_micro_pen_results
-from .weather_results import weather_results
+from .._support.units import DEGREE, MM, N_PER_MM3
+from .result_rows import (
+    column_rows,
+    finite_or_none,
+    model_rows,
+    nested_row,
+    penetration_experiments,
+    selected_model,
+    shear_experiments,
+    without_nan,
+)
+from .sites import campaign_notes
+from .snow_micro_pen import snow_micro_pen_results
+from .weather import weather_results
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterator
 
-    from ..campaign.records import PenetrationTests, ShearTests
     from .analysis import Analysis
-    from .hardness import Hardness
     from .parts import PenetrationAnalysis, ShearAnalysis
     from .regressions import Regression
-    from .screening import Screened
-    from .shear_displacement import ShearDisplacement
-    from .shear_stress import ShearStress
     from .sites import SiteMean
-    from .unloading import SiteUnloading, Unloading
+    from .unloading import SiteUnloading
 
 FloatArray = npt.NDArray[np.float64]
 Json: TypeAlias = dict[str, Any]
@@ -94,39 +97,6 @@ def results_dict(analysis: Analysis) -> Json:
     return cleaned
 
 
-def without_nan(value: Any) -> Any:
-    """Replace every number that is not finite by None, and every interval that is not known at both ends as a whole."""
-    if isinstance(value, _Rows):
-        return value
-    if isinstance(value, float):
-        return value if math.isfinite(value) else None
-    if isinstance(value, dict):
-        return {key: without_nan(item) for key, item in value.items()}
-    if isinstance(value, list):
-        cleaned = [without_nan(item) for item in value]
-        pair = len(value) == 2 and all(isinstance(item, float) for item in value)
-        return None if pair and None in cleaned else cleaned
-    return value
-
-
-class _Rows(list[Json]):
-    """Rows made from columns by `_rows`, in which what does not exist already is None."""
-
-
-def _rows(columns: dict[str, list[Any]]) -> _Rows:
-    keys = tuple(columns)
-    return _Rows(dict(zip(keys, values, strict=True)) for values in zip(*columns.values(), strict=True))
-
-
-def _numbers(values: FloatArray) -> list[Any]:
-    """A column of numbers (m,) or intervals (m, 2) with None for what is not finite."""
-    listed: list[Any] = values.tolist()
-    finite = np.isfinite(values).reshape(len(values), -1).all(axis=1)
-    for index in np.flatnonzero(~finite).tolist():
-        listed[index] = None
-    return listed
-
-
 def _campaign(analysis: Analysis) -> Json:
     campaign = analysis.campaign
     return {
@@ -174,12 +144,12 @@ def _penetration(analysis: Analysis) -> Json:
         },
         "unloading": [_site_unloading(row) for row in found.site_unloading],
         "growing_hardness": {
-            "experiments": _rows(
+            "experiments": column_rows(
                 {
                     "experiment": list(tests.experiment),
-                    "H_0_N_per_mm3": _numbers(found.growing.surface_hardness / N_PER_MM3),
-                    "growth_percent": _numbers(100.0 * found.growing.growth),
-                    "growth_interval_percent": _numbers(100.0 * found.growing.growth_interval),
+                    "H_0_N_per_mm3": finite_or_none(found.growing.surface_hardness / N_PER_MM3),
+                    "growth_percent": finite_or_none(100.0 * found.growing.growth),
+                    "growth_interval_percent": finite_or_none(100.0 * found.growing.growth_interval),
                 }
             ),
             "sites": [
@@ -195,38 +165,6 @@ def _penetration(analysis: Analysis) -> Json:
     }
 
 
-def penetration_experiments(
-    tests: PenetrationTests, screened: Screened, hardness: Mapping[str, Hardness], unloading: Unloading
-) -> list[Json]:
-    """The rows ``penetration.experiments``: of each series what it was, its flags, its hardness, its unloading."""
-    columns: dict[str, list[Any]] = {
-        "experiment": list(tests.experiment),
-        "site": list(tests.site),
-        "tool": list(tests.tool),
-        "edge_angle_deg": _degrees(tests.edge_angle),
-        "n_loads": np.diff(tests.first).tolist(),
-        "used": screened.used.tolist(),
-        "flags": screened.codes(),
-    }
-    for symbol, definition in DEFINITIONS.items():
-        columns[definition.key] = _numbers(hardness[symbol].value / definition.si)
-    for symbol, definition in DEFINITIONS.items():
-        columns[f"{symbol}_interval_{definition.unit_key}"] = _numbers(hardness[symbol].interval / definition.si)
-    return _rows(columns | _unloading(unloading))
-
-
-def _unloading(found: Unloading) -> dict[str, list[Any]]:
-    return {
-        "n_unloading": found.n_readings.tolist(),
-        "unloading_ratio": _numbers(found.unloading_ratio),
-        "unloading_ratio_interval": _numbers(found.unloading_ratio_interval),
-        "rebound_ratio": _numbers(found.rebound_ratio),
-        "rebound_ratio_interval": _numbers(found.rebound_ratio_interval),
-        "k_u_N_per_mm3": _numbers(found.unloading_stiffness / N_PER_MM3),
-        "k_u_interval_N_per_mm3": _numbers(found.unloading_stiffness_interval / N_PER_MM3),
-    }
-
-
 def _site_unloading(row: SiteUnloading) -> Json:
     return {
         "site": row.site,
@@ -239,31 +177,25 @@ def _site_unloading(row: SiteUnloading) -> Json:
     }
 
 
-def _degrees(angle: FloatArray) -> list[float]:
-    """Degrees as a person wrote them: the last bits that the conversion to radians costs are taken off."""
-    degrees: list[float] = np.round(np.degrees(angle), 11).tolist()
-    return degrees
-
-
 def _seating(experiment: tuple[str, ...], found: PenetrationAnalysis) -> list[Json]:
-    return _rows(
+    return column_rows(
         {
             "experiment": list(experiment),
-            "depth_offset_mm": _numbers(found.seating.offset / MM),
-            "interval_mm": _numbers(found.seating.interval / MM),
-            "H_V_change_percent": _numbers(100.0 * found.seating.hardness_change),
+            "depth_offset_mm": finite_or_none(found.seating.offset / MM),
+            "interval_mm": finite_or_none(found.seating.interval / MM),
+            "H_V_change_percent": finite_or_none(100.0 * found.seating.hardness_change),
         }
     )
 
 
 def _fitted_hardness(experiment: tuple[str, ...], found: PenetrationAnalysis) -> list[Json]:
     fitted = found.fitted
-    return _rows(
+    return column_rows(
         {
             "experiment": list(experiment),
-            "H_V_N_per_mm3": _numbers(fitted.value["H_V"] / N_PER_MM3),
-            "H_V_interval_N_per_mm3": _numbers(fitted.interval / N_PER_MM3),
-            "relative_scatter": _numbers(fitted.scatter),
+            "H_V_N_per_mm3": finite_or_none(fitted.value["H_V"] / N_PER_MM3),
+            "H_V_interval_N_per_mm3": finite_or_none(fitted.interval / N_PER_MM3),
+            "relative_scatter": finite_or_none(fitted.scatter),
         }
     )
 
@@ -285,28 +217,6 @@ def _shear(analysis: Analysis) -> Json:
             for row in found.site_displacement
         ],
     }
-
-
-def shear_experiments(
-    tests: ShearTests, screened: Screened, stress: ShearStress, displacement: ShearDisplacement
-) -> list[Json]:
-    """The rows ``shear.experiments``: of each test what it was, its flags, its force and stress."""
-    return _rows(
-        {
-            "experiment": list(tests.experiment),
-            "site": list(tests.site),
-            "plate": list(tests.plate),
-            "edge_angle_deg": _degrees(tests.edge_angle),
-            "F_t_N": _numbers(stress.force),
-            "S_f_N_per_mm2": _numbers(stress.value / N_PER_MM2),
-            "S_f_interval_N_per_mm2": _numbers(stress.interval / N_PER_MM2),
-            "used": screened.used.tolist(),
-            "flags": screened.codes(),
-            "n_turning": displacement.n_readings.tolist(),
-            "shear_displacement_mm": _numbers(displacement.value / MM),
-            "shear_displacement_interval_mm": _numbers(displacement.interval / MM),
-        }
-    )
 
 
 def _regression(regression: Regression) -> Json:
@@ -356,3 +266,25 @@ def _provenance(analysis: Analysis) -> Json:
         "options": {"geometry": analysis.geometry, "n_resamples": analysis.n_resamples},
         "time": analysis.time.isoformat(timespec="seconds"),
     }
+
+
+def results_json(results: dict[str, Any]) -> bytes:
+    """The UTF-8 text of results.json: one entry of a list to a line, so that people can search it."""
+    return b"".join(_pieces(results, 0)) + b"\n"
+
+
+def _pieces(value: Any, depth: int) -> Iterator[bytes]:
+    pad = b"\n" + b" " * (depth + 1)
+    if isinstance(value, dict) and value and depth < 3:
+        for index, (key, item) in enumerate(value.items()):
+            yield (b"," if index else b"{") + pad + orjson.dumps(key) + b": "
+            yield from _pieces(item, depth + 1)
+        yield b"\n" + b" " * depth + b"}"
+    elif isinstance(value, list) and value and isinstance(value[0], dict):
+        text = orjson.dumps(value)
+        # at once is five times faster than row by row; split it only where no name contains what parts the rows
+        if text.count(b"},{") == len(value) - 1:
+            text = b"[" + pad + text[1:-1].replace(b"},{", b"}," + pad + b"{") + b"\n" + b" " * depth + b"]"
+        yield text
+    else:
+        yield orjson.dumps(value)

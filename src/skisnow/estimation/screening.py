@@ -16,7 +16,7 @@ from ..campaign.screening import flag_problems, screen_penetration, screen_shear
 from .hardness import DEFINITIONS, ReadingUncertainty, hardness, hardness_at_largest_load
 from .layering import layered
 from .readings import readings_of
-from .shear_stress import shear_stress
+from .shear import shear_stress
 from .unloading import NOT_FALLING, unloading
 
 if TYPE_CHECKING:

@@ -1,8 +1,8 @@
-"""What each site has, whether one is harder than another, and how many tests would show it."""
+"""Sites of a campaign: snow, means, comparisons, and notes on site names that do not match."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import combinations
 from typing import TYPE_CHECKING
 
@@ -10,13 +10,30 @@ import numpy as np
 import numpy.typing as npt
 
 from .._support.content import numbered
+from .._support.errors import ParameterError
+from .._support.units import MM, N_PER_MM2, N_PER_MM3
+from ..snow import SnowProperties
+from ..snow.mean_snow import (
+    known_sites,
+    mean_snow,
+    site_in_words,
+    site_named,
+    with_measured_displacement,
+    with_measured_unloading,
+)
 from ..statistics.two_groups import ratio_of_means, tests_per_group
 from .comparisons import OwnValue, own_mean
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Sequence
+
+    from ..campaign.records import Campaign
+    from .parts import PenetrationAnalysis, ShearAnalysis
+
 
 FloatArray = npt.NDArray[np.float64]
+BoolArray = npt.NDArray[np.bool_]
+TextArray = npt.NDArray[np.object_]
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,3 +98,104 @@ def _compare(quantity: str, a: tuple[str, FloatArray], b: tuple[str, FloatArray]
         pooled = float(np.sqrt(squares / dof))
     needed = tests_per_group(pooled) if pooled > 0 else None
     return SiteComparison(quantity, a[0], b[0], result.ratio, np.asarray(result.interval), result.p, needed)
+
+
+def site_snow(
+    campaign: Campaign,
+    penetration: PenetrationAnalysis | None,
+    shear: ShearAnalysis | None,
+    site: str | None,
+    unloading_ratio: float | None,
+) -> SnowProperties:
+    """The means over the used experiments of a site, as `skisnow.snow_from_results` reads them from results.json."""
+    pressed, sheared = _pressed(penetration, campaign), _sheared(shear, campaign)
+    site = site_of_campaign(campaign, site)
+    hardness, stress = (_of(site, *known) for known in (pressed, sheared))
+    name = campaign.name
+    if not hardness.size:
+        sites = sorted({str(each) for each in pressed[1]})
+        raise ParameterError(f"{name} has no used penetration experiment{known_sites(site, sites)}")
+    source = f"{name}, {site_in_words(site)}: {hardness.size} penetration and {stress.size} shear experiments"
+    snow = mean_snow(hardness / N_PER_MM3, stress / N_PER_MM2, source=source, where=name)
+    turned = next((each for each in shear.site_displacement if each.site == site), None) if shear else None
+    if turned is not None:
+        snow = with_measured_displacement(snow, turned.value / MM, (turned.low / MM, turned.high / MM))
+    if unloading_ratio is not None:
+        return replace(snow, unloading_ratio=unloading_ratio)
+    found = () if penetration is None else penetration.site_unloading
+    ratio = next((each for each in found if each.site == site and each.is_resolved), None)
+    return snow if ratio is None else with_measured_unloading(snow, ratio.ratio, (ratio.low, ratio.high))
+
+
+def _pressed(found: PenetrationAnalysis | None, campaign: Campaign) -> tuple[FloatArray, TextArray]:
+    """H_V (N/m³) and site of each used penetration experiment that has one."""
+    tests = campaign.penetration
+    if found is None or tests is None:
+        return np.zeros(0), np.zeros(0, dtype=object)
+    return _used(found.hardness["H_V"].value, found.screened.used, tests.site)
+
+
+def _sheared(found: ShearAnalysis | None, campaign: Campaign) -> tuple[FloatArray, TextArray]:
+    """S_f (N/m²) and site of each used shear experiment that has one."""
+    tests = campaign.shear
+    if found is None or tests is None:
+        return np.zeros(0), np.zeros(0, dtype=object)
+    return _used(found.stress.value, found.screened.used, tests.site)
+
+
+def _used(value: FloatArray, used: BoolArray, site: tuple[str, ...]) -> tuple[FloatArray, TextArray]:
+    there = used & np.isfinite(value)
+    return value[there], np.array(site, dtype=object)[there]
+
+
+def _of(site: str | None, value: FloatArray, sites: TextArray) -> FloatArray:
+    return value if site is None else value[sites == site]
+
+
+def site_of_campaign(campaign: Campaign, site: str | None) -> str | None:
+    """The campaign's own name of a site, see `skisnow.snow.mean_snow.site_named`."""
+    tables = (tests for tests in (campaign.penetration, campaign.shear) if tests is not None)
+    return site_named(site, (name for tests in tables for name in tests.site))
+
+
+def campaign_notes(campaign: Campaign) -> tuple[str, ...]:
+    """Sentences about site names that nearly agree, snow data of sites without tests, and files that were not read."""
+    return (*_alike(campaign), *_without_tests(campaign), *_unread(campaign))
+
+
+def _tested(campaign: Campaign) -> set[str]:
+    return {site for tests in (campaign.penetration, campaign.shear) if tests is not None for site in tests.site}
+
+
+def _described(campaign: Campaign) -> dict[str, set[str]]:
+    tables = {
+        "density.csv": campaign.density,
+        "drop_cone.csv": campaign.drop_cone,
+        "snow_micro_pen.csv": campaign.snow_micro_pen,
+    }
+    return {name: set(table.site) for name, table in tables.items() if table is not None}
+
+
+def _alike(campaign: Campaign) -> Iterator[str]:
+    """Names that differ by capitals and spaces alone."""
+    names: dict[str, set[str]] = {}
+    for site in _tested(campaign).union(*_described(campaign).values()):
+        names.setdefault("".join(site.split()).casefold(), set()).add(site)
+    for variants in sorted(sorted(variants) for variants in names.values() if len(variants) > 1):
+        listed = ", ".join(repr(name) for name in variants)
+        yield f"The sites {listed} differ by capitals or spaces alone; they count as different sites. Is one meant?"
+
+
+def _without_tests(campaign: Campaign) -> Iterator[str]:
+    tested = _tested(campaign)
+    for name, sites in _described(campaign).items():
+        lost = sorted(sites - tested)
+        if lost:
+            listed = ", ".join(repr(site) for site in lost)
+            yield f"{name} describes {listed}, where no test was made: these rows are not included. Is a site misspelt?"
+
+
+def _unread(campaign: Campaign) -> Iterator[str]:
+    if campaign.unread_files:
+        listed = ", ".join(campaign.unread_files)
+        yield f"Not read, as no table of a campaign has this name: {listed}."

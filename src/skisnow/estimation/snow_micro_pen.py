@@ -1,16 +1,18 @@
-"""What recordings of a SnowMicroPen say of the snow: mean force, shot noise, density, specific surface area."""
+"""Evaluation of SnowMicroPen recordings: mean force, shot noise, density, specific surface area."""
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 
 from .._support.display import Facts, Shown
+from .._support.units import MM
 from ..campaign.snow_surface import SnowSurface, snow_surface
+from ..parameters import values_of
 from ..snow.penetrometer_relations import PENETROMETER_RELATIONS
 from ..statistics.shot_noise import shot_noise, windows_of
 
@@ -34,6 +36,7 @@ FLAGS: Final = {
     TOO_SHORT: "it ends above the depth to which the force is averaged",
 }
 """Why a recording is not used, by code."""
+Json: TypeAlias = dict[str, Any]
 
 
 @dataclass(frozen=True, slots=True)
@@ -226,3 +229,42 @@ def _windows(force: FloatArray, sample_distance: float, area: float, name: str) 
         specific_surface_area=math.nan if surface_area is None else float(surface_area(median, element_size).mean()),
         n=int(usable.sum()),
     )
+
+
+def snow_micro_pen_results(found: SnowMicroPenAnalysis) -> Json:
+    """The settings, and a row for each recording; NaN stands where there is no number."""
+    recordings = found.recordings
+    names = zip(recordings.recording, recordings.site, recordings.spot, recordings.file, strict=True)
+    return {
+        **values_of(recordings.settings),
+        "recordings": [
+            dict(zip(("recording", "site", "spot", "file"), own, strict=True))
+            | _row(each, each.windows[recordings.settings.relation])
+            for own, each in zip(names, found.evaluated, strict=True)
+        ],
+    }
+
+
+def _row(each: EvaluatedRecording, chosen: WindowMeans) -> Json:
+    return {
+        "used": each.is_used,
+        "flags": list(each.flags),
+        "surface_mm": each.surface / MM,
+        "reach_mm": each.reach / MM,
+        "air_force_N": each.air_force,
+        "mean_force_N": each.mean_force,
+        "median_force_N": each.median_force,
+        "rupture_force_N": chosen.rupture_force,
+        "deflection_mm": chosen.deflection / MM,
+        "element_size_mm": chosen.element_size / MM,
+        **_of_relation(chosen),
+        "by_relation": {name: _of_relation(windows) for name, windows in each.windows.items()},
+    }
+
+
+def _of_relation(windows: WindowMeans) -> Json:
+    return {
+        "snow_density_kg_per_m3": windows.snow_density,
+        "specific_surface_area_m2_per_kg": windows.specific_surface_area,
+        "n_windows": windows.n,
+    }

@@ -27,8 +27,7 @@ import numpy.typing as npt
 
 from .._support.display import ShownFields
 from .._support.units import CONFIDENCE
-from ..statistics.combined_uncertainty import expanded_factor
-from ..statistics.random_effects import random_effects_mean
+from ..statistics.combined_uncertainty import expanded_factor, random_effects_mean
 from .comparisons import own_mean
 from .readings import Readings
 

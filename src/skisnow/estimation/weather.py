@@ -1,11 +1,11 @@
-"""The weather at the time of each experiment, from the readings of a station."""
+"""Weather at the time of each experiment, from the readings of a station."""
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
 from datetime import datetime, timedelta, timezone
-from typing import TYPE_CHECKING, Final, TypeAlias
+from typing import TYPE_CHECKING, Any, Final, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
     from ..campaign.records import Campaign
+    from ..campaign.weather_records import CampaignWeather
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 
@@ -29,6 +30,7 @@ QUANTITIES: Final = {
     "incoming_short_wave_W_per_m2": ("ISWR", 1.0, 0.0),
 }
 """What is taken of a station: its name in SMET, and factor and offset from SI."""
+Json: TypeAlias = dict[str, Any]
 
 
 @dataclass(frozen=True, slots=True, repr=False)
@@ -111,3 +113,24 @@ def _moment(text: str, utc_offset: float) -> float:
         return math.nan
     zone = timezone(timedelta(hours=utc_offset))
     return (found if found.tzinfo else found.replace(tzinfo=zone)).timestamp()
+
+
+def weather_results(weather: CampaignWeather, found: WeatherAtTests) -> Json:
+    """The station, a row for each experiment and one for each site; NaN stands where nothing is known."""
+    series = weather.series
+    columns = {"kind": found.kind, "experiment": found.experiment, "site": found.site, "time": found.time}
+    rows = [dict(zip(columns, cells, strict=True)) for cells in zip(*columns.values(), strict=True)]
+    for key, values in found.quantities.items():
+        for row, value in zip(rows, values.tolist(), strict=True):
+            row[key] = value
+    return {
+        "file": series.file,
+        "station": series.station,
+        "latitude_deg": series.latitude_deg,
+        "longitude_deg": series.longitude_deg,
+        "altitude_m": series.altitude,
+        "utc_offset_h": weather.utc_offset,
+        "longest_gap_h": weather.settings.longest_gap_h,
+        "experiments": rows,
+        "sites": [{"site": site, "n": n, **means} for site, n, means in found.site_means()],
+    }

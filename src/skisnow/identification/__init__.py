@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from .identification import Identification, Identified, identification_dict
-from .identifying import identify
-from .measured_grooves import MeasuredGrooves, read_measured_grooves
+from .data_tables import MeasuredGrooves, PhotoCellRun, PhotoCells, read_measured_grooves, read_photo_cells
+from .fitting import identify
 from .parameter import Parameter
-from .photo_cells import PhotoCellRun, PhotoCells, read_photo_cells
+from .result import Identification, Identified, identification_dict
 
 __all__ = [
     "Identification",

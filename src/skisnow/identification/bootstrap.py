@@ -11,11 +11,10 @@ import numpy.typing as npt
 
 from .._support.errors import ParameterError
 from ..statistics import percentile_interval
-from .best_place import residuals_about_best, samples_in_values
-from .identification import Identification
 from .parameter import bounds_of
-from .result import Solution
+from .result import Identification
 from .search import step_inside
+from .solution import Solution, residuals_about_best, samples_in_values
 
 FloatArray = npt.NDArray[np.float64]
 Progress: TypeAlias = Callable[[str], None]

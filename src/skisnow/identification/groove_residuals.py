@@ -26,8 +26,8 @@ from ..scenario import Plane, ScenarioFile
 from ..scenario.slope_surface import normals_of
 from ..ski import Ski
 from ..snow import SnowProperties
-from .measured_grooves import MeasuredGrooves
-from .observations import Fit, Kind, Values
+from .data_tables import MeasuredGrooves
+from .problem import Fit, Kind, Values
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -12,10 +12,10 @@ import numpy.typing as npt
 from scipy.stats import chi2, norm
 
 from .groove_residuals import STRENGTH, GrooveResiduals
-from .identification import REASONS, Identification, Identified, Outcome
 from .parameter import Parameter
 from .problem import problem_of
-from .result import identification_of, too_few
+from .result import REASONS, Identification, Identified, Outcome
+from .solution import identification_of, too_few
 from .solving import Request, solution_of, solved, with_further_intervals
 
 FloatArray = npt.NDArray[np.float64]

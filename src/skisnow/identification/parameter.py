@@ -1,16 +1,21 @@
-"""A parameter that is looked for: its name, unit, bounds, start, prior, and the scale on which it is searched."""
+"""Free parameters: name, unit, bounds, start, prior, and the scale of the search."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any, Final
 
 import numpy as np
 import numpy.typing as npt
 
 from .._support.errors import ParameterError
+from ..parameters import Search
+from ..scenario.keys import SCENARIO_KEYS, short_name
 
 FloatArray = npt.NDArray[np.float64]
+_TIMES_START: Final = 5.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -121,3 +126,75 @@ def bounds_of(parameters: tuple[Parameter, ...]) -> tuple[FloatArray, FloatArray
     lower = np.array([each.scaled(each.lower) for each in parameters])
     upper = np.array([each.scaled(each.upper) for each in parameters])
     return lower, upper
+
+
+def usual(key: str, start: float) -> Search:
+    """Size and bounds of a key for a search that begins at `start`; bounds hold the start and the key's own range."""
+    own = SCENARIO_KEYS[key.partition("@")[0]]
+    found = own.search
+    if found is None:
+        size = abs(start) or 1.0
+        found = Search(size, -_TIMES_START * size, _TIMES_START * size, about=True)
+    low, high = (found.lower + start, found.upper + start) if found.about else (found.lower, found.upper)
+    least = own.lowest + (1e-6 * found.size if own.above else 0.0)
+    return Search(
+        found.size,
+        min(max(low, least), start),
+        max(min(high, own.highest), start),
+        found.about,
+        found.logarithmic,
+    )
+
+
+def parameter_table(
+    keys: Sequence[str], values: Mapping[str, Any], given: Mapping[str, Mapping[str, float]]
+) -> tuple[Parameter, ...]:
+    """The free parameters in the order of their keys.
+
+    Parameters
+    ----------
+    keys
+        Full names; with ``@run`` behind where each run has its own.
+    values
+        Where the search begins unless `given` says otherwise, by the same names or by those without ``@run``.
+    given
+        What `given_parameters` gives.
+
+    Raises
+    ------
+    ParameterError
+        A key has no value to begin at, or what `Parameter` refuses.
+    """
+    return tuple(_parameter(key, values, given) for key in keys)
+
+
+def _parameter(key: str, values: Mapping[str, Any], given: Mapping[str, Mapping[str, float]]) -> Parameter:
+    own = key.partition("@")[0]
+    said = {**given.get(own, {}), **given.get(key, {})}
+    start = said.get("start", values.get(key, values.get(own)))
+    if start is None:
+        raise ParameterError(f'{own} has no value in the scenario; give it one, or [identify."{own}"] start = …')
+    start = float(start)
+    about = usual(own, start)
+    scenario_key = SCENARIO_KEYS[own]
+    for name in ("start", "lower", "upper"):
+        if name in said:
+            scenario_key.in_range(said[name])
+    return Parameter(
+        key=key,
+        name=short_name(key),
+        unit=scenario_key.unit,
+        start=start,
+        lower=said.get("lower", about.lower),
+        upper=said.get("upper", about.upper),
+        size=about.size,
+        logarithmic=about.logarithmic,
+        prior_mean=said.get("prior_mean"),
+        prior_sd=said.get("prior_sd"),
+    )
+
+
+def fixed_by_given(free: Sequence[str], given: Mapping[str, Any]) -> tuple[str, ...]:
+    """Keys with a table ``[identify."KEY"]`` that are not free: they keep the scenario's value."""
+    own = {key.partition("@")[0] for key in free}
+    return tuple(key for key in given if key.partition("@")[0] not in own)

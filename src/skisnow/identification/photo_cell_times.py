@@ -12,9 +12,9 @@ import numpy.typing as npt
 from .._support.errors import ParameterError
 from .._support.units import DEGREE
 from ..scenario import Plane, ScenarioFile
+from .data_tables import PhotoCellRun, PhotoCells
 from .glide import Glide, SlopeLine, passage_times, planes, slope_line
-from .observations import Fit, Kind, Values, values_of_run
-from .photo_cells import PhotoCellRun, PhotoCells
+from .problem import Fit, Kind, Values, values_of_run
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -1,244 +1,260 @@
-"""From the best place of a search to values, intervals, correlations, warnings and the outcome."""
+"""Result of an identification."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass
-from typing import Final
+import hashlib
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from datetime import UTC, datetime
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any, Literal, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
-from scipy.stats import chi2
 
-from .identification import REASONS, Effort, Identification, Identified, Interval, Outcome
-from .parameter import Parameter, bounds_of
-from .problem import Problem
-from .search import SearchOptions, SearchState
-from .uncertainty import Uncertainty, uncertainty
-from .words import (
-    bound_warnings,
-    correlation_warnings,
-    few_points,
-    model_warning,
-    noise_warning,
-    unknown_warnings,
-)
+from .._support.display import Facts, Shown, amount, ends, span
+from .._support.json_number import json_number
+from .parameter import Parameter
+from .problem import Fit
 
 FloatArray = npt.NDArray[np.float64]
+Interval: TypeAlias = tuple[float | None, float | None]
+Outcome: TypeAlias = Literal["converged", "not_converged", "not_identifiable", "too_few_points", "interrupted"]
 
-ON_BOUND: Final = 1e-6
-"""Distance (sizes) from a bound that counts as on it."""
-SURE: Final = 1e-3
-"""Probability below which residuals are not those of the stated accuracy."""
-ALIKE: Final = 0.3
-"""Correlation of neighbouring residuals from which on it is reported, where it is also beyond three standard errors."""
+REASONS: dict[Outcome, str] = {
+    "converged": "The search ended: no step brings the computed nearer to the measured by more than its noise.",
+    "not_converged": "The search did not come to an end; the values are the best that were seen. Start nearer, or free "
+    "fewer parameters.",
+    "not_identifiable": "The data do not determine every parameter; the warnings say which, and what would help.",
+    "too_few_points": "There are too few points for these parameters; nothing was identified.",
+    "interrupted": "The search was stopped; the values are the best that were seen until then.",
+}
 
 
-@dataclass(frozen=True, slots=True)
-class Solution:
-    """The best place of a problem; residuals and derivatives in standard deviations of the data.
+@dataclass(frozen=True, slots=True, kw_only=True, repr=False)
+class Identified(Shown):
+    """One parameter, in the unit that its key names; None where a number does not exist.
 
     Attributes
     ----------
-    problem
-        With its noise.
-    found
-        Place, residuals, derivatives, state.
-    tried
-        Starts, and the sum of squares that each led to.
-    methods
-        How it was computed, in words.
-    options
-        Of the search.
+    parameter
+        What was looked for.
+    value, standard_error, interval
+        The best value, and what the curvature of the sum of squares says of it; an end that is open is None.
+    profile_interval, bootstrap_interval, posterior_interval
+        By other ways, where they were asked for.
+    at_bound
+        Whether the best value sits on a bound.
+    identifiable
+        Whether the data say something about it.
     """
 
-    problem: Problem
-    found: SearchState
-    tried: tuple[tuple[FloatArray, float | None], ...]
-    methods: tuple[str, ...]
-    options: SearchOptions
+    parameter: Parameter
+    value: float | None = None
+    standard_error: float | None = None
+    interval: Interval | None = None
+    profile_interval: Interval | None = None
+    bootstrap_interval: Interval | None = None
+    posterior_interval: Interval | None = None
+    at_bound: bool = False
+    identifiable: bool = True
+
+    def _facts(self) -> Facts:
+        return Facts(f"{self.parameter.key} = {self.in_words}")
 
     @property
-    def degrees_of_freedom(self) -> int:
-        """Residuals and priors less parameters and nuisances."""
-        return len(self.found.residuals) - len(self.problem.parameters) - self.problem.nuisances
+    def in_words(self) -> str:
+        """The value with its interval in the key's unit, and whether the data determine it."""
+        low, high = self.interval or (None, None)
+        text = amount(self.value, self.parameter.unit)
+        if low is not None and high is not None:
+            text = f"{text} ({span(low, high)})"
+        return f"{text}{'' if self.identifiable else ', not determined'}{', at a bound' if self.at_bound else ''}"
+
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Profile(Shown):
+    """The sum of squares along one parameter with all others refitted.
+
+    Attributes
+    ----------
+    value
+        (m,) of the parameter, rising.
+    rise
+        (m,) of the sum of squares above its least, in squared standard deviations of the data.
+    limit
+        The rise at the ends of the 95 % interval.
+    """
+
+    key: str
+    value: FloatArray
+    rise: FloatArray
+    limit: float
+
+    def _facts(self) -> Facts:
+        return Facts(f"of {self.key} at {len(self.value)} values, {ends(self.value)}")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Effort:
+    """What it took: simulated runs computed and taken from an earlier start, Jacobians, time (s)."""
+
+    simulations: int = 0
+    kept_simulations: int = 0
+    rounds: int = 0
+    wall_s: float = 0.0
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True, repr=False)
+class Identification(Shown):
+    """What came out.
+
+    Attributes
+    ----------
+    outcome, reason
+        How it ended, and what that means, in words.
+    scenario
+        Its title.
+    parameters
+        The free ones, in the order in which they were named.
+    correlation
+        (p, p); NaN where nothing is known.
+    covariance
+        (p, p) in the keys' units, linearised; infinite or NaN where nothing is known.
+    noise
+        Standard deviation of each kind of data's residuals over the stated one (1 where it is stated and true).
+    accuracy_is_stated
+        Whether the data state theirs.
+    points, degrees_of_freedom
+        Points measured; residuals and priors less what was fitted.
+    warnings, methods
+        What to beware of; how it was computed.
+    fits
+        What was measured and what the best parameters give, run by run.
+    starts
+        Places (p,) of several starts and the sums of squares that they led to; None where nothing could be computed.
+    profiles, bootstrap, posterior
+        Where asked for; samples are (N, p) in the keys' units.
+    effort
+        What it took.
+    data
+        The name of each file, and what it was taken for, in words.
+
+    See Also
+    --------
+    skisnow.identify
+    """
+
+    outcome: Outcome
+    reason: str
+    scenario: str
+    parameters: tuple[Identified, ...]
+    correlation: FloatArray
+    covariance: FloatArray
+    noise: tuple[float, ...] = ()
+    accuracy_is_stated: bool = True
+    points: int = 0
+    degrees_of_freedom: int = 0
+    warnings: tuple[str, ...] = ()
+    methods: tuple[str, ...] = ()
+    fits: tuple[Fit, ...] = ()
+    starts: tuple[tuple[FloatArray, float | None], ...] = ()
+    profiles: tuple[Profile, ...] = ()
+    bootstrap: FloatArray | None = None
+    posterior: FloatArray | None = None
+    effort: Effort = field(default_factory=Effort)
+    data: tuple[tuple[str, str], ...] = ()
+
+    def _facts(self) -> Facts:
+        rows = tuple((each.parameter.key, each.in_words) for each in self.parameters)
+        return Facts(f"{self.outcome.replace('_', ' ')}: {self.scenario}, {self.points} points", rows)
 
     @property
-    def widening(self) -> float:
-        """By how much the stated accuracy is too small: the root of χ² per degree of freedom, beyond chance."""
-        dof = self.degrees_of_freedom
-        if not self.problem.accuracy_is_stated or dof < 1 or chi2.sf(self.found.cost, dof) > SURE:
-            return 1.0
-        return float(np.sqrt(self.found.cost / dof))
+    def values(self) -> dict[str, float | None]:
+        """The best values by key."""
+        return {each.parameter.key: each.value for each in self.parameters}
 
-    @property
-    def estimates_noise(self) -> bool:
-        """Whether the noise is known from the residuals alone."""
-        return not self.problem.accuracy_is_stated or self.widening > 1.0
-
-    def known(self) -> Uncertainty | None:
-        """How well the parameters are known; None before there are derivatives."""
-        if self.found.jacobian is None:
-            return None
-        dof = float(self.degrees_of_freedom) if self.estimates_noise else None
-        return uncertainty(self.found.jacobian / self.widening, degrees_of_freedom=dof)
+    def __getitem__(self, key: str) -> Identified:
+        """One parameter by its full key or its short name."""
+        for each in self.parameters:
+            if key in (each.parameter.key, each.parameter.name):
+                return each
+        raise KeyError(key)
 
 
-def identification_of(
-    solution: Solution, title: str, warnings: tuple[str, ...], methods: tuple[str, ...]
-) -> Identification:
-    """Put everything together."""
-    problem, found = solution.problem, solution.found
-    values = problem.values(found.place)
-    known = solution.known()
-    interrupted = found.state == "interrupted"
-    observed = () if interrupted else problem.observations
-    outcome = _outcome(found, known)
-    p = len(problem.parameters)
-    slope = np.array([each.slope(values[each.key]) for each in problem.parameters])
-    with np.errstate(invalid="ignore"):
-        covariance = np.full((p, p), np.nan) if known is None else known.covariance * slope[:, None] * slope[None, :]
-    return Identification(
-        outcome=outcome,
-        reason=REASONS[outcome],
-        scenario=title,
-        parameters=tuple(_identified(solution, known)),
-        correlation=np.full((p, p), np.nan) if known is None else known.correlation,
-        covariance=covariance,
-        noise=tuple(noise * solution.widening for noise in problem.noise),
-        accuracy_is_stated=problem.accuracy_is_stated,
-        points=problem.points,
-        degrees_of_freedom=solution.degrees_of_freedom,
-        warnings=(*warnings, *_warned(solution, known), *(w for each in observed for w in each.warnings(values))),
-        methods=(*methods, *solution.methods, *_interval_words(solution)),
-        fits=tuple(fit for each in observed for fit in each.fits(values)),
-        starts=solution.tried,
-        effort=Effort(rounds=found.rounds),
-    )
+def identification_dict(found: Identification, *, files: Iterable[Path] = ()) -> dict[str, Any]:
+    """The contents of identification.json, and of ``skisnow identify --json``; nothing is rounded, nothing is NaN.
+
+    Its JSON Schema is schemas/identification.schema.json.
+
+    Parameters
+    ----------
+    found
+        What came out.
+    files
+        What it was read from, for their SHA-256.
+    """
+    keys = [each.parameter.key for each in found.parameters]
+    return {
+        "schema_version": 1,
+        "outcome": found.outcome,
+        "reason": found.reason,
+        "parameters": {each.parameter.key: _parameter_dict(each) for each in found.parameters},
+        "correlation": {
+            key: {other: json_number(found.correlation[i, j]) for j, other in enumerate(keys)}
+            for i, key in enumerate(keys)
+        },
+        "warnings": list(found.warnings),
+        "methods": list(found.methods),
+        "data": [{"name": name, "taken_for": kind} for name, kind in found.data],
+        "scenario": found.scenario,
+        "points": found.points,
+        "degrees_of_freedom": found.degrees_of_freedom,
+        "accuracy_is_stated": found.accuracy_is_stated,
+        "noise": [json_number(each) for each in found.noise],
+        "runs": [{"name": fit.name, "kind": fit.kind, "rms": _rms(fit)} for fit in found.fits],
+        "effort": {
+            "simulations": found.effort.simulations,
+            "kept_simulations": found.effort.kept_simulations,
+            "rounds": found.effort.rounds,
+            "wall_s": found.effort.wall_s,
+        },
+        "provenance": {
+            "files": {str(path): hashlib.sha256(path.read_bytes()).hexdigest() for path in files},
+            "skisnow": version("skisnow"),
+            "time": datetime.now(UTC).isoformat(timespec="seconds"),
+        },
+    }
 
 
-def too_few(problem: Problem, title: str, warnings: tuple[str, ...]) -> Identification:
-    """Nothing identified: fewer points than what is looked for."""
-    p = len(problem.parameters)
-    needed = p + problem.nuisances + (not problem.accuracy_is_stated)
-    warning = (
-        f"{problem.points} points are too few for {p} parameters"
-        f"{f' and {problem.nuisances} clocks' if problem.nuisances else ''}: at least {needed} are needed"
-        f"{'' if problem.accuracy_is_stated else ', one of them for the noise, which is not stated'}, and ten or more "
-        "are worth having. Free fewer parameters, measure more, or give priors"
-    )
-    return Identification(
-        outcome="too_few_points",
-        reason=REASONS["too_few_points"],
-        scenario=title,
-        parameters=tuple(Identified(parameter=each, identifiable=False) for each in problem.parameters),
-        correlation=np.full((p, p), np.nan),
-        covariance=np.full((p, p), np.nan),
-        accuracy_is_stated=problem.accuracy_is_stated,
-        points=problem.points,
-        degrees_of_freedom=problem.points - p - problem.nuisances,
-        warnings=(*warnings, warning),
-    )
+def _parameter_dict(each: Identified) -> dict[str, Any]:
+    parameter = each.parameter
+    return {
+        "value": each.value,
+        "interval": _pair(each.interval),
+        "standard_error": each.standard_error,
+        "profile_interval": _pair(each.profile_interval),
+        "bootstrap_interval": _pair(each.bootstrap_interval),
+        "posterior_interval": _pair(each.posterior_interval),
+        "unit": parameter.unit,
+        "start": parameter.start,
+        "lower": parameter.lower,
+        "upper": parameter.upper,
+        "prior_mean": parameter.prior_mean,
+        "prior_sd": parameter.prior_sd,
+        "at_bound": each.at_bound,
+        "identifiable": each.identifiable,
+    }
 
 
-def interval_of(parameter: Parameter, place: float, half: float) -> Interval:
-    """The interval of a place plus and minus half a width, in sizes, as values inside the bounds."""
-    lower, upper = bounds_of((parameter,))
-    ends = np.clip([place - half, place + half], lower[0], upper[0])
-    return parameter.value(float(ends[0])), parameter.value(float(ends[1]))
+def _pair(interval: Interval | None) -> list[float | None] | None:
+    return None if interval is None else list(interval)
 
 
-def _outcome(found: SearchState, known: Uncertainty | None) -> Outcome:
-    if found.state == "interrupted":
-        return "interrupted"
-    if known is not None and known.unknown.any():
-        return "not_identifiable"
-    return found.state
-
-
-def _identified(solution: Solution, known: Uncertainty | None) -> Iterator[Identified]:
-    problem, place = solution.problem, solution.found.place
-    lower, upper = bounds_of(problem.parameters)
-    for j, parameter in enumerate(problem.parameters):
-        value = parameter.value(float(place[j]))
-        at_bound = bool(min(place[j] - lower[j], upper[j] - place[j]) <= ON_BOUND)
-        error = None if known is None else float(known.standard_errors[j])
-        if error is None or known is None or not np.isfinite(error):
-            yield Identified(parameter=parameter, value=value, at_bound=at_bound, identifiable=known is None)
-            continue
-        yield Identified(
-            parameter=parameter,
-            value=value,
-            standard_error=error * parameter.slope(value),
-            interval=interval_of(parameter, float(place[j]), known.factor * error),
-            at_bound=at_bound,
-            identifiable=not bool(known.unknown[j]),
-        )
-
-
-def _warned(solution: Solution, known: Uncertainty | None) -> Iterator[str]:
-    parameters = solution.problem.parameters
-    few = few_points(solution.problem.points, len(parameters))
-    if few:
-        yield few
-    if known is not None:
-        yield from unknown_warnings(parameters, known)
-        yield from correlation_warnings(parameters, known.correlation)
-    yield from bound_warnings(parameters, [each.at_bound for each in _identified(solution, known)])
-    if solution.found.state == "interrupted":
-        yield "the search had not ended: intervals and correlations are those of a place on the way"
-        return
-    if solution.widening > 1.0:
-        yield noise_warning(solution.widening)
-    alike = _likeness(solution)
-    if alike is not None:
-        yield model_warning(alike)
-    yield from _starts_apart(solution)
-
-
-def _likeness(solution: Solution) -> float | None:
-    """Correlation of neighbouring residuals, where it is too large for chance."""
-    products = squares = pairs = 0.0
-    first = 0
-    for each in solution.problem.observations:
-        for length in each.series if each.kind != "marks" else ():
-            part = solution.found.residuals[first : first + length]
-            first += length
-            products += float(part[1:] @ part[:-1])
-            squares += float(part @ part) * (length - 1) / max(length, 1)
-            pairs += length - 1
-        first += sum(each.series) if each.kind == "marks" else 0
-    if pairs < 10 or squares == 0.0:
-        return None
-    alike = products / squares
-    return alike if alike > max(ALIKE, 3.0 / np.sqrt(pairs)) else None
-
-
-def _starts_apart(solution: Solution) -> Iterator[str]:
-    costs = [cost for _, cost in solution.tried if cost is not None]
-    missing = len(solution.tried) - len(costs)
-    if missing:
-        yield f"{missing} of {len(solution.tried)} starts could not be computed"
-    if len(costs) < 2:
-        return
-    dof = max(solution.degrees_of_freedom, 1)
-    unit = 1.0 if solution.problem.accuracy_is_stated else min(costs) / dof
-    apart = sum(cost - min(costs) > 4.0 * unit for cost in costs)
-    if apart:
-        yield (
-            f"{apart} of {len(costs)} searches ended elsewhere, with a worse fit: there are several minima; look at "
-            "the best values with care, or try more starts"
-        )
-
-
-def _interval_words(solution: Solution) -> Iterator[str]:
-    if solution.found.jacobian is None:
-        return
-    law = (
-        "Student's t with the noise that the residuals show" if solution.estimates_noise else "the normal distribution"
-    )
-    stated = "stated by the data" if solution.problem.accuracy_is_stated else "estimated"
-    yield f"95 % intervals from the curvature of the sum of squares, by {law}; accuracy {stated}"
-    several = len(solution.tried)
-    if several > 1:
-        yield f"{several} starts"
+def _rms(fit: Fit) -> dict[str, float | None]:
+    found: dict[str, float | None] = {}
+    for i, label in enumerate(fit.labels):
+        known = fit.residual[np.isfinite(fit.residual[:, i]), i]
+        found[label] = float(np.sqrt(np.mean(known**2))) if known.size else None
+    return found

@@ -11,12 +11,12 @@ import numpy.typing as npt
 
 from .._support.errors import FitError, ParameterError
 from .bootstrap import BootstrapBy, bootstrapped
-from .identification import Identification
+from .intervals import profiled, with_posterior
 from .parameter import bounds_of
 from .problem import Problem
-from .profiles import profiled, with_posterior
-from .result import Solution, identification_of
+from .result import Identification
 from .search import FINE, Search, SearchOptions, SearchState
+from .solution import Solution, identification_of
 
 FloatArray = npt.NDArray[np.float64]
 Progress = Callable[[str], None]

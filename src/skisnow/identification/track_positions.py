@@ -14,9 +14,8 @@ from .._support.errors import ParameterError
 from .._support.processes.kept_rows import Row
 from ..track.solution import inexact_sentence
 from ..track.track import Track
-from .near_limit import limit_of, nudged_tasks
-from .observations import Fit, Kind, Values, values_of_run
-from .run_simulation import RunTask
+from .problem import Fit, Kind, Values, values_of_run
+from .simulations import RunTask, limit_of, nudged_tasks
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -1,7 +1,8 @@
-"""How well parameters are known: from the curvature of the sum of squares, in standard deviations of the data."""
+"""Uncertainty of identified parameters from the curvature of the sum of squares, and warnings about it."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Final
 
@@ -10,6 +11,7 @@ import numpy.typing as npt
 from scipy.stats import norm, t
 
 from .._support.units import CONFIDENCE
+from .parameter import Parameter
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -19,6 +21,45 @@ WIDEST: Final = 1.5
 """Half an interval, in sizes of its parameter, from which on the data say nothing about it (modelling assumption)."""
 TAKES_PART: Final = 0.2
 """Share of a direction that nothing is known of, from which on a parameter takes part in it (modelling assumption)."""
+CLOSE: Final = 0.9
+"""Correlation beyond which two parameters are warned of."""
+_HELPS: Final = {
+    frozenset({"friction.mu_0", "drag.drag_area_m2"}): "both brake; only drag grows with the speed. Runs on slopes of "
+    "different inclination, slow parts and fast ones, and a known start speed tell them apart",
+    frozenset({"friction.mu_0", "friction.mu_1_s_per_m"}): "they differ only where the speed does. A wider range of "
+    "speeds tells them apart, or fix mu_1",
+    frozenset({"friction.mu_1_s_per_m", "drag.drag_area_m2"}): "both grow with the speed, one with its square. A wider "
+    "range of speeds on different inclinations tells them apart, or a drag area from a wind tunnel as a prior",
+    frozenset({"friction.mu_0", "slope.angle_deg"}): "a steeper slope drives as less friction does. Measure the "
+    "slope's inclination and fix it",
+    frozenset({"friction.mu_0", "start.speed_m_per_s"}): "early and late parts of the run must differ for it. Measure "
+    "the speed at the start, or the path for longer",
+    frozenset({"drag.drag_area_m2", "sledge.mass_kg"}): "drag acts as C_dA over mass. Weigh the skier and fix the mass",
+    frozenset({"drag.drag_area_m2", "drag.air_density_kg_per_m3"}): "only their product acts. Fix the air's density",
+    frozenset({"snow.S_f_N_per_mm2", "snow.H_V_N_per_mm3"}): "grip is S_f times the depth, and H_V sets the depth. "
+    "Depth and width of the groove that stayed, or a field test, give H_V",
+    frozenset(
+        {"snow.S_f_N_per_mm2", "snow.shear_displacement_mm"}
+    ): "an edge that holds gives way in proportion to u_y "
+    "over S_f. A run that slips, or a shear test with its turning angle, tells them apart",
+    frozenset(
+        {"snow.H_V_N_per_mm3", "sledge.edge_angle_deg"}
+    ): "a ski that cuts deeper bends more and turns tighter, as "
+    "one on a larger edge angle does. Measure the edge angle, or the depth of the groove",
+    frozenset({"start.heading_deg", "sledge.edge_angle_deg"}): "a turn begun further round looks like a tighter one. A "
+    "longer track tells them apart",
+}
+_ALONE: Final = {
+    "snow.S_f_N_per_mm2": "S_f shows only where the edge side-slips; an edge with grip bounds it from below. A run "
+    "that skids, a tighter turn or a shear test tells it",
+    "snow.H_V_N_per_mm3": "The path hardly depends on the depth of the groove. Depth and width of the groove, or a "
+    "penetration test, tell it",
+    "drag.drag_area_m2": "At these speeds drag is too small. A faster run tells it",
+    "snow.shear_displacement_mm": "An edge that hardly gives way shows no u_y. A tighter turn tells it, or a shear "
+    "test with its turning angle",
+    "snow.unloading_ratio": "The path hardly depends on how the groove springs back. Fix it",
+}
+_COMMON: Final = "fix one of them, give it a prior from elsewhere, or add a run in which they act differently"
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -106,3 +147,91 @@ def _groups(directions: FloatArray, length: FloatArray) -> tuple[tuple[int, ...]
         tuple(int(j) for j in np.flatnonzero((np.abs(each) > TAKES_PART) & (length > 0.0))) for each in directions
     ]
     return tuple(dict.fromkeys([*alone, *(group for group in together if group)]))
+
+
+def correlation_warnings(parameters: Sequence[Parameter], correlation: FloatArray) -> Iterator[str]:
+    """A sentence for each pair that the data hardly tell apart."""
+    for i, one in enumerate(parameters):
+        for j in range(i):
+            r = float(correlation[i, j])
+            if abs(r) > CLOSE:
+                yield (
+                    f"{parameters[j].name} and {one.name} are hardly told apart (correlation {r:.3f}): "
+                    f"{_help(parameters[j], one)}"
+                )
+
+
+def unknown_warnings(parameters: Sequence[Parameter], known: Uncertainty) -> Iterator[str]:
+    """A sentence for each parameter, or group of them, that the data leave open."""
+    named: set[int] = set()
+    for group in known.groups:
+        named.update(group)
+        if len(group) == 1:
+            alone = parameters[group[0]]
+            yield f"{alone.name} cannot be identified: it has no effect on these data. {_alone(alone)}"
+        else:
+            names = " and ".join(parameters[j].name for j in group)
+            helps = _help(parameters[group[0]], parameters[group[1]]) if len(group) == 2 else _COMMON
+            yield f"{names} cannot be told apart at all by these data: {helps}"
+    for j in np.flatnonzero(known.unknown).tolist():
+        if j not in named:
+            yield (
+                f"{parameters[j].name} is left open by these data: its interval is as wide as all values it could "
+                f"have. {_why_open(parameters, known, j)}"
+            )
+
+
+def bound_warnings(parameters: Sequence[Parameter], at_bound: Sequence[bool]) -> Iterator[str]:
+    """A sentence for each parameter on a bound."""
+    for each, there in zip(parameters, at_bound, strict=True):
+        if there:
+            yield (
+                f"{each.name} sits on its bound ({each.lower:g} to {each.upper:g}{f' {each.unit}' if each.unit else ''}"
+                "): its interval by curvature does not hold there; --profile gives one that does"
+            )
+
+
+def few_points(points: int, parameters: int) -> str | None:
+    """A warning where so few points are hardly a fit."""
+    if points >= max(10, 3 * parameters):
+        return None
+    return (
+        f"{points} points for {parameters} parameters are few: one bad point decides, and how well the model fits "
+        "cannot be seen. Ten or more are worth having"
+    )
+
+
+def noise_warning(ratio: float) -> str:
+    """Of residuals that are larger than their stated accuracy allows."""
+    return (
+        f"the residuals are {ratio:.2g} times what the data's stated accuracy allows: the accuracy is too good to be "
+        "true, or the model misses something. Intervals are widened by that factor"
+    )
+
+
+def model_warning(correlation: float) -> str:
+    """Of residuals that hang together."""
+    return (
+        f"neighbouring residuals are alike (correlation {correlation:.2f}): the model misses something, or the noise "
+        "wanders, and the intervals by curvature are too narrow; --bootstrap resamples stretches of residuals"
+    )
+
+
+def _why_open(parameters: Sequence[Parameter], known: Uncertainty, j: int) -> str:
+    """It has little effect, or others take its effect up."""
+    if not known.would_be_known(j):
+        return _alone(parameters[j])
+    close = [i for i, r in enumerate(known.correlation[j]) if i != j and abs(r) > CLOSE]
+    if not close:
+        return "It would be known if the others were: fix some of them, or give them priors from elsewhere"
+    names = " and ".join(parameters[i].name for i in close)
+    return f"It would be known if {names} were: what one does the other can do"
+
+
+def _help(one: Parameter, other: Parameter) -> str:
+    keys = frozenset(each.key.partition("@")[0] for each in (one, other))
+    return _HELPS.get(keys, _COMMON)
+
+
+def _alone(one: Parameter) -> str:
+    return _ALONE.get(one.key.partition("@")[0], "Fix it, or give it a prior from elsewhere")

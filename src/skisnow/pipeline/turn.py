@@ -11,7 +11,7 @@ from .._support.errors import ParameterError
 from .._support.processes.pool import workers_in_force
 from ..campaign import Campaign, read_campaign
 from ..estimation import Analysis, analyse
-from ..estimation.site_snow import site_of_campaign
+from ..estimation.sites import site_of_campaign
 from ..report.campaign.data import is_synthetic
 from ..report.figures.track_band import FEWEST
 from ..report.turn_chain import TurnChain
@@ -22,8 +22,7 @@ from ..simulation import Run
 from ..simulation.simulated_run import simulate
 from ..ski import Ski
 from ..snow.mean_snow import known_sites, measured_intervals, site_in_words
-from .ensemble import drawn_scenarios, ensemble_of
-from .priors import MEASURED, inputs_with
+from .ensemble import MEASURED, drawn_scenarios, ensemble_of, inputs_with
 
 UNLOADING_RATIO: Final = 10.0
 """k_u/H_V of hypoplastic snow whose unloading was not measured (modelling assumption: none is published)."""
@@ -65,7 +64,7 @@ def turn(
     priors
         In place of what the band counts beside H_V and S_f with the same key, or beside it. Without one, k_u/H_V and
         u_y are drawn from their measured intervals where the site has them and neither is given above; all else, and
-        they where they were not measured, from `skisnow.pipeline.priors.PRIORS`.
+        they where they were not measured, from `skisnow.pipeline.ensemble.PRIORS`.
     runs
         Of the ensemble, 3 or more.
     seed

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from .line import LineTurn, RacingLine, follower_line
-from .line_file import read_line, write_line
+from .line import LineTurn, RacingLine, follower_line, read_line, write_line
 from .point import PointRacer
 from .quickest import QuickestLine, quickest_line
 from .score import Score

@@ -9,11 +9,11 @@ from typing import Final, Literal, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from .by_surrogate import SurrogateSearch
 from .line import RacingLine, cut, with_numbers
 from .racers import LinePoint, turns_in
 from .score import NOT_PASSED
 from .search import Batches, Evaluated, Evaluations, least_of
+from .surrogate_search import SurrogateSearch
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 Progress: TypeAlias = Callable[[str], None]

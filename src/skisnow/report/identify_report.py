@@ -27,7 +27,7 @@ from .tables.identified import correlation_table, parameters_table
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
 
-    from ..identification.identification import Identification
+    from ..identification.result import Identification
     from .figures.drawing import Picture
 
 ANSWER: Final = "identification.json"

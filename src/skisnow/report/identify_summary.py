@@ -10,7 +10,7 @@ from .number_formatting import significant
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from ..identification.identification import Identification, Identified, Interval
+    from ..identification.result import Identification, Identified, Interval
 
 
 def identify_summary(found: Identification) -> str:

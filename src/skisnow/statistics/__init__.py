@@ -1,11 +1,10 @@
 """Least squares with intervals, bounded fits, nested F tests, resampling. Knows no snow."""
 
-from .anova import Anova, one_way_anova
 from .bounded import NonNegativeFit, non_negative_fit, non_negative_fits
 from .clusters import ClusterIntervals, cluster_intervals
 from .combined_uncertainty import expanded_factor, welch_satterthwaite
+from .f_tests import Anova, NestedTest, nested_f_test, one_way_anova
 from .linear import LinearFit, linear_fit, polynomial_fit
-from .nested import NestedTest, nested_f_test
 from .nonlinear import NonlinearFit, nonlinear_fit
 from .regress import Regress, RegressStatistics, regress
 from .resampling import percentile_interval, resampling_counts

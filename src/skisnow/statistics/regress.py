@@ -9,8 +9,8 @@ import numpy as np
 
 from .._support.errors import FitError, ParameterError
 from .combined_uncertainty import expanded_factor, require_confidence
+from .f_tests import f_ratio, f_tail
 from .least_squares import Columns, Factorisation, factorise, independent_columns, require_finite, standardised
-from .nested import f_ratio, f_tail
 
 if TYPE_CHECKING:
     import numpy.typing as npt

@@ -2,8 +2,7 @@
 
 from .run import StudyState, run_study, study_state
 from .shards import Shard, merge_shards, run_shard
-from .study import Study
-from .study_file import read_study
+from .study import Study, read_study
 from .table import StudyTable, read_table
 
 __all__ = [

@@ -1,27 +1,28 @@
-"""Running a study: what is finished is kept, what is missing is computed, the table is complete or not there."""
+"""Running a study: missing rows are computed, finished rows are stored, the complete table is written last."""
 
 from __future__ import annotations
 
+import hashlib
+import platform
 import tempfile
 from collections import deque
 from collections.abc import Iterator, Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from enum import Enum
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any, Protocol, Self
 
-from .._support.errors import OutputError, ParameterError
+from .._support.errors import OutputError, ParameterError, SkisnowError
 from .._support.processes.batch import Progress, compute_missing
 from .._support.processes.executors import ExecutorLike, require_executor
 from .._support.processes.kept_rows import KeptRows, Row, json_text
 from .._support.processes.pool import workers_in_force
 from .._support.staging import cannot_write
+from .._support.user_files import is_file
 from ..parameters import Quantity
-from .computing import StudyRows
-from .study import Study
-from .study_file import read_study
-from .table import MOST_ROWS_HELD, StudyTable, large_csv, read_table, stored_rows
-from .tally import FAILED, Tally
+from .points import Point
+from .study import Study, StudyModel, read_study
+from .table import FAILED, MOST_ROWS_HELD, StudyTable, Tally, large_csv, read_table, stored_rows
 from .writing import write_csv, write_table, writer_of
 
 
@@ -235,3 +236,52 @@ def _move(table: Path, place: Path) -> None:
         table.rename(place)
     except OSError as error:
         raise cannot_write(place, error) from error
+
+
+@dataclass(frozen=True, slots=True)
+class StudyRows:
+    """From a point to the values of its row.
+
+    Attributes
+    ----------
+    subject
+        Who answers.
+    columns
+        Of the table, without the study's fingerprint.
+    files
+        What the points read, with the hash of each.
+    """
+
+    subject: StudyModel
+    columns: tuple[str, ...]
+    files: tuple[tuple[Path, str], ...]
+
+    @classmethod
+    def of(cls, study: Study) -> Self:
+        """Of a study whose files are as they are now."""
+        files = [path.absolute() for path in study.subject.files(study.numbered)]
+        return cls(study.subject, study.columns[:-1], tuple((path, _hash(path)) for path in files))
+
+    def __call__(self, point: Point) -> list[Any]:
+        """Values in the order of the columns, None where a row has none."""
+        row = self.subject(point)
+        return [row.get(name) for name in self.columns]
+
+    def require_files(self) -> None:
+        """Refuse a worker on which a file is another one or is missing.
+
+        Raises
+        ------
+        SkisnowError
+            It names computer and file.
+        """
+        for path, wanted in self.files:
+            if _hash(path) != wanted:
+                raise SkisnowError(
+                    f"the worker on {platform.node()} has not the {path} of this study. Put the study into a folder "
+                    "that all computers share"
+                )
+
+
+def _hash(path: Path) -> str:
+    return hashlib.sha256(path.read_bytes()).hexdigest() if is_file(path) else "absent"

@@ -18,10 +18,8 @@ from .._support.processes.kept_rows import KeptRows, NumberedText
 from .._support.processes.pool import workers_in_force
 from .._support.user_files import own_json
 from ..parameters import Quantity
-from .computing import StudyRows
-from .run import StudyState, kept_rows, standing, written
-from .study import Study, place_for_previous
-from .study_file import read_study
+from .run import StudyRows, StudyState, kept_rows, standing, written
+from .study import Study, place_for_previous, read_study
 from .table import StudyTable
 from .writing import writer_of
 

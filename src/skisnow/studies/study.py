@@ -1,20 +1,28 @@
-"""A study: its points, who answers them, and where the table goes."""
+"""A study: its definition in STUDY.toml, its points, its model, and the path of its table."""
 
 from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
 from importlib.metadata import version
 from pathlib import Path
-from typing import Any, Protocol, TypeAlias
+from typing import Annotated, Any, Final, Protocol, TypeAlias
 
 from .._support.display import Facts, Shown
+from .._support.errors import ParameterError
 from .._support.processes.kept_rows import Row
-from .._support.user_files import is_file
-from ..parameters import Quantity
-from .points import ListedPoints, Point, Points
+from .._support.user_files import is_file, read_toml
+from ..parameters import InputValue, Quantity, checked_table, made, nearest
+from .points import Axis, ListedPoints, Point, Points, grid_points, hypercube_points
+from .subjects import CarveModel, ScenarioModel
+from .writing import WRITERS
+
+FORMS: Final = ("grid", "latin_hypercube")
+OWN_KEYS: Final[Mapping[str, tuple[str, ...]]] = {"grid": (), "latin_hypercube": ("n", "seed")}
+"""Keys of each form that are not inputs."""
+TOP_KEYS: Final = ("out", "scenario", "fixed", *FORMS)
 
 
 class StudyModel(Protocol):
@@ -124,3 +132,137 @@ def place_for_previous(out: Path) -> Path:
         count += 1
         place = out.with_name(f"{out.stem}.previous-{count}{out.suffix}")
     return place
+
+
+@dataclass(frozen=True, slots=True)
+class Sample:
+    """How many points a sample has, and what they are drawn with."""
+
+    n: Annotated[int, Quantity("n", "number of points", lowest=1)]
+    seed: Annotated[int, Quantity("seed", "a whole number that the points follow from", lowest=0)]
+
+
+def read_study(path: str | Path, *, subject: ModelReader = CarveModel) -> Study:
+    """Read a study.
+
+    Parameters
+    ----------
+    path
+        STUDY.toml. Paths in it are relative to its folder.
+    subject
+        What is studied where the file names no scenario.
+
+    Returns
+    -------
+    Study
+        Its points, not yet computed.
+
+    Raises
+    ------
+    ParameterError
+        The file cannot be read, a key is unknown (the nearest is named), missing, said twice or of the wrong kind, or
+        the inputs are not complete; or a value under [fixed] is outside its range, or names a ski or a snow that
+        cannot be read. Such a value of what varies is no error of the study but of its points.
+
+    See Also
+    --------
+    skisnow.study : computes them.
+
+    References
+    ----------
+    * McKay, Beckman and Conover (1979), "A comparison of three methods for selecting values of input variables in the
+      analysis of output from a computer code", Technometrics 21, 239-245, doi 10.1080/00401706.1979.10489755.
+    * The page docs/files/carve.md.
+    """
+    path = Path(path)
+    values = read_toml(path)
+    try:
+        return _study(path, values, subject)
+    except ParameterError as error:
+        raise ParameterError(f"{path}: {error}") from error
+
+
+def _study(path: Path, values: Mapping[str, Any], subject: ModelReader) -> Study:
+    for key in values:
+        if key not in TOP_KEYS:
+            raise ParameterError(f"{key} is no key of a study. {nearest(key, TOP_KEYS)}")
+    asked = _subject(path, values, subject)
+    form = _form(values)
+    fixed = _fixed(asked.named(_table(values, "fixed")), asked.keys)
+    varying = _table(values, form)
+    inputs = asked.named({name: value for name, value in varying.items() if name not in OWN_KEYS[form]})
+    axes = [_axis(form, name, value, asked.keys, fixed) for name, value in inputs.items()]
+    if not axes:
+        raise ParameterError(f"[{form}] holds no input that varies; write one, such as edge_angle_deg = [30, 45, 60]")
+    points = grid_points(axes, fixed) if form == "grid" else hypercube_points(axes, fixed, *_sample(varying))
+    asked.require_sound(points, fixed)
+    return Study(path, _out(path, values), asked, tuple(axis.key.name for axis in axes), points)
+
+
+def _subject(path: Path, values: Mapping[str, Any], subject: ModelReader) -> StudyModel:
+    if "scenario" not in values:
+        return subject(path.parent)
+    word = values["scenario"]
+    if not isinstance(word, str) or not word.strip():
+        raise ParameterError(f'scenario is {word!r}; it is a name or a file, such as scenario = "carved-46m"')
+    return ScenarioModel(path.parent, word)
+
+
+def _form(values: Mapping[str, Any]) -> str:
+    forms = [form for form in FORMS if form in values]
+    if len(forms) != 1:
+        found = "both are there" if forms else "neither is there"
+        raise ParameterError(f"a study has either [grid] or [latin_hypercube]; {found}")
+    return forms[0]
+
+
+def _table(values: Mapping[str, Any], name: str) -> Mapping[str, Any]:
+    table = values.get(name, {})
+    if not isinstance(table, dict):
+        raise ParameterError(f"{name} is {table!r}; it must be a table, begun by the line [{name}]")
+    return table
+
+
+def _fixed(table: Mapping[str, Any], keys: Mapping[str, Quantity]) -> Point:
+    fixed = {}
+    for name, value in table.items():
+        _require_key("fixed", name, keys)
+        if isinstance(value, dict) or (isinstance(value, list) and keys[name].kind != "three numbers"):
+            raise ParameterError(f"fixed.{name} is {value!r}; it takes one value. What varies stands in [grid]")
+        fixed[name] = _in_range(keys[name], value)
+    return fixed
+
+
+def _in_range(key: Quantity, value: object) -> InputValue:
+    try:
+        return key.in_range(value)
+    except ParameterError as error:
+        raise ParameterError(f"fixed.{error}") from error
+
+
+def _axis(form: str, name: str, value: object, keys: Mapping[str, Quantity], fixed: Point) -> Axis:
+    _require_key(form, name, (*OWN_KEYS[form], *keys))
+    if name in fixed:
+        raise ParameterError(f"{name} stands in [{form}] and in [fixed]. Remove one of them")
+    return Axis.of(keys[name], value)
+
+
+def _require_key(table: str, name: str, keys: Collection[str]) -> None:
+    if name not in keys:
+        raise ParameterError(f"{table}.{name} is no input. {nearest(name, keys)}")
+
+
+def _sample(table: Mapping[str, Any]) -> tuple[int, int]:
+    own = {name: table[name] for name in ("n", "seed") if name in table}
+    asked = made(Sample, checked_table(Sample, own, "[latin_hypercube]"))
+    return asked.n, asked.seed
+
+
+def _out(path: Path, values: Mapping[str, Any]) -> Path:
+    out = values.get("out")
+    if not isinstance(out, str) or not out.strip():
+        found = "is missing" if out is None else f"is {out!r}"
+        raise ParameterError(f'out {found}; it is the place of the table, such as out = "table.csv"')
+    if Path(out).suffix.lower() not in WRITERS:
+        raise ParameterError(f"out is {out!r}; the name of the table must end in {', '.join(WRITERS)}")
+    return path.parent / out

@@ -10,7 +10,7 @@ from ..campaign.reading.campaign_file import read_campaign_file
 from ..campaign.reading.table_forms import PENETRATION, SHEAR
 from ..campaign.store import Journals, replayed
 from ..estimation import quality_flags
-from ..estimation.quick_results import experiment_hardness, experiment_results
+from ..estimation.result_rows import experiment_hardness, experiment_results
 from ..estimation.screening import screened_both
 from ..report.curves import SeriesCurve, series_curves
 from .transfer import replayed_in_memory

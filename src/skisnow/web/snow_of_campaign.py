@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from .._support.errors import ParameterError
 from .._support.units import MM, N_PER_MM2, N_PER_MM3
-from ..estimation.results_text import results_json
+from ..estimation.results import results_json
 from ..report.campaign.page import RESULTS
 from .analysing import Choice, Refusal, numbers_of
 from .transfer import entry_files, kept_files

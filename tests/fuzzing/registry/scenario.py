@@ -10,10 +10,10 @@ from tempfile import TemporaryDirectory
 import numpy as np
 
 from skisnow import read_ski, snow_from_results
-from skisnow.identification.assembling import collected, values_to_begin_with
-from skisnow.identification.identifying import _clock
-from skisnow.identification.observations import keys_of_runs
-from skisnow.identification.parameter_table import parameter_table
+from skisnow.identification.data import collected, values_to_begin_with
+from skisnow.identification.fitting import _clock
+from skisnow.identification.parameter import parameter_table
+from skisnow.identification.problem import keys_of_runs
 from skisnow.identification.track_frame import _site
 from skisnow.scenario import load_scenario, read_profile, read_terrain, scenario_file, scenario_text
 from skisnow.scenario.boots_file import read_boots

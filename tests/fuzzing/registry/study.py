@@ -105,7 +105,7 @@ READERS = (
     Reader(
         name="study.toml", target="study.toml", files=lambda: {"study.toml": (_STUDY % "table.csv").encode()},
         read=lambda folder: repr(read_study(folder / "study.toml")), mutations=TOML,
-        covers=("studies.study_file:read_study",),
+        covers=("studies.study:read_study",),
     ),
     _table("table.csv", TABLE, "studies.table:_read_at_once", "studies.table:stored_rows"),
     _table("table.sqlite", SQLITE, "studies.rows:DatabaseRows.__init__"),

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from skisnow import read_course, read_track, track_summary
 from skisnow.identification.data import read_data
-from skisnow.racing.line_file import read_line
+from skisnow.racing.line import read_line
 from skisnow.track.course.gate_gaps import gate_gaps
 
 from ..binaries import BINARY, sealed_fit, sealed_nmea, sealed_ubx
@@ -74,12 +74,12 @@ READERS = (
     Reader(
         name="photo cells", target="cells.csv", files=lambda: {"cells.csv": _CELLS},
         read=lambda folder: read_data(folder / "cells.csv"), mutations=TABLE,
-        covers=("identification.data:_head", "identification.table_file:read_table"),
+        covers=("identification.data:_head", "identification.data_tables:read_table"),
     ),
     Reader(
         name="grooves", target="grooves.csv", files=lambda: {"grooves.csv": _GROOVES},
         read=lambda folder: read_data(folder / "grooves.csv"), mutations=TABLE,
-        covers=("identification.data:_head", "identification.table_file:read_table"),
+        covers=("identification.data:_head", "identification.data_tables:read_table"),
     ),
     Reader(
         name="course.csv", target="course.csv", files=_course_folder,
@@ -93,7 +93,7 @@ READERS = (
     ),
     Reader(
         name="line.csv", target="line.csv", files=_course_folder, read=_read_line, mutations=TABLE,
-        covers=("racing.line_file:read_line",),
+        covers=("racing.line:read_line",),
     ),
     Reader(
         name="gates.csv", target="one/gates.csv", files=lambda: {"one/gates.csv": _GATES, "other/gates.csv": _GATES},

@@ -17,10 +17,10 @@ from tempfile import TemporaryDirectory
 from skisnow._support.errors import SkisnowError
 from skisnow.campaign.reading.campaign_file import read_campaign_file
 from skisnow.campaign.reading.text import UnreadableTextError, decode
-from skisnow.identification.assembling import collected, values_to_begin_with
-from skisnow.identification.identifying import _clock
-from skisnow.identification.observations import keys_of_runs
-from skisnow.identification.parameter_table import parameter_table
+from skisnow.identification.data import collected, values_to_begin_with
+from skisnow.identification.fitting import _clock
+from skisnow.identification.parameter import parameter_table
+from skisnow.identification.problem import keys_of_runs
 from skisnow.identification.track_frame import _site
 from skisnow.scenario import scenario_file, scenario_text
 from skisnow.scenario.identify_section import given_parameters
@@ -29,7 +29,7 @@ from skisnow.scenario.reading import load_input
 from skisnow.ski import read_ski
 from skisnow.ski.monkeycam import monkeycam_shape
 from skisnow.snow.from_results import snow_from_results
-from skisnow.studies.study_file import read_study
+from skisnow.studies.study import read_study
 
 CAMPAIGN = b"""name = "Hafelekar"
 place = "Innsbruck"

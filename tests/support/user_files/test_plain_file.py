@@ -12,7 +12,7 @@ from skisnow._support.user_files import GivenError, plain_bytes, plain_text
 from skisnow.scenario import load_scenario, read_profile
 from skisnow.ski import read_ski
 from skisnow.snow.from_results import snow_from_results
-from skisnow.studies.study_file import read_study
+from skisnow.studies.study import read_study
 
 
 def test_bytes_up_to_the_limit_are_read_and_not_one_more(tmp_path: Path) -> None:

@@ -17,7 +17,7 @@ from ..._support.language import ENGLISH, require_language
 from ..._support.memory import paused_collector
 from ..._support.staging import staged, tidied, write_file
 from ...estimation import Analysis
-from ...estimation.results_text import results_json
+from ...estimation.results import results_json
 from ..dates import days_words, moment_words
 from ..number_formatting import counted, significant, whole
 from ..pictures import picture_files, write_picture

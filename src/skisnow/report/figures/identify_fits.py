@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from ...identification.observations import Fit
+    from ...identification.problem import Fit
 
 FloatArray = npt.NDArray[np.float64]
 _MARKERS: Final = ("o", "^", "s", "D", "v", "P", "X")

@@ -11,7 +11,7 @@ from .style import BLACK, BLUE, DOUBLE_MM, GREY, ORANGE, legend_below, new_figur
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from ...identification.identification import Identification
+    from ...identification.result import Identification
 
 
 def profiles_drawn(found: Identification) -> Figure:

@@ -9,7 +9,7 @@ import numpy as np
 from ..table import Column, Table
 
 if TYPE_CHECKING:
-    from ...identification.identification import Identification, Interval
+    from ...identification.result import Identification, Interval
 
 
 def parameters_table(found: Identification) -> Table:

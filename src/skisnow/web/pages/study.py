@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Final
 from nicegui import app, background_tasks, run, ui
 
 from ..._support.errors import ParameterError, SkisnowError
-from ...estimation.results_text import results_json
+from ...estimation.results import results_json
 from ...report.campaign.page import RESULTS
 from ..answering import redrawn_by
 from ..error_pages import error_sentence

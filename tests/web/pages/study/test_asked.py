@@ -10,7 +10,7 @@ import pytest
 
 from skisnow.campaign import read_campaign
 from skisnow.estimation import analyse, results_dict
-from skisnow.estimation.results_text import results_json
+from skisnow.estimation.results import results_json
 from skisnow.parameters import Quantity
 from skisnow.scenario.keys import SCENARIO_KEYS
 from skisnow.ski import read_ski

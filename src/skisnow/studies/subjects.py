@@ -1,4 +1,4 @@
-"""Studies of simulated runs: one scenario, some of its keys varied, one row for each run."""
+"""Models of a study: carved turns (`skisnow carve`) or simulated runs of a scenario."""
 
 from __future__ import annotations
 
@@ -14,6 +14,11 @@ from .._support.errors import ParameterError, SkisnowError
 from .._support.json_number import json_number
 from .._support.processes.kept_rows import Row
 from .._support.units import MM
+from ..carving.answer import CarveAnswer, answered
+from ..carving.answer_dict import inputs_dict, scalars_dict
+from ..carving.keys import CARVE_KEYS
+from ..carving.limits import require_clamp
+from ..carving.question import carve_question, require_complete
 from ..parameters import Quantity
 from ..scenario import ScenarioFile
 from ..scenario.built_in import scenario_names, scenario_place
@@ -22,10 +27,34 @@ from ..scenario.reading import build_input, input_files, load_input
 from ..scenario.resolution import ScenarioInput
 from ..simulation.run import Run
 from ..simulation.run_summary import end_dict, energies_dict, least_turn_radius, radii_dict, run_warnings
+from ..ski.beam.clamped import CLAMP_LENGTH
 from ..ski.sources import Sources
+from ..snow.properties import require_stress
 from .points import Point, Points
 
-RESULTS: Final = (
+CARVE_RESULTS: Final = (
+    "outcome",
+    "holds",
+    "side_force_N",
+    "side_force_limit_N",
+    "total_force_N",
+    "turn_radius_boot_m",
+    "turn_radius_boot_other_spread_m",
+    "turn_radius_chord_m",
+    "contact_length_m",
+    "afterbody_depth_ratio",
+    "greatest_edge_depth_mm",
+    "greatest_force_per_length_N_per_m",
+    "boot_pitch_moment_Nm",
+    "residual_force_N",
+    "residual_moment_Nm",
+    "sidecut_radius_of_three_widths_m",
+    "ski_name",
+    "warnings",
+    "reason",
+)
+"""Columns behind the inputs; `outcome` is "error" where a point could not be asked, and `reason` says why."""
+RUN_RESULTS: Final = (
     "outcome",
     "run_length_m",
     "simulated_s",
@@ -57,9 +86,85 @@ RESULTS: Final = (
     "reason",
 )
 """Columns behind the keys; `outcome` is "error" where a run could not be asked for, and `reason` says why."""
-
 MOST_TRIED: Final = 100
 """Points that are tried, before anything is computed, for one that can be asked (assumption: milliseconds each)."""
+
+
+@dataclass(slots=True, repr=False)
+class CarveModel(ShownFields):
+    """Answers points with one row each. Relative paths start at `folder`."""
+
+    folder: Path
+    _sources: Sources = field(init=False)
+
+    def __post_init__(self) -> None:
+        self._sources = Sources(self.folder)
+
+    @property
+    def keys(self) -> Mapping[str, Quantity]:
+        """The inputs by name."""
+        return CARVE_KEYS
+
+    @property
+    def results(self) -> tuple[str, ...]:
+        """The columns of results."""
+        return CARVE_RESULTS
+
+    def named(self, table: Mapping[str, Any]) -> dict[str, Any]:
+        """The values of a table of the study by their names, which they have already."""
+        return dict(table)
+
+    def require_sound(self, points: Points, fixed: Point) -> None:
+        """Refuse a study that lacks an input, names the snow in two ways, or whose fixed ski or snow cannot be had."""
+        carves = points.distinct("at_rest") != [True]
+        point = next(point for point in points if not (carves and point.get("at_rest") is True))
+        require_complete(point)
+        self._require_snow(point, fixed, carves=carves)
+        if "ski" in fixed:
+            ski, _ = self._sources.ski(fixed["ski"])
+            if "clamp_length_m" in fixed or "clamp_length_m" not in points[0]:
+                require_clamp(ski, fixed.get("clamp_length_m", CLAMP_LENGTH))
+
+    def _require_snow(self, point: Point, fixed: Point, *, carves: bool) -> None:
+        """The snow that all points share must be there, with S_f from one side and not from both."""
+        named = {"published", "results", "site"} & set(point)
+        if named and named <= set(fixed):
+            require_stress(self._sources.named_snow(fixed), point.get("S_f_N_per_mm2"), carves=carves)
+
+    def files(self, points: Points) -> list[Path]:
+        """Ski files and results files."""
+        skis = (self._sources.ski_file(word) for word in points.distinct("ski"))
+        return [path for path in skis if path] + [self._sources.path(word) for word in points.distinct("results")]
+
+    def __call__(self, point: Point) -> Row:
+        """One row; whatever is wrong with a point stands in it."""
+        try:
+            return _carve_row(answered(carve_question(point), sources=self._sources))
+        except SkisnowError as error:
+            return _failure(point, str(error))
+        except Exception as error:  # a study never stops for one point
+            return _failure(point, f"unexpected {type(error).__name__}: {error}")
+
+
+def _carve_row(answer: CarveAnswer) -> Row:
+    equilibrium = answer.equilibrium
+    scalars = scalars_dict(equilibrium)
+    depth, force = equilibrium.edge_depth, equilibrium.force_per_length
+    return {
+        **inputs_dict(answer),
+        **{name: scalars[name] for name in CARVE_RESULTS if name in scalars},
+        "greatest_edge_depth_mm": None if depth is None else float(np.max(depth)) / MM,
+        "greatest_force_per_length_N_per_m": None if force is None else float(np.max(force)),
+        "sidecut_radius_of_three_widths_m": json_number(answer.ski.sidecut_radius_of_three_widths),
+        "ski_name": answer.ski.name,
+        "warnings": "; ".join(answer.warnings),
+        "reason": equilibrium.remedy,
+    }
+
+
+def _failure(point: Point, reason: str) -> Row:
+    given: dict[str, Any] = {name: key.default for name, key in CARVE_KEYS.items()} | point
+    return {**given, **dict.fromkeys(CARVE_RESULTS), "outcome": "error", "warnings": "", "reason": reason}
 
 
 @dataclass(slots=True, repr=False)
@@ -91,7 +196,7 @@ class ScenarioModel(ShownFields):
     @property
     def results(self) -> tuple[str, ...]:
         """The columns of results."""
-        return RESULTS
+        return RUN_RESULTS
 
     def named(self, table: Mapping[str, Any]) -> dict[str, Any]:
         """Values of a table of the study under full names: sections, dotted names, and names without their section."""
@@ -138,20 +243,20 @@ class ScenarioModel(ShownFields):
             return self._failure(point, f"unexpected {type(error).__name__}: {error}")
         if run.outcome == "interrupted":  # half a run is no row: the study is what was interrupted
             raise KeyboardInterrupt
-        return _row(asked, run)
+        return _run_row(asked, run)
 
     def _asked(self, point: Point) -> ScenarioFile:
         return build_input(self._base.changed(point, folder=self.folder), sources=self._sources)
 
     def _failure(self, point: Point, reason: str) -> Row:
         given = {name: self._base.values.get(name, key.default) for name, key in SCENARIO_KEYS.items()} | point
-        return {**given, **dict.fromkeys(RESULTS), "outcome": "error", "warnings": "", "reason": reason}
+        return {**given, **dict.fromkeys(RUN_RESULTS), "outcome": "error", "warnings": "", "reason": reason}
 
 
-def _row(asked: ScenarioFile, run: Run) -> Row:
+def _run_row(asked: ScenarioFile, run: Run) -> Row:
     known = run.speed[np.isfinite(run.speed)]
     depth = run.skis.edge_depth[np.isfinite(run.skis.edge_depth)]
-    energies = {name: value for name, value in energies_dict(run).items() if name in RESULTS}
+    energies = {name: value for name, value in energies_dict(run).items() if name in RUN_RESULTS}
     return {
         **asked.values,
         "outcome": run.outcome,

@@ -1,4 +1,4 @@
-"""From a scenario and data to identified parameters."""
+"""Identification of the parameters of a scenario from measurements."""
 
 from __future__ import annotations
 
@@ -20,21 +20,16 @@ from ..scenario.identify_section import given_parameters
 from ..scenario.keys import free_keys
 from ..scenario.reading import build_input, load_input
 from ..scenario.resolution import ScenarioInput
-from .assembling import Collected, collected, values_to_begin_with
 from .bootstrap import BootstrapBy, require_bootstrap
-from .data import Data
-from .fingerprint import fingerprint
+from .data import Collected, Data, collected, fingerprint, values_to_begin_with
 from .groove_residuals import GrooveResiduals, require_groove_stays
 from .grooves_alone import grooves_alone
-from .identification import Effort, Identification
-from .observations import Observations, keys_of_runs
-from .parameter import Parameter
-from .parameter_table import fixed_by_given, parameter_table
+from .parameter import Parameter, fixed_by_given, parameter_table
 from .photo_cell_times import PhotoCellTimes
-from .problem import problem_of
-from .result import too_few
-from .run_simulation import RunSimulation
-from .simulations import Simulations
+from .problem import Observations, keys_of_runs, problem_of
+from .result import Effort, Identification
+from .simulations import RunSimulation, Simulations
+from .solution import too_few
 from .solving import Request, solved
 from .track_positions import TrackPositions
 

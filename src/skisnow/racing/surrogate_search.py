@@ -1,4 +1,4 @@
-"""A search that asks a Gaussian process where to evaluate next: for evaluations that take seconds."""
+"""Search that chooses the next lines by a Gaussian process, for evaluations that take seconds."""
 
 from __future__ import annotations
 
@@ -11,8 +11,8 @@ import numpy as np
 import numpy.typing as npt
 from scipy.stats import qmc
 
-from .prospects import Prospects, passed_of
 from .search import Batches, Evaluated, optimiser_within
+from .surrogate import Prospects, passed_of
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 

@@ -1,0 +1,264 @@
+"""Rows of results.json: experiments, candidate models, and F tests between the models."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any, Final, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from .._support.units import MM, MM2, MM3, N_PER_MM2, N_PER_MM3
+from .hardness import DEFINITIONS, ReadingUncertainty, hardness, hardness_at_largest_load
+from .models import MODELS
+from .readings import readings_of
+from .screening import screened_both
+from .shear import shear_displacement, shear_stress
+from .unloading import NOT_FALLING, unloading
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from ..campaign.records import Campaign, PenetrationTests, ShearTests
+    from ..geometry import GeometryForm
+    from .hardness import Hardness
+    from .model_choice import NestedRows
+    from .models import Model, ModelFit
+    from .parts import ModelTable, PenetrationAnalysis
+    from .screening import Screened
+    from .shear import ShearDisplacement, ShearStress
+    from .unloading import Unloading
+
+FloatArray = npt.NDArray[np.float64]
+Json: TypeAlias = dict[str, Any]
+_SAME_PERCENT: Final = 0.005
+"""Rmse that differ by less are reported as the same."""
+
+
+def experiment_results(
+    campaign: Campaign, *, geometry: GeometryForm = "extended", screened: tuple[Screened, Screened] | None = None
+) -> Json:
+    """The experiments of a campaign as results.json has them, without its model table and regressions.
+
+    Parameters
+    ----------
+    campaign
+        As it is now; it may be unfinished.
+    geometry
+        As in `skisnow.estimation.analyse`.
+    screened
+        What `screened_both` gives, where that is at hand.
+
+    Returns
+    -------
+    ``{"penetration": {"experiments": [...]}, "shear": {"experiments": [...]}}``, number for number as in results.json.
+    """
+    penetration, shear = [], []
+    pressed, cut = screened or screened_both(campaign, geometry=geometry)
+    if (tests := campaign.penetration) is not None:
+        readings = readings_of(tests, campaign.tools, geometry=geometry)
+        uncertainty = ReadingUncertainty(campaign.depth_uncertainty or 0.0, campaign.load_uncertainty or 0.0)
+        found = {symbol: hardness(readings, definition, uncertainty) for symbol, definition in DEFINITIONS.items()}
+        back = unloading(tests, readings, found["H_V"], uncertainty, pressed.flags[NOT_FALLING])
+        penetration = penetration_experiments(tests, pressed, found, back)
+    if (sheared := campaign.shear) is not None:
+        shear = shear_experiments(sheared, cut, shear_stress(campaign, sheared), shear_displacement(campaign, sheared))
+    answer: Json = without_nan({"penetration": {"experiments": penetration}, "shear": {"experiments": shear}})
+    return answer
+
+
+def experiment_hardness(campaign: Campaign, *, geometry: GeometryForm = "extended") -> FloatArray:
+    """H_V of each penetration experiment (N/m³), NaN where there is none; (m,)."""
+    if campaign.penetration is None:
+        return np.zeros(0)
+    readings = readings_of(campaign.penetration, campaign.tools, geometry=geometry)
+    return hardness_at_largest_load(readings, DEFINITIONS["H_V"])
+
+
+def without_nan(value: Any) -> Any:
+    """Replace every number that is not finite by None, and every interval that is not known at both ends as a whole."""
+    if isinstance(value, Rows):
+        return value
+    if isinstance(value, float):
+        return value if math.isfinite(value) else None
+    if isinstance(value, dict):
+        return {key: without_nan(item) for key, item in value.items()}
+    if isinstance(value, list):
+        cleaned = [without_nan(item) for item in value]
+        pair = len(value) == 2 and all(isinstance(item, float) for item in value)
+        return None if pair and None in cleaned else cleaned
+    return value
+
+
+class Rows(list[Json]):
+    """Rows made from columns by `column_rows`, in which what does not exist already is None."""
+
+
+def column_rows(columns: dict[str, list[Any]]) -> Rows:
+    """One row for each entry of the columns."""
+    keys = tuple(columns)
+    return Rows(dict(zip(keys, values, strict=True)) for values in zip(*columns.values(), strict=True))
+
+
+def finite_or_none(values: FloatArray) -> list[Any]:
+    """A column of numbers (m,) or intervals (m, 2) with None for what is not finite."""
+    listed: list[Any] = values.tolist()
+    finite = np.isfinite(values).reshape(len(values), -1).all(axis=1)
+    for index in np.flatnonzero(~finite).tolist():
+        listed[index] = None
+    return listed
+
+
+def penetration_experiments(
+    tests: PenetrationTests, screened: Screened, hardness: Mapping[str, Hardness], unloading: Unloading
+) -> list[Json]:
+    """The rows ``penetration.experiments``: of each series what it was, its flags, its hardness, its unloading."""
+    columns: dict[str, list[Any]] = {
+        "experiment": list(tests.experiment),
+        "site": list(tests.site),
+        "tool": list(tests.tool),
+        "edge_angle_deg": whole_degrees(tests.edge_angle),
+        "n_loads": np.diff(tests.first).tolist(),
+        "used": screened.used.tolist(),
+        "flags": screened.codes(),
+    }
+    for symbol, definition in DEFINITIONS.items():
+        columns[definition.key] = finite_or_none(hardness[symbol].value / definition.si)
+    for symbol, definition in DEFINITIONS.items():
+        columns[f"{symbol}_interval_{definition.unit_key}"] = finite_or_none(hardness[symbol].interval / definition.si)
+    return column_rows(columns | _unloading_columns(unloading))
+
+
+def _unloading_columns(found: Unloading) -> dict[str, list[Any]]:
+    return {
+        "n_unloading": found.n_readings.tolist(),
+        "unloading_ratio": finite_or_none(found.unloading_ratio),
+        "unloading_ratio_interval": finite_or_none(found.unloading_ratio_interval),
+        "rebound_ratio": finite_or_none(found.rebound_ratio),
+        "rebound_ratio_interval": finite_or_none(found.rebound_ratio_interval),
+        "k_u_N_per_mm3": finite_or_none(found.unloading_stiffness / N_PER_MM3),
+        "k_u_interval_N_per_mm3": finite_or_none(found.unloading_stiffness_interval / N_PER_MM3),
+    }
+
+
+def whole_degrees(angle: FloatArray) -> list[float]:
+    """Degrees as a person wrote them: the last bits that the conversion to radians costs are taken off."""
+    degrees: list[float] = np.round(np.degrees(angle), 11).tolist()
+    return degrees
+
+
+def shear_experiments(
+    tests: ShearTests, screened: Screened, stress: ShearStress, displacement: ShearDisplacement
+) -> list[Json]:
+    """The rows ``shear.experiments``: of each test what it was, its flags, its force and stress."""
+    return column_rows(
+        {
+            "experiment": list(tests.experiment),
+            "site": list(tests.site),
+            "plate": list(tests.plate),
+            "edge_angle_deg": whole_degrees(tests.edge_angle),
+            "F_t_N": finite_or_none(stress.force),
+            "S_f_N_per_mm2": finite_or_none(stress.value / N_PER_MM2),
+            "S_f_interval_N_per_mm2": finite_or_none(stress.interval / N_PER_MM2),
+            "used": screened.used.tolist(),
+            "flags": screened.codes(),
+            "n_turning": displacement.n_readings.tolist(),
+            "shear_displacement_mm": finite_or_none(displacement.value / MM),
+            "shear_displacement_interval_mm": finite_or_none(displacement.interval / MM),
+        }
+    )
+
+
+def model_rows(table: ModelTable | None) -> list[Json]:
+    """The rows ``penetration.models``: the nine candidate models, without numbers where there are no data."""
+    if table is None:
+        return _no_models()
+    return [_model(fit, table.intervals.get(fit.model)) for fit in table.fits]
+
+
+def _model_head(model: Model) -> Json:
+    return {"id": model.id, "hardness": model.hardness, "a": model.a, "b": model.b}
+
+
+def _no_models() -> list[Json]:
+    nothing = dict.fromkeys(("a0", "a1", "b0", "b1"))
+    return [
+        _model_head(model)
+        | nothing
+        | {"n": 0, "n_series": 0, "n_parameters": model.n_parameters}
+        | {"rmse_N": None, "rmse_dof_N": None, "rmse_free_N": None, "at_bound": [], "intervals": dict(nothing)}
+        for model in MODELS
+    ]
+
+
+def _model(fit: ModelFit, intervals: FloatArray | None) -> Json:
+    """A row in the units of the table: A in mm², V in mm³, H in N/mm, N/mm² or N/mm³."""
+    si = DEFINITIONS[fit.model.hardness].si
+    factor_a, factor_b = si * MM2, si * MM3
+    factors = {"a0": factor_a, "a1": factor_a, "b0": factor_b, "b1": factor_b}
+    fitted = _fitted_coefficients(fit.model)
+    pairs: dict[str, list[float] | None] = dict.fromkeys(factors)
+    if intervals is not None:
+        for index, (name, factor) in enumerate(factors.items()):
+            pairs[name] = (intervals[index] * factor).tolist() if name in fitted else None
+    return (
+        _model_head(fit.model)
+        | {name: getattr(fit, name) * factor for name, factor in factors.items()}
+        | {
+            "n": fit.n,
+            "n_series": fit.n_series,
+            "n_parameters": fit.n_parameters,
+            "rmse_N": fit.rmse,
+            "rmse_dof_N": fit.rmse_dof,
+            "rmse_free_N": fit.rmse_free,
+            "at_bound": list(fit.at_bound),
+            "intervals": pairs,
+        }
+    )
+
+
+def _fitted_coefficients(model: Model) -> set[str]:
+    fitted = set()
+    for name, term in (("a", model.a), ("b", model.b)):
+        if term in ("constant", "linear"):
+            fitted.add(f"{name}0")
+        if term == "linear":
+            fitted.add(f"{name}1")
+    return fitted
+
+
+def nested_row(row: NestedRows) -> Json:
+    """A row of ``penetration.tests``: the F test of a model against one that it contains."""
+    return {
+        "full": row.full.id,
+        "reduced": row.reduced.id,
+        "F": row.F,
+        "df": [row.df1, row.df2],
+        "p": row.p,
+        "rmse_change_percent": row.rmse_change_percent,
+        "valid_classically": row.valid_classically,
+    }
+
+
+def selected_model(found: PenetrationAnalysis) -> Json | None:
+    """``penetration.selected``: the id of the chosen model, and why it was chosen."""
+    if found.selected is None or found.table is None:
+        return None
+    best = min(found.table.fits, key=lambda fit: fit.rmse)
+    chosen = found.selected
+    return {"id": chosen.model.id, "reason": _reason(chosen, best)}
+
+
+def _reason(chosen: ModelFit, best: ModelFit) -> str:
+    if chosen.model == best.model:
+        return (
+            f"The smallest rmse of the nine candidate models, {chosen.rmse:.4g} N; no model with fewer fitted "
+            f"parameters ({chosen.n_parameters} here) comes within 5 % of it."
+        )
+    more = 100.0 * (chosen.rmse / best.rmse - 1.0) if best.rmse > 0 else 0.0
+    return (
+        f"The simplest of the nine candidate models whose rmse is within 5 % of the best: {chosen.rmse:.4g} N "
+        f"with fitted parameters: {chosen.n_parameters}, against {best.rmse:.4g} N of "
+        f"{best.model.id} with {best.n_parameters}, "
+        f"{f'{more:.2g} % more' if more >= _SAME_PERCENT else 'which is the same'}."
+    )

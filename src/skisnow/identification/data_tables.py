@@ -1,0 +1,333 @@
+"""CSV tables of photo-cell times and of measured grooves, with the unit in each column name."""
+
+from __future__ import annotations
+
+import difflib
+import math
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated, Final
+
+import numpy as np
+import numpy.typing as npt
+
+from .._support.csv_rows import MOST_CSV_BYTES
+from .._support.display import ShownFields
+from .._support.errors import ParameterError
+from .._support.spreadsheet_text import number
+from .._support.user_files import plain_bytes
+from ..parameters import Quantity, own_quantities
+from ..track.readers.text import cells_of, decimal_mark_of, require_width, text_of
+
+FloatArray = npt.NDArray[np.float64]
+FEWEST_FOR_SCATTER: Final = 3
+
+
+@dataclass(frozen=True, slots=True)
+class TableFile:
+    """Cells as they stand in a file.
+
+    Attributes
+    ----------
+    name
+        The file's, for messages.
+    columns
+        Names in the header.
+    rows
+        Line number and cells of each line that is not blank.
+    header_row
+        Line number of the header.
+    mark
+        Decimal point or comma.
+    """
+
+    name: str
+    columns: tuple[str, ...]
+    rows: tuple[tuple[int, tuple[str, ...]], ...]
+    header_row: int = 1
+    mark: str = "."
+
+    def require(self, columns: tuple[str, ...]) -> None:
+        """Refuse a table without these columns, or without rows."""
+        missing = [name for name in columns if name not in self.columns]
+        if missing:
+            raise ParameterError(
+                f"{self.name}, row {self.header_row}: there is no column {missing[0]} among {', '.join(self.columns)}; "
+                f"needed are {', '.join(columns)}"
+            )
+        if not self.rows:
+            raise ParameterError(f"{self.name} has no rows below its header")
+
+    def require_no_slip(self, known: tuple[str, ...]) -> None:
+        """Refuse a column that is named nearly like one that is known and not there: it would not be read."""
+        absent = [name for name in known if name not in self.columns]
+        for name in self.columns:
+            near = difflib.get_close_matches(name.lower(), absent, n=1, cutoff=0.75) if name not in known else []
+            if near:
+                raise ParameterError(
+                    f"{self.name}, row {self.header_row}: there is a column {name}; is {near[0]} meant? Name it so, or "
+                    "something quite different if it is not to be read"
+                )
+
+    def texts(self, column: str) -> list[str]:
+        """The cells of a column, which must not be empty."""
+        place = self.columns.index(column)
+        found = []
+        for row, cells in self.rows:
+            text = cells[place] if place < len(cells) else ""
+            if not text:
+                raise ParameterError(f"{self.name}, row {row}, column {column}: the cell is empty")
+            found.append(text)
+        return found
+
+    def numbers(self, quantity: Quantity) -> FloatArray:
+        """The numbers of a column, in the unit of its name; NaN where a cell may be empty and is."""
+        column = quantity.name
+        place = self.columns.index(column)
+        found = []
+        for row, cells in self.rows:
+            text = cells[place] if place < len(cells) else ""
+            if not text and not quantity.needed:
+                found.append(math.nan)
+                continue
+            value = number(text, self.mark)
+            if not math.isfinite(value):
+                raise ParameterError(
+                    f"{self.name}, row {row}, column {column}: {text!r} is no finite number; write one with a decimal "
+                    f"{'comma, as others in the file' if self.mark == ',' else 'point'}, without its unit"
+                )
+            try:
+                quantity.in_range(value)
+            except ParameterError as error:
+                raise ParameterError(f"{self.name}, row {row}: {error}") from None
+            found.append(value)
+        return np.array(found)
+
+
+def read_table(path: Path) -> TableFile:
+    """Read a table as spreadsheet programs write it: commas, semicolons or tabs, decimal points or commas.
+
+    Raises
+    ------
+    ParameterError, FieldDataError
+        The file cannot be read, is no text, or is empty.
+    """
+    data = plain_bytes(path, most_bytes=MOST_CSV_BYTES)
+    cells = cells_of(text_of(data, str(path)), str(path))
+    require_width(cells, str(path))
+    mark = decimal_mark_of((cell for row in cells.rows for cell in row), cells.separator)
+    return TableFile(str(path), cells.header, tuple(zip(cells.lines, cells.rows, strict=True)), cells.header_line, mark)
+
+
+@dataclass(frozen=True, slots=True)
+class Passage:
+    """A row of a file of photo cells."""
+
+    run: Annotated[str, Quantity("run", "name of the run")]
+    station: Annotated[float, Quantity("station_m", "distance from the start down, which no cell lies before")]
+    time: Annotated[float, Quantity("time_s", "of the passage")]
+    time_sd: Annotated[float | None, Quantity("time_sd_s", "standard deviation of it", lowest=0.0, above=True)] = None
+
+
+_PASSAGE: Final = own_quantities(Passage)
+CELL_COLUMNS: Final = tuple(each.name for each in _PASSAGE if each.needed)
+
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class PhotoCellRun(ShownFields):
+    """The passages of one run.
+
+    Attributes
+    ----------
+    name
+        Of the run.
+    station : (n,) m
+        Distance from the start down to the cell, along the slope's surface, rising.
+    time : (n,) s
+        Of the passage, rising.
+    time_sd : (n,) s or None
+        Standard deviation of each time; None where none is stated.
+    """
+
+    name: str
+    station: FloatArray
+    time: FloatArray
+    time_sd: FloatArray | None = None
+
+    def __post_init__(self) -> None:
+        if len(self.station) < 1 or self.station.shape != self.time.shape:
+            raise ParameterError(f"run {self.name}: {len(self.station)} cells and {len(self.time)} times")
+        if self.station[0] < 0.0:
+            raise ParameterError(
+                f"run {self.name}: station {self.station[0]:g} m lies before the start; they count from the "
+                "scenario's start down"
+            )
+        for what, values, unit in (("station", self.station, "m"), ("time", self.time, "s")):
+            wrong = np.flatnonzero(np.diff(values) <= 0.0)
+            if wrong.size:
+                first, second = values[wrong[0]], values[wrong[0] + 1]
+                raise ParameterError(
+                    f"run {self.name}: {what} {second:g} {unit} follows {first:g} {unit}; both must rise "
+                    "from cell to cell. Sort the rows of the run, and look for a clock that was set back"
+                )
+        if self.time_sd is not None and not np.all(self.time_sd > 0.0):
+            raise ParameterError(f"run {self.name}: time_sd_s must be above 0")
+
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class PhotoCells(ShownFields):
+    """All runs of a file."""
+
+    name: str
+    runs: tuple[PhotoCellRun, ...]
+
+
+def read_photo_cells(path: str | Path) -> PhotoCells:
+    """Read ``run, station_m, time_s[, time_sd_s]``, one row for each passage.
+
+    Raises
+    ------
+    ParameterError
+        The file cannot be read, a column is missing, a cell is no number (row and column are named), distances or times
+        do not rise, or only some rows of a run state a standard deviation.
+    """
+    return photo_cells_of(read_table(Path(path)))
+
+
+def photo_cells_of(table: TableFile) -> PhotoCells:
+    """The runs of a table that was read."""
+    table.require(CELL_COLUMNS)
+    table.require_no_slip(tuple(each.name for each in _PASSAGE))
+    names = table.texts("run")
+    _, station_m, time_s, time_sd_s = _PASSAGE
+    station, time = table.numbers(station_m), table.numbers(time_s)
+    sd = table.numbers(time_sd_s) if time_sd_s.name in table.columns else None
+    runs = []
+    for name in dict.fromkeys(names):
+        rows = np.array([each == name for each in names])
+        try:
+            runs.append(PhotoCellRun(name, station[rows], time[rows], _sd_of_run(name, sd, rows)))
+        except ParameterError as error:
+            raise ParameterError(f"{table.name}: {error}") from error
+    return PhotoCells(table.name, tuple(runs))
+
+
+def _sd_of_run(name: str, sd: FloatArray | None, rows: npt.NDArray[np.bool_]) -> FloatArray | None:
+    if sd is None or np.isnan(sd[rows]).all():
+        return None
+    if np.isnan(sd[rows]).any():
+        raise ParameterError(f"run {name}: time_sd_s stands in some rows only; write it in all of them, or in none")
+    return sd[rows]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class GrooveRow:
+    """A row of a file of measured grooves; what was not measured is left out."""
+
+    depth: Annotated[float | None, Quantity("depth_mm", "depth of the groove", lowest=0.0, above=True)] = None
+    width: Annotated[float | None, Quantity("width_mm", "width of the groove", lowest=0.0, above=True)] = None
+    turn_radius: Annotated[float | None, Quantity("turn_radius_m", "radius of the track on either side")] = None
+    depth_sd: Annotated[float | None, Quantity("depth_sd_mm", "of the depth", lowest=0.0, above=True)] = None
+    width_sd: Annotated[float | None, Quantity("width_sd_mm", "of the width", lowest=0.0, above=True)] = None
+    turn_radius_sd: Annotated[float | None, Quantity("turn_radius_sd_m", "of the radius", lowest=0.0, above=True)] = (
+        None
+    )
+
+
+_ROW: Final = own_quantities(GrooveRow)
+GROOVE_COLUMNS: Final = tuple(each.name for each in _ROW[:3])
+SPREADS: Final = tuple(each.name for each in _ROW[3:])
+
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class MeasuredGrooves(ShownFields):
+    """Places along a track, (n,) each, in m.
+
+    Attributes
+    ----------
+    name
+        Of the file.
+    depth, width
+        Of the groove that stays, and across it in the snow's surface; NaN where not measured.
+    turn_radius
+        Of the track, > 0 whatever the side; NaN where not measured.
+    depth_sd, width_sd, turn_radius_sd
+        Their standard deviations.
+    stated
+        Whether all of them stand in the file; else they are the scatter of the places.
+    """
+
+    name: str
+    depth: FloatArray
+    width: FloatArray
+    turn_radius: FloatArray
+    depth_sd: FloatArray
+    width_sd: FloatArray
+    turn_radius_sd: FloatArray
+    stated: bool = True
+
+    def __post_init__(self) -> None:
+        for what in ("depth", "width", "turn_radius"):
+            values, spread = getattr(self, what), getattr(self, f"{what}_sd")
+            for place in np.flatnonzero(np.isfinite(values)):
+                if values[place] <= 0.0:
+                    raise ParameterError(
+                        f"{self.name}: {what} of place {place + 1} is {values[place]:g} m; above 0 is allowed"
+                    )
+                if not spread[place] > 0.0:
+                    raise ParameterError(
+                        f"{self.name}: the standard deviation of {what} of place {place + 1} must be above 0"
+                    )
+
+    def __len__(self) -> int:
+        return len(self.depth)
+
+
+def read_measured_grooves(path: str | Path) -> MeasuredGrooves:
+    """Read ``depth_mm, width_mm, turn_radius_m, depth_sd_mm, width_sd_mm, turn_radius_sd_m``, a row for each place.
+
+    Columns and cells may be missing; without standard deviations the scatter of three places or more takes their part.
+
+    Raises
+    ------
+    ParameterError
+        The file cannot be read, none of the three quantities is there, or a number is missing or not above 0.
+    """
+    return grooves_of(read_table(Path(path)))
+
+
+def grooves_of(table: TableFile) -> MeasuredGrooves:
+    """The grooves of a table that was read."""
+    table.require(())
+    table.require_no_slip((*GROOVE_COLUMNS, *SPREADS))
+    columns = {}
+    stated = True
+    for quantity, spread in zip(_ROW[:3], _ROW[3:], strict=True):
+        name = quantity.name
+        values = _column(table, quantity) * quantity.factor
+        known = np.isfinite(values)
+        sd = _column(table, spread) * spread.factor
+        if np.isfinite(sd[known]).all():
+            columns[name] = (values, sd)
+            continue
+        stated = False
+        columns[name] = (values, np.full(len(values), _scatter(table.name, name, values[known])))
+    (depth, depth_sd), (width, width_sd), (radius, radius_sd) = (columns[name] for name in GROOVE_COLUMNS)
+    if not any(np.isfinite(each).any() for each in (depth, width, radius)):
+        raise ParameterError(f"{table.name} holds none of {', '.join(GROOVE_COLUMNS)}")
+    return MeasuredGrooves(table.name, depth, width, np.abs(radius), depth_sd, width_sd, radius_sd, stated)
+
+
+def _column(table: TableFile, quantity: Quantity) -> FloatArray:
+    if quantity.name not in table.columns:
+        return np.full(len(table.rows), np.nan)
+    return table.numbers(quantity)
+
+
+def _scatter(file: str, name: str, values: FloatArray) -> float:
+    if len(values) < FEWEST_FOR_SCATTER:
+        raise ParameterError(
+            f"{file}: {name} has no standard deviation ({name.replace('_mm', '_sd_mm').replace('s_m', 's_sd_m')}), and "
+            f"{len(values)} places are too few for their scatter to say it; give it, or {FEWEST_FOR_SCATTER} places"
+        )
+    return max(float(np.std(values, ddof=1)), 1e-6)
