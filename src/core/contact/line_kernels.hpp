@@ -33,7 +33,7 @@ bool find_unknown(const GrooveLines& lines, const Pose& pose, double room, doubl
     const V aside = dot(there, lateral) - dot(there, ahead) * dot(ski, lateral) / dot(ski, ahead);
     const V known_from = load<V>(lines.values[KNOWN_FROM] + j), known_to = load<V>(lines.values[KNOWN_TO] + j);
     const MaskOf<V> unknown =
-        !(known_from < known_to) | (aside - room < known_from + ROUNDING) | (aside + room > known_to - ROUNDING);
+        (known_from >= known_to) | (aside - room < known_from + ROUNDING) | (aside + room > known_to - ROUNDING);
     store(is_unknown + j, select(unknown, all<V>(1.0), V{}));
     for (int lane = 0; lane < WIDTH<V>; lane++)
       found = found || (unknown[lane] != 0 && n + lane >= lines.first && n + lane < lines.end);

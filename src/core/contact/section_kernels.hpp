@@ -287,8 +287,9 @@ void cross_bent_edge(const Runner& runner, const Pose& pose, const Snow& snow, c
   constexpr int STEPS = 3;
   if (pose.beam.empty()) return;
   for_lanes<V>(s, lines, [&](int i, int) {
-    const V slope = absolute(load<V>(s[LINE_AHEAD_2] + i) / load<V>(s[LINE_AHEAD_0] + i));
-    if (!any(slope > STEEP)) return;
+    const V up = load<V>(s[LINE_AHEAD_2] + i), forwards = load<V>(s[LINE_AHEAD_0] + i);
+    if (!any(absolute(up) > STEEP * absolute(forwards))) return;  // most lines: no division
+    const V slope = absolute(V(up / forwards));
     const V straight = load<V>(s[STATION] + i), weight = within((slope - STEEP) / (FULLY - STEEP), 0.0, 1.0);
     V station = straight;
     for (int step = 0; step < STEPS; step++) {

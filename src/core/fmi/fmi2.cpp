@@ -28,7 +28,7 @@ struct Callbacks {
 
 constexpr int CO_SIMULATION = 1;
 constexpr int LAST_SUCCESSFUL_TIME = 2, TERMINATED = 3;
-constexpr Status OK = 0, DISCARD = 2, ERROR = 3;
+constexpr Status OK = 0, DISCARD = 2;
 
 Status said(FmuStatus status) { return Status(status); }
 

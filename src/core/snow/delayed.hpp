@@ -9,9 +9,9 @@
 namespace skisnow {
 
 struct DelayedGround {
-  double spacing = 1e-3;              // between the places (m)
-  long first = 0;                     // number of the first: it lies first · spacing to the left of the line's origin
-  std::vector<double> depth, stress;  // ε₂ (m), and the stress p_e (Pa) at the end of the last step
+  double spacing = 1e-3;  // between the places (m)
+  long first = 0;         // number of the first: it lies first · spacing to the left of the line's origin
+  std::vector<double> depth{}, stress{};  // ε₂ (m), and the stress p_e (Pa) at the end of the last step
 
   bool empty() const { return depth.empty(); }
   long end() const { return first + long(depth.size()); }
