@@ -67,7 +67,7 @@ def test_a_sound_file_is_read_by_the_functions_that_the_reader_covers(reader: Re
 def test_a_case_has_the_same_bytes_each_time_and_others_have_other_bytes(reader: Reader) -> None:
     if not reader.is_ready:
         pytest.skip(f"it needs {', '.join(reader.needs)}")
-    cases = [reader.mutated(number) for number in range(12)]
-    assert cases == [reader.mutated(number) for number in range(12)]
-    assert len(set(cases)) > 8
-    assert sum(case != reader.files()[reader.target] for case in cases) > 8
+    cases = [reader.mutated(number) for number in range(6)]
+    assert cases == [reader.mutated(number) for number in range(6)]
+    assert len(set(cases)) > 3
+    assert sum(case != reader.files()[reader.target] for case in cases) > 3

@@ -149,3 +149,9 @@ def test_file_that_cannot_be_read_is_told(tmp_path: Path) -> None:
     (tmp_path / "image.csv").write_bytes(b"\xff\xfe\x00\x81")
     with pytest.raises(ParameterError, match=r"image\.csv is not UTF-8 text"):
         read_profile(tmp_path / "image.csv")
+
+
+def test_points_of_a_profile_that_nearly_coincide_are_rejected() -> None:
+    x = np.array([0.0, 1e-300, 4.0, 6.0])
+    with pytest.raises(ParameterError, match="point 2"):
+        Profile(x, -0.15 * x)

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import errno
 import io
-import random
-import shutil
 import stat
 import zipfile
 from collections.abc import Callable
@@ -15,8 +13,7 @@ import pytest
 
 from skisnow._support.errors import ParameterError
 from skisnow.web.settings import Limits
-from skisnow.web.unpacking import Unpacking, campaign_folder, files_below, shown, write_zip
-from tests.support.user_files.fuzz import damaged
+from skisnow.web.unpacking import Unpacking, campaign_folder, files_below, write_zip
 
 LIMITS = Limits(upload_bytes=10_000, unpacked_bytes=5_000, files=4)
 
@@ -187,61 +184,3 @@ def test_a_full_disk_is_not_taken_for_a_damaged_zip(folder: Path, monkeypatch: p
     monkeypatch.setattr(Path, "open", full)
     with pytest.raises(OSError, match="No space left"):
         Unpacking(folder, LIMITS).take_zip(packed({"a": b"x"}))
-
-
-def try_damaged(folder: Path, *, seed: int, number: int) -> int:
-    """Unpack so many damaged zips; how many were refused. Anything but a `ParameterError` comes through."""
-    sound = packed({"day/campaign.toml": b"a = 1\n" * 9, "day/b.csv": bytes(range(256)), "c": b""}).getvalue()
-    random_, refused = random.Random(seed), 0
-    for tried in range(number):
-        inside = folder / str(tried)
-        inside.mkdir()
-        try:
-            Unpacking(inside, LIMITS).take_zip(io.BytesIO(damaged(sound, random_)))
-        except ParameterError:
-            refused += 1
-        shutil.rmtree(inside)
-    return refused
-
-
-def test_damaged_zips_are_refused_in_words(folder: Path) -> None:
-    assert try_damaged(folder, seed=1, number=150) > 75
-
-
-@pytest.mark.slow
-def test_many_damaged_zips_are_refused_in_words(folder: Path) -> None:
-    assert try_damaged(folder, seed=2, number=20_000) > 10_000
-
-
-@pytest.mark.parametrize(("flag", "refused"), [(0x001, True), (0x009, True), (0x800, False), (0x002, False)])
-def test_an_encrypted_member_is_refused_and_no_other_flag(folder: Path, flag: int, refused: bool) -> None:
-    """Bit 0 of the flags says that a member is encrypted; bit 11 that its name is UTF-8, bit 1 how it was packed."""
-    content = bytearray(packed({"a.csv": b"1,2\n"}).getvalue())
-    for signature, offset in ((b"PK\x03\x04", 6), (b"PK\x01\x02", 8)):
-        place = content.index(signature) + offset
-        content[place : place + 2] = flag.to_bytes(2, "little")
-    taking = Unpacking(folder, LIMITS)
-    if refused:
-        with pytest.raises(ParameterError, match="encrypted; pack it without a password"):
-            taking.take_zip(io.BytesIO(bytes(content)))
-        assert not any(folder.iterdir())
-    else:
-        taking.take_zip(io.BytesIO(bytes(content)))
-        assert (folder / "a.csv").read_bytes() == b"1,2\n"
-
-
-@pytest.mark.parametrize("files", [4, 5])
-def test_single_files_are_counted_one_by_one(folder: Path, files: int) -> None:
-    unpacking = Unpacking(folder, LIMITS)
-    for number in range(min(files, 4)):
-        unpacking.take(f"{number}.csv", io.BytesIO(b"x"))
-    if files > 4:
-        with pytest.raises(ParameterError, match="more than 4 files at once"):
-            unpacking.take("last.csv", io.BytesIO(b"x"))
-    assert len(list(folder.iterdir())) == 4
-
-
-def test_a_name_in_a_sentence_has_eighty_letters_that_print() -> None:
-    assert shown("a" * 80) == repr("a" * 80)
-    assert shown("a" * 81) == repr("a" * 79 + "…")
-    assert shown("a\nb\u202e") == "'a?b?'"

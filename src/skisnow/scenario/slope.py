@@ -26,6 +26,8 @@ FloatArray: TypeAlias = npt.NDArray[np.float64]
 Gap: TypeAlias = Literal["error", "interpolate"]
 
 FEWEST_POINTS: Final = 4
+SHORTEST_STEP: Final = 1e-6
+"""Least distance (m) between points of a profile: below it slopes are rounding."""
 LONGEST_GAP: Final = 5.0
 """Distance (m) between points of a profile beyond which it is not joined unasked (modelling assumption)."""
 STEEPEST_DEG: Final = 75.0
@@ -166,12 +168,12 @@ def _require_points(x: FloatArray, height: FloatArray) -> None:
         if not np.isfinite(table).all():
             place = int(np.argmin(np.isfinite(table)))
             raise ParameterError(f"{name} of point {place + 1} of the profile is {table[place]}; correct it")
-    rises = np.diff(x) > 0.0
+    rises = np.diff(x) >= SHORTEST_STEP
     if not rises.all():
         place = int(np.argmin(rises))
         raise ParameterError(
-            f"x of the profile's point {place + 2} is {x[place + 1]:g} m after {x[place]:g} m; x must rise from point "
-            "to point. Sort the points, and keep one of those at the same place"
+            f"x of the profile's point {place + 2} is {x[place + 1]:g} m after {x[place]:g} m; x must rise by "
+            f"{SHORTEST_STEP:g} m or more from point to point. Sort the points, and keep one of those at the same place"
         )
 
 
