@@ -66,7 +66,7 @@ def test_what_is_known_of_time_and_gate_is_foreseen() -> None:
     assert known.worth(near, caution=4.0)[0] - known.worth(near)[0] == pytest.approx(3.0 * known.through(near)[0])
     slower = np.array([[0.9, 0.9]])  # where nothing is gained but by surprise
     assert known.worth(slower, curiosity=0.1)[0] < 10.0 * known.worth(slower)[0] < 0.0
-    after = known.believing(far[0])
+    after = known.with_mean_at(far[0])
     assert after.worth(far)[0] < known.worth(far)[0]
 
 

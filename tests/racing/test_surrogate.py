@@ -45,7 +45,7 @@ def test_scatter_is_taken_for_scatter() -> None:
 
 def test_what_it_believes_changes_no_mean_but_is_known() -> None:
     known, place = Surrogate.of(PLACES[:30], VALUES[:30], 4), np.array([0.1, 0.9, 0.1, 0.9])
-    more = known.believing(place)
+    more = known.with_mean_at(place)
     assert more.at(PLACES)[0] == pytest.approx(known.at(PLACES)[0], abs=1e-4)
     assert more.at(place[None, :])[1][0] < 0.5 * known.at(place[None, :])[1][0]
 
@@ -61,7 +61,7 @@ def test_kinds_of_values_have_their_own_mean_and_deviation() -> None:
     assert mean[:, 0] == pytest.approx(alone, abs=0.05)
     assert mean[:, 1] == pytest.approx(10.0 - 4.0 * mean[:, 0])
     assert deviation[:, 1] == pytest.approx(4.0 * deviation[:, 0])
-    assert two.believing(PLACES[35]).at(PLACES[30:])[0] == pytest.approx(mean, abs=1e-4)
+    assert two.with_mean_at(PLACES[35]).at(PLACES[30:])[0] == pytest.approx(mean, abs=1e-4)
 
 
 @pytest.mark.parametrize("seed", [pytest.param(1, marks=pytest.mark.slow), 2])

@@ -62,11 +62,11 @@ class Analysis(Shown):
     Attributes
     ----------
     campaign
-        What was analysed.
+        The analysed campaign.
     geometry, seed, n_resamples
         How: see `analyse`.
     penetration, shear
-        Results of each kind of experiment, in SI; None where the campaign has none.
+        Results of each kind of experiment, in SI; None if the campaign has no such data.
     regressions, site_means, site_comparisons, comparisons
         Relations between the quantities, sites beside each other, published values beside the campaign's own.
     own_hardness, own_stress
@@ -76,9 +76,9 @@ class Analysis(Shown):
     time
         When it was made.
     snow_micro_pen
-        What the recordings of a SnowMicroPen say; None where the campaign has none.
+        Evaluation of the SnowMicroPen recordings; None if the campaign has no such data.
     weather
-        At each experiment, from a station; None where the campaign has none.
+        At each experiment, from a station; None if the campaign has no such data.
 
     See Also
     --------
@@ -120,9 +120,9 @@ class Analysis(Shown):
         Parameters
         ----------
         site
-            As the campaign calls it; "C" is also its "site C". Left out: all sites together.
+            As the campaign calls it; "C" is also its "site C". Default: all sites together.
         unloading_ratio
-            k_u/H_V in place of the measured one: 1 is snow that springs back, 10 or more snow that keeps its grooves.
+            k_u/H_V instead of the measured one: 1 is snow that springs back, 10 or more snow that keeps its grooves.
             `Scenario.with_` takes either over.
 
         Raises

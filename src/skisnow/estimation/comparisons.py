@@ -40,7 +40,7 @@ class OwnValue:
 
 @dataclass(frozen=True, slots=True)
 class Comparison:
-    """One published value or range beside the campaign's own; units stand in the quantity's name."""
+    """One published value or range beside the campaign's own; the name of the quantity contains the unit."""
 
     source: str
     quantity: str

@@ -231,14 +231,14 @@ def growing_hardness(readings: Readings, hardness: FloatArray, uncertainty: Read
     return GrowingHardness(H_0, growth, interval)
 
 
-def site_growth(found: GrowingHardness, used: BoolArray, site: Sequence[str]) -> tuple[SiteGrowth, ...]:
+def site_growth(growth: GrowingHardness, used: BoolArray, site: Sequence[str]) -> tuple[SiteGrowth, ...]:
     """The mean of each site in alphabetical order, then of all together; empty without a used series that has one."""
-    there = used & np.isfinite(found.growth)
+    there = used & np.isfinite(growth.growth)
     names = np.array(site, dtype=object)
     if not there.any():
         return ()
     rows = [(name, there & (names == name)) for name in sorted(set(names[there].tolist()))]
-    return tuple(_mean(found.growth[chosen], names[chosen].tolist(), name) for name, chosen in [*rows, (None, there)])
+    return tuple(_mean(growth.growth[chosen], names[chosen].tolist(), name) for name, chosen in [*rows, (None, there)])
 
 
 def _mean(growth: FloatArray, sites: list[str], site: str | None) -> SiteGrowth:

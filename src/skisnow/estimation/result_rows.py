@@ -68,7 +68,7 @@ def experiment_results(
 
 
 def experiment_hardness(campaign: Campaign, *, geometry: GeometryForm = "extended") -> FloatArray:
-    """H_V of each penetration experiment (N/m³), NaN where there is none; (m,)."""
+    """H_V of each penetration experiment (N/m³), NaN if not determined; shape (m,)."""
     if campaign.penetration is None:
         return np.zeros(0)
     readings = readings_of(campaign.penetration, campaign.tools, geometry=geometry)
@@ -101,7 +101,7 @@ def column_rows(columns: dict[str, list[Any]]) -> Rows:
 
 
 def finite_or_none(values: FloatArray) -> list[Any]:
-    """A column of numbers (m,) or intervals (m, 2) with None for what is not finite."""
+    """A column of numbers (m,) or intervals (m, 2) with None for values that are not finite."""
     listed: list[Any] = values.tolist()
     finite = np.isfinite(values).reshape(len(values), -1).all(axis=1)
     for index in np.flatnonzero(~finite).tolist():
@@ -170,7 +170,7 @@ def shear_experiments(
 
 
 def model_rows(table: ModelTable | None) -> list[Json]:
-    """The rows ``penetration.models``: the nine candidate models, without numbers where there are no data."""
+    """The rows ``penetration.models``: the nine candidate models, without numbers if the campaign has no data."""
     if table is None:
         return _no_models()
     return [_model(fit, table.intervals.get(fit.model)) for fit in table.fits]
@@ -240,12 +240,12 @@ def nested_row(row: NestedRows) -> Json:
     }
 
 
-def selected_model(found: PenetrationAnalysis) -> Json | None:
+def selected_model(penetration: PenetrationAnalysis) -> Json | None:
     """``penetration.selected``: the id of the chosen model, and why it was chosen."""
-    if found.selected is None or found.table is None:
+    if penetration.selected is None or penetration.table is None:
         return None
-    best = min(found.table.fits, key=lambda fit: fit.rmse)
-    chosen = found.selected
+    best = min(penetration.table.fits, key=lambda fit: fit.rmse)
+    chosen = penetration.selected
     return {"id": chosen.model.id, "reason": _reason(chosen, best)}
 
 

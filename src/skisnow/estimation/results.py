@@ -1,6 +1,6 @@
 """An analysis as the contents of results.json: the contract with users and other programs.
 
-Units stand in the keys; every interval is ``[low, high]`` at 95 %; what does not exist is None, never NaN; numbers are
+Each key names its unit; every interval is ``[low, high]`` at 95 %; what does not exist is None, never NaN; numbers are
 not rounded.
 """
 
@@ -177,19 +177,19 @@ def _site_unloading(row: SiteUnloading) -> Json:
     }
 
 
-def _seating(experiment: tuple[str, ...], found: PenetrationAnalysis) -> list[Json]:
+def _seating(experiment: tuple[str, ...], penetration: PenetrationAnalysis) -> list[Json]:
     return column_rows(
         {
             "experiment": list(experiment),
-            "depth_offset_mm": finite_or_none(found.seating.offset / MM),
-            "interval_mm": finite_or_none(found.seating.interval / MM),
-            "H_V_change_percent": finite_or_none(100.0 * found.seating.hardness_change),
+            "depth_offset_mm": finite_or_none(penetration.seating.offset / MM),
+            "interval_mm": finite_or_none(penetration.seating.interval / MM),
+            "H_V_change_percent": finite_or_none(100.0 * penetration.seating.hardness_change),
         }
     )
 
 
-def _fitted_hardness(experiment: tuple[str, ...], found: PenetrationAnalysis) -> list[Json]:
-    fitted = found.fitted
+def _fitted_hardness(experiment: tuple[str, ...], penetration: PenetrationAnalysis) -> list[Json]:
+    fitted = penetration.fitted
     return column_rows(
         {
             "experiment": list(experiment),
@@ -201,12 +201,12 @@ def _fitted_hardness(experiment: tuple[str, ...], found: PenetrationAnalysis) ->
 
 
 def _shear(analysis: Analysis) -> Json:
-    found: ShearAnalysis | None = analysis.shear
+    shear: ShearAnalysis | None = analysis.shear
     tests = analysis.campaign.shear
-    if found is None or tests is None:
+    if shear is None or tests is None:
         return {"experiments": [], "displacement": []}
     return {
-        "experiments": shear_experiments(tests, found.screened, found.stress, found.displacement),
+        "experiments": shear_experiments(tests, shear.screened, shear.stress, shear.displacement),
         "displacement": [
             {
                 "site": row.site,
@@ -214,7 +214,7 @@ def _shear(analysis: Analysis) -> Json:
                 "shear_displacement_mm": row.value / MM,
                 "shear_displacement_interval_mm": [row.low / MM, row.high / MM],
             }
-            for row in found.site_displacement
+            for row in shear.site_displacement
         ],
     }
 

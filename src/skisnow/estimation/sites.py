@@ -127,20 +127,20 @@ def site_snow(
     return snow if ratio is None else with_measured_unloading(snow, ratio.ratio, (ratio.low, ratio.high))
 
 
-def _pressed(found: PenetrationAnalysis | None, campaign: Campaign) -> tuple[FloatArray, TextArray]:
+def _pressed(penetration: PenetrationAnalysis | None, campaign: Campaign) -> tuple[FloatArray, TextArray]:
     """H_V (N/m³) and site of each used penetration experiment that has one."""
     tests = campaign.penetration
-    if found is None or tests is None:
+    if penetration is None or tests is None:
         return np.zeros(0), np.zeros(0, dtype=object)
-    return _used(found.hardness["H_V"].value, found.screened.used, tests.site)
+    return _used(penetration.hardness["H_V"].value, penetration.screened.used, tests.site)
 
 
-def _sheared(found: ShearAnalysis | None, campaign: Campaign) -> tuple[FloatArray, TextArray]:
+def _sheared(shear: ShearAnalysis | None, campaign: Campaign) -> tuple[FloatArray, TextArray]:
     """S_f (N/m²) and site of each used shear experiment that has one."""
     tests = campaign.shear
-    if found is None or tests is None:
+    if shear is None or tests is None:
         return np.zeros(0), np.zeros(0, dtype=object)
-    return _used(found.stress.value, found.screened.used, tests.site)
+    return _used(shear.stress.value, shear.screened.used, tests.site)
 
 
 def _used(value: FloatArray, used: BoolArray, site: tuple[str, ...]) -> tuple[FloatArray, TextArray]:

@@ -48,7 +48,7 @@ class WindowMeans:
     rupture_force, deflection, element_size
         f₀ (N), δ (m), L (m): medians.
     snow_density, specific_surface_area
-        Means (kg/m³, m²/kg); NaN where the relation has none.
+        Means (kg/m³, m²/kg); NaN if the relation gives no value.
     n
         Windows.
     """
@@ -231,34 +231,34 @@ def _windows(force: FloatArray, sample_distance: float, area: float, name: str) 
     )
 
 
-def snow_micro_pen_results(found: SnowMicroPenAnalysis) -> Json:
-    """The settings, and a row for each recording; NaN stands where there is no number."""
-    recordings = found.recordings
+def snow_micro_pen_results(analysis: SnowMicroPenAnalysis) -> Json:
+    """The settings, and a row for each recording; NaN stands if the value is missing."""
+    recordings = analysis.recordings
     names = zip(recordings.recording, recordings.site, recordings.spot, recordings.file, strict=True)
     return {
         **values_of(recordings.settings),
         "recordings": [
             dict(zip(("recording", "site", "spot", "file"), own, strict=True))
             | _row(each, each.windows[recordings.settings.relation])
-            for own, each in zip(names, found.evaluated, strict=True)
+            for own, each in zip(names, analysis.evaluated, strict=True)
         ],
     }
 
 
-def _row(each: EvaluatedRecording, chosen: WindowMeans) -> Json:
+def _row(recording: EvaluatedRecording, chosen: WindowMeans) -> Json:
     return {
-        "used": each.is_used,
-        "flags": list(each.flags),
-        "surface_mm": each.surface / MM,
-        "reach_mm": each.reach / MM,
-        "air_force_N": each.air_force,
-        "mean_force_N": each.mean_force,
-        "median_force_N": each.median_force,
+        "used": recording.is_used,
+        "flags": list(recording.flags),
+        "surface_mm": recording.surface / MM,
+        "reach_mm": recording.reach / MM,
+        "air_force_N": recording.air_force,
+        "mean_force_N": recording.mean_force,
+        "median_force_N": recording.median_force,
         "rupture_force_N": chosen.rupture_force,
         "deflection_mm": chosen.deflection / MM,
         "element_size_mm": chosen.element_size / MM,
         **_of_relation(chosen),
-        "by_relation": {name: _of_relation(windows) for name, windows in each.windows.items()},
+        "by_relation": {name: _of_relation(windows) for name, windows in recording.windows.items()},
     }
 
 

@@ -59,7 +59,7 @@ def require_bootstrap(resamples: int, by: str) -> None:
 
 
 def bootstrapped(
-    found: Identification,
+    identification: Identification,
     solution: Solution,
     resamples: int,
     by: BootstrapBy,
@@ -76,30 +76,32 @@ def bootstrapped(
     began: no simulation, and blind to what is not linear.
     """
     if solution.found.jacobian is None or solution.degrees_of_freedom < 1:
-        return found
+        return identification
     samples = [_Sample(drawn, place, place) for drawn, place in _begun(solution, resamples, rng)]
     lost = 0
     if by == "refit":
         progress("bootstrap: first resamples")
         _refitted(solution, samples, progress)
-        lost = sum(not np.isfinite(each.cost) for each in samples)
-        samples = [each for each in samples if np.isfinite(each.cost)]
+        lost = sum(not np.isfinite(sample.cost) for sample in samples)
+        samples = [sample for sample in samples if np.isfinite(sample.cost)]
     warnings = (f"{lost} of {resamples} resamples of the bootstrap could not be computed",) if lost else ()
     if len(samples) < FEWEST:
-        return replace(found, warnings=(*found.warnings, *warnings))
-    values = samples_in_values(solution, np.array([each.best for each in samples]))
+        return replace(identification, warnings=(*identification.warnings, *warnings))
+    values = samples_in_values(solution, np.array([sample.best for sample in samples]))
     parameters = tuple(
-        each if each.standard_error is None else replace(each, bootstrap_interval=(float(low), float(high)))
-        for each, (low, high) in zip(found.parameters, percentile_interval(values), strict=True)
+        parameter
+        if parameter.standard_error is None
+        else replace(parameter, bootstrap_interval=(float(low), float(high)))
+        for parameter, (low, high) in zip(identification.parameters, percentile_interval(values), strict=True)
     )
     how = "refitted" if by == "refit" else "fitted by the model linearised at the best values"
     method = f"bootstrap: {len(samples)} resamples of stretches of residuals, each {how}"
     return replace(
-        found,
+        identification,
         bootstrap=values,
         parameters=parameters,
-        warnings=(*found.warnings, *warnings),
-        methods=(*found.methods, method),
+        warnings=(*identification.warnings, *warnings),
+        methods=(*identification.methods, method),
     )
 
 
@@ -108,7 +110,7 @@ def _begun(solution: Solution, resamples: int, rng: np.random.Generator) -> Iter
     fitted, jacobian = solution.found.residuals, solution.found.jacobian
     assert jacobian is not None
     data = sum(solution.problem.lengths)
-    series = [length for each in solution.problem.observations for length in each.series]
+    series = [length for observation in solution.problem.observations for length in observation.series]
     inflated = np.sqrt(data / max(solution.degrees_of_freedom, 1))
     lower, upper = bounds_of(solution.problem.parameters)
     best = solution.found.place

@@ -76,7 +76,7 @@ def _is_track(head: set[str]) -> bool:
 
 
 def taken_for(data: Data) -> str:
-    """What a file was taken for, in words."""
+    """Kind and size of the data recognised in a file, in words."""
     if isinstance(data, PhotoCells):
         return f"photo-cell times (runs: {len(data.runs)})"
     if isinstance(data, MeasuredGrooves):
@@ -95,18 +95,18 @@ def _head(path: Path) -> set[str]:
     return {cell.strip(' "') for cell in lines[0].split(separator)} if lines else set()
 
 
-def fingerprint(given: ScenarioInput, tracks: Sequence[Measured]) -> str:
+def fingerprint(scenario_input: ScenarioInput, tracks: Sequence[Measured]) -> str:
     """The same for the same scenario, files that it names, times of the tracks, and version of skisnow.
 
     Places do not count: a simulation does not know what it is held against.
     """
-    layers = json.dumps([sorted(layer.values.items()) for layer in given.layers], default=str)
+    layers = json.dumps([sorted(layer.values.items()) for layer in scenario_input.layers], default=str)
     digest = hashlib.sha256(f"{version('skisnow')} {layers}".encode())
-    if given.base is not None:
-        for piece in pieces_of(given.base):
+    if scenario_input.base is not None:
+        for piece in pieces_of(scenario_input.base):
             digest.update(piece)
-    for path in input_files(given):
-        if path != given.file:
+    for path in input_files(scenario_input):
+        if path != scenario_input.file:
             digest.update(path.read_bytes())
     for track in tracks:
         digest.update(track.time.tobytes())
@@ -120,7 +120,7 @@ class Collected:
     Attributes
     ----------
     tracks, cells, grooves
-        What was measured.
+        Measured data.
     starts
         Values of keys that a run has for itself, by run, from ``[identify.runs."NAME"]``.
     fixed
@@ -146,11 +146,11 @@ class Collected:
     @property
     def runs(self) -> tuple[str, ...]:
         """Names of all runs."""
-        return tuple(each.name for each in self.tracks) + tuple(run.name for each in self.cells for run in each.runs)
+        return tuple(track.name for track in self.tracks) + tuple(run.name for cell in self.cells for run in cell.runs)
 
 
 def collected(
-    given: ScenarioInput, asked: ScenarioFile, data: Sequence[Data | str | Path], keys: Sequence[str]
+    scenario_input: ScenarioInput, scenario: ScenarioFile, data: Sequence[Data | str | Path], keys: Sequence[str]
 ) -> Collected:
     """Read what are paths, turn tracks into the slope's frame, and refuse what does not go with the scenario.
 
@@ -167,7 +167,7 @@ def collected(
     methods: list[str] = []
     tracks = []
     for each in (each for each in read if isinstance(each, Track)):
-        track, how = in_scenario_frame(each, asked, given.identify.get("site"))
+        track, how = in_scenario_frame(each, scenario, scenario_input.identify.get("site"))
         methods += how
         tracks.append(measured(replace(track, name=names.of(each.name))))
     cells = tuple(
@@ -175,18 +175,18 @@ def collected(
         for each in read
         if isinstance(each, PhotoCells)
     )
-    runs = [each.name for each in tracks] + [run.name for each in cells for run in each.runs]
-    starts = _starts(given.identify.get("runs", {}), runs)
+    runs = [each.name for each in tracks] + [run.name for cell in cells for run in cell.runs]
+    starts = _starts(scenario_input.identify.get("runs", {}), runs)
     _require_not_free(starts, keys)
     own = {key.partition("@")[0] for key in keys}
-    warnings = [_near(track, asked, starts, own) for track in tracks]
+    warnings = [_near(track, scenario, starts, own) for track in tracks]
     snow = set(SNOW_NUMBERS) & own.union(*starts.values())
     return Collected(
         tracks=tuple(tracks),
         cells=cells,
         grooves=tuple(each for each in read if isinstance(each, MeasuredGrooves)),
         starts=starts,
-        fixed={key: float(asked.values[key]) for key in SNOW_NUMBERS} if snow else {},
+        fixed={key: float(scenario.values[key]) for key in SNOW_NUMBERS} if snow else {},
         first_motions={track.name: first_motion(track) for track in tracks} if len(runs) > 1 else {},
         taken=tuple((_file_name(each, kind), taken_for(kind)) for each, kind in zip(data, read, strict=True)),
         warnings=tuple(text for text in warnings if text),
@@ -198,9 +198,9 @@ def _file_name(given: Data | str | Path, read: Data) -> str:
     return str(given) if isinstance(given, str | Path) else read.name
 
 
-def values_to_begin_with(asked: ScenarioFile, data: Collected, given: Iterable[str]) -> dict[str, Any]:
+def values_to_begin_with(scenario: ScenarioFile, data: Collected, given: Iterable[str]) -> dict[str, Any]:
     """The scenario's values, and for runs with a start of their own what is said or seen of it."""
-    found = dict(asked.values)
+    found = dict(scenario.values)
     said = set(given)
     for run in data.runs:
         own = {key: value for key, value in data.first_motions.get(run, {}).items() if key not in said}
@@ -211,7 +211,7 @@ def values_to_begin_with(asked: ScenarioFile, data: Collected, given: Iterable[s
 
 
 class _Names:
-    """Gives every run a name of its own."""
+    """Unique names of the runs."""
 
     def __init__(self) -> None:
         self._taken: set[str] = set()
@@ -263,9 +263,9 @@ def _own(run: str, word: str, value: object) -> tuple[str, float]:
 
 
 def _near(
-    track: Measured, asked: ScenarioFile, starts: Mapping[str, Mapping[str, float]], keys: Set[str]
+    track: Measured, scenario: ScenarioFile, starts: Mapping[str, Mapping[str, float]], keys: Set[str]
 ) -> str | None:
-    own = {**asked.values, **starts.get(track.name, {})}
+    own = {**scenario.values, **starts.get(track.name, {})}
     free = {"start.x_m", "start.y_m"} <= keys
     return require_near(track, (float(own["start.x_m"]), float(own["start.y_m"])), start_is_free=free)
 

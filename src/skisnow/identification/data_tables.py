@@ -140,7 +140,7 @@ class PhotoCellRun(ShownFields):
     Attributes
     ----------
     name
-        Of the run.
+        Name of the run.
     station : (n,) m
         Distance from the start down to the cell, along the slope's surface, rising.
     time : (n,) s

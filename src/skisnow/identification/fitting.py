@@ -65,8 +65,8 @@ def identify(
     data
         Tracks, photo-cell times, measured grooves, or paths of files with these; several together.
     free
-        Keys that are looked for, with or without section and unit; ``KEY@RUN`` in one run of several, ``KEY@each`` in
-        each a value of its own, as keys of the start always. Left out: those with a table ``[identify."KEY"]``.
+        Free keys, with or without section and unit; ``KEY@RUN`` in one run of several, ``KEY@each`` in
+        each a value of its own, as keys of the start always. Default: those with a table ``[identify."KEY"]``.
     changes
         Other values of the scenario, as `skisnow.scenario` takes them.
     starts
@@ -79,13 +79,13 @@ def identify(
         "refit": each resample is refitted, with one to four simulated runs of each track; "linear": by the model
         linearised at the best values, in no time.
     clock_is_free
-        Whether each photo-cell run's clock has an offset of its own; None: as ``[identify] clock`` says, else not.
+        Whether each photo-cell run's clock has a separate offset; None: as ``[identify] clock`` says, else not.
     rng
         Source of random numbers, for starts, bootstrap and posterior; left out, one with the seed 0.
     workers
         Processes that simulate; None: as many as this process has cores.
     executor
-        What simulates in place of processes of this computer, as of `skisnow.run_batch`.
+        Executor used instead of processes of this computer, as of `skisnow.run_batch`.
     checkpoint
         File in which finished simulations are stored, and looked for first; None: nowhere.
     restart
@@ -176,26 +176,28 @@ def _found(parameters: tuple[Parameter, ...], observations: tuple[Observations, 
 
 
 def _observations(
-    asked: ScenarioFile, read: Collected, simulations: Simulations, *, clock_is_free: bool
+    scenario: ScenarioFile, read: Collected, simulations: Simulations, *, clock_is_free: bool
 ) -> tuple[Observations, ...]:
-    found: list[Observations] = []
+    observationss: list[Observations] = []
     if read.tracks:
-        found.append(TrackPositions(read.tracks, simulations, read.fixed, read.starts, values_of(asked.scenario)))
-    found += [PhotoCellTimes(each, asked, read.starts, clock_is_free) for each in read.cells]
-    for each in read.grooves:
-        require_groove_stays(asked)
-        found.append(GrooveResiduals(each, asked))
-    return tuple(found)
+        observationss.append(
+            TrackPositions(read.tracks, simulations, read.fixed, read.starts, values_of(scenario.scenario))
+        )
+    observationss += [PhotoCellTimes(cell, scenario, read.starts, clock_is_free) for cell in read.cells]
+    for groove in read.grooves:
+        require_groove_stays(scenario)
+        observationss.append(GrooveResiduals(groove, scenario))
+    return tuple(observationss)
 
 
-def _clock(given: ScenarioInput, asked: bool | None) -> bool:
-    return given.identify.get("clock", "start") == "free" if asked is None else asked
+def _clock(scenario_input: ScenarioInput, asked: bool | None) -> bool:
+    return scenario_input.identify.get("clock", "start") == "free" if asked is None else asked
 
 
 def _require_used(keys: Sequence[str], observations: Sequence[Observations]) -> None:
     for key in (key.partition("@")[0] for key in keys):
-        if not any(each.depends_on(key) for each in observations):
-            kinds = " and ".join(dict.fromkeys(each.kind.replace("_", " ") for each in observations))
+        if not any(observation.depends_on(key) for observation in observations):
+            kinds = " and ".join(dict.fromkeys(observation.kind.replace("_", " ") for observation in observations))
             raise ParameterError(f"--free: {key} plays no part in {kinds}. Leave it out, or add data that depend on it")
 
 
@@ -220,7 +222,7 @@ class _Counted:
         self.progress(f"{self.doing}; {runs} simulated runs")
 
     def about(self, doing: str) -> None:
-        """Take note of what is being done."""
+        """Report the current step."""
         self.doing = doing
         self.progress(f"{doing}; {self.runs} simulated runs" if self.runs else doing)
 

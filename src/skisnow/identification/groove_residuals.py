@@ -66,9 +66,9 @@ class GrooveResiduals:
     Attributes
     ----------
     measured
-        What was measured.
+        Measured data.
     asked
-        The scenario: ski, mass, slope, speed, heading, edge angle, and the values of what is not looked for.
+        The scenario: ski, mass, slope, speed, heading, edge angle, and the values of the fixed inputs.
     slides
         Whether the edge is taken to slide: then the radius follows from S_f, and the width, swept sideways, tells
         nothing.
@@ -206,54 +206,59 @@ class GrooveResiduals:
         return min(mass * speed**2 / left, STRAIGHTEST) if left > 0.0 else STRAIGHTEST
 
 
-def require_groove_stays(asked: ScenarioFile) -> None:
+def require_groove_stays(scenario: ScenarioFile) -> None:
     """Refuse scenarios whose ski leaves no groove, or that say nothing of a turn."""
-    if asked.scenario.contact.unloading_ratio <= 1.0:
+    if scenario.scenario.contact.unloading_ratio <= 1.0:
         raise ParameterError("snow.unloading_ratio is 1: elastic snow keeps no groove. Give the snow that kept these")
-    if asked.scenario.sledge.edge_angle == 0.0:
+    if scenario.scenario.sledge.edge_angle == 0.0:
         raise ParameterError("sledge.edge_angle_deg is 0: a flat ski leaves no groove of an edge. Give the edge angle")
 
 
-def _mass(asked: ScenarioFile, of: Mapping[str, Any]) -> float:
-    return float(of["sledge.mass_kg"]) + 2.0 * asked.scenario.ski.mass
+def _mass(scenario: ScenarioFile, of: Mapping[str, Any]) -> float:
+    return float(of["sledge.mass_kg"]) + 2.0 * scenario.scenario.ski.mass
 
 
-def _inclination(asked: ScenarioFile, of: Mapping[str, Any]) -> float:
-    slope = asked.scenario.slope
+def _inclination(scenario: ScenarioFile, of: Mapping[str, Any]) -> float:
+    slope = scenario.scenario.slope
     if isinstance(slope, Plane):
         return float(of["slope.angle_deg"]) * DEGREE
-    start = asked.scenario.start
+    start = scenario.scenario.start
     normal = normals_of(slope, start.x, start.y)
     return math.atan2(float(normal[0]), float(normal[2]))
 
 
-def _angle(asked: ScenarioFile, of: Mapping[str, Any]) -> float:
+def _angle(scenario: ScenarioFile, of: Mapping[str, Any]) -> float:
     """G sin α (m/s²)."""
-    return float(of["slope.gravity_m_per_s2"]) * math.sin(_inclination(asked, of))
+    return float(of["slope.gravity_m_per_s2"]) * math.sin(_inclination(scenario, of))
 
 
-def _groove(asked: ScenarioFile, of: Mapping[str, Any]) -> Groove | None:
+def _groove(scenario: ScenarioFile, of: Mapping[str, Any]) -> Groove | None:
     gravity = float(of["slope.gravity_m_per_s2"])
-    load = 0.5 * _mass(asked, of) * gravity * math.cos(_inclination(asked, of))
+    load = 0.5 * _mass(scenario, of) * gravity * math.cos(_inclination(scenario, of))
     angle = abs(float(of["sledge.edge_angle_deg"])) * DEGREE
     ratio = float(of["snow.unloading_ratio"])
     snow = SnowProperties(float(of[HARDNESS]) * N_PER_MM3, 1.0 * N_PER_MM2, source="looked for")
     try:
         found = carve(
-            asked.scenario.flexing_ski, snow, edge_angle=angle, load=load, unloading_ratio=ratio,
-            clamp_length=asked.scenario.clamp_length, footprint_stiffness=asked.scenario.footprint_stiffness,
+            scenario.scenario.flexing_ski, snow, edge_angle=angle, load=load, unloading_ratio=ratio,
+            clamp_length=scenario.scenario.clamp_length, footprint_stiffness=scenario.scenario.footprint_stiffness,
         )  # fmt: skip
     except SkisnowError:
         return None
-    return _of_equilibrium(found, asked.scenario.ski, angle, ratio, load)
+    return _of_equilibrium(found, scenario.scenario.ski, angle, ratio, load)
 
 
-def _of_equilibrium(found: Equilibrium, ski: Ski, angle: float, ratio: float, load: float) -> Groove | None:
-    depth, twist, radius, limit = found.edge_depth, found.twist, found.turn_radius_chord, found.side_force_limit
+def _of_equilibrium(equilibrium: Equilibrium, ski: Ski, angle: float, ratio: float, load: float) -> Groove | None:
+    depth, twist, radius, limit = (
+        equilibrium.edge_depth,
+        equilibrium.twist,
+        equilibrium.turn_radius_chord,
+        equilibrium.side_force_limit,
+    )
     if depth is None or twist is None or radius is None or limit is None:
         return None
     deepest = int(np.argmax(depth))
     local = angle + float(twist[deepest])
-    reach = float(ski.at(float(found.station[deepest])).width) * math.cos(local)
+    reach = float(ski.at(float(equilibrium.station[deepest])).width) * math.cos(local)
     width = min(float(depth[deepest]) / math.tan(local), reach)
     return Groove(float(depth[deepest]) * (1.0 - 1.0 / ratio), width, radius, limit / N_PER_MM2, load)

@@ -34,10 +34,10 @@ def grooves_alone(parameters: Sequence[Parameter], grooves: GrooveResiduals, pla
     it, S_f can be anything above what the turn needed: a bound from below, no value. If the path is wider than the ski
     carves by itself beyond chance (1 %), the edge slid: then S_f is what it gave.
     """
-    strength = next((each for each in parameters if each.key == STRENGTH), None)
+    strength = next((parameter for parameter in parameters if parameter.key == STRENGTH), None)
     if strength is None:
         return solved(problem_of(tuple(parameters), (grooves,)), plan)
-    others = tuple(each for each in parameters if each is not strength)
+    others = tuple(parameter for parameter in parameters if parameter is not strength)
     if _slid(others, grooves, plan):
         return _sliding(tuple(parameters), strength, grooves, plan)
     return _holding(others, tuple(parameters), strength, grooves, plan)
@@ -71,7 +71,7 @@ def _sliding(
     own = strength
     if begin is not None and strength.lower < begin < strength.upper:
         own = replace(strength, start=begin)
-    chosen = tuple(own if each is strength else each for each in parameters)
+    chosen = tuple(own if parameter is strength else parameter for parameter in parameters)
     method = (
         "the radius is wider than this ski carves at this edge angle: the edge slid, and S_f follows from the side "
         "force that the turn needed; the width, swept sideways, was not used"
@@ -100,9 +100,9 @@ def _holding(
         "which the edge slides, or a shear test, gives its value"
     )
     held = Identified(parameter=strength, interval=(low, None), identifiable=False)
-    entries = {each.parameter.key: each for each in found.parameters} | {STRENGTH: held}
+    entries = {identified.parameter.key: identified for identified in found.parameters} | {STRENGTH: held}
     p = len(parameters)
-    places = [i for i, each in enumerate(parameters) if each is not strength]
+    places = [i for i, parameter in enumerate(parameters) if parameter is not strength]
     correlation, covariance = (np.full((p, p), np.nan) for _ in range(2))
     correlation[np.ix_(places, places)] = found.correlation
     covariance[np.ix_(places, places)] = found.covariance
@@ -111,7 +111,7 @@ def _holding(
         found,
         outcome=outcome,
         reason=REASONS[outcome],
-        parameters=tuple(entries[each.key] for each in parameters),
+        parameters=tuple(entries[parameter.key] for parameter in parameters),
         correlation=correlation,
         covariance=covariance,
         bootstrap=_with_gaps(found.bootstrap, places, p),
@@ -150,7 +150,7 @@ def _nothing_else(grooves: GrooveResiduals, plan: Request) -> Identification:
 
 
 def _with_gaps(samples: FloatArray | None, places: Sequence[int], count: int) -> FloatArray | None:
-    """Samples of some parameters as samples of all, NaN where there is no value."""
+    """Samples of some parameters as samples of all, NaN if the value is missing."""
     if samples is None:
         return None
     found = np.full((len(samples), count), np.nan)
@@ -159,14 +159,14 @@ def _with_gaps(samples: FloatArray | None, places: Sequence[int], count: int) ->
 
 
 def _bound(
-    grooves: GrooveResiduals, values: dict[str, float], found: Identification
+    grooves: GrooveResiduals, values: dict[str, float], identification: Identification
 ) -> tuple[float | None, float | None]:
     """S_f that the turn needed (N/mm²), and the lower end of its one-sided 95 % interval."""
     radius = grooves.mean_radius
     bound = grooves.strength_for(values, radius) if math.isfinite(radius) else None
     if bound is None:
         return None, None
-    keys = [each.parameter.key for each in found.parameters]
+    keys = [identified.parameter.key for identified in identification.parameters]
     slopes = []
     for key in keys:
         step = 0.01 * values[key]
@@ -175,6 +175,6 @@ def _bound(
     slope = np.array(slopes)
     wider = grooves.strength_for(values, radius + grooves.mean_radius_sd)
     variance = (0.0 if wider is None else (wider - bound) ** 2) + float(
-        slope @ np.nan_to_num(found.covariance, posinf=0.0) @ slope if keys else 0.0
+        slope @ np.nan_to_num(identification.covariance, posinf=0.0) @ slope if keys else 0.0
     )
     return bound, max(bound - float(norm.ppf(_ONE_SIDED)) * math.sqrt(variance), 0.0)

@@ -34,7 +34,7 @@ _BURN_IN: Final = 0.3
 _SMALL_BALL: Final = 0.5
 
 
-def profiled(found: Identification, solution: Solution, progress: Progress) -> Identification:
+def profiled(identification: Identification, solution: Solution, progress: Progress) -> Identification:
     """Hold each parameter at several values, refit all others, and see how the sum of squares rises.
 
     Notes
@@ -43,9 +43,9 @@ def profiled(found: Identification, solution: Solution, progress: Progress) -> I
     """
     known = solution.known()
     if known is None:
-        return found
+        return identification
     limit = known.factor**2 * (solution.widening**2)
-    profiles, parameters = [], list(found.parameters)
+    profiles, parameters = [], list(identification.parameters)
     for j, parameter in enumerate(solution.problem.parameters):
         progress(f"profile of {parameter.name}")
         error = float(known.standard_errors[j])
@@ -57,7 +57,12 @@ def profiled(found: Identification, solution: Solution, progress: Progress) -> I
         ends = _ends(solution.found.place[j], place, rise, limit)
         parameters[j] = replace(parameters[j], profile_interval=_as_values(parameter, ends))
     method = f"profiles: others refitted by {REFITS} Gauss-Newton steps at each value"
-    return replace(found, profiles=tuple(profiles), parameters=tuple(parameters), methods=(*found.methods, method))
+    return replace(
+        identification,
+        profiles=tuple(profiles),
+        parameters=tuple(parameters),
+        methods=(*identification.methods, method),
+    )
 
 
 def _along(solution: Solution, j: int, error: float) -> tuple[FloatArray, FloatArray]:
@@ -127,19 +132,21 @@ def _as_values(parameter: Parameter, ends: tuple[float | None, float | None]) ->
 
 
 def with_posterior(
-    found: Identification, solution: Solution, samples: int, rng: np.random.Generator, progress: Progress
+    identification: Identification, solution: Solution, samples: int, rng: np.random.Generator, progress: Progress
 ) -> Identification:
     """Sample the posterior with emcee, inside the bounds."""
     places, how = posterior_places(solution, samples, rng, progress)
     if places is None:
-        return replace(found, warnings=(*found.warnings, how))
+        return replace(identification, warnings=(*identification.warnings, how))
     values = samples_in_values(solution, places)
     intervals = percentile_interval(values)
     parameters: list[Identified] = [
-        replace(each, posterior_interval=(float(low), float(high)))
-        for each, (low, high) in zip(found.parameters, intervals, strict=True)
+        replace(parameter, posterior_interval=(float(low), float(high)))
+        for parameter, (low, high) in zip(identification.parameters, intervals, strict=True)
     ]
-    return replace(found, posterior=values, parameters=tuple(parameters), methods=(*found.methods, how))
+    return replace(
+        identification, posterior=values, parameters=tuple(parameters), methods=(*identification.methods, how)
+    )
 
 
 def require_emcee() -> Any:
@@ -167,7 +174,7 @@ def posterior_places(
     known = solution.known()
     if known is None or known.groups:
         return None, "no posterior: the data leave a parameter open"
-    simulated = any(each.kind == "track" for each in solution.problem.observations)
+    simulated = any(observation.kind == "track" for observation in solution.problem.observations)
     likelihood = _quadratic(solution) if simulated else _true(solution)
     p = len(solution.found.place)
     walkers = max(_WALKERS_PER_PARAMETER * p, 16)

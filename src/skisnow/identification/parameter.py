@@ -29,7 +29,7 @@ class Parameter:
     name, unit
         The short name, and the unit's symbol.
     start, lower, upper
-        Where the search begins, and what it may not leave.
+        Start of the search, and its bounds.
     size
         A usual size of the parameter, or of its logarithm: the search counts in it, derivatives step by 1 to 5 % of it.
     logarithmic
@@ -37,7 +37,7 @@ class Parameter:
     prior_mean, prior_sd
         What is known of it from elsewhere, as a normal distribution; None: nothing.
     free
-        Whether it is looked for; a fixed one keeps its start.
+        Whether it is free; a fixed one keeps its start.
 
     Raises
     ------
@@ -118,31 +118,31 @@ class Parameter:
 
 def values_of(parameters: tuple[Parameter, ...], scaled: FloatArray) -> dict[str, float]:
     """The values by key at a place of the search, shape (p,)."""
-    return {each.key: each.value(float(u)) for each, u in zip(parameters, scaled, strict=True)}
+    return {parameter.key: parameter.value(float(u)) for parameter, u in zip(parameters, scaled, strict=True)}
 
 
 def bounds_of(parameters: tuple[Parameter, ...]) -> tuple[FloatArray, FloatArray]:
     """Bounds on the scale of the search, (p,) each."""
-    lower = np.array([each.scaled(each.lower) for each in parameters])
-    upper = np.array([each.scaled(each.upper) for each in parameters])
+    lower = np.array([parameter.scaled(parameter.lower) for parameter in parameters])
+    upper = np.array([parameter.scaled(parameter.upper) for parameter in parameters])
     return lower, upper
 
 
 def usual(key: str, start: float) -> Search:
     """Size and bounds of a key for a search that begins at `start`; bounds hold the start and the key's own range."""
     own = SCENARIO_KEYS[key.partition("@")[0]]
-    found = own.search
-    if found is None:
+    search = own.search
+    if search is None:
         size = abs(start) or 1.0
-        found = Search(size, -_TIMES_START * size, _TIMES_START * size, about=True)
-    low, high = (found.lower + start, found.upper + start) if found.about else (found.lower, found.upper)
-    least = own.lowest + (1e-6 * found.size if own.above else 0.0)
+        search = Search(size, -_TIMES_START * size, _TIMES_START * size, about=True)
+    low, high = (search.lower + start, search.upper + start) if search.about else (search.lower, search.upper)
+    least = own.lowest + (1e-6 * search.size if own.above else 0.0)
     return Search(
-        found.size,
+        search.size,
         min(max(low, least), start),
         max(min(high, own.highest), start),
-        found.about,
-        found.logarithmic,
+        search.about,
+        search.logarithmic,
     )
 
 

@@ -40,13 +40,13 @@ class PhotoCellTimes:
     Attributes
     ----------
     cells
-        What was measured.
+        Measured data.
     asked
-        The scenario: slope, mass with both skis, and the values of what is not looked for.
+        The scenario: slope, mass with both skis, and the values of the fixed inputs.
     starts
         Values of ``start.…`` keys by run, where a run has its own.
     clock_is_free
-        Whether each run's clock has an offset of its own; else it shows 0 when the body leaves the start.
+        Whether each run's clock has a separate offset; else it shows 0 when the body leaves the start.
     """
 
     cells: PhotoCells

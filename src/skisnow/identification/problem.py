@@ -44,27 +44,27 @@ class Problem:
     @property
     def accuracy_is_stated(self) -> bool:
         """Whether all data state their accuracy."""
-        return all(each.accuracy_is_stated for each in self.observations)
+        return all(observation.accuracy_is_stated for observation in self.observations)
 
     @property
     def points(self) -> int:
         """Points of all data."""
-        return sum(each.points for each in self.observations)
+        return sum(observation.points for observation in self.observations)
 
     @property
     def nuisances(self) -> int:
         """Numbers fitted inside the residuals."""
-        return sum(each.nuisances for each in self.observations)
+        return sum(observation.nuisances for observation in self.observations)
 
     @property
     def priors(self) -> int:
         """How many parameters have one."""
-        return sum(each.prior_sd is not None for each in self.parameters)
+        return sum(parameter.prior_sd is not None for parameter in self.parameters)
 
     @property
     def lengths(self) -> tuple[int, ...]:
         """How many residuals each kind of data has."""
-        return tuple(sum(each.series) for each in self.observations)
+        return tuple(sum(observation.series) for observation in self.observations)
 
     def residuals(self, places: Sequence[FloatArray]) -> list[FloatArray | None]:
         """Of data and priors at places of the search."""
@@ -82,11 +82,11 @@ class Problem:
         """The same with the noise that these residuals show, where it is not stated."""
         share = max(1.0 - (len(self.parameters) + self.nuisances) / max(sum(self.lengths), 1), 1e-3)
         found, first = [], 0
-        for each, length, noise in zip(self.observations, self.lengths, self.noise, strict=True):
+        for observation, length, noise in zip(self.observations, self.lengths, self.noise, strict=True):
             part = residuals[first : first + length]
             first += length
             measured = noise * float(np.sqrt(np.mean(part**2) / share))
-            found.append(1.0 if each.accuracy_is_stated else max(measured, 1e-12))
+            found.append(1.0 if observation.accuracy_is_stated else max(measured, 1e-12))
         return replace(self, noise=tuple(found))
 
     def weights(self, other: Problem) -> FloatArray:
@@ -103,7 +103,7 @@ class Problem:
         of: Callable[[Observations, Sequence[Values]], list[FloatArray | None]],
     ) -> list[FloatArray | None]:
         many = [self.values(place) for place in places]
-        parts = [of(each, many) for each in self.observations]
+        parts = [of(observation, many) for observation in self.observations]
         return [self._one([part[i] for part in parts], many[i]) for i in range(len(many))]
 
     def _one(self, parts: Sequence[FloatArray | None], values: Values) -> FloatArray | None:
@@ -112,8 +112,8 @@ class Problem:
             if part is None or not np.all(np.isfinite(part)):
                 return None
             pieces.append(part / noise)
-        priors = [each.prior_residual(values[each.key]) for each in self.parameters]
-        pieces.append(np.array([each for each in priors if each is not None], dtype=float))
+        priors = [parameter.prior_residual(values[parameter.key]) for parameter in self.parameters]
+        pieces.append(np.array([prior for prior in priors if prior is not None], dtype=float))
         return np.concatenate(pieces)
 
 
@@ -129,9 +129,9 @@ class Fit(ShownFields):
     Attributes
     ----------
     name, kind
-        Of the run.
+        Name of the run.
     along : (n,)
-        What the points stand over: time (s) of a track, distance (m) of photo cells, number of a place of a groove.
+        Abscissa of the points: time (s) of a track, distance (m) of photo cells, number of a place of a groove.
     labels
         Names of the k quantities, with units.
     measured, fitted, sd : (n, k)

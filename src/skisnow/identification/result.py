@@ -39,7 +39,7 @@ class Identified(Shown):
     Attributes
     ----------
     parameter
-        What was looked for.
+        The free parameter.
     value, standard_error, interval
         The best value, and what the curvature of the sum of squares says of it; an end that is open is None.
     profile_interval, bootstrap_interval, posterior_interval
@@ -108,7 +108,7 @@ class Effort:
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True, repr=False)
 class Identification(Shown):
-    """What came out.
+    """Result of an identification.
 
     Attributes
     ----------
@@ -137,9 +137,9 @@ class Identification(Shown):
     profiles, bootstrap, posterior
         Where asked for; samples are (N, p) in the keys' units.
     effort
-        What it took.
+        Effort of the search.
     data
-        The name of each file, and what it was taken for, in words.
+        Name of each file and the kind of data recognised in it.
 
     See Also
     --------
@@ -167,58 +167,60 @@ class Identification(Shown):
     data: tuple[tuple[str, str], ...] = ()
 
     def _facts(self) -> Facts:
-        rows = tuple((each.parameter.key, each.in_words) for each in self.parameters)
+        rows = tuple((identified.parameter.key, identified.in_words) for identified in self.parameters)
         return Facts(f"{self.outcome.replace('_', ' ')}: {self.scenario}, {self.points} points", rows)
 
     @property
     def values(self) -> dict[str, float | None]:
         """The best values by key."""
-        return {each.parameter.key: each.value for each in self.parameters}
+        return {identified.parameter.key: identified.value for identified in self.parameters}
 
     def __getitem__(self, key: str) -> Identified:
         """One parameter by its full key or its short name."""
-        for each in self.parameters:
-            if key in (each.parameter.key, each.parameter.name):
-                return each
+        for identified in self.parameters:
+            if key in (identified.parameter.key, identified.parameter.name):
+                return identified
         raise KeyError(key)
 
 
-def identification_dict(found: Identification, *, files: Iterable[Path] = ()) -> dict[str, Any]:
+def identification_dict(identification: Identification, *, files: Iterable[Path] = ()) -> dict[str, Any]:
     """The contents of identification.json, and of ``skisnow identify --json``; nothing is rounded, nothing is NaN.
 
     Its JSON Schema is schemas/identification.schema.json.
 
     Parameters
     ----------
-    found
-        What came out.
+    identification
+        The result.
     files
-        What it was read from, for their SHA-256.
+        Input files, listed with their SHA-256.
     """
-    keys = [each.parameter.key for each in found.parameters]
+    keys = [identified.parameter.key for identified in identification.parameters]
     return {
         "schema_version": 1,
-        "outcome": found.outcome,
-        "reason": found.reason,
-        "parameters": {each.parameter.key: _parameter_dict(each) for each in found.parameters},
+        "outcome": identification.outcome,
+        "reason": identification.reason,
+        "parameters": {
+            identified.parameter.key: _parameter_dict(identified) for identified in identification.parameters
+        },
         "correlation": {
-            key: {other: json_number(found.correlation[i, j]) for j, other in enumerate(keys)}
+            key: {other: json_number(identification.correlation[i, j]) for j, other in enumerate(keys)}
             for i, key in enumerate(keys)
         },
-        "warnings": list(found.warnings),
-        "methods": list(found.methods),
-        "data": [{"name": name, "taken_for": kind} for name, kind in found.data],
-        "scenario": found.scenario,
-        "points": found.points,
-        "degrees_of_freedom": found.degrees_of_freedom,
-        "accuracy_is_stated": found.accuracy_is_stated,
-        "noise": [json_number(each) for each in found.noise],
-        "runs": [{"name": fit.name, "kind": fit.kind, "rms": _rms(fit)} for fit in found.fits],
+        "warnings": list(identification.warnings),
+        "methods": list(identification.methods),
+        "data": [{"name": name, "taken_for": kind} for name, kind in identification.data],
+        "scenario": identification.scenario,
+        "points": identification.points,
+        "degrees_of_freedom": identification.degrees_of_freedom,
+        "accuracy_is_stated": identification.accuracy_is_stated,
+        "noise": [json_number(each) for each in identification.noise],
+        "runs": [{"name": fit.name, "kind": fit.kind, "rms": _rms(fit)} for fit in identification.fits],
         "effort": {
-            "simulations": found.effort.simulations,
-            "kept_simulations": found.effort.kept_simulations,
-            "rounds": found.effort.rounds,
-            "wall_s": found.effort.wall_s,
+            "simulations": identification.effort.simulations,
+            "kept_simulations": identification.effort.kept_simulations,
+            "rounds": identification.effort.rounds,
+            "wall_s": identification.effort.wall_s,
         },
         "provenance": {
             "files": {str(path): hashlib.sha256(path.read_bytes()).hexdigest() for path in files},
@@ -228,23 +230,23 @@ def identification_dict(found: Identification, *, files: Iterable[Path] = ()) ->
     }
 
 
-def _parameter_dict(each: Identified) -> dict[str, Any]:
-    parameter = each.parameter
+def _parameter_dict(identified: Identified) -> dict[str, Any]:
+    parameter = identified.parameter
     return {
-        "value": each.value,
-        "interval": _pair(each.interval),
-        "standard_error": each.standard_error,
-        "profile_interval": _pair(each.profile_interval),
-        "bootstrap_interval": _pair(each.bootstrap_interval),
-        "posterior_interval": _pair(each.posterior_interval),
+        "value": identified.value,
+        "interval": _pair(identified.interval),
+        "standard_error": identified.standard_error,
+        "profile_interval": _pair(identified.profile_interval),
+        "bootstrap_interval": _pair(identified.bootstrap_interval),
+        "posterior_interval": _pair(identified.posterior_interval),
         "unit": parameter.unit,
         "start": parameter.start,
         "lower": parameter.lower,
         "upper": parameter.upper,
         "prior_mean": parameter.prior_mean,
         "prior_sd": parameter.prior_sd,
-        "at_bound": each.at_bound,
-        "identifiable": each.identifiable,
+        "at_bound": identified.at_bound,
+        "identifiable": identified.identifiable,
     }
 
 

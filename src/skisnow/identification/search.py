@@ -181,30 +181,30 @@ class Search:
         assert self.best is not None
         return self.best
 
-    def _with_jacobian(self, found: SearchState) -> SearchState:
+    def _with_jacobian(self, state: SearchState) -> SearchState:
         """With derivatives that hold here: not one-sided ones, nor of a place too far away, nor such as failed."""
-        if found.jacobian is None or found.differentiated_at is None:
-            return self._differentiated(found)
-        away = found.place - found.differentiated_at
+        if state.jacobian is None or state.differentiated_at is None:
+            return self._differentiated(state)
+        away = state.place - state.differentiated_at
         if not np.any(away):
-            return found
-        far = np.max(np.abs(away)) > self.options.keeps_jacobian and self._in_noise(found, away) > min(
+            return state
+        far = np.max(np.abs(away)) > self.options.keeps_jacobian and self._in_noise(state, away) > min(
             _SLIGHT, 1e3 * self.options.keeps_jacobian
         )
-        if far or not found.is_central or not found.is_trusted:
-            return self._differentiated(found)
-        return found
+        if far or not state.is_central or not state.is_trusted:
+            return self._differentiated(state)
+        return state
 
-    def _differentiated(self, found: SearchState) -> SearchState:
-        jacobian, second = self._differences(found)
+    def _differentiated(self, state: SearchState) -> SearchState:
+        jacobian, second = self._differences(state)
         renewed = replace(
-            found,
+            state,
             jacobian=jacobian,
             second=second,
-            differentiated_at=found.place,
+            differentiated_at=state.place,
             is_central=True,
             is_trusted=True,
-            rounds=found.rounds + 1,
+            rounds=state.rounds + 1,
         )
         self.best = renewed
         self.progress(f"round {renewed.rounds}: rms residual {np.sqrt(renewed.cost / len(renewed.residuals)):.4g}")
@@ -226,13 +226,13 @@ class Search:
         jacobian = np.column_stack([_slope_and_bend([end], first)[0] for end in ends])
         return SearchState(start, first, jacobian, np.zeros_like(jacobian), differentiated_at=start)
 
-    def polished(self, found: SearchState, residuals: Residuals, *, most: int = 2) -> SearchState:
+    def polished(self, state: SearchState, residuals: Residuals, *, most: int = 2) -> SearchState:
         """Go on with other, dearer residuals and the Jacobian that is known; the best place seen with those."""
-        assert found.jacobian is not None
-        first = residuals([found.place])[0]
+        assert state.jacobian is not None
+        first = residuals([state.place])[0]
         if first is None:
-            return found
-        best = here = replace(found, residuals=first)
+            return state
+        best = here = replace(state, residuals=first)
         self.best = best
         for _ in range(most):
             step = self._full_step(here)
@@ -247,71 +247,71 @@ class Search:
             self.best = best = here
         return best
 
-    def noise(self, found: SearchState) -> float:
+    def noise(self, state: SearchState) -> float:
         """Standard deviation of a residual: one where it is stated, else estimated."""
         if self.options.accuracy_is_stated:
             return 1.0
-        return float(np.sqrt(found.cost / max(len(found.residuals) - len(found.place), 1)))
+        return float(np.sqrt(state.cost / max(len(state.residuals) - len(state.place), 1)))
 
-    def _left_to_gain(self, found: SearchState) -> float:
-        return self._in_noise(found, self._full_step(found))
+    def _left_to_gain(self, state: SearchState) -> float:
+        return self._in_noise(state, self._full_step(state))
 
-    def _in_noise(self, found: SearchState, step: FloatArray) -> float:
-        assert found.jacobian is not None
-        noise = self.noise(found)
-        return float(np.linalg.norm(found.jacobian @ step)) / noise if noise > 0.0 else 0.0
+    def _in_noise(self, state: SearchState, step: FloatArray) -> float:
+        assert state.jacobian is not None
+        noise = self.noise(state)
+        return float(np.linalg.norm(state.jacobian @ step)) / noise if noise > 0.0 else 0.0
 
-    def _settled(self, found: SearchState) -> bool:
-        return float(np.max(np.abs(self._full_step(found)), initial=0.0)) <= self.options.smallest_move
+    def _settled(self, state: SearchState) -> bool:
+        return float(np.max(np.abs(self._full_step(state)), initial=0.0)) <= self.options.smallest_move
 
-    def _full_step(self, found: SearchState) -> FloatArray:
-        return self._step(found, _SMALLEST_DAMPING)
+    def _full_step(self, state: SearchState) -> FloatArray:
+        return self._step(state, _SMALLEST_DAMPING)
 
-    def _step(self, found: SearchState, damping: float) -> FloatArray:
+    def _step(self, state: SearchState, damping: float) -> FloatArray:
         """The damped step inside the bounds, no longer than is known."""
-        assert found.jacobian is not None
-        low = np.maximum(self.lower - found.place, -self.options.longest_move)
-        high = np.minimum(self.upper - found.place, self.options.longest_move)
-        return step_inside(found.jacobian, found.residuals, low, high, damping=damping)
+        assert state.jacobian is not None
+        low = np.maximum(self.lower - state.place, -self.options.longest_move)
+        high = np.minimum(self.upper - state.place, self.options.longest_move)
+        return step_inside(state.jacobian, state.residuals, low, high, damping=damping)
 
-    def _stepped(self, found: SearchState, damping: float) -> tuple[SearchState | None, float]:
+    def _stepped(self, state: SearchState, damping: float) -> tuple[SearchState | None, float]:
         """The best of some trial steps; None where none of ever shorter ones improves."""
         for _ in range(4):
             dampings = [damping * 10.0 ** (2 * i - 1) for i in range(self.options.candidates)]
-            places = [np.clip(found.place + self._step(found, each), self.lower, self.upper) for each in dampings]
+            places = [np.clip(state.place + self._step(state, each), self.lower, self.upper) for each in dampings]
             tried = self.residuals(places)
             costs = [np.inf if each is None else float(each @ each) for each in tried]
             number = int(np.argmin(costs))
             best = tried[number]
-            if best is not None and costs[number] < found.cost:
-                return _moved(found, places[number], best), max(dampings[number] / 3.0, _SMALLEST_DAMPING)
+            if best is not None and costs[number] < state.cost:
+                return _moved(state, places[number], best), max(dampings[number] / 3.0, _SMALLEST_DAMPING)
             damping = min(dampings[-1] * 10.0, _LARGEST_DAMPING)
         return None, damping
 
-    def _differences(self, found: SearchState) -> tuple[FloatArray, FloatArray]:
+    def _differences(self, state: SearchState) -> tuple[FloatArray, FloatArray]:
         """Central differences, one-sided where a bound is near or there are no residuals."""
-        steps = self._difference_steps(found)
+        steps = self._difference_steps(state)
         places = []
         for j, step in enumerate(steps):
             for sign in (1.0, -1.0):
-                place = found.place.copy()
+                place = state.place.copy()
                 place[j] = np.clip(place[j] + sign * step, self.lower[j], self.upper[j])
                 places.append(place)
         asked = self.residuals(places)
-        jacobian = np.zeros((len(found.residuals), len(steps)))
+        jacobian = np.zeros((len(state.residuals), len(steps)))
         second = np.zeros_like(jacobian)
         for j in range(len(steps)):
-            ends = [(places[i][j] - found.place[j], asked[i]) for i in (2 * j, 2 * j + 1)]
-            jacobian[:, j], second[:, j] = _slope_and_bend(ends, found.residuals)
+            ends = [(places[i][j] - state.place[j], asked[i]) for i in (2 * j, 2 * j + 1)]
+            jacobian[:, j], second[:, j] = _slope_and_bend(ends, state.residuals)
         return jacobian, second
 
-    def _difference_steps(self, found: SearchState) -> FloatArray:
+    def _difference_steps(self, state: SearchState) -> FloatArray:
         low, high = self.options.smallest_step, self.options.largest_step
-        if found.jacobian is None or low == high:
-            return np.full(len(found.place), np.sqrt(low * high))
-        length = np.linalg.norm(found.jacobian, axis=0)
+        if state.jacobian is None or low == high:
+            return np.full(len(state.place), np.sqrt(low * high))
+        length = np.linalg.norm(state.jacobian, axis=0)
         with np.errstate(divide="ignore"):
-            return np.clip(self.noise(found) / length, low, high)
+            return np.clip(self.noise(state) / length, low, high)
 
 
 def step_inside(
@@ -336,17 +336,17 @@ def step_inside(
     return np.asarray(np.clip(solved.x / scale, low, high))
 
 
-def _moved(found: SearchState, place: FloatArray, residuals: FloatArray) -> SearchState:
+def _moved(state: SearchState, place: FloatArray, residuals: FloatArray) -> SearchState:
     """At a better place, with the derivatives as they were.
 
     Broyden's update is left away: along a direction that hardly shows in the data it would learn the roughness of the
     simulation, and make the direction look well known.
     """
-    assert found.jacobian is not None
-    foretold = found.residuals + found.jacobian @ (place - found.place)
-    promised = found.cost - float(foretold @ foretold)
-    kept = found.cost - float(residuals @ residuals)
-    return replace(found, place=place, residuals=residuals, is_trusted=kept >= _KEPT_PROMISE * promised)
+    assert state.jacobian is not None
+    foretold = state.residuals + state.jacobian @ (place - state.place)
+    promised = state.cost - float(foretold @ foretold)
+    kept = state.cost - float(residuals @ residuals)
+    return replace(state, place=place, residuals=residuals, is_trusted=kept >= _KEPT_PROMISE * promised)
 
 
 def _slope_and_bend(

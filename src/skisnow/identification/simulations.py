@@ -49,7 +49,7 @@ class Simulations:
     progress
         Called with the number of runs computed so far.
     executor
-        What computes; None: processes of this computer.
+        Executor of the simulations (default: processes of this computer).
     computed, found
         How many were computed here, and how many were finished before.
     """
@@ -109,7 +109,7 @@ def task_number(task: RunTask) -> int:
 
 @dataclass(frozen=True, slots=True)
 class RunTask:
-    """What one simulated run is asked.
+    """Input of one simulated run.
 
     Attributes
     ----------
@@ -143,7 +143,7 @@ class RunSimulation:
     _sources: Sources = field(init=False, default_factory=Sources)
 
     def __call__(self, task: RunTask) -> Row:
-        """Lists x_m, y_m, speed_m_per_s at the times, and how many of these the run reached; or why there is none."""
+        """Lists x_m, y_m, speed_m_per_s at the times, and how many times the run reached; or why no run exists."""
         from ..simulation.simulated_run import simulate
 
         try:
@@ -151,7 +151,7 @@ class RunSimulation:
             run = simulate(scenario)
         except SkisnowError as error:
             return {"outcome": "error", "reason": str(error)}
-        if run.outcome == "interrupted":  # half a run is none: the search is what was interrupted
+        if run.outcome == "interrupted":  # half a run does not count: the search is what was interrupted
             raise KeyboardInterrupt
         return _row(run, self.times[task.run])
 
@@ -198,7 +198,7 @@ def nudged_tasks(task: RunTask, values: Mapping[str, float]) -> dict[str, tuple[
     values
         The scenario's, where the task has none. One that is 0 is not nudged.
     """
-    base = {**{key: values[key] for key in _SNOW}, **task.values}  # numbers: a published snow is none any more
+    base = {**{key: values[key] for key in _SNOW}, **task.values}  # numbers replace a published snow
     found: dict[str, tuple[RunTask, ...]] = {}
     for key in NUDGED:
         own = base.get(key, values[key])
@@ -218,7 +218,7 @@ def limit_of(own: Row, nudged: Mapping[str, Sequence[Row]]) -> tuple[str, ...]:
 
 
 def _apart(own: Row, other: Row) -> float:
-    """Distance (m) of the ends; 0 where the other run is none."""
+    """Distance (m) of the ends; 0 if the other run does not exist."""
     if "x_m" not in other:
         return 0.0
     return float(np.hypot(other["x_m"][-1] - own["x_m"][-1], other["y_m"][-1] - own["y_m"][-1]))

@@ -96,7 +96,7 @@ def identification_of(
     observed = () if interrupted else problem.observations
     outcome = _outcome(found, known)
     p = len(problem.parameters)
-    slope = np.array([each.slope(values[each.key]) for each in problem.parameters])
+    slope = np.array([parameter.slope(values[parameter.key]) for parameter in problem.parameters])
     with np.errstate(invalid="ignore"):
         covariance = np.full((p, p), np.nan) if known is None else known.covariance * slope[:, None] * slope[None, :]
     return Identification(
@@ -132,7 +132,7 @@ def too_few(problem: Problem, title: str, warnings: tuple[str, ...]) -> Identifi
         outcome="too_few_points",
         reason=REASONS["too_few_points"],
         scenario=title,
-        parameters=tuple(Identified(parameter=each, identifiable=False) for each in problem.parameters),
+        parameters=tuple(Identified(parameter=parameter, identifiable=False) for parameter in problem.parameters),
         correlation=np.full((p, p), np.nan),
         covariance=np.full((p, p), np.nan),
         accuracy_is_stated=problem.accuracy_is_stated,
@@ -149,43 +149,43 @@ def interval_of(parameter: Parameter, place: float, half: float) -> Interval:
     return parameter.value(float(ends[0])), parameter.value(float(ends[1]))
 
 
-def _outcome(found: SearchState, known: Uncertainty | None) -> Outcome:
-    if found.state == "interrupted":
+def _outcome(state: SearchState, spread: Uncertainty | None) -> Outcome:
+    if state.state == "interrupted":
         return "interrupted"
-    if known is not None and known.unknown.any():
+    if spread is not None and spread.unknown.any():
         return "not_identifiable"
-    return found.state
+    return state.state
 
 
-def _identified(solution: Solution, known: Uncertainty | None) -> Iterator[Identified]:
+def _identified(solution: Solution, spread: Uncertainty | None) -> Iterator[Identified]:
     problem, place = solution.problem, solution.found.place
     lower, upper = bounds_of(problem.parameters)
     for j, parameter in enumerate(problem.parameters):
         value = parameter.value(float(place[j]))
         at_bound = bool(min(place[j] - lower[j], upper[j] - place[j]) <= ON_BOUND)
-        error = None if known is None else float(known.standard_errors[j])
-        if error is None or known is None or not np.isfinite(error):
-            yield Identified(parameter=parameter, value=value, at_bound=at_bound, identifiable=known is None)
+        error = None if spread is None else float(spread.standard_errors[j])
+        if error is None or spread is None or not np.isfinite(error):
+            yield Identified(parameter=parameter, value=value, at_bound=at_bound, identifiable=spread is None)
             continue
         yield Identified(
             parameter=parameter,
             value=value,
             standard_error=error * parameter.slope(value),
-            interval=interval_of(parameter, float(place[j]), known.factor * error),
+            interval=interval_of(parameter, float(place[j]), spread.factor * error),
             at_bound=at_bound,
-            identifiable=not bool(known.unknown[j]),
+            identifiable=not bool(spread.unknown[j]),
         )
 
 
-def _warned(solution: Solution, known: Uncertainty | None) -> Iterator[str]:
+def _warned(solution: Solution, spread: Uncertainty | None) -> Iterator[str]:
     parameters = solution.problem.parameters
     few = few_points(solution.problem.points, len(parameters))
     if few:
         yield few
-    if known is not None:
-        yield from unknown_warnings(parameters, known)
-        yield from correlation_warnings(parameters, known.correlation)
-    yield from bound_warnings(parameters, [each.at_bound for each in _identified(solution, known)])
+    if spread is not None:
+        yield from unknown_warnings(parameters, spread)
+        yield from correlation_warnings(parameters, spread.correlation)
+    yield from bound_warnings(parameters, [each.at_bound for each in _identified(solution, spread)])
     if solution.found.state == "interrupted":
         yield "the search had not ended: intervals and correlations are those of a place on the way"
         return
@@ -201,14 +201,14 @@ def _likeness(solution: Solution) -> float | None:
     """Correlation of neighbouring residuals, where it is too large for chance."""
     products = squares = pairs = 0.0
     first = 0
-    for each in solution.problem.observations:
-        for length in each.series if each.kind != "marks" else ():
+    for observation in solution.problem.observations:
+        for length in observation.series if observation.kind != "marks" else ():
             part = solution.found.residuals[first : first + length]
             first += length
             products += float(part[1:] @ part[:-1])
             squares += float(part @ part) * (length - 1) / max(length, 1)
             pairs += length - 1
-        first += sum(each.series) if each.kind == "marks" else 0
+        first += sum(observation.series) if observation.kind == "marks" else 0
     if pairs < 10 or squares == 0.0:
         return None
     alike = products / squares
@@ -252,7 +252,7 @@ def residuals_about_best(solution: Solution) -> Callable[[Sequence[FloatArray]],
     apart = np.zeros_like(found.residuals) if quick is None else found.residuals - quick
 
     def residuals(places: Sequence[FloatArray]) -> list[FloatArray | None]:
-        return [None if each is None else each + apart for each in problem.residuals(places)]
+        return [None if residual is None else residual + apart for residual in problem.residuals(places)]
 
     return residuals
 
@@ -260,4 +260,6 @@ def residuals_about_best(solution: Solution) -> Callable[[Sequence[FloatArray]],
 def samples_in_values(solution: Solution, places: FloatArray) -> FloatArray:
     """Places (N, p) of the search as values (N, p) in the keys' units."""
     parameters = solution.problem.parameters
-    return np.array([[each.value(float(u)) for each, u in zip(parameters, row, strict=True)] for row in places])
+    return np.array(
+        [[parameter.value(float(u)) for parameter, u in zip(parameters, row, strict=True)] for row in places]
+    )

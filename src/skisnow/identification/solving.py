@@ -48,7 +48,7 @@ class Request:
     rng
         Source of random numbers.
     progress
-        Called with what is being done.
+        Called with the current step.
     warnings, methods
         What is known before the search.
     """
@@ -79,21 +79,23 @@ def solved(problem: Problem, plan: Request) -> Identification:
     return with_further_intervals(identification_of(solution, plan.title, plan.warnings, plan.methods), solution, plan)
 
 
-def with_further_intervals(found: Identification, solution: Solution, plan: Request) -> Identification:
+def with_further_intervals(identification: Identification, solution: Solution, plan: Request) -> Identification:
     """Profile, bootstrap and posterior, where they were asked for; Ctrl-C keeps those that are complete."""
-    if found.outcome == "interrupted":
-        return found
+    if identification.outcome == "interrupted":
+        return identification
     try:
         if plan.profile:
-            found = profiled(found, solution, plan.progress)
+            identification = profiled(identification, solution, plan.progress)
         if plan.bootstrap:
-            found = bootstrapped(found, solution, plan.bootstrap, plan.bootstrap_by, plan.rng, plan.progress)
+            identification = bootstrapped(
+                identification, solution, plan.bootstrap, plan.bootstrap_by, plan.rng, plan.progress
+            )
         if plan.posterior:
-            found = with_posterior(found, solution, plan.posterior, plan.rng, plan.progress)
+            identification = with_posterior(identification, solution, plan.posterior, plan.rng, plan.progress)
     except KeyboardInterrupt:
         warning = "what was asked beside the values was interrupted; values and intervals by curvature are complete"
-        return replace(found, outcome="interrupted", warnings=(*found.warnings, warning))
-    return found
+        return replace(identification, outcome="interrupted", warnings=(*identification.warnings, warning))
+    return identification
 
 
 def solution_of(problem: Problem, plan: Request) -> Solution:
@@ -103,7 +105,7 @@ def solution_of(problem: Problem, plan: Request) -> Solution:
 
 def options_of(problem: Problem) -> SearchOptions:
     """How to search: by the roughest of the data."""
-    kinds = {each.kind for each in problem.observations}
+    kinds = {observation.kind for observation in problem.observations}
     options = SearchOptions() if "track" in kinds else OF_GROOVES if "marks" in kinds else FINE
     return replace(options, accuracy_is_stated=problem.accuracy_is_stated)
 
@@ -125,7 +127,7 @@ class _Solver:
 
     @property
     def _has_tracks(self) -> bool:
-        return any(each.kind == "track" for each in self.problem.observations)
+        return any(observation.kind == "track" for observation in self.problem.observations)
 
     def _search(self, problem: Problem, about: str, *, final: bool = False) -> Search:
         lower, upper = bounds_of(problem.parameters)
@@ -150,7 +152,9 @@ class _Solver:
                 return replace(best, state="interrupted")
         if best is None:
             values = self.problem.values(np.zeros(len(self.problem.parameters)))
-            warnings = "; ".join(text for each in self.problem.observations for text in each.warnings(values))
+            warnings = "; ".join(
+                text for observation in self.problem.observations for text in observation.warnings(values)
+            )
             raise FitError(f"nothing can be computed at the start: {warnings or 'no residuals'}")
         return best
 
@@ -161,32 +165,32 @@ class _Solver:
         others = self.plan.rng.uniform(np.maximum(lower, -1.0), np.minimum(upper, 1.0), (self.plan.starts - 1, p))
         return [np.zeros(p), *others]
 
-    def _with_noise(self, found: SearchState) -> SearchState:
+    def _with_noise(self, state: SearchState) -> SearchState:
         """Weigh priors, and data of several kinds, by the noise that the residuals show, until that stays."""
         problem = self.problem
         if problem.accuracy_is_stated or not (problem.priors or len(problem.observations) > 1):
-            return found
+            return state
         for _ in range(_NOISE_ROUNDS):
-            renewed = problem.with_noise_of(found.residuals)
+            renewed = problem.with_noise_of(state.residuals)
             if np.allclose(renewed.noise, problem.noise, rtol=_SAME_NOISE):
                 break
             problem = renewed
-            again = self._search(problem, "noise: ").run(found.place)
+            again = self._search(problem, "noise: ").run(state.place)
             if again is None or again.state == "interrupted":
                 break
-            found = again
+            state = again
         self.problem = problem
-        return found
+        return state
 
-    def _polished(self, found: SearchState) -> SearchState:
+    def _polished(self, state: SearchState) -> SearchState:
         """The last steps with the scenario's own solver; all with it where the quick one was too far off."""
         self.plan.progress("last steps with the scenario's own solver")
         search = self._search(self.problem, "")
-        quick = found.residuals
+        quick = state.residuals
         try:
-            polished = search.polished(found, self.problem.final_residuals)
-            first = self.problem.final_residuals([found.place])[0]
-            apart = 0.0 if first is None else float(np.sqrt(np.mean((first - quick) ** 2))) / search.noise(found)
+            polished = search.polished(state, self.problem.final_residuals)
+            first = self.problem.final_residuals([state.place])[0]
+            apart = 0.0 if first is None else float(np.sqrt(np.mean((first - quick) ** 2))) / search.noise(state)
             if apart > _STEPS_APART:
                 self.methods.append(
                     "fixed steps of 1 ms were too long for this snow: searched again with the scenario's solver"
@@ -194,24 +198,24 @@ class _Solver:
                 again = self._search(self.problem, "own solver: ", final=True).run(polished.place)
                 return polished if again is None else again
         except KeyboardInterrupt:
-            best = search.best if search.best is not None else found
-            return replace(best, jacobian=found.jacobian, second=found.second, state="interrupted")
+            best = search.best if search.best is not None else state
+            return replace(best, jacobian=state.jacobian, second=state.second, state="interrupted")
         self.methods.append(
             "searched with fixed steps of 1 ms (fast mode); last steps and answer with the scenario's own solver"
         )
         return polished
 
-    def _weighed(self, found: SearchState) -> Solution:
+    def _weighed(self, state: SearchState) -> Solution:
         """Residuals and derivatives in standard deviations of the data, stated or seen."""
         problem = self.problem
         if not problem.accuracy_is_stated:
-            seen = problem.with_noise_of(found.residuals)
+            seen = problem.with_noise_of(state.residuals)
             weight = seen.weights(problem)
-            found = replace(
-                found,
-                residuals=found.residuals * weight,
-                jacobian=None if found.jacobian is None else found.jacobian * weight[:, None],
-                second=None if found.second is None else found.second * weight[:, None],
+            state = replace(
+                state,
+                residuals=state.residuals * weight,
+                jacobian=None if state.jacobian is None else state.jacobian * weight[:, None],
+                second=None if state.second is None else state.second * weight[:, None],
             )
             problem = seen
-        return Solution(problem, found, tuple(self.tried), tuple(self.methods), options_of(problem))
+        return Solution(problem, state, tuple(self.tried), tuple(self.methods), options_of(problem))

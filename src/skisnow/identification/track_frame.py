@@ -24,14 +24,14 @@ FARTHEST: Final = 50_000.0
 """(m) from the site: a track beyond is of another place, and a plane no longer the earth (modelling assumption)."""
 
 
-def in_scenario_frame(track: Track, asked: ScenarioFile, site: object) -> tuple[Track, list[str]]:
+def in_scenario_frame(track: Track, scenario: ScenarioFile, site: object) -> tuple[Track, list[str]]:
     """The track with x down the fall line and y to the left, and how that was done, in words.
 
     Parameters
     ----------
     track
         In any frame; metres of its own file are taken as the slope's.
-    asked
+    scenario
         The scenario.
     site
         ``[identify.site]`` as it stands in the file: where the slope lies. None where it is left out.
@@ -51,7 +51,7 @@ def in_scenario_frame(track: Track, asked: ScenarioFile, site: object) -> tuple[
         )
     said = _site(site)
     azimuth = said.fall_line_azimuth_deg * DEGREE
-    slope = asked.scenario.slope
+    slope = scenario.scenario.slope
     angle = slope.angle if isinstance(slope, Plane) else None
     if said.latitude_deg is not None and said.longitude_deg is not None and track.origin is not None:
         height = track.origin.height if said.height_m is None else said.height_m
@@ -61,18 +61,18 @@ def in_scenario_frame(track: Track, asked: ScenarioFile, site: object) -> tuple[
             track, fall_line_azimuth=azimuth, slope_angle=angle, origin=origin, missing_height="on_slope"
         )
         return turned, [f"tracks are counted from the site at {point}"]
-    return _from_its_first_point(track, asked, azimuth, angle)
+    return _from_its_first_point(track, scenario, azimuth, angle)
 
 
 def _from_its_first_point(
-    track: Track, asked: ScenarioFile, azimuth: float, angle: float | None
+    track: Track, scenario: ScenarioFile, azimuth: float, angle: float | None
 ) -> tuple[Track, list[str]]:
     first = int(np.argmax(track.usable))
     origin = np.nan_to_num(track.place[first])
     turned = in_slope_frame(
         track, fall_line_azimuth=azimuth, slope_angle=angle, origin=origin, missing_height="on_slope"
     )
-    start = asked.scenario.start
+    start = scenario.scenario.start
     place = turned.place + np.array([start.x, start.y, 0.0])
     method = "the first point of each track is taken as the scenario's start; its error is in all points"
     return replace(turned, place=place), [method]

@@ -49,7 +49,7 @@ class Measured:
     Attributes
     ----------
     name
-        Of the track.
+        Name of the track.
     time, place, sd
         (m,) s from its first point, (m, 2) m and their standard deviations (m).
     speed, speed_sd
@@ -145,7 +145,7 @@ class TrackPositions:
     Attributes
     ----------
     tracks
-        What was measured.
+        Measured data.
     simulate
         Runs tasks.
     fixed

@@ -16,11 +16,11 @@ from .parameter import Parameter
 FloatArray = npt.NDArray[np.float64]
 
 SINGULAR: Final = 1e-6
-"""Of scaled columns: a singular value below this share of the largest is none."""
+"""Of scaled columns: a singular value below this share of the largest counts as 0."""
 WIDEST: Final = 1.5
-"""Half an interval, in sizes of its parameter, from which on the data say nothing about it (modelling assumption)."""
+"""Half an interval, in sizes of its parameter; a wider interval counts as undetermined (modelling assumption)."""
 TAKES_PART: Final = 0.2
-"""Share of a direction that nothing is known of, from which on a parameter takes part in it (modelling assumption)."""
+"""Least share of an undetermined direction with which a parameter takes part in it (modelling assumption)."""
 CLOSE: Final = 0.9
 """Correlation beyond which two parameters are warned of."""
 _HELPS: Final = {
@@ -144,13 +144,14 @@ def uncertainty(jacobian: FloatArray, *, degrees_of_freedom: float | None) -> Un
 def _groups(directions: FloatArray, length: FloatArray) -> tuple[tuple[int, ...], ...]:
     alone = [(int(j),) for j in np.flatnonzero(length == 0.0)]
     together = [
-        tuple(int(j) for j in np.flatnonzero((np.abs(each) > TAKES_PART) & (length > 0.0))) for each in directions
+        tuple(int(j) for j in np.flatnonzero((np.abs(direction) > TAKES_PART) & (length > 0.0)))
+        for direction in directions
     ]
     return tuple(dict.fromkeys([*alone, *(group for group in together if group)]))
 
 
 def correlation_warnings(parameters: Sequence[Parameter], correlation: FloatArray) -> Iterator[str]:
-    """A sentence for each pair that the data hardly tell apart."""
+    """A sentence for each pair of parameters that the data hardly distinguish."""
     for i, one in enumerate(parameters):
         for j in range(i):
             r = float(correlation[i, j])
@@ -161,10 +162,10 @@ def correlation_warnings(parameters: Sequence[Parameter], correlation: FloatArra
                 )
 
 
-def unknown_warnings(parameters: Sequence[Parameter], known: Uncertainty) -> Iterator[str]:
+def unknown_warnings(parameters: Sequence[Parameter], spread: Uncertainty) -> Iterator[str]:
     """A sentence for each parameter, or group of them, that the data leave open."""
     named: set[int] = set()
-    for group in known.groups:
+    for group in spread.groups:
         named.update(group)
         if len(group) == 1:
             alone = parameters[group[0]]
@@ -173,21 +174,22 @@ def unknown_warnings(parameters: Sequence[Parameter], known: Uncertainty) -> Ite
             names = " and ".join(parameters[j].name for j in group)
             helps = _help(parameters[group[0]], parameters[group[1]]) if len(group) == 2 else _COMMON
             yield f"{names} cannot be told apart at all by these data: {helps}"
-    for j in np.flatnonzero(known.unknown).tolist():
+    for j in np.flatnonzero(spread.unknown).tolist():
         if j not in named:
             yield (
                 f"{parameters[j].name} is left open by these data: its interval is as wide as all values it could "
-                f"have. {_why_open(parameters, known, j)}"
+                f"have. {_why_open(parameters, spread, j)}"
             )
 
 
 def bound_warnings(parameters: Sequence[Parameter], at_bound: Sequence[bool]) -> Iterator[str]:
     """A sentence for each parameter on a bound."""
-    for each, there in zip(parameters, at_bound, strict=True):
+    for parameter, there in zip(parameters, at_bound, strict=True):
         if there:
+            unit = f" {parameter.unit}" if parameter.unit else ""
             yield (
-                f"{each.name} sits on its bound ({each.lower:g} to {each.upper:g}{f' {each.unit}' if each.unit else ''}"
-                "): its interval by curvature does not hold there; --profile gives one that does"
+                f"{parameter.name} sits on its bound ({parameter.lower:g} to {parameter.upper:g}{unit}): its interval "
+                "by curvature does not hold there; --profile gives one that does"
             )
 
 
@@ -217,11 +219,11 @@ def model_warning(correlation: float) -> str:
     )
 
 
-def _why_open(parameters: Sequence[Parameter], known: Uncertainty, j: int) -> str:
+def _why_open(parameters: Sequence[Parameter], spread: Uncertainty, j: int) -> str:
     """It has little effect, or others take its effect up."""
-    if not known.would_be_known(j):
+    if not spread.would_be_known(j):
         return _alone(parameters[j])
-    close = [i for i, r in enumerate(known.correlation[j]) if i != j and abs(r) > CLOSE]
+    close = [i for i, r in enumerate(spread.correlation[j]) if i != j and abs(r) > CLOSE]
     if not close:
         return "It would be known if the others were: fix some of them, or give them priors from elsewhere"
     names = " and ".join(parameters[i].name for i in close)

@@ -60,8 +60,8 @@ OUTPUT: Final = 0.05
 """Time (s) between the rows of a track that the band draws."""
 
 
-def inputs_with(given: Iterable[Prior], snow: SnowProperties) -> tuple[Measured | Prior, ...]:
-    """What the band is drawn from beside H_V and S_f, in the order of its columns.
+def inputs_with(priors: Iterable[Prior], snow: SnowProperties) -> tuple[Measured | Prior, ...]:
+    """Inputs of the band next to H_V and S_f, in the order of its columns.
 
     A prior that is given comes first, then what the snow has measured with an interval, then the usual prior.
 
@@ -72,7 +72,7 @@ def inputs_with(given: Iterable[Prior], snow: SnowProperties) -> tuple[Measured 
     """
     measured = {each.key: each for each in measured_of(snow)}
     found = {each.key: measured.get(each.key, each) for each in PRIORS}
-    for each in given:
+    for each in priors:
         if each.key in MEASURED:
             raise ParameterError(f"{each.key} has no prior here: its interval comes from the campaign")
         found[each.key] = each
@@ -109,7 +109,7 @@ def ensemble_of(
     progress: Callable[[str], None],
 ) -> tuple[list[EnsembleRun], float, tuple[str, ...]]:  # fmt: skip
     """The runs of an ensemble; how far (m) the fast solver moves the nominal run's end; warnings of that run."""
-    nudged = {key: each for key, each in nudged_scenarios(nominal).items() if key in NUDGED}
+    nudged = {key: pair for key, pair in nudged_scenarios(nominal).items() if key in NUDGED}
     points = [nominal.scenario, *scenarios, *(scenario for each in nudged.values() for scenario in each)]
 
     def tell(done: int, count: int) -> None:

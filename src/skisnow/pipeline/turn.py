@@ -51,11 +51,11 @@ def turn(
     campaign
         A campaign, its folder, or its analysis.
     site
-        Whose snow it is; "C" is also the campaign's "site C". Left out: that of all sites together.
+        Whose snow it is; "C" is also the campaign's "site C". Default: all sites together.
     scenario
         The turn: its snow is replaced by the one that was found. A built-in name, a file, or a scenario.
     ski
-        In place of the scenario's: a ski, a name of the catalogue, or a file.
+        Ski instead of that of the scenario: a ski, a name of the catalogue, or a file.
     unloading_ratio
         k_u/H_V > 1 of the hypoplastic contact; left out: the measured one of the site, or 10 where none is. The other
         contact is elastic.
@@ -66,7 +66,7 @@ def turn(
         u_y are drawn from their measured intervals where the site has them and neither is given above; all else, and
         they where they were not measured, from `skisnow.pipeline.ensemble.PRIORS`.
     runs
-        Of the ensemble, 3 or more.
+        Number of runs of the ensemble, 3 or more.
     seed
         Of those draws.
     workers
@@ -91,8 +91,8 @@ def turn(
 
     See Also
     --------
-    skisnow.analyse : its first step alone.
-    skisnow.simulate : one turn alone.
+    skisnow.analyse : only the first step.
+    skisnow.simulate : only one turn.
 
     Notes
     -----
@@ -122,7 +122,7 @@ def turn(
         f"hypoplastic, k_u / H_V = {snow.unloading_ratio:.3g}": turn,
         "elastic": turn.with_(unloading_ratio=ELASTIC),
     }
-    simulated = {name: _run(name, each, say) for name, each in contacts.items()}
+    simulated = {name: _run(name, contact, say) for name, contact in contacts.items()}
     nominal = next(iter(simulated.values()))
     ensemble, moved, warnings = ensemble_of(nominal, drawn, every, workers=workers, progress=say)
     return TurnChain(

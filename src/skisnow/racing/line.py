@@ -145,7 +145,7 @@ class RacingLine(Shown):
         return max(abs(self.at(x + side * 1e-9)[2]) for x in self._x for side in (-1.0, 1.0))
 
     def _facts(self) -> Facts:
-        aside, along, turning = zip(*((each.aside, each.along, each.turning) for each in self.turns), strict=True)
+        aside, along, turning = zip(*((turn.aside, turn.along, turn.turning) for turn in self.turns), strict=True)
         rows = (
             ("aside", f"{amount(min(aside), 'm')} to {amount(max(aside), 'm')}"),
             ("along", f"{amount(min(along))} to {amount(max(along))}"),
@@ -170,7 +170,7 @@ def ways(course: Course, start: tuple[float, float]) -> list[float]:
 
 @dataclass(frozen=True, slots=True)
 class FollowedLine:
-    """What a balanced skier steers by: a line, pursued as its numbers say."""
+    """Steering of a balanced skier: a line, pursued as its numbers say."""
 
     line: RacingLine
     skier: Skier
@@ -187,7 +187,7 @@ def course_of(scenario: Scenario) -> Course:
     Raises
     ------
     ParameterError
-        It has none.
+        The scenario has no such part.
     """
     if scenario.course is None:
         raise ParameterError("the scenario has no course; a race needs one: [course] name = or file =")
@@ -200,7 +200,7 @@ def skier_of(scenario: Scenario) -> Skier:
     Raises
     ------
     ParameterError
-        It has none.
+        The scenario has no such part.
     """
     if scenario.skier is None:
         raise ParameterError('the scenario has no skier; a race needs one: [skier] steers = "gates"')

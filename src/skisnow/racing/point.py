@@ -129,7 +129,7 @@ class PointRacer:
         )
 
     def raced(self, line: RacingLine) -> tuple[CourseResult | None, tuple[float, float]]:
-        """What becomes of the gates, and where it ends (m)."""
+        """Outcome at each gate, and the end of the run (m)."""
         last = max(line.breaks[-1], line.course.gates[-1].turning[0])
         x, square, time = self.motion(line, [*line.breaks, last + BEHIND])
         if len(x) < 2:

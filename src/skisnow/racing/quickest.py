@@ -131,11 +131,11 @@ def quickest_line(
         Distance (m) by which both skis have to pass each pole at least, 0 to 1: a line that passes nearer fails. What
         passes by less with one solver may straddle with another.
     seed
-        Of every random number, from 0 on.
+        Seed of all random numbers, 0 or more.
     workers
         Number of processes; None: one for each core. The line does not depend on it.
     executor
-        What computes in place of processes of this computer, as of `skisnow.run_batch`.
+        Executor used instead of processes of this computer, as of `skisnow.run_batch`.
     checkpoint
         File of finished evaluations, with which the same call goes on; None: nothing is kept.
     progress

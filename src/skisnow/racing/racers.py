@@ -102,7 +102,7 @@ class Racer:
 
 @dataclass(frozen=True, slots=True)
 class LinePoint:
-    """What a worker is given: the line, and the place in the unit cube that it came from."""
+    """Input of a worker: the line, and the position in the unit cube that it came from."""
 
     line: RacingLine
     place: tuple[float, ...]
@@ -123,9 +123,9 @@ class ScoredLine:
             "time": found.time,
             "passed": found.passed,
             "words": found.words,
-            "gates": [list(each) for each in found.gates],
+            "gates": [list(gate) for gate in found.gates],
             "margins": list(found.margins),
-            "turns": [[each.aside, each.along, each.turning] for each in point.line.turns],
+            "turns": [[turn.aside, turn.along, turn.turning] for turn in point.line.turns],
         }
 
 

@@ -1,4 +1,4 @@
-"""What a way through a course is worth to a search: its time, or by how much it fails."""
+"""Score of a run through a course: its time, or the distance by which it misses gates."""
 
 from __future__ import annotations
 
@@ -63,16 +63,16 @@ def score_of(result: CourseResult | None, end: tuple[float, float], *, finished:
     """
     if result is None:
         return Score(value=float("inf"), time=None, passed=0, words=words)
-    times = [None if each.time is None else each.time - result.start_time for each in result.passages]
-    gates = tuple((each.outcome, time) for each, time in zip(result.passages, times, strict=True))
-    margins = tuple(_margin(each) for each in result.passages)
+    times = [None if passage.time is None else passage.time - result.start_time for passage in result.passages]
+    gates = tuple((passage.outcome, time) for passage, time in zip(result.passages, times, strict=True))
+    margins = tuple(_margin(passage) for passage in result.passages)
     last = times[-1]
     if finished and result.fault is None and last is not None:
         return Score(value=last, time=last, passed=result.passed, words=words, gates=gates, margins=margins)
     beside = sum(
-        min(max(-each.clearance, 0.0), FARTHEST)
-        for each in result.passages
-        if each.outcome != "passed" and each.clearance is not None
+        min(max(-passage.clearance, 0.0), FARTHEST)
+        for passage in result.passages
+        if passage.outcome != "passed" and passage.clearance is not None
     )
     left = max(0.0, result.course.gates[-1].turning[0] - end[0])
     missed = max(1, len(result.passages) - result.passed)
@@ -86,9 +86,9 @@ def with_room(score: Score, room: float) -> Score:
     if room == 0.0:
         return score
     margins = tuple(
-        each if each is None or i >= len(score.gates) else each - room for i, each in enumerate(score.margins)
+        margin if margin is None or i >= len(score.gates) else margin - room for i, margin in enumerate(score.margins)
     )
-    narrow = [i for i, each in enumerate(margins) if each is not None and each <= 0.0]
+    narrow = [i for i, margin in enumerate(margins) if margin is not None and margin <= 0.0]
     if score.time is None or not narrow:
         return replace(score, margins=margins)
     words = f"the skis passed the pole of gate {narrow[0] + 1} by less than {room:g} m"

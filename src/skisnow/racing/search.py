@@ -19,7 +19,7 @@ Told: TypeAlias = Callable[[int, float], None]
 """Takes the number of evaluations so far and the least value among them."""
 
 FAILED: Final = 1e6
-"""What a value that is not finite counts as."""
+"""Value of an evaluation that is not finite."""
 
 
 @dataclass(frozen=True, slots=True)

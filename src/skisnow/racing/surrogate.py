@@ -113,8 +113,8 @@ class Surrogate:
         left = 1.0 - np.sum(kernel * cho_solve(self._factor, kernel.T).T, axis=1)
         return mean, np.multiply.outer(np.sqrt(np.maximum(left, 1e-12)), self.scale)
 
-    def believing(self, place: FloatArray) -> Surrogate:
-        """The same one with a place added that gives what it expects there."""
+    def with_mean_at(self, place: FloatArray) -> Surrogate:
+        """Surrogate with one more evaluation whose value is the mean expected there (Kriging believer)."""
         expected = (self.at(place[None, :])[0] - self.level) / self.scale
         known = (
             _kernel(self.places, self.places, self.lengths) @ self._weights + (self.noise**2 + SMALLEST) * self._weights
@@ -164,12 +164,12 @@ class Prospects:
     least: float
 
     @classmethod
-    def of(cls, found: Sequence[Evaluated], kinds: int) -> Prospects:
+    def of(cls, evaluations: Sequence[Evaluated], kinds: int) -> Prospects:
         """What evaluations say, two at least, whose places have `kinds` numbers a turn."""
-        places = np.array([each.place for each in found])
-        times, margins = times_of(found), margins_of(found)
+        places = np.array([each.place for each in evaluations])
+        times, margins = times_of(evaluations), margins_of(evaluations)
         time = Surrogate.of(places, times, kinds)
-        passed = passed_of(found)
+        passed = passed_of(evaluations)
         expected = time.at(places)[0]
         least = float(expected[passed].min() if passed.any() else times.max())
         varied = bool(np.any(margins <= 0.0))
@@ -194,46 +194,46 @@ class Prospects:
         gain = _log_improvement((self.least - mean) / deviation) + np.log(deviation)
         return np.asarray(gain + caution * self.through(places))
 
-    def believing(self, place: FloatArray) -> Prospects:
-        """The same with a place that gives what is expected there."""
-        margins, least = None if self.margins is None else self.margins.believing(place), self.least
+    def with_mean_at(self, place: FloatArray) -> Prospects:
+        """Prospects with one more evaluation whose values are the means expected there."""
+        margins, least = None if self.margins is None else self.margins.with_mean_at(place), self.least
         if self.through(place[None, :])[0] > math.log(0.5):
             least = min(least, float(self.time.at(place[None, :])[0][0]))
-        return Prospects(self.time.believing(place), margins, least)
+        return Prospects(self.time.with_mean_at(place), margins, least)
 
 
-def passed_of(found: Sequence[Evaluated]) -> npt.NDArray[np.bool_]:
+def passed_of(evaluations: Sequence[Evaluated]) -> npt.NDArray[np.bool_]:
     """Which came through (n,)."""
-    return np.array([each.value < NOT_PASSED for each in found])
+    return np.array([each.value < NOT_PASSED for each in evaluations])
 
 
-def times_of(found: Sequence[Evaluated]) -> FloatArray:
+def times_of(evaluations: Sequence[Evaluated]) -> FloatArray:
     """Times (n,) (s) at the last gate, of failures too; those that never came there count as slow."""
-    given = np.array([_time(each) for each in found])
+    given = np.array([_time(each) for each in evaluations])
     known = np.isfinite(given)
     if not known.any():
-        return np.array([math.log(min(each.value, 1e6)) for each in found])
+        return np.array([math.log(min(each.value, 1e6)) for each in evaluations])
     low, middle, high = np.quantile(given[known], [0.25, 0.5, 0.75])
     return np.minimum(np.where(known, given, np.inf), middle + MOST_TIME * max(high - low, 1e-6))
 
 
-def margins_of(found: Sequence[Evaluated]) -> FloatArray:
+def margins_of(evaluations: Sequence[Evaluated]) -> FloatArray:
     """Margins (n, q) (m) of evaluations whose rows have some, and -1 or 1 for failing where they have none."""
-    if not found[0].row.get("margins"):
-        return np.where(passed_of(found), 1.0, -1.0)[:, None]
-    count = max(len(each.row["margins"]) for each in found)
-    out = np.full((len(found), count), -MOST_MARGIN)
-    for i, each in enumerate(found):
+    if not evaluations[0].row.get("margins"):
+        return np.where(passed_of(evaluations), 1.0, -1.0)[:, None]
+    count = max(len(each.row["margins"]) for each in evaluations)
+    out = np.full((len(evaluations), count), -MOST_MARGIN)
+    for i, each in enumerate(evaluations):
         for j, margin in enumerate(each.row["margins"]):
             if margin is not None:
                 out[i, j] = min(max(margin, -MOST_MARGIN), MOST_MARGIN)
     return out
 
 
-def _time(each: Evaluated) -> float:
-    if each.value < NOT_PASSED:
-        return each.value
-    gates = each.row.get("gates")
+def _time(evaluation: Evaluated) -> float:
+    if evaluation.value < NOT_PASSED:
+        return evaluation.value
+    gates = evaluation.row.get("gates")
     return float(gates[-1][1]) if gates and gates[-1][1] is not None else math.inf
 
 

@@ -120,7 +120,9 @@ class SurrogateSearch:
         shares = qmc.LatinHypercube(size, rng=np.random.default_rng([*self.seed, phase])).random(drawn)
         begin = self._numbers(directions, np.array(self.batches.least.place))
         if len(self.batches.found) < count:
-            self.batches.evaluate([directions @ np.clip(begin + box * (2.0 * each - 1.0), 0.0, 1.0) for each in shares])
+            self.batches.evaluate(
+                [directions @ np.clip(begin + box * (2.0 * share - 1.0), 0.0, 1.0) for share in shares]
+            )
         waited = 0
         while len(self.batches.found) < count and box > BOX[0]:
             before = self.batches.least.value
@@ -146,16 +148,16 @@ class SurrogateSearch:
             rest = directions @ np.where(free, 0.0, centre)
             place = rest + moved @ _best_within(known, moved, rest, centre[free], box, daring, seed)
             chosen.append(place)
-            known = known.believing(place)
+            known = known.with_mean_at(place)
         return chosen
 
-    def _centre(self, known: Prospects) -> Evaluated:
+    def _centre(self, prospects: Prospects) -> Evaluated:
         """What came through and is expected to be the quickest; where nothing did, what failed by the least."""
         found = self.batches.found
         passed = passed_of(found)
         if not passed.any():
             return self.batches.least
-        expected = known.time.at(np.array([each.place for each in found]))[0]
+        expected = prospects.time.at(np.array([each.place for each in found]))[0]
         return found[int(np.argmin(np.where(passed, expected, np.inf)))]
 
     @staticmethod
@@ -165,7 +167,7 @@ class SurrogateSearch:
 
 
 def _best_within(
-    known: Prospects, directions: FloatArray, rest: FloatArray, centre: FloatArray, box: float, daring: Daring,
+    prospects: Prospects, directions: FloatArray, rest: FloatArray, centre: FloatArray, box: float, daring: Daring,
     seed: Sequence[int],
 ) -> FloatArray:  # fmt: skip
     """Where most is to be expected, within a box about the centre and the unit cube (m,)."""
@@ -174,7 +176,7 @@ def _best_within(
     best, most = centre, -math.inf
     for _ in range(ASKED):
         asked = np.array([optimiser.ask() for _ in range(optimiser.population_size)])
-        values = known.worth(rest + asked @ directions.T, daring.curiosity, daring.caution)
+        values = prospects.worth(rest + asked @ directions.T, daring.curiosity, daring.caution)
         optimiser.tell(list(zip(asked, (-values).tolist(), strict=True)))
         if values.max() > most:
             best, most = asked[int(np.argmax(values))], float(values.max())

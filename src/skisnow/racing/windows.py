@@ -123,13 +123,13 @@ class Windows:
         return Batches(evaluations=self.made, point_of=point_of, told=told, first=len(self.made.done))
 
 
-def _as_found(line: RacingLine, found: Evaluated) -> RacingLine:
+def _as_found(line: RacingLine, evaluation: Evaluated) -> RacingLine:
     """A line with the turns that were found, and behind them its own."""
-    turns = turns_in(found.row)
+    turns = turns_in(evaluation.row)
     return RacingLine(line.course, line.start, (*turns, *line.turns[len(turns) :]))
 
 
 def _place(line: RacingLine, first: int, last: int) -> FloatArray:
     """Where the turns of a line from a gate on and before another lie in the unit cube."""
-    numbers = [[each.aside, each.along, each.turning] for each in line.turns[first:last]]
+    numbers = [[turn.aside, turn.along, turn.turning] for turn in line.turns[first:last]]
     return np.clip((np.array(numbers) - _LOW) / _WIDTH, 0.0, 1.0).ravel()

@@ -1,4 +1,4 @@
-"""What another ski, another snow or a millimetre is worth in time on one line, paired over the same snows."""
+"""Time difference of another ski, snow or dimension on one line, paired over the same snows."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ class Worth(Shown):
     Attributes
     ----------
     name
-        Of the variant.
+        Name of the variant.
     scores, base
         One for each snow, the first the scenario's own; `base`: of the scenario as it is.
     """
@@ -201,7 +201,7 @@ def drawn_for_race(snow: SnowProperties, count: int, *, spread: float | None, se
 
 
 def worth_changes(scenario: Scenario) -> dict[str, Scenario]:
-    """What people ask about, by name: harder and stronger snow, a wider waist, a stiffer ski, less friction."""
+    """Usual changes, by name: harder and stronger snow, a wider waist, a stiffer ski, less friction."""
     snow, contact = scenario.contact.snow, scenario.contact
     strength = snow.failure_shear_stress
     harder = replace(snow, snow_hardness=1.1 * snow.snow_hardness, snow_hardness_interval=None)

@@ -90,7 +90,7 @@ def as_predictors(predictors: npt.ArrayLike, n: int) -> FloatArray:
 
 
 def require_finite(name: str, values: FloatArray) -> None:
-    """Raise `ParameterError` with the place of the first value that is no finite number."""
+    """Raise `ParameterError` with the position of the first value that is not a finite number."""
     bad = ~np.isfinite(values)
     if np.any(bad):
         place = tuple(int(i) for i in np.argwhere(bad)[0])
@@ -164,7 +164,7 @@ def factorise(columns: Columns) -> Factorisation:
 
 
 class Spread(TypedDict):
-    """What every least-squares fit tells of its n_parameters coefficients and n residuals."""
+    """Statistics of a least-squares fit with n_parameters coefficients and n residuals."""
 
     n: int
     n_parameters: int

@@ -37,7 +37,7 @@ class LinearFit(ShownFields):
     intervals
         Shape (p, 2): low and high, by Student's t with n - p degrees of freedom.
     covariance
-        Of the coefficients, shape (p, p).
+        Covariance of the coefficients, shape (p, p).
     residuals
         Observed minus fitted, shape (n,).
     sse, rmse, rmse_dof
@@ -48,7 +48,7 @@ class LinearFit(ShownFields):
         F test against the intercept-only model, p the chance of an F as large; NaN without an intercept, without a
         predictor, and for n = p.
 
-    What needs n > p is NaN for n = p: standard_errors, intervals, covariance, rmse_dof, F, p.
+    Results that need n > p are NaN for n = p: standard_errors, intervals, covariance, rmse_dof, F, p.
     """
 
     n: int
@@ -81,7 +81,7 @@ def linear_fit(
     intercept
         Whether b0 is fitted; it is then the first coefficient.
     confidence
-        Of the intervals.
+        Confidence of the intervals.
 
     Raises
     ------

@@ -66,7 +66,7 @@ class NonlinearFit:
     n, n_parameters
         Observations n and parameters p.
 
-    What needs n > p is NaN for n = p.
+    Results that need n > p are NaN for n = p.
     """
 
     names: tuple[str, ...]
@@ -105,9 +105,9 @@ def nonlinear_fit(
         Starting values, shape (p,). Where a parameter comes to lie at 0 its starting value (1 for a start at 0) also
         limits the step of the derivatives; elsewhere its own size does.
     confidence
-        Of the intervals.
+        Confidence of the intervals.
     names
-        Of the parameters; b1, b2, … where left out.
+        Names of the parameters (default: b1, b2, …).
 
     Raises
     ------

@@ -36,7 +36,7 @@ def ratio_of_means(logs_a: npt.ArrayLike, logs_b: npt.ArrayLike, *, confidence: 
     logs_a, logs_b
         Natural logarithms of the measured values, shapes (n_a,) and (n_b,).
     confidence
-        Of the interval.
+        Confidence of the interval.
 
     Returns
     -------

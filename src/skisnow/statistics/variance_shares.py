@@ -45,7 +45,7 @@ def variance_shares(output: npt.ArrayLike, inputs: npt.ArrayLike, *, confidence:
     inputs
         Drawn independently of each other, shape (n, k), n ≥ k + 2; each varies.
     confidence
-        Of the intervals.
+        Confidence of the intervals.
 
     Returns
     -------

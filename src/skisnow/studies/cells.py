@@ -20,7 +20,7 @@ Reader: TypeAlias = Callable[[str], Any]
 
 
 def cell(value: Any) -> str:
-    """Numbers with all their digits, true and false, nothing where there is no value.
+    """Numbers with all their digits, true and false, nothing if the value is missing.
 
     >>> [cell(value) for value in (None, 0.1, 3, True, [1.0, 2.5], "=1")]
     ['', '0.1', '3', 'true', '[1.0, 2.5]', "'=1"]

@@ -36,7 +36,7 @@ class Points(Sequence[Point], ABC):
 
     @abstractmethod
     def distinct(self, name: str) -> list[Any]:
-        """What stands under a name, each once, in the order of the points; empty where no point has it."""
+        """Distinct values of an input, in the order of the points; empty where no point has it."""
 
     @abstractmethod
     def json_texts(self) -> Iterator[str]:
@@ -67,7 +67,7 @@ class Points(Sequence[Point], ABC):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ListedPoints(Points):
-    """Points that stand in a list."""
+    """Listed points."""
 
     points: Sequence[Point]
 
@@ -80,7 +80,7 @@ class ListedPoints(Points):
         return self.points[number]
 
     def distinct(self, name: str) -> list[Any]:
-        """What stands under a name, each once."""
+        """Distinct values of an input."""
         return list(dict.fromkeys(point[name] for point in self.points if name in point))
 
     def json_texts(self) -> Iterator[str]:
@@ -95,7 +95,7 @@ class GridPoints(Points):
     Attributes
     ----------
     fixed
-        What all points share.
+        Values of the inputs that all points share.
     axes
         Values by name; none of the names is fixed.
     """
@@ -165,7 +165,7 @@ class SampledPoints(Points):
     Attributes
     ----------
     fixed
-        What all points share.
+        Values of the inputs that all points share.
     columns
         By name; none of the names is fixed.
     n
@@ -327,7 +327,7 @@ def hypercube_points(axes: list[Axis], fixed: Point, n: int, seed: int) -> Sampl
 
 
 def require_count(n: int) -> None:
-    """Refuse a study that nobody can wait for."""
+    """Reject a study with more points than can be computed."""
     if n > MOST_POINTS:
         raise ParameterError(f"the study has {n} points; at most {MOST_POINTS} are allowed. Take fewer values")
 

@@ -120,7 +120,7 @@ def csv_block(path: Path, data: bytes, columns: Sequence[str], readers: Sequence
         lines = list(csv.reader(io.StringIO(data.decode("utf-8"), newline="")))
     except (UnicodeDecodeError, csv.Error) as error:
         raise ParameterError(f"{path} is no table of a study, from about line {first} on: {error}") from error
-    return [row_of(f"{path}, line {number}", columns, each, readers) for number, each in enumerate(lines, start=first)]
+    return [row_of(f"{path}, line {number}", columns, line, readers) for number, line in enumerate(lines, start=first)]
 
 
 class DatabaseRows(StoredRows):

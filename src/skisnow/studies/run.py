@@ -27,7 +27,7 @@ from .writing import write_csv, write_table, writer_of
 
 
 class StudyState(Enum):
-    """What stands at the place of a study's table."""
+    """State of the file at the path of a study's table."""
 
     NEW = "new"
     FINISHED = "finished"
@@ -50,7 +50,7 @@ def study_state(study: Study) -> StudyState:
 def standing(
     out: Path, keys: Mapping[str, Quantity], fingerprint: str, points: int
 ) -> tuple[StudyState, StudyTable | None]:
-    """What stands at the place of a table, and the table where it is one.
+    """State of the file at the path of a table, and the table where it is one.
 
     Raises
     ------
@@ -85,7 +85,7 @@ def run_study(
     workers
         Number of processes; None: one for each core. The table does not depend on it.
     executor
-        What computes in place of processes of this computer, as of `skisnow.run_batch`.
+        Executor used instead of processes of this computer, as of `skisnow.run_batch`.
     progress
         Called with the number of finished points and that of all.
 
@@ -160,7 +160,12 @@ class FinishedRows(Protocol):
 
 
 def written(
-    out: Path, kept: FinishedRows, fingerprint: str, keys: Mapping[str, Quantity], *, previous: Path | None = None
+    out: Path,
+    finished_rows: FinishedRows,
+    fingerprint: str,
+    keys: Mapping[str, Quantity],
+    *,
+    previous: Path | None = None,
 ) -> StudyTable:
     """The table of all rows; it is not written if no point could be asked.
 
@@ -168,7 +173,7 @@ def written(
     ----------
     out
         Its place.
-    kept
+    finished_rows
         The rows.
     fingerprint
         For the column `study`.
@@ -182,15 +187,15 @@ def written(
     OutputError
         Its place cannot be written.
     """
-    columns = (*(kept.columns or ()), "study")
-    rows = _Rows(kept, columns, fingerprint)
+    columns = (*(finished_rows.columns or ()), "study")
+    rows = _Rows(finished_rows, columns, fingerprint)
     stored = None
-    if any(row[columns.index("outcome")] != FAILED for row in kept.values()):
+    if any(row[columns.index("outcome")] != FAILED for row in finished_rows.values()):
         if previous is not None:
             _move(out, previous)
         begins = write_table(out, columns, rows)
         stored = None if rows.held is not None else stored_rows(out, keys, begins)
-    elif len(kept) > MOST_ROWS_HELD:
+    elif len(finished_rows) > MOST_ROWS_HELD:
         file = tempfile.TemporaryFile()  # noqa: SIM115 - the rows close it
         begins = write_csv(file, columns, rows())
         file.seek(0)
@@ -204,8 +209,8 @@ def written(
 class _Rows:
     """Rows as lists of values; with each beginning they are counted, and held where they are few, anew."""
 
-    def __init__(self, kept: FinishedRows, columns: tuple[str, ...], fingerprint: str) -> None:
-        self._kept, self._columns, self._fingerprint = kept, columns, fingerprint
+    def __init__(self, finished_rows: FinishedRows, columns: tuple[str, ...], fingerprint: str) -> None:
+        self._kept, self._columns, self._fingerprint = finished_rows, columns, fingerprint
         self.counted = Tally()
         self.held: list[Row] | None = None
 
@@ -245,11 +250,11 @@ class StudyRows:
     Attributes
     ----------
     subject
-        Who answers.
+        Model that computes the values of a point.
     columns
-        Of the table, without the study's fingerprint.
+        Columns of the table without the fingerprint of the study.
     files
-        What the points read, with the hash of each.
+        Files that the points read, with the hash of each.
     """
 
     subject: StudyModel
@@ -258,7 +263,7 @@ class StudyRows:
 
     @classmethod
     def of(cls, study: Study) -> Self:
-        """Of a study whose files are as they are now."""
+        """Rows of a study with the present contents of its files."""
         files = [path.absolute() for path in study.subject.files(study.numbered)]
         return cls(study.subject, study.columns[:-1], tuple((path, _hash(path)) for path in files))
 

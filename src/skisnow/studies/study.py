@@ -26,7 +26,7 @@ TOP_KEYS: Final = ("out", "scenario", "fixed", *FORMS)
 
 
 class StudyModel(Protocol):
-    """What can be studied. It is pickled for each worker; one more subject is one more class."""
+    """Model of a study. It is pickled for each worker; one more subject is one more class."""
 
     @property
     def keys(self) -> Mapping[str, Quantity]:
@@ -61,7 +61,7 @@ ModelReader: TypeAlias = Callable[[Path], StudyModel]
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Study(Shown):
-    """A study as its file says it.
+    """A study as defined in its file.
 
     Attributes
     ----------

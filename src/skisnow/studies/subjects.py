@@ -241,7 +241,7 @@ class ScenarioModel(ShownFields):
             return self._failure(point, str(error))
         except Exception as error:  # a study never stops for one point
             return self._failure(point, f"unexpected {type(error).__name__}: {error}")
-        if run.outcome == "interrupted":  # half a run is no row: the study is what was interrupted
+        if run.outcome == "interrupted":  # half a run does not count: the study is what was interrupted
             raise KeyboardInterrupt
         return _run_row(asked, run)
 
@@ -253,12 +253,12 @@ class ScenarioModel(ShownFields):
         return {**given, **dict.fromkeys(RUN_RESULTS), "outcome": "error", "warnings": "", "reason": reason}
 
 
-def _run_row(asked: ScenarioFile, run: Run) -> Row:
+def _run_row(scenario: ScenarioFile, run: Run) -> Row:
     known = run.speed[np.isfinite(run.speed)]
     depth = run.skis.edge_depth[np.isfinite(run.skis.edge_depth)]
     energies = {name: value for name, value in energies_dict(run).items() if name in RUN_RESULTS}
     return {
-        **asked.values,
+        **scenario.values,
         "outcome": run.outcome,
         "run_length_m": json_number(run.run_length),
         **{f"end_{name}": value for name, value in end_dict(run).items() if name != "time_s"},
@@ -272,6 +272,6 @@ def _run_row(asked: ScenarioFile, run: Run) -> Row:
         "steps": int(run.steps),
         "rejected_steps": int(run.rejected_steps),
         "ski_name": run.scenario.ski.name,
-        "warnings": "; ".join((*asked.warnings, *run_warnings(run))),
+        "warnings": "; ".join((*scenario.warnings, *run_warnings(run))),
         "reason": run.remedy,
     }

@@ -42,7 +42,7 @@ FAILED = "error"
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class StudyTable(Shown):
-    """Rows in the order of the points, each by the names of the columns; None where there is no value.
+    """Rows in the order of the points, each by the names of the columns; None if the value is missing.
 
     Attributes
     ----------
@@ -75,7 +75,7 @@ class StudyTable(Shown):
         return [row for row in self.rows if row["outcome"] != FAILED]
 
     def csv(self) -> str:
-        """The table as text: numbers with all their digits, true and false, nothing where there is no value."""
+        """The table as text: numbers with all their digits, true and false, nothing if the value is missing."""
         stream = io.BytesIO()
         write_csv(stream, self.columns, ([row.get(name) for name in self.columns] for row in self.rows))
         return stream.getvalue().decode("utf-8")
@@ -236,7 +236,7 @@ class Tally:
     first_failed, first_warned
         Place, from 1 on, and text of the first row that could not be asked, and of the first with warnings.
     studies
-        The fingerprints that stand in the rows.
+        Fingerprints of the studies of the rows.
     """
 
     outcomes: Counter[str] = field(default_factory=Counter)

@@ -61,7 +61,7 @@ def write_table(path: Path, columns: Sequence[str], rows: ValueRows) -> array[in
 
 
 def writer_of(path: Path) -> Writer:
-    """What writes a file of such a name.
+    """Writer for the suffix of a file name.
 
     Raises
     ------
