@@ -14,7 +14,7 @@ from scipy.linalg import lapack
 
 from .._support.units import CONFIDENCE
 from .climb import climb_samples
-from .path_model import STATES, PathFit, PathModel
+from .path_model import STATES, PathFit, PathModel, TimeScales
 from .path_search import WeightedParameters, likely_parameters
 
 FloatArray = npt.NDArray[np.float64]
@@ -31,10 +31,14 @@ WINDOW: Final = 5_000
 """Points of a part that are fitted at a time."""
 OVERLAP: Final = 40
 """Points on each side that two windows share."""
-WIDENED: Final = 1.12
-"""Factor of half widths of intervals: Laplace's approximation is too narrow (from benchmarks/track_intervals.py)."""
-MODEL_ERROR: Final = 5e-4
-"""Relative standard deviation of a highest speed from places without noise (from benchmarks/track_intervals.py)."""
+RESOLVED: Final = 2.0
+"""Correlation time of the acceleration, in intervals between points.
+
+Points do not resolve faster changes. With a shorter time each sample has a speed noise that no point contradicts, and
+the maximum of a noisy series is too high. With a longer one the path cannot follow the changes that points resolve.
+"""
+SPEED_TIMES: Final = (0.3, 2.0)
+"""Minimum and maximum of that time (s) (modelling assumption)."""
 _MOST_NUMBERS: Final = 5e6
 """Numbers in the samples of a track."""
 _SAMPLES: Final = (60, 600)
@@ -97,8 +101,7 @@ class PathEstimate:
         inside = self._inside(start, end)
         if not self.speed[:, inside].size:
             return None
-        error = 1.0 + MODEL_ERROR * np.random.default_rng(len(self.speed)).standard_normal(len(self.speed))
-        return _interval(np.maximum(self.speed[:, inside].max(axis=1), 0.0) * error)
+        return _interval(np.maximum(self.speed[:, inside].max(axis=1), 0.0))
 
     def length(self, start: float = -np.inf, end: float = np.inf, *, with_heights: bool = True) -> Interval:
         """Length (m) of the path between two times (s)."""
@@ -142,19 +145,20 @@ def estimate_path(
     """
     rng = np.random.default_rng(seed)
     pieces = [_binned(time[part == number], place[part == number]) for number in np.unique(part)]
-    longest_step = max(LONGEST_STEP, float(np.median(np.diff(time))) / 4.0) if len(time) > 1 else LONGEST_STEP
+    interval = float(np.median(np.diff(time))) if len(time) > 1 else 0.0
+    scales = TimeScales(max(LONGEST_STEP, interval / 4.0), float(np.clip(RESOLVED * interval, *SPEED_TIMES)))
     pieces = [piece for piece in pieces if len(piece[0]) > 1]
     if not pieces:
         return None
-    excerpt = _excerpt(pieces, longest_step)
+    excerpt = _excerpt(pieces, scales)
     weighted = likely_parameters(excerpt) if np.any(excerpt.place != 0.0) else []
     if not weighted:
         return None
-    nodes = sum(_node_count(at, longest_step) for at, _ in pieces)
+    nodes = sum(_node_count(at, scales.longest_step) for at, _ in pieces)
     samples = int(np.clip(_MOST_NUMBERS / nodes, *_SAMPLES))
     fits = min(_NODES_FITTED / nodes, _PARTS_FITTED / len(pieces))
     drawn = _drawn(weighted, int(np.clip(fits, *_FITS)), samples, rng)
-    found = [_piece_samples(at, where, longest_step, drawn, rng) for at, where in pieces]
+    found = [_piece_samples(at, where, scales, drawn, rng) for at, where in pieces]
     if any(each is None for each in found):
         return None
     return _joined(time, place, part, segment, [each for each in found if each is not None], rng)
@@ -175,7 +179,7 @@ def _binned(time: FloatArray, place: FloatArray) -> tuple[FloatArray, FloatArray
     return mean[0], np.column_stack(mean[1:])
 
 
-def _excerpt(pieces: list[tuple[FloatArray, FloatArray]], longest_step: float) -> PathModel:
+def _excerpt(pieces: list[tuple[FloatArray, FloatArray]], scales: TimeScales) -> PathModel:
     """The stretch of at most `EXCERPT` points with the longest path."""
     best: tuple[float, FloatArray, FloatArray] | None = None
     for time, place in pieces:
@@ -187,7 +191,7 @@ def _excerpt(pieces: list[tuple[FloatArray, FloatArray]], longest_step: float) -
         if count > 1 and (best is None or covered[first] > best[0]):
             best = float(covered[first]), time[first : first + count], place[first : first + count, :2]
     assert best is not None
-    return PathModel(best[1], best[2] - best[2][0], longest_step)
+    return PathModel(best[1], best[2] - best[2][0], scales)
 
 
 def _drawn(
@@ -206,7 +210,7 @@ def _drawn(
 def _piece_samples(
     time: FloatArray,
     place: FloatArray,
-    longest_step: float,
+    scales: TimeScales,
     drawn: list[tuple[WeightedParameters, int]],
     rng: np.random.Generator,
 ) -> tuple[FloatArray, FloatSamples] | None:
@@ -218,7 +222,7 @@ def _piece_samples(
     for begin in range(0, max(len(time) - 1, 1), WINDOW):
         end = min(begin + WINDOW, len(time) - 1)
         first, last = max(begin - OVERLAP, 0), min(end + OVERLAP + 1, len(time))
-        model = PathModel(time[first:last], place[first:last, :2] - place[first, :2], longest_step)
+        model = PathModel(time[first:last], place[first:last, :2] - place[first, :2], scales)
         kept = slice(int(model.points[begin - first]), int(model.points[end - first]) + (end == len(time) - 1))
         found = []
         for (parameters, _), count in drawn:
@@ -279,7 +283,7 @@ def _joined(
 
 
 def _interval(values: npt.NDArray[np.floating]) -> Interval:
-    """The median, and the ends of the central 95 % of the samples, widened."""
+    """The median, and the ends of the central 95 % of the samples."""
     outside = (1.0 - CONFIDENCE) / 2.0
     low, value, high = np.quantile(values.astype(float), (outside, 0.5, 1.0 - outside)).tolist()
-    return Interval(value, max(value - WIDENED * (value - low), 0.0), value + WIDENED * (high - value))
+    return Interval(value, low, high)

@@ -32,15 +32,13 @@ IntArray = npt.NDArray[np.int64]
 
 DAMPING: Final = 0.3
 """Damping ratio ζ of the turn rate (modelling assumption: two or three linked turns resemble each other)."""
-SPEED_TIME: Final = 1.0
-"""Correlation time (s) of the acceleration along the path (modelling assumption)."""
 USUAL_SPEED: Final = (10.0, 30.0)
 """Mean and standard deviation (m/s) of the first speed (modelling assumption: hardly any information)."""
 HEADING_PRECISION: Final = 1e-2
 """Precision of the first heading (1/rad²): hardly any information."""
 STATES: Final = 7
 _X, _TURN, _SPEED = slice(0, 2), slice(2, 5), slice(5, 7)
-_THETA, _V = 2, 5
+_THETA, _OMEGA, _V = 2, 3, 5
 _MOST_STEPS: Final = 30
 _SETTLED: Final = 1e-6
 """Relative decrease of the misfit at which a fit ends."""
@@ -50,6 +48,13 @@ _ACCELERATION_AT_REST: Final = 0.05
 """The same for a point that does not move: otherwise the path would follow the noise."""
 _RATE_AT_REST: Final = 0.7
 """Speed over noise (1/s) below which a point does not move (modelling assumption)."""
+
+
+class TimeScales(NamedTuple):
+    """Longest step between nodes, and correlation time T of the acceleration along the path (s)."""
+
+    longest_step: float
+    speed_time: float
 
 
 class MotionParameters(NamedTuple):
@@ -159,18 +164,18 @@ class PathModel:
     time : (m,) s
         Rising.
     place : (m, 2) m
-    longest_step : s
-        Between nodes.
+    scales
+        Times that depend on the interval between points.
     """
 
-    def __init__(self, time: FloatArray, place: FloatArray, longest_step: float) -> None:
-        counts = np.maximum(1, np.ceil(np.diff(time) / longest_step - 1e-9)).astype(np.int64)
+    def __init__(self, time: FloatArray, place: FloatArray, scales: TimeScales) -> None:
+        counts = np.maximum(1, np.ceil(np.diff(time) / scales.longest_step - 1e-9)).astype(np.int64)
         self.points: IntArray = np.concatenate([[0], np.cumsum(counts)])
         self.count = int(self.points[-1]) + 1
         self.step: FloatArray = np.repeat(np.diff(time) / counts, counts)
         self.time: FloatArray = np.interp(np.arange(self.count), self.points, time)
         self.place = place
-        self._speed = speed_chain(SPEED_TIME, self.step)
+        self._speed = speed_chain(scales.speed_time, self.step)
         self._turns: dict[float, Chain] = {}
         self._band = _band_places(self.count)
 
@@ -193,7 +198,7 @@ class PathModel:
         at_rest = np.hypot(*slow_velocity.T) < place_noise * _RATE_AT_REST
         velocity[at_rest] = slow_velocity[at_rest]
         state[:, _THETA] = np.unwrap(np.arctan2(velocity[:, 1], velocity[:, 0]))
-        state[:, _THETA + 1] = np.gradient(state[:, _THETA], self.time)
+        state[:, _OMEGA] = np.gradient(state[:, _THETA], self.time)
         state[:, _V] = np.hypot(*velocity.T)
         return state
 
@@ -251,10 +256,14 @@ class PathModel:
         return float(scale - 2 * points * np.log(parameters.place_noise))
 
     def _residuals(self, state: FloatArray, parameters: MotionParameters, weight: FloatArray) -> _Residuals:
-        """Residuals; over a step with the turn Δθ the chord is shorter than the arc by 1 - Δθ²/24."""
+        """Residuals of the transitions and points.
+
+        Over a step h with the turn Δθ the chord is shorter than the arc by 1 - Δθ²/24. Its direction is the mean
+        heading of the cubic with the headings and turn rates at both ends: (θ₀ + θ₁)/2 + h (ω₀ - ω₁)/12.
+        """
         heading, speed = state[:, _THETA], state[:, _V]
         turn = np.diff(heading)
-        middle = (heading[1:] + heading[:-1]) / 2.0
+        middle = (heading[1:] + heading[:-1]) / 2.0 - self.step * np.diff(state[:, _OMEGA]) / 12.0
         mean_speed = (speed[1:] + speed[:-1]) / 2.0
         shortening = 1.0 - turn**2 / 24.0
         cosine, sine = np.cos(middle), np.sin(middle)
@@ -283,6 +292,8 @@ class PathModel:
             before[:, axis, axis], after[:, axis, axis] = -1.0, 1.0
             before[:, axis, _THETA] = -(by_turn * along + 0.5 * chord * across)
             after[:, axis, _THETA] = -(-by_turn * along + 0.5 * chord * across)
+            before[:, axis, _OMEGA] = -chord * across * self.step / 12.0
+            after[:, axis, _OMEGA] = -before[:, axis, _OMEGA]
             before[:, axis, _V] = after[:, axis, _V] = -0.5 * self.step * residuals.shortening * along
         before[:, _TURN, _TURN] = -self._turn(parameters).transition
         before[:, _SPEED, _SPEED] = -self._speed.transition

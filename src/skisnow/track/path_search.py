@@ -21,8 +21,12 @@ FloatArray = npt.NDArray[np.float64]
 PRIOR_MEAN: Final = np.log(np.array([0.5, 0.8, 0.15]))
 PRIOR_SD: Final = np.array([1.5, 0.8, 1.3])
 """Prior of the logarithms of place noise (m), turn rate (rad/s) and drift (m/√s) (modelling assumption)."""
-ACCELERATIONS: Final = np.geomspace(1e-3, 2.7, 7)
-"""Standard deviations (m/s²) of the acceleration along the path."""
+ACCELERATIONS: Final = np.concatenate([[1e-4], np.geomspace(1e-3, 2.7, 7)[1:]])
+"""Standard deviations (m/s²) of the acceleration along the path.
+
+The speed wanders by σ √(2 T t): with the first one by 0.002 m/s in a minute. With 0.001 m/s² it would wander by as
+much as places within 5 cm resolve, and a highest speed would always exceed a constant one.
+"""
 LOG_PRIOR: Final = np.log(np.array([6.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0]) / 12.0)
 """Logarithms of the prior probabilities of the accelerations (modelling assumption)."""
 PERIODS: Final = (3.0, 4.2, 6.0, 8.5, 12.0, 17.0)
