@@ -9,7 +9,7 @@ from skisnow._support.errors import FitError
 from skisnow.track.alignment import Motion, _settled, fitted_motion
 from skisnow.track.nearest_place import Path
 from skisnow.track.polyline import Polyline, polyline
-from skisnow.track.time_alignment import fitted_time
+from skisnow.track.time_offset import fitted_time
 
 from .made_tracks import FloatArray, slalom, turned
 

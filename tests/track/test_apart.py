@@ -7,7 +7,7 @@ import numpy.typing as npt
 import pytest
 from scipy.integrate import quad
 
-from skisnow.track.apart import Apart, mean_lengths, numbers_of
+from skisnow.track.distances import Apart, mean_lengths, numbers_of
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -8,11 +8,10 @@ import numpy as np
 import pytest
 
 from skisnow._support.errors import ParameterError
-from skisnow.track.apart import Numbers
 from skisnow.track.comparison import Comparison, Distances, compare_tracks
 from skisnow.track.comparison_dict import comparison_dict
+from skisnow.track.distances import Numbers, time_apart
 from skisnow.track.polyline import polyline
-from skisnow.track.three_distances import time_apart
 from skisnow.track.track import Track
 
 from .made_tracks import FloatArray, arc, slalom, track_of, turned

@@ -10,8 +10,7 @@ import pytest
 
 from skisnow._support.errors import ParameterError
 from skisnow.track.comparison import Comparison, compare_tracks
-from skisnow.track.laying import inclination, lay_on_slope
-from skisnow.track.slope_frame import in_slope_frame
+from skisnow.track.slope_frame import in_slope_frame, inclination, lay_on_slope
 from skisnow.track.track import Track
 
 from .made_tracks import FloatArray, track_of
@@ -108,6 +107,7 @@ def test_an_arc_of_one_radius_has_an_uncertain_heading() -> None:
     measured = track_of(arc.place[:, :2] + noise, angle)
     found = compare_tracks(arc, measured, fit=("start", "heading"))
     assert found.fitted is not None
+    assert found.fitted.turned_error is not None
     assert found.fitted.turned_error > math.radians(2.0)
     assert any("uncertain" in each for each in found.warnings)
 

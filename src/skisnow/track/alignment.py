@@ -16,9 +16,9 @@ from scipy.special import stdtrit
 
 from .._support.errors import FitError, ParameterError
 from .._support.units import CONFIDENCE, DEGREE
+from .distances import EXACTNESS
 from .nearest_place import NearestPlaces, Path
 from .polyline import Polyline, polyline
-from .three_distances import EXACTNESS
 
 FloatArray = npt.NDArray[np.float64]
 

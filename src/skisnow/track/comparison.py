@@ -13,16 +13,13 @@ from .._support.display import Facts, Shown, amount
 from .._support.errors import ParameterError
 from .._support.units import DEGREE
 from .alignment import OFFSETS, Motion, fitted_motion, require_offsets
-from .apart import Apart, Numbers, numbers_of
-from .common_clock import FIRST_POINTS, Clock, TimeFrom, common_clock, lacking_time
+from .distances import Apart, Numbers, arc_length_apart, nearest_apart, numbers_of, time_apart
 from .known_to import known_to as place_known_to
-from .laying import Laid, lay_for_fit
 from .nearest_place import Path
 from .polyline import Polyline, compared_points, polyline_of
-from .slope_frame import STEEPEST
+from .slope_frame import STEEPEST, Laid, lay_for_fit
 from .solution import inexact_sentence
-from .three_distances import arc_length_apart, nearest_apart, time_apart
-from .time_alignment import fitted_time
+from .time_offset import FIRST_POINTS, Clock, TimeFrom, common_clock, fitted_time, lacking_time
 from .track import Axes, Track
 
 FARTHEST: Final = 1000.0

@@ -15,8 +15,7 @@ from .readers.gpx import read_gpx
 from .readers.nmea import SENTENCE, read_nmea
 from .readers.recording import Recording
 from .readers.refusal import refusal
-from .readers.rtklib import read_rtklib
-from .readers.rtklib_header import HEADER
+from .readers.rtklib import HEADER, read_rtklib
 from .readers.table import read_table
 from .readers.text import text_of
 from .readers.ubx import SYNC, has_places, read_ubx

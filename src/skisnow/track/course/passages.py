@@ -8,8 +8,8 @@ from typing import Final, Literal, TypeAlias
 
 from ..._support.display import Facts, Shown, ShownFields, amount
 from .course import Course, GateLine
-from .crossings import Crossing, MovingPoint
 from .gate import Gate
+from .moving_point import Crossing, MovingPoint
 
 GateOutcome: TypeAlias = Literal["passed", "straddled", "missed", "backwards", "not_reached"]
 

@@ -1,4 +1,4 @@
-"""When and where a moving point crosses a line."""
+"""A point that moves in a course's plane: from a measured track, and the times at which it crosses a line."""
 
 from __future__ import annotations
 
@@ -9,6 +9,9 @@ import numpy as np
 import numpy.typing as npt
 
 from ..._support.errors import ParameterError
+from ..projection import GeodeticPoint
+from ..track import Track
+from .course import Course
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 
@@ -107,3 +110,26 @@ def _reached(first: float, last: float, rate: float, last_rate: float) -> float:
         place = e * e * (1.0 + 2.0 * f) * first + f * f * (3.0 - 2.0 * f) * last + f * e * (e * rate - f * last_rate)
         low, high = (low, f) if (place >= 0.0) is forward else (f, high)
     return high
+
+
+def track_point(track: Track, course: Course) -> MovingPoint:
+    """Its usable places from above, at rising times, from the course's origin.
+
+    Raises
+    ------
+    ParameterError
+        It is in other axes than the course, or has fewer than two usable places.
+    """
+    degrees = track.axes == "east_north_up"
+    if degrees != (course.axes == "east_north_up"):
+        own, other = ("degrees", "metres") if degrees else ("metres", "degrees")
+        raise ParameterError(
+            f"the track {track.name} is in {own}, the course {course.source} in {other}. Give the course as the track "
+            "is: GPX with waypoints, or CSV with x_m and y_m; or turn the track into the slope's frame first"
+        )
+    if course.latitude_deg is not None and course.longitude_deg is not None and degrees:
+        track = track.at_origin(GeodeticPoint(course.latitude_deg, course.longitude_deg))
+    good = track.usable & np.isfinite(track.place[:, :2]).all(axis=1)
+    time, place = track.time[good], track.place[good, :2]
+    rises = np.concatenate([[True], np.diff(np.maximum.accumulate(time)) > 0.0]) if len(time) else np.zeros(0, bool)
+    return MovingPoint(time[rises], place[rises])
