@@ -10,10 +10,10 @@ from fewer_colours import write_fewer_colours
 from matplotlib.lines import Line2D
 
 from skisnow import load_scenario, simulate
-from skisnow.report.figures.figure_file import write_figure
-from skisnow.report.figures.run_along_ski import along_ski_map, highest
-from skisnow.report.figures.run_track import SKI_COLOURS, draw_plan, track_limits
+from skisnow.report.figures.figure_files import write_figure
 from skisnow.report.figures.style import DOUBLE_MM, GREY, legend_below, new_figure
+from skisnow.report.run.time_figures import along_ski_map, highest
+from skisnow.report.run.track_figure import SKI_COLOURS, draw_plan, track_limits
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

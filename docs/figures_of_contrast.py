@@ -19,9 +19,9 @@ from fewer_colours import write_fewer_colours
 from matplotlib.lines import Line2D
 
 from skisnow import load_scenario, simulate
-from skisnow.report.figures.figure_file import write_figure
-from skisnow.report.figures.runs_compared import LINE_STYLES, runs_compared
+from skisnow.report.figures.figure_files import write_figure
 from skisnow.report.figures.style import COLOURS, DOUBLE_MM, GREY, legend_below, new_figure
+from skisnow.report.turn.figures import LINE_STYLES, runs_compared
 from skisnow.track.nearest_place import distance_beside
 
 if TYPE_CHECKING:

@@ -13,9 +13,9 @@ import numpy as np
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from skisnow.report.figures.figure_file import write_figure
+from skisnow.report.figures.figure_files import write_figure
 from skisnow.report.figures.style import BLUE, DOUBLE_MM, GREY, PALE, VERMILLION, legend_below, new_figure
-from skisnow.report.figures.track_map import track_map
+from skisnow.report.track.figures import track_map
 from skisnow.track.curvature import TrackMotion, track_motion
 from skisnow.track.resolution import Resolution
 from skisnow.track.summary import track_summary

@@ -20,7 +20,7 @@ from skisnow.estimation.hardness import DEFINITIONS, hardness_at_largest_load
 from skisnow.estimation.models import ModelFit, fit_models
 from skisnow.estimation.readings import readings_of
 from skisnow.estimation.screening import screened_penetration
-from skisnow.report.number_formatting import significant
+from skisnow.report.formatting import significant
 
 DOCS = Path(__file__).resolve().parent
 

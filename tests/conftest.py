@@ -49,7 +49,7 @@ def undrawn(monkeypatch: pytest.MonkeyPatch) -> None:
         each = svg.encode()
         return Picture(drawing.name, drawing.whole_caption, drawing.alt, drawing.wide, svg, each, each, each)
 
-    for place in ("campaign.figures", "pictures"):
+    for place in ("campaign.figures", "figures.figure_files"):
         monkeypatch.setattr(f"skisnow.report.{place}.pictured", empty)
 
 

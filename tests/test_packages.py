@@ -32,12 +32,12 @@ def imported(path: Path, modules: set[str]) -> Iterator[str]:
 
 UPWARD = {
     ("skisnow.estimation.analysis", "skisnow.estimation.results"),
-    ("skisnow.report.turn_chain", "skisnow.report.turn_report"),
-    ("skisnow.report.turn_chain", "skisnow.report.turn_sentences"),
+    ("skisnow.report.turn.chain", "skisnow.report.turn.page"),
+    ("skisnow.report.turn.chain", "skisnow.report.turn.sentences"),
     ("skisnow.scenario.scenario", "skisnow.scenario.building"),
-    ("skisnow.simulation.run", "skisnow.report.run_drawings"),
-    ("skisnow.simulation.run", "skisnow.report.run_folder"),
-    ("skisnow.simulation.run", "skisnow.report.run_frames"),
+    ("skisnow.simulation.run", "skisnow.report.run.drawings"),
+    ("skisnow.simulation.run", "skisnow.report.run.folder"),
+    ("skisnow.simulation.run", "skisnow.report.run.file"),
     ("skisnow.simulation.run", "skisnow.simulation.run_balance"),
 }
 """Files that a method of a lower file imports when it is called."""

@@ -13,7 +13,7 @@ import numpy.typing as npt
 from skisnow._support.errors import SkisnowError
 from skisnow._support.json_number import json_number
 from skisnow.parameters import Quantity
-from skisnow.report.turn_numbers import afterbody_depth_ratio, median_radius, used_grip
+from skisnow.report.turn.numbers import afterbody_depth_ratio, median_radius, used_grip
 from skisnow.scenario import Scenario, load_scenario
 from skisnow.simulation.run import Run
 from skisnow.simulation.run_setup import laid_out

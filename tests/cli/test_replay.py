@@ -10,8 +10,8 @@ import pytest
 
 from skisnow.cli import main
 from skisnow.replay import moving_replay_model, replay_bytes, replay_model, replay_of_bytes, replay_of_file
-from skisnow.report.run_file import write_run_file
-from skisnow.report.run_report import run_page
+from skisnow.report.run.file import write_run_file
+from skisnow.report.run.page import run_page
 from skisnow.scenario import scenario_values
 from skisnow.scenario.keys import in_sections
 
@@ -135,7 +135,7 @@ def test_a_folder_without_a_run_is_named(tmp_path: Path, capsys: Printed) -> Non
 
 @pytest.mark.usefixtures("undrawn")
 def test_models_of_an_earlier_run_do_not_stay_beside_a_new_one(folder: Path) -> None:
-    from skisnow.report.run_folder import write_run
+    from skisnow.report.run.folder import write_run
 
     assert main(["replay", str(folder), "--model", "--moment-s", "1"]) == 0
     write_run(circle_run(count=21), folder)

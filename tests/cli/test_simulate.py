@@ -121,7 +121,7 @@ def test_a_folder_never_holds_two_runs(tmp_path: Path, monkeypatch: pytest.Monke
     first = contents()
     assert "replay.html" in first
     with monkeypatch.context() as patched:
-        patched.setattr("skisnow.report.run_report.run_page", interrupted_here)
+        patched.setattr("skisnow.report.run.page.run_page", interrupted_here)
         assert main(["simulate", *ASKED, "--set", "friction.mu_0=0.06", "--out", str(tmp_path)]) == 130
     assert contents() == first
     assert main(["simulate", *ASKED, "--set", "friction.mu_0=0.06", "--out", str(tmp_path)]) == 0
@@ -233,7 +233,7 @@ def test_asked_to_end_while_it_writes_it_writes_first(
             signal.raise_signal(each)
         write_track(run, place)
 
-    monkeypatch.setattr("skisnow.report.run_folder.write_track", written)
+    monkeypatch.setattr("skisnow.report.run.folder.write_track", written)
     assert main(["simulate", *ASKED, "--out", str(tmp_path)]) == status
     assert (tmp_path / "summary.json").is_file() is is_kept
     assert (tmp_path / "track.csv").is_file() is is_kept

@@ -25,7 +25,7 @@ from skisnow.parameters import values_of
 from skisnow.pipeline import ensemble
 from skisnow.pipeline import turn as pipeline_turn
 from skisnow.pipeline.ensemble import MEASURED, PRIORS, inputs_with
-from skisnow.report.turn_dict import turn_dict
+from skisnow.report.turn.numbers import turn_dict
 from skisnow.scenario.prior import prior_of
 from skisnow.snow import SnowProperties
 

@@ -13,7 +13,7 @@ from scipy.io import netcdf_file
 from skisnow import load_scenario, simulate
 from skisnow._support.errors import ParameterError
 from skisnow.replay import replay_bytes, replay_of_file
-from skisnow.report.run_file import write_run_file
+from skisnow.report.run.file import write_run_file
 from skisnow.simulation.run_summary import summary_dict
 
 

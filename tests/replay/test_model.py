@@ -11,7 +11,7 @@ from scipy.spatial.transform import Rotation
 
 from skisnow._support.units import DEGREE
 from skisnow.replay import Replay, replay_model, replay_of_run, ski_edges, write_replay_model
-from skisnow.replay.colours import linear, round_above
+from skisnow.replay.meshes import linear, round_above
 
 from ..report.runs import circle_run
 from .glb_files import GlbFile

@@ -15,8 +15,8 @@ from scipy.spatial.transform import Rotation
 from skisnow._support.errors import ParameterError, SkisnowError
 from skisnow._support.units import DEGREE
 from skisnow.replay import measured_track, replay_bytes, replay_of_file, replay_of_run
-from skisnow.replay.of_run import facts_of
-from skisnow.report.run_file import write_run_file
+from skisnow.replay.from_run import facts_of
+from skisnow.report.run.file import write_run_file
 from skisnow.scenario import Profile, scenario_values
 from skisnow.scenario.keys import in_sections
 from skisnow.simulation.run import Run

@@ -6,9 +6,8 @@ import numpy as np
 import pytest
 
 from skisnow.replay.binary import KEPT
-from skisnow.replay.groove_times import groove_times
 from skisnow.replay.meshes import _strips
-from skisnow.replay.quaternions import quaternions
+from skisnow.replay.shapes import groove_times, quaternions
 
 
 def test_a_strip_between_two_sections_is_two_triangles_that_face_the_same_way() -> None:

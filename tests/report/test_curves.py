@@ -7,7 +7,7 @@ import pytest
 
 from skisnow.campaign import read_campaign
 from skisnow.estimation.result_rows import experiment_hardness, experiment_results
-from skisnow.report.curves import series_curves
+from skisnow.report.charts import series_curves
 
 
 def test_a_disc_by_hand(tmp_path: Path) -> None:

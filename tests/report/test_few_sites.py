@@ -11,7 +11,7 @@ from skisnow.campaign import Campaign
 from skisnow.report.campaign.data import ReportData
 from skisnow.report.campaign.findings import caveats, regression_sentences
 from skisnow.report.campaign.key_results import key_results
-from skisnow.report.number_formatting import interval, significant
+from skisnow.report.formatting import interval, significant
 
 from .conftest import Reported, altered, analysis_of, first_series
 

@@ -14,11 +14,10 @@ from skisnow.identification.parameter import Parameter
 from skisnow.identification.problem import Fit
 from skisnow.identification.result import Effort, Identification, Identified, Profile, identification_dict
 from skisnow.report.figures.drawing import FORMS
-from skisnow.report.figures.identify_fits import residuals_along, tracks_above
-from skisnow.report.figures.identify_profiles import profiles_drawn
 from skisnow.report.figures.style import journal_style
-from skisnow.report.identify_report import write_identify_report
-from skisnow.report.identify_summary import identify_summary
+from skisnow.report.identification.figures import profiles_drawn, residuals_along, tracks_above
+from skisnow.report.identification.page import write_identify_report
+from skisnow.report.identification.summary import identify_summary
 
 MU = Parameter(key="friction.mu_0", name="mu_0", start=0.04, lower=0.0, upper=0.5, size=0.05)
 AREA = Parameter(

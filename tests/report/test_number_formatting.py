@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from skisnow.report.number_formatting import interval, p_equals, probability, significant, whole
+from skisnow.report.formatting import interval, p_equals, probability, significant, whole
 
 
 @pytest.mark.parametrize(

@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 from scipy.io import netcdf_file
 
-from skisnow.report.run_file import MISSING, write_run_file
-from skisnow.report.run_variables import RUN_VARIABLES
+from skisnow.report.run.file import MISSING, write_run_file
+from skisnow.report.run.variables import RUN_VARIABLES
 from skisnow.simulation.run import LOST, STORED, Run
 
 from .runs import RADIUS, SPEED, STANCE, circle_run

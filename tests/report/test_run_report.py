@@ -12,9 +12,9 @@ import pytest
 
 from skisnow._support.units import DEGREE
 from skisnow.report.figures.drawing import FORMS
-from skisnow.report.run_drawings import _FIGURES
-from skisnow.report.run_report import FIGURES, FURTHER, write_run_report
-from skisnow.report.tables.run import energies_table, scenario_table
+from skisnow.report.run.drawings import _FIGURES
+from skisnow.report.run.page import FIGURES, FURTHER, write_run_report
+from skisnow.report.run.tables import energies_table, scenario_table
 from skisnow.scenario.keys import SCENARIO_KEYS, in_sections, scenario_values
 from skisnow.simulation.run import LOST, STORED, Run, SkiHistory
 

@@ -8,7 +8,7 @@ from dataclasses import replace
 
 from skisnow.campaign import Campaign
 from skisnow.report.campaign.summary import summary
-from skisnow.report.number_formatting import interval, significant
+from skisnow.report.formatting import interval, significant
 
 from .conftest import Reported, first_series, results_of
 

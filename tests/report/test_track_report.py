@@ -8,10 +8,9 @@ import numpy as np
 import pytest
 
 from skisnow.report.figures.style import journal_style
-from skisnow.report.figures.track_along import named_radii, track_along
-from skisnow.report.figures.track_map import drawn_points, switch_times, track_map
-from skisnow.report.track_report import write_track_report
-from skisnow.report.track_summary import track_text
+from skisnow.report.track.figures import drawn_points, named_radii, switch_times, track_along, track_map
+from skisnow.report.track.report import write_track_report
+from skisnow.report.track.summary import track_text
 from skisnow.track.summary import TrackSummary, summary_dict, track_summary
 
 from ..conftest import only_drawn

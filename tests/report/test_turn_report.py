@@ -12,10 +12,9 @@ import pytest
 
 from skisnow._support.errors import ParameterError
 from skisnow._support.units import N_PER_MM2, N_PER_MM3
-from skisnow.report.figures.track_band import TimedTrack
-from skisnow.report.tables.turn import contacts_table, ensemble_table, parameters_table, shares_table
-from skisnow.report.turn_chain import EnsembleRun, TurnChain
-from skisnow.report.turn_numbers import (
+from skisnow.report.turn.chain import EnsembleRun, TurnChain
+from skisnow.report.turn.figures import TimedTrack
+from skisnow.report.turn.numbers import (
     afterbody_depth_ratio,
     band_shares,
     band_width,
@@ -24,8 +23,9 @@ from skisnow.report.turn_numbers import (
     middle_track,
     used_grip,
 )
-from skisnow.report.turn_report import FIGURES, write_turn_report
-from skisnow.report.turn_sentences import contrast, ensemble_sentence, key_sentences, meaning
+from skisnow.report.turn.page import FIGURES, write_turn_report
+from skisnow.report.turn.sentences import contrast, ensemble_sentence, key_sentences, meaning
+from skisnow.report.turn.tables import contacts_table, ensemble_table, parameters_table, shares_table
 from skisnow.scenario.prior import Prior, measured_of
 from skisnow.simulation.run import Run
 from skisnow.snow import SnowProperties

@@ -6,8 +6,8 @@ from markupsafe import Markup
 
 from skisnow import load_scenario, simulate
 from skisnow.report.figures.drawing import Picture
-from skisnow.report.run_drawings import run_drawings
-from skisnow.report.run_report import FIGURES, FURTHER, run_page
+from skisnow.report.run.drawings import run_drawings
+from skisnow.report.run.page import FIGURES, FURTHER, run_page
 from skisnow.simulation.run_summary import summary_dict
 
 

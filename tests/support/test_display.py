@@ -15,8 +15,8 @@ from skisnow._support.display import Facts, Shown, field_facts
 from skisnow.campaign.reference import reference_campaign
 from skisnow.geometry.surfaces import Grid
 from skisnow.identification import Identified, Parameter
-from skisnow.report.figures.track_band import TimedTrack
-from skisnow.report.turn_chain import EnsembleRun
+from skisnow.report.turn.chain import EnsembleRun
+from skisnow.report.turn.figures import TimedTrack
 from skisnow.track.course import MovingPoint, passages
 
 from ..report.runs import circle_run

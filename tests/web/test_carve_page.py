@@ -10,7 +10,7 @@ from skisnow.carving.answer import answered
 from skisnow.carving.answer_dict import answer_dict
 from skisnow.carving.keys import CARVE_KEYS
 from skisnow.carving.question import carve_question
-from skisnow.report.number_formatting import significant
+from skisnow.report.formatting import significant
 from skisnow.web.pages.carve import RATIOS, SLIDERS
 
 from .conftest import Served, ready

@@ -19,7 +19,7 @@ from skisnow.carving.answer import answered
 from skisnow.carving.answer_dict import answer_dict
 from skisnow.carving.question import carve_question
 from skisnow.cli import main
-from skisnow.report.number_formatting import significant
+from skisnow.report.formatting import significant
 
 from .conftest import Served, downloaded_results, fill, follow, has_text, killed_and_started_again, ready
 

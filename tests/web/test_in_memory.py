@@ -17,7 +17,7 @@ from skisnow.campaign.problems import Problem
 from skisnow.campaign.store import Journals, NewEntry, Store, export_corrected
 from skisnow.estimation import analyse
 from skisnow.report.campaign.figures import DRAWERS
-from skisnow.report.number_formatting import significant
+from skisnow.report.formatting import significant
 from skisnow.snow import snow_from_results
 from skisnow.web.analyses import Analyses, CampaignSource
 from skisnow.web.analysing import Choice, Numbers, figure, numbers_of

@@ -23,7 +23,7 @@ from skisnow.campaign.problems import lines_of
 from skisnow.campaign.store import Journals, NewEntry, Store
 from skisnow.campaign.store.description import Description, description_text
 from skisnow.carving.result import REMEDIES
-from skisnow.report.ski_drawing import ski_drawing
+from skisnow.report.charts import ski_drawing
 from skisnow.scenario.keys import SCENARIO_KEYS
 from skisnow.ski import read_ski
 from skisnow.web.analysis_view import NAMES_IN_FILES

@@ -12,7 +12,7 @@ from PIL import Image
 from skisnow.campaign.reference import reference_campaign
 from skisnow.estimation import analyse
 from skisnow.report import write_report
-from skisnow.report.run_folder import write_run
+from skisnow.report.run.folder import write_run
 
 from ..report.runs import circle_run
 

@@ -13,7 +13,7 @@ from skisnow.campaign import read_campaign, write_reference
 from skisnow.campaign.store import Journals, Store
 from skisnow.estimation import analyse, results_dict
 from skisnow.estimation.results import results_json
-from skisnow.report.number_formatting import significant
+from skisnow.report.formatting import significant
 from skisnow.snow import snow_from_results
 from skisnow.web.lab_skis import LabSkis
 from skisnow.web.runs import Runs

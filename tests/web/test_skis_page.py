@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from skisnow._support.errors import ParameterError
-from skisnow.report.number_formatting import significant
+from skisnow.report.formatting import significant
 from skisnow.ski import read_ski, ski_named
 from skisnow.web.lab_skis import LabSkis, ski_of_texts
 

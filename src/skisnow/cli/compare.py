@@ -92,11 +92,11 @@ def run(options: argparse.Namespace) -> int:
     if options.json:
         print(text, flush=True)
     else:
-        from ..report.compare_summary import compare_summary
+        from ..report.track.summary import compare_summary
 
         print(compare_summary(answer), flush=True)
         if gaps is not None:
-            from ..report.gaps_report import gaps_text
+            from ..report.race.folder import gaps_text
 
             print(f"\n{gaps_text(gaps, found.names)}", flush=True)
     if options.out is not None:
@@ -173,9 +173,9 @@ def _in_slope(track: Track, options: argparse.Namespace, slope_angle: float | No
 
 def _write(folder: Path, found: Comparison, text: str, language: str, gaps: tuple[GateGap, ...] | None) -> None:
     from .._support.staging import staged, write_file
-    from ..report.figures.track_comparison import comparison_drawing
-    from ..report.gaps_report import FILES, write_gaps
-    from ..report.pictures import write_pictures
+    from ..report.figures.figure_files import write_pictures
+    from ..report.race.folder import FILES, write_gaps
+    from ..report.track.comparison import comparison_drawing
 
     with staged(folder, last="compare.json") as stage:
         stage.stale += FILES

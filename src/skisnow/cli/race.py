@@ -194,8 +194,8 @@ def _checked(found: QuickestLine, scenario: Scenario, progress: Progress) -> tup
 
 
 def _tell(options: argparse.Namespace, raced: _Raced) -> None:
-    from ..report.race_folder import write_race
-    from ..report.race_summary import race_dict, race_summary, worth_summary
+    from ..report.race.folder import write_race
+    from ..report.race.summary import race_dict, race_summary, worth_summary
 
     found, checked, worth = raced.found, raced.checked, raced.worth
     place = write_race(found, options.out, checked=checked, worth=worth, run=raced.run, against=tuple(options.against))

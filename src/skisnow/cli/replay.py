@@ -103,7 +103,7 @@ def _beside(options: argparse.Namespace, shown: Replay) -> ReplayTrack:
 
 def _link(folder: Path) -> None:
     """A report that was written without a replay leads to it from now on."""
-    from ..report.replay_link import link_replay
+    from ..report.run.folder import link_replay
 
     if (page := link_replay(folder)) is not None:
         print(f"{page} now has a link to the replay.", file=sys.stderr)

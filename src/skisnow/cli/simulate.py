@@ -134,7 +134,7 @@ def _tell(
     if options.json:
         print(json.dumps(summary, ensure_ascii=False, allow_nan=False, indent=1), flush=True)
     else:
-        from ..report.simulate_summary import simulate_summary
+        from ..report.run.summary import simulate_summary
 
         print(simulate_summary(summary, title=asked.title), flush=True)
     for text in (*near, *run_warnings(found)):
@@ -149,8 +149,8 @@ def _tell(
 
 
 def _write(options: argparse.Namespace, found: Run, summary: dict[str, Any], *, replay_title: str | None) -> None:
-    from ..report.run_folder import write_run
-    from ..report.run_report import REPLAY
+    from ..report.run.folder import write_run
+    from ..report.run.page import REPLAY
 
     folder: Path = options.out
 

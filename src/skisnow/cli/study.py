@@ -51,7 +51,7 @@ def run(options: argparse.Namespace) -> int:
         options.parser.error("one STUDY.toml is taken; several files are the parts of --merge TABLE")
     (file,) = options.study
     if options.figure is not None:
-        from ..report.figures.figure_file import require_drawable
+        from ..report.figures.figure_files import require_drawable
 
         require_drawable(options.figure)
     from ..studies import read_study
@@ -148,9 +148,8 @@ def _tell(place: Path, table: StudyTable) -> None:
 
 
 def _draw(options: argparse.Namespace, table: StudyTable) -> None:
-    from ..report.figures.figure_file import write_figure
-    from ..report.figures.grip_map import grip_map
-    from ..report.figures.radius_map import radius_map
+    from ..report.figures.figure_files import write_figure
+    from ..report.study.maps import grip_map, radius_map
 
     draw = {"radius": radius_map, "grip": grip_map}[options.map]
     names = frozenset(str(row[column]) for row in table.rows for column in ("ski", "ski_name") if row.get(column))

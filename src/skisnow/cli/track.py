@@ -79,16 +79,16 @@ def run(options: argparse.Namespace) -> int:
     if options.json:
         print(json.dumps(values, ensure_ascii=False, allow_nan=False, indent=1), flush=True)
     else:
-        from ..report.track_summary import track_text
+        from ..report.track.summary import track_text
         from ..track.flags import FLAGS
 
         print(track_text(values, flag_sentences={code: flag.sentence for code, flag in FLAGS.items()}), flush=True)
         if result is not None:
-            from ..report.gates_text import gates_text
+            from ..report.run.summary import gates_text
 
             print(f"\n{gates_text(result)}", flush=True)
     if options.out is not None:
-        from ..report.track_report import write_track_report
+        from ..report.track.report import write_track_report
 
         with Progress() as progress:
             written = write_track_report(

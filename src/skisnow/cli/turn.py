@@ -98,7 +98,7 @@ def run(options: argparse.Namespace) -> int:
         found = turn(options.campaign, options.site, asked.scenario, priors=priors, progress=progress, **chosen)
         page = None if options.out is None else found.report(options.out, language=options.language)
     if options.json:
-        from ..report.turn_dict import turn_dict
+        from ..report.turn.numbers import turn_dict
 
         print(json.dumps(turn_dict(found), ensure_ascii=False, allow_nan=False, indent=1), flush=True)
     else:

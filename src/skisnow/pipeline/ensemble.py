@@ -11,9 +11,9 @@ import numpy as np
 from .._support.errors import ParameterError
 from .._support.processes.batch import run_batch
 from ..parameters import values_of
-from ..report.figures.track_band import TimedTrack
-from ..report.turn_chain import EnsembleRun
-from ..report.turn_numbers import used_grip
+from ..report.turn.chain import EnsembleRun
+from ..report.turn.figures import TimedTrack
+from ..report.turn.numbers import used_grip
 from ..scenario.prior import Measured, Prior, measured_of
 from ..simulation.simulated_run import simulate
 from ..simulation.verification import NUDGED, limit_sentences, nudged_scenarios

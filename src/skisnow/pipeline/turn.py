@@ -13,8 +13,8 @@ from ..campaign import Campaign, read_campaign
 from ..estimation import Analysis, analyse
 from ..estimation.sites import site_of_campaign
 from ..report.campaign.data import is_synthetic
-from ..report.figures.track_band import FEWEST
-from ..report.turn_chain import TurnChain
+from ..report.turn.chain import TurnChain
+from ..report.turn.figures import FEWEST
 from ..scenario import Scenario, load_scenario
 from ..scenario.contact import ELASTIC
 from ..scenario.prior import Prior, measured_of

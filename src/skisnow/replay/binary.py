@@ -21,7 +21,7 @@ import numpy.typing as npt
 
 from .._support.errors import ParameterError
 from .._support.user_files import GivenError, json_value
-from .colours import COLOURS, drawn_thickness
+from .meshes import COLOURS, drawn_thickness
 from .replay import SKI_NAMES, Replay, ReplayBoots, ReplayGroove, ReplaySkier, ReplaySkis, ReplayTerrain, ReplayTrack
 from .skier import JOINTS
 from .skier_shapes import skier_parts

@@ -18,9 +18,9 @@ from .._support.language import ENGLISH, catalogue, require_language
 from .._support.staging import write_file
 from ..simulation.run import Run
 from .binary import replay_bytes
-from .of_file import replay_of_file
-from .of_run import replay_of_run
+from .from_run import replay_of_run
 from .replay import Replay
+from .run_file import replay_of_file
 
 if TYPE_CHECKING:
     from .replay import ReplayTrack

@@ -10,9 +10,9 @@ import numpy.typing as npt
 from scipy.spatial.transform import Rotation
 
 from ..skier.segments import SHANK, THIGH, TRUNK, UPPER_ARM
-from .colours import linear
 from .glb import Mesh
-from .quaternions import quaternions
+from .meshes import linear
+from .shapes import quaternions
 from .skier import HEAD, JOINTS, POLE, STAND_HEIGHT
 
 if TYPE_CHECKING:

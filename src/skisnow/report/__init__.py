@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from .campaign.page import write_report
-    from .turn_chain import TurnChain
+    from .turn.chain import TurnChain
 
 __all__ = ["TurnChain", "write_report"]
 
@@ -20,7 +20,7 @@ def __getattr__(name: str) -> Any:
 
         return write_report
     if name == "TurnChain":
-        from .turn_chain import TurnChain
+        from .turn.chain import TurnChain
 
         return TurnChain
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

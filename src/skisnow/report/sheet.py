@@ -12,12 +12,12 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 
 from .._support.language import ENGLISH
-from .table_html import table_html
+from .tables.table_html import table_html
 from .translated import translated_html
 
 if TYPE_CHECKING:
     from .figures.drawing import Picture
-    from .table import Table
+    from .tables.table import Table
 
 
 @dataclass(frozen=True, slots=True)

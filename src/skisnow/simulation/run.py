@@ -253,7 +253,7 @@ class Run(Shown):
         ParameterError
             There is no such figure, or the run ended before its first step.
         """
-        from ..report.run_drawings import run_figure
+        from ..report.run.drawings import run_figure
 
         return run_figure(self, what)
 
@@ -270,7 +270,7 @@ class Run(Shown):
         OutputError
             A file cannot be written.
         """
-        from ..report.run_folder import write_run
+        from ..report.run.folder import write_run
 
         return write_run(self, folder)
 
@@ -286,7 +286,7 @@ class Run(Shown):
         ParameterError
             pandas is not installed.
         """
-        from ..report.run_frames import run_dataframe
+        from ..report.run.file import run_dataframe
 
         return run_dataframe(self)
 
@@ -302,7 +302,7 @@ class Run(Shown):
         ParameterError
             xarray is not installed.
         """
-        from ..report.run_frames import run_dataset
+        from ..report.run.file import run_dataset
 
         return run_dataset(self)
 

@@ -11,7 +11,7 @@ from nicegui import ui
 
 from ..campaign.reading.campaign_file import TOP_KEYS
 from ..campaign.reading.table_forms import TABLES
-from ..report.number_formatting import counted
+from ..report.formatting import counted
 from .analysing import Choice, Numbers, Refusal, choosable_flags
 from .error_pages import error_sentence
 from .language import language_of, said, said_as_written

@@ -12,7 +12,7 @@ from ..campaign.store import Journals, replayed
 from ..estimation import quality_flags
 from ..estimation.result_rows import experiment_hardness, experiment_results
 from ..estimation.screening import screened_both
-from ..report.curves import SeriesCurve, series_curves
+from ..report.charts import SeriesCurve, series_curves
 from .transfer import replayed_in_memory
 
 if TYPE_CHECKING:

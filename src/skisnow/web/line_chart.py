@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Final, Literal
 
 from nicegui.element import Element
 
-from ..report.number_formatting import significant
+from ..report.formatting import significant
 from .language import decimal_mark, said
 
 if TYPE_CHECKING:

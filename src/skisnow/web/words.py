@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from typing import Any, Final
 
-from ..report.number_formatting import interval, significant
+from ..report.formatting import interval, significant
 
 LABELS: Final = {
     "experiment": "Name of the test",

@@ -14,8 +14,8 @@ from skisnow.interop.opensim.markers import read_trc
 from skisnow.interop.opensim.table import read_motion
 from skisnow.replay import replay_of_file
 from skisnow.replay.binary import replay_bytes, replay_of_bytes
-from skisnow.report.replay_link import link_replay
-from skisnow.report.run_file import write_run_file
+from skisnow.report.run.file import write_run_file
+from skisnow.report.run.folder import link_replay
 from skisnow.simulation.run_summary import summary_dict
 from tests.interop.c3d_files import c3d_bytes
 
@@ -97,7 +97,7 @@ READERS = (
     ),
     Reader(
         name="run.nc", target="run.nc", files=run_files, mutations=NETCDF, read=_drawn,
-        covers=("replay.of_file:replay_of_file",),
+        covers=("replay.run_file:replay_of_file",),
     ),
     Reader(
         name="replay bytes", target="replay.bin", files=_replay, mutations=BINARY,
@@ -106,6 +106,6 @@ READERS = (
     ),
     Reader(
         name="report.html", target="report.html", files=lambda: {"report.html": _PAGE}, mutations=XML,
-        read=link_replay, covers=("report.replay_link:link_replay",),
+        read=link_replay, covers=("report.run.folder:link_replay",),
     ),
 )  # fmt: skip

@@ -10,9 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 
-from skisnow.report.figures.drawing import FORMS, Drawing, Picture, pictured
-from skisnow.report.figures.opaque import make_opaque
-from skisnow.report.figures.panels import letter_panels
+from skisnow.report.figures.drawing import FORMS, Drawing, Picture, letter_panels, make_opaque, pictured
 from skisnow.report.figures.style import DOUBLE_MM, journal_style, legend_below, new_figure
 
 

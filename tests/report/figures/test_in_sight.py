@@ -17,10 +17,9 @@ from skisnow.report.campaign.model_figures import model_rmse
 from skisnow.report.campaign.penetration_figures import seating_offsets
 from skisnow.report.campaign.shear_figures import shear_force_depth
 from skisnow.report.figures.drawing import Drawing
-from skisnow.report.figures.grip_map import grip_map
-from skisnow.report.figures.radius_map import radius_map
-from skisnow.report.figures.run_motion import run_motion
 from skisnow.report.figures.style import journal_style, site_styles
+from skisnow.report.run.time_figures import run_motion
+from skisnow.report.study.maps import grip_map, radius_map
 from skisnow.track.comparison import compare_tracks
 
 from ..conftest import Reported, altered

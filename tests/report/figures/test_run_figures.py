@@ -12,14 +12,18 @@ from matplotlib.axes import Axes
 from matplotlib.collections import PolyCollection, QuadMesh
 from matplotlib.figure import Figure
 
-from skisnow.report.figures.run_along_ski import run_along_ski
-from skisnow.report.figures.run_energies import run_energies, stacked_energies
-from skisnow.report.figures.run_grip import run_grip, used_share_of_skis
-from skisnow.report.figures.run_motion import drawn_radius, run_motion
-from skisnow.report.figures.run_track import beside_track, groove_corners, run_track
-from skisnow.report.figures.runs_compared import loaded_ski, runs_compared
 from skisnow.report.figures.style import BLUE, VERMILLION, journal_style
-from skisnow.report.figures.track_band import TimedTrack, band_of, offsets, track_band
+from skisnow.report.run.time_figures import (
+    drawn_radius,
+    run_along_ski,
+    run_energies,
+    run_grip,
+    run_motion,
+    stacked_energies,
+    used_share_of_skis,
+)
+from skisnow.report.run.track_figure import beside_track, groove_corners, run_track
+from skisnow.report.turn.figures import TimedTrack, band_of, loaded_ski, offsets, runs_compared, track_band
 from skisnow.simulation.run import LOST, STORED, Run
 from skisnow.track.nearest_place import distance_beside
 from skisnow.track.polyline import arc_lengths

@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pytest
 
-from skisnow.report.figures.panels import left_title, letter_panels
-from skisnow.report.figures.run_track import run_track
+from skisnow.report.figures.drawing import left_title, letter_panels
 from skisnow.report.figures.style import journal_style
 from skisnow.report.figures.translated import translate_figure
+from skisnow.report.run.track_figure import run_track
 
 from ..runs import circle_run
 

@@ -14,7 +14,7 @@ import pytest
 from skisnow import Course, Gate, Run, read_course, time_gates
 from skisnow._support.errors import ParameterError
 from skisnow.cli import main
-from skisnow.report.figures.run_course import edge_angles
+from skisnow.report.figures.course import edge_angles
 from skisnow.scenario import load_scenario
 from skisnow.simulation.simulated_run import simulate
 from skisnow.track.course import course_names

@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 
 from skisnow._support.errors import ParameterError
-from skisnow.report.figures.gate_gaps import gate_gaps_drawing, last_words
-from skisnow.report.gaps_report import gaps_of_folders, gaps_text
+from skisnow.report.race.figures import gate_gaps_drawing, last_words
+from skisnow.report.race.folder import gaps_of_folders, gaps_text
 from skisnow.track.course.gate_gaps import gaps_csv, gate_gaps
 
 HEAD = "gate,side,outcome,time_s,split_s,speed_m_per_s,clearance_m,x_m,y_m"

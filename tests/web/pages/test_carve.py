@@ -16,7 +16,7 @@ from skisnow.carving.answer_dict import answer_dict
 from skisnow.carving.question import carve_question
 from skisnow.estimation import analyse, results_dict
 from skisnow.estimation.results import results_json
-from skisnow.report.number_formatting import significant
+from skisnow.report.formatting import significant
 from skisnow.ski import ski_names
 from skisnow.snow import published_names
 from skisnow.web.lab_skis import LabSkis

@@ -16,7 +16,7 @@ from fastapi import FastAPI
 
 from skisnow._support.errors import ParameterError
 from skisnow.replay import moving_replay_model, replay_bytes, replay_model, replay_of_file
-from skisnow.report.run_file import write_run_file
+from skisnow.report.run.file import write_run_file
 from skisnow.scenario import scenario_values
 from skisnow.scenario.keys import in_sections
 from skisnow.web.replay.addresses import RunFolders, add_addresses, show_address

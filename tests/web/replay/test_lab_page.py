@@ -9,7 +9,7 @@ import pytest
 
 from skisnow.cli import main
 from skisnow.replay import moving_replay_model, replay_model, replay_of_file
-from skisnow.report.run_file import write_run_file
+from skisnow.report.run.file import write_run_file
 from skisnow.scenario import scenario_values
 from skisnow.scenario.keys import in_sections
 

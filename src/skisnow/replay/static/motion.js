@@ -78,7 +78,7 @@ export function edgeAngle(run, ski, time) {
 
 /**
  * Cross sections of a ski: at each station the middle of the base, and unit vectors across it to the left and away from
- * the snow, as skisnow.replay.shape has them. Nine numbers each, in space.
+ * the snow, as skisnow.replay.shapes has them. Nine numbers each, in space.
  */
 export function sections(run, pose, ski, exaggeration) {
   const { station, base_height: base, bending, twist } = run.arrays;

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 from markupsafe import Markup
 
-from ..number_formatting import counted, interval, p_equals, significant, whole
+from ..formatting import counted, interval, p_equals, significant, whole
 from ..symbols import html, prose
 from .data import numbers, pairs
 from .key_results import SIGNIFICANT

@@ -8,7 +8,7 @@ from markupsafe import Markup
 
 from ...estimation.comparisons import FEWEST_SITES
 from ...estimation.regressions import FEWEST_VALUES
-from ..number_formatting import counted, interval, p_equals, significant, whole
+from ..formatting import counted, interval, p_equals, significant, whole
 from ..symbols import html, prose
 from .model_tables import formula, model_name
 from .site_tables import QUANTITY

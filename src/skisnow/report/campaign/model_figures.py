@@ -21,7 +21,7 @@ from ..figures.style import (
     new_figure,
     thinned,
 )
-from ..number_formatting import significant, whole
+from ..formatting import significant, whole
 from ..symbols import html, prose
 from .model_tables import formula
 

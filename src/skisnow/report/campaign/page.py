@@ -18,12 +18,11 @@ from ..._support.memory import paused_collector
 from ..._support.staging import staged, tidied, write_file
 from ...estimation import Analysis
 from ...estimation.results import results_json
-from ..dates import days_words, moment_words
-from ..number_formatting import counted, significant, whole
-from ..pictures import picture_files, write_picture
-from ..table_csv import table_csv
-from ..table_html import table_html
-from ..table_latex import table_latex
+from ..figures.figure_files import picture_files, write_picture
+from ..formatting import counted, days_words, moment_words, significant, whole
+from ..tables.table import table_csv
+from ..tables.table_html import table_html
+from ..tables.table_latex import table_latex
 from ..translated import translated_html
 from .data import ReportData
 from .figures import campaign_figures
@@ -42,7 +41,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
     from ..figures.drawing import LeftOut, Picture
-    from ..table import Table
+    from ..tables.table import Table
 
 RESULTS: Final = "results.json"
 SECTIONS: Final = {

@@ -9,7 +9,7 @@ import numpy as np
 from ..._support.units import MM
 from ...estimation.observations import PEN_FORCE_KEY
 from ...geometry import in_form
-from ..curves import law_of_series
+from ..charts import law_of_series
 from ..figures.drawing import Drawing, LeftOut
 from ..figures.style import (
     DOUBLE_MM,
@@ -26,7 +26,7 @@ from ..figures.style import (
     scatter,
     spans_a_decade,
 )
-from ..number_formatting import p_equals, whole
+from ..formatting import p_equals, whole
 from ..symbols import prose
 from .data import numbers, pairs, texts
 from .series_tables import count_resolved_offsets

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from ...estimation.comparisons import own_mean
-from ..table import Column, Table, record_table
+from ..tables.table import Column, Table, record_table
 
 if TYPE_CHECKING:
     from .data import FloatArray, Json, ReportData, TextArray

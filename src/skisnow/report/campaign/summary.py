@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 from ...estimation.comparisons import FEWEST_SITES
 from ...estimation.regressions import FEWEST_VALUES
-from ..number_formatting import interval, p_equals, significant
+from ..formatting import interval, p_equals, significant
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -6,7 +6,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Final
 
 from ...campaign import QUALITY_FLAGS
-from ..table import Column, Table, record_table
+from ..tables.table import Column, Table, record_table
 from .model_tables import errors_in_depth_table, fitted_hardness_table, models_table, nested_table
 from .series_tables import (
     displacement_sites_table,

@@ -1,4 +1,4 @@
-"""A figure of the report, or why there is none."""
+"""A figure of a report with its caption, and its SVG, PNG, PDF and EPS."""
 
 from __future__ import annotations
 
@@ -7,16 +7,24 @@ import io
 import re
 import warnings
 from dataclasses import dataclass
+from string import ascii_lowercase
 from typing import TYPE_CHECKING, Any, Final, Literal, TypeAlias
+
+import numpy as np
+from matplotlib.artist import Artist
+from matplotlib.collections import Collection
+from matplotlib.colors import to_rgba_array
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+from matplotlib.text import Text
 
 from ..symbols import html
 from .compact import compact_svg
-from .opaque import make_opaque
-from .panels import letter_panels
 from .style import thinning_sentence
 
 if TYPE_CHECKING:
     from markupsafe import Markup
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 _UNDATED: Final[dict[str, dict[str, Any]]] = {
@@ -136,3 +144,82 @@ def _set_no_engine(figure: Figure) -> None:
 
     with rc_context({"figure.constrained_layout.use": False, "figure.autolayout": False}):
         figure.set_layout_engine(None)
+
+
+_COLOUR_BAR = "<colorbar>"
+
+
+def panels_of(figure: Figure) -> list[Axes]:
+    """The visible axes that stand in a grid for themselves: no scale of colours, no second axis over another."""
+    found: dict[tuple[object, ...], Axes] = {}
+    for axes in figure.axes:
+        place = axes.get_subplotspec()
+        if place is None or axes.get_label() == _COLOUR_BAR or not axes.get_visible():
+            continue
+        found.setdefault((id(place.get_gridspec()), place.num1, place.num2), axes)
+    return list(found.values())
+
+
+def letter_panels(figure: Figure) -> None:
+    """Put a letter before the title at the left of each panel, or in its place."""
+    panels = panels_of(figure)
+    if len(panels) < 2:
+        return
+    for letter, axes in zip(ascii_lowercase, panels, strict=False):
+        title = left_title(axes)
+        if title is None:
+            axes.set_title(f"({letter})", loc="left")
+        else:
+            title.set_text(f"({letter}) {title.get_text()}")
+
+
+def left_title(axes: Axes) -> Text | None:
+    """The title at the left as it stands there; None where there is none."""
+    text = axes.get_title(loc="left")
+    if not text:
+        return None
+    own = (each for each in axes.get_children() if isinstance(each, Text) and each.get_text() == text)
+    return next(own, None)
+
+
+def make_opaque(figure: Figure) -> None:
+    """Change the figure itself."""
+    for artist in figure.findobj():
+        _make_opaque(artist)
+
+
+def _make_opaque(artist: Artist) -> None:
+    alpha = artist.get_alpha()
+    if isinstance(artist, Collection):
+        faces, edges = _blended(artist.get_facecolor(), None), _blended(artist.get_edgecolor(), None)
+        if artist.get_array() is None:  # else its colours come from a map
+            artist.set_alpha(None)
+            artist.set_facecolor(faces)
+            artist.set_edgecolor(edges)
+    elif alpha is None or np.ndim(alpha) or alpha >= 1.0:
+        return
+    elif isinstance(artist, Line2D):
+        artist.set_color(_one(artist.get_color(), alpha))
+        artist.set_alpha(None)
+    elif isinstance(artist, Patch):
+        face, edge = _one(artist.get_facecolor(), None), _one(artist.get_edgecolor(), None)
+        artist.set_alpha(None)
+        artist.set_facecolor(face)
+        artist.set_edgecolor(edge)
+    elif isinstance(artist, Text):
+        artist.set_color(_one(artist.get_color(), alpha))
+        artist.set_alpha(None)
+
+
+def _one(colour: Any, alpha: float | None) -> tuple[float, float, float, float]:
+    red, green, blue, share = _blended([colour], alpha)[0].tolist()
+    return red, green, blue, share
+
+
+def _blended(colours: Any, alpha: float | None) -> Any:
+    """Over white; what is wholly transparent stays so."""
+    found = to_rgba_array(colours, alpha)
+    share = found[:, 3:]
+    found[:, :3] = share * found[:, :3] + 1.0 - share
+    found[:, 3] = np.where(share[:, 0] > 0.0, 1.0, 0.0)
+    return found

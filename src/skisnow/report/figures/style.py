@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import LogLocator, NullFormatter
 
-from ..number_formatting import counted
+from ..formatting import counted
 from ..symbols import figure_text
 
 if TYPE_CHECKING:

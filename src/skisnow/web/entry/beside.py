@@ -17,7 +17,7 @@ from ..words import displacement_words, hardness_words, in_words, label, stress_
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
-    from ...report.curves import SeriesCurve
+    from ...report.charts import SeriesCurve
     from ..edit_session import QuickResults, TestKey
     from .table_view import TableView
 

@@ -11,7 +11,7 @@ from nicegui import run, ui
 from ..._support.errors import StoreError
 from ...campaign import write_reference
 from ...campaign.store import Journals
-from ...report.number_formatting import counted
+from ...report.formatting import counted
 from ..edit_session import EditSession
 from ..fields import button, link
 from ..layout import framed, heading, sentence

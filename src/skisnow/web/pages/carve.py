@@ -11,7 +11,7 @@ from nicegui import background_tasks, run, ui
 
 from ..._support.errors import ParameterError, SkisnowError
 from ...report.campaign.page import RESULTS
-from ...report.number_formatting import significant
+from ...report.formatting import significant
 from ..fields import choice, link
 from ..lab_skis import NOTHING, LabSkis
 from ..language import said

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Final
 from nicegui import app, ui
 
 from ..._support.user_files import GivenError, read_record
-from ...report.number_formatting import counted
+from ...report.formatting import counted
 from ..fields import link
 from ..language import said
 from ..layout import framed, heading, sentence

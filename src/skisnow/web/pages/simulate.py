@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Final
 from nicegui import app, background_tasks, run, ui
 
 from ..._support.errors import ParameterError, SkisnowError
-from ...replay.of_file import RUN_FILE
+from ...replay.run_file import RUN_FILE
 from ..answering import redrawn_by
 from ..error_pages import error_sentence
 from ..fields import button, choice, link

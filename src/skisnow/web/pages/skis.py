@@ -8,7 +8,7 @@ from urllib.parse import quote
 from nicegui import run, ui
 
 from ..._support.errors import SkisnowError
-from ...report.ski_drawing import SkiDrawing, ski_drawing
+from ...report.charts import SkiDrawing, ski_drawing
 from ..confined import OF_A_SKI, confined
 from ..error_pages import error_sentence
 from ..fields import button, choice, field, link, said_options

@@ -13,7 +13,7 @@ from starlette.responses import FileResponse, Response
 
 from ..._support.errors import ParameterError
 from ..._support.language import ENGLISH
-from ...report.number_formatting import significant
+from ...report.formatting import significant
 from ..error_pages import error_sentence, plain_page
 from ..fields import choice, link
 from ..language import language_of, said, said_list

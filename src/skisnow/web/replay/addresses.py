@@ -15,11 +15,10 @@ from ..._support.errors import ParameterError
 from ..._support.language import ENGLISH, catalogue
 from ..._support.user_files import read_json
 from ...replay.binary import replay_bytes
-from ...replay.model import replay_model
-from ...replay.moving_model import moving_replay_model
-from ...replay.of_file import RUN_FILE, replay_of_file
+from ...replay.model import moving_replay_model, replay_model
 from ...replay.page import MODULES, STYLE, in_language, page_words, static_text
-from ...report.gaps_report import gaps_of_folders
+from ...replay.run_file import RUN_FILE, replay_of_file
+from ...report.race.folder import gaps_of_folders
 from ...ski import read_ski
 from ..confined import BOUNDS, confined
 from ..error_pages import plain_page

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 from nicegui import ui
 
 from skisnow.campaign.store import Journals, NewEntry
-from skisnow.report.curves import SeriesCurve
+from skisnow.report.charts import SeriesCurve
 from skisnow.web.edit_session import EditSession, QuickResults
 
 if TYPE_CHECKING:

@@ -13,7 +13,7 @@ from nicegui import ui
 
 from skisnow._support.errors import StoreError
 from skisnow.campaign.store import Journals, NewEntry, Store, sync
-from skisnow.report.curves import SeriesCurve
+from skisnow.report.charts import SeriesCurve
 from skisnow.web import answering
 from skisnow.web.answering import PageRequest
 from skisnow.web.edit_session import EditSession, QuickResults

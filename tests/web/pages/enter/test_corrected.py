@@ -9,7 +9,7 @@ import pytest
 from nicegui import ui
 
 from skisnow.campaign.store import NewEntry, ReplayedTest
-from skisnow.report.number_formatting import significant
+from skisnow.report.formatting import significant
 from skisnow.web.edit_session import EditSession
 from skisnow.web.entry.table_view import TableView
 from skisnow.web.local_time import minute_words

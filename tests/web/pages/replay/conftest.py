@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from skisnow.report.run_file import write_run_file
+from skisnow.report.run.file import write_run_file
 from skisnow.scenario import scenario_values
 from skisnow.scenario.keys import in_sections
 from skisnow.simulation.run_summary import summary_dict

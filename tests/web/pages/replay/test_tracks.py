@@ -16,7 +16,7 @@ import pytest
 from skisnow._support.errors import OutputError, ParameterError
 from skisnow.replay import moving_replay_model, replay_bytes, replay_model, replay_of_file, replay_of_run
 from skisnow.replay.page import in_language, static_text
-from skisnow.report.gaps_report import gaps_of_folders
+from skisnow.report.race.folder import gaps_of_folders
 from skisnow.ski import read_ski
 from skisnow.track.read import read_track
 from skisnow.web.lab_skis import LabSkis

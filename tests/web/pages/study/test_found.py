@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from skisnow.report.number_formatting import significant
+from skisnow.report.formatting import significant
 from skisnow.web.pages import study as study_page
 from skisnow.web.studies import Studies, StudyJob
 from skisnow.web.study_asked import CARVE, Range, StudyAsked

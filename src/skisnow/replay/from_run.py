@@ -1,0 +1,307 @@
+"""A replay from a run in memory."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Final, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+from scipy.spatial.transform import Rotation
+
+from .._support.errors import ParameterError
+from .._support.units import DEGREE, N_PER_MM2, N_PER_MM3
+from ..scenario import Plane, Profile, Terrain
+from ..simulation.run_gates import feet_and_tips
+from ..skier.segments import height_of
+from ..track.course import MovingPoint, passages
+from .replay import Replay, ReplayBoots, ReplayGroove, ReplaySkier, ReplaySkis, ReplayTerrain, ReplayTrack
+from .shapes import groove_times, quaternions
+from .skier import replay_skier
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from ..simulation.run import Run
+    from ..ski import Ski
+    from ..track.course import Course
+
+FloatArray: TypeAlias = npt.NDArray[np.float64]
+Slope: TypeAlias = Plane | Profile | Terrain
+
+_AROUND: Final = 30.0
+"""How far around a run measured heights are shown (m); farther out the slope goes on evenly."""
+_STEP: Final = 0.5
+"""Between their places (m): a screen shows no more."""
+_MOST_PLACES: Final = 40_000
+"""Of a long run they are farther apart, so that a replay stays below a megabyte."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Setting:
+    """What a run took place with.
+
+    Attributes
+    ----------
+    slope, ski
+        As in the scenario.
+    line_spacing
+        Of the snow's lines along the path (m).
+    edge_angle, stance_width, centre_of_mass_height
+        Of the sledge (rad, m, m).
+    course
+        Whose gates are shown, in the scenario's axes; None: there is none.
+    skier_height
+        Of the skier's body (m); None: a sledge.
+    facts
+        Lines of name and value for the reader.
+    """
+
+    slope: Slope
+    ski: Ski
+    edge_angle: float
+    stance_width: float
+    centre_of_mass_height: float
+    line_spacing: float
+    facts: tuple[tuple[str, str], ...]
+    course: Course | None = None
+    skier_height: float | None = None
+
+
+def replay_of_run(
+    run: Run,
+    *,
+    title: str = "A simulated run",
+    track: ReplayTrack | None = None,
+    gates: npt.ArrayLike | None = None,
+) -> Replay:
+    """The replay of a run.
+
+    Parameters
+    ----------
+    run
+        What `skisnow.simulate` gave.
+    title
+        What the reader sees.
+    track
+        A measured track in the run's axes, shown beside.
+    gates
+        (g, 2) x and y of the poles of gates (m), red and blue by turns; they stand on the snow. Left out: the turning
+        poles of the run's course, where it has one.
+
+    Raises
+    ------
+    ParameterError
+        The run has not even a first moment, or the gates are no pairs of finite numbers.
+    """
+    setting = _setting(run)
+    boots = None if run.boots_by is None or run.boots is None else moving_boots(run.boots.place, run.boots.axes)
+    found = assembled(_arrays(run), setting, title=title, track=track, boots=boots)
+    return found if gates is None else replace(found, gates=_gates(gates, setting.slope), gate_times=None)
+
+
+def _arrays(run: Run) -> dict[str, FloatArray]:
+    """Under the names of run.nc, vectors in one."""
+    skis, groove = run.skis, run.groove
+    centre = run.place if run.boots is None else run.boots.centre_of_mass
+    return {
+        "time": run.time, "place": run.place, "attitude": run.attitude, "speed": run.speed, "heading": run.heading,
+        "velocity": run.velocity, "centre": centre,
+        "turn_radius": run.turn_radius, "depth": skis.depth, "ski": skis.track, "station": skis.station,
+        "bending": skis.bending, "twist": skis.twist, "edge_depth": skis.edge_depth,
+        "force_per_length": skis.force_per_length, "snow_force": skis.force, "normal_force": skis.normal_force,
+        "groove": groove.middle, "groove_left": groove.left,
+        "groove_width": groove.width, "groove_depth": groove.depth, "groove_residual_depth": groove.residual_depth,
+    }  # fmt: skip
+
+
+def _setting(run: Run) -> Setting:
+    scenario = run.scenario
+    contact, sledge = scenario.contact, scenario.sledge
+    stress = contact.snow.failure_shear_stress
+    facts = facts_of(
+        outcome=run.outcome,
+        hardness=contact.snow.snow_hardness / N_PER_MM3,
+        stress=None if stress is None else stress / N_PER_MM2,
+        ratio=contact.unloading_ratio,
+        skis=skis_words(scenario.ski.name, None if scenario.skier else sledge.edge_angle / DEGREE),
+    )
+    return Setting(
+        slope=scenario.slope,
+        ski=scenario.ski,
+        edge_angle=sledge.edge_angle,
+        stance_width=sledge.stance_width,
+        centre_of_mass_height=sledge.centre_of_mass[1],
+        line_spacing=run.numbers["line_spacing_m"],
+        facts=facts,
+        course=scenario.course,
+        skier_height=height_of(sledge.mass, sledge.inertia[0]) if scenario.skier else None,
+    )
+
+
+def facts_of(
+    *, outcome: str, hardness: float, stress: float | None, ratio: float, skis: str
+) -> tuple[tuple[str, str], ...]:
+    """Lines for the reader; hardness H_V in N/mm³, stress S_f in N/mm²."""
+    return (
+        ("Outcome", outcome.replace("_", " ")),
+        ("H_V", f"{hardness:.3g} N/mm³"),
+        ("S_f", "not given" if stress is None else f"{stress:.3g} N/mm²"),
+        ("k_u / H_V", f"{ratio:g}"),
+        ("Skis", skis),
+    )
+
+
+def skis_words(ski: str, edge_angle: float | None) -> str:
+    """The skis and their edge angle (degrees); None: a skier sets it."""
+    return f"{ski}, edged by the skier" if edge_angle is None else f"{ski}, edge angle {edge_angle:.3g}°"
+
+
+def assembled(
+    arrays: Mapping[str, FloatArray],
+    setting: Setting,
+    *,
+    title: str,
+    track: ReplayTrack | None = None,
+    boots: ReplayBoots | None = None,
+) -> Replay:
+    """A replay from a run's arrays, named as in run.nc with vectors in one, and its setting."""
+    if not len(arrays["time"]):
+        raise ParameterError(f"{title} has no moment to show: it ended before it began")
+    with np.errstate(divide="ignore"):
+        curvature = 1.0 / arrays["turn_radius"]
+    slope, course = setting.slope, setting.course
+    return Replay(
+        title=title,
+        facts=setting.facts,
+        tilt=slope.angle if isinstance(slope, Plane) else 0.0,
+        profile=_profile(slope) if isinstance(slope, Profile) else None,
+        terrain=_terrain(slope, arrays["place"]) if isinstance(slope, Terrain) else None,
+        centre_of_mass_height=setting.centre_of_mass_height,
+        time=arrays["time"],
+        place=arrays["place"],
+        attitude=quaternions(arrays["attitude"]),
+        speed=arrays["speed"],
+        curvature=np.nan_to_num(curvature),
+        heading=arrays["heading"],
+        depth=arrays["depth"],
+        skis=_skis(arrays, setting, boots),
+        groove=_groove(arrays, setting.line_spacing),
+        track=None if track is None else _on_the_snow(track, slope),
+        gates=None if course is None else _gates([gate.turning for gate in course.gates], slope),
+        gate_times=None if course is None or len(arrays["time"]) < 2 else _gate_times(course, arrays, setting, boots),
+        skier=None if setting.skier_height is None else _skier(arrays, setting.skier_height, boots),
+    )
+
+
+def _gate_times(
+    course: Course, arrays: Mapping[str, FloatArray], setting: Setting, boots: ReplayBoots | None
+) -> FloatArray:
+    """Time from the first moment to each gate (s), as gates.csv has it; NaN where there is none."""
+    time, place = arrays["time"], arrays["place"]
+    if boots is not None:
+        feet, ahead = boots.place, _axes(boots)[..., 0]
+    else:
+        side = 0.5 * setting.stance_width * arrays["attitude"][:, :, 1]
+        feet, ahead = np.stack([place + side, place - side], axis=1), arrays["attitude"][:, None, :, 0]
+    tips = feet + float(setting.ski.station[0]) * ahead
+    middle = MovingPoint(time, place[:, :2], arrays["velocity"][:, :2])
+    found = passages(course, middle, feet_and_tips(time, feet, tips))
+    return np.array([np.nan if each is None else each - found.start_time for each in found.times])
+
+
+def _axes(boots: ReplayBoots) -> FloatArray:
+    """Axes (n, 2, 3, 3) of boots as columns."""
+    turns = Rotation.from_quat(np.roll(boots.attitude, -1, axis=-1).reshape(-1, 4))
+    return np.asarray(turns.as_matrix().reshape(*boots.attitude.shape[:2], 3, 3))
+
+
+def _skier(arrays: Mapping[str, FloatArray], height: float, boots: ReplayBoots | None) -> ReplaySkier | None:
+    """None where boots stand still: then nothing is known of a body."""
+    if boots is None:
+        return None
+    axes = boots.place, _axes(boots).swapaxes(-1, -2)
+    return replay_skier(height, arrays["place"], arrays["attitude"], axes, arrays["centre"])
+
+
+def _profile(slope: Profile) -> FloatArray:
+    """The slope's points, every 0.25 m so that its curve is seen."""
+    start, end = slope.ends
+    x = np.linspace(start, end, max(2, int(np.ceil((end - start) / 0.25)) + 1))
+    return np.column_stack([x, slope.heights(x)])
+
+
+def _terrain(slope: Terrain, path: FloatArray) -> ReplayTerrain:
+    """The heights around a run, at places close enough that they look smooth, and not too many."""
+    surface = slope.surface
+    low, high = (path[:, :2].min(axis=0) - _AROUND, path[:, :2].max(axis=0) + _AROUND)
+    step = max(_STEP, float(np.sqrt(np.prod(high - low) / _MOST_PLACES)))
+    x, y = (low[axis] + step * np.arange(int(np.ceil((high[axis] - low[axis]) / step)) + 1) for axis in (0, 1))
+    height = np.array([surface.heights(each, y) for each in x])
+    terms = np.column_stack([np.ones(height.size), np.repeat(x - x.mean(), len(y)), np.tile(y - y.mean(), len(x))])
+    plane = np.linalg.lstsq(terms, height.ravel(), rcond=None)[0]
+    return ReplayTerrain(x=x, y=y, height=height, grade=(float(plane[1]), float(plane[2])))
+
+
+def moving_boots(place: FloatArray, axes: FloatArray) -> ReplayBoots:
+    """Boots from their places (n, 2, 3) in m and axes (n, 2, 3, 3) as rows: ahead, left across the base, off it."""
+    turns = [quaternions(axes[:, boot].swapaxes(-1, -2)) for boot in range(axes.shape[1])]
+    return ReplayBoots(place=place, attitude=np.stack(turns, axis=1))
+
+
+def _gates(places: npt.ArrayLike, slope: Slope) -> FloatArray:
+    """Feet of poles on the snow."""
+    found = np.asarray(places, dtype=float)
+    if found.ndim != 2 or found.shape[1] != 2 or not np.isfinite(found).all():
+        raise ParameterError(f"gates are pairs of x and y in m; given is an array of shape {found.shape}")
+    return np.column_stack([found, _heights(slope, found)])
+
+
+def _heights(slope: Slope, place: FloatArray) -> FloatArray:
+    """Heights (k,) of the snow at places whose first two numbers are x and y (k, 2 or 3)."""
+    if isinstance(slope, Terrain):
+        return slope.surface.heights(place[:, 0], place[:, 1])
+    return np.zeros(len(place)) if isinstance(slope, Plane) else slope.heights(place[:, 0])
+
+
+def _on_the_snow(track: ReplayTrack, slope: Slope) -> ReplayTrack:
+    """A height that was not measured is that of the snow."""
+    place = np.array(track.place, dtype=float)
+    place[:, 2] = np.where(np.isfinite(place[:, 2]), place[:, 2], _heights(slope, place))
+    return ReplayTrack(name=track.name, place=place, time=track.time)
+
+
+def _skis(arrays: Mapping[str, FloatArray], setting: Setting, boots: ReplayBoots | None) -> ReplaySkis:
+    ski, station = setting.ski, arrays["station"]
+    at = ski.at(np.clip(station, float(ski.station[-1]), float(ski.station[0])))
+    side = setting.stance_width / 2.0
+    return ReplaySkis(
+        station=station,
+        half_width=at.width / 2.0,
+        base_height=at.base_height,
+        middle=np.array([[0.0, side, 0.0], [0.0, -side, 0.0]]),
+        edge_angle=setting.edge_angle,
+        bending=arrays["bending"],
+        twist=arrays["twist"],
+        edge_depth=arrays["edge_depth"],
+        force_per_length=arrays["force_per_length"],
+        force=arrays["snow_force"],
+        normal_force=arrays["normal_force"],
+        boots=boots,
+    )
+
+
+def _groove(arrays: Mapping[str, FloatArray], spacing: float) -> ReplayGroove:
+    """Pieces in the order in which they were made."""
+    when, ski = groove_times(arrays["groove"], arrays["time"], arrays["ski"])
+    order = np.argsort(when, kind="stable")
+    return ReplayGroove(
+        middle=arrays["groove"][order],
+        left=arrays["groove_left"][order],
+        width=arrays["groove_width"][order],
+        depth=arrays["groove_depth"][order],
+        residual_depth=arrays["groove_residual_depth"][order],
+        time=when[order],
+        ski=ski[order],
+        spacing=spacing,
+    )

@@ -1,0 +1,252 @@
+"""A replay from run.nc, whose numbers are checked."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+from scipy.io import netcdf_file
+
+from .._support.errors import ParameterError, SkisnowError
+from .._support.units import DEGREE
+from .._support.user_files import GivenError, json_value
+from ..geometry.boot_axes import axes_of
+from ..scenario import Plane, read_profile, read_terrain
+from ..scenario.keys import SCENARIO_KEYS
+from ..scenario.scenario import course_on_slope
+from ..ski import read_ski, ski_named
+from ..skier.segments import height_of
+from ..track.course import read_course
+from .from_run import Setting, assembled, facts_of, moving_boots, skis_words
+
+if TYPE_CHECKING:
+    from ..ski import Ski
+    from ..track.course import Course
+    from .from_run import Slope
+    from .replay import Replay, ReplayBoots, ReplayTrack
+
+FloatArray: TypeAlias = npt.NDArray[np.float64]
+
+_DAMAGE: Final = (TypeError, ValueError, LookupError, AttributeError, ArithmeticError, AssertionError, MemoryError)
+RUN_FILE: Final = "run.nc"
+_PLAIN: Final = (
+    "time", "speed", "heading", "turn_radius", "depth", "station", "bending", "twist", "edge_depth",
+    "force_per_length", "normal_force", "attitude", "groove_width", "groove_depth", "groove_residual_depth",
+)  # fmt: skip
+_VECTORS: Final = {
+    "place": "{}",
+    "velocity": "velocity_{}",
+    "ski": "ski_{}",
+    "snow_force": "snow_force_{}",
+    "groove": "groove_{}",
+    "groove_left": "groove_left_{}",
+}
+
+
+def replay_of_file(
+    path: str | Path, *, title: str | None = None, ski: Ski | None = None, track: ReplayTrack | None = None
+) -> Replay:
+    """The replay of a run that was written.
+
+    Parameters
+    ----------
+    path
+        Of run.nc, or of the folder that it lies in.
+    title
+        What the reader sees; left out: the folder's name.
+    ski
+        The skis' shape; left out, it is read from where the scenario says.
+    track
+        A measured track in the run's axes, shown beside.
+
+    Raises
+    ------
+    ParameterError
+        The file cannot be read or is no run, or a ski or profile that its scenario names is not there any more.
+    """
+    path = Path(path)
+    path = path / RUN_FILE if path.is_dir() else path
+    try:
+        with netcdf_file(path, "r", mmap=False) as file:
+            content: Any = file  # its attributes are those of the file
+            arrays, values = _arrays(content), _scenario(content)
+            boots = _boots(content)
+            outcome, spacing = content.outcome.decode("utf-8"), float(content.solver_line_spacing_m)
+        require_drawable(arrays)
+        if not 0.0 < spacing <= 1.0:
+            raise ParameterError(f"solver_line_spacing_m is {spacing:g}; it must be above 0 and at most 1")
+        setting = _setting(path, values, outcome, spacing, ski)
+        return assembled(arrays, setting, title=title or path.resolve().parent.name, track=track, boots=boots)
+    except SkisnowError as error:
+        if str(path.parent) in str(error) and not isinstance(error, GivenError):
+            raise
+        said = str(error).rstrip(".")
+        raise ParameterError(f"{path} is no run.nc of skisnow: {said}. Simulate it again with --out") from error
+    except OSError as error:
+        raise ParameterError(f"{path} cannot be read: {error.strerror or error}. Check the path") from error
+    except _DAMAGE as error:
+        raise ParameterError(f"{path} is no run.nc of skisnow ({error}). Simulate it again with --out") from error
+
+
+def _arrays(file: Any) -> dict[str, FloatArray]:
+    plain = {name: _values(file, name) for name in _PLAIN}
+    vectors = {
+        name: np.stack([_values(file, pattern.format(axis)) for axis in "xyz"], axis=-1)
+        for name, pattern in _VECTORS.items()
+    }
+    if "centre_x" in file.variables:
+        vectors["centre"] = np.stack([_values(file, f"centre_{axis}") for axis in "xyz"], axis=-1)
+    return plain | vectors
+
+
+def _boots(file: Any) -> ReplayBoots | None:
+    """The boots of a run whose boots moved."""
+    if not getattr(file, "boots", b"").decode("utf-8").startswith("moved"):
+        return None
+    place = np.stack([_values(file, f"boot_{axis}") for axis in "xyz"], axis=-1)
+    angles = np.stack([_values(file, f"boot_{name}") for name in ("edge_angle", "pitch", "heading")], axis=-1)
+    require_finite({"boots": place, "angles of boots": angles})
+    axes = np.array([axes_of(*map(float, each)) for each in angles.reshape(-1, 3)])
+    return moving_boots(place, axes.reshape(*angles.shape, 3))
+
+
+def _scenario(file: Any) -> dict[str, Any]:
+    """Its values under full names."""
+    sections = json_value(file.scenario.decode("utf-8"))
+    return {f"{section}.{key}": value for section, table in sections.items() for key, value in table.items()}
+
+
+def _values(file: Any, name: str) -> FloatArray:
+    """What is missing is infinite: only the turn radius of a straight path is."""
+    variable = file.variables[name]
+    values = np.array(variable[:], dtype=float)
+    missing = getattr(variable, "_FillValue", None)
+    return values if missing is None else np.where(values == missing, np.inf, values)
+
+
+def _setting(path: Path, values: dict[str, Any], outcome: str, spacing: float, ski: Ski | None) -> Setting:
+    ski, slope = ski or _ski(path, values), _slope(path, values)
+    has_skier, edge_angle = values.get("skier.steers") is not None, needed_value(values, "sledge.edge_angle_deg")
+    inertia = needed_value(values, "sledge.inertia_kg_m2")
+    return Setting(
+        slope=slope,
+        course=_course(path, values, slope),
+        ski=ski,
+        edge_angle=edge_angle * DEGREE,
+        stance_width=needed_value(values, "sledge.stance_width_m"),
+        centre_of_mass_height=needed_value(values, "sledge.centre_of_mass_height_m"),
+        line_spacing=spacing,
+        facts=facts_of(
+            outcome=outcome,
+            hardness=needed_value(values, "snow.H_V_N_per_mm3"),
+            stress=scenario_value(values, "snow.S_f_N_per_mm2"),
+            ratio=needed_value(values, "snow.unloading_ratio"),
+            skis=skis_words(ski.name, None if has_skier else edge_angle),
+        ),
+        skier_height=height_of(needed_value(values, "sledge.mass_kg"), inertia[0]) if has_skier else None,
+    )
+
+
+def _ski(path: Path, values: dict[str, Any]) -> Ski:
+    file = scenario_value(values, "ski.file")
+    return ski_named(needed_value(values, "ski.name")) if file is None else read_ski(_found(path, file, "ski"))
+
+
+def _slope(path: Path, values: dict[str, Any]) -> Slope:
+    kind = needed_value(values, "slope.kind")
+    if kind == "plane":
+        return Plane(needed_value(values, "slope.angle_deg") * DEGREE)
+    if kind == "grid":
+        origin = {f"origin_{axis}": scenario_value(values, f"slope.origin_{axis}_m") or 0.0 for axis in "xy"}
+        smoothing = scenario_value(values, "slope.smooth_m") or 0.0
+        return read_terrain(_found(path, needed_value(values, "slope.grid"), "grid"), smoothing=smoothing, **origin)
+    profile = _found(path, needed_value(values, "slope.profile"), "profile")
+    return read_profile(profile, gap=scenario_value(values, "slope.profile_gap") or "error")
+
+
+def _course(path: Path, values: dict[str, Any], slope: Slope) -> Course | None:
+    """The course in the scenario's axes; gates are there to be looked at, and one whose file is gone is not shown."""
+    said = {
+        name.partition(".")[2]: scenario_value(values, name) for name in SCENARIO_KEYS if name.startswith("course.")
+    }
+    name, file = said.pop("name", None), said.pop("file", None)
+    if name is None and file is None:
+        return None
+    try:
+        place = name if name is not None else _found(path, file, "course")
+        course = read_course(place, **{key: value for key, value in said.items() if value is not None})
+    except ParameterError:
+        return None
+    return course_on_slope(course, slope)
+
+
+def _found(path: Path, named: str, what: str) -> Path:
+    """A file as the scenario names it, from the current folder or from the run's."""
+    for place in (Path(named), path.parent / named, path.parent.parent / named):
+        if place.is_file():
+            return place
+    raise ParameterError(
+        f"{path} was simulated with the {what} of {named}, which is not there any more; its shape is needed to draw "
+        f"the run. Put it into {path.parent}"
+    )
+
+
+LARGEST: Final = 1e9
+"""Largest number of a run in SI; also its squares are numbers in the single precision of a replay."""
+SMALLEST_RADIUS: Final = 1e-3
+"""Smallest radius of a turn (m)."""
+_ORTHOGONAL: Final = 1e-6
+
+
+def require_drawable(arrays: Mapping[str, FloatArray]) -> None:
+    """Check a run's arrays, named as in run.nc with vectors in one.
+
+    Raises
+    ------
+    ParameterError
+        A number is not finite or too large, times do not rise, or an attitude is not a rotation.
+    """
+    require_finite(arrays)
+    if np.any(np.diff(arrays["time"]) <= 0.0):
+        raise ParameterError("time does not rise")
+    if np.any(np.diff(arrays["station"]) >= 0.0):
+        raise ParameterError("station does not fall from tip to tail")
+    attitude = arrays["attitude"]
+    product = attitude @ attitude.swapaxes(-1, -2)
+    if attitude.shape[-2:] != (3, 3) or not np.allclose(product, np.eye(3), atol=_ORTHOGONAL):
+        raise ParameterError("attitude is not a rotation")
+
+
+def require_finite(arrays: Mapping[str, FloatArray]) -> None:
+    """Check that numbers are finite and not too large; errors as in `require_drawable`."""
+    for name, values in arrays.items():
+        # the radius of a straight path is infinite
+        sound = np.abs(values) >= SMALLEST_RADIUS if name == "turn_radius" else np.abs(values) <= LARGEST
+        if not sound.all():
+            place = np.unravel_index(int(np.argmin(sound)), values.shape)
+            raise ParameterError(f"{name} is {values[place]:g} at place {', '.join(str(each + 1) for each in place)}")
+
+
+def scenario_value(values: Mapping[str, Any], name: str) -> Any:
+    """A value of the run's scenario by its full name; None if the scenario lacks it.
+
+    Raises
+    ------
+    ParameterError
+        It is missing, or outside the range of its key.
+    """
+    value = values.get(name)
+    if value is None:
+        return None
+    return SCENARIO_KEYS[name].in_range(value)
+
+
+def needed_value(values: Mapping[str, Any], name: str) -> Any:
+    """The same of a value that every run has."""
+    value = scenario_value(values, name)
+    if value is None:
+        raise ParameterError(f"{name} is missing")
+    return value

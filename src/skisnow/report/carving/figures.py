@@ -1,0 +1,189 @@
+"""Figure of skis in snow side by side: edge depth, force per length, bending, twist, plan."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+import numpy.typing as npt
+from matplotlib.lines import Line2D
+
+from ..._support.units import MM
+from ..figures.style import BLACK, COLOURS, DOUBLE_MM, GREY, PALE, legend_below, new_figure
+from ..formatting import significant
+from ..symbols import figure_text
+from .summary import answers_of, ski_titles
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+Json = dict[str, Any]
+FloatArray = npt.NDArray[np.float64]
+
+_PANELS: Final = (
+    ("edge_depth_mm", "edge depth $e$ (mm)"),
+    ("force_per_length_N_per_m", "normal force per length (N/m)"),
+    ("bending_mm", "deflection (mm)"),
+    ("twist_deg", "twist (°)"),
+)
+BOOT_REACH: Final = 0.4
+"""Distance (m) before and behind the boot at which the first circle meets the edge line."""
+_BOOT_CIRCLE: Final = (0, (4, 1.5))
+_CHORD_CIRCLE: Final = (0, (1, 1))
+_LINE_STYLES: Final = ("-", (0, (5, 1.5)), (0, (1, 1)), "-.", (0, (7, 2, 1, 2, 1, 2)))
+
+
+def carved_skis(found: Json) -> Figure:
+    """Draw the answers of `skisnow carve`, one colour and line for each ski.
+
+    Parameters
+    ----------
+    found
+        What `skisnow.carving.answer_dict.answers_dict` gives.
+    """
+    answers = answers_of(found)
+    figure = new_figure(width_mm=DOUBLE_MM, height_mm=150.0)
+    grid = figure.add_gridspec(3, 2, height_ratios=(1.0, 1.0, 1.15))
+    first: Axes | None = None
+    for place, (key, label) in enumerate(_PANELS):
+        axes = figure.add_subplot(grid[place // 2, place % 2], sharex=first)
+        first = first or axes
+        _along_ski(axes, answers, key, label)
+    _plan(figure.add_subplot(grid[2, :], sharex=first), answers)
+    figure.suptitle(_asked(answers[0]), x=0.01, ha="left", fontsize=8.0)
+    handles = [
+        Line2D([], [], color=_colour(place), linestyle=_line(place), label=_label(title, answer["outcome"]))
+        for place, (title, answer) in enumerate(zip(ski_titles(answers), answers, strict=True))
+    ]
+    circles = (
+        ("circle through boot and 0.4 m to each side", _BOOT_CIRCLE),
+        ("through boot and ends of contact", _CHORD_CIRCLE),
+    )
+    handles += [Line2D([], [], color=BLACK, linestyle=style, linewidth=0.9, label=label) for label, style in circles]
+    legend_below(figure, handles)
+    return figure
+
+
+def _colour(place: int) -> str:
+    return COLOURS[place % len(COLOURS)]
+
+
+def _line(place: int) -> Any:
+    return _LINE_STYLES[place % len(_LINE_STYLES)]
+
+
+def _label(title: str, outcome: str) -> str:
+    return figure_text(title) + ("" if outcome == "equilibrium" else f" ({outcome.replace('_', ' ')})")
+
+
+def _asked(answer: Json) -> str:
+    inputs = answer["inputs"]
+    words = [f"ϑ = {inputs['edge_angle_deg']:g}°, load {inputs['load_N']:g} N"]
+    words.append(f"$H_V$ = {significant(inputs['H_V_N_per_mm3'])} N/mm³")
+    if inputs["S_f_N_per_mm2"] is not None:
+        words.append(f"$S_f$ = {significant(inputs['S_f_N_per_mm2'])} N/mm²")
+    if inputs["unloading_ratio"] is not None and not inputs["at_rest"]:
+        words.append(f"$k_u/H_V$ = {significant(inputs['unloading_ratio'])}")
+    return ("At rest: " if inputs["at_rest"] else "Steady carve: ") + ", ".join(words)
+
+
+def _along_ski(axes: Axes, answers: list[Json], key: str, label: str) -> None:
+    for place, answer in enumerate(answers):
+        if answer[key] is not None:
+            axes.plot(answer["station_m"], _known(answer[key]), color=_colour(place), linestyle=_line(place))
+    axes.axhline(0.0, color=GREY, linewidth=0.6, zorder=1)
+    axes.axvline(0.0, color=PALE, linewidth=0.5, zorder=0)
+    axes.set_ylabel(label)
+    axes.set_xlabel("position along the ski (m), boot = 0")
+    if key == "edge_depth_mm":
+        _surface(axes, answers)
+
+
+def _surface(axes: Axes, answers: list[Json]) -> None:
+    """Depth grows downwards; a tip that stands high above the snow does not press the groove flat."""
+    depths = [depth for answer in answers for depth in answer["edge_depth_mm"] or () if depth is not None]
+    deepest = max(depths, default=1.0)
+    axes.set_ylim(1.15 * deepest, -min(0.6 * deepest, max(0.0, -min(depths, default=0.0)) + 0.08 * deepest))
+    axes.annotate(
+        "undisturbed surface", (0.52, 0.0), xycoords=("axes fraction", "data"), xytext=(0, 2),
+        textcoords="offset points", ha="left", fontsize=6.5, color=GREY,
+    )  # fmt: skip
+
+
+def _plan(axes: Axes, answers: list[Json]) -> None:
+    """The edge from above, wide, with the two circles that define a radius, thin; the scales of both axes differ."""
+    for place, answer in enumerate(answers):
+        if answer["edge_line_mm"] is None:
+            continue
+        station, line = np.asarray(answer["station_m"])[::-1], _known(answer["edge_line_mm"])[::-1] * MM
+        line -= np.interp(0.0, station, line)
+        axes.plot(station, line / MM, color=_colour(place), linewidth=3.0, alpha=0.35, solid_capstyle="butt")
+        for style, (rear, front) in _circles(answer):
+            x, y = arc_through(station, line, rear, front)
+            axes.plot(x, y / MM, color=_colour(place), linestyle=style, linewidth=0.9)
+    axes.axvline(0.0, color=PALE, linewidth=0.5, zorder=0)
+    axes.set_xlabel("position along the ski (m); boot = 0, tail left, tip right")
+    axes.set_ylabel("edge towards the\ninside of the turn (mm)")
+
+
+def _circles(answer: Json) -> list[tuple[Any, tuple[float, float]]]:
+    """Line style and ends of the arcs whose radius is known."""
+    found = []
+    if answer["turn_radius_boot_m"] is not None:
+        found.append((_BOOT_CIRCLE, (-BOOT_REACH, BOOT_REACH)))
+    if answer["turn_radius_chord_m"] is not None:
+        found.append((_CHORD_CIRCLE, contact_ends(answer)))
+    return found
+
+
+def contact_ends(answer: Json) -> tuple[float, float]:
+    """Rear and front station (m) at which the edge passes the undisturbed surface."""
+    station, depth = np.asarray(answer["station_m"])[::-1], _known(answer["edge_depth_mm"])[::-1]
+    below = np.flatnonzero(depth > 0.0)
+    rear, front = int(below[0]), int(below[-1])
+
+    def crossing(inside: int, outside: int) -> float:
+        if not 0 <= outside < len(depth):
+            return float(station[inside])
+        share = depth[inside] / (depth[inside] - depth[outside])
+        return float(station[inside] + share * (station[outside] - station[inside]))
+
+    return crossing(rear, rear - 1), crossing(front, front + 1)
+
+
+def arc_through(station: FloatArray, line: FloatArray, rear: float, front: float) -> tuple[FloatArray, FloatArray]:
+    """The arc through an edge line at three places: rear, boot (0) and front.
+
+    Parameters
+    ----------
+    station, line
+        The line (m), stations rising.
+    rear, front
+        The ends of the arc (m).
+
+    Returns
+    -------
+    x, y
+        Points of the arc (m), rear to front.
+
+    Examples
+    --------
+    The parabola x²/20 through 0 and ±1 is a circle of (1 + 0.05²)/(2 × 0.05) = 10.025 m:
+
+    >>> along = np.linspace(-1.0, 1.0, 2001)
+    >>> x, y = arc_through(along, along**2 / 20.0, -1.0, 1.0)
+    >>> round(float(y[0]), 6), abs(float(np.hypot(x[0], y[0] - 10.025)) - 10.025) < 1e-9
+    (0.05, True)
+    """
+    places = np.array([rear, 0.0, front])
+    ends = np.interp(places, station, line)
+    # x² + y² + D x + E y + F = 0 through the three points
+    D, E, F = np.linalg.solve(np.column_stack([places, ends, np.ones(3)]), -(places**2) - ends**2)
+    x = np.linspace(rear, front, 121)
+    root = np.sqrt(np.maximum((E / 2.0) ** 2 - (x**2 + D * x + F), 0.0))
+    return x, -E / 2.0 - np.copysign(root, -E)
+
+
+def _known(values: list[float | None]) -> FloatArray:
+    return np.array([np.nan if value is None else value for value in values])

@@ -1,0 +1,153 @@
+"""Data of the charts that the lab draws in the browser: series with their law, and skis."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from .._support.units import MM
+from ..geometry import in_form
+from .formatting import significant
+
+if TYPE_CHECKING:
+    import numpy.typing as npt
+
+    from ..campaign.records import Campaign, PenetrationTests
+    from ..geometry import GeometryForm, Tool
+
+    FloatArray = npt.NDArray[np.float64]
+    import numpy.typing as npt
+
+    from ..ski import Ski
+
+
+_NOTHING: Final = (np.zeros(0), np.zeros(0))
+POINTS: Final = 31
+"""Points of a curve: the chords of a parabola then stray by 1/3600 of its height, less than a screen shows."""
+
+
+@dataclass(frozen=True, slots=True)
+class SeriesCurve:
+    """The readings of a series, e (mm) and F (N), and its law as points; no law where H_V does not exist.
+
+    The readings of the unloading stand behind those of the loading.
+    """
+
+    experiment: str
+    depth_mm: tuple[float, ...]
+    load_N: tuple[float, ...]
+    law_depth_mm: tuple[float, ...]
+    law_load_N: tuple[float, ...]
+
+
+def law_of_series(
+    tool: Tool,
+    edge_angle: FloatArray | float,
+    snow_hardness: FloatArray | float,
+    penetration_depth: FloatArray,
+) -> tuple[FloatArray, FloatArray]:
+    """Depth (mm) and load F = H_V V (N) of a tool at edge angles (rad) and depths (m) in snow of H_V (N/m³)."""
+    volume = tool.displaced_volume(penetration_depth, edge_angle)
+    return penetration_depth / MM, snow_hardness * volume
+
+
+def series_curves(
+    campaign: Campaign, snow_hardness: FloatArray, *, geometry: GeometryForm = "extended"
+) -> tuple[SeriesCurve, ...]:
+    """The curve of each series of a campaign; its H_V (N/m³), NaN where there is none, one for each series."""
+    tests = campaign.penetration
+    if tests is None:
+        return ()
+    laws = _laws(campaign, tests, snow_hardness, geometry)
+    curves = []
+    for index in range(len(tests)):
+        series = tests.series(index)
+        back_depth, back_load = _way_back(tests, index)
+        depth, load = np.append(series.penetration_depth, back_depth) / MM, np.append(series.load, back_load)
+        numbers = (depth, load, *laws.get(index, _NOTHING))
+        curves.append(SeriesCurve(series.experiment, *(tuple(each.tolist()) for each in numbers)))
+    return tuple(curves)
+
+
+def _way_back(tests: PenetrationTests, index: int) -> tuple[FloatArray, FloatArray]:
+    if tests.unloading is None:
+        return _NOTHING
+    own = slice(*tests.unloading.first[index : index + 2].tolist())
+    return tests.unloading.penetration_depth[own], tests.unloading.load[own]
+
+
+def _laws(
+    campaign: Campaign, tests: PenetrationTests, snow_hardness: FloatArray, geometry: GeometryForm
+) -> dict[int, tuple[FloatArray, FloatArray]]:
+    """The law by the index of its series: those of one tool together, for a site may have hundreds."""
+    by_tool: dict[str, list[int]] = {}
+    for index in np.flatnonzero(np.isfinite(snow_hardness)).tolist():
+        by_tool.setdefault(tests.tool[index], []).append(index)
+    laws: dict[int, tuple[FloatArray, FloatArray]] = {}
+    for name, chosen in by_tool.items():
+        angle, hardness = tests.edge_angle[chosen][:, None], snow_hardness[chosen][:, None]
+        deepest = np.array([tests.series(index).penetration_depth.max() for index in chosen])[:, None]
+        depths = deepest * np.linspace(0.0, 1.0, POINTS)
+        drawn = law_of_series(in_form(campaign.tools[name], geometry), angle, hardness, depths)
+        laws.update(zip(chosen, zip(*drawn, strict=True), strict=True))
+    return laws
+
+
+@dataclass(frozen=True, slots=True)
+class SkiDrawing:
+    """Tables along a ski from tip to tail.
+
+    Attributes
+    ----------
+    name, source
+        As in `skisnow.ski.Ski`.
+    station_m
+        From the boot, positive forward.
+    half_width_mm, base_height_mm, EI_N_m2, GJ_N_m2
+        Half of the width from edge to edge, height of the unloaded base, bending and torsional stiffness.
+    facts
+        Key data of a ski, in words and with units.
+    """
+
+    name: str
+    source: str
+    station_m: tuple[float, ...]
+    half_width_mm: tuple[float, ...]
+    base_height_mm: tuple[float, ...]
+    EI_N_m2: tuple[float, ...]
+    GJ_N_m2: tuple[float, ...]
+    facts: dict[str, str]
+
+
+def ski_drawing(ski: Ski) -> SkiDrawing:
+    """The picture of a ski; every second table point, 5 mm apart, is enough for any screen."""
+
+    def drawn(table: FloatArray) -> tuple[float, ...]:
+        return tuple(np.append(table[:-1:2], table[-1]).tolist())
+
+    return SkiDrawing(
+        name=ski.name,
+        source=" ".join(ski.source.split()),
+        station_m=drawn(ski.station),
+        half_width_mm=drawn(ski.width / (2.0 * MM)),
+        base_height_mm=drawn(ski.base_height / MM),
+        EI_N_m2=drawn(ski.bending_stiffness),
+        GJ_N_m2=drawn(ski.torsional_stiffness),
+        facts=_facts(ski),
+    )
+
+
+def _facts(ski: Ski) -> dict[str, str]:
+    tip, waist, tail = (significant(width / MM) for width in ski.sidecut_widths)
+    middle = int(np.argmin(np.abs(ski.station)))
+    return {
+        "Length": f"{significant(ski.length, 4)} m",
+        "Running length": f"{significant(ski.running_length, 4)} m",
+        "Sidecut, tip – waist – tail": f"{tip} – {waist} – {tail} mm",
+        "Sidecut radius": f"{significant(ski.sidecut_radius_of_edge_line)} m",
+        "EI at the boot": f"{significant(float(ski.bending_stiffness[middle]))} N m²",
+        "GJ at the boot": f"{significant(float(ski.torsional_stiffness[middle]))} N m²",
+        "Mass": f"{significant(ski.mass)} kg",
+    }

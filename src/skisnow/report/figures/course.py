@@ -1,0 +1,152 @@
+"""A line through the gates of a course from above, with a colour for a quantity along it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+import numpy.typing as npt
+from matplotlib.collections import LineCollection
+from matplotlib.lines import Line2D
+from matplotlib.ticker import MaxNLocator
+
+from ..._support.errors import ParameterError
+from ..._support.units import DEGREE
+from ...scenario import Plane
+from ...scenario.slope_surface import normals_of
+from ...simulation.run_gates import run_gates
+from .style import BLACK, BLUE, DOUBLE_MM, GREY, VERMILLION, legend_below, new_figure
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from ...simulation.run import Run
+    from ...track.course import CourseResult
+
+FloatArray = npt.NDArray[np.float64]
+
+STRETCHED: Final = 5.0
+"""Length over width of a course above which it is drawn wider than it is."""
+SINGLE_POLE: Final = 1.5
+"""Length (m) of line that is drawn at a gate without an outer pole."""
+MOST_NAMES: Final = 40
+_HEIGHT_MM: Final = 82.0
+_MARGIN: Final = 0.04
+
+
+def course_line(
+    result: CourseResult, place: FloatArray, values: FloatArray, *, label: str, diverging: bool, axes_words: str = ""
+) -> Figure:
+    """Draw it.
+
+    Parameters
+    ----------
+    result
+        The course, and what became of its gates.
+    place
+        Places (n, 2) or (n, 3) of the line (m).
+    values
+        (n,) what is shown as colour.
+    label
+        Of the colour, with its unit.
+    diverging
+        Whether values below 0 are as much as those above: left and right.
+    axes_words
+        What x is, where it is known.
+    """
+    figure = new_figure(width_mm=DOUBLE_MM, height_mm=_HEIGHT_MM)
+    axes = figure.add_subplot()
+    points = np.concatenate([place[:, :2], [gate.turning for gate in result.course.gates]])
+    _gates(axes, result)
+    drawn = _line(axes, place, values, diverging=diverging)
+    _frame(axes, points, axes_words)
+    figure.colorbar(drawn, ax=axes, label=label, pad=0.01, aspect=22)
+    legend_below(figure, _handles(result))
+    return figure
+
+
+def _line(axes: Axes, place: FloatArray, values: FloatArray, *, diverging: bool) -> LineCollection:
+    pieces = np.stack([place[:-1, :2], place[1:, :2]], axis=1)
+    middle = 0.5 * (values[:-1] + values[1:])
+    drawn = LineCollection(
+        list(pieces), array=middle, cmap="PuOr_r" if diverging else "viridis", linewidth=2.2, zorder=3
+    )
+    known = np.abs(middle[np.isfinite(middle)])
+    most = float(known.max()) if known.size else 1.0
+    drawn.set_clim(-most if diverging else 0.0, most or 1.0)
+    drawn.set_capstyle("round")
+    axes.add_collection(drawn)
+    return drawn
+
+
+def _gates(axes: Axes, result: CourseResult) -> None:
+    for number, (passage, line) in enumerate(zip(result.passages, result.course.lines, strict=True)):
+        reach = line.width if np.isfinite(line.width) else SINGLE_POLE
+        end = line.pole + reach * line.across
+        axes.plot(*np.stack([line.pole, end], axis=1), color=GREY, linewidth=0.7, zorder=1)
+        colour = (VERMILLION, BLUE)[number % 2]
+        axes.plot(*line.pole, marker="o", markersize=4.2, color=colour, linestyle="none", zorder=4)
+        if np.isfinite(line.width):
+            axes.plot(
+                *end, marker="o", markersize=3.0, markerfacecolor="none", color=colour, linestyle="none", zorder=4
+            )
+        if passage.outcome != "passed":
+            axes.plot(*line.pole, marker="x", markersize=8.0, color=BLACK, linestyle="none", zorder=5)
+        if len(result.passages) <= MOST_NAMES:
+            away = -9.0 * line.across
+            axes.annotate(
+                passage.gate.name, (float(line.pole[0]), float(line.pole[1])), (float(away[0]), float(away[1])),
+                textcoords="offset points", ha="center", va="center", fontsize=6.5,
+            )  # fmt: skip
+
+
+def _frame(axes: Axes, points: FloatArray, words: str) -> None:
+    low, high = points.min(axis=0), points.max(axis=0)
+    size = np.maximum(high - low, 1.0)
+    margin = np.maximum(_MARGIN * size, 1.0)
+    stretched = size.max() / size.min() > STRETCHED
+    axes.set_xlim(low[0] - margin[0], high[0] + margin[0])
+    axes.set_ylim(low[1] - margin[1] - 1.0, high[1] + margin[1] + 1.0)
+    axes.set_aspect("auto" if stretched else "equal", adjustable="box")
+    axes.set_xlabel(f"{words or '$x$'} (m)")
+    axes.set_ylabel("to the left $y$ (m)" + (",\nanother scale" if stretched else ""))
+    axes.yaxis.set_major_locator(MaxNLocator("auto", steps=[1, 2, 5, 10], min_n_ticks=2))
+
+
+def _handles(result: CourseResult) -> list[Line2D]:
+    style = {"linestyle": "none", "marker": "o"}
+    handles = [Line2D([], [], color=c, markersize=4.2, label=w, **style)  # type: ignore[arg-type]
+               for c, w in ((VERMILLION, "turning pole of gate 1, 3, 5 …"), (BLUE, "of gate 2, 4, 6 …"))]  # fmt: skip
+    if any(gate.outer is not None for gate in result.course.gates):
+        handles.append(Line2D([], [], color=GREY, markerfacecolor="none", markersize=3.0, label="outer pole", **style))  # type: ignore[arg-type]
+    if result.fault is not None:
+        handles.append(Line2D([], [], color=BLACK, linestyle="none", marker="x", markersize=6.0, label="not passed"))
+    return handles
+
+
+def run_course(run: Run) -> Figure:
+    """Draw it; a run without a course has none."""
+    result = run_gates(run)
+    if result is None:
+        raise ParameterError("the run has no course, or ended before its first step; give the scenario course.file")
+    level = isinstance(run.scenario.slope, Plane)
+    words = "distance down the fall line $x$" if level else "horizontal distance $x$"
+    label = "edge angle (°)"
+    return course_line(result, run.place, edge_angles(run) / DEGREE, label=label, diverging=True, axes_words=words)
+
+
+def edge_angles(run: Run) -> FloatArray:
+    """Angle of the bases at the boots to the snow's surface, mean of both skis, positive: left edges down (rad)."""
+    return edge_angles_of_skis(run).mean(axis=1)
+
+
+def edge_angles_of_skis(run: Run) -> FloatArray:
+    """The same of each ski, (n, 2), or (n, 1) of skis that are edged alike."""
+    normal = normals_of(run.scenario.slope, run.place[:, 0], run.place[:, 1])
+    if run.boots is not None:
+        left = run.boots.axes[:, :, 1]
+    else:
+        angle = run.scenario.sledge.edge_angle
+        left = (run.attitude @ np.array([0.0, np.cos(angle), -np.sin(angle)]))[:, None]
+    return np.asarray(np.arcsin(np.clip(-np.einsum("nka,na->nk", left, normal), -1.0, 1.0)))

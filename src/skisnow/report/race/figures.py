@@ -1,0 +1,153 @@
+"""Figures of a race: lines from above, progress of the search, worth of variants, time between gates."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+import numpy.typing as npt
+from matplotlib.lines import Line2D
+from matplotlib.ticker import MaxNLocator
+
+from ..figures.drawing import Drawing
+from ..figures.style import BLACK, BLUE, DOUBLE_MM, GREY, PALE, SINGLE_MM, VERMILLION, legend_below, new_figure
+from ..symbols import figure_text, prose
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from ...racing import QuickestLine, RacingLine, Worth
+    from ...track.course.gate_gaps import GateGap
+
+_HEIGHT_MM = 105.0
+
+
+def race_lines(found: QuickestLine) -> Figure:
+    """Above the lines with the poles, below the values of all evaluations."""
+    figure = new_figure(width_mm=DOUBLE_MM, height_mm=_HEIGHT_MM)
+    above, below = figure.subplots(2, 1, height_ratios=(1.2, 1.0))
+    _lines(above, found)
+    _history(below, found)
+    legend_below(figure, above.get_legend_handles_labels()[0] + below.get_legend_handles_labels()[0])
+    return figure
+
+
+def _lines(axes: Axes, found: QuickestLine) -> None:
+    for line, colour, label in ((found.start, GREY, "where the search began"), (found.line, BLUE, "quickest line")):
+        x, y = _drawn(line)
+        axes.plot(x, y, color=colour, linewidth=1.6, label=label)
+        apex = np.array(line.apexes[1:])
+        axes.plot(*apex.T, linestyle="none", marker="|", color=colour, markersize=7.0)
+    poles = np.array([gate.turning for gate in found.line.course.gates])
+    axes.plot(*poles.T, linestyle="none", marker="o", color=VERMILLION, markersize=4.2, label="turning pole")
+    axes.set_xlabel("down the slope $x$ (m)")
+    axes.set_ylabel("to the left $y$ (m)")
+    axes.yaxis.set_major_locator(MaxNLocator("auto", steps=[1, 2, 5, 10], min_n_ticks=3))
+
+
+def _drawn(line: RacingLine) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
+    x = np.arange(line.start[0], line.apexes[-1][0] + 2.0, 0.1)
+    return x, np.array([line.at(float(each))[0] for each in x])
+
+
+def _history(axes: Axes, found: QuickestLine) -> None:
+    whole = [each for each in found.history if len(each.row["turns"]) == len(found.line.turns)]
+    number, value = np.array([(each.number, each.value) for each in whole]).T
+    through = value < 1000.0
+    axes.plot(number[through], value[through], ".", color=PALE, markersize=3.0, label="evaluation")
+    if through.any():
+        least = np.minimum.accumulate(np.where(through, value, np.inf))
+        axes.plot(number[np.isfinite(least)], least[np.isfinite(least)], color=BLUE, label="best so far")
+        low = float(value[through].min())
+        axes.set_ylim(low - 0.05, low + 0.03 + max(0.3, float(np.quantile(value[through], 0.9)) - low))
+    lost = number[~through]
+    axes.plot(lost, np.full(len(lost), 0.97), "x", color=VERMILLION, markersize=2.6, label="not through all gates",
+              transform=axes.get_xaxis_transform())  # fmt: skip
+    axes.set_xlabel("evaluation")
+    axes.set_ylabel("time to the last gate (s)")
+
+
+_ROW_MM, _FRAME_MM = 9.0, 28.0
+
+
+def race_worth(found: Sequence[Worth]) -> Figure:
+    """One row for each variant; left of zero it is faster."""
+    figure = new_figure(width_mm=1.5 * SINGLE_MM, height_mm=_FRAME_MM + _ROW_MM * len(found))
+    axes = figure.add_subplot()
+    for row, each in enumerate(found):
+        values = each.differences
+        axes.plot(values, np.full(len(values), row), "|", color=BLUE, markersize=9.0)
+        if not len(values):
+            axes.text(0.0, row, "not through all gates ", ha="right", va="center", fontsize=7.0)
+        if each.on_own_snow is not None:
+            axes.plot(each.on_own_snow, row, "D", color=BLACK, markersize=4.5)
+    axes.axvline(0.0, color=GREY, linewidth=0.7)
+    axes.set_yticks(range(len(found)), [each.name for each in found])
+    axes.set_ylim(len(found) - 0.4, -0.6)
+    axes.set_xlabel("time more than as it is (s)")
+    legend_below(
+        figure, [_handle(BLACK, "D", 4.5, "on the snow of the scenario"), _handle(BLUE, "|", 9.0, "on each snow")]
+    )
+    return figure
+
+
+def _handle(colour: str, marker: str, size: float, label: str) -> Line2D:
+    return Line2D([], [], color=colour, marker=marker, markersize=size, linestyle="none", label=label)
+
+
+MOST_NAMES = 26
+"""Gates above which only some have their names on the axis."""
+
+
+def gate_gaps_drawing(gaps: Sequence[GateGap], names: tuple[str, str]) -> Drawing:
+    """The figure with its words; names of the run and of the one that it is held against."""
+    known = [each for each in gaps if each.gap is not None]
+    last = f" {last_words(gaps, names)}" if known else ""
+    return Drawing(
+        "gate_gaps",
+        prose(
+            "(a) Gap of {own} to {other} at each gate, both from their starts. (b) What was lost since the gate before "
+            "that both crossed. Above 0 {own} is behind or loses.",
+            own=names[0], other=names[1],
+        ),
+        f"Gap in time at each gate and time lost between gates, {names[0]} against {names[1]}.{last}",
+        gate_gaps_figure(gaps, names),
+        wide=True,
+    )  # fmt: skip
+
+
+def last_words(gaps: Sequence[GateGap], names: tuple[str, str]) -> str:
+    """Who is ahead at the last gate that both crossed."""
+    last = [each for each in gaps if each.gap is not None][-1]
+    gap = last.gap or 0.0
+    own, other = names
+    if abs(gap) < 0.005:
+        return f"{own} and {other} cross gate {last.gate} level."
+    return f"{own} crosses gate {last.gate} {abs(gap):.2f} s {'behind' if gap > 0 else 'ahead of'} {other}."
+
+
+def gate_gaps_figure(gaps: Sequence[GateGap], names: tuple[str, str]) -> Figure:
+    """Draw gap over gates, and below it what was lost between them."""
+    figure = new_figure(width_mm=DOUBLE_MM, height_mm=100.0)
+    above, below = figure.subplots(2, 1, sharex=True)
+    known = [i for i, each in enumerate(gaps) if each.gap is not None]
+    gap, lost = (np.array([getattr(gaps[i], name) for i in known], dtype=float) for name in ("gap", "lost"))
+    for axes in (above, below):
+        axes.axhline(0.0, color=PALE, linewidth=0.8, zorder=0)
+    above.plot(known, gap, marker="o", markersize=3.4, color=BLUE, linewidth=1.1)
+    above.set_ylabel(f"gap to {figure_text(names[1], longest=24)} (s)\nbehind +")
+    below.bar(known, lost, width=0.7, color=[VERMILLION if each > 0 else BLUE for each in lost.tolist()])
+    below.set_ylabel("lost since the\ngate before (s)")
+    below.set_xlabel("gate")
+    _names(below, gaps)
+    figure.align_ylabels()
+    return figure
+
+
+def _names(axes: Axes, gaps: Sequence[GateGap]) -> None:
+    every = range(0, len(gaps), 1 + (len(gaps) - 1) // MOST_NAMES)
+    axes.set_xticks(list(every), [figure_text(gaps[i].gate, longest=8) for i in every])
+    axes.set_xlim(-0.7, len(gaps) - 0.3)

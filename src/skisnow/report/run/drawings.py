@@ -1,0 +1,164 @@
+"""Figures of a run with their captions."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final
+
+from ..._support.errors import ParameterError
+from ..._support.units import DEGREE
+from ...parameters import nearest
+from ..figures.course import run_course
+from ..figures.drawing import Drawing
+from ..figures.style import journal_style
+from ..formatting import significant
+from ..symbols import prose
+from .time_figures import run_along_ski, run_balance, run_boots, run_energies, run_grip, run_motion
+from .track_figure import CUTOUT, run_track
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from markupsafe import Markup
+    from matplotlib.figure import Figure
+
+    from ...simulation.run import Run
+
+
+def run_drawings(run: Run) -> Iterator[Drawing]:
+    """Draw one after the other, inside the house style; a run without any step has none."""
+    if len(run.time) < 2:
+        return
+    yield Drawing(
+        "track",
+        prose(
+            "(a) The run from above, the same scale along both axes. (b, c) The grooves of both skis over {length} m "
+            "at half time: along the track of the loaded edge in metres, across it in millimetres.",
+            length=significant(CUTOUT, 2),
+        ),
+        f"Tracks of both skis from above, {significant(run.run_length)} m long, and their grooves.",
+        run_track(run),
+        wide=True,
+    )
+    if run.scenario.course is not None:
+        yield Drawing(
+            "course",
+            prose(
+                "The line of the middle between the boots over the course, from above; colour: edge angle at the "
+                "boots, positive with the left edges down. A cross: the gate was not passed. Gates to "
+                "which no outer pole is known are drawn with a piece of their line."
+            ),
+            "Line over the gates of the course, coloured by edge angle.",
+            run_course(run),
+            wide=True,
+        )
+    yield Drawing(
+        "motion",
+        prose(
+            "(a) Speed, (b) heading of the skis and (c) radius of the path of the middle between the boots. The radius "
+            "is left out where it is more than three times its median."
+        )
+        + _carved_radius(run),
+        "Speed, heading and turn radius over time.",
+        run_motion(run),
+        wide=True,
+    )
+    if run.scenario.skier is None and run.boots_by is not None:
+        yield Drawing(
+            "boots",
+            prose(
+                "(a) Edge angle of each boot to the snow's surface. Force of each ski on its boot, in the boot's axes: "
+                "(b) off the base, (c) across it. (d) Moment of the ski on its boot about the boot's long axis, "
+                "positive where it turns the left edge up. Each axis leaves one peak in a hundred out."
+            ),
+            "Edge angles of both boots, and forces and edging moment of the skis on them, over time.",
+            run_boots(run),
+            wide=True,
+        )
+    if run.scenario.skier is not None:
+        yield Drawing(
+            "balance",
+            prose(
+                "(a) Lean of the line from the middle of the boots to the centre of mass, edge angle, and the lean "
+                "that would be in balance with speed and path radius of the centre of mass. Force of the snow on each "
+                "ski: (b) total, (c) normal, (d) side force. The axes of (b, c, d) leave one peak in a hundred out."
+            ),
+            "Lean, edge angle and forces of a skier over time.",
+            run_balance(run),
+            wide=True,
+        )
+    yield Drawing(
+        "along_ski",
+        prose(
+            "(a, b) Depth of the edge below the undisturbed surface and (c, d) normal force of the snow per length, "
+            "over time. White: the edge is above the snow, or the snow does not press: behind the place of the largest "
+            "load the afterbody runs in the groove that the forebody cut."
+        ),
+        "Maps of edge depth and normal force per length over position along the ski and time, for both skis.",
+        run_along_ski(run),
+        wide=True,
+    )
+    yield Drawing(
+        "grip",
+        prose(
+            "Grip utilisation of each ski: the sum of its side force over the sum of the shear capacity S_f e. At 1 "
+            "the ski side-slips."
+        )
+        + _other_strength(run),
+        "Grip utilisation of each ski over time.",
+        run_grip(run),
+        wide=True,
+    )
+    yield Drawing(
+        "energies",
+        prose(
+            "(a) Where the energy is and went. Everything on top of each other must stay at the dashed line. (b) The "
+            "losses alone."
+        ),
+        "Stored energies and losses over time, stacked.",
+        run_energies(run),
+        wide=True,
+    )
+
+
+def _carved_radius(run: Run) -> Markup:
+    """What the dotted line is, which boots that move have not."""
+    if run.boots_by is not None:
+        return prose("")
+    return prose(
+        " Dotted: the radius of a ski that is bent onto a hard plane at {angle}° without twist.",
+        angle=f"{run.scenario.sledge.edge_angle / DEGREE:.3g}",
+    )
+
+
+def _other_strength(run: Run) -> Markup:
+    """Said where the edge met another strength than the scenario's."""
+    given = [name.replace("_", " ") for name, law in run.given_laws.items() if law and name != "friction"]
+    if not given:
+        return prose("")
+    return prose(
+        " S_f here is the scenario's; the run had another strength ({given}, given in Python), whose limit is "
+        "not at 1.",
+        given=", ".join(given),
+    )
+
+
+_FIGURES: Final = {
+    "track": run_track,
+    "course": run_course,
+    "motion": run_motion,
+    "boots": run_boots,
+    "balance": run_balance,
+    "along_ski": run_along_ski,
+    "grip": run_grip,
+    "energies": run_energies,
+}
+
+
+def run_figure(run: Run, what: str) -> Figure:
+    """One figure of a run by its name, in the house style: see `Run.plot`."""
+    if what not in _FIGURES:
+        raise ParameterError(f"there is no figure {what!r} of a run. {nearest(what, _FIGURES)}")
+    if len(run.time) < 2:
+        raise ParameterError(f"the run ended before its first step ({run.outcome}); there is nothing to draw")
+    with journal_style():
+        return _FIGURES[what](run)

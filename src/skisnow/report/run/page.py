@@ -1,0 +1,312 @@
+"""Page of a simulated run, with run.nc and the figures."""
+
+from __future__ import annotations
+
+from importlib.metadata import version
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+from markupsafe import Markup
+
+from ..._support.json_number import json_number
+from ..._support.language import ENGLISH
+from ..._support.staging import require_writable, write_file
+from ..._support.units import DEGREE, MM, N_PER_MM2, N_PER_MM3
+from ...scenario.keys import SCENARIO_KEYS
+from ...scenario.plausibility import model_limits
+from ...simulation.run_gates import run_gates
+from ...simulation.run_summary import run_warnings
+from ...track.course.gates_table import time_warnings
+from ..figures.course import edge_angles_of_skis
+from ..figures.figure_files import write_pictures
+from ..formatting import counted, significant, whole
+from ..sheet import Header, Section, sheet
+from ..symbols import html, prose
+from .drawings import run_drawings
+from .file import write_run_file
+from .tables import energies_table, gates_table, scenario_table, skis_table, verification_table
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator, Mapping, Sequence
+
+    from ...geometry.surfaces import Grid
+    from ...simulation.run import Run
+    from ..figures.drawing import Picture
+
+Json = dict[str, Any]
+FIGURES: Final = ("track", "motion", "along_ski", "grip", "energies")
+"""Names of a run's figures, in figures/ as .png and .svg."""
+FURTHER: Final = ("course", "balance", "boots")
+"""Those that a run with a course, with a skier, or with boots that are moved, has beside them."""
+CHOICES: Final = frozenset(word for key in SCENARIO_KEYS.values() for word in key.choices)
+"""Words of a scenario's file: they are the same in every language."""
+REPLAY: Final = "replay.html"
+"""The run in three dimensions, where that was asked for."""
+
+_LINK: Final = Markup('<a href="{}">the run in three dimensions</a>').format(REPLAY)
+REPLAY_FACT: Final = Markup("<dt>Replay</dt><dd>{}</dd>").format(_LINK)
+"""The link as the page of a run has it among its facts."""
+
+
+def write_run_report(
+    run: Run,
+    summary: Mapping[str, Any],
+    folder: str | Path,
+    *,
+    language: str = ENGLISH,
+    progress: Callable[[str], None] | None = None,
+) -> Path:
+    """Write run.nc, figures/ and report.html.
+
+    Parameters
+    ----------
+    run
+        What came out.
+    summary
+        The contents of summary.json, with ``verification`` where the run was repeated.
+    folder
+        Made where it is missing. Other files in it stay; figures of an earlier run are replaced or removed.
+    language
+        Of the page and the figures: en, or a language that there is a catalogue of (de).
+    progress
+        Called with a line of text now and then.
+
+    Returns
+    -------
+    Path
+        Of report.html, which is written last.
+
+    Raises
+    ------
+    OutputError
+        A file cannot be written.
+    """
+    folder = Path(folder)
+    require_writable(folder)
+    report = progress or _silent
+    report("run.nc")
+    write_run_file(run, summary["scenario"], folder / "run.nc", provenance=summary["provenance"])
+    every = (*FIGURES, *FURTHER)
+    pictures = write_pictures(run_drawings(run), folder / "figures", every=every, language=language, progress=report)
+    report("report.html")
+    has_replay = (folder / REPLAY).is_file()
+    write_file(folder / "report.html", run_page(run, summary, pictures, has_replay=has_replay, language=language))
+    return folder / "report.html"
+
+
+def run_page(
+    run: Run,
+    summary: Mapping[str, Any],
+    pictures: Sequence[Picture],
+    *,
+    has_replay: bool = False,
+    language: str = ENGLISH,
+) -> str:
+    """The HTML of a run's report; with a replay beside it a link leads there."""
+    by_name = {picture.name: [picture] for picture in pictures}
+    sections = [
+        Section("outcome", "Outcome", key=outcome_sentences(run), pictures=by_name.get("track", ())),
+        *_course_section(run, by_name),
+        Section("motion", "Speed, heading, turn radius", pictures=by_name.get("motion", ())),
+        *_boots_sections(by_name),
+        Section(
+            "along-skis",
+            "Along the skis",
+            pictures=[*by_name.get("along_ski", ()), *by_name.get("grip", ())],
+            tables=[skis_table(run)],
+        ),
+        Section("energies", "Energies", pictures=by_name.get("energies", ()), tables=[energies_table(dict(summary))]),
+    ]
+    if not pictures:
+        sections = [Section("outcome", "Outcome", key=outcome_sentences(run), words=[_no_step()])]
+    if summary.get("verification"):
+        sections.append(Section("verification", "Computed again", tables=[verification_table(summary["verification"])]))
+    sections.append(Section("scenario", "Scenario", tables=[scenario_table(summary["scenario"])]))
+    sections.append(Section("provenance", "Provenance", words=provenance_sentences(run, summary)))
+    header = _header(run, has_replay=has_replay)
+    return sheet(header, sections, language=language, names=CHOICES | {run.scenario.ski.name})
+
+
+def _course_section(run: Run, by_name: Mapping[str, Sequence[Picture]]) -> list[Section]:
+    result = run_gates(run)
+    if result is None:
+        return []
+    words = [prose("{text}.", text=each) for each in time_warnings(result)]
+    return [Section("gates", "Gates", words=words, pictures=by_name.get("course", ()), tables=[gates_table(result)])]
+
+
+def _boots_sections(by_name: Mapping[str, Sequence[Picture]]) -> list[Section]:
+    titles = {"balance": "Balance of the skier", "boots": "Boots"}
+    return [Section(name, title, pictures=by_name[name]) for name, title in titles.items() if name in by_name]
+
+
+def _header(run: Run, *, has_replay: bool) -> Header:
+    scenario, ratio = run.scenario, run.scenario.contact.unloading_ratio
+    facts = [
+        ("Snow", html(f"H_V {_hardness(run)}, S_f {_strength(run)}, k_u / H_V {significant(ratio)}")),
+        ("Source of the snow", scenario.contact.snow.source),
+        *_laws(run),
+        ("Skis", f"{scenario.ski.name}, {_edged(run)}"),
+        ("Computed", f"skisnow {version('skisnow')}"),
+        *([("Replay", _LINK)] if has_replay else []),
+    ]  # fmt: skip
+    who = "sledge" if scenario.skier is None else "skier"
+    return Header(f"A simulated run of a {who} on two flexible skis", _title(run), facts, headline=_headline(run))
+
+
+def _edged(run: Run) -> str:
+    if run.scenario.skier is not None:
+        return "edged by the skier"
+    if run.boots_by is not None:
+        angles = edge_angles_of_skis(run) / DEGREE
+        low, high = (significant(float(each), 2) for each in (np.nanmin(angles), np.nanmax(angles)))
+        return f"edge angles from {low}° to {high}°"
+    return f"edge angle {significant(run.scenario.sledge.edge_angle / DEGREE)}°"
+
+
+def _headline(run: Run) -> Markup:
+    """Gates and the time through them; else the turn's radius, or the speed where it is nearly straight."""
+    result = run_gates(run)
+    times = [] if result is None else [time for time in result.times if time is not None]
+    if result is not None and len(times) > 1:
+        return prose(
+            "{value} between the first and the last gate that was reached; {passed} of {all} gates passed.",
+            value=Markup("<strong>{:.2f} s</strong>").format(times[-1] - times[0]),
+            passed=str(result.passed), all=str(len(result.times)),
+        )  # fmt: skip
+    radii = [run.turn_radius_quantile(share) for share in (0.05, 0.5, 0.95)]
+    if all(radius is not None and np.isfinite(radius) for radius in radii):
+        return _middle("Turn radius", "m", [float(radius) for radius in radii if radius is not None])
+    known = run.speed[np.isfinite(run.speed)]
+    if not known.size:
+        return Markup("")
+    return _middle("Speed", "m/s", np.quantile(known, [0.05, 0.5, 0.95]).tolist())
+
+
+def _middle(name: str, unit: str, found: Sequence[float]) -> Markup:
+    low, middle, high = map(significant, found)
+    return prose(
+        "{name} {value} (median; nine tenths of the time from {low} to {high}).",
+        name=name, value=Markup("<strong>{} {}</strong>").format(middle, unit), low=low, high=f"{high}\u00a0{unit}",
+    )  # fmt: skip
+
+
+def _laws(run: Run) -> Iterator[tuple[str, str]]:
+    """What acted in place of the scenario's laws."""
+    for name, law in run.given_laws.items():
+        if law:
+            yield f"{name.replace('_', ' ').capitalize()}, given in Python", law
+
+
+def _title(run: Run) -> str:
+    return f"{_number(run.run_length)} m in {_number(run.simulated_s)} s: {run.outcome.replace('_', ' ')}"
+
+
+def _hardness(run: Run) -> str:
+    contact = run.scenario.contact
+    over_place = None if contact.snow_map is None else contact.snow_map.hardness
+    return _value(contact.snow.snow_hardness, over_place, N_PER_MM3, "N/mm³")
+
+
+def _strength(run: Run) -> str:
+    contact = run.scenario.contact
+    over_place = None if contact.snow_map is None else contact.snow_map.failure_shear_stress
+    return _value(contact.snow.failure_shear_stress, over_place, N_PER_MM2, "N/mm²")
+
+
+def _value(value: float | None, over_place: Grid | None, size: float, unit: str) -> str:
+    """A number, or where it varies over the place the ends of its range."""
+    if over_place is None:
+        return f"{_number(None if value is None else value / size)} {unit}"
+    low, high = float(over_place.values.min()), float(over_place.values.max())
+    return f"{_number(low / size)} to {_number(high / size)} {unit} over the place"
+
+
+def outcome_sentences(run: Run) -> list[Markup]:
+    """How it ended, what to do, and the numbers that people ask for first."""
+    sentences = [prose("Outcome: {outcome}. {remedy}", outcome=run.outcome.replace("_", " "), remedy=run.remedy)]
+    sentences.append(
+        prose(
+            "{length} m in {time} s, from {first} to {last} m/s, maximum {most} m/s.",
+            length=_number(run.run_length), time=_number(run.simulated_s),
+            first=_number(float(run.speed[0])), last=_number(float(run.speed[-1])),
+            most=_number(float(np.nanmax(run.speed))),
+        )
+    )  # fmt: skip
+    sentences.append(
+        prose(
+            "Heading from {first}° to {last}° (positive: left of the fall line); median turn radius {radius} m, "
+            "5 % of the time below {lower} m, without the first half second.",
+            first=_angle(float(run.heading[0])), last=_angle(float(run.heading[-1])),
+            radius=_number(run.turn_radius_quantile(0.5)), lower=_number(run.turn_radius_quantile(0.05)),
+        )
+    )  # fmt: skip
+    deepest = float(np.nanmax(run.skis.edge_depth)) / MM
+    sentences.append(prose("Deepest place of an edge in the snow: {deepest} mm.", deepest=_number(deepest)))
+    sentences += [prose("Warning: {text}.", text=each) for each in model_limits(run.scenario).values()]
+    return sentences + _balance(run)
+
+
+def _balance(run: Run) -> list[Markup]:
+    error = run.energy_balance_error
+    if error is None or json_number(error) is None:
+        return []
+    if warnings := run_warnings(run):
+        return [prose("Warning: {text}.", text=each) for each in warnings]
+    return [prose("The energy residual is {error} % of the energy exchanged.", error=_number(100.0 * error, 2))]
+
+
+def _no_step() -> Markup:
+    return html("The run ended before its first step; there is nothing to draw.")
+
+
+def provenance_sentences(run: Run, summary: Mapping[str, Any]) -> list[Markup]:
+    """Programs, steps, time."""
+    provenance = summary["provenance"]
+    versions = ", ".join(f"{name} {number}" for name, number in provenance.get("versions", {}).items())
+    numbers = ", ".join(map(_named, run.numbers, run.numbers.values()))
+    rate = run.simulated_s / run.wall_s if run.wall_s > 0.0 else None
+    return [
+        prose("Programs: {versions}.", versions=versions or f"skisnow {version('skisnow')}"),
+        prose(
+            "{steps} ({rejected} rejected) in {wall} s: {rate} times real time. {numbers}.",
+            steps=counted(run.steps, "step"), rejected=whole(run.rejected_steps), wall=_number(run.wall_s),
+            rate=_number(rate), numbers=numbers,
+        ),
+        prose(
+            "Unrounded numbers: {summary}, {track}, and everything over time and along the skis in {file}.",
+            summary=Markup("<code>summary.json</code>"), track=Markup("<code>track.csv</code>"),
+            file=Markup("<code>run.nc</code>"),
+        ),
+    ]  # fmt: skip
+
+
+_UNITS: Final = {"m": " m", "mm": " mm", "s": " s", "N": " N", "kg": " kg"}
+"""Of numbers whose names end in it."""
+
+
+def _named(name: str, value: float) -> str:
+    """A number of the computation with its name and unit; what counts something is a whole number.
+
+    >>> _named("load_N", 390.0), _named("elements", 92.0)
+    ('load 390 N', 'elements 92')
+    """
+    words, _, unit = name.rpartition("_")
+    words, after = (words, _UNITS[unit]) if unit in _UNITS and words else (name, "")
+    digits = whole(int(value)) if float(value).is_integer() else _number(value)
+    return f"{words.replace('_', ' ')} {digits}{after}"
+
+
+def _angle(angle: float) -> str:
+    """Degrees to three digits; less than a thousandth is none: no heading is that exact."""
+    return _number(angle / DEGREE if abs(angle) >= 0.001 * DEGREE else 0.0)
+
+
+def _number(value: float | None, digits: int = 3) -> str:
+    """To a few digits; a dash for what is not finite."""
+    return significant(None if value is None else json_number(value), digits)
+
+
+def _silent(_text: str) -> None:
+    return

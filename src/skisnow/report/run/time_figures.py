@@ -1,0 +1,288 @@
+"""Figures of a run over time: motion, energies, balance, boots, grip, and loads along the skis."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+import numpy.typing as npt
+from matplotlib.lines import Line2D
+
+from ..._support.units import DEGREE, MM
+from ...simulation.run import LOST, STORED
+from ..figures.course import edge_angles_of_skis
+from ..figures.style import (
+    BLACK,
+    BLUE,
+    BROWN,
+    DOUBLE_MM,
+    GREEN,
+    GREY,
+    ORANGE,
+    PALE,
+    PURPLE,
+    SAND,
+    SKY,
+    VERMILLION,
+    legend_below,
+    new_figure,
+)
+from ..formatting import significant
+from .track_figure import SKI_COLOURS
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.collections import QuadMesh
+    from matplotlib.figure import Figure
+
+    from ...simulation.run import Run
+
+
+FloatArray = npt.NDArray[np.float64]
+_TIMES_MEDIAN: Final = 3.0
+"""Radii above so many medians are hardly turns; the axis ends there."""
+
+
+def run_motion(run: Run) -> Figure:
+    """Draw three curves over one time axis."""
+    figure = new_figure(width_mm=DOUBLE_MM, height_mm=118.0)
+    speed, heading, radius = figure.subplots(3, 1, sharex=True)
+    speed.plot(run.time, run.speed, color=BLUE)
+    speed.set_ylabel("speed (m/s)")
+    speed.set_ylim(0.0, 1.12 * max(float(np.nanmax(run.speed)), 0.1))
+    heading.plot(run.time, run.heading / DEGREE, color=BLUE)
+    heading.axhline(0.0, color=PALE, linewidth=0.6, zorder=0)
+    heading.set_ylabel("heading (°)\nleft of the fall line +")
+    _radius(radius, run)
+    radius.set_xlabel("time (s)")
+    radius.set_xlim(float(run.time[0]), float(run.time[-1]))
+    figure.align_ylabels()
+    return figure
+
+
+def _radius(axes: Axes, run: Run) -> None:
+    values = drawn_radius(run.turn_radius)
+    axes.plot(run.time, values, color=BLUE)
+    axes.axhline(0.0, color=PALE, linewidth=0.6, zorder=0)
+    angle = run.scenario.sledge.edge_angle
+    if angle != 0.0 and run.boots_by is None:
+        carved = math.copysign(run.scenario.ski.sidecut_radius_of_three_widths * math.cos(angle), angle)
+        axes.axhline(carved, color=GREY, linestyle=(0, (1, 1.2)), linewidth=0.9)
+        axes.annotate(
+            "sidecut radius × cos ϑ", (1.0, carved), (0, 2), xycoords=("axes fraction", "data"),
+            textcoords="offset points", ha="right", va="bottom", fontsize=6.5, color=GREY,
+        )  # fmt: skip
+    axes.set_ylabel("turn radius (m)\nto the left +")
+
+
+def drawn_radius(radius: FloatArray) -> FloatArray:
+    """The radii with gaps where the path is nearly straight: more than three times the median."""
+    known = np.abs(radius[np.isfinite(radius)])
+    if not known.size:
+        return np.full_like(radius, np.nan)
+    return np.where(np.abs(radius) <= _TIMES_MEDIAN * float(np.median(known)), radius, np.nan)
+
+
+_STYLES: Final = {
+    "kinetic": (BLUE, "kinetic"),
+    "potential": (SKY, "potential, above its minimum"),
+    "elastic_ski": (GREY, "in the bent skis"),
+    "elastic_snow": (PALE, "in the pressed snow"),
+    "delayed_snow": (SAND, "in the delayed depth"),
+    "penetration": (GREEN, "lost: groove"),
+    "shear": (VERMILLION, "lost: side-slip"),
+    "friction": (ORANGE, "lost: friction"),
+    "drag": (PURPLE, "lost: air"),
+    "damping": (BLACK, "lost: damping"),
+    "snow_damping": (BROWN, "lost: damping of the snow"),
+}
+_RATE: Final = ("delayed_snow", "snow_damping")
+
+
+def run_energies(run: Run) -> Figure:
+    """Draw what is stored and lost on top of each other: a level upper rim is a zero residual. Right: losses alone."""
+    figure = new_figure(width_mm=DOUBLE_MM, height_mm=80.0)
+    every, losses = figure.subplots(1, 2, width_ratios=(1.25, 1.0))
+    shares = stacked_energies(run)
+    _stack(every, run, shares, (*STORED, *LOST))
+    total = sum(shares[name][0] for name in STORED)
+    every.axhline(float(total), color=BLACK, linewidth=0.8, linestyle=(0, (4, 2)))
+    every.set_title(_closing(run), loc="left", fontsize=7.5)
+    _stack(losses, run, shares, LOST)
+    losses.set_title("losses alone", loc="left", fontsize=7.5)
+    drawn = [style for name, style in _STYLES.items() if name not in _RATE or shares[name].any()]
+    legend_below(figure, [Line2D([], [], color=colour, linewidth=5.0, label=label) for colour, label in drawn])
+    return figure
+
+
+def stacked_energies(run: Run) -> dict[str, FloatArray]:
+    """Each energy and each loss over time (J); the potential one from its minimum."""
+    found = {name: run.energies[name] for name in (*STORED, *LOST)}
+    found["potential"] = found["potential"] - np.nanmin(found["potential"])
+    return found
+
+
+def _stack(axes: Axes, run: Run, shares: dict[str, FloatArray], names: tuple[str, ...]) -> None:
+    axes.stackplot(
+        run.time, [shares[name] for name in names], colors=[_STYLES[name][0] for name in names], linewidth=0.0
+    )
+    axes.set_xlim(float(run.time[0]), float(run.time[-1]))
+    axes.set_xlabel("time (s)")
+    axes.set_ylabel("energy (J)")
+
+
+def _closing(run: Run) -> str:
+    error = run.energy_balance_error
+    if error is None or not np.isfinite(error):
+        return "no energy was exchanged" if error is None else "not finite at the end"
+    over = significant(run.energy_exchanged)
+    return f"residual {significant(100.0 * error, 2)} % of {over} J exchanged; dashed: the start"
+
+
+def run_balance(run: Run) -> Figure:
+    """Draw four panels over one time axis: leans; total, normal and side force of the snow on each ski."""
+    figure = new_figure(width_mm=DOUBLE_MM, height_mm=156.0)
+    leans, totals, normals, sides = figure.subplots(4, 1, sharex=True)
+    balance, boots = run.balance, run.boots
+    assert boots is not None
+    edge = balance.lean + balance.angulation
+    leans.plot(run.time, edge / DEGREE, color=ORANGE, label="edge angle")
+    leans.plot(run.time, balance.lean / DEGREE, color=BLUE, label="lean")
+    leans.plot(run.time, balance.balanced_lean / DEGREE, color=GREY, linewidth=0.8, linestyle=(0, (2, 1)),
+               label="lean in balance")  # fmt: skip
+    most = 1.15 * float(np.nanmax(np.abs(np.concatenate([edge, balance.lean])))) / DEGREE
+    leans.set_ylim(-max(most, 1.0), max(most, 1.0))
+    leans.set_ylabel("lean, edge angle (°)\nto the left +")
+    left = np.cross(np.array([0.0, 0.0, 1.0]), boots.axes[:, :, 0])
+    draw_both(totals, run, run.skis.total_force)
+    totals.set_ylabel("total\nforce (N)")
+    draw_both(normals, run, run.skis.normal_force)
+    normals.set_ylabel("normal\nforce (N)")
+    draw_both(sides, run, np.einsum("nka,nka->nk", run.skis.force, left))
+    sides.set_ylabel("side force (N)\nto the left +")
+    for axes in (leans, totals, normals, sides):
+        axes.axhline(0.0, color=PALE, linewidth=0.6, zorder=0)
+    for axes in (leans, totals):
+        axes.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=3, borderaxespad=0.2, frameon=False)
+    sides.set_xlabel("time (s)")
+    sides.set_xlim(float(run.time[0]), float(run.time[-1]))
+    figure.align_ylabels()
+    return figure
+
+
+def draw_both(axes: Axes, run: Run, values: np.ndarray[tuple[int, int], np.dtype[np.float64]]) -> None:
+    """Both skis; the axis holds all but the last hundredth of peaks."""
+    for ski, (name, colour) in enumerate((("left ski", BLUE), ("right ski", ORANGE))):
+        hidden = ski == 0 and np.allclose(values[:, 0], values[:, 1])
+        axes.plot(run.time, values[:, ski], color=colour, linewidth=2.4 if hidden else 0.8, label=name)
+    low, high = np.quantile(values, [0.005, 0.995])
+    room = 0.25 * max(high - low, 1.0)
+    axes.set_ylim(low - 0.3 * room, high + room)
+
+
+def run_boots(run: Run) -> Figure:
+    """Draw four panels over one time axis; for runs with boots that something moves."""
+    figure = new_figure(width_mm=DOUBLE_MM, height_mm=150.0)
+    panels = figure.subplots(4, 1, sharex=True)
+    boots = run.boots
+    assert boots is not None
+    ahead, left, up = range(3)
+    drawn = (
+        (edge_angles_of_skis(run) / DEGREE, "edge angle (°)\nto the left +"),
+        (boots.own_force[:, :, up], "force off\nthe base (N)"),
+        (boots.own_force[:, :, left], "force across (N)\nto the left +"),
+        (boots.own_moment[:, :, ahead], "edging moment\n(N m)"),
+    )
+    for axes, (values, label) in zip(panels, drawn, strict=True):
+        draw_both(axes, run, values)
+        axes.set_ylabel(label)
+        axes.axhline(0.0, color=PALE, linewidth=0.6, zorder=0)
+    panels[0].legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=2, borderaxespad=0.2, frameon=False)
+    panels[-1].set_xlabel("time (s)")
+    panels[-1].set_xlim(float(run.time[0]), float(run.time[-1]))
+    figure.align_ylabels()
+    return figure
+
+
+def run_grip(run: Run) -> Figure:
+    """Draw the grip utilisation of each whole ski over time; 1: side-slip."""
+    figure = new_figure(width_mm=DOUBLE_MM, height_mm=62.0)
+    axes = figure.subplots()
+    for share, colour, name in zip(used_share_of_skis(run).T, SKI_COLOURS, SKIS, strict=True):
+        axes.plot(run.time, share, color=colour, label=name)
+    axes.axhline(1.0, color=GREY, linewidth=0.8, linestyle=(0, (4, 2)))
+    axes.set_xlim(float(run.time[0]), float(run.time[-1]))
+    axes.set_ylim(-0.02, 1.12)
+    axes.set_ylabel("grip utilisation of\nthe ski (1: side-slip)")
+    axes.set_xlabel("time (s)")
+    legend_below(
+        figure, [Line2D([], [], color=colour, label=name) for colour, name in zip(SKI_COLOURS, SKIS, strict=True)]
+    )
+    return figure
+
+
+def used_share_of_skis(run: Run) -> FloatArray:
+    """|∫ shear ds| / (S_f ∫ e ds) of each ski, (n, 2); nan where a ski is off the snow."""
+    station = run.skis.station
+    force = np.abs(np.trapezoid(run.skis.shear_per_length, -station, axis=2))
+    limit = np.trapezoid(_limit(run), -station, axis=2)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return np.where(limit > 0.0, force / limit, np.nan)
+
+
+def _limit(run: Run) -> FloatArray:
+    """S_f e (N/m), 0 above the snow."""
+    strength = run.scenario.contact.snow.failure_shear_stress
+    assert strength is not None  # a scenario has it
+    return np.asarray(strength * np.maximum(run.skis.edge_depth, 0.0))
+
+
+SKIS: Final = ("left ski", "right ski")
+_SHARE_SHOWN: Final = 99.5
+"""Percentile of the forces at which the colours end: single peaks would leave the rest dark."""
+
+
+def run_along_ski(run: Run) -> Figure:
+    """Draw four maps with the tip at the top; white: the edge is above the snow, or the snow does not press."""
+    depth, force = run.skis.edge_depth / MM, run.skis.force_per_length
+    figure = new_figure(width_mm=DOUBLE_MM, height_mm=112.0)
+    grid = figure.subplots(2, 2, sharex=True, sharey=True)
+    for row, (values, label) in zip(
+        grid, ((depth, "edge depth (mm)"), (force, "normal force per length (N/m)")), strict=True
+    ):
+        top = highest(values)
+        for ski, axes in enumerate(row):
+            mesh = along_ski_map(axes, run, np.where(values[:, ski] > 0.0, values[:, ski], np.nan), top)
+        figure.colorbar(
+            mesh, ax=list(row), label=label, pad=0.01, aspect=20, extend="max" if top < values.max() else "neither"
+        )
+    label_maps(grid)
+    return figure
+
+
+def highest(values: FloatArray) -> float:
+    """Where the colours of a map end."""
+    positive = values[values > 0.0]
+    return float(np.percentile(positive, _SHARE_SHOWN)) if positive.size else 1.0
+
+
+def along_ski_map(axes: Axes, run: Run, values: FloatArray, top: float) -> QuadMesh:
+    """One map: values (n, m) over time and station, time to the right and the tip up."""
+    mesh = axes.pcolormesh(
+        run.time, run.skis.station, np.ma.masked_invalid(values.T), shading="nearest", cmap="cividis", vmin=0.0,
+        vmax=top, rasterized=True,
+    )  # fmt: skip
+    axes.axhline(0.0, color=BLACK, linewidth=0.5, linestyle=(0, (4, 3)))
+    axes.set_ylim(float(run.skis.station.min()), float(run.skis.station.max()))
+    return mesh
+
+
+def label_maps(grid: npt.NDArray[np.object_]) -> None:
+    """Names of the skis above, time below, station at the left."""
+    for ski, axes in enumerate(grid[0]):
+        axes.set_title(SKIS[ski], loc="left", fontsize=8.0)
+    for axes in grid[-1]:
+        axes.set_xlabel("time (s)")
+    for axes in grid[:, 0]:
+        axes.set_ylabel("position along the ski (m);\nboot = 0, tip up")

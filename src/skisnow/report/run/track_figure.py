@@ -1,0 +1,210 @@
+"""A run from above: tracks of both skis, groove, time marks, fall line."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+import numpy.typing as npt
+from matplotlib.collections import PolyCollection
+from matplotlib.lines import Line2D
+from matplotlib.text import Annotation
+from matplotlib.ticker import MaxNLocator
+
+from ..._support.units import MM
+from ...scenario import Plane
+from ..figures.style import BLACK, BLUE, DOUBLE_MM, GREY, VERMILLION, legend_below, new_figure
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from ...simulation.run import Run
+
+FloatArray = npt.NDArray[np.float64]
+
+SKI_COLOURS: Final = (BLUE, VERMILLION)
+"""Of the left and the right ski."""
+CUTOUT: Final = 2.0
+"""Length (m) of track that is drawn a second time, large."""
+_MARGIN: Final = 0.6
+_LARGEST_MM, _SMALLEST_MM = 130.0, 32.0
+_PLAN_MM: Final = DOUBLE_MM - 22.0
+"""Width of the plan."""
+_FRAME_MM: Final = 38.0
+_DETAIL_MM: Final = 38.0
+_LEAST_REACH: Final = 2.0
+"""Half the height (mm) of the detail, at least."""
+_SPACING: Final = 0.02
+_MOST_MARKS: Final = 16
+_LABEL_POINTS: Final = 12.0
+"""How far to the left of the track a time stands."""
+
+
+def run_track(run: Run) -> Figure:
+    """Draw the whole run with equal scales, and below it the grooves over a short distance at half time."""
+    limits = _with_room(track_limits(run.skis.track.reshape(-1, 3)))
+    height = plan_height_mm(limits)
+    figure = new_figure(width_mm=DOUBLE_MM, height_mm=height + _DETAIL_MM + _FRAME_MM)
+    grid = figure.add_gridspec(2, 2, height_ratios=(height + 12.0, _DETAIL_MM))
+    draw_plan(figure.add_subplot(grid[0, :]), run, limits)
+    _groove_details(figure, [figure.add_subplot(grid[1, ski]) for ski in (0, 1)], run)
+    handles = [Line2D([], [], color=c, label=f"{s} ski") for c, s in zip(SKI_COLOURS, ("left", "right"), strict=True)]
+    handles.append(
+        Line2D([], [], linestyle="none", marker="o", markersize=3.0, color=BLACK, label="each second; square: end")
+    )
+    legend_below(figure, handles)
+    return figure
+
+
+def track_limits(points: FloatArray) -> tuple[float, float, float, float]:
+    """Least and greatest x, and y, of points (n, 2 or more) with a margin (m)."""
+    low, high = np.nanmin(points[:, :2], axis=0) - _MARGIN, np.nanmax(points[:, :2], axis=0) + _MARGIN
+    return float(low[0]), float(high[0]), float(low[1]), float(high[1])
+
+
+def plan_height_mm(limits: tuple[float, float, float, float]) -> float:
+    """Height that a plan as wide as the figure needs, within reason."""
+    x_low, x_high, y_low, y_high = limits
+    return float(np.clip((y_high - y_low) / (x_high - x_low) * _PLAN_MM, _SMALLEST_MM, _LARGEST_MM))
+
+
+def _with_room(limits: tuple[float, float, float, float]) -> tuple[float, float, float, float]:
+    """Limits as high as the lowest plan: what a long run is flatter is room for the words at its line."""
+    x_low, x_high, y_low, y_high = limits
+    lacking = max((x_high - x_low) * _SMALLEST_MM / _PLAN_MM - (y_high - y_low), 0.0)
+    return x_low, x_high, y_low - 0.4 * lacking, y_high + 0.6 * lacking
+
+
+def plan_axes(axes: Axes, limits: tuple[float, float, float, float], *, profile: bool = False) -> None:
+    """Equal scales, x to the right and y up, as seen from above, with an arrow down the fall line."""
+    axes.set_aspect("equal", adjustable="box")
+    axes.set_xlim(limits[0], limits[1])
+    axes.set_ylim(limits[2], limits[3])
+    axes.set_xlabel("horizontal distance $x$ (m)" if profile else "distance down the fall line $x$ (m)")
+    axes.set_ylabel("to the left $y$ (m)")
+    axes.yaxis.set_major_locator(MaxNLocator("auto", steps=[1, 2, 5, 10], min_n_ticks=2))
+    axes.annotate(
+        "", (0.21, 1.035), (0.08, 1.035), xycoords="axes fraction",  # right of the panel's letter
+        arrowprops={"arrowstyle": "-|>", "color": GREY, "linewidth": 0.9, "shrinkA": 0, "shrinkB": 0},
+    )  # fmt: skip
+    axes.annotate("fall line", (0.22, 1.035), xycoords="axes fraction", va="center", fontsize=7.0, color=GREY)
+
+
+def draw_plan(axes: Axes, run: Run, limits: tuple[float, float, float, float]) -> None:
+    """Tracks of both skis, a mark each second, start and end."""
+    for ski, colour in enumerate(SKI_COLOURS):
+        axes.plot(run.skis.track[:, ski, 0], run.skis.track[:, ski, 1], color=colour, linewidth=0.9)
+    _time_marks(axes, run)
+    plan_axes(axes, limits, profile=not isinstance(run.scenario.slope, Plane))
+    thin_out(axes, min(_PLAN_MM / (limits[1] - limits[0]), _LARGEST_MM / (limits[3] - limits[2])))
+
+
+def _time_marks(axes: Axes, run: Run) -> None:
+    every = max(1, math.ceil(run.simulated_s / _MOST_MARKS))
+    marks = np.arange(0.0, run.simulated_s + 1e-9, every)
+    x, y = (np.interp(marks, run.time, run.place[:, k]) for k in (0, 1))
+    axes.plot(x, y, linestyle="none", marker="o", markersize=2.6, color=BLACK, zorder=4)
+    aside = np.interp(marks, run.time, np.unwrap(run.heading))
+    for mark, at_x, at_y, angle in zip(marks, x, y, aside, strict=True):
+        aside_points, above_points = -_LABEL_POINTS * math.sin(angle), _LABEL_POINTS * math.cos(angle)
+        words, is_first = ("start", True) if mark == 0.0 else (f"{mark:g} s", False)
+        offset = (
+            max(aside_points, 0.0) if is_first else aside_points,
+            above_points,
+        )  # clear of the numbers at the axis
+        axes.annotate(
+            words, (float(at_x), float(at_y)), offset, textcoords="offset points",
+            ha="left" if is_first else "center", va="center", fontsize=6.5, gid=MARK,
+        )  # fmt: skip
+    axes.plot(*run.place[-1, :2], linestyle="none", marker="s", markersize=3.4, color=BLACK, zorder=4)
+    ended = f"{run.outcome.replace('_', ' ')} at {run.simulated_s:.2f} s"
+    axes.annotate(ended, (1.0, 1.035), xycoords="axes fraction", ha="right", va="center", fontsize=7.0)
+
+
+def _groove_details(figure: Figure, row: Sequence[Axes], run: Run) -> None:
+    """The grooves over a short distance at half time, stretched across, coloured by the depth that stays."""
+    centre = run.place[len(run.time) // 2]
+    near = np.linalg.norm(run.groove.middle - centre, axis=1) < CUTOUT + run.scenario.sledge.stance_width
+    top = max(float(run.groove.residual_depth[near].max(initial=0.0)) / MM, 1e-9)
+    for ski, axes in enumerate(row):
+        arc_length, aside = beside_track(
+            run.groove.middle[near], run.skis.track[:, ski], run.skis.track[len(run.time) // 2, ski]
+        )
+        chosen = (abs(arc_length) < CUTOUT / 2.0) & (abs(aside) < run.scenario.sledge.stance_width / 2.0)
+        width, depth = (values[near][chosen] for values in (run.groove.width, run.groove.residual_depth))
+        corners = groove_corners(arc_length[chosen], aside[chosen], width, run.numbers.get("line_spacing_m", _SPACING))
+        drawn = PolyCollection(list(corners), array=depth / MM, cmap="cividis_r", edgecolor="face", linewidth=0.2)
+        drawn.set_clim(0.0, top)
+        drawn.set_rasterized(True)
+        axes.add_collection(drawn)
+        axes.axhline(0.0, color=SKI_COLOURS[ski], linewidth=0.8)
+        reach = 1.15 * max(float(abs(corners[..., 1]).max(initial=0.0)), _LEAST_REACH)
+        axes.set_xlim(-CUTOUT / 2.0, CUTOUT / 2.0)
+        axes.set_xticks(np.linspace(-CUTOUT / 2.0, CUTOUT / 2.0, 5))
+        axes.set_ylim(-reach, reach)
+        axes.set_xlabel(f"distance from the place at {run.time[len(run.time) // 2]:.2f} s (m)")
+        axes.set_title(f"groove of the {('left', 'right')[ski]} ski, stretched across", loc="left", fontsize=7.5)
+    row[0].set_ylabel("to the left of\nthe track (mm)")
+    figure.colorbar(drawn, ax=list(row), label="depth that\nstays (mm)", pad=0.01, aspect=12)
+
+
+def beside_track(points: FloatArray, track: FloatArray, origin: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Where points (k, 3) lie along a track (n, 3) and to the left of it, seen from above (m), each (k,).
+
+    The arc length is counted from the track's point ``origin``; each point belongs to the nearest piece of the track.
+    """
+    start, along = track[:-1, :2], np.diff(track[:, :2], axis=0)
+    length = np.linalg.norm(along, axis=1)
+    ahead = along / np.where(length > 0.0, length, 1.0)[:, None]
+    ways = np.concatenate([[0.0], np.cumsum(length)])
+    zero = ways[int(np.argmin(np.linalg.norm(track - origin, axis=1)))]
+    apart = points[:, None, :2] - start
+    share = np.clip((apart * ahead).sum(axis=2), 0.0, length)
+    nearest = np.argmin(np.linalg.norm(apart - share[..., None] * ahead, axis=2), axis=1)
+    number = np.arange(len(points))
+    direction, offset = ahead[nearest], apart[number, nearest]
+    aside = direction[:, 0] * offset[:, 1] - direction[:, 1] * offset[:, 0]
+    return ways[nearest] + share[number, nearest] - zero, aside
+
+
+def groove_corners(arc_length: FloatArray, aside: FloatArray, width: FloatArray, spacing: float) -> FloatArray:
+    """Corners (k, 4, 2) of pieces: along the track (m) as long as the lines are apart, across it (mm) their width."""
+    half, wide = spacing / 2.0, width / 2.0
+    x = np.stack([arc_length - half, arc_length + half, arc_length + half, arc_length - half], axis=1)
+    y = np.stack([aside + wide, aside + wide, aside - wide, aside - wide], axis=1) / MM
+    return np.stack([x, y], axis=2)
+
+
+MARK: Final = "time mark"
+"""Group of the words, as the artist's gid."""
+_POINT_MM: Final = 25.4 / 72.0
+_LETTER: Final = 0.62
+"""Width of a letter over the size of its type (about)."""
+
+
+def thin_out(axes: Axes, mm_per_unit: float) -> None:
+    """Show of the words in this group, from the first on, those that lie over none shown; both axes have one scale."""
+    taken: list[tuple[float, float, float, float]] = []
+    for each in axes.texts:
+        if isinstance(each, Annotation) and each.get_gid() == MARK:
+            box = _box(each, mm_per_unit)
+            is_free = not any(_overlap(box, other) for other in taken)
+            each.set_visible(is_free)
+            taken += [box] if is_free else []
+
+
+def _box(word: Annotation, mm_per_unit: float) -> tuple[float, float, float, float]:
+    """Centre and half sizes (mm)."""
+    (x, y), (aside, above), size = word.xy, word.get_position(), float(word.get_fontsize()) * _POINT_MM
+    half_width = 0.5 * _LETTER * size * (len(word.get_text()) + 1)  # and a space
+    more = half_width if word.get_horizontalalignment() == "left" else 0.0
+    centre = x * mm_per_unit + aside * _POINT_MM + more, y * mm_per_unit + above * _POINT_MM
+    return (*centre, half_width, 0.6 * size)
+
+
+def _overlap(one: tuple[float, float, float, float], other: tuple[float, float, float, float]) -> bool:
+    return all(abs(one[k] - other[k]) < one[2 + k] + other[2 + k] for k in (0, 1))

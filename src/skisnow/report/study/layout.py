@@ -1,0 +1,223 @@
+"""Layout of a map of a study: which input is the axis, the lines and the panels."""
+
+from __future__ import annotations
+
+import itertools
+import math
+import textwrap
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+import numpy.typing as npt
+
+from ..._support.errors import ParameterError
+from ...carving.keys import CARVE_KEYS
+from ...studies import StudyTable
+from ..symbols import figure_text
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+Json = dict[str, Any]
+FloatArray = npt.NDArray[np.float64]
+
+MOST_PANELS: Final = 12
+MOST_LINES: Final = 7
+MOST_COLUMNS: Final = 5
+_LOG_FROM: Final = 20.0
+_CROWDED: Final = 4  # columns, from which neighbours' axis labels would touch
+_CAPTION_LETTERS: Final = 125
+"""Of a line of the caption, with the signs that set its symbols."""
+_LETTERS: Final = 105
+"""Of a title, over the whole width of a figure."""
+
+
+@dataclass(frozen=True, slots=True)
+class MapLayout:
+    """Names of inputs by their place in a map.
+
+    Attributes
+    ----------
+    x
+        Along the axis.
+    second
+        The lines of the radius map, the ordinate of the grip map; None where nothing else varies.
+    panels
+        What is left.
+    sampled
+        Whether the points are a sample and no grid: then what is left has no panels but for names and switches.
+    """
+
+    x: str
+    second: str | None
+    panels: tuple[str, ...]
+    sampled: bool
+
+
+def map_layout(table: StudyTable, *, second_is_number: bool) -> MapLayout:
+    """Choose: the edge angle along the axis and the load beside it where they vary, else the next number that does.
+
+    Raises
+    ------
+    ParameterError
+        No number varies, or there would be too many panels.
+    """
+    varied = [name for name in table.varied if len(_distinct(table, name)) > 1]
+    numbers = [name for name in varied if all(_is_number(row[name]) for row in table.rows)]
+    if not numbers:
+        raise ParameterError("the map needs a number that varies, such as edge_angle_deg; only names and switches vary")
+    x = "edge_angle_deg" if "edge_angle_deg" in numbers else numbers[0]
+    others = [name for name in numbers if name != x]
+    names = [name for name in varied if name not in numbers]
+    second = "load_N" if "load_N" in others else next(iter(others), None)
+    if second is None and not second_is_number:
+        second = next(iter(names), None)
+    sampled = math.prod(len(_distinct(table, name)) for name in varied) != len(table.rows)
+    left = [name for name in varied if name not in (x, second) and (name in names or not sampled)]
+    count = math.prod(len(_distinct(table, name)) for name in left)
+    if count > MOST_PANELS:
+        counts = ", ".join(f"{name} with {len(_distinct(table, name))} values" for name in left)
+        raise ParameterError(
+            f"the map would have {count} panels ({counts}); at most {MOST_PANELS} are readable. The table is written; "
+            "make a study of fewer of them for the map"
+        )
+    return MapLayout(x, second, tuple(left), sampled)
+
+
+def drawn_table(table: StudyTable) -> StudyTable:
+    """The points that could be asked, each ski under its own name where names tell the skis apart.
+
+    Raises
+    ------
+    ParameterError
+        Not one point could be asked.
+    """
+    rows = table.answers()
+    if not rows:
+        raise ParameterError("the map has nothing to draw: not one point of this table could be asked")
+    pairs = {(row.get("ski"), row.get("ski_name")) for row in rows}
+    names = {name for _, name in pairs}
+    if None not in names and len(names) == len(pairs):
+        rows = [row | {"ski": row["ski_name"]} for row in rows]
+    return StudyTable(table.columns, rows, table.varied)
+
+
+def what_is_fixed(table: StudyTable) -> str:
+    """The inputs that are the same in all rows, without those at their defaults: a map's caption."""
+    words = []
+    for name, key in CARVE_KEYS.items():
+        values = {row.get(name) for row in table.rows}
+        value = next(iter(values))
+        if name not in table.varied and len(values) == 1 and value not in (None, key.default):
+            words.append(short(name, value))
+    return "\n".join(textwrap.wrap(", ".join(words), _CAPTION_LETTERS, break_on_hyphens=False))
+
+
+def caption(figure: Figure, text: str) -> None:
+    """Write it over the panels, at the left."""
+    if text:
+        figure.suptitle(text, x=0.01, ha="left", fontsize=8.0)
+
+
+def panels_of(table: StudyTable, layout: MapLayout) -> list[tuple[str, list[Json]]]:
+    """Title and rows of each panel."""
+    combinations = itertools.product(*(_distinct(table, name) for name in layout.panels))
+    found = []
+    for values in combinations:
+        rows = [row for row in table.rows if all(row[n] == v for n, v in zip(layout.panels, values, strict=True))]
+        if rows:
+            title = ", ".join(short(name, value) for name, value in zip(layout.panels, values, strict=True))
+            found.append((title, rows))
+    return found
+
+
+def panel_columns(table: StudyTable, layout: MapLayout, count: int) -> int:
+    """Columns of panels: one for each value of the last input where they fit, else as even as possible."""
+    last = len(_distinct(table, layout.panels[-1])) if layout.panels else 1
+    if len(layout.panels) > 1 and last <= MOST_COLUMNS and count % last == 0:
+        return last
+    rows = -(-count // MOST_COLUMNS)
+    return -(-count // rows)
+
+
+def wants_logarithm(name: str, values: FloatArray) -> bool:
+    """Whether an input's axis is logarithmic: its values are positive and span more than a factor of twenty.
+
+    An angle is never drawn so.
+    """
+    return name != "edge_angle_deg" and bool(values.min() > 0 and values.max() > _LOG_FROM * values.min())
+
+
+def lines_of(rows: Sequence[Json], name: str | None) -> Iterator[tuple[Any, list[Json]]]:
+    """The rows of each value of an input, values rising."""
+    if name is None:
+        yield None, list(rows)
+        return
+    for value in sorted({row[name] for row in rows}):
+        yield value, [row for row in rows if row[name] == value]
+
+
+def short(name: str, value: Any) -> str:
+    """One value of an input for a title or a legend.
+
+    >>> short("load_N", 800.0), short("ski", "slalom"), short("twist", False)
+    ('800 N', 'slalom', 'twist false')
+    """
+    before, behind = _around(name)
+    if isinstance(value, bool):
+        text = "true" if value else "false"
+    else:
+        text = figure_text(value) if isinstance(value, str) else f"{value:.4g}".replace("-", "−")
+    return f"{before}{text}{behind}"
+
+
+def label(name: str) -> str:
+    """The axis label of an input."""
+    return CARVE_KEYS[name].axis_label if name in CARVE_KEYS else name
+
+
+def _around(name: str) -> tuple[str, str]:
+    """What stands before and behind a value in few letters."""
+    key = CARVE_KEYS.get(name)
+    if key is None or not (key.label or key.symbol or (key.kind == "text" and not key.choices)):
+        return f"{name.replace('_', ' ')} ", ""
+    unit = key.unit if key.unit == "°" else f" {key.unit}".rstrip()
+    if key.symbol:
+        return f"{key.symbol} = ", unit
+    return ("clamp ", unit) if name == "clamp_length_m" else ("", unit or f" {key.label}".rstrip())
+
+
+def axes_of_panels(figure: Figure, titles: Sequence[str], columns: int) -> list[Axes]:
+    """One pair of axes for each title, sharing both scales; unused places stay empty."""
+    rows = -(-len(titles) // columns)
+    grid = figure.subplots(rows, columns, squeeze=False, sharex=True, sharey=True)
+    every: list[Axes] = list(grid.flat)
+    for spare in every[len(titles) :]:
+        spare.set_visible(False)
+    long = max(len(title) for title in titles) > _LETTERS // columns
+    for place, (axes, title) in enumerate(zip(every, titles, strict=False)):
+        axes.set_title(title.replace(", ", "\n") if long else title, loc="left", fontsize=7.5)
+        axes.tick_params(labelbottom=place + columns >= len(titles), labelleft=place % columns == 0)
+    return every[: len(titles)]
+
+
+def label_outside(panels: Sequence[Axes], columns: int, x: str, y: str) -> None:
+    """Axis labels at the left and the lower rim of the panels; of many columns only the middle one is labelled."""
+    for place, axes in enumerate(panels):
+        lowest = place + columns >= len(panels)
+        if lowest and (columns < _CROWDED or place % columns == columns // 2 or len(panels) % columns):
+            axes.set_xlabel(x)
+        if place % columns == 0:
+            axes.set_ylabel(y)
+
+
+def _distinct(table: StudyTable, name: str) -> list[Any]:
+    return list(dict.fromkeys(row[name] for row in table.rows))
+
+
+def _is_number(value: Any) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool)

@@ -1,0 +1,318 @@
+"""Maps of a study: grip limit over edge angle and load, and turn radius over edge angle."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+import numpy.typing as npt
+from matplotlib.cm import ScalarMappable
+from matplotlib.colors import BoundaryNorm, ListedColormap, Normalize
+from matplotlib.lines import Line2D
+
+from ..._support.units import DEGREE
+from ..figures.style import (
+    BLACK,
+    BLUE,
+    COLOURS,
+    DOUBLE_MM,
+    GREY,
+    MARKERS,
+    VERMILLION,
+    legend_below,
+    logarithmic,
+    new_figure,
+    plain_number,
+)
+from .layout import (
+    MOST_LINES,
+    axes_of_panels,
+    caption,
+    drawn_table,
+    label,
+    label_outside,
+    lines_of,
+    map_layout,
+    panel_columns,
+    panels_of,
+    short,
+    wants_logarithm,
+    what_is_fixed,
+)
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from ...studies import StudyTable
+    from .layout import MapLayout
+
+
+Json = dict[str, Any]
+FloatArray = npt.NDArray[np.float64]
+
+LEVELS: Final = (0.125, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0)
+"""Shares of the side force in its limit at which the colour changes; at 1 the edge lets go."""
+_COLOURS: Final = ("#2166AC", "#5E9BC9", "#A6CDE3", "#DDEBF3", "#FBE3D0", "#F4B183", "#DD7F4B", "#B8431C")
+_LEAST: Final = 1e-3  # a flat ski draws no side force; its logarithm must exist
+
+
+def grip_map(table: StudyTable) -> Figure:
+    """Draw the side force over the shear capacity, and the line at which the edge lets go.
+
+    Raises
+    ------
+    ParameterError
+        The table has nothing to put along the axis, or too many panels.
+    """
+    layout = map_layout(table, second_is_number=True)
+    table = drawn_table(table)
+    panels = panels_of(table, layout)
+    columns = panel_columns(table, layout, len(panels))
+    rows = -(-len(panels) // columns)
+    figure = new_figure(width_mm=DOUBLE_MM, height_mm=18.0 + (70.0 if rows == 1 else 50.0 * rows))
+    every = axes_of_panels(figure, [title for title, _ in panels], columns)
+    for axes, (_, of_panel) in zip(every, panels, strict=True):
+        if layout.second is None:
+            _share_lines(axes, of_panel, layout)
+        else:
+            if not layout.sampled:
+                _field(axes, of_panel, layout)
+            _points(axes, of_panel, layout)
+    ordinate = "side force / limit" if layout.second is None else label(layout.second)
+    _scales(every[0], table.rows, layout)
+    if layout.second is not None:
+        for axes in every:  # room for the symbols at the rim
+            axes.use_sticky_edges = False
+            axes.margins(0.03)
+    label_outside(every, columns, label(layout.x), ordinate)
+    if layout.second is not None and not layout.sampled:
+        _colour_bar(figure, every)
+    caption(figure, what_is_fixed(table))
+    legend_below(figure, _grip_handles(layout, table.rows))
+    return figure
+
+
+def share_of_limit(row: Json) -> float:
+    """Side force over its limit; NaN where there is no equilibrium."""
+    force, limit = row["side_force_N"], row["side_force_limit_N"]
+    if force is None or limit is None:
+        return float("nan")
+    if force == 0.0:
+        return 0.0
+    return float(force / limit) if limit > 0.0 else float("inf")
+
+
+def _field(axes: Axes, rows: Sequence[Json], layout: MapLayout) -> None:
+    x, y, share = _grid(rows, layout)
+    logarithm = np.log(np.clip(share, _LEAST, 1.0 / _LEAST))
+    bounds = np.log([_LEAST / 10.0, *LEVELS, 10.0 / _LEAST])
+    axes.contourf(x, y, logarithm, levels=bounds, colors=_COLOURS, zorder=0)
+    if np.nanmin(logarithm) < 0.0 < np.nanmax(logarithm):
+        axes.contour(x, y, logarithm, levels=[0.0], colors=[BLACK], linewidths=1.8, zorder=2)
+
+
+def _grid(rows: Sequence[Json], layout: MapLayout) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Shares (y, x), averaged over nothing: a grid has one row for each place."""
+    second = str(layout.second)
+    x, y = (np.array(sorted({float(row[name]) for row in rows})) for name in (layout.x, second))
+    share = np.full((len(y), len(x)), np.nan)
+    for row in rows:
+        share[np.searchsorted(y, row[second]), np.searchsorted(x, row[layout.x])] = share_of_limit(row)
+    return x, y, share
+
+
+def _points(axes: Axes, rows: Sequence[Json], layout: MapLayout) -> None:
+    for holds, line_style in _styles(layout.sampled).items():
+        chosen = [row for row in rows if row["holds"] is holds]
+        axes.plot(
+            [row[layout.x] for row in chosen], [row[str(layout.second)] for row in chosen], linestyle="none", zorder=3,
+            **line_style,
+        )  # fmt: skip
+
+
+def _styles(sampled: bool) -> dict[bool | None, dict[str, Any]]:
+    size = 3.6 if sampled else 2.4
+    return {
+        True: {"marker": "o", "color": BLUE, "markersize": size},
+        False: {"marker": "^", "color": VERMILLION, "markerfacecolor": "white", "markersize": size + 0.6},
+        None: {"marker": "x", "color": GREY, "markersize": size},
+    }
+
+
+def _share_lines(axes: Axes, rows: Sequence[Json], layout: MapLayout) -> None:
+    ordered = sorted(rows, key=lambda row: float(row[layout.x]))
+    axes.plot([row[layout.x] for row in ordered], [share_of_limit(row) for row in ordered], color=GREY, zorder=1)
+    for holds, line_style in _styles(True).items():
+        chosen = [row for row in ordered if row["holds"] is holds]
+        axes.plot(
+            [row[layout.x] for row in chosen], [share_of_limit(row) for row in chosen], linestyle="none", **line_style
+        )
+    axes.axhline(1.0, color=BLACK, linewidth=1.8, zorder=2)
+
+
+def _scales(axes: Axes, rows: Sequence[Json], layout: MapLayout) -> None:
+    for which, name in (("x", layout.x), ("y", layout.second)):
+        if name is None:
+            shares = np.array([share_of_limit(row) for row in rows])
+            known = shares[np.isfinite(shares)]
+            axes.set_ylim(0.0, 1.08 * max(1.0, float(known.max(initial=1.0))))
+            continue
+        values = np.array([float(row[name]) for row in rows])
+        if wants_logarithm(name, values):
+            logarithmic(axes, which, values)
+
+
+def _colour_bar(figure: Figure, panels: Sequence[Axes]) -> None:
+    bounds = [LEVELS[0] / 2.0, *LEVELS, LEVELS[-1] * 2.0]
+    scale = ScalarMappable(BoundaryNorm(bounds, len(_COLOURS)), ListedColormap(_COLOURS))
+    bar = figure.colorbar(scale, ax=list(panels), pad=0.01, aspect=35, spacing="uniform")
+    bar.set_ticks(list(LEVELS), labels=[plain_number(level) for level in LEVELS])
+    bar.set_label("side force / shear capacity")
+    bar.ax.axhline(1.0, color=BLACK, linewidth=1.8)
+
+
+def _grip_handles(layout: MapLayout, rows: Sequence[Json]) -> list[Line2D]:
+    texts = {True: "holds", False: "slips", None: "no equilibrium"}
+    handles = [
+        Line2D([], [], linestyle="none", label=texts[holds], **line_style)
+        for holds, line_style in _styles(layout.sampled).items()
+        if any(row["holds"] is holds for row in rows)
+    ]
+    if not layout.sampled:
+        handles.append(Line2D([], [], color=BLACK, linewidth=1.8, label="the edge loses grip"))
+    return handles
+
+
+RADIUS: Final = "turn_radius_boot_m"
+
+
+def radius_map(table: StudyTable) -> Figure:
+    """Draw the radius of the circle at the boot; filled symbols: the edge holds, open: it slips.
+
+    Raises
+    ------
+    ParameterError
+        The table has nothing to put along the axis, or too many panels.
+    """
+    layout = map_layout(table, second_is_number=False)
+    table = drawn_table(table)
+    panels = panels_of(table, layout)
+    columns = panel_columns(table, layout, len(panels))
+    colours = _Colours.of(layout, table.rows)
+    rows = -(-len(panels) // columns)
+    figure = new_figure(width_mm=DOUBLE_MM, height_mm=18.0 + (75.0 if rows == 1 else 52.0 * rows))
+    values = [value for value, _ in lines_of(table.rows, layout.second)]
+    every = axes_of_panels(figure, [title for title, _ in panels], columns)
+    for axes, (_, of_panel) in zip(every, panels, strict=True):
+        if layout.x == "edge_angle_deg":
+            _sidecut(axes, of_panel)
+        if _lined(layout, values):
+            _lines(axes, of_panel, layout, values)
+        else:
+            _cloud(axes, of_panel, layout, colours)
+    _limits(every[0], table.rows, layout)
+    label_outside(every, columns, label(layout.x), "turn radius (m):\ncircle through boot and ±0.4 m")
+    caption(figure, what_is_fixed(table))
+    if colours is not None and not _lined(layout, values):
+        colours.bar(figure)
+    legend_below(figure, _radius_handles(layout, values, table.rows))
+    return figure
+
+
+def _lined(layout: MapLayout, values: list[Any]) -> bool:
+    return not layout.sampled and len(values) <= MOST_LINES
+
+
+def _lines(axes: Axes, rows: Sequence[Json], layout: MapLayout, values: list[Any]) -> None:
+    for value, of_line in lines_of(rows, layout.second):
+        place = values.index(value)
+        ordered = sorted(of_line, key=lambda row: float(row[layout.x]))
+        x, y = _numbers(ordered, layout.x), _numbers(ordered, RADIUS)
+        line_style: dict[str, Any] = {"color": COLOURS[place % len(COLOURS)], "marker": MARKERS[place % len(MARKERS)]}
+        axes.plot(x, y, color=line_style["color"], linewidth=0.8, zorder=2)
+        for holds in (True, False):
+            chosen = np.array([row["holds"] is holds for row in ordered], dtype=bool)
+            face = line_style["color"] if holds else "white"
+            axes.plot(x[chosen], y[chosen], linestyle="none", markerfacecolor=face, zorder=3, **line_style)
+
+
+@dataclass(frozen=True, slots=True)
+class _Colours:
+    """The second input as a colour, where the points are a sample or it has too many values for lines."""
+
+    name: str
+    ends: tuple[float, float]
+
+    @classmethod
+    def of(cls, layout: MapLayout, rows: Sequence[Json]) -> _Colours | None:
+        """None where no number varies beside the one along the axis."""
+        values = [] if layout.second is None else [row[layout.second] for row in rows]
+        if layout.second is None or isinstance(values[0], str | bool):
+            return None
+        return cls(layout.second, (min(values), max(values)))
+
+    def bar(self, figure: Figure) -> None:
+        """The scale of the colours."""
+        scale = ScalarMappable(Normalize(*self.ends), "cividis")
+        figure.colorbar(scale, ax=figure.axes, label=label(self.name), pad=0.01, aspect=40)
+
+
+def _cloud(axes: Axes, rows: Sequence[Json], layout: MapLayout, colours: _Colours | None) -> None:
+    for holds, marker in ((True, "o"), (False, "X")):
+        chosen = [row for row in rows if row["holds"] is holds]
+        x, y = _numbers(chosen, layout.x), _numbers(chosen, RADIUS)
+        if colours is None:
+            axes.scatter(x, y, color=BLUE, marker=marker, s=12, linewidths=0)
+        else:
+            low, high = colours.ends
+            shade = _numbers(chosen, colours.name)
+            axes.scatter(x, y, c=shade, vmin=low, vmax=high, cmap="cividis", marker=marker, s=12, linewidths=0)
+
+
+def _sidecut(axes: Axes, rows: Sequence[Json]) -> None:
+    """R_sc cos ϑ, the radius of a ski that is bent onto a hard plane without twist."""
+    radii = {row["sidecut_radius_of_three_widths_m"] for row in rows} - {None}
+    ends = [float(row["edge_angle_deg"]) for row in rows]
+    angle = np.linspace(min(ends), max(ends), 91)
+    for radius in radii:
+        axes.plot(angle, radius * np.cos(angle * DEGREE), color=GREY, linestyle=(0, (1, 1.2)), linewidth=0.9, zorder=1)
+
+
+def _limits(axes: Axes, rows: Sequence[Json], layout: MapLayout) -> None:
+    x = _numbers(rows, layout.x)
+    if wants_logarithm(layout.x, x):
+        logarithmic(axes, "x", x)
+    radii = _numbers(rows, RADIUS)
+    if np.isfinite(radii).any():
+        axes.set_ylim(0.0, 1.08 * float(np.nanmax(radii)))
+
+
+def _radius_handles(layout: MapLayout, values: list[Any], rows: Sequence[Json]) -> list[Line2D]:
+    handles = []
+    lined = _lined(layout, values)
+    if lined and layout.second is not None:
+        handles = [
+            Line2D(
+                [], [], color=COLOURS[place % len(COLOURS)], marker=MARKERS[place % len(MARKERS)], linewidth=0.8,
+                label=short(layout.second, value),
+            )
+            for place, value in enumerate(values)
+        ]  # fmt: skip
+    holds, slips = (("o", GREY), ("o", "white")) if lined else (("o", GREY), ("X", GREY))
+    texts = ((holds, True, "holds"), (slips, False, "slips: radius of an edge held by something else"))
+    for (marker, face), value, text in texts:
+        if not any(row["holds"] is value and row[RADIUS] is not None for row in rows):
+            continue
+        handles.append(Line2D([], [], linestyle="none", marker=marker, color=GREY, markerfacecolor=face, label=text))
+    if layout.x == "edge_angle_deg":
+        text = "sidecut radius × cos ϑ"
+        handles.append(Line2D([], [], color=GREY, linestyle=(0, (1, 1.2)), linewidth=0.9, label=text))
+    return handles
+
+
+def _numbers(rows: Sequence[Json], name: str) -> np.ndarray[Any, np.dtype[np.float64]]:
+    return np.array([np.nan if row[name] is None else float(row[name]) for row in rows])

@@ -1,0 +1,160 @@
+"""A table as LaTeX that fits a page: numbers and units by siunitx, notes below; `PACKAGES` says what it needs."""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING, Any, Final
+
+from .. import formatting
+from ..symbols import latex, latex_escaped
+from .table import ROWS_IN_LATEX
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from .table import Column, Kind, Table
+
+PACKAGES: Final = (
+    "array", "booktabs", "longtable", "siunitx", "makecell", "adjustbox", "rotating", "pdflscape", "textcomp",
+    "amssymb",
+)  # fmt: skip
+"""A paper that reads such tables in loads them."""
+ROWS_ON_A_PAGE: Final = 45
+_COLUMNS_UPRIGHT: Final = 6
+"""A long table with more columns lies across its pages."""
+_LETTERS_UPRIGHT: Final = 115
+"""A table of more letters in a line is turned by a quarter (the text of A4 has some 85 in a line)."""
+_LONGEST_TEXT: Final = 30
+_TEXT_WIDTH: Final = "45mm"
+"""Of a column with longer texts, which are broken."""
+_ALIGNED: Final = ("number", "count", "angle", "hundredths")
+"""Kinds of single numbers, which siunitx aligns by their points."""
+_COMMAND: Final = re.compile(r"\\[A-Za-z]+|[{}$]")
+_PLAIN: Final = re.compile(r"(-?)(\d+)(?:\.(\d+))?")
+_UNITS: Final = str.maketrans({"²": "^2", "³": "^3", "·": ".", " ": ".", "°": r"\degree", "%": r"\percent"})
+
+
+def table_latex(table: Table) -> str:
+    """The table with caption and label, to be read in by a paper."""
+    shown = table.rows[:ROWS_IN_LATEX]
+    cells = [_column(column, [row[i] for row in shown]) for i, column in enumerate(table.columns)]
+    alignment = "".join(_alignment(column, of) for column, of in zip(table.columns, cells, strict=True))
+    head = " & ".join(_header(column) for column in table.columns) + r" \\"
+    body = [" & ".join(row) + r" \\" for row in zip(*cells, strict=True)]
+    caption = rf"\caption{{{latex(table.full_caption)}}}\label{{tab:{table.file_stem}}}"
+    if len(shown) > ROWS_ON_A_PAGE:
+        lines = _long(alignment, caption, head, body, _notes(table))
+        if len(table.columns) > _COLUMNS_UPRIGHT:
+            lines = [r"\begin{landscape}", *lines, r"\end{landscape}"]
+    else:
+        is_wide = sum(map(_width, cells)) > _LETTERS_UPRIGHT
+        lines = _on_one_page(alignment, caption, head, body, _notes(table), is_wide=is_wide)
+    return f"% needs \\usepackage{{{','.join(PACKAGES)}}}\n" + "\n".join(lines) + "\n"
+
+
+def _on_one_page(
+    alignment: str, caption: str, head: str, body: Sequence[str], notes: str, *, is_wide: bool
+) -> list[str]:
+    """Shrunk where it would be wider than the text; a wide one lies across the page."""
+    form = "sidewaystable" if is_wide else "table"
+    below = [rf"\par\smallskip\begin{{minipage}}{{\linewidth}}\footnotesize {notes}\end{{minipage}}"] if notes else []
+    return [
+        rf"\begin{{{form}}}", r"\centering", caption, r"\begin{adjustbox}{max width=\linewidth}",
+        rf"\begin{{tabular}}{{{alignment}}}", r"\toprule", head, r"\midrule", *body, r"\bottomrule",
+        r"\end{tabular}", r"\end{adjustbox}", *below, rf"\end{{{form}}}",
+    ]  # fmt: skip
+
+
+def _long(alignment: str, caption: str, head: str, body: Sequence[str], notes: str) -> list[str]:
+    """Over several pages in small type, the head on each."""
+    below = [rf"\noindent{{\footnotesize {notes}\par}}"] if notes else []
+    return [
+        r"\begingroup\scriptsize\setlength{\tabcolsep}{3pt}", rf"\begin{{longtable}}{{{alignment}}}", caption + r" \\",
+        r"\toprule", head, r"\midrule", r"\endfirsthead", r"\toprule", head, r"\midrule", r"\endhead", r"\bottomrule",
+        r"\endfoot", *body, r"\end{longtable}", r"\endgroup", *below,
+    ]  # fmt: skip
+
+
+def _notes(table: Table) -> str:
+    sentences = [latex(table.note)] if table.note else []
+    if len(table.rows) > ROWS_IN_LATEX:
+        sentences.append(f"The first {ROWS_IN_LATEX} of {len(table.rows)} rows; the CSV file holds them all.")
+    return " ".join(sentences)
+
+
+def _header(column: Column) -> str:
+    """Name over unit."""
+    if not column.unit:
+        return f"{{{latex(column.header)}}}"
+    return rf"{{\makecell{{{latex(column.header)} \\ (\unit{{{column.unit.translate(_UNITS)}}})}}}}"
+
+
+def _column(column: Column, values: Sequence[Any]) -> list[str]:
+    """Cells of a column; bare numbers where they are aligned by their points."""
+    plain = _plain_numbers(column, values)
+    if plain is None:
+        return [_cell(column, value) for value in values]
+    return [f"{{{formatting.ABSENT['latex']}}}" if text is None else text for text in plain]
+
+
+def _plain_numbers(column: Column, values: Sequence[Any]) -> list[str | None] | None:
+    """Numbers without a power of ten as siunitx's S columns want them; None where one is something else."""
+    if column.kind not in _ALIGNED or all(value is None for value in values):
+        return None
+    texts = [None if value is None else _bare(column, value) for value in values]
+    return texts if all(text is None or _PLAIN.fullmatch(text) for text in texts) else None
+
+
+def _bare(column: Column, value: float) -> str:
+    if column.kind == "number":
+        return formatting.significant(value, column.digits, style="plain")
+    return _SET[column.kind](value, column.digits)
+
+
+def _alignment(column: Column, cells: Sequence[str]) -> str:
+    if not column.numeric:
+        is_broken = max(map(_letters, cells), default=0) > _LONGEST_TEXT and any(" " in cell for cell in cells)
+        return rf">{{\raggedright\arraybackslash}}p{{{_TEXT_WIDTH}}}" if is_broken else "l"
+    found = [match for cell in cells if (match := _PLAIN.fullmatch(cell))]
+    if not found or column.kind not in _ALIGNED:
+        return "r"
+    sign = "-" if any(match[1] for match in found) else ""
+    whole, places = (max(len(match[group] or "") for match in found) for group in (2, 3))
+    return f"S[table-format={sign}{whole}{f'.{places}' if places else ''}]"
+
+
+def _width(cells: Sequence[str]) -> int:
+    """Letters that a column takes, with the gap beside it."""
+    longest = max(map(_letters, cells), default=0)
+    return 2 + (min(longest, _LONGEST_TEXT) if any(" " in cell and "num" not in cell for cell in cells) else longest)
+
+
+def _letters(cell: str) -> int:
+    return len(_COMMAND.sub("", cell))
+
+
+def _cell(column: Column, value: Any) -> str:
+    return formatting.ABSENT["latex"] if value is None else _SET[column.kind](value, column.digits)
+
+
+def _estimate(value: tuple[float | None, Any], digits: int) -> str:
+    number, pair = value
+    ends = "" if pair is None else f" {formatting.interval(pair, digits, style='latex')}"
+    return formatting.significant(number, digits, style="latex") + ends
+
+
+_SET: Final[dict[Kind, Callable[[Any, int], str]]] = {
+    "text": lambda value, _: latex_escaped(str(value)),
+    "words": lambda value, _: latex(value),
+    "codes": lambda value, _: latex_escaped(", ".join(value)),
+    "yes": lambda value, _: "yes" if value else "no",
+    "tick": lambda value, _: r"$\checkmark$" if value else "",
+    "count": lambda value, _: str(value),
+    "angle": lambda value, _: f"{value:.6g}",
+    "hundredths": lambda value, _: f"{value:.2f}",
+    "number": lambda value, digits: formatting.significant(value, digits, style="latex"),
+    "p": lambda value, _: formatting.probability(value, style="latex"),
+    "interval": lambda value, digits: f"{{{formatting.interval(value, digits, style='latex')}}}",
+    "range": lambda value, digits: formatting.from_to(value, digits, style="latex"),
+    "estimate": _estimate,
+}

@@ -1,0 +1,1 @@
+"""Reports of measured tracks and of their comparison with runs."""

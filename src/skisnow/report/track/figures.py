@@ -1,0 +1,270 @@
+"""Figures of a measured track: map, and speed, height and turn radius over the distance."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+import numpy.typing as npt
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+from matplotlib.ticker import MaxNLocator
+
+from ...track.curvature import INTERVAL_FACTOR
+from ..figures.style import BLACK, BLUE, DOUBLE_MM, GREY, PALE, SKY, VERMILLION, legend_below, new_figure
+from ..formatting import counted
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from ...track.summary import TrackSummary
+
+
+FloatArray = npt.NDArray[np.float64]
+
+_LABELS: Final = {
+    "file": ("$x$ (m)", "$y$ (m)"),
+    "east_north_up": ("east (m)", "north (m)"),
+    "slope": ("distance down the fall line $x$ (m)", "to the left $y$ (m)"),
+}
+_MARGIN: Final = 0.04
+_LARGEST_MM, _SMALLEST_MM = 150.0, 16.0
+_FRAME_MM: Final = 26.0
+MOST_TURNS: Final = 40
+"""Turns that are told apart; more would be a pattern of dots."""
+MOST_DRAWN: Final = 10_000
+"""Points of a line that a page can show."""
+
+
+def track_map(summary: TrackSummary) -> Figure:
+    """Draw the places as recorded with equal scales; points that are marked as wrong are left out."""
+    limits = map_limits(summary.track.place[summary.track.usable])
+    height = float(np.clip((limits[3] - limits[2]) / (limits[1] - limits[0]) * 150.0, _SMALLEST_MM, _LARGEST_MM))
+    figure = new_figure(width_mm=DOUBLE_MM, height_mm=height + _FRAME_MM)
+    axes = figure.add_subplot()
+    _line(axes, summary, 0, len(summary.track) - 1, color=PALE, linewidth=0.7, zorder=1)
+    for lift in summary.day.lifts:
+        _line(axes, summary, lift.first, lift.last, color=GREY, linewidth=0.7, linestyle=(0, (4, 2)), zorder=2)
+    if turns_are_distinct(summary):
+        _turns(axes, summary)
+    else:
+        for run in summary.day.runs:
+            _line(axes, summary, run.first, run.last, color=BLUE, linewidth=0.9, zorder=3)
+    _ends(axes, summary)
+    _frame(axes, limits, summary.track.axes)
+    legend_below(figure, _handles(summary))
+    return figure
+
+
+def turns_are_distinct(summary: TrackSummary) -> bool:
+    """Whether single turns are drawn."""
+    return len(summary.day.runs) == 1 and 0 < len(summary.turns) <= MOST_TURNS
+
+
+def map_limits(place: FloatArray) -> tuple[float, float, float, float]:
+    """Least and greatest first and second coordinate of places (n, 2 or more) with a margin (m)."""
+    low, high = np.nanmin(place[:, :2], axis=0), np.nanmax(place[:, :2], axis=0)
+    margin = max(_MARGIN * float((high - low).max()), 0.5)
+    return float(low[0] - margin), float(high[0] + margin), float(low[1] - margin), float(high[1] + margin)
+
+
+def drawn_points(first: int, last: int) -> npt.NDArray[np.int64]:
+    """Numbers of the points that a line needs, both ends among them."""
+    return np.unique(np.linspace(first, last, min(last - first + 1, MOST_DRAWN)).round().astype(np.int64))
+
+
+def _line(axes: Axes, summary: TrackSummary, first: int, last: int, **line_style: object) -> None:
+    """A line through the usable points; gaps stay open."""
+    numbers = drawn_points(first, last)
+    numbers = numbers[summary.track.usable[numbers]]
+    place = summary.track.place[numbers, :2]
+    after_gap = np.flatnonzero(np.diff(summary.motion.smoothed.part[numbers])) + 1
+    x, y = (np.insert(place[:, axis], after_gap, np.nan) for axis in (0, 1))
+    axes.plot(x, y, **line_style)  # type: ignore[arg-type]
+
+
+def _turns(axes: Axes, summary: TrackSummary) -> None:
+    usable = summary.track.usable
+    time, place = summary.motion.time[usable], summary.track.place[usable]
+    for turn in summary.turns:
+        first, last = int(np.searchsorted(time, turn.start, side="right")), int(np.searchsorted(time, turn.end))
+        inside = drawn_points(first, max(last - 1, first))
+        colour = BLUE if turn.direction == "left" else VERMILLION
+        x, y = (np.interp([turn.start, *time[inside], turn.end], time, place[:, axis]) for axis in (0, 1))
+        axes.plot(x, y, color=colour, linewidth=1.3, zorder=4)
+    x, y = (np.interp(switch_times(summary), time, place[:, axis]) for axis in (0, 1))
+    axes.plot(x, y, linestyle="none", marker="o", markersize=3.0, color=BLACK, zorder=5)
+
+
+def switch_times(summary: TrackSummary) -> FloatArray:
+    """Times (s) at which one turn ends and the next begins."""
+    ends = np.array([turn.end for turn in summary.turns[:-1]])
+    return ends[ends == np.array([turn.start for turn in summary.turns[1:]])]
+
+
+def _ends(axes: Axes, summary: TrackSummary) -> None:
+    chosen = np.flatnonzero(summary.track.usable)
+    for number, word in ((chosen[0], "start"), (chosen[-1], "end")):
+        x, y = summary.track.place[number, :2]
+        axes.plot(x, y, marker="s", markersize=3.2, linestyle="none", color=BLACK, zorder=6)
+        axes.annotate(word, (x, y), (5, 5), textcoords="offset points", fontsize=7.0, zorder=6)
+
+
+def _frame(axes: Axes, limits: tuple[float, float, float, float], kind: str) -> None:
+    axes.set_aspect("equal", adjustable="box")
+    axes.set_xlim(limits[0], limits[1])
+    axes.set_ylim(limits[2], limits[3])
+    across, up = _LABELS[kind]
+    axes.set_xlabel(across)
+    axes.set_ylabel(up)
+    axes.yaxis.set_major_locator(MaxNLocator("auto", steps=[1, 2, 5, 10], min_n_ticks=2))
+
+
+def _handles(summary: TrackSummary) -> list[Line2D]:
+    handles = []
+    if turns_are_distinct(summary):
+        handles += [
+            Line2D([], [], color=c, label=f"turn to the {s}") for c, s in ((BLUE, "left"), (VERMILLION, "right"))
+        ]
+        handles.append(Line2D([], [], color=BLACK, linestyle="none", marker="o", markersize=3.0, label="switch point"))
+    elif summary.day.runs:
+        handles.append(Line2D([], [], color=BLUE, label=counted(len(summary.day.runs), "run")))
+    if summary.day.lifts:
+        handles.append(Line2D([], [], color=GREY, linestyle=(0, (4, 2)), label=counted(len(summary.day.lifts), "lift")))
+    return [*handles, Line2D([], [], color=PALE, label="neither" if handles else "track")]
+
+
+WALKING: Final = 2.0
+"""Speed (m/s) from which a radius is drawn (modelling assumption)."""
+KILOMETRE: Final = 1000.0
+"""Metres in a kilometre."""
+_IN_KILOMETRES: Final = 3000.0
+"""Distances (m) that are longer are given in km."""
+_RADII: Final = (2, 3, 5, 7, 10, 15, 20, 30, 50, 70, 100, 150, 200, 300, 500, 700, 1000, 2000, 5000)
+_TICKS: Final = 3
+"""Radii named on each side of the axis."""
+_SHARE_SHOWN: Final = 0.98
+"""Share of the distance in runs whose curvature is inside the axis."""
+_NEIGHBOURS: Final = 0.18
+"""Least distance of two named radii, as a share of half the axis."""
+
+
+def track_along(summary: TrackSummary) -> Figure:
+    """Draw three curves over one axis of distance; runs stand on a tint, and only they have a radius."""
+    with_height = bool(np.isfinite(summary.track.place[:, 2]).any())
+    rows = 3 if with_height else 2
+    figure = new_figure(width_mm=DOUBLE_MM, height_mm=42.0 * rows + 10.0)
+    grid = figure.subplots(rows, 1, sharex=True)
+    numbers = drawn_points(0, len(summary.track) - 1)
+    numbers = numbers[summary.track.usable[numbers]]
+    arc_length = summary.motion.arc_length - summary.motion.arc_length[0]
+    unit = KILOMETRE if arc_length[-1] > _IN_KILOMETRES else 1.0
+    _speed(grid[0], summary, numbers, arc_length / unit)
+    if with_height:
+        _height(grid[1], summary, numbers, arc_length / unit)
+    _radius(grid[-1], summary, arc_length / unit)
+    for axes in grid:
+        _tint_runs(axes, summary, arc_length / unit)
+    grid[-1].set_xlabel(f"distance along the track ({'km' if unit == KILOMETRE else 'm'})")
+    grid[-1].set_xlim(0.0, float(arc_length[-1]) / unit)
+    figure.align_ylabels()
+    figure.legend(handles=_legend_handles(summary), loc="outside lower center", ncols=4)
+    return figure
+
+
+def _tint_runs(axes: Axes, summary: TrackSummary, arc_length: FloatArray) -> None:
+    if len(summary.day.runs) < 2 and not summary.day.lifts:
+        return
+    for run in summary.day.runs:
+        axes.axvspan(
+            float(arc_length[run.first]), float(arc_length[run.last]), color=SKY, alpha=0.16, linewidth=0.0, zorder=0
+        )
+
+
+def _parted(summary: TrackSummary, numbers: npt.NDArray[np.int64], values: FloatArray) -> FloatArray:
+    """Values at these points, the first after each gap not drawn, so that the line has a hole."""
+    found = values[numbers].astype(float)
+    found[1:][np.diff(summary.motion.smoothed.part[numbers]) > 0] = np.nan
+    return found
+
+
+def _speed(axes: Axes, summary: TrackSummary, numbers: npt.NDArray[np.int64], arc_length: FloatArray) -> None:
+    speed = _parted(summary, numbers, summary.motion.speed)
+    path = summary.motion.path
+    if path is not None:
+        half = INTERVAL_FACTOR * path.speed_sd_at(summary.track.time[numbers])
+        low, high = np.maximum(speed - half, 0.0), speed + half
+        axes.fill_between(arc_length[numbers], low, high, color=PALE, alpha=0.7, linewidth=0.0)
+    axes.plot(arc_length[numbers], speed, color=BLUE, linewidth=0.8)
+    highest = summary.max_speed_interval[1] if summary.max_speed_interval else summary.max_speed or 0.0
+    axes.set_ylim(0.0, 1.1 * max(highest, 0.1))
+    axes.set_ylabel(
+        f"speed (m/s),\n{'as recorded' if summary.motion.speed_source == 'recorded' else 'from the places'}"
+    )
+
+
+def _height(axes: Axes, summary: TrackSummary, numbers: npt.NDArray[np.int64], arc_length: FloatArray) -> None:
+    axes.plot(arc_length[numbers], _parted(summary, numbers, summary.track.place[:, 2]), color=BLUE, linewidth=0.8)
+    words = {"east_north_up": "height above\nthe origin (m)", "slope": "out of the slope\n$z$ (m)", "file": "$z$ (m)"}
+    axes.set_ylabel(words[summary.track.axes])
+
+
+def _radius(axes: Axes, summary: TrackSummary, arc_length: FloatArray) -> None:
+    """The curvature with its interval, its axis named by radii: a straight path lies at 0, where no radius could."""
+    motion, ridden = summary.motion, _ridden_curvature(summary)
+    for run in summary.day.runs:
+        numbers = drawn_points(run.first, run.last)
+        curvature, half = _parted(summary, numbers, ridden), INTERVAL_FACTOR * motion.curvature_sd[numbers]
+        axes.fill_between(arc_length[numbers], curvature - half, curvature + half, color=PALE, alpha=0.7, linewidth=0.0)
+        axes.plot(arc_length[numbers], curvature, color=BLUE, linewidth=0.8)
+    reach = curvature_reach(summary)
+    axes.axhline(0.0, color=GREY, linewidth=0.5, zorder=1)
+    axes.set_ylim(-reach, reach)
+    radii = named_radii(reach)
+    axes.set_yticks([*(-1.0 / radius for radius in radii), 0.0, *(1.0 / radius for radius in reversed(radii))])
+    axes.set_yticklabels([*map(str, radii), "straight", *map(str, reversed(radii))])
+    axes.set_ylabel("turn radius (m),\nleft above, right below")
+
+
+def _ridden_curvature(summary: TrackSummary) -> FloatArray:
+    """The curvature where the track is faster than a walk; slower, feet make it and not skis."""
+    return np.where(summary.motion.speed >= WALKING, summary.motion.curvature, np.nan)
+
+
+def curvature_reach(summary: TrackSummary) -> float:
+    """Where the axis of the curvature ends (1/m): above that of nearly all points, whatever happens near a rest."""
+    ridden = np.abs(_ridden_curvature(summary))
+    steps = np.gradient(summary.motion.arc_length)
+    inside = np.zeros(len(ridden), dtype=bool)
+    for run in summary.day.runs:
+        inside[run.first : run.last + 1] = True
+    order = np.argsort(ridden)[: int(np.count_nonzero(np.isfinite(ridden)))]  # unknown ones come last
+    order = order[inside[order]]
+    ways = np.cumsum(steps[order])
+    if not len(order) or ways[-1] <= 0.0:
+        return 1.0 / _RADII[-1]
+    return max(1.25 * float(ridden[order[np.searchsorted(ways, _SHARE_SHOWN * ways[-1])]]), 1.0 / _RADII[-1])
+
+
+def named_radii(reach: float) -> list[int]:
+    """Radii (m) to be named on an axis of curvatures up to ``reach`` (1/m), the smallest first.
+
+    >>> named_radii(0.1)
+    [10, 15, 30]
+    """
+    found: list[int] = []
+    for radius in _RADII:
+        place = 1.0 / radius / reach
+        apart = 1.0 / found[-1] / reach - place if found else 1.0
+        if place <= 1.0 + 1e-9 and apart >= _NEIGHBOURS and place >= _NEIGHBOURS and len(found) < _TICKS:
+            found.append(radius)
+    return found
+
+
+def _legend_handles(summary: TrackSummary) -> list[Line2D | Patch]:
+    handles: list[Line2D | Patch] = [Line2D([], [], color=BLUE, label="track")]
+    handles.append(Patch(facecolor=PALE, alpha=0.7, label="95 % interval of the radius, noise alone"))
+    if len(summary.day.runs) > 1 or summary.day.lifts:
+        handles.append(Patch(facecolor=SKY, alpha=0.3, label="runs"))
+    return handles

@@ -1,0 +1,251 @@
+"""Measured tracks and comparisons of two tracks as lines for a terminal."""
+
+from __future__ import annotations
+
+import math
+from datetime import datetime
+from textwrap import fill
+from typing import TYPE_CHECKING, Any, Final
+
+from ..formatting import counted, date_words, significant
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping, Sequence
+
+Json = dict[str, Any]
+MOST_ROWS: Final = 40
+"""Rows of a table on a terminal; the JSON has them all."""
+WIDTH: Final = 110
+"""Letters in a line of prose."""
+
+_RUNS_WORDS: Final = {
+    "height": "A run is what descends between two lifts, from the last stand at its top to the first at its bottom; "
+    "descent is height at the start less height at the end.",
+    "motion": "A run is a stretch in motion, faster than 1 m/s but for stops up to 30 s.",
+}
+_TURNS_WORDS: Final = (
+    "A turn is a stretch of one sense of curvature in a run, 10 degrees at least; two that follow each other meet "
+    "in the switch point. The minimum radius is 1 / the largest curvature of the smoothed track, with its 95 % "
+    "interval from the noise alone. `passed` is the share of the curvature that the smoothing leaves of half a "
+    "sine as long as the turn."
+)
+
+
+def track_text(values: Mapping[str, Any], *, flag_sentences: Mapping[str, str] | None = None) -> str:
+    """What a track says.
+
+    Parameters
+    ----------
+    values
+        What `skisnow.track.summary.summary_dict` gives.
+    flag_sentences
+        What each flag means.
+    """
+    rows = list(_rows(values))
+    width = max(len(name) for name, _ in rows)
+    lines = [values["file"], "", *(f"{name.ljust(width)}  {text}" for name, text in rows)]
+    for code, count in values["marked"].items():
+        lines.append(f"{'flagged ' + code.replace('_', ' ')}: {count}. {(flag_sentences or {}).get(code, '')}".rstrip())
+    for remark in values["remarks"]:
+        lines.append(f"Note: {remark}")
+    lines += _table("runs", values["runs"], _RUN_COLUMNS, _RUNS_WORDS[values["runs_by"]])
+    if values["lifts"]:
+        lines += _table("lifts", values["lifts"], _LIFT_COLUMNS, "")
+    lines += _table("turns", values["turns"], _TURN_COLUMNS, _TURNS_WORDS)
+    return "\n".join(lines)
+
+
+def _plain(value: float | None, digits: int = 3) -> str:
+    return significant(value, digits, style="plain")
+
+
+def _rows(values: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
+    smoothing = values["smoothing"]
+    yield "points", f"{values['points']} in {_plain(values['duration_s'], 4)} s, time scale {values['time_scale']}"
+    if values["start"]:
+        yield "start", _moment(values["start"], values["time_scale"])
+    if values.get("solutions"):
+        yield (
+            "carrier phase",
+            ", ".join(f"{count} {_SOLUTION_WORDS[name]}" for name, count in values["solutions"].items()),
+        )
+    yield "frame", values["frame"]
+    distance = f"{_plain(values['distance_m'], 5)} m{_interval(values['distance_interval_m'], 'm', 5)}"
+    yield "distance", f"{distance}, {_DISTANCE_WORDS[values['distance_source']]}"
+    if values["horizontal_distance_m"] not in (None, values["distance_m"]):
+        horizontal = _interval(values["horizontal_distance_interval_m"], "m", 5)
+        yield "seen from above", f"{_plain(values['horizontal_distance_m'], 5)} m{horizontal}"
+    speed = f"{_plain(values['max_speed_m_per_s'], 4)} m/s{_interval(values['max_speed_interval_m_per_s'], 'm/s', 4)}"
+    yield "highest speed", f"{speed}, {_SPEED_WORDS[values['speed_source']]}"
+    yield "noise of the places", f"{_plain(smoothing['place_noise_m'], 2)} m a coordinate, about the smoothed track"
+    yield "smoothing", f"cubics by least squares in windows of {_plain(smoothing['window_s'])} s"
+    yield "resolution", _resolution(smoothing)
+
+
+def _interval(ends: Sequence[float | None] | None, unit: str, digits: int) -> str:
+    return "" if ends is None else f" (95 %: {_plain(ends[0], digits)} to {_plain(ends[1], digits)} {unit})"
+
+
+def _moment(start: str, time_scale: str) -> str:
+    """When a track begins, to the second, in its own time scale."""
+    found = datetime.fromisoformat(start)
+    scale = "" if time_scale == "local" else f" {time_scale}"
+    return f"{date_words(found.date().isoformat())}, {found:%H:%M:%S}{scale}"
+
+
+_DISTANCE_WORDS: Final = {
+    "odometer": "the device's own",
+    "recorded_speed": "the integral of the recorded speed",
+    "places": "the length of the estimated path with its heights",
+}
+_SOLUTION_WORDS: Final = {
+    "fixed": "points fixed to whole cycles", "float": "float", "code": "by the code alone",
+}  # fmt: skip
+_SPEED_WORDS: Final = {"recorded": "as recorded", "fitted": "horizontal, of the estimated path: no speeds are recorded"}
+
+
+def _resolution(smoothing: Json) -> str:
+    length = smoothing["half_amplitude_wavelength_m"]
+    metres = "" if length is None else f" ({_plain(length)} m at the median speed of the runs)"
+    return (
+        f"a curvature that swings in {_plain(smoothing['half_amplitude_period_s'])} s{metres} is halved, "
+        f"in {_plain(smoothing['ninety_percent_period_s'])} s it keeps 90 %"
+    )
+
+
+_RUN_COLUMNS: Final = (
+    ("start_s", "start (s)", -1), ("end_s", "end (s)", -1), ("distance_m", "distance (m)", 4),
+    ("descent_m", "descent (m)", 3), ("max_speed_m_per_s", "highest speed (m/s)", 3),
+)  # fmt: skip
+_LIFT_COLUMNS: Final = (
+    ("start_s", "start (s)", -1), ("end_s", "end (s)", -1), ("distance_m", "distance (m)", 4),
+    ("ascent_m", "ascent (m)", 3),
+)  # fmt: skip
+_TURN_COLUMNS: Final = (
+    ("start_s", "start (s)", -1), ("end_s", "end (s)", -1), ("direction", "to the", 0),
+    ("turned_angle_deg", "change of heading (deg)", 3), ("length_m", "length (m)", 3),
+    ("least_radius_m", "minimum radius (m)", 3), ("least_radius_interval_m", "95 % interval (m)", 3),
+    ("share_passed", "passed", 2),
+)  # fmt: skip
+
+
+def _table(title: str, rows: Sequence[Json], columns: Sequence[tuple[str, str, int]], words: str) -> list[str]:
+    """A heading with the count, the definition, and the rows in columns; negative digits: so many decimals."""
+    if not rows:
+        return ["", f"0 {title}", *fill(words, WIDTH).splitlines()]
+    cells = [[label for _, label, _ in columns]]
+    cells += [[_cell(row[key], digits) for key, _, digits in columns] for row in rows[:MOST_ROWS]]
+    widths = [max(len(line[place]) for line in cells) for place in range(len(columns))]
+    lines = ["  ".join(cell.rjust(width) for cell, width in zip(line, widths, strict=True)) for line in cells]
+    more = [f"… and {len(rows) - MOST_ROWS} more; --json gives all"] if len(rows) > MOST_ROWS else []
+    heading = counted(len(rows), title.removesuffix("s"))
+    return ["", heading, *fill(words, WIDTH).splitlines(), *lines, *more]
+
+
+def _cell(value: Any, digits: int) -> str:
+    if isinstance(value, str):
+        return value
+    if isinstance(value, list):
+        return " to ".join("straight" if end is None else _plain(end, digits) for end in value)
+    return f"{value:.{-digits}f}" if digits < 0 else _plain(value, digits)
+
+
+TITLES: Final = {"nearest": "nearest place", "arc_length": "equal arc length", "time": "equal time"}
+_NO_FRAME: Final = (
+    "No distance is printed: the tracks are not in one frame, so that it would say nothing. For a track in latitude",
+    "and longitude give --fall-line-azimuth-deg, the direction in which the slope falls, and --slope-angle-deg,",
+    "or let --fit-offset start,heading find where the simulated track lies.",
+)
+_WORDS: Final = {"max": "largest", "mean": "mean", "rms": "rms"}
+
+
+def compare_summary(found: Mapping[str, Any]) -> str:
+    """The numbers with their definitions.
+
+    Parameters
+    ----------
+    found
+        What `skisnow.track.comparison_dict.comparison_dict` gives.
+    """
+    simulated, measured, exact = found["simulated"], found["measured"], found["known_to_m"]
+    lines = [
+        f"{simulated['name']} ({metres(simulated['length_m'], exact, 4)}) compared with {measured['name']} "
+        f"({metres(measured['length_m'], exact, 4)}), {found['seen']}",
+        "",
+    ]
+    if not found["in_one_frame"]:
+        return "\n".join([*lines, *_NO_FRAME])
+    for kind, title in TITLES.items():
+        lines += [*_distances(title, found[kind], measured["length_m"], exact), ""]
+    back = found["largest_from_simulated_m"]
+    if back is not None:
+        lines.append(
+            f"The other way round, from the simulated track to the nearest place of the measured one: "
+            f"maximum {metres(back, exact)}."
+        )
+    lines.append(f"{found['means']}.")
+    if exact:
+        lines.append(f"A place is known to {significant(exact, 1, style='plain')} m: no further digits are printed.")
+    lines += _fitted(found)
+    return "\n".join(lines)
+
+
+def metres(value: float | None, exact: float, digits: int = 3) -> str:
+    """A distance with the digits that places known to ``exact`` (m) have.
+
+    >>> metres(2.345, 0.0), metres(2.345, 3.0), metres(0.4, 3.0), metres(41.987, 0.02, 4), metres(41.987, 0.3, 4)
+    ('2.35 m', '2 m', 'below 1 m', '41.99 m', '42.0 m')
+    """
+    return f"{rounded(value, exact, digits)} m"
+
+
+def rounded(value: float | None, exact: float, digits: int = 3) -> str:
+    """A number with no digit below that of ``exact``, in its own unit; 0: with ``digits`` significant ones."""
+    if value is None or exact <= 0.0 or not math.isfinite(value):
+        return _plain(value, digits)
+    decimals = -math.floor(math.log10(exact))
+    if 0.0 < abs(value) < 0.5 * 10.0**-decimals:
+        return f"below {10.0**-decimals:.{max(decimals, 0)}f}"
+    fewest = digits - 1 - math.floor(math.log10(abs(value))) if value else 0
+    return f"{round(value, min(decimals, max(fewest, 0))):.{max(min(decimals, max(fewest, 0)), 0)}f}"
+
+
+def _distances(title: str, found: Mapping[str, Any], length: float, exact: float) -> Iterator[str]:
+    yield f"{title}: {found['definition']}"
+    if found["max_m"] is None:
+        yield f"  none: {found['reason']}"
+        return
+    for key, word in _WORDS.items():
+        share = f"{rounded(100.0 * found[f'{key}_share'], 100.0 * exact / length, 2)} % of the measured track's length"
+        where = f", {metres(found['max_at_m'], exact)} along it" if key == "max" else ""
+        yield f"  {word:8}{metres(found[f'{key}_m'], exact)}, {share}{where}"
+    share = _plain(100.0 * found["compared_share"], 4)
+    yield f"  over    {metres(found['compared_m'], exact, 4)}, {share} % of the measured track"
+
+
+def _fitted(found: Mapping[str, Any]) -> Iterator[str]:
+    fitted = found["fitted"]
+    if fitted is None:
+        return
+    yield ""
+    yield f"Fitted: {', '.join(fitted['what'])}. The simulated track was moved as a whole before it was compared:"
+    yield f"  {fitted_words(fitted)}"
+    if fitted["undetermined"]:
+        yield f"  {fitted['undetermined']} direction(s) these tracks do not tell; nothing was moved along them"
+    for kind, title in TITLES.items():
+        before, after = (_pair(each[kind], found["known_to_m"]) for each in (fitted["before"], found))
+        yield f"  {title}: largest and mean {before} before, {after} after"
+
+
+def fitted_words(fitted: Mapping[str, Any]) -> str:
+    """By how much the simulated track was moved."""
+    height = "" if fitted["moved_z_m"] is None else f", z {_plain(fitted['moved_z_m'])} m"
+    return (
+        f"start by x {_plain(fitted['moved_x_m'])} m, y {_plain(fitted['moved_y_m'])} m{height}; turned by "
+        f"{_plain(fitted['turned_deg'])} degrees to the left; looked up {_plain(fitted['later_s'])} s later"
+    )
+
+
+def _pair(found: Mapping[str, Any], exact: float) -> str:
+    largest, mean = (metres(found[key], exact) for key in ("max_m", "mean_m"))
+    return f"both {mean}" if largest == mean else f"{largest} and {mean}"

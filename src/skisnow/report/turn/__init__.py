@@ -1,0 +1,1 @@
+"""Report of a turn that was simulated on measured snow."""

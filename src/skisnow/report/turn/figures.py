@@ -1,0 +1,217 @@
+"""Figures of a turn: tracks of the ensemble with their bands, and the contacts side by side."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+import numpy.typing as npt
+from matplotlib.lines import Line2D
+
+from ..._support.units import MM
+from ...scenario import Plane
+from ...track.nearest_place import distance_beside
+from ...track.polyline import arc_lengths
+from ..figures.style import BLACK, BLUE, COLOURS, DOUBLE_MM, GREY, PALE, SKY, VERMILLION, legend_below, new_figure
+from ..run.track_figure import plan_axes, plan_height_mm, track_limits
+from ..symbols import figure_text
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from ...simulation.run import Run
+
+FloatArray = npt.NDArray[np.float64]
+QUANTILES: Final = (0.05, 0.25, 0.5, 0.75, 0.95)
+FEWEST: Final = 3
+"""Runs that make a band."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class TimedTrack:
+    """A track from above: times (n,) rising (s), x and y (n,) (m)."""
+
+    time: FloatArray
+    x: FloatArray
+    y: FloatArray
+
+
+def track_band(nominal: TimedTrack, tracks: Sequence[TimedTrack]) -> Figure:
+    """Draw the tracks from above, and how far each run lies beside and ahead of the nominal one at the same time.
+
+    Parameters
+    ----------
+    nominal
+        The run with the parameters' best values.
+    tracks
+        The ensemble, three at least. A run that ended earlier counts up to its end.
+    """
+    aside, ahead = offsets(nominal, tracks)
+    band = band_of(aside)
+    outline = _outline(nominal, band)
+    points = np.concatenate([np.stack([t.x, t.y], axis=1) for t in (nominal, *tracks)])
+    limits = track_limits(points)
+    height = plan_height_mm(limits)
+    figure = new_figure(width_mm=DOUBLE_MM, height_mm=height + 78.0)
+    grid = figure.add_gridspec(2, 2, height_ratios=(height + 10.0, 50.0))
+    plan = figure.add_subplot(grid[0, :])
+    _plan(plan, nominal, tracks, outline)
+    plan_axes(plan, limits)
+    _over_time(
+        figure.add_subplot(grid[1, 0]), nominal.time, aside, "to the left of the nominal\nrun at the same time (m)"
+    )
+    _over_time(figure.add_subplot(grid[1, 1]), nominal.time, ahead, "ahead of the nominal run\nat the same time (m)")
+    legend_below(figure, _handles(len(tracks)))
+    return figure
+
+
+def offsets(nominal: TimedTrack, tracks: Sequence[TimedTrack]) -> tuple[FloatArray, FloatArray]:
+    """How far the tracks lie to the left and ahead of the nominal run at its times: (tracks, n); nan after an end."""
+    direction = np.stack([np.gradient(nominal.x), np.gradient(nominal.y)], axis=1)
+    length = np.linalg.norm(direction, axis=1)
+    along = direction / np.where(length > 0.0, length, 1.0)[:, None]
+    aside, ahead = [], []
+    for track in tracks:
+        dx = np.interp(nominal.time, track.time, track.x, right=np.nan) - nominal.x
+        dy = np.interp(nominal.time, track.time, track.y, right=np.nan) - nominal.y
+        ahead.append(dx * along[:, 0] + dy * along[:, 1])
+        aside.append(dy * along[:, 0] - dx * along[:, 1])
+    return np.array(aside), np.array(ahead)
+
+
+def band_of(values: FloatArray) -> FloatArray:
+    """The 5, 25, 50, 75 and 95 % quantiles at each time, (5, n); nan where fewer than three runs are left."""
+    band = np.full((len(QUANTILES), values.shape[1]), np.nan)
+    enough = np.isfinite(values).sum(axis=0) >= FEWEST
+    if enough.any():
+        band[:, enough] = np.nanquantile(values[:, enough], QUANTILES, axis=0)
+    return band
+
+
+def _outline(nominal: TimedTrack, band: FloatArray) -> FloatArray:
+    """The quantiles laid off to the left of the nominal track: (5, n, 2)."""
+    slope = np.unwrap(np.arctan2(np.gradient(nominal.y), np.gradient(nominal.x)))
+    to_left = np.stack([-np.sin(slope), np.cos(slope)], axis=1)
+    middle = np.stack([nominal.x, nominal.y], axis=1)
+    return np.asarray(middle + band[:, :, None] * to_left)
+
+
+def _plan(axes: Axes, nominal: TimedTrack, tracks: Sequence[TimedTrack], outline: FloatArray) -> None:
+    for (low, high), colour in zip(((0, 4), (1, 3)), (PALE, SKY), strict=True):
+        known = np.isfinite(outline[low, :, 0])
+        rim = np.concatenate([outline[low, known], outline[high, known][::-1]])
+        axes.fill(rim[:, 0], rim[:, 1], color=colour, alpha=0.6, linewidth=0, zorder=1)
+    for track in tracks:
+        axes.plot(track.x, track.y, color=GREY, linewidth=0.3, zorder=2)
+        axes.plot(track.x[-1], track.y[-1], marker=".", markersize=2.0, color=GREY, zorder=2)
+    axes.plot(outline[2, :, 0], outline[2, :, 1], color=BLUE, linewidth=0.9, linestyle=(0, (4, 1.5)), zorder=3)
+    axes.plot(nominal.x, nominal.y, color=VERMILLION, linewidth=1.0, zorder=4)
+
+
+def _over_time(axes: Axes, time: FloatArray, values: FloatArray, label: str) -> None:
+    band = band_of(values)
+    axes.plot(time, values.T, color=GREY, linewidth=0.3, zorder=2)
+    axes.fill_between(time, band[0], band[4], color=PALE, alpha=0.6, linewidth=0, zorder=1)
+    axes.fill_between(time, band[1], band[3], color=SKY, alpha=0.6, linewidth=0, zorder=1)
+    axes.plot(time, band[2], color=BLUE, linewidth=0.9, linestyle=(0, (4, 1.5)), zorder=3)
+    axes.axhline(0.0, color=VERMILLION, linewidth=0.8, zorder=3)
+    axes.set_xlim(float(time[0]), float(time[-1]))
+    axes.set_xlabel("time (s)")
+    axes.set_ylabel(label)
+
+
+def _handles(count: int) -> list[Line2D]:
+    return [
+        Line2D([], [], color=VERMILLION, label="nominal run"),
+        Line2D([], [], color=BLUE, linestyle=(0, (4, 1.5)), label="median"),
+        Line2D([], [], color=SKY, alpha=0.6, linewidth=5.0, label="half of the runs"),
+        Line2D([], [], color=PALE, alpha=0.6, linewidth=5.0, label="90 % of the runs"),
+        Line2D([], [], color=GREY, linewidth=0.5, label=f"each of {count} runs"),
+        Line2D([], [], color=BLACK, linestyle="none", marker=".", markersize=2.0, label="end"),
+    ]
+
+
+_SYMBOL: Final = re.compile(r"(?<!\w)([A-Za-z])_([A-Za-z0-9])(?!\w)")
+LINE_STYLES: Final = ("-", (0, (5, 1.5)), (0, (1, 1)), "-.", (0, (7, 2, 1, 2, 1, 2)))
+
+
+def runs_compared(runs: Mapping[str, Run], *, at: float | None = None) -> Figure:
+    """Draw the runs by their names; the first is the one that the others are held against.
+
+    Parameters
+    ----------
+    runs
+        One at least, on one slope.
+    at
+        Time (s) at which the skis are drawn; None: the latest that all runs reached, less a tenth of it.
+    """
+    named = list(runs.items())
+    limits = track_limits(np.concatenate([run.place for run in runs.values()]))
+    height = plan_height_mm(limits)
+    figure = new_figure(width_mm=DOUBLE_MM, height_mm=height + 90.0)
+    grid = figure.add_gridspec(2, 2, height_ratios=(height + 10.0, 62.0))
+    plan = figure.add_subplot(grid[0, :])
+    for place, (_, run) in enumerate(named):
+        plan.plot(run.place[:, 0], run.place[:, 1], **_line_style(place))
+        plan.plot(*run.place[-1, :2], marker="s", markersize=3.0, linestyle="none", color=_line_style(place)["color"])
+    plan_axes(plan, limits, profile=not isinstance(named[0][1].scenario.slope, Plane))
+    _distances(figure.add_subplot(grid[1, 0]), named)
+    moment = 0.9 * min(run.simulated_s for run in runs.values()) if at is None else at
+    _depths(figure.add_subplot(grid[1, 1]), named, moment)
+    legend_below(
+        figure, [Line2D([], [], label=mathtext(name), **_line_style(place)) for place, (name, _) in enumerate(named)]
+    )
+    return figure
+
+
+def mathtext(name: str) -> str:
+    """A run's name for a figure, with its symbols set.
+
+    >>> mathtext("hypoplastic, k_u / H_V = 10")
+    'hypoplastic, $k_u$ / $H_V$ = 10'
+    """
+    return _SYMBOL.sub(r"$\1_\2$", figure_text(name, longest=60))
+
+
+def _line_style(place: int) -> dict[str, Any]:
+    return {"color": COLOURS[place % len(COLOURS)], "linestyle": LINE_STYLES[place % len(LINE_STYLES)]}
+
+
+def _distances(axes: Axes, named: list[tuple[str, Run]]) -> None:
+    (first, reference), *others = named
+    for place, (_, run) in enumerate(others, start=1):
+        axes.plot(arc_lengths(run.place), distance_beside(run.place, reference.place), **_line_style(place))
+    axes.set_xlim(left=0.0)
+    axes.set_ylim(bottom=0.0)
+    axes.set_xlabel("distance travelled (m)")
+    axes.set_ylabel(f"distance (m) from the track of\n{mathtext(first)}")
+
+
+def _depths(axes: Axes, named: list[tuple[str, Run]], moment: float) -> None:
+    """The more heavily loaded ski in the first run, in all runs at one time."""
+    reference = named[0][1]
+    ski = loaded_ski(reference, moment)
+    for place, (_, run) in enumerate(named):
+        now = int(np.argmin(abs(run.time - moment)))
+        axes.plot(run.skis.station, run.skis.edge_depth[now, ski] / MM, **_line_style(place))
+    deepest = max(float(np.nanmax(run.skis.edge_depth[_at(run, moment), ski])) for _, run in named) / MM
+    axes.axhline(0.0, color=GREY, linewidth=0.6, zorder=1)
+    axes.axvline(0.0, color=PALE, linewidth=0.5, zorder=0)
+    axes.set_ylim(1.15 * max(deepest, 0.1), -0.35 * max(deepest, 0.1))
+    axes.set_xlabel("position along the ski (m); boot = 0, tail left, tip right")
+    axes.set_ylabel(f"edge depth (mm), {('left', 'right')[ski]} ski,\nat {moment:.2f} s")
+
+
+def _at(run: Run, moment: float) -> int:
+    return int(np.argmin(abs(run.time - moment)))
+
+
+def loaded_ski(run: Run, moment: float) -> int:
+    """The ski with the larger total force at a time (s): 0 left, 1 right."""
+    return int(np.argmax(run.skis.total_force[_at(run, moment)]))

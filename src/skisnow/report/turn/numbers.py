@@ -1,0 +1,255 @@
+"""Numbers of a turn: comparisons of its runs, inputs of its band, and all of it as JSON values."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+import numpy.typing as npt
+
+from ..._support.json_number import json_number
+from ..._support.units import MM, N_PER_MM2, N_PER_MM3
+from ...parameters import values_of
+from ...scenario.plausibility import implausible_values
+from ...simulation.run_summary import summary_dict
+from ...snow.from_results import snow_dict
+from ...statistics import VarianceShares, variance_shares
+from ...track.nearest_place import distance_beside
+from ..run.time_figures import used_share_of_skis
+from .figures import FEWEST, TimedTrack, band_of, offsets
+
+if TYPE_CHECKING:
+    from ...simulation.run import Run
+    from ...snow import SnowProperties
+    from .chain import EnsembleRun, TurnChain
+
+FloatArray = npt.NDArray[np.float64]
+MORE_THAN_INPUTS: Final = 3
+"""Runs at least, more than inputs, that tell shares with an interval."""
+YIELDS: Final = 0.95
+"""Share of the shear strength from which a ski counts as side-slipping: short parts at its ends may have grip."""
+
+
+def loaded_skis(run: Run) -> npt.NDArray[np.intp]:
+    """The ski with the larger total force at each time, (n,): 0 left, 1 right."""
+    return np.argmax(run.skis.total_force, axis=1)
+
+
+def afterbody_depth_ratio(run: Run) -> float | None:
+    """Mean edge depth of the loaded ski's contact behind the boot over that before it; the median over the second half.
+
+    None where the ski has no contact before or behind the boot in all that time.
+    """
+    late = np.flatnonzero(run.time >= run.time[-1] / 2.0)
+    depth = run.skis.edge_depth[late, loaded_skis(run)[late]]
+    behind, before = (_mean_depth(depth[:, part]) for part in (run.skis.station < 0.0, run.skis.station > 0.0))
+    ratio = behind / before
+    known = ratio[np.isfinite(ratio)]
+    return float(np.median(known)) if known.size else None
+
+
+def _mean_depth(depth: FloatArray) -> FloatArray:
+    """Mean over the stations below the surface, (n,); nan where there is none."""
+    below = depth > 0.0
+    count = below.sum(axis=1)
+    return np.where(count > 0, np.where(below, depth, 0.0).sum(axis=1) / np.maximum(count, 1), np.nan)
+
+
+def used_grip(run: Run) -> tuple[float | None, float | None]:
+    """Median share of the shear strength that the loaded ski uses, and the share of time in which it side-slips."""
+    share = np.take_along_axis(used_share_of_skis(run), loaded_skis(run)[:, None], axis=1)[:, 0]
+    known = share[np.isfinite(share)]
+    return (float(np.median(known)), float(np.mean(known >= YIELDS))) if known.size else (None, None)
+
+
+def median_radius(run: Run) -> float | None:
+    """Median turn radius (m) of the run where it turns; None where it never does."""
+    radius = np.abs(run.turn_radius[np.isfinite(run.turn_radius)])
+    return float(np.median(radius)) if radius.size else None
+
+
+def maximum_distance(run: Run, reference: Run) -> float | None:
+    """The farthest that a run's path goes from that of another (m) while it lies beside it; None: nowhere."""
+    distance = distance_beside(run.place, reference.place)
+    return float(np.nanmax(distance)) if np.isfinite(distance).any() else None
+
+
+def middle_track(run: Run) -> TimedTrack:
+    """The path of the middle between the boots from above."""
+    return TimedTrack(run.time, run.place[:, 0], run.place[:, 1])
+
+
+def band_width(nominal: TimedTrack, tracks: Sequence[TimedTrack]) -> tuple[float, float]:
+    """Width of the band of 90 % of the tracks to the side, and ahead, at the last time that three runs reach (m)."""
+    aside, ahead = (band_of(values[:, None])[:, 0] for values in end_offsets(nominal, tracks))
+    return float(aside[4] - aside[0]), float(ahead[4] - ahead[0])
+
+
+def end_offsets(nominal: TimedTrack, tracks: Sequence[TimedTrack]) -> tuple[FloatArray, FloatArray]:
+    """How far each track lies to the left and ahead (m), (tracks,), at the last time that three reach; nan: ended."""
+    aside, ahead = offsets(nominal, tracks)
+    last = int(np.flatnonzero(np.isfinite(aside).sum(axis=0) >= FEWEST)[-1])
+    return aside[:, last], ahead[:, last]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class BandShares:
+    """What each input of an ensemble adds to the variance at the end of the band, aside and ahead.
+
+    Attributes
+    ----------
+    keys
+        What varies, by the scenario's keys.
+    aside, ahead
+        Shares of these.
+    """
+
+    keys: tuple[str, ...]
+    aside: VarianceShares
+    ahead: VarianceShares
+
+
+def band_shares(nominal: TimedTrack, ensemble: Sequence[EnsembleRun]) -> BandShares | None:
+    """First-order Sobol shares by regression on logarithms; None with fewer than three runs more than inputs."""
+    keys = [key for key in (ensemble[0].values if ensemble else ()) if len({run.values[key] for run in ensemble}) > 1]
+    if not keys:
+        return None
+    aside, ahead = end_offsets(nominal, [run.track for run in ensemble])
+    reached = np.isfinite(aside)
+    if reached.sum() < len(keys) + MORE_THAN_INPUTS:
+        return None
+    inputs = np.log([[run.values[key] for key in keys] for run in ensemble])[reached]
+    return BandShares(tuple(keys), *(variance_shares(each[reached], inputs) for each in (aside, ahead)))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class BandInput:
+    """One input of a band.
+
+    Attributes
+    ----------
+    key
+        Of the scenario.
+    measured
+        Whether the campaign tells its spread; else a prior does.
+    value
+        The median, in the key's unit; None of a prior, which has no favourite.
+    low, high
+        Ends in the key's unit: of the 95 % interval of what was measured, of the whole range of a prior.
+    origin
+        Where the range comes from.
+    """
+
+    key: str
+    measured: bool
+    value: float | None
+    low: float
+    high: float
+    origin: str
+
+    @property
+    def distribution(self) -> str:
+        """Its name."""
+        return "log-normal" if self.measured else "log-uniform"
+
+    @property
+    def spread(self) -> str:
+        """Where the spread comes from, in a word."""
+        return "measured" if self.measured else "prior"
+
+    @property
+    def in_words(self) -> str:
+        """Spread, distribution and origin."""
+        if self.measured:
+            return f"measured: log-normal with the 95 % interval of {self.origin}"
+        return f"prior: even in its logarithm; {self.origin}"
+
+
+def band_inputs(chain: TurnChain) -> Iterator[BandInput]:
+    """What was measured, then the priors."""
+    for of in chain.measured:
+        yield BandInput(key=of.key, measured=True, value=of.value, low=of.low, high=of.high, origin=chain.site)
+    own = values_of(chain.nominal.scenario)
+    for prior in chain.priors:
+        low, high = prior.ends(own[prior.key])
+        yield BandInput(key=prior.key, measured=False, value=None, low=low, high=high, origin=prior.origin)
+
+
+SCHEMA_VERSION: Final = 1
+
+
+def turn_dict(chain: TurnChain) -> dict[str, Any]:
+    """The JSON of `skisnow turn`, and the contents of turn.json; its JSON Schema is schemas/turn.schema.json."""
+    across, along = band_width(middle_track(chain.nominal), [run.track for run in chain.ensemble])
+    return {
+        "schema_version": SCHEMA_VERSION,
+        "campaign": chain.campaign,
+        "site": chain.site,
+        "synthetic": chain.synthetic,
+        "snow": {
+            **_numbers_dict(chain.snow),
+            "unloading_ratio": json_number(chain.snow.unloading_ratio),
+            "shear_displacement_mm": json_number(chain.nominal.scenario.contact.shear_displacement / MM),
+            **snow_dict(chain.snow),
+        },
+        "runs": [_run_dict(name, run, chain.nominal) for name, run in chain.runs.items()],
+        "ensemble": {
+            "seed": chain.seed,
+            "band_across_m": json_number(across),
+            "band_along_m": json_number(along),
+            "nominal_end_moves_m": json_number(chain.ensemble_error),
+            "inputs": [
+                {
+                    "key": each.key,
+                    "spread": each.spread,
+                    "distribution": each.distribution,
+                    "value": each.value,
+                    "low": each.low,
+                    "high": each.high,
+                    "origin": each.origin,
+                }
+                for each in band_inputs(chain)
+            ],
+            "priors": [
+                {"key": each.key, "low": each.low, "high": each.high, "times_own": each.about, "origin": each.origin}
+                for each in chain.priors
+            ],
+            "runs": [_ensemble_dict(each) for each in chain.ensemble],
+        },
+        "sentences": chain.sentences,
+        "warnings": list(chain.warnings),
+    }
+
+
+def _run_dict(contact: str, run: Run, nominal: Run) -> dict[str, Any]:
+    grip, slips = used_grip(run)
+    return {
+        "contact": contact,
+        "afterbody_depth_ratio": json_number(afterbody_depth_ratio(run)),
+        "grip_utilisation": json_number(grip),
+        "side_slip_share": json_number(slips),
+        "distance_from_first_m": None if run is nominal else json_number(maximum_distance(run, nominal)),
+        "summary": summary_dict(run, warnings=implausible_values(run.scenario)),
+    }
+
+
+def _ensemble_dict(run: EnsembleRun) -> dict[str, Any]:
+    track = run.track
+    ends = {"end_time_s": track.time, "end_x_m": track.x, "end_y_m": track.y}
+    return {
+        **_numbers_dict(run.snow),
+        "values": {key: json_number(value) for key, value in run.values.items()},
+        "outcome": run.outcome,
+        "side_slip_share": json_number(run.slips),
+        **{name: json_number(column[-1]) for name, column in ends.items()},
+    }
+
+
+def _numbers_dict(snow: SnowProperties) -> dict[str, float | None]:
+    stress = snow.failure_shear_stress
+    return {
+        "H_V_N_per_mm3": snow.snow_hardness / N_PER_MM3,
+        "S_f_N_per_mm2": None if stress is None else stress / N_PER_MM2,
+    }

@@ -1,0 +1,310 @@
+"""Sentences about a turn, with its numbers."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+from markupsafe import Markup
+
+from ..._support.units import MM, N_PER_MM2, N_PER_MM3
+from ..formatting import counted, interval, significant
+from ..symbols import html, prose
+from .numbers import (
+    BandShares,
+    afterbody_depth_ratio,
+    band_inputs,
+    band_shares,
+    band_width,
+    maximum_distance,
+    median_radius,
+    middle_track,
+    used_grip,
+)
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from ...simulation.run import Run
+    from .chain import TurnChain
+
+ALIKE: Final = 0.002
+"""Two numbers that differ by less of their size are called alike."""
+HELD: Final = 0.05
+"""A ski that side-slips in no larger share of the time keeps its grip."""
+_INPUTS: Final = {
+    "snow.H_V_N_per_mm3": ("the snow hardness H_V", "further penetration tests at this site"),
+    "snow.S_f_N_per_mm2": ("the failure shear stress S_f", "further shear tests at this site"),
+    "snow.unloading_ratio": ("k_u / H_V", "depths read while the discs are taken off one by one, for k_u"),
+    "snow.shear_displacement_mm": (
+        "the shear displacement u_y",
+        "the turning angle read beside the moment of the shear device, for u_y",
+    ),
+    "friction.mu_0": ("the friction μ_0", "a straight glide past photo cells, for μ_0"),
+    "ski.stiffness_factor": ("the stiffness of the ski", "the bending and torsion of the ski, measured"),
+}
+"""Inputs of the band in words, and what would tell more of them."""
+_FURTHER: Final = {
+    "snow.unloading_ratio": "further series with discs taken off one by one at this site, for k_u",
+    "snow.shear_displacement_mm": "further shear tests with turning angles at this site, for u_y",
+}
+"""What would tell more of what was measured already."""
+
+
+def key_sentences(chain: TurnChain) -> list[Markup]:
+    """Snow, contacts, band, and a warning near the limit of grip."""
+    contacts = [_contact(name, run) for name, run in chain.runs.items()]
+    spreads = [_band(chain), *_spreads(chain), *_largest_share(chain)]
+    return [_snow(chain), *contacts, *contrast(chain), *spreads, *_warned(chain)]
+
+
+def headline(chain: TurnChain) -> Markup:
+    """The turn's radius, and how well its end is known."""
+    radius = median_radius(chain.nominal)
+    aside, ahead = _widths(chain)
+    known = prose(
+        "its end is known within {aside} m across and {ahead} m along the track (90 % of {runs})",
+        aside=significant(aside, 2),
+        ahead=significant(ahead, 2),
+        runs=counted(len(chain.ensemble), "run"),
+    )
+    if radius is None:
+        return prose("The run is straight; {known}.", known=known)
+    value = Markup("<strong>{} m</strong>").format(significant(radius))
+    return prose("Turn radius {value} (median); {known}.", value=value, known=known)
+
+
+def plain_sentences(chain: TurnChain) -> list[Markup]:
+    """What the contacts do otherwise, and what the band is drawn from."""
+    return [*contrast(chain), *_spreads(chain)]
+
+
+def _spreads(chain: TurnChain) -> list[Markup]:
+    """Which inputs of the band have a measured spread, and which a prior."""
+    found = list(band_inputs(chain))
+    if not found:
+        return []
+    measured, assumed = (_listed([each.key for each in found if each.measured is of]) for of in (True, False))
+    return [
+        prose(
+            "The band draws {measured} from the intervals that the campaign measured, {assumed} from priors.",
+            measured=measured,
+            assumed=assumed,
+        )
+    ]
+
+
+def _listed(keys: Sequence[str]) -> Markup:
+    *before, last = [_in_words(key) for key in keys] or [html("nothing")]
+    return html(", ").join(before) + html(" and ") + last if before else last
+
+
+def _warned(chain: TurnChain) -> list[Markup]:
+    return [prose("Warning: {text}.", text=text) for text in chain.warnings]
+
+
+def _largest_share(chain: TurnChain) -> list[Markup]:
+    """Which input moves the end of the band most to the side."""
+    found = _shares(chain)
+    if found is None:
+        return []
+    first, *others = np.argsort(-found.aside.share, kind="stable").tolist()
+    return [
+        prose(
+            "Most of that across the track comes from {key}: {percent} % of the variance {interval}{then}.",
+            key=_in_words(found.keys[first]),
+            percent=significant(100.0 * float(found.aside.share[first]), 2),
+            interval=interval((100.0 * found.aside.interval[first]).tolist(), 2),
+            then=html("; next is ") + _in_words(found.keys[others[0]]) if others else "",
+        )
+    ]
+
+
+def _in_words(key: str) -> Markup:
+    return html(_INPUTS[key][0] if key in _INPUTS else key)
+
+
+def _shares(chain: TurnChain) -> BandShares | None:
+    """Shares of the band's inputs, where some input moves its end at all."""
+    found = band_shares(middle_track(chain.nominal), chain.ensemble)
+    return found if found is not None and found.aside.share.any() else None
+
+
+def _snow(chain: TurnChain) -> Markup:
+    snow = chain.snow
+    of_hardness, of_stress = snow.snow_hardness_interval, snow.failure_shear_stress_interval
+    return prose(
+        "Snow of {site}: H_V {hardness} N/mm³ {of_hardness}, S_f {stress} N/mm² {of_stress}{ratio}{way}.",
+        site=chain.site,
+        ratio=_ratio(snow.unloading_ratio, snow.unloading_ratio_interval),
+        way=_way(snow.shear_displacement, snow.shear_displacement_interval),
+        hardness=significant(snow.snow_hardness / N_PER_MM3),
+        of_hardness=interval(of_hardness and [end / N_PER_MM3 for end in of_hardness]),
+        stress=significant(None if snow.failure_shear_stress is None else snow.failure_shear_stress / N_PER_MM2),
+        of_stress=interval(of_stress and [end / N_PER_MM2 for end in of_stress]),
+    )
+
+
+def _ratio(value: float | None, ends: tuple[float, float] | None) -> Markup:
+    """k_u/H_V, where it was measured."""
+    known = value is not None and ends is not None
+    return prose(", k_u / H_V {value} {ends}", value=significant(value), ends=interval(ends)) if known else html("")
+
+
+def _way(value: float | None, ends: tuple[float, float] | None) -> Markup:
+    """u_y, where it was measured with an interval."""
+    if value is None or ends is None:
+        return html("")
+    return prose(", u_y {value} mm {ends}", value=significant(value / MM), ends=interval([end / MM for end in ends]))
+
+
+def _contact(name: str, run: Run) -> Markup:
+    grip, slides = used_grip(run)
+    return prose(
+        "{name}: {outcome} after {length} m and {time} s. The afterbody/forebody edge-depth ratio is {ratio}; the more "
+        "heavily loaded (outer) ski has a grip utilisation of {grip} and side-slips in {slides} % of the time.",
+        name=html(name[:1].upper() + name[1:]),
+        outcome=run.outcome.replace("_", " "),
+        length=significant(run.run_length),
+        time=significant(run.simulated_s),
+        ratio=significant(afterbody_depth_ratio(run), 2),
+        grip=significant(grip, 2),
+        slides=significant(None if slides is None else 100.0 * slides, 2),
+    )
+
+
+def contrast(chain: TurnChain) -> list[Markup]:
+    """What the other contacts do otherwise than the first: turn radius, grip utilisation, edge-depth ratio."""
+    (first, reference), *others = chain.runs.items()
+    return [sentence for name, run in others for sentence in _contrast(html(name), run, html(first), reference)]
+
+
+def _contrast(name: Markup, run: Run, first: Markup, reference: Run) -> list[Markup]:
+    return [
+        prose("The turn with the contact “{name}” ", name=name) + _width(median_radius(run), first, reference),
+        prose("Its grip utilisation is {more}: {shares}. ",
+              more=_more(*_grips(run, reference), words=("higher", "lower", "the same")),
+              shares=_both(*_grips(run, reference))) + _slip(name, run, first, reference),
+        prose("Its afterbody/forebody edge-depth ratio is {larger}: {ratios}.",
+              larger=_more(*_ratios(run, reference), words=("larger", "smaller", "the same")),
+              ratios=_both(*_ratios(run, reference))),
+        prose("The tracks lie up to {distance} m apart.", distance=significant(maximum_distance(run, reference))),
+    ]  # fmt: skip
+
+
+def _width(radius: float | None, first: Markup, reference: Run) -> Markup:
+    other = median_radius(reference)
+    if radius is None or other is None:
+        return prose("or that with “{first}” never turns.", first=first)
+    wider = radius / other - 1.0
+    radii = _both(radius, other, " m")
+    if abs(wider) < ALIKE:
+        return prose("is as wide as that with “{first}”: median radius {radii}.", first=first, radii=radii)
+    return prose(
+        "is {wider} than that with “{first}”, by {percent} %: median radius {radii}.",
+        wider="wider" if wider > 0.0 else "narrower",
+        first=first,
+        percent=significant(100.0 * abs(wider), 2),
+        radii=radii,
+    )
+
+
+def _slip(name: Markup, run: Run, first: Markup, reference: Run) -> Markup:
+    """Which of two runs side-slips at all."""
+    sliding = [each for each, of in ((name, run), (first, reference)) if (used_grip(of)[1] or 0.0) > HELD]
+    if not sliding:
+        return html("Grip holds in both.")
+    return html("Both side-slip.") if len(sliding) == 2 else prose("“{who}” side-slips.", who=sliding[0])
+
+
+def _grips(run: Run, reference: Run) -> tuple[float | None, float | None]:
+    return used_grip(run)[0], used_grip(reference)[0]
+
+
+def _ratios(run: Run, reference: Run) -> tuple[float | None, float | None]:
+    return afterbody_depth_ratio(run), afterbody_depth_ratio(reference)
+
+
+def _more(value: float | None, other: float | None, *, words: tuple[str, str, str]) -> str:
+    if value is None or other is None or abs(value - other) < ALIKE * abs(other):
+        return words[2]
+    return words[0] if value > other else words[1]
+
+
+def _both(value: float | None, other: float | None, unit: str = "") -> str:
+    return f"{significant(value)} against {significant(other)}{unit}"
+
+
+def _band(chain: TurnChain) -> Markup:
+    aside, ahead = _widths(chain)
+    return prose(
+        "Over all that is not known, 90 % of {runs} end within {aside} m across and {ahead} m along the track.",
+        runs=counted(len(chain.ensemble), "run"),
+        aside=significant(aside, 2),
+        ahead=significant(ahead, 2),
+    )
+
+
+def _widths(chain: TurnChain) -> tuple[float, float]:
+    nominal = next(iter(chain.runs.values()))
+    return band_width(middle_track(nominal), [run.track for run in chain.ensemble])
+
+
+def ensemble_sentence(chain: TurnChain) -> Markup:
+    """How many of the runs ended like the nominal one, and how many side-slipped."""
+    nominal = next(iter(chain.runs.values()))
+    alike = sum(run.outcome == nominal.outcome for run in chain.ensemble)
+    slipped = sum((run.slips or 0.0) > HELD for run in chain.ensemble)
+    return prose(
+        "{alike} of {all} runs ended like the nominal one ({outcome}); in {slipped} of them the more heavily loaded "
+        "ski side-slips for more than {held} % of the time, beyond the limit of its grip.",
+        slipped=slipped,
+        held=significant(100.0 * HELD, 1),
+        alike=alike,
+        all=len(chain.ensemble),
+        outcome=nominal.outcome.replace("_", " "),
+    )
+
+
+def ensemble_accuracy(chain: TurnChain) -> list[Markup]:
+    """What it costs that the ensemble is computed in a quicker way, where it is."""
+    if chain.ensemble_error is None:
+        return []
+    return [
+        prose(
+            "The ensemble is computed in fewer time steps than the turns above: so computed, the nominal run ends "
+            "{error} m from where it ends above.",
+            error=significant(chain.ensemble_error, 2),
+        )
+    ]
+
+
+def meaning(chain: TurnChain) -> list[Markup]:
+    """Model against what is not known: which of the two moves the track more, and what would tell most."""
+    reference, *others = chain.runs.values()
+    aside, _ = _widths(chain)
+    far = max(maximum_distance(run, reference) or 0.0 for run in others)  # a run without a step moved nowhere
+    contacts = prose(
+        "The choice of the contact moves the track by up to {far} m, all that is not known of the turn by {aside} m "
+        "(width of the band that holds 90 % at the end). ",
+        far=significant(far, 2),
+        aside=significant(aside, 2),
+    )
+    grip = "The grip holds while the side force stays below the shear capacity: S_f times depth times length. "
+    if any((used_grip(run)[1] or 0.0) > HELD for run in (reference, *others)):
+        grip += (
+            "Hard snow lets an edge in little and so offers little to hold on to: here the skis side-slip, and a "
+            "slower start, a gentler slope or softer snow brings them back on their edges."
+        )
+    return [contacts + _would_tell(chain), html(grip)]
+
+
+def _would_tell(chain: TurnChain) -> Markup:
+    """What would narrow the band most."""
+    found = _shares(chain)
+    if found is None:
+        return html("")
+    key = found.keys[int(np.argmax(found.aside.share))]
+    known = _FURTHER if key in {each.key for each in chain.measured} else {}
+    test = known.get(key) or (_INPUTS[key][1] if key in _INPUTS else f"a better value of {key}")
+    return prose("The band would narrow most by {test}.", test=html(test))
