@@ -11,6 +11,8 @@ import pytest
 
 import skisnow
 from skisnow.campaign import Campaign, read_campaign, write_reference
+from skisnow.estimation import analyse, results_dict
+from skisnow.estimation.result_rows import experiment_results
 from skisnow.estimation.results import results_json
 
 from .conftest import MakeCampaign
@@ -204,3 +206,12 @@ def test_names_of_any_kind_survive_the_writing(make_campaign: MakeCampaign, name
     rows = [(quoted, "A", "ski", 0, load, load / 100) for load in (100, 200, 300)]
     results = results_of(make_campaign(rows, [("s1", "A", "blade", 90, 6, 250, 30)]))
     assert [row["experiment"] for row in results["penetration"]["experiments"]] == [name]
+
+
+def test_the_numbers_are_those_of_the_analysis(tmp_path: Path) -> None:
+    write_reference(tmp_path / "campaign", seed=2)
+    campaign = read_campaign(tmp_path / "campaign")
+    results = results_dict(analyse(campaign, n_resamples=100))
+    found = experiment_results(campaign)
+    assert found["penetration"]["experiments"] == results["penetration"]["experiments"]
+    assert found["shear"]["experiments"] == results["shear"]["experiments"]

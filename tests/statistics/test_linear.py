@@ -12,6 +12,7 @@ import pytest
 
 from skisnow._support.errors import FitError, ParameterError
 from skisnow.statistics import linear_fit, polynomial_fit
+from skisnow.statistics.linear import chebyshev_columns, exact_way_back
 
 from ..versions import EXACT_QUANTILES
 
@@ -195,3 +196,19 @@ def test_bad_input_is_named() -> None:
         linear_fit([1.0, 2.0, 3.0], [1.0, 2.0])
     with pytest.raises(ParameterError, match="confidence is 95"):
         linear_fit([1.0, 2.0, 3.0], [1.0, 2.0, 4.0], confidence=95)
+
+
+def test_first_chebyshev_polynomials() -> None:
+    # T_2 = 2 t² - 1 and T_3 = 4 t³ - 3 t with t = (x - 1)/2: T_2 = x²/2 - x - 1/2
+    back = exact_way_back(3, 1.0, 2.0)
+    assert [row[2] for row in back] == [Fraction(-1, 2), -1, Fraction(1, 2), 0]
+    assert [row[3] for row in exact_way_back(3, 0.0, 1.0)] == [0, -3, 0, 4]
+
+
+def test_columns_are_cosines_and_stay_near_one() -> None:
+    x = np.linspace(1947.0, 1962.0, 16)
+    columns = chebyshev_columns(x[:, None], 8)
+    assert np.abs(columns.scaled[:, 1]).max() <= 1.0 + 1 / 16
+    inside = np.abs(columns.scaled[:, 1]) <= 1
+    angle = np.arccos(columns.scaled[inside, 1])
+    np.testing.assert_allclose(columns.scaled[inside, 8], np.cos(8 * angle), atol=1e-13)
