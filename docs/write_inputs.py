@@ -18,8 +18,8 @@ import skisnow
 from skisnow.campaign.reading import campaign_schema
 from skisnow.campaign.reading.campaign_file import CAMPAIGN_KEYS
 from skisnow.campaign.reading.table_forms import PENETRATION, SHEAR
+from skisnow.campaign.smet import WeatherSettings
 from skisnow.campaign.snow_micro_pen_records import SnowMicroPenSettings
-from skisnow.campaign.weather_records import WeatherSettings
 from skisnow.carving.keys import CARVE_KEYS
 from skisnow.parameters import own_quantities
 from skisnow.parameters.json_schema import Schema, output_schema, page_table, schema_text

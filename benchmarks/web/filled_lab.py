@@ -14,7 +14,7 @@ import numpy as np
 
 from skisnow.campaign import write_reference
 from skisnow.campaign.store import Journals, NewEntry, Store
-from skisnow.campaign.store.description import Description, Value, description_text
+from skisnow.campaign.store.replayed import Description, Value, description_text
 
 LOADS_N = (12, 32, 72, 132, 212, 332, 492)
 SITES, SEED = 20, 1

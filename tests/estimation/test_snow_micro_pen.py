@@ -17,8 +17,7 @@ import skisnow
 from skisnow._support.units import MM
 from skisnow.campaign import read_snow_micro_pen
 from skisnow.campaign.snow_micro_pen import SnowMicroPenProfile
-from skisnow.campaign.snow_micro_pen_records import SnowMicroPenSettings
-from skisnow.campaign.snow_surface import snow_surface
+from skisnow.campaign.snow_micro_pen_records import SnowMicroPenSettings, snow_surface
 from skisnow.estimation.snow_micro_pen import SnowMicroPenAnalysis, evaluate_profile
 from skisnow.snow.penetrometer_relations import PENETROMETER_RELATIONS
 

@@ -14,7 +14,7 @@ import pytest
 from PIL import Image
 
 from skisnow.campaign.store import Journals, Store, replayed
-from skisnow.campaign.store.description import Description, description_text
+from skisnow.campaign.store.replayed import Description, description_text
 from skisnow.carving.answer import answered
 from skisnow.carving.answer_dict import answer_dict
 from skisnow.carving.question import carve_question

@@ -11,7 +11,7 @@ import pytest
 
 from skisnow import read_campaign
 from skisnow.campaign.store import Journals, Store, replayed
-from skisnow.campaign.store.replayed_files import campaign_files, write_campaign
+from skisnow.campaign.store.replayed import campaign_files, write_campaign
 from skisnow.web.edit_session import EditSession
 from skisnow.web.settings import Lab
 from skisnow.web.words import hardness_words

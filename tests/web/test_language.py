@@ -21,7 +21,7 @@ from skisnow._support.language.known import FOLDER
 from skisnow.campaign import QUALITY_FLAGS, Problem, campaign_of_files
 from skisnow.campaign.problems import lines_of
 from skisnow.campaign.store import Journals, NewEntry, Store
-from skisnow.campaign.store.description import Description, description_text
+from skisnow.campaign.store.replayed import Description, description_text
 from skisnow.carving.result import REMEDIES
 from skisnow.report.charts import ski_drawing
 from skisnow.scenario.keys import SCENARIO_KEYS

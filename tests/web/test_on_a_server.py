@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from skisnow.campaign.store import Journals, Store, campaign_files, replayed
-from skisnow.campaign.store.description import Description, description_text
+from skisnow.campaign.store.replayed import Description, description_text
 
 from ..campaign.store.postgresql_server import Server, run, started, why_there_is_none
 from .conftest import Served, killed_and_started_again

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from skisnow.campaign.store import Journals, Store, replayed
-from skisnow.campaign.store.description import Description, description_text
+from skisnow.campaign.store.replayed import Description, description_text
 
 from .conftest import Served, has_text, ready
 from .held_answers import HeldAnswers

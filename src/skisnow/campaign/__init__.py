@@ -1,8 +1,7 @@
 """Field campaigns: records, files, screening, store, reference campaign."""
 
-from .applied_correction import AppliedCorrection
 from .density_records import DensityLayers, read_density_layers
-from .problems import Problem
+from .problems import AppliedCorrection, Problem
 from .quality_flags import QUALITY_FLAGS, QualityFlag
 from .reading import campaign_of_files, check_campaign, read_campaign
 from .records import (

@@ -16,15 +16,14 @@ from .._support.errors import FieldDataError
 from .._support.units import CM, ICE_DENSITY
 from ..parameters import Quantity
 from .problems import error
-from .reading.campaign_files import FilesOfFolder
-from .reading.raw_files import RawFiles
+from .reading.campaign_files import FilesOfFolder, RawFiles
 from .reading.table_forms import TableForm
 from .reading.tables import read_table
 from .reading.text import UnreadableTextError, inspect_csv
 
 if TYPE_CHECKING:
     from .problems import Problem
-    from .reading.table import Table
+    from .reading.columns import Table
     from .records import FloatArray, IntArray
 
 _NO_NOTE: Final = "-9999"

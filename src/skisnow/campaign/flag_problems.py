@@ -1,4 +1,4 @@
-"""Quality flags as problems: each with its experiment, file, row, value, what would not be flagged, what follows."""
+"""Quality flags as problems with experiment, file, row, value, the values that are not flagged, and the effect."""
 
 from __future__ import annotations
 
@@ -7,12 +7,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from .._support.units import MM
-from .creep import creeping
-from .largest_load import maximum_depths, reading_at_largest_load
+from .penetration_series import creeping, maximum_depths, reading_at_largest_load, wrong_unloading
 from .problems import Problem, placed
 from .quality_flags import CREEP_SHARE, CREEP_STEPS, FEWEST_LOADS, QUALITY_FLAGS, RESOLUTIONS
 from .reading.table_forms import PENETRATION, SHEAR
-from .wrong_unloading import wrong_unloading
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping

@@ -173,3 +173,18 @@ def lines_of(problems: Iterable[Problem]) -> list[str]:
     notes = "; ".join(f"{what} in {', '.join(dict.fromkeys(where))}" for what, where in files.items())
     lines = list(_several(_once_a_name(problem for problem in every if problem.needs_action)))
     return [*lines, f"note: nothing need be done: {notes}."] if notes else lines
+
+
+@dataclass(frozen=True, slots=True)
+class AppliedCorrection:
+    """A cell that was read otherwise than the raw file has it; ``row`` is the line of that file."""
+
+    file: str
+    experiment: str
+    row: int
+    column: str
+    old: str
+    new: str
+    who: str
+    when: str
+    why: str

@@ -15,7 +15,7 @@ import numpy.typing as npt
 
 from .._support.display import Facts, Shown, amount, ends
 from .._support.units import DEGREE, MM
-from .applied_correction import AppliedCorrection
+from .problems import AppliedCorrection
 
 if TYPE_CHECKING:
     from collections.abc import Hashable, Mapping, Sequence
@@ -23,8 +23,8 @@ if TYPE_CHECKING:
 
     from ..geometry import Tool
     from .problems import Problem
+    from .smet import CampaignWeather
     from .snow_micro_pen_records import SnowMicroPenRecordings
-    from .weather_records import CampaignWeather
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]

@@ -9,11 +9,9 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from .creep import creeping
 from .flag_problems import flag_problems
-from .largest_load import maximum_depths, reading_at_largest_load
+from .penetration_series import creeping, maximum_depths, reading_at_largest_load, wrong_unloading
 from .quality_flags import FEWEST_LOADS, NEED_HARDNESS, QUALITY_FLAGS, RESOLUTIONS, QualityFlag
-from .wrong_unloading import wrong_unloading
 
 if TYPE_CHECKING:
     from ..geometry import GeometryForm

@@ -12,7 +12,7 @@ import re
 from dataclasses import dataclass, field
 from datetime import MAXYEAR, MINYEAR, UTC, datetime, timedelta, timezone
 from pathlib import Path
-from typing import TYPE_CHECKING, Final, NoReturn
+from typing import TYPE_CHECKING, Annotated, Final, NoReturn
 
 import numpy as np
 import numpy.typing as npt
@@ -20,6 +20,7 @@ import numpy.typing as npt
 from .._support.display import Facts, Shown
 from .._support.errors import FieldDataError
 from .._support.user_files import GivenError, plain_bytes
+from ..parameters import Quantity, require_declared
 from ..parameters.quantity import LARGEST
 from .problems import error
 
@@ -253,3 +254,50 @@ class _Reading:
         if not MINYEAR < moment.year < MAXYEAR:  # so that each zone has this time
             self._refuse(line, _TIME, text[:80], f"a year between {MINYEAR} and {MAXYEAR}", "Correct the time.")
         return moment.timestamp()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class WeatherSettings:
+    """The section ``[weather]`` of campaign.toml."""
+
+    file: Annotated[
+        str | None, Quantity("file", "name of a SMET file in the campaign's folder; left out: no weather")
+    ] = None
+    utc_offset_h: Annotated[
+        float | None,
+        Quantity(
+            "utc_offset_h",
+            "hours that the clock of the column `time` is ahead of UTC, where a time does not say it; left out: as in "
+            "the station's file",
+            lowest=-14.0,
+            highest=14.0,
+        ),
+    ] = None
+    longest_gap_h: Annotated[
+        float,
+        Quantity(
+            "longest_gap_h",
+            "between readings of the station that are farther apart nothing is interpolated",
+            lowest=0.0,
+        ),
+    ] = 3.0
+
+    def __post_init__(self) -> None:
+        require_declared(self)
+
+
+@dataclass(frozen=True, slots=True, repr=False)
+class CampaignWeather(Shown):
+    """What a station measured, and how the campaign takes it."""
+
+    series: StationSeries
+    settings: WeatherSettings
+
+    def _facts(self) -> Facts:
+        return self.series._facts()
+
+    @property
+    def utc_offset(self) -> float:
+        """Of the campaign's times (h)."""
+        offset = self.settings.utc_offset_h
+        return self.series.utc_offset if offset is None else offset

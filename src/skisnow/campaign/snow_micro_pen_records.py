@@ -1,10 +1,13 @@
-"""Recordings of a SnowMicroPen as records of a campaign, and how they are evaluated."""
+"""Recordings of a SnowMicroPen as records of a campaign: settings, and the surface of the snow in a force profile."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Annotated, Literal, TypeAlias
+from typing import TYPE_CHECKING, Annotated, Final, Literal, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
 
 from .._support.display import Facts, Shown, amount
 from .._support.units import MM
@@ -102,3 +105,58 @@ class SnowMicroPenRecordings(Shown):
     def _facts(self) -> Facts:
         depths = f"{amount(self.settings.from_depth / MM)} to {amount(self.settings.to_depth / MM, 'mm')}"
         return Facts(f"of {len(self)} recordings, forces from {depths}; {', '.join(dict.fromkeys(self.site))}")
+
+
+BLOCK: Final = 0.5 * MM
+"""The force is averaged over it, and the surface is found to it (modelling assumption)."""
+AIR: Final = 20.0 * MM
+"""The air's force is the median over this length before a block (modelling assumption)."""
+LEAST_AIR: Final = 5.0 * MM
+"""A recording that begins nearer to the snow does not show the air's force (modelling assumption)."""
+
+
+@dataclass(frozen=True, slots=True)
+class SnowSurface:
+    """Where it is (m from where the recording began), and the force in the air before it (N)."""
+
+    depth: float
+    air_force: float
+
+
+def snow_surface(force: FloatArray, sample_distance: float, *, rise: float, hold: float) -> SnowSurface | None:
+    """The first block whose force, and that of all blocks over ``hold`` below it, is ``rise`` above the air's.
+
+    Parameters
+    ----------
+    force
+        N, from the first sample on.
+    sample_distance
+        m.
+    rise
+        N, above 0.
+    hold
+        m.
+
+    Returns
+    -------
+    The surface, or None where no block is such.
+
+    Examples
+    --------
+    A spike at 12 mm, snow from 30 mm:
+
+    >>> force = np.full(500, 0.05)
+    >>> force[120:125], force[300:] = 0.4, 0.3
+    >>> found = snow_surface(force, 1e-4, rise=0.01, hold=5e-3)
+    >>> round(found.depth * 1e3, 3), round(found.air_force, 3)
+    (30.0, 0.05)
+    """
+    size = max(round(BLOCK / sample_distance), 1)
+    length = size * sample_distance
+    blocks = force[: len(force) // size * size].reshape(-1, size).mean(axis=1)
+    held, air, least = (max(round(each / length), 1) for each in (hold, AIR, LEAST_AIR))
+    for index in range(least, len(blocks) - held):
+        level = float(np.median(blocks[max(index - air, 0) : index]))
+        if (blocks[index : index + held + 1] >= level + rise).all():
+            return SnowSurface(index * length, level)
+    return None

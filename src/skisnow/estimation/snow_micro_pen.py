@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from .._support.display import Facts, Shown
 from .._support.units import MM
-from ..campaign.snow_surface import SnowSurface, snow_surface
+from ..campaign.snow_micro_pen_records import SnowSurface, snow_surface
 from ..parameters import values_of
 from ..snow.penetrometer_relations import PENETROMETER_RELATIONS
 from ..statistics.shot_noise import shot_noise, windows_of

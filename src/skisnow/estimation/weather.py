@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
     from ..campaign.records import Campaign
-    from ..campaign.weather_records import CampaignWeather
+    from ..campaign.smet import CampaignWeather
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 

@@ -16,7 +16,7 @@ from .unpacking import Unpacking, campaign_folder
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from ..campaign.store.address import StorePlace
+    from ..campaign.store.server import StorePlace
     from .settings import Limits
 
 UNDESCRIBED: Final = (

@@ -9,10 +9,9 @@ import pytest
 
 from skisnow.campaign.store import sync
 from skisnow.campaign.store.journal_entry import JournalEntry
-from skisnow.campaign.store.syncing import heads as heads_of_store
-from skisnow.campaign.store.syncing.conflict import Divergence, Side, _short
-from skisnow.campaign.store.syncing.heads import Heads
-from skisnow.campaign.store.syncing.names import Names, same_names
+from skisnow.campaign.store.syncing import conflict as conflict_module
+from skisnow.campaign.store.syncing.conflict import Divergence, Heads, Side, _short
+from skisnow.campaign.store.syncing.sync import Names, same_names
 
 from .test_syncing import Laptop, ada, bo, both_sync, shared
 
@@ -166,7 +165,7 @@ def test_the_next_free_name_is_taken_and_progress_is_told(
 
     Entries are asked for in portions, here of two.
     """
-    monkeypatch.setattr(heads_of_store, "_ASKED_AT_ONCE", 2)
+    monkeypatch.setattr(conflict_module, "_ASKED_AT_ONCE", 2)
     id_ = shared(ada, bo, group)
     ada.enter(id_, "2", "4")
     ada.enter(id_, "2 (2)", "6")

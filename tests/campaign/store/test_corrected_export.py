@@ -9,7 +9,7 @@ import pytest
 from skisnow._support.errors import StoreError
 from skisnow.campaign import read_campaign
 from skisnow.campaign.store import Journals, NewEntry, OvertakenError, Store, export_corrected, replayed, stored_tables
-from skisnow.campaign.store.entry_rows import file_uid
+from skisnow.campaign.store.journal_entry import file_uid
 
 TOML = """name = "Kept"
 [[tool]]

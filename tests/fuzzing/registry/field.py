@@ -18,7 +18,7 @@ from skisnow.campaign.caaml import read_caaml
 from skisnow.campaign.density_records import read_density_layers
 from skisnow.campaign.smet import read_smet
 from skisnow.campaign.snow_micro_pen import read_snow_micro_pen
-from skisnow.campaign.templates.workbook import workbook_bytes
+from skisnow.campaign.templates import workbook_bytes
 from skisnow.interop.caaml import write_caaml
 from tests.campaign.recordings import built
 from tests.interop.pits import full_pit

@@ -9,17 +9,16 @@ import numpy as np
 
 from ..._support.units import DEGREE, MM
 from ..records import DensitySamples, DropConeTests, PenetrationTests, ShearTests, TurningReadings, UnloadingReadings
-from .branches import is_unloading
+from .columns import is_unloading
 from .experiments import Blocks
+from .row_checks import shear_blocks
 from .table_forms import BRANCH
-from .turning import shear_blocks
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from ..records import BoolArray
-    from .columns import NameColumn
-    from .table import Table
+    from .columns import NameColumn, Table
 
 
 def penetration_tests(table: Table) -> PenetrationTests:

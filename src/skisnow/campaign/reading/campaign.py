@@ -12,29 +12,25 @@ from ..problems import error, placed
 from ..records import Campaign
 from .assembling import density_samples, drop_cone_tests, penetration_tests, shear_tests
 from .campaign_file import CAMPAIGN_FILE, read_campaign_file
-from .campaign_files import FilesInMemory, FilesOfFolder
+from .campaign_files import FilesInMemory, FilesOfFolder, RawFiles
 from .corrections import corrections_by_file, refuse_without_file
 from .headings import Headings
-from .raw_files import RawFiles
-from .recordings import ENDING, recording_contents, snow_micro_pen_recordings
+from .recordings import ENDING, WEATHER_ENDING, campaign_weather, recording_contents, snow_micro_pen_recordings
+from .row_checks import check_together
 from .table_forms import CORRECTIONS, DENSITY, DROP_CONE, PENETRATION, SHEAR, SNOW_MICRO_PEN, TABLES
 from .tables import read_table
 from .text import UnreadableTextError, decode, inspect_csv
-from .together import check_together
-from .weather import ENDING as WEATHER_ENDING
-from .weather import campaign_weather
 from .workbook_files import is_workbook, unfolded
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
-    from ..applied_correction import AppliedCorrection
-    from ..problems import Problem
-    from ..weather_records import CampaignWeather
+    from ..problems import AppliedCorrection, Problem
+    from ..smet import CampaignWeather
     from .campaign_file import CampaignFile
     from .campaign_files import CampaignFiles
+    from .columns import Table
     from .corrections import RowCorrections
-    from .table import Table
     from .table_forms import TableForm
 
 CAMPAIGN_FILES: Final = (CAMPAIGN_FILE, CORRECTIONS.file, *(form.file for form in TABLES))

@@ -14,8 +14,8 @@ from ...geometry.tools import LIKELY_LENGTH_MM
 from ...parameters import Quantity, own_quantities
 from ..problems import error, warning
 from ..quality_flags import ALWAYS_EXCLUDE, QUALITY_FLAGS
+from ..smet import WeatherSettings
 from ..snow_micro_pen_records import SnowMicroPenSettings
-from ..weather_records import WeatherSettings
 from .headings import KEY as COLUMNS_KEY
 from .headings import UNITS_KEY, Headings, headings_of
 from .toml_values import TomlValues

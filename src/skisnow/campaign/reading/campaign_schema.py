@@ -7,8 +7,8 @@ from typing import Final
 from ...parameters import own_quantities
 from ...parameters.json_schema import DRAFT, Schema, table_schema
 from ..quality_flags import QUALITY_FLAGS
+from ..smet import WeatherSettings
 from ..snow_micro_pen_records import SnowMicroPenSettings
-from ..weather_records import WeatherSettings
 from .campaign_file import CAMPAIGN_KEYS, PLATE_LENGTH
 from .tool_shapes import SHAPES, Shape
 

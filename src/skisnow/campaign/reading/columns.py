@@ -1,4 +1,4 @@
-"""The columns of one CSV as they are collected, each cell checked: names as codes, numbers as arrays, texts as text."""
+"""A table as it was read: columns of names, numbers and texts, each cell checked."""
 
 from __future__ import annotations
 
@@ -7,17 +7,18 @@ from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
-from ..problems import error
-from .number_cells import is_number, numbers
-from .table_forms import allowed_words
+from ..problems import error, warning
+from .cell_values import is_number, iso_moment, numbers
+from .table_forms import UNLOADING, allowed_words
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
     from ...parameters import Quantity
     from ..problems import Problem
     from ..records import BoolArray, FloatArray, IntArray
     from .heading_units import UnitConversion
+    from .table_forms import TableForm
 
 
 @dataclass(frozen=True, slots=True)
@@ -172,3 +173,94 @@ class TextCollector:
     def column(self) -> tuple[str, ...]:
         """Give the column."""
         return tuple(self._texts)
+
+
+@dataclass(frozen=True, slots=True)
+class Table:
+    """A table as it was read: n rows in the order of the file, numbers in the units of the columns' names.
+
+    Attributes
+    ----------
+    form
+        What the table must and may have.
+    row
+        File line of each row.
+    names
+        The required and the interpreted optional text columns, whether the file has them or not.
+    numbers
+        Every column of numbers of the form; NaN where blank, absent or refused.
+    further
+        The other columns of the file, unknown ones too, as text.
+    absent
+        Required columns that the file lacks.
+    headings
+        Headings as the file has them.
+    unstated
+        Headings without a unit, by their columns of numbers.
+    """
+
+    form: TableForm
+    row: IntArray
+    names: Mapping[str, NameColumn]
+    numbers: Mapping[str, FloatArray]
+    further: Mapping[str, tuple[str, ...]]
+    absent: frozenset[str]
+    headings: tuple[str, ...]
+    unstated: Mapping[str, str]
+
+    def __len__(self) -> int:
+        """Count the rows."""
+        return len(self.row)
+
+
+class DateCollector:
+    """Collects days and times, written after ISO 8601; one that cannot be read stays as it is, and is reported once."""
+
+    def __init__(self, column: str) -> None:
+        self._column = column
+        self._written: dict[str, str | None] = {"": ""}
+        self._texts: list[str] = []
+        self._unread: list[tuple[int, str, str]] = []
+
+    def take(self, cells: Sequence[str], rows: Rows, found: list[Problem]) -> None:  # noqa: ARG002
+        """See `Collector.take`."""
+        for index, cell in enumerate(map(str.strip, cells)):
+            if cell not in self._written:
+                self._written[cell] = iso_moment(cell)
+            written = self._written[cell]
+            if written is None:
+                self._unread.append((rows.line[index], cell, rows.key[index]))
+            self._texts.append(cell if written is None else written)
+
+    def problems(self, file: str) -> list[Problem]:
+        """What could not be read, in one warning."""
+        if not self._unread:
+            return []
+        line, cell, key = self._unread[0]
+        more = f", and {len(self._unread) - 1} more like it" if len(self._unread) > 1 else ""
+        return [
+            warning(
+                "unreadable_date",
+                file,
+                row=line,
+                column=self._column,
+                experiment=key.strip() or None,
+                value=f"{cell}{more}",
+                allowed="a day such as 2026-11-23 or 23.11.2026, with or without a time such as 09:10",
+                action="Write it so; no estimate needs it, but the report does not name this day.",
+            )
+        ]
+
+    def column(self) -> tuple[str, ...]:
+        """Give the column."""
+        return tuple(self._texts)
+
+
+def is_unloading_cell(cell: str) -> bool:
+    """True if the cell marks a reading of the unloading, when discs are taken off."""
+    return cell.strip().casefold() == UNLOADING
+
+
+def is_unloading(branch: NameColumn) -> BoolArray:
+    """True for each row that is a reading of the unloading."""
+    return np.array(list(map(is_unloading_cell, branch.names)), dtype=np.bool_)[branch.code]

@@ -10,17 +10,16 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, TypeAlias
 
-from ..applied_correction import AppliedCorrection
-from ..problems import error
-from .number_cells import is_number, number
+from ..problems import AppliedCorrection, error
+from .cell_values import is_number, number
 from .table_forms import CORRECTIONS, TABLES
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from ..problems import Problem
+    from .columns import Table
     from .header import Header
-    from .table import Table
     from .table_forms import TableForm
 
 STATUS = "status"

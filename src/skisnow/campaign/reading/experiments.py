@@ -12,8 +12,7 @@ if TYPE_CHECKING:
 
     from ..problems import Problem
     from ..records import BoolArray, FloatArray, IntArray
-    from .columns import NameColumn
-    from .table import Table
+    from .columns import NameColumn, Table
 
 from ..problems import error
 

@@ -8,17 +8,20 @@ from typing import TYPE_CHECKING, Final
 from ..._support.errors import FieldDataError
 from ..._support.units import MM
 from ..problems import error
+from ..smet import CampaignWeather, smet_series
 from ..snow_micro_pen import snow_micro_pen_profile
 from ..snow_micro_pen_records import SnowMicroPenRecordings
+from .campaign_file import CAMPAIGN_FILE
 from .table_forms import SNOW_MICRO_PEN
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from ..problems import Problem
+    from ..smet import WeatherSettings
     from ..snow_micro_pen_records import SnowMicroPenSettings
-    from .raw_files import RawFiles
-    from .table import Table
+    from .campaign_files import RawFiles
+    from .columns import Table
 
 ENDING: Final = ".pnt"
 
@@ -104,4 +107,35 @@ def snow_micro_pen_recordings(
         contents=tuple(contents[name] for name in file),
         settings=settings,
         further=table.further,
+    )
+
+
+WEATHER_ENDING: Final = ".smet"
+
+
+def campaign_weather(settings: WeatherSettings, files: RawFiles) -> CampaignWeather | None:
+    """Read the station's file; None where none is named, or where it cannot be read, which is reported."""
+    name = settings.file
+    if not name:
+        return None
+    if "/" in name or "\\" in name or not name.lower().endswith(WEATHER_ENDING):
+        _refuse(files, name, "the name of a .smet file in the campaign's folder")
+        return None
+    before = len(files.found)
+    data = files.read(name)
+    if data is None:
+        if len(files.found) == before:
+            _refuse(files, name, "a file of this name in the campaign's folder")
+        return None
+    try:
+        return CampaignWeather(smet_series(name, data), settings)
+    except FieldDataError as failure:
+        files.found.extend(failure.problems)  # type: ignore[arg-type]
+        return None
+
+
+def _refuse(files: RawFiles, name: str, allowed: str) -> None:
+    action = "Lay the file beside campaign.toml, or correct its name."
+    files.found.append(
+        error("unreadable_file", CAMPAIGN_FILE, column="weather.file", value=name, allowed=allowed, action=action)
     )

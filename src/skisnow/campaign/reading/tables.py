@@ -8,14 +8,11 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from ..problems import error, warning
-from .column_units import ColumnUnits, column_units
-from .columns import NameCollector, NumberCollector, Rows, TextCollector
+from .cell_values import decimal_mark
+from .columns import DateCollector, NameCollector, NumberCollector, Rows, Table, TextCollector
 from .corrections import Corrector, header_with_status
-from .dates import DateCollector
-from .header import Header, check_header, header_of
+from .header import ColumnUnits, Header, check_header, column_units, header_of
 from .headings import Headings
-from .number_cells import decimal_mark
-from .table import Table
 from .text import SEPARATOR_NAMES, CsvText, UnreadableTextError
 
 if TYPE_CHECKING:
@@ -23,9 +20,9 @@ if TYPE_CHECKING:
 
     from ..problems import Problem
     from ..records import IntArray
+    from .campaign_files import RawFiles
     from .columns import Collector
     from .corrections import RowCorrections
-    from .raw_files import RawFiles
     from .table_forms import TableForm
     from .text import Records
 

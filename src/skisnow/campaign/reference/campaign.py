@@ -16,7 +16,7 @@ from ..._support.errors import ParameterError
 from ..quality_flags import QUALITY_FLAGS
 from ..records import Campaign
 from . import design, draws
-from .noise import ReferenceNoise
+from .design import ReferenceNoise
 
 if TYPE_CHECKING:
     from ..records import DensitySamples, DropConeTests, FloatArray, PenetrationTests, ShearTests

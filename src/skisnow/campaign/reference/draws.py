@@ -24,7 +24,7 @@ from . import design
 
 if TYPE_CHECKING:
     from ..records import BoolArray, FloatArray
-    from .noise import ReferenceNoise
+    from .design import ReferenceNoise
 
 
 _ANGLE_DECIMALS = 4

@@ -1,12 +1,11 @@
 """The store, a file or on a server: campaigns byte for byte, and journals (event sourcing) of those being entered."""
 
-from .address import ServerAddress, StorePlace, store_place
 from .corrected_export import ExportedCampaign, add_corrections, corrected_files, export_corrected
 from .journal import JournalHead, Journals, OvertakenError
 from .journal_entry import JournalEntry, NewEntry
 from .lookup import FoundCampaign, entered_files, export_entered, find_campaign
-from .replayed import ReplayedCampaign, ReplayedRow, ReplayedTest, replayed
-from .replayed_files import campaign_files, write_campaign
+from .replayed import ReplayedCampaign, ReplayedRow, ReplayedTest, campaign_files, replayed, write_campaign
+from .server import ServerAddress, StorePlace, store_place
 from .store import AddedCampaign, Finding, Store, StoredCampaign, StoredFile, default_path
 from .stored_tables import StoredTable, stored_tables
 from .syncing import Conflict, Side, Synced, sync

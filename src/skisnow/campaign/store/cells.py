@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from ..._support.errors import ParameterError
+from ..reading.cell_values import number
 from ..reading.heading_units import UnitConversion
-from ..reading.number_cells import number
 from ..reading.table_forms import BRANCH, BRANCHES, TABLES
 
 if TYPE_CHECKING:

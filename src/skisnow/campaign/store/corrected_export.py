@@ -10,10 +10,9 @@ from ..._support.staging import write_file
 from ..reading.corrections import STATUS
 from ..reading.table_forms import CORRECTIONS
 from ..reading.text import UnreadableTextError, inspect_csv
-from .correction_rows import COLUMNS, correction_row, csv_text
 from .folder import no_progress
 from .journal import Journals
-from .replayed import replayed
+from .replayed import COLUMNS, correction_row, csv_text, replayed
 from .stored_tables import cell_of
 
 if TYPE_CHECKING:

@@ -26,9 +26,8 @@ from ..._support.sqlite_file import (
     primary_code,
     require_schema,
 )
-from .address import ServerAddress
 from .schema import APPLICATION_ID, metadata
-from .server import lock_for_writing, needs_migration, open_server, reason
+from .server import ServerAddress, lock_for_writing, needs_migration, open_server, reason
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -37,7 +36,7 @@ if TYPE_CHECKING:
     from sqlalchemy import ExceptionContext
 
     from ..._support.sqlite_file import Mode
-    from .address import StorePlace
+    from .server import StorePlace
 
 _DAMAGED: Final = "the file is damaged; put a backup in its place, or export what can still be exported"
 _NO_STORE: Final = "this file is no store but something else; name another file"

@@ -15,12 +15,12 @@ from hashlib import sha256
 from typing import TYPE_CHECKING, Final
 
 from sqlalchemy import ColumnElement, Connection, and_, func, insert, select
+from sqlalchemy.exc import DatabaseError
 
-from ..._support.errors import StoreError
-from .engine import database_errors, reading, writing
-from .entered_name import entered_name
-from .entry_rows import file_uid, now, write_entry
-from .journal_entry import DESCRIPTION, JournalEntry, NewEntry, entry_of
+from ..._support.errors import ParameterError, StoreError
+from ..._support.user_files import toml_values
+from .engine import apart, database_errors, reading, writing
+from .journal_entry import DESCRIPTION, JournalEntry, NewEntry, entry_of, file_uid, now, write_entry
 from .rows import damaged, number_of, text_of
 from .schema import campaign, journal, journal_entry
 
@@ -250,3 +250,17 @@ def _require_subject(connection: Connection, id_: str, entry: NewEntry) -> None:
     found = select(journal_entry.c.sequence).where(_of_test(id_, entry), journal_entry.c.sequence == entry.about)
     if connection.execute(found).first() is None:
         raise StoreError(f"{entry.test} has no entry {entry.about} that could be corrected or undone.")
+
+
+def entered_name(connection: Connection, journal_id: str) -> str:
+    """Name in the campaign's last description; "" if it has none or is damaged."""
+    columns = journal_entry.c
+    descriptions = select(journal_entry).where(columns.journal_id == journal_id, columns.file == DESCRIPTION)
+    try:
+        with apart(connection):
+            entries = [entry_of(row) for row in connection.execute(descriptions).mappings()]
+        last = max(entries, key=lambda entry: entry.uid, default=None)
+        name = toml_values(last.cells[DESCRIPTION]).get("name") if last is not None else ""
+    except (StoreError, ParameterError, KeyError, DatabaseError, UnicodeDecodeError):
+        return ""
+    return " ".join(name.split()) if isinstance(name, str) else ""

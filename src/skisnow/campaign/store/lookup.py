@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING, TypeAlias
 from .engine import database_errors, file_errors, reading
 from .folder import StoredFile, new_folder
 from .journal import JournalHead, Journals
-from .replayed import replayed
-from .replayed_files import campaign_files, write_campaign
+from .replayed import campaign_files, replayed, write_campaign
 from .rows import ID_DIGITS, NamedId, StoredCampaign, known_campaigns, required_digits, unclear_id
 
 if TYPE_CHECKING:

@@ -2,16 +2,27 @@
 
 from __future__ import annotations
 
+import csv
+import io
+import json
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final, TypeAlias
 
-from ..reading.branches import is_unloading_cell
-from ..reading.table_forms import BRANCH
+from ..._support.errors import FieldDataError
+from ..._support.spreadsheet_text import guarded
+from ..reading.campaign_file import read_campaign_file
+from ..reading.columns import is_unloading_cell
+from ..reading.corrections import STATUS
+from ..reading.table_forms import BRANCH, CORRECTIONS, TABLES
 from .journal_entry import DESCRIPTION
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Iterator, Sequence
+    from pathlib import Path
 
+    from ..problems import Problem
+    from ..reading.table_forms import TableForm
     from .journal_entry import JournalEntry
 
 
@@ -147,3 +158,121 @@ def _take(test: ReplayedTest, rows: dict[int, ReplayedRow], entry: JournalEntry)
         rows[entry.about].corrections.append(entry)
     elif entry.action == "cancel":
         test.cancelling = entry
+
+
+COLUMNS: Final = ("file", "experiment", "row", "column", "old", "new", "who", "when", "why")
+
+
+def correction_row(entry: JournalEntry, line: int, column: str, old: str, new: str) -> tuple[str, ...]:
+    """What an entry says of a cell in a line of its file, by `COLUMNS`."""
+    return (entry.file, entry.test, str(line), column, old, new, entry.who, entry.at, entry.why)
+
+
+def csv_text(rows: Iterable[Sequence[str]]) -> str:
+    r"""A table with commas and plain line ends; no cell is taken for a formula.
+
+    >>> csv_text([("old", "new"), ("1,5", "1.5")])
+    'old,new\n"1,5",1.5\n'
+    """
+    stream = io.StringIO()
+    csv.writer(stream, lineterminator="\n").writerows(map(guarded, row) for row in rows)
+    return stream.getvalue()
+
+
+_TIME = "time"
+
+
+def campaign_files(campaign: ReplayedCampaign, *, of: Iterable[ReplayedTest] | None = None) -> dict[str, str]:
+    """The text of each file of the campaign's folder, by name.
+
+    Parameters
+    ----------
+    campaign
+        As it is now.
+    of
+        The tests to write; all where it is left out.
+    """
+    chosen = list(campaign.tests.values() if of is None else of)
+    files = {DESCRIPTION: campaign.description}
+    corrections: list[tuple[str, ...]] = []
+    for form in TABLES:
+        tests = [test for test in chosen if test.file == form.file and test.rows]
+        if tests:
+            files[form.file] = _table(form, tests)
+            corrections.extend(_corrections(tests))
+    if corrections:
+        files[CORRECTIONS.file] = csv_text([COLUMNS, *corrections])
+    return files
+
+
+def write_campaign(campaign: ReplayedCampaign, folder: Path, *, of: Iterable[ReplayedTest] | None = None) -> None:
+    """Write these files into a folder that exists, without waiting for the disk: they can be made again at any time."""
+    for name, text in campaign_files(campaign, of=of).items():
+        (folder / name).write_text(text, encoding="utf-8", newline="")
+
+
+def _table(form: TableForm, tests: Sequence[ReplayedTest]) -> str:
+    rows = [row for test in tests for row in test.rows]
+    present = {column for row in rows for column in row.entered.cells} | {_TIME}
+    present |= {column for row in rows for correction in row.corrections for column in correction.cells}
+    columns = [column for column in form.known if column in present or column in form.required]
+    return csv_text([columns, *(_cells(row, columns) for row in rows)])
+
+
+def _cells(row: ReplayedRow, columns: Sequence[str]) -> list[str]:
+    entered = {_TIME: row.entered.at, **row.entered.cells}
+    return [entered.get(column, "") for column in columns]
+
+
+def _corrections(tests: Sequence[ReplayedTest]) -> Iterator[tuple[str, ...]]:
+    line = 1  # of the header
+    for test in tests:
+        if test.cancelling is not None:
+            yield correction_row(test.cancelling, line + 1, STATUS, "", test.cancelled)
+        for row in test.rows:
+            line += 1
+            now = dict(row.entered.cells)
+            for entry in row.corrections:
+                for column, new in entry.cells.items():
+                    yield correction_row(entry, line, column, now.get(column, ""), new)
+                    now[column] = new
+
+
+Value: TypeAlias = "str | float | Sequence[str] | Sequence[float]"
+
+
+@dataclass(frozen=True, slots=True)
+class Description:
+    """Keys of campaign.toml with their values: of the whole, of each tool, of each plate. None and "" are left out."""
+
+    values: Mapping[str, Value | None] = field(default_factory=dict)
+    tools: Sequence[Mapping[str, Value]] = ()
+    plates: Sequence[Mapping[str, Value]] = ()
+
+
+def description_text(description: Description) -> str:
+    """The text of campaign.toml.
+
+    Raises
+    ------
+    FieldDataError
+        With every problem of the text, as reading the file would tell it.
+    """
+    lines = [f"{key} = {_written(value)}" for key, value in description.values.items() if value not in (None, "")]
+    for table, entries in (("tool", description.tools), ("plate", description.plates)):
+        for entry in entries:
+            lines += ["", f"[[{table}]]", *(f"{key} = {_written(value)}" for key, value in entry.items())]
+    text = "\n".join(lines) + "\n"
+    found: list[Problem] = []
+    read_campaign_file(text, found)
+    if any(problem.severity == "error" for problem in found):
+        raise FieldDataError(found)
+    return text
+
+
+def _written(value: Value | None) -> str:
+    if isinstance(value, str):  # a basic string of TOML is one of JSON, but for the letter DEL
+        return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
+    if isinstance(value, Sequence):
+        return f"[{', '.join(_written(item) for item in value)}]"
+    return repr(value)

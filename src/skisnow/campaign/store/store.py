@@ -13,9 +13,7 @@ from typing import TYPE_CHECKING, Self
 
 from ..._support.display import Facts, Shown
 from ..._support.errors import StoreError
-from .address import ServerAddress, store_place
 from .engine import database_errors, file_errors, open_engine, reading, writing
-from .finding import Finding
 from .folder import (
     FileState,
     Progress,
@@ -42,7 +40,8 @@ from .rows import (
     stored_chunks,
 )
 from .schema import CHUNK_BYTES
-from .verification import findings
+from .server import ServerAddress, store_place
+from .verification import Finding, findings
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Container, Mapping
@@ -50,7 +49,7 @@ if TYPE_CHECKING:
 
     from sqlalchemy import Engine
 
-    from .address import StorePlace
+    from .server import StorePlace
 
 __all__ = ["AddedCampaign", "Finding", "Store", "StoredCampaign", "StoredFile", "default_path"]
 

@@ -8,12 +8,10 @@ from typing import TYPE_CHECKING
 
 from ..._support.user_files import natural_number
 from ..reading.campaign_file import CAMPAIGN_FILE, read_campaign_file
-from ..reading.campaign_files import FilesOfFolder
-from ..reading.column_units import column_units
+from ..reading.campaign_files import FilesOfFolder, RawFiles
 from ..reading.corrections import Corrector, corrections_by_file, header_with_status
-from ..reading.header import Header, header_of
+from ..reading.header import Header, column_units, header_of
 from ..reading.headings import Headings
-from ..reading.raw_files import RawFiles
 from ..reading.table_forms import CORRECTIONS, TABLES
 from ..reading.tables import decimal_mark_of, read_table
 from ..reading.text import UnreadableTextError, decode, inspect_csv

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Final
 
 from nicegui import ui
 
-from ...campaign.reading.branches import is_unloading_cell
+from ...campaign.reading.columns import is_unloading_cell
 from ...campaign.reading.table_forms import BRANCH
 from ...campaign.store.stored_tables import cell_of
 from ..answering import asking_button, form

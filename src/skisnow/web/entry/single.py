@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Final
 
 from nicegui import ui
 
-from ...campaign.reading.turning import TURNING
+from ...campaign.reading.row_checks import TURNING
 from ..answering import asking_button, form
 from ..fields import choice, field
 from ..language import said

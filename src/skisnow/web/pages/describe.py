@@ -11,8 +11,8 @@ from ..._support.user_files import toml_values
 from ...campaign.problems import Problem
 from ...campaign.reading.tool_shapes import SHAPES
 from ...campaign.store import Journals, NewEntry, OvertakenError
-from ...campaign.store.description import Description, description_text
 from ...campaign.store.journal_entry import DESCRIPTION
+from ...campaign.store.replayed import Description, description_text
 from ..answering import asked, asking_button, form, go_on, row_button
 from ..edit_session import EditSession
 from ..fields import choice, field

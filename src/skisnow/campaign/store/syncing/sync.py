@@ -10,15 +10,16 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
+from sqlalchemy import Connection, select
+
 from ...._support.errors import StoreError
 from ..engine import database_errors, reading, writing
 from ..folder import Progress, no_progress
+from ..journal import entered_name
 from ..rows import one_campaign, stored_hashes
-from .choosing import settle
-from .conflict import Conflict, divergences
-from .heads import entries_by_uid, heads, shared_journals
-from .names import Names, names_of, same_names
-from .taking import take_campaign, take_journal
+from ..schema import campaign, journal
+from .conflict import Conflict, divergences, entries_by_uid, heads, shared_journals
+from .transfer import settle, take_campaign, take_journal
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -202,3 +203,44 @@ def _damage(store: Store, journal_id: str) -> str:
     except StoreError as error:
         return str(error)
     return ""
+
+
+@dataclass(frozen=True, slots=True)
+class Names:
+    """Names by id, of stored campaigns and of those in entry; damaged ones have none."""
+
+    stored: Mapping[str, str]
+    entered: Mapping[str, str]
+
+    @property
+    def all(self) -> dict[str, str]:
+        """Both kinds."""
+        return {**self.entered, **self.stored}
+
+
+def names_of(connection: Connection) -> Names:
+    """The names of a store's campaigns."""
+    rows = connection.execute(select(campaign.c.id, campaign.c.name)).all()
+    stored = {str(id_): name for id_, name in rows if isinstance(name, str)}
+    ids = set(connection.execute(select(journal.c.id)).scalars()) - {id_ for id_, _ in rows}
+    return Names(stored, {id_: name for id_ in ids if (name := entered_name(connection, id_))})
+
+
+def same_names(here: Names, there: Names) -> Iterator[str]:
+    """Campaigns of one kind and name that meet for the first time, in words."""
+    for what, of_here, of_there in (
+        ("stored campaigns", here.stored, there.stored),
+        ("campaigns in entry", here.entered, there.entered),
+    ):
+        met = {
+            (name, other, id_)
+            for id_, name in of_there.items()
+            if id_ not in of_here
+            for other, its_name in of_here.items()
+            if its_name == name
+        }
+        for name, other, id_ in sorted(met):
+            yield (
+                f"Two {what} are called {name!r}: {other}, which was here, and {id_} from there. "
+                "They are kept apart; give one another name if they are not the same."
+            )

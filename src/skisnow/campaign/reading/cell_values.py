@@ -1,4 +1,7 @@
-"""Days and times as people write them, to ISO 8601."""
+"""Numbers, days and times in cells of text.
+
+A file writes decimal points or decimal commas, never both: in a file with decimal commas 1.234 could be a thousand.
+"""
 
 from __future__ import annotations
 
@@ -6,13 +9,42 @@ import re
 from datetime import date, datetime, time
 from typing import TYPE_CHECKING, Final
 
-from ..problems import warning
+import numpy as np
+
+from ..._support.spreadsheet_text import decimal_mark, is_number, number
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from ..problems import Problem
-    from .columns import Rows
+    from ..records import FloatArray
+
+__all__ = ["decimal_mark", "is_number", "number", "numbers"]
+
+_BETWEEN: Final = "\x1f"  # the unit separator: in no number
+
+
+def numbers(cells: Sequence[str], mark: str) -> FloatArray:
+    """Read a column of cells; NaN where a cell is blank or no finite number.
+
+    The whole column at once where it is plain, cell by cell where it is not.
+    """
+    together = _BETWEEN.join(cells)
+    if together.isascii() and "_" not in together and not (mark == "," and "." in together):
+        try:
+            values = np.array(_all_numbers(together.replace(",", ".").split(_BETWEEN) if mark == "," else cells))
+        except ValueError:
+            return np.array([number(cell, mark) for cell in cells])
+        values[~np.isfinite(values)] = np.nan
+        return values
+    return np.array([number(cell, mark) for cell in cells])
+
+
+def _all_numbers(cells: Sequence[str]) -> list[float]:
+    try:
+        return list(map(float, cells))
+    except ValueError:
+        return [float(cell or "nan") for cell in cells]
+
 
 _CLOCK: Final = r"(?:[ T,]+(?:um )?(?P<hour>\d{1,2})[:.](?P<minute>\d{2})(?:[:.](?P<second>\d{2}))?(?: Uhr)?)?"
 _DAY_FIRST: Final = re.compile(rf"(?P<day>\d{{1,2}})\. ?(?P<month>\d{{1,2}})\. ?(?P<year>\d{{4}}|\d{{2}}){_CLOCK}")
@@ -58,46 +90,3 @@ def _written(found: re.Match[str], *, slashes: bool) -> str | None:
         return of_day
     clock = time(int(found["hour"]), int(found["minute"]), int(found["second"] or 0))
     return f"{of_day}T{clock.isoformat()}"
-
-
-class DateCollector:
-    """Collects days and times, written after ISO 8601; one that cannot be read stays as it is, and is reported once."""
-
-    def __init__(self, column: str) -> None:
-        self._column = column
-        self._written: dict[str, str | None] = {"": ""}
-        self._texts: list[str] = []
-        self._unread: list[tuple[int, str, str]] = []
-
-    def take(self, cells: Sequence[str], rows: Rows, found: list[Problem]) -> None:  # noqa: ARG002
-        """See `Collector.take`."""
-        for index, cell in enumerate(map(str.strip, cells)):
-            if cell not in self._written:
-                self._written[cell] = iso_moment(cell)
-            written = self._written[cell]
-            if written is None:
-                self._unread.append((rows.line[index], cell, rows.key[index]))
-            self._texts.append(cell if written is None else written)
-
-    def problems(self, file: str) -> list[Problem]:
-        """What could not be read, in one warning."""
-        if not self._unread:
-            return []
-        line, cell, key = self._unread[0]
-        more = f", and {len(self._unread) - 1} more like it" if len(self._unread) > 1 else ""
-        return [
-            warning(
-                "unreadable_date",
-                file,
-                row=line,
-                column=self._column,
-                experiment=key.strip() or None,
-                value=f"{cell}{more}",
-                allowed="a day such as 2026-11-23 or 23.11.2026, with or without a time such as 09:10",
-                action="Write it so; no estimate needs it, but the report does not name this day.",
-            )
-        ]
-
-    def column(self) -> tuple[str, ...]:
-        """Give the column."""
-        return tuple(self._texts)

@@ -1,0 +1,233 @@
+"""Checks of the rows of a table: units, angles, branches, turning angles, and repeated rows."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from ..problems import error, warning
+from .campaign_file import CAMPAIGN_FILE
+from .columns import is_unloading
+from .experiments import Blocks, check_one_site, check_series
+from .implausible_units import check_likely_units, check_missing_units
+from .table_forms import BRANCH, BRANCHES, DENSITY, DROP_CONE, LOADING, PENETRATION, SHEAR, UNLOADING
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from ..problems import Problem
+    from ..records import BoolArray
+    from .campaign_file import CampaignFile
+    from .columns import Table
+    from .experiments import Blocks
+
+
+def check_together(table: Table, described: CampaignFile | None) -> Iterator[Problem]:
+    """Find contradictions between the rows of a table, or with campaign.toml where that could be read."""
+    yield from check_likely_units(table)
+    yield from check_missing_units(table, described)
+    if table.form in (DENSITY, DROP_CONE):
+        yield from check_repeated_rows(table)
+    if table.form == PENETRATION:
+        yield from _check_penetration(table, described)
+    elif table.form == SHEAR:
+        yield from _check_shear(table, described)
+    elif table.form == DROP_CONE:
+        yield from check_one_site(table)
+
+
+def _check_penetration(table: Table, described: CampaignFile | None) -> Iterator[Problem]:
+    blocks = Blocks.of_runs(table.names["experiment"])
+    yield from check_series(table, blocks)
+    yield from check_branches(table, blocks)
+    yield from check_unit(table)
+    yield from check_steepness(table, blocks)
+    if described is not None:
+        yield from check_flat_tools(table, blocks, described.flat_tools)
+        yield from _unknown_names(table, blocks, "tool", described.tool_names)
+
+
+def _check_shear(table: Table, described: CampaignFile | None) -> Iterator[Problem]:
+    blocks = shear_blocks(table)
+    yield from check_series(table, blocks)
+    yield from check_turning(table, blocks)
+    yield from check_unit(table)
+    if described is not None:
+        yield from _unknown_names(table, blocks, "plate", described.plate_names)
+
+
+def _unknown_names(table: Table, blocks: Blocks, column: str, known: frozenset[str]) -> Iterator[Problem]:
+    """Find tools or plates that campaign.toml does not describe, once in each experiment."""
+    names = table.names[column]
+    unknown = np.array([bool(name) and name not in known for name in names.names], dtype=np.bool_)[names.code]
+    pairs = np.stack([blocks.of_row, names.code], axis=1)[unknown]
+    _, first = np.unique(pairs, axis=0, return_index=True)
+    for row in np.flatnonzero(unknown)[np.sort(first)].tolist():
+        yield error(
+            f"unknown_{column}",
+            table.form.file,
+            row=int(table.row[row]),
+            column=column,
+            experiment=table.names[table.form.key][row] or None,
+            value=names[row],
+            allowed=f"one of {', '.join(sorted(known))}" if known else f"a {column} that {CAMPAIGN_FILE} describes",
+            action=f"Correct the cell, or describe the {column} in {CAMPAIGN_FILE} under [[{column}]].",
+        )
+
+
+COLUMN: Final = "edge_angle_deg"
+STEEPEST_MEASURED_DEG: Final = 60.0
+"""Edge angles of the paper's penetration experiments end here (Mössner and others 2013)."""
+SMALLEST_LIKELY_DEG: Final = 1.6
+"""Just above π/2: a file whose angles all stay below may hold radians."""
+
+
+def check_unit(table: Table) -> Iterator[Problem]:
+    """Warn once where all angles of the file that are not zero look like radians."""
+    angle = table.numbers[COLUMN]
+    tilted = angle[angle > 0]
+    if len(tilted) and float(tilted.max()) < SMALLEST_LIKELY_DEG:
+        yield warning(
+            "angles_look_like_radians",
+            table.form.file,
+            column=COLUMN,
+            value=f"{tilted.min():g} to {tilted.max():g}",
+            allowed="degrees",
+            action="If these are radians multiply them by 57.29578; if they are degrees nothing need be done.",
+        )
+
+
+def check_steepness(table: Table, blocks: Blocks) -> Iterator[Problem]:
+    """Warn of each experiment that is steeper than what was measured for the paper."""
+    steep = table.numbers[COLUMN] > STEEPEST_MEASURED_DEG
+    for row in _once_per_block(steep, blocks):
+        yield warning(
+            "angle_above_60",
+            table.form.file,
+            row=int(table.row[row]),
+            column=COLUMN,
+            experiment=table.names[table.form.key][row] or None,
+            value=f"{table.numbers[COLUMN][row]:g}",
+            allowed=f"penetration at up to {STEEPEST_MEASURED_DEG:g} degrees is what was measured before",
+            action="It is computed all the same; make sure that the angle is meant.",
+        )
+
+
+def check_flat_tools(table: Table, blocks: Blocks, flat_tools: frozenset[str]) -> Iterator[Problem]:
+    """Find tools without an edge that are tilted."""
+    tool = table.names["tool"]
+    is_flat = np.array([name in flat_tools for name in tool.names], dtype=np.bool_)[tool.code]
+    for row in _once_per_block(is_flat & (table.numbers[COLUMN] > 0), blocks):
+        yield error(
+            "out_of_range",
+            PENETRATION.file,
+            row=int(table.row[row]),
+            column=COLUMN,
+            experiment=table.names[table.form.key][row] or None,
+            value=f"{table.numbers[COLUMN][row]:g}",
+            allowed=f"0 for the tool {tool[row]!r}, which has no edge",
+            action="Write 0, or name the tool that was used.",
+        )
+
+
+def _once_per_block(chosen: BoolArray, blocks: Blocks) -> list[int]:
+    rows = np.flatnonzero(chosen)
+    _, first = np.unique(blocks.of_row[rows], return_index=True)
+    found: list[int] = rows[first].tolist()
+    return found
+
+
+def check_branches(table: Table, blocks: Blocks) -> Iterator[Problem]:
+    """Find words that name no branch, discs that are laid on again, and series that were never loaded."""
+    branch = table.names[BRANCH]
+    unknown = np.array([name.casefold() not in BRANCHES for name in branch.names], dtype=np.bool_)[branch.code]
+    for row in np.flatnonzero(unknown).tolist():
+        yield _refusal(table, row, "out_of_range", f"{LOADING}, {UNLOADING} or nothing, which is {LOADING}")
+    taken_off = is_unloading(branch)
+    same = blocks.of_row[1:] == blocks.of_row[:-1]
+    for row in (np.flatnonzero(same & taken_off[:-1] & ~taken_off[1:]) + 1).tolist():
+        yield _refusal(table, row, "branch_order", f"{UNLOADING}: a row of this experiment before it is")
+    for row in blocks.start[taken_off[blocks.start]].tolist():
+        yield _refusal(table, row, "branch_order", f"{LOADING}: an experiment begins under its first load")
+
+
+def _refusal(table: Table, row: int, code: str, allowed: str) -> Problem:
+    return error(
+        code,
+        table.form.file,
+        row=int(table.row[row]),
+        column=BRANCH,
+        experiment=table.names[table.form.key][row] or None,
+        value=table.names[BRANCH][row],
+        allowed=allowed,
+        action="Correct the cell; the rows stand in the order of reading, and a second loading is another experiment.",
+    )
+
+
+TURNING: Final = "turning_angle_deg"
+_ONCE: Final = ("depth_mm", "lever_arm_mm")
+
+
+def shear_blocks(table: Table) -> Blocks:
+    """Rows of one experiment together where their turning angle is given; each row by itself where it is not."""
+    turned = ~np.isnan(table.numbers[TURNING])
+    if not turned.any():
+        return Blocks.of_single_rows(len(table))
+    code = table.names[table.form.key].code
+    goes_on = (code[1:] == code[:-1]) & turned[1:] & turned[:-1]
+    return Blocks(np.concatenate(([0], np.flatnonzero(~goes_on) + 1, [len(code)])).astype(np.int64))
+
+
+def check_turning(table: Table, blocks: Blocks) -> Iterator[Problem]:
+    """Find depths and lever arms that change within an experiment."""
+    for name in _ONCE:
+        values = table.numbers[name]
+        first = values[blocks.start][blocks.of_row]
+        for row in np.flatnonzero((values != first) & ~np.isnan(values) & ~np.isnan(first)).tolist():
+            yield error(
+                "mixed_experiment",
+                table.form.file,
+                row=int(table.row[row]),
+                column=name,
+                experiment=table.names[table.form.key][row] or None,
+                value=f"{values[row]:.12g}",
+                allowed=f"one {name} in an experiment; its first row has {first[row]:.12g}",
+                action="Correct the cell, or give the rows that were another experiment another name.",
+            )
+
+
+MOST_LISTED: Final = 1000
+"""Repeated rows that are listed one by one."""
+
+
+def check_repeated_rows(table: Table) -> Iterator[Problem]:
+    """Warn of each row that says in every column what an earlier row says; beyond `MOST_LISTED` of their number."""
+    names = [column.cells() for column in table.names.values()]
+    numbers = [np.where(np.isfinite(column), column, -np.inf).tolist() for column in table.numbers.values()]
+    first: dict[tuple[object, ...], int] = {}
+    repeated = 0
+    for index, row in enumerate(zip(*names, *numbers, *table.further.values(), strict=True)):
+        earlier = first.setdefault(row, index)
+        if earlier == index:
+            continue
+        repeated += 1
+        if repeated > MOST_LISTED:
+            continue
+        yield warning(
+            "repeated_row",
+            table.form.file,
+            row=int(table.row[index]),
+            experiment=table.names[table.form.key][index] or None,
+            value=f"the same as row {int(table.row[earlier])}",
+            allowed="each measurement once",
+            action="It counts again in the mean of its site: remove the row if it was pasted twice.",
+        )
+    if repeated > MOST_LISTED:
+        yield warning(
+            "repeated_row",
+            table.form.file,
+            value=f"{repeated - MOST_LISTED} more repeated rows",
+            allowed="each measurement once",
+            action="They count again in the means of their sites: remove rows that were pasted twice.",
+        )

@@ -1,0 +1,266 @@
+"""A new campaign: a folder of files or one workbook, with an example row in each table.
+
+No estimate counts the example rows: their status cancels them.
+"""
+
+from __future__ import annotations
+
+import csv
+import io
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
+
+from .._support.errors import OutputError
+from .._support.staging import staged, tidied, write_file
+from ..snow.published import moessner_2013
+from .reading.campaign import CAMPAIGN_FILES
+from .reading.campaign_file import CAMPAIGN_FILE, CAMPAIGN_KEYS
+from .reading.table_forms import DENSITY, DROP_CONE, PENETRATION, SHEAR, allowed_words
+from .reading.workbook_files import CAMPAIGN, COLUMNS, PLATES, TOOLS, is_workbook
+from .reference import design
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping, Sequence
+
+    from ..parameters import Quantity
+    from .reading.table_forms import TableForm
+
+EXAMPLE_STATUS: Final = "example: write over or delete this row"
+"""A status cancels the experiment: the example is in no estimate even where it is left standing."""
+TOOL: Final = design.TOOL
+TOOL_LENGTHS_MM: Final = (moessner_2013.TOOL_LENGTH_MM, moessner_2013.TOOL_WIDTH_MM)
+PLATE: Final = design.PLATE
+PLATE_LENGTH_MM: Final = design.PLATE_LENGTH * 1e3
+LOADS_N: Final = design.LOADS
+"""Evenly spaced between the paper's 12 and 492 N."""
+GAUGE_RESOLUTION_MM: Final = 0.01
+
+
+@dataclass(frozen=True, slots=True)
+class Template:
+    """A table with one row; the cells by the names of the columns."""
+
+    form: TableForm
+    example: Mapping[str, str | float]
+
+    @property
+    def numbers(self) -> dict[str, Quantity]:
+        """The columns of numbers."""
+        return {quantity.name: quantity for quantity in self.form.numbers}
+
+    def explained(self) -> Iterator[tuple[str, str]]:
+        """Each column with what stands in it."""
+        for name in self.example:
+            quantity = self.numbers.get(name)
+            yield name, WORDS.get(name, "") if quantity is None else f"{quantity.meaning}; {_unit(quantity)}"
+
+
+def _unit(quantity: Quantity) -> str:
+    return f"{allowed_words(quantity)} in {quantity.unit}"
+
+
+WORDS: Final = {
+    "experiment": "one name for all rows of an experiment, in their order",
+    "sample": "a name for each sample",
+    "test": "one name for all repeats of a test",
+    "site": "where; sites are compared with each other",
+    "spot": "may be blank: a spot of the site, which pairs penetration and shear tests",
+    "tool": "a tool that the campaign describes",
+    "plate": "a plate that the campaign describes",
+    "repeat": "which repeat of the test",
+    "time": "may be blank: day and time, such as 2026-11-23T09:10 or 23.11.2026 09:10",
+    "status": "blank; a word cancels the experiment and says why",
+    "remark": "may be blank",
+}
+_LAST: Final = {"time": "2026-11-23T09:10", "status": EXAMPLE_STATUS, "remark": ""}
+
+TEMPLATES: Final = (
+    Template(
+        PENETRATION,
+        {
+            "experiment": "P1", "site": "site A", "spot": "1", "tool": TOOL, "edge_angle_deg": 30.0,
+            "load_N": LOADS_N[0], "depth_mm": 1.25, **_LAST,
+        },
+    ),
+    Template(
+        SHEAR,
+        {
+            "experiment": "S1", "site": "site A", "spot": "1", "plate": PLATE, "edge_angle_deg": 90.0,
+            "depth_mm": 5.5, "lever_arm_mm": 250.0, "moment_Nm": 12.25, **_LAST,
+        },
+    ),
+    Template(DENSITY, {"sample": "D1", "site": "site A", "snow_density_kg_per_m3": 420.0, **_LAST}),
+    Template(DROP_CONE, {"test": "C1", "site": "site A", "repeat": "1", "drop_cone_depth_mm": 13.5, **_LAST}),
+)  # fmt: skip
+
+LENGTH_MM, WIDTH_MM = TOOL_LENGTHS_MM
+GIVEN: Final[dict[str, str]] = {
+    "place": "",
+    "gauge_resolution_mm": f"{GAUGE_RESOLUTION_MM:g}",
+    "load_steps_N": "; ".join(f"{load:g}" for load in LOADS_N),
+}
+"""Values that a new campaign begins with, as a cell holds them; the name is asked for."""
+
+
+def keys_with_values(name: str) -> Iterator[tuple[str, str, Quantity]]:
+    """Every key of one value or a list of numbers, with what a new campaign of this name begins with."""
+    for key, quantity in CAMPAIGN_KEYS.items():
+        yield key, name if key == "name" else GIVEN.get(key, ""), quantity
+
+
+def campaign_toml(name: str) -> str:
+    """The text of campaign.toml."""
+    keys = "".join(_line(*each) for each in keys_with_values(name))
+    tables = "".join(
+        f"# {template.form.file}\n" + "".join(f"#   {column}: {words}\n" for column, words in template.explained())
+        for template in TEMPLATES
+    )
+    return f"""\
+# A campaign to be filled in: this file, and one row as an example in each table. Keys and columns carry their units.
+# The status of the example rows keeps them out of every estimate; write over them or delete them.
+{keys}
+# Tables that have other headings: say which column each stands for (skisnow check proposes it)
+# columns."Kantwinkel [°]" = "edge_angle_deg"
+
+[[tool]]
+name = "{TOOL}"
+shape = "ski"       # or "disc" with diameter_mm, or "cylinder" with radius_mm and width_mm
+length_mm = {LENGTH_MM:g}
+width_mm = {WIDTH_MM:g}
+
+[[plate]]
+name = "{PLATE}"
+length_mm = {PLATE_LENGTH_MM:g}
+
+{tables}"""
+
+
+def _line(key: str, cell: str, quantity: Quantity) -> str:
+    about = f"# {quantity.meaning}{f' ({quantity.unit})' if quantity.unit else ''}\n"
+    if quantity.kind == "text":
+        return f'{about}{key} = "{cell}"\n'
+    if quantity.kind == "numbers":
+        return f"{about}{key} = [{cell.replace(';', ',')}]\n"
+    return f"{about}{key} = {cell}\n" if cell else f"{about}# {key} =\n"
+
+
+_WIDEST: Final = 60
+
+
+def workbook_bytes(name: str) -> bytes:
+    """The .xlsx file of a new campaign; what stands in a column is said in a note at its heading."""
+    from openpyxl import Workbook
+
+    book = Workbook()
+    book.remove(book.active)
+    described = [
+        (key, _cell(value), quantity.unit, quantity.meaning) for key, value, quantity in keys_with_values(name)
+    ]
+    _fill(book.create_sheet(CAMPAIGN), ("key", "value", "unit", "meaning"), [*described, _OBSERVERS])
+    _fill(
+        book.create_sheet(TOOLS),
+        ("name", "shape", "length_mm", "width_mm", "diameter_mm", "radius_mm"),
+        [(TOOL, "ski", LENGTH_MM, WIDTH_MM)],
+    )
+    _fill(book.create_sheet(PLATES), ("name", "length_mm"), [(PLATE, PLATE_LENGTH_MM)])
+    for template in TEMPLATES:
+        sheet = book.create_sheet(template.form.file.removesuffix(".csv"))
+        _fill(sheet, tuple(template.example), [tuple(template.example.values())], notes=dict(template.explained()))
+    _fill(book.create_sheet(COLUMNS), ("heading", "column", "table"), [])
+    stream = io.BytesIO()
+    book.save(stream)
+    return stream.getvalue()
+
+
+_OBSERVERS: Final = ("observers", "", "", "who; several are parted by semicolons")
+
+
+def _cell(text: str) -> str | float:
+    try:
+        return float(text)
+    except ValueError:
+        return text
+
+
+def _fill(
+    sheet: Any, header: Sequence[str], rows: Iterable[Sequence[str | float]], *, notes: dict[str, str] | None = None
+) -> None:
+    from openpyxl.comments import Comment
+    from openpyxl.styles import Font
+    from openpyxl.utils import get_column_letter
+
+    every = [tuple(header), *rows]
+    for row in every:
+        sheet.append([None if cell == "" else cell for cell in row])
+    for place, name in enumerate(header, start=1):
+        head = sheet.cell(1, place)
+        head.font = Font(bold=True)
+        if notes and notes.get(name):
+            head.comment = Comment(notes[name], "skisnow", height=90, width=300)
+        longest = max(len(str(row[place - 1])) for row in every if len(row) >= place)
+        sheet.column_dimensions[get_column_letter(place)].width = min(longest, _WIDEST) + 3
+    sheet.freeze_panes = "A2"
+
+
+WORKBOOK: Final = "campaign.xlsx"
+
+
+def write_new_campaign(folder: str | Path, *, xlsx: bool = False) -> tuple[Path, ...]:
+    """Write what a campaign is filled into; where tables lie in the folder already, campaign.toml alone.
+
+    Parameters
+    ----------
+    folder
+        Made where it is missing; the campaign takes its name.
+    xlsx
+        One workbook in place of campaign.toml and four tables.
+
+    Returns
+    -------
+    The files. Each table has a row as an example, whose status keeps it out of every estimate.
+
+    Raises
+    ------
+    OutputError
+        The folder holds a campaign.toml, or with ``xlsx`` any table, or cannot be written; nothing is half-written.
+    """
+    folder = Path(folder)
+    there = _there(folder)
+    if CAMPAIGN_FILE in there or (there and xlsx):
+        raise OutputError(
+            f"{folder} holds a campaign already ({', '.join(there)}); nothing was written. Choose another folder."
+        )
+    name = folder.resolve().name.replace("\\", "").replace('"', "") or "campaign"
+    contents = _workbook(name) if xlsx else _files(name, tables=not there)
+    tidied(folder)
+    with staged(folder, last=next(iter(contents))) as stage:
+        for file, content in contents.items():
+            write_file(stage.path / file, content)
+    return tuple(folder / file for file in contents)
+
+
+def _workbook(name: str) -> Mapping[str, bytes | str]:
+
+    return {WORKBOOK: workbook_bytes(name)}
+
+
+def _there(folder: Path) -> list[str]:
+    """What a campaign reads and the folder has: files of tables, workbooks."""
+    names = sorted(path.name for path in folder.iterdir()) if folder.is_dir() else []
+    return [name for name in names if name in CAMPAIGN_FILES or is_workbook(name)]
+
+
+def _files(name: str, *, tables: bool) -> Mapping[str, bytes | str]:
+    written = {template.form.file: _csv(template) for template in TEMPLATES} if tables else {}
+    return {CAMPAIGN_FILE: campaign_toml(name)} | written
+
+
+def _csv(template: Template) -> str:
+    stream = io.StringIO()
+    writer = csv.writer(stream, lineterminator="\n")
+    writer.writerow(template.example)
+    cells = template.example.values()
+    writer.writerow([f"{cell:g}" if isinstance(cell, float) else cell for cell in cells])
+    return stream.getvalue()
