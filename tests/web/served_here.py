@@ -24,7 +24,7 @@ def leave_figures_empty() -> None:
         return Picture(drawing.name, drawing.whole_caption, drawing.alt, drawing.wide, svg, svg.encode())
 
     patch("skisnow.report.campaign.figures.pictured", empty).start()
-    patch("skisnow.web.analysing.drawing_svg", lambda _: svg).start()
+    patch("skisnow.web.campaign_analysis.drawing_svg", lambda _: svg).start()
 
 
 if __name__ == "__main__":

@@ -89,7 +89,7 @@ def test_nobody_is_barred_from_correcting(page: Page, served: Served) -> None:
 
 
 def test_nobody_is_barred_from_where_the_token_is_asked(plain: Page) -> None:
-    token_page = pytest.importorskip("skisnow.web.token_page", reason="the web lab is not installed")
+    token_page = pytest.importorskip("skisnow.web.guard", reason="the web lab is not installed")
     plain.set_content(token_page.token_page({"type": "http", "headers": []}, 403).body.decode("utf-8"))
     assert barred(plain) == []
 

@@ -13,8 +13,8 @@ import pytest
 from skisnow.campaign import read_campaign, write_reference
 from skisnow.campaign.store import Journals, NewEntry, Store
 from skisnow.estimation import analyse, results_dict
-from skisnow.web.analyses import MOST_CAMPAIGNS
-from skisnow.web.analysing import choosable_flags
+from skisnow.web.analysis_cache import MOST_CAMPAIGNS
+from skisnow.web.campaign_analysis import choosable_flags
 
 from .conftest import DRAWING_MS, Served, downloaded_results, ready
 

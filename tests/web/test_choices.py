@@ -14,11 +14,11 @@ from skisnow import analyse, read_campaign
 from skisnow._support.errors import ParameterError
 from skisnow.parameters import Quantity
 from skisnow.snow import published_snow
-from skisnow.web.entry.kept import KeptForm
+from skisnow.web.entry.imported_test import KeptForm
 from skisnow.web.line_chart import BEHIND
 from skisnow.web.pages.study_table import _Found
 from skisnow.web.snow_choice import ALL_SITES, PUBLISHED, SnowChoice
-from skisnow.web.study_axis import NOTHING, AxisFields
+from skisnow.web.study_fields import NOTHING, AxisFields
 
 from .finished import finished
 from .test_in_memory import PENETRATION, TOML
@@ -209,6 +209,7 @@ def test_cells_that_were_typed_anew_are_those_of_every_row_that_has_them_once() 
     assert not made._is_once((2, 3), "depth_mm", now)
     said: list[Any] = []
     made._view = SimpleNamespace(say=lambda words, _, items: said.extend((words, items)), form=None)
+    made._table = SimpleNamespace(conversions={})
     made._fields = {
         (2, 3): {"site": SimpleNamespace(value=" B ", error=None)},
         (2,): {"depth_mm": SimpleNamespace(value="1.5", error=None)},
@@ -216,10 +217,12 @@ def test_cells_that_were_typed_anew_are_those_of_every_row_that_has_them_once() 
     }
     with pytest.MonkeyPatch.context() as patched:
         patched.setattr(
-            "skisnow.web.entry.kept.checked_fields",
-            lambda _, fields: {column: str(each.value).strip() for column, each in fields.items()},
+            "skisnow.web.entry.imported_test.checked_fields",
+            lambda _, fields, **_conversions: {column: str(each.value).strip() for column, each in fields.items()},
         )
-        patched.setattr("skisnow.web.entry.kept.faults", lambda fields: [each.error for each in fields if each.error])
+        patched.setattr(
+            "skisnow.web.entry.imported_test.faults", lambda fields: [each.error for each in fields if each.error]
+        )
         assert made._changed(now) == {"2/site": "B", "3/site": "B", "3/depth_mm": "2.5"}
         made._fields[(3,)]["depth_mm"].error = "Depth: no number"
         assert made._changed(now) is None

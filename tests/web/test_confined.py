@@ -10,7 +10,7 @@ import time
 import pytest
 
 from skisnow._support.errors import FieldDataError, ParameterError
-from skisnow.web.confined import BOUNDS, Bounds, confined
+from skisnow.web.subprocesses import BOUNDS, Bounds, confined
 
 
 def other_process(word: str) -> tuple[str, int]:

@@ -16,8 +16,7 @@ from starlette.routing import Route, WebSocketRoute
 from starlette.types import Message, Scope
 from starlette.websockets import WebSocket
 
-from skisnow.web.guard import COOKIE, Access, Guard, is_loopback
-from skisnow.web.token_page import Tries
+from skisnow.web.guard import COOKIE, Access, Guard, Tries, is_loopback
 
 from .finished import finished
 
@@ -208,7 +207,7 @@ def test_an_address_may_try_ten_tokens_a_minute() -> None:
 
 
 def test_too_many_tries_are_told_when_to_try_again(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("skisnow.web.token_page._WAIT_S", 0.0)
+    monkeypatch.setattr("skisnow.web.guard._WAIT_S", 0.0)
     lab = Client(token="snow in may")
     wrong = [lab.post(b"token=snow+in+june", path="/token", **OWN).status for _ in range(10)]
     assert wrong == [403] * 10

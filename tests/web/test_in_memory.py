@@ -19,14 +19,13 @@ from skisnow.estimation import analyse
 from skisnow.report.campaign.figures import DRAWERS
 from skisnow.report.formatting import significant
 from skisnow.snow import snow_from_results
-from skisnow.web.analyses import Analyses, CampaignSource
-from skisnow.web.analysing import Choice, Numbers, figure, numbers_of
-from skisnow.web.correction_session import CorrectionSession
-from skisnow.web.edit_session import EditSession, _flag_sentences
+from skisnow.web.analysis_cache import Analyses, CampaignSource
+from skisnow.web.campaign_analysis import Choice, Numbers, figure, numbers_of
+from skisnow.web.edit_session import CorrectionSession, EditSession, _flag_sentences
 from skisnow.web.settings import Lab
-from skisnow.web.snow_of_campaign import campaign_snow, results_with
+from skisnow.web.snow_choice import campaign_snow, results_with
 from skisnow.web.transfer import entry_files, kept_files, write_entry
-from skisnow.web.uploaded import add_uploaded
+from skisnow.web.uploads import add_uploaded
 
 from ..campaign.recordings import plain_snow
 from ..support.user_files.test_workbook import packed
@@ -34,7 +33,7 @@ from .campaign_texts import DESK
 from .finished import finished
 
 if TYPE_CHECKING:
-    from skisnow.web.worker import Worker
+    from skisnow.web.subprocesses import Worker
 
 TOML = DESK
 ROWS = [("20", "1.5"), ("40", "2.1"), ("60", "2.6")]

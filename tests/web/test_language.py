@@ -29,7 +29,7 @@ from skisnow.ski import read_ski
 from skisnow.web.analysis_view import NAMES_IN_FILES
 from skisnow.web.pages.simulate import basic, expert
 from skisnow.web.scenario_fields import called, range_words
-from skisnow.web.study_asked import CARVE, study_keys
+from skisnow.web.study_fields import CARVE, study_keys
 
 from .shown_texts import MADE_OF_KINDS, shown_texts
 from .test_day import PLATE, TOOL, VALUES

@@ -20,7 +20,7 @@ from .conftest import Served, fill
 pytest.importorskip("nicegui", reason="the web lab is not installed")
 
 from skisnow._support.language import catalogue
-from skisnow.web.measured_ski import add_ski, measured_text, read_ski_files, ski_of_uploads
+from skisnow.web.lab_skis import add_ski, measured_text, read_ski_files, ski_of_uploads
 
 if TYPE_CHECKING:
     from playwright.sync_api import Page

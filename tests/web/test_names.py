@@ -3,7 +3,7 @@
 import pytest
 
 from skisnow._support.errors import StoreError
-from skisnow.web.names import analysis, carving, correcting, entering, export, plain_stem, required_id
+from skisnow.web.page_addresses import analysis, carving, correcting, entering, export, plain_stem, required_id
 
 
 def test_addresses_of_a_campaign() -> None:

@@ -20,7 +20,7 @@ from .conftest import MISSING, Served
 if "nicegui" in MISSING:
     pytest.skip("the web lab is not installed", allow_module_level=True)
 
-from skisnow.web.addresses import for_others
+from skisnow.web.server import for_others
 
 
 @pytest.fixture(scope="module")

@@ -20,7 +20,7 @@ if "nicegui" in MISSING:
 
 import uvicorn
 
-from skisnow.web.slow_requests import HEAD_BYTES, PatientToAPoint
+from skisnow.web.server import HEAD_BYTES, PatientToAPoint
 
 if TYPE_CHECKING:
     from starlette.types import Receive, Scope, Send

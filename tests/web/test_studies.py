@@ -12,10 +12,9 @@ pytest.importorskip("nicegui", reason="the web lab is not installed")
 from skisnow._support.errors import ParameterError
 from skisnow.cli import main
 from skisnow.studies import read_study
-from skisnow.web.run_estimate import duration_words
-from skisnow.web.studies import Studies, StudyJob
-from skisnow.web.study_asked import CARVE, MOST_POINTS, Range, StudyAsked, study_keys
-from skisnow.web.study_estimate import CARVE_S, estimate_words, learned, unit_s
+from skisnow.web.runs import duration_words
+from skisnow.web.studies import CARVE_S, Studies, StudyJob, estimate_words, learned, unit_s
+from skisnow.web.study_fields import CARVE, MOST_POINTS, Range, StudyAsked, study_keys
 
 TURNS = StudyAsked(
     CARVE,

@@ -17,8 +17,8 @@ from skisnow.campaign.store import Store
 from skisnow.ski import read_ski
 from skisnow.web import error_pages
 from skisnow.web.lab_skis import LabSkis
+from skisnow.web.replay.addresses import add_uploads
 from skisnow.web.replay.tracks import TrackFolders
-from skisnow.web.replay.uploads import add_uploads
 from skisnow.web.settings import Lab
 from skisnow.web.ski_uploads import add_ski_uploads
 

@@ -13,7 +13,7 @@ import pytest
 
 from skisnow._support.errors import ParameterError
 from skisnow.web.settings import Limits
-from skisnow.web.unpacking import Unpacking, campaign_folder, files_below, write_zip
+from skisnow.web.uploads import Unpacking, campaign_folder, files_below, write_zip
 
 LIMITS = Limits(upload_bytes=10_000, unpacked_bytes=5_000, files=4)
 

@@ -12,11 +12,11 @@ from nicegui import ui
 from ..campaign.reading.campaign_file import TOP_KEYS
 from ..campaign.reading.table_forms import TABLES
 from ..report.formatting import counted
-from .analysing import Choice, Numbers, Refusal, choosable_flags
+from .campaign_analysis import Choice, Numbers, Refusal, choosable_flags
+from .elements import Words, html_words, named
 from .error_pages import error_sentence
 from .language import language_of, said, said_as_written
 from .layout import heading, sentence
-from .worded import Words, html_words, named
 
 if TYPE_CHECKING:
     from collections.abc import Awaitable, Callable, Sequence, Set
@@ -24,8 +24,8 @@ if TYPE_CHECKING:
 
     from nicegui.events import ValueChangeEventArguments
 
-    from .analyses import Analysed, Analyses, CampaignSource
-    from .analysing import Shown
+    from .analysis_cache import Analysed, Analyses, CampaignSource
+    from .campaign_analysis import Shown
 
     Chooser: TypeAlias = Callable[[ValueChangeEventArguments[bool | None]], Awaitable[None]]
 

@@ -1,28 +1,32 @@
-"""The lab as an ASGI application."""
+"""The lab as an ASGI application, and its sockets."""
 
 from __future__ import annotations
 
+import inspect
+import logging
+from functools import wraps
 from importlib import import_module
 from pathlib import Path
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
 from fastapi import FastAPI
 from nicegui import app as pages_app
-from nicegui import ui
+from nicegui import core, ui
 from starlette.responses import FileResponse, RedirectResponse, Response
 
 from .._support.language import languages
-from .error_pages import add_error_pages, log_to
+from .error_pages import LOG, add_error_pages, log_to
 from .guard import Access, Guard
 from .language import COOKIE
 from .layout import KEEPING, LANGUAGE, SCRIPT, STYLES
 from .pages import INNER, PAGES
-from .patience import RECONNECT_S, use_heartbeat
+from .settings import PING_EVERY_S, PING_WAIT_S, RECONNECT_S
 from .ski_uploads import add_ski_uploads
-from .socket_events import answer_quietly
 from .transfer import add_transfer
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from starlette.types import ASGIApp
 
     from .settings import Lab
@@ -83,3 +87,52 @@ def _chosen(code: str, back: str = "/") -> Response:
 
 def _own(name: str, kind: str) -> FileResponse:
     return FileResponse(_HERE / name, media_type=kind, headers={"cache-control": "no-cache"})
+
+
+_LIBRARIES: Final = ("engineio.server", "socketio.server")
+
+
+def answer_quietly() -> None:
+    """Put a net under every handler of the framework, and let its libraries write single lines into the log."""
+    handlers: dict[str, Callable[..., Any]] = core.sio.handlers["/"]
+    for name, handler in handlers.items():
+        if not hasattr(handler, "__wrapped__"):
+            handlers[name] = _quiet(name, handler)
+    for library in _LIBRARIES:
+        logger = logging.getLogger(library)
+        logger.handlers = [_OneLine()]
+        logger.propagate = False
+
+
+def _quiet(name: str, handler: Callable[..., Any]) -> Callable[..., Any]:
+    """What the framework's own pages send never raises here: what pages do with it is caught behind it."""
+
+    @wraps(handler)
+    async def answered(*given: Any) -> Any:
+        try:
+            answer = handler(*given)
+            return await answer if inspect.isawaitable(answer) else answer
+        except Exception as error:  # whatever a stranger sends
+            if type(error).__module__ == "socketio.exceptions":  # the framework's own refusal, which its page waits for
+                raise
+            LOG.info("a socket sent a malformed %s (%s)", name, type(error).__name__)
+        if name == "connect":
+            raise ConnectionRefusedError
+        return None
+
+    return answered
+
+
+class _OneLine(logging.Handler):
+    """Writes what a library reports into the lab's log, in one line."""
+
+    def emit(self, record: logging.LogRecord) -> None:
+        kind = record.exc_info[0].__name__ if record.exc_info and record.exc_info[0] else ""
+        said = " ".join(record.getMessage().split())[:200]
+        LOG.info("%s: %s %s", record.name, said, kind)
+
+
+def use_heartbeat() -> None:
+    """Set the heartbeat of the pages' sockets, after the framework has set its own at its start."""
+    core.sio.eio.ping_interval = PING_EVERY_S
+    core.sio.eio.ping_timeout = PING_WAIT_S

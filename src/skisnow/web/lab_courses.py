@@ -16,9 +16,9 @@ from starlette.responses import RedirectResponse, Response
 from .._support.errors import ParameterError, SkisnowError
 from .._support.staging import cannot_write, write_file
 from ..track.course import course_names, read_course
-from .confined import BOUNDS, confined
 from .error_pages import error_sentence, plain_page
-from .names import plain_stem
+from .page_addresses import plain_stem
+from .subprocesses import BOUNDS, confined
 
 if TYPE_CHECKING:
     from fastapi import FastAPI

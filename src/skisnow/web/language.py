@@ -1,7 +1,8 @@
-"""Which language a page is in: what the browser asks for, or what was chosen on a page before."""
+"""Language of a page: the one chosen on a page before, else the one that the browser prefers. Local times."""
 
 from __future__ import annotations
 
+from datetime import UTC, datetime
 from typing import TYPE_CHECKING, Final
 from weakref import WeakKeyDictionary
 
@@ -84,3 +85,29 @@ def said_as_written(text: str, names: Set[str]) -> str:
 def said_list(text: str, client: Client | None = None) -> str:
     """A list such as ``Load (N): 400 to 1200, 4 values; ski: mine``, its names and values each by themselves."""
     return "; ".join(": ".join(said(word, client) for word in part.split(": ", 1)) for part in text.split("; "))
+
+
+_MONTHS = ["Jan", "Feb", "Mar", "Apr", "May", "Jun", "Jul", "Aug", "Sep", "Oct", "Nov", "Dec"]
+
+
+def minute_words(at: datetime | str) -> str:
+    """Day and time in the time zone of the machine that the lab runs on, as the page's language writes it.
+
+    Parameters
+    ----------
+    at
+        A time, or its text as ISO 8601 has it; without a zone it is UTC.
+    """
+    time = datetime.fromisoformat(at) if isinstance(at, str) else at
+    return _written((time if time.tzinfo else time.replace(tzinfo=UTC)).astimezone(), language_of())
+
+
+def _written(time: datetime, language: str) -> str:
+    """The same in words.
+
+    >>> _written(datetime(2026, 3, 5, 9, 7), "en"), _written(datetime(2026, 3, 5, 9, 7), "de")
+    ('5 Mar 2026, 09:07', '5. 3. 2026, 09:07')
+    """
+    if language == ENGLISH:
+        return f"{time.day} {_MONTHS[time.month - 1]} {time.year}, {time:%H:%M}"
+    return f"{time.day}. {time.month}. {time.year}, {time:%H:%M}"

@@ -12,9 +12,9 @@ from urllib.parse import quote
 from nicegui import ui
 
 from .._support.language import languages
+from .elements import Words, named
 from .language import language_of, said
 from .pages import PAGES
-from .worded import Words, named
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -8,16 +8,15 @@ from typing import TYPE_CHECKING, Any, Final
 from nicegui import ui
 
 from .._support.errors import ParameterError
-from .fields import choice, field
+from .elements import choice, field, named
 from .language import said
 from .layout import sentence
-from .worded import named
 
 if TYPE_CHECKING:
     from typing import TypeAlias
 
     from ..parameters import InputValue, Quantity
-    from .worded import TypedField
+    from .elements import TypedField
 
     InputField: TypeAlias = TypedField | ui.select | ui.switch
 

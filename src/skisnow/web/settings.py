@@ -1,4 +1,4 @@
-"""What every page of the lab works with."""
+"""Settings of the lab: store, folders, limits of uploads, times."""
 
 from __future__ import annotations
 
@@ -11,11 +11,19 @@ if TYPE_CHECKING:
     from ..campaign.store import Store
 
 MEGABYTE: Final = 1_000_000
+STALL_S: Final = 60.0
+"""Longest time without an answer from browser or server that keeps the connection, in s."""
+PING_EVERY_S: Final = 10.0
+PING_WAIT_S: Final = STALL_S + 15.0
+RECONNECT_S: Final = 120.0
+"""Time that a page is kept after its connection was lost, in s: a walk out of reach of the network."""
+BUILD_S: Final = 2.0 * STALL_S
+"""Longest time to build a page, in s; the framework then gives up."""
 
 
 @dataclass(frozen=True, slots=True)
 class Limits:
-    """What an upload may hold (modelling assumption: the largest campaign foreseen, a million readings, is 60 MB).
+    """What an upload may hold (the largest campaign foreseen, a million readings, is 60 MB).
 
     Attributes
     ----------

@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 from pathlib import Path
 from tempfile import mkdtemp
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
 from .._support.errors import ParameterError, SkisnowError
 from .._support.language import ENGLISH
@@ -22,13 +22,15 @@ from .._support.processes.executors import LOCAL
 from .._support.processes.kept_rows import KeptRows
 from .._support.processes.pool import available_cores
 from .._support.staging import write_file
-from .runs import JOB, Job, Runs, new_name
-from .study_asked import CARVE, STUDY, TABLE, most_points_refused
-from .unpacking import files_below
+from .runs import AROUND_S, JOB, LOOKED_AT, Job, Runs, duration_words, new_name, simulated_s, slowness
+from .study_fields import CARVE, STUDY, TABLE, most_points_refused
+from .uploads import files_below
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
     from ..studies import Study, StudyTable
-    from .study_asked import StudyAsked
+    from .study_fields import StudyAsked
 
 FOLDER: Final = "studies"
 FIGURE: Final = "map.svg"
@@ -213,3 +215,56 @@ def _finished(partial: Path) -> int:
 def _without(folder: Path, said: str) -> str:
     """Words without a folder, which says nothing to a reader, and without the name of the file that the lab wrote."""
     return said.replace(f"{folder / STUDY}: ", "").replace(f"{folder}/", "").removeprefix("skisnow: ")
+
+
+CARVE_S: Final = 0.03
+"""Of a carved turn where no study has told it yet (modelling assumption: a laptop of 2025)."""
+
+
+def unit_s(of: str, values: Mapping[str, Any]) -> float:
+    """How long a point takes at slowness 1 (s): one carved turn, or the time that a run simulates; 0: unknown.
+
+    Parameters
+    ----------
+    of
+        `CARVE` or a scenario.
+    values
+        Of the scenario, by key.
+    """
+    return CARVE_S if of == CARVE else simulated_s(values) or 0.0
+
+
+def estimate_words(studies: Studies, runs: Path, jobs: list[Job], *, points: int, method: str, unit: float) -> str:
+    """How many points there are and about how long they take, in words.
+
+    Parameters
+    ----------
+    studies
+        What the lab has studied, and who computes.
+    runs, jobs
+        What the lab has simulated.
+    points
+        How many.
+    method
+        Of the solver; nothing for a carved turn.
+    unit
+        See `unit_s`.
+    """
+    if not unit:
+        return f"{points} points."
+    found = learned(studies.study_jobs(), method)
+    if found is None:
+        found = slowness(runs, jobs, method) if method else 1.0
+    seconds = points * unit * found
+    if studies.elsewhere:
+        took = duration_words(seconds)
+        return f"{points} points, about {took} of one core, shared by the workers of {studies.elsewhere}."
+    return f"{points} points. Will take about {duration_words(seconds / studies.workers + AROUND_S)}."
+
+
+def learned(jobs: Sequence[StudyJob], method: str) -> float | None:
+    """Computing time over that of slowness 1, of the last studies of this kind; None where there is none."""
+    alike = [job for job in jobs if job.state == "done" and job.method == method and job.workers and job.unit_s]
+    told = [job for job in alike if job.took_s > AROUND_S][:LOOKED_AT]
+    work = sum(job.points * job.unit_s for job in told)
+    return sum((job.took_s - AROUND_S) * job.workers for job in told) / work if work else None

@@ -17,11 +17,10 @@ from starlette.responses import RedirectResponse, Response
 from .._support.errors import ParameterError, SkisnowError, StoreError
 from ..campaign.reading import READ_FILES, FilesInMemory
 from ..campaign.store import Journals, campaign_files, corrected_files, export_corrected, export_entered, replayed
-from .confined import BOUNDS, confined
 from .error_pages import error_sentence, plain_page
-from .names import required_id
-from .unpacking import files_below, write_zip
-from .uploaded import add_uploaded
+from .page_addresses import required_id
+from .subprocesses import BOUNDS, confined
+from .uploads import add_uploaded, files_below, write_zip
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence

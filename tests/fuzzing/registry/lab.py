@@ -14,13 +14,12 @@ from tempfile import TemporaryDirectory
 from skisnow._support.errors import SkisnowError
 from skisnow._support.staging import tidied
 from skisnow.campaign.store import Journals, Store, export_corrected, replayed, sync, write_campaign
-from skisnow.web.measured_ski import read_ski_files
+from skisnow.web.lab_skis import read_ski_files
 from skisnow.web.replay.addresses import RunFolders, _ski_of_job
 from skisnow.web.replay.tracks import Placing, TrackFolders
-from skisnow.web.run_estimate import _told
-from skisnow.web.runs import Job, Runs
+from skisnow.web.runs import Job, Runs, _told
 from skisnow.web.settings import Limits
-from skisnow.web.uploaded import add_uploaded
+from skisnow.web.uploads import add_uploaded
 from tests.campaign.store.test_journal import TOML as _ENTERED
 from tests.campaign.store.test_journal import campaign_with
 
@@ -162,21 +161,21 @@ READERS = (
     Reader(
         name="upload.zip", target="0", files=_zipped, read=_uploaded, mutations=archive(_member),
         covers=(
-            "web.unpacking:Unpacking.take_zip", "web.unpacking:_unpacked", "web.uploaded:add_uploaded",
+            "web.uploads:Unpacking.take_zip", "web.uploads:_unpacked", "web.uploads:add_uploaded",
             "campaign.store.folder:_description",
         ),
     ),
     Reader(
         name="uploaded ski.toml", target="ski.toml", files=lambda: {"ski.toml": _WITH_TABLE, "table.csv": _SKI_TABLE},
         read=lambda folder: read_ski_files(str(folder), ["ski.toml", "table.csv"], {}), mutations=TOML,
-        covers=("web.measured_ski:read_ski_files", "web.measured_ski:_require_own_files"),
+        covers=("web.lab_skis:read_ski_files", "web.lab_skis:_require_own_files"),
     ),
     Reader(
         name="uploaded ski-def.json", target="ski-def.json", files=lambda: {"ski-def.json": _DESIGN},
         read=lambda folder: read_ski_files(
             str(folder), ["ski-def.json"], {"mass_kg": "2", "EI_N_m2": "100 440 100", "GJ_N_m2": "60 175 60"}
         ),
-        mutations=JSON, covers=("web.measured_ski:read_ski_files",),
+        mutations=JSON, covers=("web.lab_skis:read_ski_files",),
     ),
     Reader(
         name="job.json", target="run-1/job.json", files=_job_files, read=_read_jobs, mutations=JSON,
@@ -184,7 +183,7 @@ READERS = (
     ),
     Reader(
         name="summary.json", target="run-1/summary.json", files=_job_files, read=_read_jobs, mutations=JSON,
-        covers=("web.runs:Runs._over", "web.run_estimate:_told"),
+        covers=("web.runs:Runs._over", "web.runs:_told"),
     ),
     Reader(
         name="placing of a track", target="tracks/t-1/about.json", files=_track_files, read=_placed, mutations=JSON,

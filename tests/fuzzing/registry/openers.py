@@ -47,7 +47,7 @@ NO_READERS: Final[Mapping[str, str]] = {
     "studies.writing:_write_database": "the table that it writes",
     "web.lab_skis:LabSkis.texts": "the text of a ski, shown in a field",
     "web.lab_skis:texts_of_ski": "the file that it has just written",
-    "web.unpacking:files_below": "bytes for a download",
+    "web.uploads:files_below": "bytes for a download",
     "web.pages.replay:_in_words": "summary.json, by read_record as web.runs:Runs._over",
     "cli.compare:_slope_angle_of_run": "summary.json of a run, by read_json as other records",
     "web.server:Certificate.__post_init__": "a certificate, parsed by OpenSSL",

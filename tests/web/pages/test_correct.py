@@ -11,8 +11,8 @@ from nicegui import ui
 from skisnow import analyse, read_campaign
 from skisnow._support.errors import FieldDataError, StoreError
 from skisnow.campaign.store import Journals, NewEntry, export_corrected
-from skisnow.web.correction_session import OWN_SHEET, CorrectionSession
-from skisnow.web.local_time import minute_words
+from skisnow.web.edit_session import OWN_SHEET, CorrectionSession
+from skisnow.web.language import minute_words
 from skisnow.web.words import hardness_words
 
 from ...support.user_files.test_workbook import packed

@@ -10,11 +10,9 @@ from nicegui import ui
 from ...campaign.reading.columns import is_unloading_cell
 from ...campaign.reading.table_forms import BRANCH
 from ...campaign.store.stored_tables import cell_of
-from ..answering import asking_button, form
-from ..fields import button, field
-from ..language import said, said_template
-from ..local_time import minute_words
-from ..worded import Words
+from ..elements import Words, button, field
+from ..language import minute_words, said, said_template
+from ..page_requests import asking_button, form
 from ..words import label
 
 if TYPE_CHECKING:

@@ -8,27 +8,23 @@ from typing import TYPE_CHECKING, Final
 from nicegui import ui
 
 from ...campaign.reading.table_forms import BRANCH, UNLOADING
-from ..answering import answering, asked, asking_button, form
-from ..fields import choice, field
+from ..elements import Words, choice, field, named
 from ..language import number_said
 from ..layout import heading, sentence
-from ..names import entering
-from ..worded import Words, named
+from ..page_addresses import entering
+from ..page_requests import answering, asked, asking_button, form
 from ..words import label
 from .changes import Places, changes, focus_button
-from .checking import Field, checked_fields, faults, refuse
-from .readings import ReadingField, Step, stored_depth
-from .resent import HEAD
-from .series_corrections import SeriesCorrections
-from .waiting import AfterWaiting
+from .offline_readings import HEAD
+from .readings import Field, ReadingField, Step, checked_fields, faults, refuse, stored_depth
+from .series_corrections import AfterWaiting, SeriesCorrections
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
     from ...campaign.store import ReplayedTest
-    from .beside import Beside
-    from .series_list import SeriesList
-    from .table_view import TableView
+    from .live_results import Beside
+    from .table_view import SeriesList, TableView
 
 TOLD: Final = "(event) => lab.reading(event, emit)"
 LEFT: Final = "(event) => lab.leaving(event, emit)"

@@ -7,20 +7,18 @@ from typing import TYPE_CHECKING, Final
 from nicegui import ui
 
 from ...campaign.reading.row_checks import TURNING
-from ..answering import asking_button, form
-from ..fields import choice, field
+from ..elements import Words, choice, field, named
 from ..language import said
 from ..layout import heading, sentence
-from ..names import entering
-from ..worded import Words, named
+from ..page_addresses import entering
+from ..page_requests import asking_button, form
 from ..words import label
 from .changes import ASKED, LEFT_AS_IT_WAS, UNANSWERED, USUAL_REASON, Places, ask_reason, change_said, changes
-from .checking import checked_fields, faults, refuse
-from .readings import is_other
+from .readings import checked_fields, faults, is_other, refuse
 
 if TYPE_CHECKING:
     from ...campaign.store import ReplayedRow, ReplayedTest
-    from .beside import Beside
+    from .live_results import Beside
     from .table_view import TableView
 
 OPTIONAL: Final = {"shear.csv": ("spot", TURNING)}

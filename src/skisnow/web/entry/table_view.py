@@ -1,4 +1,4 @@
-"""One table of a campaign on one page: who writes, what was said last, and each way of writing something down."""
+"""One table of a campaign on a page: writer, status, storing of entries, links to tables and series."""
 
 from __future__ import annotations
 
@@ -10,7 +10,10 @@ from ..._support.errors import ParameterError, StoreError
 from ..._support.user_files import natural_number
 from ...campaign.store import NewEntry, OvertakenError
 from ...campaign.store.cells import FORMS
-from ..answering import asked
+from ..elements import StatusLine, link
+from ..layout import heading
+from ..page_addresses import entering
+from ..page_requests import asked
 from ..words import in_words, label
 
 if TYPE_CHECKING:
@@ -19,7 +22,7 @@ if TYPE_CHECKING:
     from ...campaign.reading.table_forms import TableForm
     from ...campaign.store import ReplayedTest
     from ..edit_session import EditSession
-    from ..worded import StatusLine
+
 
 WHO: Final = "Operator"
 
@@ -129,3 +132,33 @@ class TableView:
             return False
         self.say(said)
         return True
+
+
+MOST: Final = 40
+
+
+class SeriesList:
+    """The list below the form of a series."""
+
+    def __init__(self, view: TableView) -> None:
+        self._view = view
+        self._place = ui.element("div")
+        self._drawn: tuple[str, list[tuple[str, bool]]] = ("", [])
+
+    def show(self, current: str) -> None:
+        """Draw the list again if a series or its state is new; ``current``: name of the series in the form."""
+        tests = [(test.name, bool(test.cancelled)) for test in self._view.tests()[-MOST:]]
+        if self._drawn == (current, tests):
+            return
+        self._drawn = current, tests
+        self._place.clear()
+        if not tests:
+            return
+        with self._place:
+            heading("Series so far", 3)
+            with ui.element("div").classes("acts so-far"):
+                for name, cancelled in reversed(tests):
+                    address = entering(self._view.session.id, table=self._view.file, test=name)
+                    made = link(f"{name}{' (cancelled)' if cancelled else ''}", address, "small")
+                    if name == current:
+                        made.props('aria-current="page"')

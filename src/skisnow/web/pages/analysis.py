@@ -13,19 +13,19 @@ from starlette.concurrency import run_in_threadpool
 from starlette.requests import Request
 from starlette.responses import FileResponse, Response
 
-from ..analyses import Analyses
-from ..analysing import ready, write_whole_report
+from ..analysis_cache import Analyses
 from ..analysis_view import AnalysisView, OpenAnalysis
+from ..campaign_analysis import ready, write_whole_report
+from ..elements import link
 from ..error_pages import plain_page
-from ..fields import link
 from ..language import language_of_request
 from ..layout import framed
-from ..names import entering, export, required_id
-from ..unpacking import files_below, write_zip
-from ..worker import Worker
+from ..page_addresses import entering, export, required_id
+from ..subprocesses import Worker
+from ..uploads import files_below, write_zip
 
 if TYPE_CHECKING:
-    from ..analyses import CampaignSource
+    from ..analysis_cache import CampaignSource
     from ..settings import Lab
 
 HERE: Final = "/"

@@ -13,12 +13,11 @@ from ...campaign import write_reference
 from ...campaign.store import Journals
 from ...report.formatting import counted
 from ..edit_session import EditSession
-from ..fields import button, link
+from ..elements import Words, button, link
+from ..language import minute_words
 from ..layout import framed, heading, sentence
-from ..local_time import minute_words
-from ..names import analysis, correcting, entering, export
+from ..page_addresses import analysis, correcting, entering, export
 from ..transfer import IMPORT
-from ..worded import Words
 
 if TYPE_CHECKING:
     from ...campaign.store import StoredCampaign

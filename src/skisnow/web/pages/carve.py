@@ -12,13 +12,12 @@ from nicegui import background_tasks, run, ui
 from ..._support.errors import ParameterError, SkisnowError
 from ...report.campaign.page import RESULTS
 from ...report.formatting import significant
-from ..fields import choice, link
+from ..elements import Words, choice, link, named
 from ..lab_skis import NOTHING, LabSkis
 from ..language import said
 from ..layout import framed
 from ..line_chart import STYLES, ChartLine, LineChart
 from ..snow_choice import SnowChoice
-from ..worded import Words, named
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING
 from nicegui import run, ui
 
 from ..._support.errors import ParameterError
-from ..correction_session import CorrectionSession
-from ..entry.frame import table_links, table_view_of
-from ..entry.kept import KeptForm, list_tests
-from ..fields import link
+from ..edit_session import CorrectionSession
+from ..elements import link
+from ..entry.imported_test import KeptForm, list_tests
+from ..entry.table_frame import table_links, table_view_of
 from ..layout import framed, sentence
-from ..names import analysis, correcting, export, required_id
-from ..patience import BUILD_S
+from ..page_addresses import analysis, correcting, export, required_id
+from ..settings import BUILD_S
 
 if TYPE_CHECKING:
     from ..settings import Lab

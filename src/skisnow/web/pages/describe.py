@@ -13,20 +13,19 @@ from ...campaign.reading.tool_shapes import SHAPES
 from ...campaign.store import Journals, NewEntry, OvertakenError
 from ...campaign.store.journal_entry import DESCRIPTION
 from ...campaign.store.replayed import Description, description_text
-from ..answering import asked, asking_button, form, go_on, row_button
 from ..edit_session import EditSession
-from ..fields import choice, field
+from ..elements import StatusLine, choice, field
 from ..language import said
 from ..layout import framed, heading, sentence
-from ..names import entering, required_id
-from ..typed import typed_number
-from ..worded import StatusLine
+from ..number_input import typed_number
+from ..page_addresses import entering, required_id
+from ..page_requests import asked, asking_button, form, go_on, row_button
 
 if TYPE_CHECKING:
     from nicegui.events import GenericEventArguments
 
+    from ..elements import TypedField
     from ..settings import Lab
-    from ..worded import TypedField
 
 HERE: Final = "/"
 NUMBERS: Final = {

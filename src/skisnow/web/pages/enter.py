@@ -9,18 +9,18 @@ from nicegui import ui
 from ..._support.errors import ParameterError
 from ...campaign.store.cells import checked_cell
 from ..edit_session import EditSession
-from ..entry.frame import table_links, table_view_of
-from ..entry.resent import FILE, take_resent
+from ..entry.offline_readings import FILE, take_resent
 from ..entry.series import SeriesForm
-from ..entry.series_list import SeriesList
 from ..entry.single import SingleForm
+from ..entry.table_frame import table_links, table_view_of
+from ..entry.table_view import SeriesList
 from ..layout import framed
-from ..names import analysis, entering, required_id
+from ..page_addresses import analysis, entering, required_id
 from ..words import TABLES
 
 if TYPE_CHECKING:
-    from ..entry.beside import Beside
     from ..entry.changes import Places
+    from ..entry.live_results import Beside
     from ..entry.table_view import TableView
     from ..settings import Lab
 

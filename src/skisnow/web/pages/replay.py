@@ -8,14 +8,12 @@ from nicegui import app, ui
 
 from ..._support.user_files import GivenError, read_record
 from ...report.formatting import counted
-from ..fields import link
+from ..elements import Words, link, named
 from ..language import said
 from ..layout import framed, heading, sentence
-from ..replay.addresses import GATES, LIST, SHOW, RunFolders, add_addresses, show_address
+from ..replay.addresses import GATES, LIST, SHOW, UPLOAD, RunFolders, add_addresses, add_uploads, show_address
 from ..replay.tracks import LARGEST_BYTES, MOST_POINTS, TrackFolders
-from ..replay.uploads import UPLOAD, add_uploads
 from ..runs import FinishedRun
-from ..worded import Words, named
 
 if TYPE_CHECKING:
     from pathlib import Path

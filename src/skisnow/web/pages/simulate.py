@@ -8,21 +8,18 @@ from nicegui import app, background_tasks, run, ui
 
 from ..._support.errors import ParameterError, SkisnowError
 from ...replay.run_file import RUN_FILE
-from ..answering import redrawn_by
+from ..elements import Words, button, choice, link, named
 from ..error_pages import error_sentence
-from ..fields import button, choice, link
 from ..job_list import JobList
 from ..lab_courses import UPLOAD, LabCourses, add_course_uploads
 from ..lab_skis import LabSkis
 from ..language import language_of
 from ..layout import framed, heading, sentence
+from ..page_requests import redrawn_by
 from ..replay.addresses import show_address
-from ..run_estimate import duration_words, estimated_s
-from ..runs import Job, Runs
+from ..runs import Job, Runs, duration_words, estimated_s
 from ..scenario_fields import ScenarioField, called, in_labels
-from ..snow_choice import SnowChoice
-from ..snow_of_campaign import require_scenario, results_with, snow_words
-from ..worded import Words, named
+from ..snow_choice import SnowChoice, require_scenario, results_with, snow_words
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

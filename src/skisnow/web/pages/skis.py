@@ -9,19 +9,17 @@ from nicegui import run, ui
 
 from ..._support.errors import SkisnowError
 from ...report.charts import SkiDrawing, ski_drawing
-from ..confined import OF_A_SKI, confined
+from ..elements import Words, button, choice, field, link, named, said_options
 from ..error_pages import error_sentence
-from ..fields import button, choice, field, link, said_options
 from ..lab_skis import EDITED, FILE, NOTHING, TABLE, LabSkis, check_ski_texts, texts_of_ski
 from ..language import said
 from ..layout import framed, heading, sentence
 from ..line_chart import STYLES, ChartLine, LineChart
-from ..names import carving
-from ..patience import BUILD_S
-from ..ski_adding import SkiAdding
-from ..ski_asked import SkiAsked, SkiFound, ski_found
-from ..ski_editor import SkiEditor
-from ..worded import Words, named
+from ..page_addresses import carving
+from ..settings import BUILD_S
+from ..ski_editor import SkiAsked, SkiEditor, SkiFound, ski_found
+from ..ski_uploads import SkiAdding
+from ..subprocesses import OF_A_SKI, confined
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -9,22 +9,19 @@ from nicegui import app, background_tasks, run, ui
 from ..._support.errors import ParameterError, SkisnowError
 from ...estimation.results import results_json
 from ...report.campaign.page import RESULTS
-from ..answering import redrawn_by
+from ..elements import Words, button, choice, link, named, said_options
 from ..error_pages import error_sentence
-from ..fields import button, choice, link, said_options
 from ..job_list import JobList
 from ..lab_skis import FILE, TABLE, LabSkis
 from ..language import language_of, said_list
 from ..layout import framed, heading, sentence
+from ..number_input import typed_number
+from ..page_requests import redrawn_by
 from ..runs import Runs
 from ..scenario_fields import ScenarioField, called, in_labels
 from ..snow_choice import SnowChoice
-from ..studies import Studies, StudyJob
-from ..study_asked import CARVE, StudyAsked, study_keys
-from ..study_axis import AxisFields
-from ..study_estimate import estimate_words, unit_s
-from ..typed import typed_number
-from ..worded import Words, named
+from ..studies import Studies, StudyJob, estimate_words, unit_s
+from ..study_fields import CARVE, AxisFields, StudyAsked, study_keys
 from .carve import OF_SNOW as CARVE_SNOW
 from .carve import SLIDERS
 from .simulate import GIVEN, NUMBERS, SECTION_WORDS, basic, expert

@@ -14,16 +14,15 @@ from starlette.responses import FileResponse, Response
 from ..._support.errors import ParameterError
 from ..._support.language import ENGLISH
 from ...report.formatting import significant
+from ..elements import Words, choice, link, named
 from ..error_pages import error_sentence, plain_page
-from ..fields import choice, link
 from ..language import language_of, said, said_list
 from ..layout import framed, heading, sentence
 from ..line_chart import BEHIND, ChartLine, LineChart
 from ..scenario_fields import called, written
 from ..studies import FIGURE, Studies
-from ..study_asked import CARVE, STUDY, TABLE, study_keys
-from ..unpacking import write_zip
-from ..worded import Words, named
+from ..study_fields import CARVE, STUDY, TABLE, study_keys
+from ..uploads import write_zip
 
 if TYPE_CHECKING:
     from ...studies import Study, StudyTable

@@ -1,4 +1,4 @@
-"""Addresses that a web server answers for the replay: its program, a run's bytes, a model, and the page itself."""
+"""Addresses of the replay: program, bytes of a run, model, page, and upload of a measured track."""
 
 from __future__ import annotations
 
@@ -8,10 +8,13 @@ from typing import TYPE_CHECKING, Final
 from urllib.parse import quote
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
+from starlette.concurrency import run_in_threadpool
+from starlette.datastructures import FormData, UploadFile
+from starlette.exceptions import HTTPException
 from starlette.requests import Request
-from starlette.responses import HTMLResponse, PlainTextResponse, Response
+from starlette.responses import HTMLResponse, PlainTextResponse, RedirectResponse, Response
 
-from ..._support.errors import ParameterError
+from ..._support.errors import ParameterError, SkisnowError
 from ..._support.language import ENGLISH, catalogue
 from ..._support.user_files import read_json
 from ...replay.binary import replay_bytes
@@ -20,11 +23,11 @@ from ...replay.page import MODULES, STYLE, in_language, page_words, static_text
 from ...replay.run_file import RUN_FILE, replay_of_file
 from ...report.race.folder import gaps_of_folders
 from ...ski import read_ski
-from ..confined import BOUNDS, confined
-from ..error_pages import plain_page
+from ..error_pages import error_sentence, plain_page
 from ..language import language_of_request
 from ..runs import JOB
-from .tracks import TrackFolders, track_on_slope
+from ..subprocesses import BOUNDS, confined
+from .tracks import Placing, TrackFolders, number_of, points_of_track, track_on_slope
 
 if TYPE_CHECKING:
     from fastapi import FastAPI
@@ -184,3 +187,34 @@ def show_page(run: str, ghost: str | None, track: str = "", language: str = ENGL
 def show_address(run: str, ghost: str | None = None) -> str:
     """Where a run is shown, with a second one over it."""
     return f"{SHOW}?run={quote(run, safe='')}" + (f"&ghost={quote(ghost, safe='')}" if ghost else "")
+
+
+UPLOAD: Final = "/replay/track"
+_BACK: Final = "/replay"
+
+
+def add_uploads(app: FastAPI, tracks: TrackFolders) -> None:
+    """Let an application take tracks in. Where a request may come from is held by the guard around it."""
+
+    async def take_in(request: Request) -> Response:
+        try:
+            async with request.form(max_files=1, max_fields=4) as form:
+                name, _ = await run_in_threadpool(_kept, tracks, form)
+        except (SkisnowError, OSError) as error:
+            return plain_page("This was not taken in", f"Nothing was stored: {error_sentence(error)}", 400, request)
+        except HTTPException:
+            text = "Nothing was stored: one file at a time is taken in."
+            return plain_page("This was not taken in", text, 400, request)
+        return RedirectResponse(f"{_BACK}?track={quote(name, safe='')}", 303)
+
+    app.add_api_route(UPLOAD, take_in, methods=["POST"], include_in_schema=False, response_model=None)
+
+
+def _kept(tracks: TrackFolders, form: FormData) -> tuple[str, int]:
+    upload = form.get("file")
+    if not isinstance(upload, UploadFile) or not upload.filename:
+        raise ParameterError("no file was chosen; choose the file of a track")
+    azimuth = number_of(str(form.get("azimuth", "")), "the direction of the fall line")
+    start = number_of(str(form.get("start", "")), "the time at the first point")
+    placing = Placing(upload.filename[:200], azimuth, start or 0.0)
+    return tracks.keep(upload.file, placing, count=lambda *what: confined(BOUNDS, points_of_track, *what))

@@ -17,8 +17,8 @@ from ..._support.user_files import read_record
 from ...replay.replay import measured_track
 from ...track.read import SUFFIXES, read_track
 from ...track.slope_frame import in_slope_frame
-from ..names import plain_stem
-from ..typed import typed_number
+from ..number_input import typed_number
+from ..page_addresses import plain_stem
 
 if TYPE_CHECKING:
     from collections.abc import Callable

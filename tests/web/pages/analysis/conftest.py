@@ -8,10 +8,10 @@ from typing import Any
 
 import pytest
 
-from skisnow.web import analyses as analyses_module
-from skisnow.web.analysing import Shown
+from skisnow.web import analysis_cache as analyses_module
+from skisnow.web.campaign_analysis import Shown
 from skisnow.web.pages import analysis as page_module
-from skisnow.web.worker import Worker
+from skisnow.web.subprocesses import Worker
 
 from .shared import Drawing, points
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from skisnow.web.analysing import choosable_flags
+from skisnow.web.campaign_analysis import choosable_flags
 
 from ...campaign_texts import HARD, SHEARED, SOFT, pressed, sheared
 

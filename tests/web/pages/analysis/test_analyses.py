@@ -12,12 +12,12 @@ from skisnow._support.errors import FieldDataError, ParameterError, StoreError
 from skisnow.campaign.reading import FilesInMemory
 from skisnow.campaign.store import Journals
 from skisnow.report.campaign.figures import DRAWERS
-from skisnow.web import analyses as analyses_module
-from skisnow.web import analysing
-from skisnow.web.analyses import Analysed, Analyses, CampaignSource
-from skisnow.web.analysing import Choice, Numbers, Refusal, figure, numbers_of
+from skisnow.web import analysis_cache as analyses_module
+from skisnow.web import campaign_analysis as analysing
+from skisnow.web.analysis_cache import Analysed, Analyses, CampaignSource
 from skisnow.web.analysis_view import AnalysisView, OpenAnalysis
-from skisnow.web.worker import Worker
+from skisnow.web.campaign_analysis import Choice, Numbers, Refusal, figure, numbers_of
+from skisnow.web.subprocesses import Worker
 
 from .shared import COUNTED, FILES, FLAGS, PENETRATION, TOML, WRONG, Drawing, kept
 
@@ -158,7 +158,7 @@ def test_a_lab_that_is_about_to_end_says_so(desk: Desk, tmp_path: Path, monkeypa
     async def nothing(*_: Any) -> None:
         return None
 
-    monkeypatch.setattr("skisnow.web.analyses.run.io_bound", nothing)
+    monkeypatch.setattr("skisnow.web.analysis_cache.run.io_bound", nothing)
     assert desk.wait(subject.analysed(Choice())) == Refusal("The lab is about to end.")
     with pytest.raises(StoreError, match=r"^The lab is about to end\.$"):
         desk.wait(analyses.subject("kept", id_))

@@ -19,9 +19,9 @@ from skisnow.campaign.store import Journals
 from skisnow.estimation import analyse
 from skisnow.report.campaign.data import ReportData
 from skisnow.report.campaign.key_results import key_results
-from skisnow.web import analyses as analyses_module
+from skisnow.web import analysis_cache as analyses_module
 from skisnow.web import analysis_view
-from skisnow.web.analysing import Choice, Refusal, numbers_of
+from skisnow.web.campaign_analysis import Choice, Refusal, numbers_of
 from skisnow.web.pages import analysis as page_module
 
 from .shared import COUNTED, FLAGS, SHEAR, TOML, WRONG, Drawing, kept, status

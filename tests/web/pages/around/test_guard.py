@@ -17,7 +17,7 @@ from starlette.requests import Request
 
 from skisnow._support.errors import FieldDataError, OutputError, ParameterError, StoreError
 from skisnow.web import error_pages
-from skisnow.web.analyses import Analyses
+from skisnow.web.analysis_cache import Analyses
 from skisnow.web.error_pages import _failed, _notified, error_sentence, log_to, plain_page, reported
 from skisnow.web.guard import CONTENT_POLICY, COOKIE, Access, Guard
 

@@ -13,11 +13,18 @@ import pytest
 import uvicorn
 
 from skisnow._support.errors import FieldDataError, OutputError, ParameterError, SkisnowError, StoreError
-from skisnow.web import addresses, confined, server, worker
-from skisnow.web.addresses import ENCRYPTED, IN_CLEAR, for_others, lab_addresses
-from skisnow.web.confined import Bounds
-from skisnow.web.server import Certificate, require_allowed, serve
-from skisnow.web.slow_requests import PatientToAPoint
+from skisnow.web import server, subprocesses
+from skisnow.web.server import (
+    ENCRYPTED,
+    IN_CLEAR,
+    Certificate,
+    PatientToAPoint,
+    for_others,
+    lab_addresses,
+    require_allowed,
+    serve,
+)
+from skisnow.web.subprocesses import Bounds
 
 from .shared import greeting, raising
 
@@ -62,7 +69,7 @@ class Ends:
 
 def in_ends(monkeypatch: pytest.MonkeyPatch, answer: Any) -> Ends:
     ends = Ends(answer)
-    monkeypatch.setattr(confined, "multiprocessing", ends)
+    monkeypatch.setattr(subprocesses, "multiprocessing", ends)
     return ends
 
 
@@ -83,16 +90,16 @@ def test_what_comes_of_another_process(
     monkeypatch: pytest.MonkeyPatch, answer: Any, error: type[SkisnowError] | None, told: str
 ) -> None:
     ends, logged, bounds = in_ends(monkeypatch, answer), list[Any](), Bounds(2.5, 3_999_999)
-    monkeypatch.setattr(confined, "_LOG", SimpleNamespace(error=lambda *what: logged.append(what)))
+    monkeypatch.setattr(subprocesses, "_LOG", SimpleNamespace(error=lambda *what: logged.append(what)))
     if error is None:
-        assert confined.confined(bounds, len, "ab") == 7
+        assert subprocesses.confined(bounds, len, "ab") == 7
     else:
         with pytest.raises(error) as found:
-            confined.confined(bounds, len, "ab")
+            subprocesses.confined(bounds, len, "ab")
         assert (type(found.value), str(found.value)) == (error, told)
     begun = ["spawn", False, "start", "tells closed", 2.5]
     assert ends.done == [*begun, "kill", "join", "hears closed"]
-    assert (ends.process["target"], ends.process["daemon"]) == (confined._work, True)
+    assert (ends.process["target"], ends.process["daemon"]) == (subprocesses._work, True)
     assert ends.process["args"][1:] == (bounds, len, ("ab",))
     traced = isinstance(answer, tuple) and answer[2]
     assert logged == ([("an upload could not be read: %s", "a trace")] if traced else [])
@@ -115,20 +122,20 @@ class SpecialError(ParameterError):
 )
 def test_what_another_process_tells(monkeypatch: pytest.MonkeyPatch, work: Callable[..., object], told: Any) -> None:
     done: list[Any] = []
-    monkeypatch.setattr(confined, "end_with_the_server", lambda: done.append("watched"))
-    monkeypatch.setattr(confined, "_bind", done.append)
+    monkeypatch.setattr(subprocesses, "end_with_the_server", lambda: done.append("watched"))
+    monkeypatch.setattr(subprocesses, "_bind", done.append)
     bounds = Bounds(2.5, 3_000_000)
-    confined._work(cast(Any, SimpleNamespace(send=done.append)), bounds, work, ("ab",))
+    subprocesses._work(cast(Any, SimpleNamespace(send=done.append)), bounds, work, ("ab",))
     assert done == ["watched", bounds, told]
 
 
 def test_an_unforeseen_error_of_another_process_has_a_trace(monkeypatch: pytest.MonkeyPatch) -> None:
     told: list[Any] = []
-    monkeypatch.setattr(confined, "end_with_the_server", lambda: None)
-    monkeypatch.setattr(confined, "_bind", lambda _: None)
+    monkeypatch.setattr(subprocesses, "end_with_the_server", lambda: None)
+    monkeypatch.setattr(subprocesses, "_bind", lambda _: None)
     for letters in (1, 9000):
         work = raising(ValueError("x" * letters))
-        confined._work(cast(Any, SimpleNamespace(send=told.append)), Bounds(2.5, 3_000_000), work, ())
+        subprocesses._work(cast(Any, SimpleNamespace(send=told.append)), Bounds(2.5, 3_000_000), work, ())
     assert [each[:2] for each in told] == [(ParameterError, ENDED)] * 2
     assert told[0][2].startswith("Traceback") and told[0][2].endswith("ValueError: x\n")
     assert len(told[1][2]) == 4000 and told[1][2].endswith("xx\n")
@@ -144,13 +151,13 @@ def test_a_process_is_bound_by_the_system(monkeypatch: pytest.MonkeyPatch) -> No
             raise (ValueError if kind == resource.RLIMIT_CPU else OSError)("lower already")
 
     monkeypatch.setattr(resource, "setrlimit", held_to)
-    confined._bind(Bounds(2.5, 3_000_000))
+    subprocesses._bind(Bounds(2.5, 3_000_000))
     assert held == [
         (resource.RLIMIT_CPU, (3, 3)),
         (resource.RLIMIT_DATA, (3_000_000, 3_000_000)),
         (resource.RLIMIT_CORE, (0, 0)),
     ]
-    bounds = (confined.BOUNDS, confined.OF_A_SKI)
+    bounds = (subprocesses.BOUNDS, subprocesses.OF_A_SKI)
     assert bounds == (Bounds(120.0, 3_000_000_000), Bounds(60.0, 3_000_000_000))
 
 
@@ -162,13 +169,13 @@ def test_a_process_ends_with_its_server(monkeypatch: pytest.MonkeyPatch) -> None
         return SimpleNamespace(start=target)
 
     parent = SimpleNamespace(sentinel=7)
-    monkeypatch.setattr(worker, "threading", SimpleNamespace(Thread=thread))
-    monkeypatch.setattr(worker, "multiprocessing", SimpleNamespace(parent_process=lambda: parent))
-    monkeypatch.setattr(worker, "os", SimpleNamespace(_exit=lambda code: done.append(f"ends with {code}")))
+    monkeypatch.setattr(subprocesses, "threading", SimpleNamespace(Thread=thread))
+    monkeypatch.setattr(subprocesses, "multiprocessing", SimpleNamespace(parent_process=lambda: parent))
+    monkeypatch.setattr(subprocesses, "os", SimpleNamespace(_exit=lambda code: done.append(f"ends with {code}")))
     signals = SimpleNamespace(signal=lambda *what: done.append(what), SIGINT="ctrl-c", SIG_IGN="left out")
-    monkeypatch.setattr(worker, "signal", signals)
-    monkeypatch.setattr(worker, "wait", done.append)
-    worker.end_with_the_server()
+    monkeypatch.setattr(subprocesses, "signal", signals)
+    monkeypatch.setattr(subprocesses, "wait", done.append)
+    subprocesses.end_with_the_server()
     assert done == [("ctrl-c", "left out"), True, [7], "ends with 1"]
 
 
@@ -241,7 +248,7 @@ def test_whoever_lets_others_in_is_told_how_they_come(
 ) -> None:
     told: list[str] = []
     secure = SimpleNamespace(file=Path("a.pem"), key=Path("b.pem"))
-    monkeypatch.setattr(addresses, "_adapters", lambda _: ["192.168.1.7", "10.0.0.2"])
+    monkeypatch.setattr(server, "_adapters", lambda _: ["192.168.1.7", "10.0.0.2"])
     for certificate in (None, secure):
         serve(desk.lab, host="0.0.0.0", port=0, token="snow", tell=told.append, certificate=cast(Any, certificate))
     for found, scheme, last in zip(announced, ("http", "https"), (IN_CLEAR, ENCRYPTED), strict=True):
@@ -326,8 +333,8 @@ def test_addresses_of_this_machine_need_no_name_of_an_adapter(
         of(("10.0.0.2", True), (("fe80::1", 0, 2), False)),
         of((("fd00::1", 0, 0), False), ("192.168.1.7", True)),
     ]
-    monkeypatch.setattr(addresses, "ifaddr", SimpleNamespace(get_adapters=lambda: adapters))
-    assert list(addresses._adapters(host)) == expected
+    monkeypatch.setattr(server, "ifaddr", SimpleNamespace(get_adapters=lambda: adapters))
+    assert list(server._adapters(host)) == expected
     found = {each.split("//")[1] for each in lab_addresses(host, 80, secure=False)}
     assert found == {f"[{each}]:80/" if ":" in each else f"{each}:80/" for each in expected}
 

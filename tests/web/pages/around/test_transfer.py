@@ -15,8 +15,7 @@ from skisnow._support.errors import ParameterError
 from skisnow.campaign.store import Journals, NewEntry, Store, campaign_files, replayed
 from skisnow.web import transfer
 from skisnow.web.settings import Limits
-from skisnow.web.unpacking import Unpacking, campaign_folder, files_below, shown, write_zip
-from skisnow.web.uploaded import UNDESCRIBED, add_uploaded
+from skisnow.web.uploads import UNDESCRIBED, Unpacking, add_uploaded, campaign_folder, files_below, shown, write_zip
 
 from ...campaign_texts import DESK
 from ..desk import in_this_process

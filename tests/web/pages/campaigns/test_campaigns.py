@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 from skisnow.campaign import write_reference
 from skisnow.campaign.store import Journals, NewEntry
-from skisnow.web.fields import FIRST
-from skisnow.web.local_time import minute_words
+from skisnow.web.elements import FIRST
+from skisnow.web.language import minute_words
 
 from .shared import TOML, add_shear, begun, handlers
 

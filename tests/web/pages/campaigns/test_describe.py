@@ -9,9 +9,9 @@ import pytest
 from nicegui import ui
 
 from skisnow.campaign.store import Journals, NewEntry
-from skisnow.web.answering import ASK, ASK_FOR_ROW, ONWARD
 from skisnow.web.edit_session import EditSession
-from skisnow.web.worded import StatusLine
+from skisnow.web.elements import StatusLine
+from skisnow.web.page_requests import ASK, ASK_FOR_ROW, ONWARD
 
 from .shared import TOML, add_shear, begun, handlers
 

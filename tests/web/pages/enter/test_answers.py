@@ -14,11 +14,11 @@ from nicegui import ui
 from skisnow._support.errors import StoreError
 from skisnow.campaign.store import Journals, NewEntry, Store, sync
 from skisnow.report.charts import SeriesCurve
-from skisnow.web import answering
-from skisnow.web.answering import PageRequest
+from skisnow.web import page_requests as answering
 from skisnow.web.edit_session import EditSession, QuickResults
-from skisnow.web.entry.beside import Beside
+from skisnow.web.entry.live_results import Beside
 from skisnow.web.line_chart import BEHIND
+from skisnow.web.page_requests import PageRequest
 
 from .shared import (
     DENSITY,
@@ -143,7 +143,7 @@ def test_nothing_is_shown_when_the_lab_is_being_closed(desk: Desk, monkeypatch: 
     async def nothing(_act: object, site: str) -> None:
         asked.append(site)
 
-    monkeypatch.setattr("skisnow.web.entry.beside.run.io_bound", nothing)
+    monkeypatch.setattr("skisnow.web.entry.live_results.run.io_bound", nothing)
     made = beside(page, lambda _: found())
     desk.do(lambda: made.follow("a", "A"), page.client)
     page.until(lambda: asked and not made._working)

@@ -11,9 +11,9 @@ from nicegui import ui
 from skisnow.campaign.store import NewEntry, ReplayedTest
 from skisnow.report.formatting import significant
 from skisnow.web.edit_session import EditSession
+from skisnow.web.elements import StatusLine
 from skisnow.web.entry.table_view import TableView
-from skisnow.web.local_time import minute_words
-from skisnow.web.worded import StatusLine
+from skisnow.web.language import minute_words
 from skisnow.web.words import hardness_words
 
 from .shared import (

@@ -9,9 +9,9 @@ import pytest
 from nicegui import ui
 
 from skisnow.campaign.store import NewEntry
+from skisnow.web.elements import StatusLine
 from skisnow.web.entry.series import LEFT, TOLD
-from skisnow.web.local_time import minute_words
-from skisnow.web.worded import StatusLine
+from skisnow.web.language import minute_words
 
 from .shared import (
     PENETRATION,

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import pytest
 from nicegui import ui
 
-from skisnow.web.local_time import minute_words
+from skisnow.web.language import minute_words
 
 from .shared import DENSITY, DROP_CONE, SHEAR, SHEARED, add, add_shear, begun, head, history, stored
 

@@ -17,10 +17,10 @@ from uvicorn.server import ServerState
 
 import skisnow.web
 from skisnow._support.language import languages
-from skisnow.web.application import _chosen
-from skisnow.web.patience import RECONNECT_S, use_heartbeat
-from skisnow.web.slow_requests import PatientToAPoint
-from skisnow.web.token_page import Tries, answer_to_token, token_page, too_many_tries
+from skisnow.web.application import _chosen, use_heartbeat
+from skisnow.web.guard import Tries, answer_to_token, token_page, too_many_tries
+from skisnow.web.server import PatientToAPoint
+from skisnow.web.settings import RECONNECT_S
 
 from ...finished import finished
 
@@ -130,7 +130,7 @@ def waits(monkeypatch: pytest.MonkeyPatch) -> list[float]:
     async def slept(seconds: float) -> None:
         heard.append(seconds)
 
-    monkeypatch.setattr("skisnow.web.token_page.asyncio.sleep", slept)
+    monkeypatch.setattr("skisnow.web.guard.asyncio.sleep", slept)
     return heard
 
 

@@ -11,10 +11,9 @@ from typing import TYPE_CHECKING, Any
 import pytest
 from nicegui import ui
 
-from skisnow.web.fields import FIRST, button, choice, field, link, said_options
+from skisnow.web.elements import FIRST, TypedField, Words, button, choice, field, html_words, link, named, said_options
 from skisnow.web.layout import SAID_BY_SCRIPT, heading, sentence
 from skisnow.web.line_chart import STYLES, ChartLine, LineChart
-from skisnow.web.worded import TypedField, Words, html_words, named
 
 from .shared import made
 

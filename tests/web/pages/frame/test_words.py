@@ -16,12 +16,12 @@ from skisnow.web.language import (
     language_asked,
     language_of,
     language_of_request,
+    minute_words,
     said,
     said_as_written,
     said_list,
 )
-from skisnow.web.local_time import minute_words
-from skisnow.web.names import plain_stem
+from skisnow.web.page_addresses import plain_stem
 from skisnow.web.words import (
     LABELS,
     TABLES,

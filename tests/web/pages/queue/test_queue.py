@@ -21,7 +21,7 @@ from skisnow.web import runs as runs_module
 from skisnow.web import studies as studies_module
 from skisnow.web.runs import Job, Runs, new_name
 from skisnow.web.studies import Studies, StudyJob
-from skisnow.web.study_asked import CARVE, Range
+from skisnow.web.study_fields import CARVE, Range
 
 from ...finished import finished
 from .shared import TURNS

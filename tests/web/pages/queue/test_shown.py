@@ -11,11 +11,9 @@ import pytest
 
 from skisnow.web import job_list
 from skisnow.web import studies as studies_module
-from skisnow.web.run_estimate import duration_words, estimated_s, simulated_s, slowness
-from skisnow.web.runs import Job
-from skisnow.web.studies import Studies, StudyJob
-from skisnow.web.study_asked import CARVE
-from skisnow.web.study_estimate import estimate_words, learned, unit_s
+from skisnow.web.runs import Job, duration_words, estimated_s, simulated_s, slowness
+from skisnow.web.studies import Studies, StudyJob, estimate_words, learned, unit_s
+from skisnow.web.study_fields import CARVE
 
 from .shared import TURNS
 

@@ -16,7 +16,7 @@ from skisnow.web import snow_choice
 from skisnow.web.lab_skis import LabSkis
 from skisnow.web.pages.simulate import _Card
 from skisnow.web.runs import Job, Runs
-from skisnow.web.snow_of_campaign import campaign_snow
+from skisnow.web.snow_choice import campaign_snow
 
 from ...campaign_texts import SHEARED, sheared
 from .shared import ENDS, HARDNESS, NUMBERS, STEERS, STRESS, asked, campaign, jobs, refused

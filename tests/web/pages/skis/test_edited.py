@@ -16,9 +16,9 @@ from nicegui import ui
 from skisnow._support.errors import ParameterError
 from skisnow.ski import read_ski, ski_names
 from skisnow.ski.editing import SkiEdit, edit_stations, edited_ski
-from skisnow.web.confined import OF_A_SKI
 from skisnow.web.lab_skis import LabSkis, check_ski_texts, ski_of_texts
-from skisnow.web.ski_asked import SkiAsked
+from skisnow.web.ski_editor import SkiAsked
+from skisnow.web.subprocesses import OF_A_SKI
 
 from .shared import CARVER, HEAVY, SLALOM, TEXT, cells_of, opened, saved_place, source_words
 

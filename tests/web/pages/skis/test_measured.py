@@ -18,13 +18,23 @@ import pytest
 from skisnow._support.errors import OutputError, ParameterError, RangeWarning, SkisnowError
 from skisnow.ski import read_ski, ski_names
 from skisnow.ski.editing import SkiEdit, edit_stations, edited_ski
-from skisnow.web import measured_ski
-from skisnow.web.confined import OF_A_SKI
-from skisnow.web.lab_skis import LabSkis, _without, check_ski_texts, ski_of_texts, texts_of_ski
-from skisnow.web.measured_ski import SkiTexts, add_ski, measured_text, read_ski_files, ski_of_uploads
+from skisnow.web import lab_skis as measured_ski
+from skisnow.web.lab_skis import (
+    LabSkis,
+    SkiTexts,
+    _without,
+    add_ski,
+    check_ski_texts,
+    measured_text,
+    read_ski_files,
+    ski_of_texts,
+    ski_of_uploads,
+    texts_of_ski,
+)
 from skisnow.web.pages import skis as skis_page
 from skisnow.web.settings import Limits
-from skisnow.web.ski_asked import CELLS, FACTORS, SkiAsked, ski_found
+from skisnow.web.ski_editor import CELLS, FACTORS, SkiAsked, ski_found
+from skisnow.web.subprocesses import OF_A_SKI
 
 from ...test_measured_ski import DESIGN, TABLE, TYPED, WITH_TABLE
 from .shared import CARVER, HEAVY, TEXT, files, opened, saved_place

@@ -8,7 +8,7 @@ import pytest
 from nicegui import ui
 
 from skisnow.ski import ski_names
-from skisnow.web.fields import FIRST
+from skisnow.web.elements import FIRST
 from skisnow.web.lab_skis import LabSkis
 
 from .shared import CARVER, SLALOM, TEXT, cells_of, opened, source_words

@@ -16,8 +16,7 @@ from skisnow.scenario.keys import SCENARIO_KEYS
 from skisnow.ski import read_ski
 from skisnow.web.lab_skis import LabSkis
 from skisnow.web.studies import Studies
-from skisnow.web.study_asked import CARVE, study_keys
-from skisnow.web.study_axis import begins
+from skisnow.web.study_fields import CARVE, begins, study_keys
 
 from ...campaign_texts import HARD, SHEARED, SOFT, pressed
 from .shared import (

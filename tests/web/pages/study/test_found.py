@@ -12,7 +12,7 @@ import pytest
 from skisnow.report.formatting import significant
 from skisnow.web.pages import study as study_page
 from skisnow.web.studies import Studies, StudyJob
-from skisnow.web.study_asked import CARVE, Range, StudyAsked
+from skisnow.web.study_fields import CARVE, Range, StudyAsked
 
 from .shared import ANGLE, HARDNESS, LOAD, RATIO, SPEED, STRESS, TURN, asked
 

@@ -11,7 +11,7 @@ from skisnow.scenario import scenario_names
 from skisnow.ski import ski_names
 from skisnow.studies import read_study
 from skisnow.web.lab_skis import LabSkis
-from skisnow.web.study_asked import CARVE, most_points_refused
+from skisnow.web.study_fields import CARVE, most_points_refused
 
 from .shared import (
     ANGLE,

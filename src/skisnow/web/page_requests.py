@@ -1,4 +1,4 @@
-"""The server's side of `lab.js`, which holds in the browser what is typed while an answer is on its way."""
+"""Requests from `lab.js`, which keeps typed text in the browser until the server's answer."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from weakref import WeakKeyDictionary
 
 from nicegui import Client, ui
 
-from .fields import button
+from .elements import button
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -110,7 +110,7 @@ def _asked_of(said: Any) -> PageRequest:
 
 
 def asking_button(text: str, act: Act, kind: str = "") -> ui.button:
-    """A button whose answer puts the focus somewhere; see `skisnow.web.fields.button`."""
+    """A button whose answer puts the focus somewhere; see `skisnow.web.elements.button`."""
     return button(text, None, kind).on("click", answering(act), js_handler=ASK)
 
 

@@ -1,4 +1,4 @@
-"""Numbers as people type them into a field."""
+"""Numbers typed into a field."""
 
 from __future__ import annotations
 

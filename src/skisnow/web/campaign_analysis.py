@@ -1,4 +1,4 @@
-"""A campaign's folder analysed with a choice of what takes part: numbers and tables, figures, the report."""
+"""Analysis of a campaign's files with a choice of data: results, tables, figures and the report."""
 
 from __future__ import annotations
 

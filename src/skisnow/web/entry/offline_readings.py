@@ -1,4 +1,4 @@
-"""Readings that the browser kept because nobody answered: they are stored when it comes back, each once."""
+"""Readings that the browser kept while the server was unreachable: each is stored once."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ from ..._support.errors import ParameterError, StoreError
 from ...campaign.reading.table_forms import BRANCH
 from ...campaign.store import NewEntry
 from ...campaign.store.cells import FORMS, checked_cell
-from ..answering import LONGEST
 from ..language import number_said, said, said_template
-from .checking import problem_said
+from ..page_requests import LONGEST
+from .readings import problem_said
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -1,4 +1,4 @@
-"""What stands beside the form and follows each reading: hardness or stress, marks in words, the curve."""
+"""Results next to the form, updated with each reading: hardness or stress, flags, the curve."""
 
 from __future__ import annotations
 
@@ -9,9 +9,9 @@ from nicegui import background_tasks, run, ui
 
 from ..._support.errors import FieldDataError, StoreError
 from ...campaign.reading.table_forms import PENETRATION
+from ..elements import Words, named
 from ..error_pages import error_sentence
 from ..line_chart import BEHIND, ChartLine, LineChart
-from ..worded import Words, named
 from ..words import displacement_words, hardness_words, in_words, label, stress_words, unloading_words
 
 if TYPE_CHECKING:

@@ -1,4 +1,4 @@
-"""Addresses of the pages that belong to one campaign. An id in an address is letters and digits, or it is no id."""
+"""Addresses of the pages of one campaign. An id consists of letters and digits."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the pages of entering and of correcting share: links to the tables, who writes, the places of the form."""
+"""The frame of the pages that edit a table: links to the tables, the writer, the places of the form."""
 
 from __future__ import annotations
 
@@ -7,12 +7,11 @@ from typing import TYPE_CHECKING
 
 from nicegui import ui
 
-from ..fields import choice, field
+from ..elements import StatusLine, choice, field, named
 from ..language import said
-from ..worded import StatusLine, named
 from ..words import TABLES
-from .beside import Beside
 from .changes import Places
+from .live_results import Beside
 from .table_view import WHO, TableView
 
 if TYPE_CHECKING:

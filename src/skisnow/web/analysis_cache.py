@@ -1,4 +1,4 @@
-"""Analyses that pages have asked for, kept as long as nothing changed: a page that is opened again is there at once."""
+"""Cache of the analyses shown on pages, valid until the campaign changes."""
 
 from __future__ import annotations
 
@@ -17,15 +17,15 @@ from nicegui import run
 
 from .._support.errors import StoreError
 from ..campaign.store import Journals
-from .analysing import N_FIGURES, Choice, Numbers, Refusal, figure, numbers_of
+from .campaign_analysis import N_FIGURES, Choice, Numbers, Refusal, figure, numbers_of
 from .transfer import entry_files, kept_files
 
 if TYPE_CHECKING:
     from collections.abc import AsyncIterator
 
-    from .analysing import Shown
+    from .campaign_analysis import Shown
     from .settings import Lab
-    from .worker import Worker
+    from .subprocesses import Worker
 
 MOST_CAMPAIGNS: Final = 6
 MOST_CHOICES: Final = 4

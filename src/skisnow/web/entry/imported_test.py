@@ -1,4 +1,4 @@
-"""A test of a kept campaign: its cells, to be corrected with a reason. Its files stay as they came in."""
+"""A test of an imported campaign: cells that are corrected with a reason. Its files stay unchanged."""
 
 from __future__ import annotations
 
@@ -7,21 +7,20 @@ from typing import TYPE_CHECKING, Final
 from nicegui import ui
 
 from ...campaign.store.stored_tables import cell_key
-from ..answering import asking_button, form
-from ..fields import choice, field, link
+from ..elements import Words, choice, field, link
 from ..language import said
 from ..layout import heading, sentence
-from ..names import correcting
-from ..worded import Words
+from ..page_addresses import correcting
+from ..page_requests import asking_button, form
 from .changes import ASKED, LEFT_AS_IT_WAS, UNANSWERED, USUAL_REASON, Places, ask_reason, change_said, changes
-from .checking import Field, checked_fields, faults
+from .readings import Field, checked_fields, faults
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
     from ...campaign.store import ReplayedTest
-    from ..correction_session import CorrectionSession
-    from .beside import Beside
+    from ..edit_session import CorrectionSession
+    from .live_results import Beside
     from .table_view import TableView
 
 ONCE: Final = ("site", "spot", "tool", "plate", "edge_angle_deg")
