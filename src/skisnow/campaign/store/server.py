@@ -196,7 +196,7 @@ def needs_migration(revision: str | None, place: object) -> bool:
     Raises
     ------
     StoreError
-        A newer program wrote it.
+        This program does not know the migration.
     """
     if revision == REVISION:
         return False  # the usual case: alembic need not even be imported
@@ -204,8 +204,9 @@ def needs_migration(revision: str | None, place: object) -> bool:
 
     if revision is not None and not is_known(revision):
         raise StoreError(
-            f"{place} was written by a newer skisnow (schema {revision}; this one knows up to {REVISION}); "
-            "update skisnow, or name another store."
+            f"{place} has schema {revision}, which this version of skisnow does not know; it reads {REVISION}. "
+            "Update skisnow, or name another store.",
+            code="unknown_schema",
         )
     return True
 

@@ -127,7 +127,7 @@ class Store(Shown):
         Raises
         ------
         StoreError
-            There is none, or it is something else, or it was written by a newer skisnow.
+            There is none, or it is something else, or its schema is unknown.
         """
         place = default_path() if path is None else store_place(path)
         if isinstance(place, ServerAddress):
