@@ -16,11 +16,11 @@ from .straight_run import STRAIGHT, straight_run
 @pytest.mark.parametrize(
     ("method", "function", "arguments"),
     [
-        (lambda run: run.plot(), "run_drawings.run_figure", ("track",)),
-        (lambda run: run.plot("motion"), "run_drawings.run_figure", ("motion",)),
-        (lambda run: run.report(Path("out")), "run_folder.write_run", (Path("out"),)),
-        (lambda run: run.to_dataframe(), "run_frames.run_dataframe", ()),
-        (lambda run: run.to_xarray(), "run_frames.run_dataset", ()),
+        (lambda run: run.plot(), "run.drawings.run_figure", ("track",)),
+        (lambda run: run.plot("motion"), "run.drawings.run_figure", ("motion",)),
+        (lambda run: run.report(Path("out")), "run.folder.write_run", (Path("out"),)),
+        (lambda run: run.to_dataframe(), "run.file.run_dataframe", ()),
+        (lambda run: run.to_xarray(), "run.file.run_dataset", ()),
     ],
 )
 def test_a_method_returns_the_result_of_the_upper_package(

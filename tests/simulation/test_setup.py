@@ -62,6 +62,7 @@ def test_a_run_begins_where_its_sledge_stands(
         "replace": lambda said, **_: said,
         "why_no_start": lambda _: "cannot stand",
         "model_limits": lambda _: {},
+        "_warn_of_zero_friction": lambda _: None,
     }
     for name, fake in fakes.items():
         monkeypatch.setattr(simulated_run, name, fake)

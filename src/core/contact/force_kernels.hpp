@@ -92,8 +92,10 @@ void slide(const Motion& motion, const Pose& pose, const Snow& snow, const Base&
                              m.v[2] + m.o[0] * centre.at.y - m.o[1] * centre.at.x + deflecting - c.cp * turning};
     const V sliding = dot(velocity, c.along), speed = absolute(sliding);
     const V film = 1.0 / (1.0 + speed / law.film_speed), size = 1.0 / root(sliding * sliding + fade);
-    const V mu = law.constant + speed * (law.linear + law.square * speed) + law.film * film;
-    const V growth = law.linear + 2.0 * law.square * speed - law.film / law.film_speed * film * film;
+    const V of_law = law.constant + speed * (law.linear + law.square * speed) + law.film * film;
+    const V mu = maximum(of_law, V{});  // friction never drives the ski
+    const V growth_of_law = law.linear + 2.0 * law.square * speed - law.film / law.film_speed * film * film;
+    const V growth = select(of_law > 0.0, growth_of_law, V{});
     store(out[SLIDING] + i, sliding);
     store(out[FRICTION] + i, mu * sliding * size);
     store(out[FRICTION_SLOPE] + i, (growth * speed + mu * fade * size * size) * size);

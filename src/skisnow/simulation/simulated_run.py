@@ -139,7 +139,21 @@ def simulate(
     except KeyboardInterrupt:
         outcome = "interrupted"
     run = computed_run(setup, record, outcome, time.perf_counter() - begin)
+    _warn_of_zero_friction(run)
     return replace(run, laws=laws, strength_along=strength_along)
+
+
+def _warn_of_zero_friction(run: Run) -> None:
+    """Warn if the run was fast enough for a friction that falls with speed to reach 0, where the core keeps it."""
+    contact = run.scenario.contact
+    fastest = float(run.speed.max(initial=0.0))
+    if contact.friction + contact.friction_by_speed * fastest < 0.0:
+        zero_at = -contact.friction / contact.friction_by_speed
+        text = (
+            f"mu_0 + mu_1 v is below 0 above {zero_at:.3g} m/s, and the run reached {fastest:.3g} m/s: friction counts "
+            "as 0 there. Use a friction.mu_1_s_per_m nearer to 0"
+        )
+        warnings.warn(ModelLimitWarning(text, "friction_below_zero"), stacklevel=3)
 
 
 @dataclass(slots=True)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from skisnow import Run
+from skisnow import ModelLimitWarning, Run
 from skisnow.scenario import load_scenario
 from skisnow.simulation.run import LOST
 from skisnow.simulation.simulated_run import simulate
@@ -122,3 +122,19 @@ def test_every_snow(hardness: float, strength: float) -> None:
     """From powder to ice, with an S_f that carves and one that skids."""
     changes = {"snow.H_V_N_per_mm3": hardness, "snow.S_f_N_per_mm2": strength}
     closes(simulate(load_scenario("carved-46m", changes=changes)), changes)
+
+
+def test_friction_that_falls_with_speed_never_drives_the_ski() -> None:
+    """mu = 0.02 - 0.01 v is 0 at 2 m/s; faster than that the loss stays, and the run is one without friction."""
+    changes = {"friction.mu_0": 0.02, "friction.mu_1_s_per_m": -0.01, "run.duration_s": 1.5, "start.speed_m_per_s": 0.5}
+    with pytest.warns(ModelLimitWarning) as caught:
+        run = simulate(load_scenario("carved-46m", changes=changes))
+    assert [each.message.code for each in caught if isinstance(each.message, ModelLimitWarning)] == [
+        "friction_below_zero"
+    ]
+    lost = run.energies["friction"]
+    fast = run.speed > 2.0
+    assert fast.sum() > 5
+    assert np.diff(lost).min() >= 0.0
+    assert np.ptp(lost[fast]) <= 1e-3 * lost.max()
+    closes(run, changes)

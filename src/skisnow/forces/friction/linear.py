@@ -17,7 +17,7 @@ class LinearFriction(FrictionLaw):
     friction_at_rest
         μ_0, ≥ 0: μ as v → 0.
     friction_slope
-        μ_1 (s/m). Below 0 the law is refused at speeds at which μ would be negative.
+        μ_1 (s/m). Below 0 the law is refused at speeds at which μ would be negative; a run counts μ as 0 there.
 
     See Also
     --------
