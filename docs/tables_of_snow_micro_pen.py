@@ -29,10 +29,10 @@ CASES = {
 
 
 CONSTANTS = {
-    "block of 0.25 mm": ("campaign.snow_surface.BLOCK", 0.25 * MM),
-    "block of 1 mm": ("campaign.snow_surface.BLOCK", 1.0 * MM),
-    "air over 10 mm": ("campaign.snow_surface.AIR", 10.0 * MM),
-    "air over 40 mm": ("campaign.snow_surface.AIR", 40.0 * MM),
+    "block of 0.25 mm": ("campaign.snow_micro_pen_records.BLOCK", 0.25 * MM),
+    "block of 1 mm": ("campaign.snow_micro_pen_records.BLOCK", 1.0 * MM),
+    "air over 10 mm": ("campaign.snow_micro_pen_records.AIR", 10.0 * MM),
+    "air over 40 mm": ("campaign.snow_micro_pen_records.AIR", 40.0 * MM),
     "windows overlap by 25 %": ("estimation.snow_micro_pen.OVERLAP", 0.25),
     "windows overlap by 75 %": ("estimation.snow_micro_pen.OVERLAP", 0.75),
 }

@@ -231,7 +231,7 @@ def test_a_ski_that_is_flat_has_no_side_force_to_balance() -> None:
 
 
 def test_a_moment_balance_that_is_none() -> None:
-    with pytest.raises(ParameterError, match="moment_balance is 'ski'; it must be 'boot' or 'free'"):
+    with pytest.raises(ParameterError, match=r"moment_balance.*boot, free"):
         carve(
             read_ski("slalom"), snow(0.2), edge_angle=0.5, load=800.0, unloading_ratio=10.0,
             moment_balance="ski",  # type: ignore[arg-type]
@@ -268,7 +268,7 @@ def test_each_spread_of_the_side_force_tells_the_others_radius(ratio: float, gro
 
 
 def test_a_spread_that_is_none_is_refused() -> None:
-    with pytest.raises(ParameterError, match="side_force_spread is 'even'; it must be 'depth' or 'base-reaction'"):
+    with pytest.raises(ParameterError, match=r"side_force_spread.*depth, base-reaction"):
         carve(
             read_ski("slalom"),
             snow(0.2),

@@ -182,7 +182,7 @@ def test_axes_with_z_up_need_no_turn() -> None:
     assert other.place == pytest.approx(one.place, abs=1e-15)
     assert other.axes == pytest.approx(one.axes, abs=1e-15)
     assert (one.frame, one.source) == ("slope", "markers")
-    with pytest.raises(ParameterError, match="up is 'x'; it must be 'y' or 'z'"):
+    with pytest.raises(ParameterError, match=r"up.*y, z"):
         boots_of_markers(markers, given[0], given[1], up="x")  # type: ignore[arg-type]
 
 

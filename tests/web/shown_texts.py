@@ -27,10 +27,11 @@ _UNREAD: Final = """
 """
 UNREAD_CALLS: Final = frozenset(_UNREAD.split())
 """What is handed to these is read by programs, or was translated before."""
-NO_PAGES: Final = frozenset({"addresses.py", "guard.py", "local_time.py", "server.py", "replay/__init__.py"})
-"""Files whose words are printed where the lab was started, answered to programs, or the names of months."""
+NO_PAGES: Final = frozenset({"addresses.py", "guard.py", "server.py", "replay/__init__.py"})
+"""Files whose words are printed where the lab was started, or answered to programs."""
 NO_WORDS: Final = frozenset(
     {
+        *("Jan", "Feb", "Mar", "Apr", "May", "Jun", "Jul", "Aug", "Sep", "Oct", "Nov", "Dec"),  # of English dates
         "Limits",  # names of classes that other files load late
         "Lab",
         "Given",

@@ -256,14 +256,10 @@ class PathModel:
         return float(scale - 2 * points * np.log(parameters.place_noise))
 
     def _residuals(self, state: FloatArray, parameters: MotionParameters, weight: FloatArray) -> _Residuals:
-        """Residuals of the transitions and points.
-
-        Over a step h with the turn Δθ the chord is shorter than the arc by 1 - Δθ²/24. Its direction is the mean
-        heading of the cubic with the headings and turn rates at both ends: (θ₀ + θ₁)/2 + h (ω₀ - ω₁)/12.
-        """
+        """Residuals; over a step with the turn Δθ the chord is shorter than the arc by 1 - Δθ²/24."""
         heading, speed = state[:, _THETA], state[:, _V]
         turn = np.diff(heading)
-        middle = (heading[1:] + heading[:-1]) / 2.0 - self.step * np.diff(state[:, _OMEGA]) / 12.0
+        middle = (heading[1:] + heading[:-1]) / 2.0
         mean_speed = (speed[1:] + speed[:-1]) / 2.0
         shortening = 1.0 - turn**2 / 24.0
         cosine, sine = np.cos(middle), np.sin(middle)
@@ -292,8 +288,6 @@ class PathModel:
             before[:, axis, axis], after[:, axis, axis] = -1.0, 1.0
             before[:, axis, _THETA] = -(by_turn * along + 0.5 * chord * across)
             after[:, axis, _THETA] = -(-by_turn * along + 0.5 * chord * across)
-            before[:, axis, _OMEGA] = -chord * across * self.step / 12.0
-            after[:, axis, _OMEGA] = -before[:, axis, _OMEGA]
             before[:, axis, _V] = after[:, axis, _V] = -0.5 * self.step * residuals.shortening * along
         before[:, _TURN, _TURN] = -self._turn(parameters).transition
         before[:, _SPEED, _SPEED] = -self._speed.transition
