@@ -17,10 +17,11 @@ QUICK = -n $(WORKERS) --dist worksteal -q --hypothesis-profile=ci
 # tests start hundreds of Python processes; where compiled modules are not kept, each compiles the package anew
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: help set-up demo test test-all test-minimum coverage lint tidy sanitize docs bench lock sbom clean
+.PHONY: help set-up messages demo test test-all test-minimum coverage lint tidy sanitize docs bench lock sbom clean
 
 help:
 	@echo "make set-up    what all the others need, in $(VENV)/"
+	@echo "make messages  new and changed messages into the files of translations, and these compiled"
 	@echo "make demo      a synthetic campaign to snow parameters and a simulated turn, and a slalom to watch, in $(DEMO)/"
 	@echo "make test      the tests that take minutes, not hours"
 	@echo "make test-all  those and the long ones"
@@ -88,6 +89,9 @@ demo: $(VENV)/.skisnow
 	@echo "and $(DEMO)/slalom/replay.html: a skier through twenty gates, in three dimensions."
 
 set-up: $(VENV)/.skisnow-dev
+
+messages: $(VENV)/.skisnow-dev
+	$(BIN)/python build_backend/messages.py update
 
 test: $(VENV)/.skisnow-dev
 	$(BIN)/python -m pytest $(QUICK)

@@ -13,6 +13,7 @@ import zipfile
 from pathlib import Path
 from typing import Any
 
+import messages
 from scikit_build_core import build as scikit
 
 build_sdist = scikit.build_sdist
@@ -51,6 +52,7 @@ def _use_zig(folder: Path) -> None:
 
 def build_wheel(wheel_directory: str, config_settings: Settings = None, metadata_directory: str | None = None) -> str:
     """Build a wheel."""
+    messages.compile_changed()
     with tempfile.TemporaryDirectory() as folder:
         if not _has_compiler():
             _use_zig(Path(folder))

@@ -16,6 +16,8 @@ import pytest
 # processes test at once
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
+from build_backend.messages import compile_changed
+
 from skisnow.report.figures import drawing as figure_drawing
 from skisnow.report.figures.drawing import Drawing, Picture
 
@@ -24,6 +26,9 @@ gc.disable()
 
 # what is started in the background is told to ignore Ctrl-C, which tests of an interrupt would wait for
 signal.signal(signal.SIGINT, signal.default_int_handler)
+
+# translations that were edited since the package was built
+compile_changed()
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:

@@ -1,19 +1,21 @@
 """Errors and warnings of skisnow, one class for each kind.
 
-Each message names the place, the problem, what is allowed and how to fix it. Programs and tests use `code` instead of
-the wording.
+Each message names the place, the problem, what is allowed and how to fix it. Programs and tests use `code` and `fields`
+instead of the wording.
 """
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
+
+from .messages import ENGLISH, Message, count_message, joined, translated
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
 
-class SkisnowError(Exception):
-    """Base class of all errors of skisnow.
+class _Coded(Exception):  # noqa: N818 -- of errors and warnings
+    """A message with a code.
 
     Attributes
     ----------
@@ -24,6 +26,30 @@ class SkisnowError(Exception):
     def __init__(self, message: str = "", *, code: str = "") -> None:
         super().__init__(message)
         self.code = code
+
+    @property
+    def message(self) -> str:
+        """English text; a `Message` if it has a translation."""
+        return self.args[0]
+
+    @property
+    def fields(self) -> Mapping[str, Any]:
+        """Named values of the message; empty if it is plain text."""
+        return self.message.fields if isinstance(self.message, Message) else {}
+
+    def text(self, language: str = ENGLISH) -> str:
+        """The message in a language."""
+        return translated(self.message, language)
+
+
+class SkisnowError(_Coded):
+    """Base class of all errors of skisnow.
+
+    Attributes
+    ----------
+    code
+        Identifier that does not change with the wording, such as ``contradiction``; empty without one.
+    """
 
 
 class ParameterError(SkisnowError, ValueError):
@@ -41,11 +67,16 @@ class FieldDataError(SkisnowError):
 
     SHOWN = 20
 
-    def __init__(self, problems: Sequence[object]) -> None:
+    def __init__(self, problems: Sequence[object], *, code: str = "") -> None:
         self.problems = tuple(problems)
-        shown = [str(problem) for problem in self.problems[: self.SHOWN]]
+        shown = list(self.problems[: self.SHOWN])
         more = len(self.problems) - len(shown)
-        super().__init__("\n".join([*shown, f"… and {more} more problems"] if more else shown))
+        if more:
+            shown.append(count_message("… and {count} more problem", "… and {count} more problems", count=more))
+        super().__init__(joined(shown, "\n"), code=code)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return type(self), (self.problems,), self.__dict__
 
 
 class FitError(SkisnowError):
@@ -64,28 +95,17 @@ class OutputError(SkisnowError):
     """A file could not be written; nothing half-written was left behind."""
 
 
-class RangeWarning(UserWarning):
+class SkisnowWarning(_Coded, UserWarning):
+    """Base class of all warnings of skisnow; `code` and `fields` as those of errors."""
+
+
+class RangeWarning(SkisnowWarning):
     """A relation is used outside the range in which it was measured: the number is computed all the same."""
 
 
-class ModelLimitWarning(UserWarning):
-    """The model is known to be wrong for an input; `code` says for which.
-
-    Parameters
-    ----------
-    text
-        The reason, and what to do.
-    code
-        One of the codes of `skisnow.scenario.plausibility`.
-    """
-
-    def __init__(self, text: str, code: str) -> None:
-        super().__init__(text, code)
-        self.code = code
-
-    def __str__(self) -> str:
-        return str(self.args[0])
+class ModelLimitWarning(SkisnowWarning):
+    """The model is known to be wrong for an input; `code` is one of those of `skisnow.scenario.plausibility`."""
 
 
-class FitWarning(UserWarning):
+class FitWarning(SkisnowWarning):
     """A fit has an answer of which fewer digits are known than a reader would take for granted."""

@@ -8,10 +8,10 @@ from importlib.metadata import version
 from importlib.resources import files
 from typing import TYPE_CHECKING, Final
 
-from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 
 from .._support.language import ENGLISH
+from .environment import page_environment
 from .tables.table_html import table_html
 from .translated import translated_html
 
@@ -70,9 +70,7 @@ def sheet(
     header: Header, sections: Sequence[Section], *, language: str = ENGLISH, names: Set[str] = frozenset()
 ) -> str:
     """The HTML in a language; ``names`` are what users wrote."""
-    environment = Environment(
-        loader=PackageLoader("skisnow.report"), autoescape=True, undefined=StrictUndefined, trim_blocks=True
-    )
+    environment = page_environment(language)
     pictures = [picture for section in sections for picture in section.pictures]
     every = [table for section in sections for table in section.tables]
     english = environment.get_template("sheet.html").render(

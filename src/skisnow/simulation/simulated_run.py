@@ -125,7 +125,7 @@ def simulate(
     * The page docs/methods/simulated-turn.md.
     """
     for code, text in model_limits(scenario).items():
-        warnings.warn(ModelLimitWarning(text, code), stacklevel=2)
+        warnings.warn(ModelLimitWarning(text, code=code), stacklevel=2)
     setup = set_up(scenario, laws=laws, boots=boots, strength_along=strength_along)
     record = Record(setup)
     if setup.height < -SINKING_DEPTH or (not setup.static_residual <= AT_REST and setup.sinks):
@@ -153,7 +153,7 @@ def _warn_of_zero_friction(run: Run) -> None:
             f"mu_0 + mu_1 v is below 0 above {zero_at:.3g} m/s, and the run reached {fastest:.3g} m/s: friction counts "
             "as 0 there. Use a friction.mu_1_s_per_m nearer to 0"
         )
-        warnings.warn(ModelLimitWarning(text, "friction_below_zero"), stacklevel=3)
+        warnings.warn(ModelLimitWarning(text, code="friction_below_zero"), stacklevel=3)
 
 
 @dataclass(slots=True)

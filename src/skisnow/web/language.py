@@ -10,6 +10,7 @@ from nicegui import Client, ui
 
 from .._support.language import ENGLISH, catalogue, languages
 from .._support.language.catalogue import DECIMAL
+from .._support.messages import Message
 
 if TYPE_CHECKING:
     from collections.abc import Set
@@ -59,6 +60,8 @@ def language_of_request(request: Request) -> str:
 def said(text: str, client: Client | None = None) -> str:
     """A text in the language of the page, its numbers as there."""
     words = catalogue(language_of(client))
+    if isinstance(text, Message):
+        return text.text(language_of(client))
     return words.with_numbers(words.translated(text))
 
 

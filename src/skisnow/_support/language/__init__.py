@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
+from ..messages import ENGLISH
 from .catalogue import Catalogue
-from .known import ENGLISH, catalogue, codes, languages, require_language
+from .known import catalogue, codes, languages, require_language
 
 __all__ = ["ENGLISH", "Catalogue", "catalogue", "codes", "languages", "require_language"]

@@ -17,6 +17,7 @@ from functools import cached_property, lru_cache
 from typing import TYPE_CHECKING, Final
 
 from ..errors import ParameterError
+from ..messages import ENGLISH, Message, translations
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Set
@@ -81,7 +82,8 @@ class Catalogue:
     '2,5 mm [1,5; 3], version 0.1.0'
     """
 
-    def __init__(self, translations: Mapping[str, str]) -> None:
+    def __init__(self, translations: Mapping[str, str], *, language: str = ENGLISH) -> None:
+        self._language = language
         self._translations = dict(translations)
         self._whole = {english: text for english, text in translations.items() if not _PLACE.search(english)}
         open_ones = [english for english in translations if _PLACE.search(english)]
@@ -89,18 +91,24 @@ class Catalogue:
         self._patterns = [_pattern(english, translations[english]) for english in open_ones]
         self._sign = self._whole.get(DECIMAL, DECIMAL)[1]
         self._names: Set[str] = frozenset()
-        self.translated = lru_cache(_KNOWN)(self._translated)
+        self._of_text = lru_cache(_KNOWN)(self._translated)
+
+    def translated(self, text: str) -> str:
+        """A text in the language; a message by its template."""
+        return text.text(self._language) if isinstance(text, Message) else self._of_text(text)
 
     def keeping(self, names: Set[str]) -> Catalogue:
         """The same, but for names that users gave: they stay as they are, wherever they stand alone or in a place."""
         other = copy(self)
         other._names = names
-        other.translated = lru_cache(_KNOWN)(other._translated)
+        other._of_text = lru_cache(_KNOWN)(other._translated)
         return other
 
     def as_given(self, english: str) -> str:
         """The translation of just this text, its places still open; the text itself where there is none."""
-        return self._translations.get(english, english)
+        if english in self._translations:
+            return self._translations[english]
+        return translations(self._language).gettext(english) if english else english
 
     def _translated(self, text: str) -> str:
         plain = text.replace("\N{NO-BREAK SPACE}", " ")

@@ -7,13 +7,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from ..errors import ParameterError
+from ..messages import ENGLISH
 from .catalogue import Catalogue, read_catalogue
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
 FOLDER: Final = Path(__file__).parent / "texts"
-ENGLISH: Final = "en"
 NAME: Final = "English"
 """What a language calls itself: in a catalogue the translation of this word."""
 
@@ -32,7 +32,7 @@ def languages() -> Mapping[str, str]:
 @cache
 def catalogue(code: str) -> Catalogue:
     """The words of a language; English has none."""
-    return Catalogue({} if code == ENGLISH else read_catalogue(FOLDER / f"{code}.po"))
+    return Catalogue({} if code == ENGLISH else read_catalogue(FOLDER / f"{code}.po"), language=code)
 
 
 def require_language(code: str) -> None:

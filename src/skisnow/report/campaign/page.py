@@ -9,7 +9,6 @@ from importlib.resources import files
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
-from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 
 from ..._support.errors import ParameterError
@@ -18,6 +17,7 @@ from ..._support.memory import paused_collector
 from ..._support.staging import staged, tidied, write_file
 from ...estimation import Analysis
 from ...estimation.results import results_json
+from ..environment import page_environment
 from ..figures.figure_files import picture_files, write_picture
 from ..formatting import counted, days_words, moment_words, significant, whole
 from ..tables.table import table_csv
@@ -158,9 +158,7 @@ def page(
     language: str = ENGLISH,
 ) -> str:
     """HTML of the report, with styles, figures and tables inside."""
-    environment = Environment(
-        loader=PackageLoader("skisnow.report"), autoescape=True, undefined=StrictUndefined, trim_blocks=True
-    )
+    environment = page_environment(language)
     english = environment.get_template("report.html").render(
         **_frame(data),
         key_results=key_results(data),

@@ -1,0 +1,148 @@
+"""Messages for users: templates with named fields, which are translated when they are shown.
+
+Write each message where it arises, as whole sentences in English. `build_backend/messages.py` extracts the templates
+into ``translations/<language>/<package>.po`` and compiles these files.
+
+>>> message = Message("The depth of {depth_mm} mm is above {limit_mm:.1f} mm.", depth_mm=12.5, limit_mm=10.0)
+>>> print(message)
+The depth of 12.5 mm is above 10.0 mm.
+>>> message.fields["depth_mm"]
+12.5
+"""
+
+from __future__ import annotations
+
+import gettext
+from collections.abc import Sequence
+from datetime import date, datetime
+from functools import cache
+from numbers import Real
+from pathlib import Path
+from string import Formatter
+from typing import Any, Final
+
+ENGLISH: Final = "en"
+FOLDER: Final = Path(__file__).parent / "translations"
+_MONTHS: Final = ("Jan", "Feb", "Mar", "Apr", "May", "Jun", "Jul", "Aug", "Sep", "Oct", "Nov", "Dec")
+
+
+class Message(str):
+    """English text of a template with its fields, which can also be given in other languages.
+
+    Parameters
+    ----------
+    template
+        Whole sentences with named fields, as for `str.format`. Must be a literal (or marked by `template`), so that it
+        is extracted for translation.
+    fields
+        Values: text, numbers, dates and paths; a tuple of numbers is an interval or a vector ([1.5, 3]), a list is an
+        enumeration. Messages, errors and problems are translated, text is not.
+    """
+
+    template: str
+    plural: str | None
+    fields: dict[str, Any]
+
+    def __new__(cls, template: str, /, **fields: Any) -> Message:
+        return _message(template, None, fields)
+
+    def text(self, language: str = ENGLISH) -> str:
+        """The message in a language, with its numbers and dates as written there."""
+        return _filled(self.template, self.plural, self.fields, language)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _message, (self.template, self.plural, self.fields)
+
+
+def count_message(singular: str, plural: str, /, *, count: int, **fields: Any) -> Message:
+    """A message whose template depends on the field ``count``.
+
+    >>> print(count_message("{count} test of {name}", "{count} tests of {name}", count=2, name="Ann"))
+    2 tests of Ann
+    """
+    return _message(singular, plural, {"count": count, **fields})
+
+
+def template(text: str) -> str:
+    """The same text, marked for translation: for templates in tables, whose fields are filled later."""
+    return text
+
+
+def joined(messages: Sequence[object], between: str = " ") -> Message:
+    """Whole messages one after the other, such as sentences of a paragraph."""
+    names = [f"part_{number}" for number in range(len(messages))]
+    return Message(between.join(f"{{{name}}}" for name in names), **dict(zip(names, messages, strict=True)))
+
+
+def translated(value: object, language: str) -> str:
+    """Text of a value as it is inserted into a message of a language."""
+    return _formatter(language).format_field(value, "")
+
+
+@cache
+def translations(language: str) -> gettext.NullTranslations:
+    """Compiled translations of a language."""
+    if language == ENGLISH:
+        return gettext.NullTranslations()
+    with (FOLDER / f"{language}.mo").open("rb") as file:
+        return gettext.GNUTranslations(file)
+
+
+def decimal_sign(language: str) -> str:
+    """Decimal sign of a language, from the translation of "0.5"."""
+    return translations(language).gettext(template("0.5"))[1]
+
+
+def _message(template: str, plural: str | None, fields: dict[str, Any]) -> Message:
+    message = str.__new__(Message, _filled(template, plural, fields, ENGLISH))
+    message.template, message.plural, message.fields = template, plural, fields
+    return message
+
+
+def _filled(template: str, plural: str | None, fields: dict[str, Any], language: str) -> str:
+    words = translations(language)
+    if plural is not None:
+        template = words.ngettext(template, plural, fields["count"])
+    elif template:  # gettext gives the head of the file for an empty text
+        template = words.gettext(template)
+    return _formatter(language).vformat(template, (), fields)
+
+
+@cache
+def _formatter(language: str) -> _Localized:
+    return _Localized(language)
+
+
+class _Localized(Formatter):
+    """`str.format` with numbers, dates and messages of a language."""
+
+    def __init__(self, language: str) -> None:
+        self._language = language
+        self._sign = decimal_sign(language)
+
+    def format_field(self, value: Any, format_spec: str) -> str:
+        if callable(getattr(type(value), "text", None)):
+            return format(value.text(self._language), format_spec)
+        if isinstance(value, bool):
+            return format(str(value), format_spec)
+        if isinstance(value, Real):
+            return self._number(value, format_spec)
+        if isinstance(value, date) and not format_spec:
+            return self._date(value)
+        if isinstance(value, list | tuple | set | frozenset | dict):
+            return self._several(value, format_spec)
+        return format(value if isinstance(value, str) or format_spec else str(value), format_spec)
+
+    def _number(self, value: Any, spec: str) -> str:
+        text = format(value, spec or ("" if isinstance(value, int) else ".12g"))
+        return text if self._sign == "." else text.translate({ord("."): self._sign, ord(","): "."})
+
+    def _several(self, values: Any, spec: str) -> str:
+        items = [self.format_field(value, spec) for value in values]
+        numbers = all(isinstance(value, Real) for value in values)
+        text = ("; " if numbers and self._sign == "," else ", ").join(items)
+        return f"[{text}]" if numbers and isinstance(values, tuple) else text
+
+    def _date(self, value: date) -> str:
+        month = f" {_MONTHS[value.month - 1]} " if self._language == ENGLISH else f". {value.month}. "
+        return f"{value.day}{month}{value.year}" + (f", {value:%H:%M}" if isinstance(value, datetime) else "")
