@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from dataclasses import replace
 from datetime import UTC, datetime
 from pathlib import Path
@@ -103,6 +104,20 @@ def test_what_does_not_fit_is_told_with_its_line(path: Path, text: str, words: s
     path.write_text(text)
     with pytest.raises(FieldDataError, match=rf"station\.smet.*{words}"):
         read_smet(path)
+
+
+@pytest.mark.parametrize(
+    ("units", "column"),
+    [("", "TA"), ("units_offset = 0 273.15 0 0", "RH"), ("units_multiplier = 1 1 0.01 1", "TA")],
+)
+def test_celsius_and_percent_without_units_are_rejected(path: Path, units: str, column: str) -> None:
+    path.write_text(re.sub(r"units_offset.*\nunits_multiplier.*\n", f"{units}\n", HEAD) + ROWS)
+    assert refusal(path).column == column
+
+
+def test_a_faulty_value_of_a_station_is_kept(path: Path) -> None:
+    path.write_text(HEAD + ROWS + "2026-02-03T15:00 -273.15 60 1\n")
+    assert read_smet(path).fields["TA"][-1] == 0.0
 
 
 def test_a_missing_file_is_said(tmp_path: Path) -> None:

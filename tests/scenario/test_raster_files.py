@@ -296,6 +296,31 @@ def test_a_geotiff_that_would_be_misread_is_rejected(tif: Any, changes: dict[str
     assert str(error.value).startswith(str(path))
 
 
+@pytest.mark.parametrize(
+    ("count", "form", "readable"),
+    [
+        (3, {"photometric": "RGB"}, False),
+        (2, {"photometric": "MINISBLACK", "alpha": "NO"}, False),
+        (2, {"photometric": "MINISBLACK", "alpha": "YES"}, True),
+        (1, {"photometric": "PALETTE"}, False),
+    ],
+)
+def test_only_one_band_can_be_the_heights(
+    rasterio: Any, tmp_path: Path, count: int, form: dict[str, Any], *, readable: bool
+) -> None:
+    path, transform = tmp_path / "heights.tif", rasterio.Affine(2.0, 0.0, 500000.0, 0.0, -2.0, 5200000.0)
+    size = {"width": 4, "height": 3, "count": count, "dtype": "uint8", "crs": "EPSG:32632", "transform": transform}
+    with rasterio.open(path, "w", driver="GTiff", **size, **form) as file:
+        file.write(np.full((count, 3, 4), 255, "uint8"))
+        if form["photometric"] == "PALETTE":
+            file.write_colormap(1, {255: (255, 0, 0, 255)})
+    if readable:
+        assert np.all(read_terrain(path).height == 255.0)
+    else:
+        with pytest.raises(ParameterError, match="bands"):
+            read_terrain(path)
+
+
 @pytest.mark.parametrize("code", [2056, 31287, 3035, 2154, 27700, 3006])
 def test_maps_with_true_lengths_are_read(rasterio: Any, tif: Any, code: int) -> None:  # noqa: ARG001 - it skips
     from rasterio.warp import transform

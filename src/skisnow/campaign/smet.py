@@ -37,6 +37,11 @@ _VERSIONS: Final = ("0.9", "0.95", "0.99", "1.0", "1.1", "1.2")
 _OFFSET_FIRST: Final = _VERSIONS[:4]
 _ZONES: Final = (-14.0, 14.0)
 """Hours east of Greenwich that a clock may show."""
+_PLAUSIBLE: Final = {
+    **dict.fromkeys(("TA", "TD", "TSS", "TSG"), (180.0, math.inf, "above 180 K", "units_offset = 273.15 if °C")),
+    "RH": (-0.05, 1.2, "from 0 to 1", "units_multiplier = 0.01 if %"),
+}
+"""By field: between which SI values the median of a station lies, in words, and what is missing in the header."""
 
 
 @dataclass(frozen=True, slots=True, repr=False)
@@ -173,6 +178,7 @@ class _Reading:
         times, table = self._rows(names, offset)
         nodata = self._number_of("nodata", -999.0)
         values = self._in_si(np.where(table == nodata, math.nan, table), names)
+        self._require_plausible(names, values)
         columns = {name: column for name, column in zip(names, values.T, strict=True) if name != _TIME}
         place = [self._number_of(key, math.nan) for key in ("latitude", "longitude", "altitude")]
         latitude, longitude, altitude = (None if math.isnan(each) or each == nodata else each for each in place)
@@ -200,6 +206,18 @@ class _Reading:
             allowed, action = f"numbers to ±{LARGEST:g} in SI", "Correct units_offset, units_multiplier or the numbers."
             self._refuse(self._header["fields"][0], name, "a larger number", allowed, action)
         return values
+
+    def _require_plausible(self, names: Sequence[str], values: FloatArray) -> None:
+        """Reject °C read as K and % read as shares, by the median, so that a few faulty values pass."""
+        for name, column in zip(names, values.T, strict=True):
+            valid = column[np.isfinite(column)]
+            if name not in _PLAUSIBLE or not valid.size:
+                continue
+            low, high, allowed, fix = _PLAUSIBLE[name]
+            median = float(np.median(valid))
+            if not low <= median <= high:
+                line = self._header["fields"][0]
+                self._refuse(line, name, f"median {median:g}", f"a median {allowed}", f"State {fix}.")
 
     def _number_of(self, key: str, default: float) -> float:
         if key not in self._header:

@@ -21,7 +21,7 @@ from .raster import FloatArray, PlacedValues, Raster, number_within, placed_heig
 
 
 def read_geotiff(path: str | Path, *, column: str) -> PlacedValues:
-    """Read the first band: x is east, y is north, in the map's coordinates (m); places are the middles of the cells.
+    """Read the only band: x is east, y is north, in the map's coordinates (m); places are the middles of the cells.
 
     Heights are the band's numbers times its scale, plus its offset, in the band's unit, else in the unit of the
     vertical system, else in m.
@@ -29,8 +29,8 @@ def read_geotiff(path: str | Path, *, column: str) -> PlacedValues:
     Raises
     ------
     ParameterError
-        rasterio is not installed, the file cannot be read, it does not say where it lies, its rows do not run east, or
-        the grid breaks a rule of `raster`.
+        rasterio is not installed, the file cannot be read, it has several bands or colours, it does not say where it
+        lies, its rows do not run east, or the grid breaks a rule of `raster`.
     """
     if not is_file(path):
         raise ParameterError(f"{path} cannot be read: there is no such file. Check the path.")
@@ -38,6 +38,7 @@ def read_geotiff(path: str | Path, *, column: str) -> PlacedValues:
     try:
         with warnings.catch_warnings(action="ignore"), rasterio.open(path) as source:  # without a place: rejected below
             require_size(path, source.width, source.height)
+            _require_one_band(path, source)
             heights = _heights(path, source)
             transform, system = source.transform, _coordinates_of_crs(source)
             unit = _height_unit(path, source.units[0], system)
@@ -59,6 +60,17 @@ def read_geotiff(path: str | Path, *, column: str) -> PlacedValues:
 def _rasterio(path: str | Path) -> Any:
     grid = ", or write the heights as an ESRI ASCII grid, such as by gdal_translate -of AAIGrid"
     return needed("rasterio", extra="geotiff", what=f"{path}: a GeoTIFF", instead=grid)
+
+
+def _require_one_band(path: str | Path, source: Any) -> None:
+    """Reject pictures and stacks; a band that only masks the first (alpha) may be there."""
+    colours = [colour.name for colour in source.colorinterp]
+    bands = [colour for colour in colours if colour != "alpha"]
+    if len(bands) != 1 or bands[0] == "palette" or colours[0] == "alpha":
+        raise ParameterError(
+            f"{path} has {len(colours)} bands ({', '.join(colours)}). Allowed: one band of heights. Fix: write the "
+            "band of the heights alone, such as by gdal_translate -b 1."
+        )
 
 
 def _heights(path: str | Path, source: Any) -> FloatArray:
