@@ -27,6 +27,7 @@ from skisnow.pipeline import turn as pipeline_turn
 from skisnow.pipeline.ensemble import MEASURED, PRIORS, inputs_with
 from skisnow.report.turn.numbers import turn_dict
 from skisnow.scenario.prior import prior_of
+from skisnow.ski import write_ski
 from skisnow.snow import SnowProperties
 
 from ..report.runs import circle_run
@@ -101,11 +102,11 @@ def test_all_that_is_not_known_is_drawn_over_its_prior(analysis: Analysis) -> No
     drawn = [values_of(each) for each in ensemble.drawn_scenarios(nominal, PRIORS, 400, 1)]
     for prior in PRIORS:
         values = np.array([each[prior.key] for each in drawn])
-        low, high = prior.ends(values_of(nominal)[prior.key])
+        low, high = prior.ends(values_of(nominal)[prior.key] or 0.0)
         # a Latin hypercube: one in each of 400 slices of the logarithm
         assert np.quantile(values, [0.0, 0.5, 1.0]) == pytest.approx([low, np.sqrt(low * high), high], rel=0.02)
     logs = np.log([[each[key] for key in (*MEASURED, *(prior.key for prior in PRIORS))] for each in drawn])
-    assert np.max(np.abs(np.corrcoef(logs.T) - np.eye(6))) < 0.15  # 3 / √400
+    assert np.max(np.abs(np.corrcoef(logs.T) - np.eye(7))) < 0.15  # 3 / √400
 
 
 def test_the_ensemble_is_computed_quickly_whatever_the_turn_asks_for(asked: list[Scenario]) -> None:
@@ -136,14 +137,25 @@ def test_how_far_quick_ends_beside_the_turn_is_told(analysis: Analysis, monkeypa
 
 def test_the_usual_priors_are_what_their_origins_say() -> None:
     """Half of a groove stays, or all but 2 %; μ from 0.023 to 0.139 about their middle; stiffness by 30 %."""
-    ratio, way, friction, stiffness = PRIORS
+    ratio, way, friction, stiffness, rounding = PRIORS
     assert [1.0 - 1.0 / end for end in (ratio.low, ratio.high)] == pytest.approx([0.5, 0.98])
     assert way.low == pytest.approx(1e3 * SHEAR_DISPLACEMENT)
     assert way.high == 0.5
     middle = math.sqrt(0.023 * 0.139)
     assert [friction.low, friction.high] == pytest.approx([0.023 / middle, 0.139 / middle], rel=0.02)
     assert [stiffness.low, stiffness.high] == pytest.approx([1.0 / 1.3, 1.3], rel=2e-3)
-    assert [each.about for each in PRIORS] == [False, False, True, False]
+    assert (rounding.low, rounding.high) == (50.0, 200.0)
+    assert [each.about for each in PRIORS] == [False, False, True, False, False]
+
+
+def test_the_camber_is_rounded_in_a_band_only_where_it_is_one_number(tmp_path: Path) -> None:
+    turn = skisnow.load_scenario("carved-46m")
+    write_ski(turn.ski, tmp_path / "heights.toml")
+    heights = turn.with_(ski=tmp_path / "heights.toml")
+    both = [[each.key for each in inputs_with((), scenario)] for scenario in (turn, heights)]
+    assert both[0] == [*both[1], "ski.camber_rounding_mm"]
+    with pytest.raises(ParameterError, match="given heights of its base"):
+        heights.with_(camber_rounding_mm=50)
 
 
 def test_each_input_has_a_column_of_shares_in_its_order(analysis: Analysis, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -202,8 +214,9 @@ def test_what_the_campaign_measured_is_drawn_from_its_interval(analysis: Analysi
     plain = analysis.snow("C", unloading_ratio=9.0)
     snow = replace(plain, **MEASURED_HERE)
     turn = skisnow.load_scenario("carved-46m").with_(snow=plain)
-    before = [values_of(each) for each in ensemble.drawn_scenarios(turn, inputs_with((), plain), 400, 1)]
-    drawn = [values_of(each) for each in ensemble.drawn_scenarios(turn.with_(snow=snow), inputs_with((), snow), 400, 1)]
+    measured = turn.with_(snow=snow)
+    before = [values_of(each) for each in ensemble.drawn_scenarios(turn, inputs_with((), turn), 400, 1)]
+    drawn = [values_of(each) for each in ensemble.drawn_scenarios(measured, inputs_with((), measured), 400, 1)]
     for key, expected in ((RATIO, [6.0, 9.0, 16.0]), (WAY, [0.2, 0.25, 0.3125])):
         assert np.quantile([each[key] for each in drawn], [0.025, 0.5, 0.975]) == pytest.approx(expected, rel=0.01)
         assert [each[key] for each in before] != [each[key] for each in drawn]
@@ -232,7 +245,7 @@ def test_what_is_drawn_stays_inside_what_the_key_allows(analysis: Analysis) -> N
     wide: dict[str, Any] = {"unloading_ratio_interval": (1.0, 900.0), "shear_displacement_interval": (1e-5, 9e-3)}
     snow = replace(analysis.snow("C"), **{**MEASURED_HERE, **wide})
     turn = skisnow.load_scenario("carved-46m").with_(snow=snow)
-    drawn = [values_of(each) for each in ensemble.drawn_scenarios(turn, inputs_with((), snow), 400, 1)]
+    drawn = [values_of(each) for each in ensemble.drawn_scenarios(turn, inputs_with((), turn), 400, 1)]
     for key, low, high in ((RATIO, 1.0, 1000.0), (WAY, 0.01, 10.0)):
         assert [min(each[key] for each in drawn), max(each[key] for each in drawn)] == [low, high]
 

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
+from pathlib import Path
 from types import SimpleNamespace
 from typing import Any, cast
 
 import numpy as np
 import pytest
 
+import skisnow
 from skisnow import BootMoment, BootPose
 from skisnow._support.errors import ParameterError, SolverError
 from skisnow.contact import Laws
@@ -189,6 +191,20 @@ def test_a_stiffness_factor_multiplies_both_stiffnesses() -> None:
     ratio = laid_out(stiff).numbers["line_spacing_m"] / laid_out(plain).numbers["line_spacing_m"]
     assert ratio == pytest.approx(2.0, rel=1e-9)
     assert plain.flexing_ski is plain.ski
+
+
+def test_a_rounding_of_the_camber_is_that_of_the_ski_file(tmp_path: Path) -> None:
+    """By the key of a scenario as by that of a ski file; a ski without camber has none."""
+    plain = load_scenario("carved-46m")
+    keys = (Path(skisnow.ski.__file__).parent / "catalogue" / "giant-slalom.toml").read_text(encoding="utf-8")
+    (tmp_path / "rounded.toml").write_text(keys + "camber_rounding_mm = 50\n", encoding="utf-8")
+    said = skisnow.read_ski(tmp_path / "rounded.toml")
+    rounded = plain.with_(camber_rounding_mm=50)
+    assert rounded.ski.base_height == pytest.approx(said.base_height, abs=1e-15)
+    assert np.max(np.abs(rounded.ski.base_height - plain.ski.base_height)) > 1e-4
+    assert rounded.with_(camber_rounding_mm=100).ski.base_height == pytest.approx(plain.ski.base_height, abs=1e-15)
+    with pytest.raises(ParameterError, match="no camber"):
+        plain.with_(clamp_length_m=0.0).with_(ski="paper-tool", camber_rounding=0.05)
 
 
 @pytest.mark.parametrize("law", ["constant", "by-angle", "machining"])

@@ -86,3 +86,21 @@ def test_shovel_height_without_a_shovel_is_refused() -> None:
         ParameterError, match=r"shovel height is 50\.0 mm, but the running length ends where the ski does"
     ):
         BaseShape(shovel_height=0.05).height_at(np.zeros(1), piece)
+
+
+@pytest.mark.parametrize("rounding", [0.05, 0.2])
+def test_the_arch_levels_out_over_the_rounding(rounding: float) -> None:
+    """Of one curvature as far as the rounding leaves it; there it has this slope, which falls evenly to 0."""
+    shape = BaseShape(camber=0.016, camber_rounding=rounding)
+    plain, half = 0.698 - rounding, 0.698
+    curvature = 2.0 * 0.016 / (plain * half)
+    at_middle, at_start, between, at_end = heights(shape, 0.0, plain, plain + rounding / 2.0, half)
+    assert at_start - at_middle == pytest.approx(-curvature * plain**2 / 2.0, abs=1e-15)
+    assert at_end == pytest.approx(-0.016, abs=1e-15)
+    # of the drop over the rounding three quarters are in its first half
+    assert (between - at_start) / (at_end - at_start) == pytest.approx(0.75, rel=1e-12)
+
+
+def test_the_rounding_takes_at_most_a_quarter_of_the_length_in_contact() -> None:
+    long, longest = (BaseShape(camber=0.016, camber_rounding=each) for each in (0.5, 0.349))
+    assert heights(long, 0.3, 0.5) == heights(longest, 0.3, 0.5)

@@ -44,3 +44,11 @@ def test_straight_piece_without_tip() -> None:
     outline = ArcOutline(layout=piece, tip_width=0.062, waist_width=0.062, tail_width=0.062)
     assert np.all(outline.width_at(np.linspace(0.1, -0.1, 9)) == 0.062)
     assert outline.narrowing == 0.0
+
+
+def test_the_tip_ends_as_wide_as_said() -> None:
+    outline = ArcOutline(layout=LAYOUT, tip_width=0.116, waist_width=0.068, tail_width=0.101, end_width=0.058)
+    front = LAYOUT.widest_points[0]
+    middle, end = outline.width_at(np.array([(front + LAYOUT.tip) / 2.0, LAYOUT.tip]))
+    assert end == pytest.approx(0.058, rel=1e-12)
+    assert middle == pytest.approx(0.116 * (1.0 - 0.75 / 4.0) ** 0.5, rel=1e-12)

@@ -116,6 +116,8 @@ def test_a_point_among_decimal_commas_could_be_a_thousand(with_table: Written) -
         ({"boot_position_mm": 150}, r"but the ski only from 800\.0 to -800\.0"),
         ({"waist_width_mm": 68}, "waist_width_mm = 68 cannot stand beside the column width_mm"),
         ({"camber_mm": 7}, "camber_mm = 7 cannot stand beside the column base_height_mm"),
+        ({"camber_rounding_mm": 80}, "camber_rounding_mm = 80 cannot stand beside the column base_height_mm"),
+        ({"tip_end_width_mm": 30}, "tip_end_width_mm = 30 cannot stand beside the column width_mm"),
         ({"EI_N_m2": [100]}, r"EI_N_m2 = \[100\] cannot stand beside the column EI_N_m2"),
         ({"stiffness_station_mm": [100]}, r"stiffness_station_mm = \[100\] cannot stand beside a table with both"),
         ({"tail_overhang_mm": 20}, "tail_overhang_mm = 20 cannot stand beside a table"),

@@ -19,7 +19,9 @@ if TYPE_CHECKING:
 def require_same(read: Ski, written: Ski) -> None:
     for field in dataclasses.fields(Ski):
         before, after = getattr(written, field.name), getattr(read, field.name)
-        if isinstance(before, str):
+        if field.name == "base":
+            assert after is None  # the table has the heights themselves
+        elif isinstance(before, str):
             assert after == before, field.name
         else:
             # 15 digits are written; millimetres and back cost one more

@@ -2,6 +2,7 @@
 
 from .._support.nearest import meant, nearest
 from .declared import (
+    APART,
     Section,
     Word,
     changed,
@@ -16,6 +17,7 @@ from .declared import (
 from .quantity import SMALLEST, InputValue, Kind, Quantity, Search
 
 __all__ = [
+    "APART",
     "SMALLEST",
     "InputValue",
     "Kind",

@@ -63,6 +63,10 @@ class Section(NamedTuple):
     otherwise: bool = False
 
 
+APART: Final = "apart"
+"""Marks a field whose dataclass is said in a file of its own: the quantities in it are none of the owner's."""
+
+
 class _Slot(NamedTuple):
     """A field with what its annotation says: its own quantities, and the dataclasses that it may hold."""
 
@@ -241,7 +245,8 @@ def _slot(owner: type, field: Field[Any]) -> _Slot:
     declared = [each for each in marks if isinstance(each, Quantity)]
     otherwise = any(isinstance(each, Word) for each in declared)
     needed = not otherwise and field.default is MISSING and field.default_factory is MISSING and NoneType not in members
-    parts = tuple(each for each in members if isinstance(each, type) and is_dataclass(each) and quantities(each))
+    inside = () if APART in marks else members
+    parts = tuple(each for each in inside if isinstance(each, type) and is_dataclass(each) and quantities(each))
     return _Slot(
         field,
         tuple(each if isinstance(each, Word) else _resolved(each, field, members, needed) for each in declared),

@@ -17,7 +17,6 @@ from ..report.turn.numbers import used_grip
 from ..scenario.prior import Measured, Prior, measured_of
 from ..simulation.simulated_run import simulate
 from ..simulation.verification import NUDGED, limit_sentences, nudged_scenarios
-from ..snow import SnowProperties
 from ..snow.mean_snow import drawn_snows
 
 if TYPE_CHECKING:
@@ -25,6 +24,7 @@ if TYPE_CHECKING:
     from ..scenario import Scenario
     from ..simulation.run import Run
 
+CAMBER_ROUNDING: Final = "ski.camber_rounding_mm"
 PRIORS: Final = (
     Prior(
         key="snow.unloading_ratio",
@@ -52,6 +52,12 @@ PRIORS: Final = (
         high=1.3,
         origin="EI and GJ of the catalogue are inferred from an index: natural frequencies to 15 %, stiffness to 30 %",
     ),
+    Prior(
+        key=CAMBER_ROUNDING,
+        low=50.0,
+        high=200.0,
+        origin="no source: half and twice the 100 mm of a ski whose camber is known as one number",
+    ),
 )
 """By default."""
 MEASURED: Final = ("snow.H_V_N_per_mm3", "snow.S_f_N_per_mm2")
@@ -60,18 +66,21 @@ OUTPUT: Final = 0.05
 """Time (s) between the rows of a track that the band draws."""
 
 
-def inputs_with(priors: Iterable[Prior], snow: SnowProperties) -> tuple[Measured | Prior, ...]:
+def inputs_with(priors: Iterable[Prior], turn: Scenario) -> tuple[Measured | Prior, ...]:
     """Inputs of the band next to H_V and S_f, in the order of its columns.
 
-    A prior that is given comes first, then what the snow has measured with an interval, then the usual prior.
+    A prior that is given comes first, then what the snow has measured with an interval, then the usual prior. The
+    camber's rounding is one only where the ski has a camber, as one number.
 
     Raises
     ------
     ParameterError
         One is of what the campaign measures.
     """
-    measured = {each.key: each for each in measured_of(snow)}
+    measured = {each.key: each for each in measured_of(turn.contact.snow)}
     found = {each.key: measured.get(each.key, each) for each in PRIORS}
+    if turn.ski.base is None or turn.ski.base.camber == 0.0:
+        del found[CAMBER_ROUNDING]
     for each in priors:
         if each.key in MEASURED:
             raise ParameterError(f"{each.key} has no prior here: its interval comes from the campaign")

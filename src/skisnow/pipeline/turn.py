@@ -114,9 +114,9 @@ def turn(
     if shear_displacement is not None:
         snow = replace(snow, shear_displacement=shear_displacement, shear_displacement_interval=None)
     measured_intervals(snow)
-    every = inputs_with(priors, snow)
     turn = (scenario if isinstance(scenario, Scenario) else load_scenario(scenario)).with_(snow=snow)
     turn = turn if ski is None else turn.with_(ski=ski)
+    every = inputs_with(priors, turn)
     drawn = drawn_scenarios(turn, every, runs, seed)
     contacts = {
         f"hypoplastic, k_u / H_V = {snow.unloading_ratio:.3g}": turn,

@@ -70,9 +70,10 @@ class Scenario(Shown):
         Snow with friction; the law of its shear strength; drag.
     sledge
         The rigid part with its edge angle, without the skis.
-    ski, stiffness_factor, clamp_length, footprint_stiffness, damping_ratio
-        The ski of both sides, what its EI and GJ are multiplied with, the length that its binding keeps straight (m),
-        or holds with a stiffness (N/m²; None: rigid), damping of its first bending mode.
+    ski, camber_rounding, stiffness_factor, clamp_length, footprint_stiffness, damping_ratio
+        The ski of both sides, the length over which its camber levels out (m; None: the ski's own), what its EI and GJ
+        are multiplied with, the length that its binding keeps straight (m), or holds with a stiffness (N/m²; None:
+        rigid), damping of its first bending mode.
     boots
         Where the boots are against the sledge, or in the slope, over time or distance; None: they stay.
     start, stop, solver
@@ -116,6 +117,16 @@ class Scenario(Shown):
             names_file=True,
         ),
     ]
+    camber_rounding: Annotated[
+        float | None,
+        Quantity(
+            "ski.camber_rounding_mm",
+            "length before each contact point over which the camber levels out; left out: the ski's own",
+            label="rounding of the camber",
+            lowest=1.0,
+            highest=1000.0,
+        ),
+    ] = None
     stiffness_factor: Annotated[
         float,
         Quantity(
@@ -198,6 +209,8 @@ class Scenario(Shown):
         if self.stop.duration is None and self.stop.length is None:
             raise ParameterError("the run has no end: give a duration or a length")
         require_declared(self)
+        if self.camber_rounding is not None:
+            object.__setattr__(self, "ski", self.ski.camber_rounded(self.camber_rounding))
         require_sound(
             self.slope,
             self.contact,

@@ -32,8 +32,10 @@ class SkiParts:
     ----------
     name, source, layout, base_bevel, edge_width
         As in `Ski` and `Layout`.
-    width, base_height, bending_stiffness, torsional_stiffness
-        As in `Ski`; the base may have any height at the boot.
+    width, bending_stiffness, torsional_stiffness
+        As in `Ski`.
+    base
+        Its shape, or its height, which may have any value at the boot.
     mass_per_length
         As in `Ski`; None: proportional to the width (modelling assumption), with ``mass``.
     mass
@@ -47,7 +49,7 @@ class SkiParts:
     source: str
     layout: Layout
     width: Along
-    base_height: Along
+    base: BaseShape | Along
     bending_stiffness: Along
     torsional_stiffness: Along
     mass_per_length: Along | None = None
@@ -65,7 +67,8 @@ class SkiParts:
             The result breaks a rule of `Ski`.
         """
         station = self._grid()
-        width, base_height = self.width(station), self.base_height(station)
+        width, shape = self.width(station), self.base if isinstance(self.base, BaseShape) else None
+        base_height = self.base(station) if callable(self.base) else self.base.height_at(station, self.layout)
         mass_per_length = width if self.mass_per_length is None else self.mass_per_length(station)
         if self.mass_per_length is None:
             mass_per_length = width * (self.mass / -np.trapezoid(width, station))
@@ -83,6 +86,7 @@ class SkiParts:
             base_bevel=self.base_bevel,
             edge_width=self.edge_width,
             sidecut_middle=self.layout.middle,
+            base=shape,
         )
 
     def _grid(self) -> FloatArray:
@@ -143,14 +147,13 @@ def arc_ski(
     ParameterError
         The parts do not fit together or break a rule of `Ski`.
     """
-    shape = BaseShape() if base is None else base
     outline = ArcOutline(layout=layout, tip_width=tip_width, waist_width=waist_width, tail_width=tail_width)
     return SkiParts(
         name=name,
         source=source,
         layout=layout,
         width=outline.width_at,
-        base_height=lambda station: shape.height_at(station, layout),
+        base=BaseShape() if base is None else base,
         bending_stiffness=stiffness_table(bending_stiffness, stiffness_station, layout).at,
         torsional_stiffness=stiffness_table(torsional_stiffness, stiffness_station, layout).at,
         mass=mass,

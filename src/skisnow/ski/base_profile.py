@@ -23,8 +23,9 @@ SHOVEL_HEIGHT: Final = 0.050
 LEAST_CONTACT: Final = 1e-3
 """Length of base that rockers must leave in contact (m)."""
 
-ROUNDING: Final = 0.100
-"""Length before a contact point over which the camber is rounded off (m). Modelling assumption: 100 mm."""
+CAMBER_ROUNDING: Final = 0.100
+"""Length before a contact point over which the camber is rounded off (m). Modelling assumption without source: 100 mm,
+and 50 to 200 mm in a band."""
 
 TAIL_HEIGHT: Final = 0.008
 """Height of the tail over the contact points (m). Modelling assumption: 8 mm, a usual square tail."""
@@ -36,8 +37,9 @@ class BaseShape:
 
     Modelling assumptions:
 
-    - Camber is an arch of one curvature, so that the ends stay down when the middle is pressed flat; over the last
-      100 mm before each contact point (`ROUNDING`) it is rounded so that it meets it with slope 0.
+    - Camber is an arch of one curvature, so that the ends stay down when the middle is pressed flat; over the length
+      ``camber_rounding`` before each contact point, at most a quarter of the length between them, it is rounded so that
+      it meets it with slope 0.
     - The shovel rises quadratically from the front contact point to ``shovel_height`` at the tip, the tail likewise
       behind. The slope is continuous along the whole base.
     - Rocker draws a contact point in from the end of the running length, by ``…_rocker_length``; over that length the
@@ -52,6 +54,16 @@ class BaseShape:
             "camber_mm", "height of the arch over the line through the contact points", (-50, 50), (0.5, 25), "0"
         ),
     ] = 0.0
+    camber_rounding: Annotated[
+        float,
+        ski_quantity(
+            "camber_rounding_mm",
+            "length before each contact point over which the arch levels out",
+            (1, 1000),
+            (20, 300),
+            "100 (modelling assumption, no source)",
+        ),
+    ] = CAMBER_ROUNDING
     shovel_height: Annotated[
         float | None,
         ski_quantity(
@@ -130,15 +142,16 @@ class BaseShape:
             )
         shovel = _End("shovel", self.tip_rocker_length, self.tip_rocker_height, layout.tip - front, self.shovel_height)
         tail = _End("tail", self.tail_rocker_length, self.tail_rocker_height, rear - layout.tail, self.tail_height)
-        heights = self.camber * _arch(station - (foremost + hindmost) / 2.0, (foremost - hindmost) / 2.0)
+        half = (foremost - hindmost) / 2.0
+        rounding = min(self.camber_rounding, half / 2.0)
+        heights = self.camber * _arch(station - (foremost + hindmost) / 2.0, half, rounding)
         heights += shovel.rise(np.maximum(station - foremost, 0.0))
         heights += tail.rise(np.maximum(hindmost - station, 0.0))
         return heights
 
 
-def _arch(place: FloatArray, half: float) -> FloatArray:
-    """Camber of height 1 over ±half: curvature -k up to half - b from the middle, then a rounding of length b."""
-    rounding = min(ROUNDING, half / 2.0)
+def _arch(place: FloatArray, half: float, rounding: float) -> FloatArray:
+    """Camber of height 1 over ±half: curvature -k up to half - rounding from the middle."""
     plain = half - rounding
     k = 2.0 / (plain * half)  # the whole drop k plain half / 2 is 1
     inside = np.minimum(np.abs(place), plain)

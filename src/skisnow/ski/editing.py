@@ -120,6 +120,7 @@ def edited_ski(ski: Ski, edit: SkiEdit, *, name: str, source: str) -> Ski:
         mass_per_length=mass,
         width=changed["width"],
         base_height=changed["base_height"],
+        base=ski.base if np.array_equal(changed["base_height"], ski.base_height) else None,
         bending_stiffness=changed["bending_stiffness"],
         torsional_stiffness=changed["torsional_stiffness"],
     )

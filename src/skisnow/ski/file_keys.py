@@ -61,6 +61,16 @@ class SkiFile:
         float | None,
         ski_quantity("tail_width_mm", "width at its rear end", (15, 500), (40, 350), "needed, or a column"),
     ] = None
+    tip_end_width: Annotated[
+        float | None,
+        ski_quantity(
+            "tip_end_width_mm",
+            "width at the very tip, not above the tip width",
+            (1, 500),
+            (5, 200),
+            "20 % of the tip width (modelling assumption)",
+        ),
+    ] = None
     tail_overhang: Annotated[
         float,
         ski_quantity(
@@ -183,6 +193,7 @@ COLUMNS: Final = {column.name: column for column in quantities(StationRow)}
 """Columns of a table, a row for each station from tip to tail."""
 
 WIDTHS: Final = ("tip_width_mm", "waist_width_mm", "tail_width_mm")
+TIP_END: Final = "tip_end_width_mm"
 BASE: Final = tuple(key.name for key in quantities(BaseShape))
 STIFFNESSES: Final = ("EI_N_m2", "GJ_N_m2")
 LISTS: Final = (*STIFFNESSES, "stiffness_station_mm")

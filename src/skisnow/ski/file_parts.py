@@ -10,7 +10,7 @@ import numpy as np
 
 from .._support.errors import ParameterError, RangeWarning
 from .assembling import SkiParts, stiffness_table
-from .file_keys import BASE, LISTS, RIGID, STIFFNESSES, WIDTHS
+from .file_keys import BASE, LISTS, RIGID, STIFFNESSES, TIP_END, WIDTHS
 from .layout import Layout, layout_of_lengths
 from .monkeycam import monkeycam_shape
 from .outline import ArcOutline
@@ -18,6 +18,7 @@ from .side_line import width_of_table
 
 if TYPE_CHECKING:
     from .assembling import Along
+    from .base_profile import BaseShape
     from .file_values import FileValues
     from .ski import Ski
     from .table_file import StationTable
@@ -56,7 +57,7 @@ class FileParts:
             source=said.source or f"file {values.file.name}",
             layout=layout,
             width=width,
-            base_height=self._base_height(layout),
+            base=self._base(),
             bending_stiffness=self._stiffness("EI_N_m2", layout),
             torsional_stiffness=self._stiffness("GJ_N_m2", layout),
             mass_per_length=mass_per_length.at if mass_per_length else None,
@@ -71,7 +72,7 @@ class FileParts:
 
     def _shaped(self) -> tuple[Layout, Along, str]:
         values = self.values
-        outlined = ("table", "length_mm", "sidecut_length_mm", *WIDTHS, "tail_overhang_mm", "boot_position_mm")
+        outlined = ("table", "length_mm", "sidecut_length_mm", *WIDTHS, TIP_END, "tail_overhang_mm", "boot_position_mm")
         values.refuse_together(outlined, "shape", "Leave one of them out")
         file = values.beside("shape") or values.file
         shape = monkeycam_shape(file, running_length=values.said.running_length)
@@ -81,14 +82,18 @@ class FileParts:
         values = self.values
         layout = self._layout_of_table() if self.table else self._layout_of_keys()
         if "width_mm" in self.table:
-            values.refuse_together(WIDTHS, "the column width_mm", "Leave one of them out")
+            values.refuse_together((*WIDTHS, TIP_END), "the column width_mm", "Leave one of them out")
             return layout, width_of_table(self.table["width_mm"], layout), values.file.stem
         tip, waist, tail = (values.needed(key) for key in WIDTHS)
         for key, width in (("tip_width_mm", tip), ("tail_width_mm", tail)):
             if waist > width:
                 allowed = f"at most {key}, {width * 1e3:g}: the waist is the narrowest of the three"
                 values.refuse("waist_width_mm", values.values["waist_width_mm"], allowed, f"Correct it or {key}")
-        outline = ArcOutline(layout=layout, tip_width=tip, waist_width=waist, tail_width=tail)
+        end = values.said.tip_end_width
+        if end is not None and end > tip:
+            allowed = f"at most tip_width_mm, {tip * 1e3:g}"
+            values.refuse(TIP_END, values.values[TIP_END], allowed, "Correct one of them")
+        outline = ArcOutline(layout=layout, tip_width=tip, waist_width=waist, tail_width=tail, end_width=end)
         return layout, outline.width_at, values.file.stem
 
     def _layout_of_keys(self) -> Layout:
@@ -125,13 +130,12 @@ class FileParts:
             sidecut_length=values.needed("sidecut_length_mm"),
         )
 
-    def _base_height(self, layout: Layout) -> Along:
+    def _base(self) -> BaseShape | Along:
         values = self.values
         if "base_height_mm" in self.table:
             values.refuse_together(BASE, "the column base_height_mm", "Leave one of them out")
             return self.table["base_height_mm"].at
-        shape = values.said.base
-        return lambda station: shape.height_at(station, layout)
+        return values.said.base
 
     def _stiffness(self, key: str, layout: Layout) -> Along:
         values = self.values

@@ -80,13 +80,13 @@ def read_monkeycam(
     of the core, from which no stiffness follows without the materials.
     """
     shape = monkeycam_shape(path, running_length=running_length)
-    layout, profile = shape.outline.layout, BaseShape() if base is None else base
+    layout = shape.outline.layout
     return SkiParts(
         name=shape.name,
         source=f"shape from {path.name} of MonkeyCAM",
         layout=layout,
         width=shape.outline.width_at,
-        base_height=lambda station: profile.height_at(station, layout),
+        base=BaseShape() if base is None else base,
         bending_stiffness=stiffness_table(bending_stiffness, stiffness_station, layout).at,
         torsional_stiffness=stiffness_table(torsional_stiffness, stiffness_station, layout).at,
         mass=mass,

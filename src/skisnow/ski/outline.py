@@ -14,8 +14,8 @@ if TYPE_CHECKING:
 FloatArray = npt.NDArray[np.float64]
 
 TIP_END_SHARE: Final = 0.2
-"""Width at the very tip as a share of the tip width. Modelling assumption: a blunt end, so that the ski has a width
-everywhere."""
+"""Width at the very tip as a share of the tip width, where it is not given. Modelling assumption: a blunt end, so that
+the ski has a width everywhere."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -27,7 +27,7 @@ class ArcOutline:
     - The side line is one parabola (constant curvature to a part in a thousand) through the half widths at the front
       end, the middle and the rear end of the sidecut length. With tip and tail unlike, the ski is narrowest a little
       behind the middle, by `narrowing` less than the waist.
-    - In front of the sidecut length the outline closes with a quarter ellipse, cut off at 20 % of the tip width.
+    - In front of the sidecut length the outline closes with a quarter ellipse, cut off at ``end_width``.
     - Behind the sidecut length it runs straight.
 
     Attributes
@@ -36,12 +36,15 @@ class ArcOutline:
         Of the ski.
     tip_width, waist_width, tail_width
         At the front end, the middle and the rear end of the sidecut length.
+    end_width
+        At the very tip; None: 20 % of the tip width.
     """
 
     layout: Layout
     tip_width: float
     waist_width: float
     tail_width: float
+    end_width: float | None = None
 
     def width_at(self, station: FloatArray) -> FloatArray:
         """Width (m) at stations (m) between tip and tail."""
@@ -53,7 +56,8 @@ class ArcOutline:
         if overhang <= 0:
             return side
         beyond = np.clip((station - front) / overhang, 0.0, 1.0)
-        return np.asarray(side * np.sqrt(1.0 - (1.0 - TIP_END_SHARE**2) * beyond**2))
+        end = TIP_END_SHARE if self.end_width is None else self.end_width / self.tip_width
+        return np.asarray(side * np.sqrt(1.0 - (1.0 - end**2) * beyond**2))
 
     @property
     def _deepening(self) -> float:

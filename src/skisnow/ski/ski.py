@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, fields, replace
-from typing import TypeAlias
+from typing import Annotated, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 
 from .._support.display import Facts, Shown
+from .._support.errors import ParameterError
+from ..parameters import APART
+from .base_profile import BaseShape
 from .checks import (
     STRAIGHT,
     require_base_at_boot,
@@ -19,7 +22,7 @@ from .checks import (
     require_tables,
 )
 from .edge_line import radius_of_least_squares_circle
-from .layout import SkiSections
+from .layout import Layout, SkiSections
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 
@@ -59,6 +62,8 @@ class Ski(Shown):
         Width of the bevelled strip (m). Modelling assumption: 2 mm, a usual steel edge.
     sidecut_middle
         Station of the middle of running length and sidecut length (m): 0 where the boot stands there.
+    base
+        What ``base_height`` follows from; None where the heights themselves are given.
 
     The tables are copied and made read-only.
 
@@ -87,6 +92,7 @@ class Ski(Shown):
     base_bevel: float = 0.0
     edge_width: float = 0.002
     sidecut_middle: float = 0.0
+    base: Annotated[BaseShape | None, APART] = None
 
     def __post_init__(self) -> None:
         for field in fields(SkiSections):
@@ -127,6 +133,28 @@ class Ski(Shown):
             bending_stiffness=self.bending_stiffness * factor,
             torsional_stiffness=self.torsional_stiffness * factor,
         )
+
+    def camber_rounded(self, length: float) -> Ski:
+        """The ski with another rounding of its camber (m).
+
+        Raises
+        ------
+        ParameterError
+            The ski has no camber, or its heights were given themselves.
+        """
+        if self.base is None or self.base.camber == 0.0:
+            heights = "given heights of its base" if self.base is None else "no camber"
+            raise ParameterError(f"the ski {self.name} has {heights}, so that no camber is rounded. Leave it out")
+        base = replace(self.base, camber_rounding=length)
+        layout = Layout(
+            tip=float(self.station[0]),
+            tail=float(self.station[-1]),
+            middle=self.sidecut_middle,
+            running_length=self.running_length,
+            sidecut_length=self.sidecut_length,
+        )
+        height = base.height_at(self.station, layout)
+        return replace(self, base=base, base_height=height - np.interp(0.0, self.station[::-1], height[::-1]))
 
     def _facts(self) -> Facts:
         """Name, length, widths, the radius of the side line in use, mass."""

@@ -42,6 +42,7 @@ _INPUTS: Final = {
     ),
     "friction.mu_0": ("the friction μ_0", "a straight glide past photo cells, for μ_0"),
     "ski.stiffness_factor": ("the stiffness of the ski", "the bending and torsion of the ski, measured"),
+    "ski.camber_rounding_mm": ("the rounding of the camber", "the height of the unloaded base along the ski, measured"),
 }
 """Inputs of the band in words, and what would tell more of them."""
 _FURTHER: Final = {

@@ -77,7 +77,13 @@ EXPERT_OF_A_SLEDGE = {
         "Moments of inertia I (kg m²)", "Height of the centre of mass (m)", "Centre of mass ahead of the boots (m)",
         "Stance width (m)",
     ],
-    "Ski": ["Stiffness factor", "Clamp length (m)", "Footprint stiffness (N/mm²)", "Damping ratio of the ski"],
+    "Ski": [
+        "Rounding of the camber (mm)",
+        "Stiffness factor",
+        "Clamp length (m)",
+        "Footprint stiffness (N/mm²)",
+        "Damping ratio of the ski",
+    ],
     "Start": ["Start, down the fall line x (m)", "Start, across it y (m)"],
     "End and output": ["Time between outputs (ms)"],
     "Shear": [
