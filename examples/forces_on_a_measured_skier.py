@@ -22,7 +22,7 @@ from scipy.signal import savgol_filter
 
 from skisnow import Run, load_scenario, simulate
 from skisnow.interop.opensim import BootMarkers, Markers, boots_of_markers, boots_text, read_trc, write_trc
-from skisnow.simulation.boots_table import write_boots
+from skisnow.simulation.run_tables import write_boots
 
 FloatArray = npt.NDArray[np.float64]
 SLOPE, DURATION, FRAME_MS, SMOOTHED_S = math.radians(10.0), 3.0, 5.0, 0.15

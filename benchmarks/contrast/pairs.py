@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from skisnow._support.errors import SkisnowError
-from skisnow._support.json_number import json_number
+from skisnow._support.user_files.json_text import json_number
 from skisnow.parameters import Quantity
 from skisnow.report.turn.numbers import afterbody_depth_ratio, median_radius, used_grip
 from skisnow.scenario import Scenario, load_scenario

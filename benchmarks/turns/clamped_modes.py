@@ -8,8 +8,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy.linalg import eigh
 
-from skisnow.ski.beam.banded import dense
-from skisnow.ski.beam.clamped import clamped
+from skisnow.ski.beam import clamped, dense
 from skisnow.ski.ski import Ski
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]

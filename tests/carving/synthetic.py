@@ -91,6 +91,6 @@ def boot_pose(found: Equilibrium, ski: Ski, edge_angle: float) -> tuple[float, f
 
 def weights(ski: Ski, clamp_length: float, elements: int = 160) -> FloatArray:
     """Length of ski that each station stands for (m)."""
-    from skisnow.ski.beam.clamped import clamped
+    from skisnow.ski.beam import clamped
 
     return clamped(ski, clamp_length, elements).stations.weight

@@ -11,7 +11,7 @@ import pytest
 from skisnow.carving.edge_line import BOOT_REACH, EdgeLine
 from skisnow.carving.equilibrium import _conditions
 from skisnow.carving.solve import solved
-from skisnow.ski.beam.clamped import clamped
+from skisnow.ski.beam import clamped
 
 from .synthetic import circular_sidecut, plain_ski, snow
 

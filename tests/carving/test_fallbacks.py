@@ -17,7 +17,7 @@ from skisnow.carving.result import SINKING_DEPTH, _depth_ratio, equilibrium_of
 from skisnow.carving.solve import Conditions, Solution, solved
 from skisnow.forces.penetration import HypoplasticPoint
 from skisnow.ski import read_ski
-from skisnow.ski.beam.clamped import clamped
+from skisnow.ski.beam import clamped
 
 from .laws import Power
 from .synthetic import plain_ski, rigid_ski, snow

@@ -16,7 +16,7 @@ import pytest
 from skisnow.carving.solve import Conditions, _core_ski, solved
 from skisnow.compiled import core
 from skisnow.ski import read_ski
-from skisnow.ski.beam.clamped import CLAMP_LENGTH, ClampedSki, clamped
+from skisnow.ski.beam import CLAMP_LENGTH, ClampedSki, clamped
 
 Array = npt.NDArray[np.complex128]
 BAND_HALF = 5

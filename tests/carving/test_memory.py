@@ -11,7 +11,7 @@ import pytest
 from skisnow.carving.equilibrium import GrooveForm, carve
 from skisnow.carving.result import Equilibrium
 from skisnow.ski import Ski, read_ski
-from skisnow.ski.beam.clamped import CLAMP_LENGTH
+from skisnow.ski.beam import CLAMP_LENGTH
 
 from .synthetic import FloatArray, snow, weights
 

@@ -12,7 +12,7 @@ from skisnow.carving.equilibrium import _conditions, carve
 from skisnow.carving.result import Equilibrium
 from skisnow.carving.solve import solved
 from skisnow.ski import Ski
-from skisnow.ski.beam.clamped import clamped
+from skisnow.ski.beam import clamped
 
 from .synthetic import circular_sidecut, plain_ski, race_profile, snow
 

@@ -6,8 +6,7 @@ import time
 
 import pytest
 
-from skisnow.cli.announced import announced
-from skisnow.cli.progress import Progress
+from skisnow.cli.progress import Progress, announced
 
 
 @pytest.fixture(autouse=True)

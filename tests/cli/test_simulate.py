@@ -18,7 +18,7 @@ import pytest
 from skisnow import Run, Scenario
 from skisnow.cli import main
 from skisnow.cli.progress import Progress
-from skisnow.simulation.track_table import write_track
+from skisnow.simulation.run_tables import write_track
 
 from ..simulation.straight_run import STRAIGHT, straight_run
 

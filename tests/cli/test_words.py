@@ -6,7 +6,7 @@ import argparse
 
 import pytest
 
-from skisnow.cli.words import number
+from skisnow.cli.options import number
 
 
 def test_an_end_that_is_not_given_is_open() -> None:

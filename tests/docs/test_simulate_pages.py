@@ -11,7 +11,7 @@ import pytest
 import skisnow
 from skisnow.scenario import load_scenario, scenario_file
 from skisnow.simulation.run import Outcome
-from skisnow.simulation.track_table import COLUMNS
+from skisnow.simulation.run_tables import COLUMNS
 from skisnow.studies import read_study
 from skisnow.studies.subjects import RUN_RESULTS
 

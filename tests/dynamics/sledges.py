@@ -12,8 +12,8 @@ from skisnow.contact import Runner, SnowContact, SnowField
 from skisnow.dynamics import Body, Dynamics, Ended, StepControl
 from skisnow.forces.friction import FrictionLaw
 from skisnow.scenario import Plane, RigidSledge, load_scenario
-from skisnow.simulation.sledge.body import sledge_body
-from skisnow.ski.beam.clamped import ClampedSki, clamped
+from skisnow.simulation.sledge_body import sledge_body
+from skisnow.ski.beam import ClampedSki, clamped
 
 FloatArray = npt.NDArray[np.float64]
 CARVE = "carved-46m"

@@ -12,7 +12,7 @@ from skisnow._support.errors import ParameterError
 from skisnow.contact import Runner, SnowContact
 from skisnow.dynamics import Body, BootMotion, BootPose, Dynamics, Ended, StepControl
 from skisnow.geometry.boot_axes import angles_of, axes_of
-from skisnow.simulation.sledge.body import sledge_body
+from skisnow.simulation.sledge_body import sledge_body
 
 from .sledges import ahead, body_of, clamped_ski, fixed, given, gravity, placed, sledge, snow_of
 

@@ -10,7 +10,7 @@ from skisnow._support.errors import FieldDataError, ParameterError
 from skisnow.identification import identify
 from skisnow.identification.data import read_data, taken_for
 from skisnow.identification.data_tables import PhotoCells
-from skisnow.simulation.track_table import COLUMNS
+from skisnow.simulation.run_tables import COLUMNS
 from skisnow.track.track import Track
 
 CELLS = "run,station_m,time_s\nfirst,20,3.34\nfirst,40,5.1\nfirst,60,6.5\n"

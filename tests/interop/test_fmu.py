@@ -28,7 +28,7 @@ from skisnow.interop.fmu.models import _require_own_laws, _snow_parameters, cont
 from skisnow.interop.fmu.variables import UNITS
 from skisnow.scenario.snow_map import SnowMap
 from skisnow.simulation.run_setup import laid_out
-from skisnow.simulation.sledge.frames import rotation
+from skisnow.simulation.sledge_body import rotation
 
 from .fmi import Fmu, Instance
 

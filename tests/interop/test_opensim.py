@@ -26,7 +26,7 @@ from skisnow.interop.opensim import (
     write_motion,
     write_trc,
 )
-from skisnow.scenario.boots_file import read_boots
+from skisnow.scenario.boots import read_boots
 
 TIME = np.array([0.0, 0.01, 0.02, 0.03])
 TRC = """PathFileType\t4\t(X/Y/Z)\ttwo.trc

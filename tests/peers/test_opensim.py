@@ -14,7 +14,7 @@ import pytest
 from skisnow import load_scenario, simulate
 from skisnow._support.errors import ParameterError
 from skisnow.interop.opensim import Markers, MotionTable, read_motion, read_trc, write_motion, write_trc
-from skisnow.simulation.boots_table import write_boots
+from skisnow.simulation.run_tables import write_boots
 
 with tempfile.TemporaryDirectory() as folder, contextlib.chdir(folder):  # where it begins a log
     opensim: Any = pytest.importorskip("opensim", reason="OpenSim is not installed: pip install 'skisnow[peers]'")

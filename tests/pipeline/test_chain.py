@@ -26,7 +26,7 @@ from skisnow.pipeline import ensemble
 from skisnow.pipeline import turn as pipeline_turn
 from skisnow.pipeline.ensemble import MEASURED, PRIORS, inputs_with
 from skisnow.report.turn.numbers import turn_dict
-from skisnow.scenario.prior import prior_of
+from skisnow.scenario.identify_section import prior_of
 from skisnow.ski import write_ski
 from skisnow.snow import SnowProperties
 

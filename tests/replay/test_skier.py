@@ -23,7 +23,7 @@ from skisnow.replay import (
 from skisnow.replay.skier import ANKLE_BEHIND, JOINTS, STAND_HEIGHT, centre_of_mass, two_bones
 from skisnow.replay.skier_shapes import AROUND, _round, part_poses, skier_mesh, skier_parts
 from skisnow.scenario.skier import Skier
-from skisnow.simulation.boot_history import BootHistory
+from skisnow.simulation.moving_boots import BootHistory
 from skisnow.simulation.run import Run
 from skisnow.simulation.run_gates import run_gates
 from skisnow.skier import body_of

@@ -13,7 +13,7 @@ from skisnow.replay import Replay, moving_replay_model, replay_bytes, replay_of_
 from skisnow.replay.meshes import _normals, grid_mesh, snow_mesh
 from skisnow.replay.shapes import ski_edges
 from skisnow.scenario import Profile, Terrain, read_terrain
-from skisnow.simulation.boot_history import BootHistory
+from skisnow.simulation.moving_boots import BootHistory
 from skisnow.simulation.run import Run
 from skisnow.track.course import Course, Gate
 

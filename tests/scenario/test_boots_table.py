@@ -12,8 +12,7 @@ import pytest
 from skisnow._support.errors import ParameterError
 from skisnow.geometry.boot_axes import angles_of, axes_of
 from skisnow.scenario import load_scenario, scenario_file
-from skisnow.scenario.boots import Boots
-from skisnow.scenario.boots_file import ANGLES, OF_SLOPE, SIDES, read_boots
+from skisnow.scenario.boots import ANGLES, OF_SLOPE, SIDES, Boots, read_boots
 from skisnow.scenario.plausibility import implausible_values
 
 FLAT: dict[str, Any] = {

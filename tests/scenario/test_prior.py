@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from skisnow._support.errors import ParameterError
-from skisnow.scenario.prior import Prior, prior_of
+from skisnow.scenario.identify_section import Prior, prior_of
 
 SHARES = np.array([0.0, 0.5, 1.0])
 

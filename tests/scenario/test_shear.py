@@ -4,8 +4,8 @@ import pytest
 
 from skisnow._support.errors import ParameterError
 from skisnow.forces.shear import AngleShear, DensityShear, MachiningShear
+from skisnow.scenario.run_settings import Start
 from skisnow.scenario.shear import Shear
-from skisnow.scenario.start import Start
 
 S_F = 0.4e6
 

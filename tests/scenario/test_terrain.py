@@ -11,7 +11,7 @@ import pytest
 from skisnow._support.errors import ParameterError
 from skisnow.geometry.surfaces import Grid
 from skisnow.scenario import Plane, Profile, Terrain, load_scenario, read_terrain
-from skisnow.scenario.slope_surface import down_and_left, normals_of, surface_of
+from skisnow.scenario.terrain import down_and_left, normals_of, surface_of
 
 ASC = """ncols 3
 nrows 2

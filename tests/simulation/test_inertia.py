@@ -9,9 +9,8 @@ import numpy.typing as npt
 import pytest
 
 from skisnow.scenario import RigidSledge
-from skisnow.simulation.sledge.inertia import SledgeInertia, sledge_inertia
-from skisnow.ski.beam.banded import dense
-from skisnow.ski.beam.clamped import ClampedSki, beam_at, clamped
+from skisnow.simulation.sledge_body import SledgeInertia, sledge_inertia
+from skisnow.ski.beam import ClampedSki, beam_at, clamped, dense
 from tests.carving.synthetic import plain_ski, shovel
 
 FloatArray = npt.NDArray[np.float64]

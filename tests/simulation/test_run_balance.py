@@ -11,7 +11,7 @@ import pytest
 
 from skisnow._support.errors import ParameterError
 from skisnow.scenario import Profile, load_scenario
-from skisnow.simulation.boot_history import BootHistory
+from skisnow.simulation.moving_boots import BootHistory
 from skisnow.simulation.run import Run
 from skisnow.simulation.run_balance import balance_of
 

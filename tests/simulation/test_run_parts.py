@@ -14,7 +14,7 @@ from scipy.spatial.transform import Rotation
 
 from skisnow.geometry.boot_axes import axes_of
 from skisnow.scenario import Plane, Profile, Terrain, load_scenario
-from skisnow.simulation.boot_history import BootHistory
+from skisnow.simulation.moving_boots import BootHistory
 from skisnow.simulation.run import Run
 from skisnow.simulation.run_gates import GatesAhead, racer_parts, run_gates
 from skisnow.simulation.run_record import Record, _arc, _heading, at_nodes, turn_radius

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from skisnow.simulation.sledge.frames import base_lateral, base_normal, cross_matrix, rotation
+from skisnow.simulation.sledge_body import base_lateral, base_normal, cross_matrix, rotation
 
 HALF = math.sqrt(0.5)
 

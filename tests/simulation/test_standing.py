@@ -11,7 +11,7 @@ import pytest
 
 from skisnow.scenario import Plane, Profile
 from skisnow.simulation.run_setup import laid_out
-from skisnow.simulation.standing import _carried_across, weight_meets_base, why_no_start
+from skisnow.simulation.simulated_run import _carried_across, weight_meets_base, why_no_start
 
 from .runs.sledges import rigid_ski, scenario
 
@@ -61,7 +61,7 @@ def test_in_soft_snow_and_flat_the_whole_base_carries() -> None:
     ],
 )
 def test_where_the_weight_passes_is_told(ahead: float, left: float, told: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("skisnow.simulation.standing.weight_meets_base", lambda _: (ahead, left))
+    monkeypatch.setattr("skisnow.simulation.simulated_run.weight_meets_base", lambda _: (ahead, left))
     assert told in why_no_start(stood(12.5e6, 45.0))
 
 

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from skisnow.scenario import load_scenario
-from skisnow.simulation.track_table import COLUMNS, track_csv, write_track
+from skisnow.simulation.run_tables import COLUMNS, track_csv, write_track
 
 from .straight_run import STRAIGHT, straight_run
 

@@ -6,7 +6,7 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from skisnow.ski.edge_line import radius_of_least_squares_circle
+from skisnow.ski.outline import radius_of_least_squares_circle
 
 FloatArray = npt.NDArray[np.float64]
 

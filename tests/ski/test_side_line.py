@@ -14,8 +14,7 @@ from skisnow._support.errors import ParameterError
 from skisnow.carving.equilibrium import carve
 from skisnow.ski import read_ski
 from skisnow.ski.layout import layout_of_lengths
-from skisnow.ski.outline import ArcOutline
-from skisnow.ski.side_line import width_of_table
+from skisnow.ski.outline import ArcOutline, width_of_table
 from skisnow.ski.table_file import StationTable
 from skisnow.snow import SnowProperties
 

@@ -5,8 +5,8 @@ from pathlib import Path
 
 import pytest
 
-from skisnow._support.csv_rows import CsvRow, csv_rows
 from skisnow._support.errors import ParameterError
+from skisnow._support.spreadsheet_text import CsvRow, csv_rows
 
 ACTION = "mend it"
 

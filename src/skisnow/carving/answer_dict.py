@@ -10,8 +10,8 @@ from typing import Any, Final
 import numpy as np
 import numpy.typing as npt
 
-from .._support.json_number import json_number
 from .._support.units import DEGREE, MM, N_PER_MM2, N_PER_MM3
+from .._support.user_files.json_text import json_number
 from ..snow.from_results import snow_dict
 from .answer import CarveAnswer
 from .result import Equilibrium

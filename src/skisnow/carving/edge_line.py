@@ -8,7 +8,7 @@ from typing import Final, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from ..ski.beam.clamped import ClampedSki, beam_at, beam_at_stations
+from ..ski.beam import ClampedSki, beam_at, beam_at_stations
 from .solve import Solution
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]

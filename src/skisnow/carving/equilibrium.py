@@ -15,7 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .._support.errors import ParameterError
-from ..ski.beam.clamped import CLAMP_LENGTH, ClampedSki, clamped
+from ..ski.beam import CLAMP_LENGTH, ClampedSki, clamped
 from ..ski.ski import Ski
 from ..snow.properties import SnowProperties
 from .checks import (

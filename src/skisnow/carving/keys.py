@@ -7,7 +7,7 @@ from dataclasses import asdict, dataclass, replace
 from typing import Annotated, Any, Final, Literal
 
 from ..parameters import Quantity, own_quantities, require_declared
-from ..ski.beam.clamped import CLAMP_LENGTH, MOST_ELEMENTS
+from ..ski.beam import CLAMP_LENGTH, MOST_ELEMENTS
 from ..snow import SnowProperties
 from .checks import GREATEST_EDGE_ANGLE
 from .equilibrium import ELEMENTS

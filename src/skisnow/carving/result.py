@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from .._support.display import Facts, Shown, amount
 from .._support.units import MM
-from ..ski.beam.clamped import ClampedSki
+from ..ski.beam import ClampedSki
 from ..snow.properties import SnowProperties
 from .edge_line import EdgeLine
 from .solve import Conditions, Solution

@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..compiled import core
-from ..ski.beam.clamped import ClampedSki
+from ..ski.beam import ClampedSki
 from ..ski.ski import Ski
 from .laws import STEEPEST_RATIO, SnowLaws
 

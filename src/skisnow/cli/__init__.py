@@ -43,7 +43,7 @@ def build_parser() -> argparse.ArgumentParser:
         track,
         turn,
     )
-    from .words import Parser
+    from .options import Parser
 
     parser = Parser(
         prog="skisnow",
@@ -92,7 +92,7 @@ def _ended(error: Exception | KeyboardInterrupt) -> int:
     if isinstance(error, SkisnowError | MemoryError):
         _print_error(error)
         return 1
-    from .last_resort import report_failure
+    from .ending import report_failure
 
     return report_failure(error)
 

@@ -7,8 +7,8 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from .out_folder import ready
-from .words import MOST_RESAMPLES, add_language, seed_number, whole_number
+from .options import MOST_RESAMPLES, add_language, seed_number, whole_number
+from .output_folder import ready
 
 
 def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:

@@ -8,9 +8,9 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from .announced import announced
-from .first_figure import fonts_listed
-from .words import add_language, number, whole_number
+from .options import add_language, number, whole_number
+from .output_folder import fonts_listed
+from .progress import announced
 
 if TYPE_CHECKING:
     from ..carving.answer import CarveAnswer

@@ -10,9 +10,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from .._support.units import DEGREE
-from .announced import announced
-from .out_folder import ready
-from .words import add_fall_line_azimuth, add_language, number
+from .options import add_fall_line_azimuth, add_language, number
+from .output_folder import ready
+from .progress import announced
 
 if TYPE_CHECKING:
     from ..track.comparison import Comparison

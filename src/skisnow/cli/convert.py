@@ -6,8 +6,8 @@ import argparse
 import sys
 from pathlib import Path
 
-from .announced import announced
-from .words import number
+from .options import number
+from .progress import announced
 
 
 def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:

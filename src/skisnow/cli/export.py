@@ -5,8 +5,8 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from .announced import announced
-from .words import Parser, add_changes, whole_number
+from .options import Parser, add_changes, whole_number
+from .progress import announced
 
 
 def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:

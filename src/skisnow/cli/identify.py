@@ -8,12 +8,10 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from .announced import announced
 from .ending import Ending, ending_is_an_interrupt
-from .out_folder import ready
-from .progress import Progress
-from .scheduler import add_scheduler, scheduler_of
-from .words import MOST_RESAMPLES, MOST_WORKERS, add_language, seed_number, whole_number
+from .options import MOST_RESAMPLES, MOST_WORKERS, add_language, add_scheduler, scheduler_of, seed_number, whole_number
+from .output_folder import ready
+from .progress import Progress, announced
 
 MOST_SAMPLES, MOST_STARTS = 1_000_000, 1_000
 

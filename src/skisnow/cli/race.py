@@ -9,12 +9,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from .announced import announced
 from .ending import Ended, ending_is_an_interrupt
-from .out_folder import ready
-from .progress import Progress
-from .scheduler import add_scheduler, scheduler_of
-from .words import MOST_WORKERS, add_changes, number, seed_number, whole_number
+from .options import MOST_WORKERS, add_changes, add_scheduler, number, scheduler_of, seed_number, whole_number
+from .output_folder import ready
+from .progress import Progress, announced
 
 if TYPE_CHECKING:
     from ..racing import QuickestLine, RacingLine, Score, Worth

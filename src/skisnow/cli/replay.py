@@ -8,8 +8,8 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
-from .announced import announced
-from .words import add_fall_line_azimuth, add_language, number
+from .options import add_fall_line_azimuth, add_language, number
+from .progress import announced
 
 if TYPE_CHECKING:
     from ..replay import Replay, ReplayTrack

@@ -7,8 +7,7 @@ import sys
 from pathlib import Path
 
 from .._support.errors import ParameterError
-from .scheduler import add_scheduler, checked_scheduler
-from .words import whole_number
+from .options import add_scheduler, checked_scheduler, whole_number
 
 
 def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:

@@ -12,11 +12,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from .._support.errors import ModelLimitWarning
-from .announced import announced
 from .ending import Ending, ending_is_an_interrupt
-from .out_folder import ready
-from .progress import Progress
-from .words import add_changes, add_language
+from .options import add_changes, add_language
+from .output_folder import ready
+from .progress import Progress, announced
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -87,7 +86,7 @@ def _list(name: str | None) -> int:
 def _prepare(options: argparse.Namespace, asked: ScenarioFile) -> None:
     """What can be refused is refused before the work."""
     if options.boots_out is not None:
-        from ..simulation.boots_table import require_ending
+        from ..simulation.run_tables import require_ending
 
         require_ending(options.boots_out)
     if options.out is not None:
@@ -140,7 +139,7 @@ def _tell(
     for text in (*near, *run_warnings(found)):
         print(f"warning: {text}", file=sys.stderr)
     if options.boots_out is not None:
-        from ..simulation.boots_table import write_boots
+        from ..simulation.run_tables import write_boots
 
         write_boots(found, options.boots_out)
         print(f"Boots: {options.boots_out}", file=sys.stderr)

@@ -10,9 +10,8 @@ from typing import TYPE_CHECKING
 
 from .._support.errors import ParameterError
 from .ending import Ended, ending_is_an_interrupt
+from .options import MOST_WORKERS, add_language, add_scheduler, scheduler_of, whole_number
 from .progress import Progress
-from .scheduler import add_scheduler, scheduler_of
-from .words import MOST_WORKERS, add_language, whole_number
 
 if TYPE_CHECKING:
     from ..studies import Study, StudyTable

@@ -7,10 +7,9 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from .announced import announced
-from .out_folder import ready
-from .progress import Progress
-from .words import add_language, number
+from .options import add_language, number
+from .output_folder import ready
+from .progress import Progress, announced
 
 if TYPE_CHECKING:
     import argparse

@@ -8,10 +8,9 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from .announced import announced
-from .out_folder import ready
-from .progress import Progress
-from .words import MOST_WORKERS, add_language, number, seed_number, whole_number
+from .options import MOST_WORKERS, add_language, number, seed_number, whole_number
+from .output_folder import ready
+from .progress import Progress, announced
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -81,8 +80,8 @@ def run(options: argparse.Namespace) -> int:
     with announced("loading"):
         from ..pipeline.turn import turn
         from ..scenario import scenario_file
+        from ..scenario.identify_section import prior_of
         from ..scenario.keys import parse_change
-        from ..scenario.prior import prior_of
 
         priors = [prior_of(word) for word in options.priors]
         changes = dict(parse_change(word) for word in options.changes)

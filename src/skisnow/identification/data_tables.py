@@ -11,10 +11,9 @@ from typing import Annotated, Final
 import numpy as np
 import numpy.typing as npt
 
-from .._support.csv_rows import MOST_CSV_BYTES
 from .._support.display import ShownFields
 from .._support.errors import ParameterError
-from .._support.spreadsheet_text import number
+from .._support.spreadsheet_text import MOST_CSV_BYTES, number
 from .._support.user_files import plain_bytes
 from ..parameters import Quantity, own_quantities
 from ..track.readers.text import cells_of, decimal_mark_of, require_width, text_of

@@ -23,7 +23,7 @@ from .._support.units import DEGREE, MM, N_PER_MM2, N_PER_MM3
 from ..carving.equilibrium import carve
 from ..carving.result import Equilibrium
 from ..scenario import Plane, ScenarioFile
-from ..scenario.slope_surface import normals_of
+from ..scenario.terrain import normals_of
 from ..ski import Ski
 from ..snow import SnowProperties
 from .data_tables import MeasuredGrooves

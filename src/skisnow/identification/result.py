@@ -14,7 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .._support.display import Facts, Shown, amount, ends, span
-from .._support.json_number import json_number
+from .._support.user_files.json_text import json_number
 from .parameter import Parameter
 from .problem import Fit
 

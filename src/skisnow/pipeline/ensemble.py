@@ -14,7 +14,7 @@ from ..parameters import values_of
 from ..report.turn.chain import EnsembleRun
 from ..report.turn.figures import TimedTrack
 from ..report.turn.numbers import used_grip
-from ..scenario.prior import Measured, Prior, measured_of
+from ..scenario.identify_section import Measured, Prior, measured_of
 from ..simulation.simulated_run import simulate
 from ..simulation.verification import NUDGED, limit_sentences, nudged_scenarios
 from ..snow.mean_snow import drawn_snows

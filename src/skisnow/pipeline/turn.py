@@ -17,7 +17,7 @@ from ..report.turn.chain import TurnChain
 from ..report.turn.figures import FEWEST
 from ..scenario import Scenario, load_scenario
 from ..scenario.contact import ELASTIC
-from ..scenario.prior import Prior, measured_of
+from ..scenario.identify_section import Prior, measured_of
 from ..simulation import Run
 from ..simulation.simulated_run import simulate
 from ..ski import Ski

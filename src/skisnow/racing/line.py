@@ -12,9 +12,9 @@ from itertools import pairwise
 from pathlib import Path
 from typing import Final
 
-from .._support.csv_rows import csv_rows
 from .._support.display import Facts, Shown, ShownFields, amount
 from .._support.errors import ParameterError
+from .._support.spreadsheet_text import csv_rows
 from .._support.staging import write_file
 from ..scenario import Scenario, Skier
 from ..skier.steering import Underway, pursued

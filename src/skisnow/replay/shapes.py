@@ -9,7 +9,7 @@ import numpy.typing as npt
 from scipy.spatial import cKDTree
 from scipy.spatial.transform import Rotation
 
-from ..simulation.sledge.frames import base_lateral, base_normal, rotation
+from ..simulation.sledge_body import base_lateral, base_normal, rotation
 
 if TYPE_CHECKING:
     from .replay import Replay

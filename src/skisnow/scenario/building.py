@@ -17,16 +17,14 @@ from ..snow import SnowProperties, published_snow
 from ..snow.mean_snow import without_measured
 from ..snow.properties import require_stress
 from ..track.course import Course, course_names, read_course
-from .boots import Boots
-from .boots_file import read_boots
+from .boots import Boots, read_boots
 from .contact import ELASTIC, Contact
 from .keys import SCENARIO_KEYS, full_name
 from .resolution import COMPANIONS, DISPLACEMENT, H_V, KEYS_OF_KIND, S_F, UNLOADING, ContradictionError, Resolution
 from .scenario import Scenario, course_on_slope
 from .slope import Plane, read_profile
-from .slope_surface import Slope
 from .snow_map import SnowMap
-from .terrain import read_terrain
+from .terrain import Slope, read_terrain
 
 SNOW_CHOICES = "Give snow.H_V_N_per_mm3 and snow.S_f_N_per_mm2, or snow.results, or snow.published"
 

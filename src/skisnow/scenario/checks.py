@@ -7,16 +7,16 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from .._support.errors import ParameterError
-from .slope_surface import reach_of
+from .terrain import reach_of
 
 if TYPE_CHECKING:
     from ..ski import Ski
     from .contact import Contact
+    from .run_settings import Start
     from .shear import Shear
     from .skier import Skier
     from .sledge import RigidSledge
-    from .slope_surface import Slope
-    from .start import Start
+    from .terrain import Slope
 
 
 def require_sound(

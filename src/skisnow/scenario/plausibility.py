@@ -19,7 +19,7 @@ from ..snow.properties import GREATEST_LIKELY_HARDNESS
 from ..track.course import course_warnings
 from .scenario import Scenario
 from .slope import Plane
-from .slope_surface import heights_of
+from .terrain import heights_of
 
 if TYPE_CHECKING:
     from .scenario import Scenario

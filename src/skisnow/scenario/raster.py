@@ -10,8 +10,8 @@ from typing import Final, NamedTuple, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from .._support.csv_rows import CsvRow
 from .._support.errors import ParameterError
+from .._support.spreadsheet_text import CsvRow
 from .map_system import MapSystem, require_true_lengths, utm_zone
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]

@@ -13,20 +13,17 @@ from .._support.errors import ParameterError
 from .._support.units import DEGREE, STANDARD_GRAVITY
 from ..parameters import Quantity, Search, Word, require_declared
 from ..ski import Ski, ski_names
-from ..ski.beam.clamped import CLAMP_LENGTH
+from ..ski.beam import CLAMP_LENGTH
 from ..track.course import Course, on_slope
-from .air import Air
 from .boots import Boots
 from .checks import require_skier, require_sound
 from .contact import Contact
+from .run_settings import Solver, Start, Stop
 from .shear import Shear
 from .skier import Skier
-from .sledge import RigidSledge
+from .sledge import Air, RigidSledge
 from .slope import Plane, Profile
-from .slope_surface import Slope
-from .solver import Solver
-from .start import Start, Stop
-from .terrain import Terrain
+from .terrain import Slope, Terrain
 
 
 def _slope_kind(slope: Slope) -> str:

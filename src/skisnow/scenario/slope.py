@@ -13,9 +13,9 @@ from typing import TYPE_CHECKING, Annotated, Final, Literal, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from .._support.csv_rows import csv_rows
 from .._support.display import Facts, Shown, ends
 from .._support.errors import ParameterError
+from .._support.spreadsheet_text import csv_rows
 from ..parameters import Quantity, Search, Word, declared_text, require_declared
 from .raster import number_within, profile_limits
 

@@ -11,9 +11,9 @@ from typing import Final, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from .._support.csv_rows import CsvRow, csv_rows
 from .._support.display import Facts, Shown, span
 from .._support.errors import ParameterError
+from .._support.spreadsheet_text import CsvRow, csv_rows
 from .._support.units import N_PER_MM2, N_PER_MM3
 from ..geometry.surfaces import Grid
 from ..snow import SnowProperties

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from ..contact import Laws
-    from .boot_history import BootHistory
+    from .moving_boots import BootHistory
     from .run_balance import BalanceHistory
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]

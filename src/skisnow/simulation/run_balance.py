@@ -11,7 +11,7 @@ import numpy.typing as npt
 from .._support.display import Facts, Shown, field_facts
 from .._support.errors import ParameterError
 from ..scenario import Plane
-from ..scenario.slope_surface import down_and_left, normals_of
+from ..scenario.terrain import down_and_left, normals_of
 
 if TYPE_CHECKING:
     from .run import Run

@@ -11,8 +11,8 @@ import numpy as np
 import numpy.typing as npt
 
 from ..dynamics import Ended
-from ..scenario.slope_surface import down_and_left, heights_of, normals_of
-from .boot_history import BootHistory
+from ..scenario.terrain import down_and_left, heights_of, normals_of
+from .moving_boots import BootHistory
 from .run import GIVEN, LOST, STORED, Outcome, SkiHistory
 from .run_setup import Setup
 from .snow_forces import AlongEdge, snow_forces, thrust_per_length

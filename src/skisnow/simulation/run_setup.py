@@ -18,13 +18,13 @@ from ..dynamics.motion import LONGEST_STEP, DynamicsState
 from ..forces.friction import LinearFriction
 from ..geometry.surfaces import Grid
 from ..scenario import Plane, Scenario, SnowMap
-from ..scenario.slope_surface import down_and_left, heights_of, normals_of, reach_of, surface_of
-from ..ski.beam.clamped import clamped
+from ..scenario.terrain import down_and_left, heights_of, normals_of, reach_of, surface_of
+from ..ski.beam import clamped
 from ..skier import BalancedSkier
 from ..snow.measured_range import without_range_warnings
 from .moving_boots import SAME_TIME, BootControl, BootDrive, StrengthDrive, TableControl
 from .run import Strength
-from .sledge.body import sledge_body
+from .sledge_body import sledge_body
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 

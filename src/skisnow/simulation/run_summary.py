@@ -12,8 +12,8 @@ from typing import Any, Final
 
 import numpy as np
 
-from .._support.json_number import json_number
 from .._support.units import DEGREE
+from .._support.user_files.json_text import json_number
 from ..scenario.keys import in_sections, scenario_values
 from ..snow.from_results import snow_dict
 from ..track.course.gates_table import gates_dict

@@ -12,7 +12,7 @@ from ..forces.shear import ShearLaw
 
 if TYPE_CHECKING:
     from ..ski import Ski
-    from .boot_history import BootHistory
+    from .moving_boots import BootHistory
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 

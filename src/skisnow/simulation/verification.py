@@ -11,8 +11,8 @@ from typing import Any, Final, TypeAlias
 import numpy as np
 
 from .._support.display import Facts, Shown, amount
-from .._support.json_number import json_number
 from .._support.units import CM
+from .._support.user_files.json_text import json_number
 from ..parameters import values_of
 from ..scenario import Scenario, Solver
 from ..scenario.keys import SCENARIO_KEYS

@@ -4,9 +4,8 @@ from .assembling import arc_ski
 from .base_profile import BaseShape
 from .layout import Layout, SkiSections, layout_of_lengths
 from .monkeycam import read_monkeycam
-from .reading import read_ski, ski_named, ski_names
 from .ski import Ski
-from .writing import write_ski
+from .ski_file import read_ski, ski_named, ski_names, write_ski
 
 __all__ = [
     "BaseShape",

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
@@ -16,10 +15,9 @@ from .ski import Ski
 from .table_file import StationTable, evenly_spread
 
 if TYPE_CHECKING:
-    from .layout import Layout
+    from .layout import Layout, StationFunction
 
 FloatArray = npt.NDArray[np.float64]
-Along: TypeAlias = Callable[[FloatArray], FloatArray]
 
 _SAME_PLACE = 1e-9  # m
 
@@ -48,11 +46,11 @@ class SkiParts:
     name: str
     source: str
     layout: Layout
-    width: Along
-    base: BaseShape | Along
-    bending_stiffness: Along
-    torsional_stiffness: Along
-    mass_per_length: Along | None = None
+    width: StationFunction
+    base: BaseShape | StationFunction
+    bending_stiffness: StationFunction
+    torsional_stiffness: StationFunction
+    mass_per_length: StationFunction | None = None
     mass: float = 0.0
     base_bevel: float = 0.0
     edge_width: float = 0.002

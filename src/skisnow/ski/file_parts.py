@@ -13,13 +13,12 @@ from .assembling import SkiParts, stiffness_table
 from .file_keys import BASE, LISTS, RIGID, STIFFNESSES, TIP_END, WIDTHS
 from .layout import Layout, layout_of_lengths
 from .monkeycam import monkeycam_shape
-from .outline import ArcOutline
-from .side_line import width_of_table
+from .outline import ArcOutline, width_of_table
 
 if TYPE_CHECKING:
-    from .assembling import Along
     from .base_profile import BaseShape
     from .file_values import FileValues
+    from .layout import StationFunction
     from .ski import Ski
     from .table_file import StationTable
 
@@ -70,7 +69,7 @@ class FileParts:
         self._warn_of_lengths(ski)
         return ski
 
-    def _shaped(self) -> tuple[Layout, Along, str]:
+    def _shaped(self) -> tuple[Layout, StationFunction, str]:
         values = self.values
         outlined = ("table", "length_mm", "sidecut_length_mm", *WIDTHS, TIP_END, "tail_overhang_mm", "boot_position_mm")
         values.refuse_together(outlined, "shape", "Leave one of them out")
@@ -78,7 +77,7 @@ class FileParts:
         shape = monkeycam_shape(file, running_length=values.said.running_length)
         return shape.outline.layout, shape.outline.width_at, shape.name
 
-    def _laid_out(self) -> tuple[Layout, Along, str]:
+    def _laid_out(self) -> tuple[Layout, StationFunction, str]:
         values = self.values
         layout = self._layout_of_table() if self.table else self._layout_of_keys()
         if "width_mm" in self.table:
@@ -130,14 +129,14 @@ class FileParts:
             sidecut_length=values.needed("sidecut_length_mm"),
         )
 
-    def _base(self) -> BaseShape | Along:
+    def _base(self) -> BaseShape | StationFunction:
         values = self.values
         if "base_height_mm" in self.table:
             values.refuse_together(BASE, "the column base_height_mm", "Leave one of them out")
             return self.table["base_height_mm"].at
         return values.said.base
 
-    def _stiffness(self, key: str, layout: Layout) -> Along:
+    def _stiffness(self, key: str, layout: Layout) -> StationFunction:
         values = self.values
         if values.said.rigid:
             values.refuse_together(LISTS, "rigid", "Leave one of them out")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Final, TypeAlias
 
@@ -103,6 +104,8 @@ def layout_of_lengths(
 
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
+StationFunction: TypeAlias = Callable[[FloatArray], FloatArray]
+"""Function from stations (m) to a quantity of the ski."""
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)

@@ -8,8 +8,12 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 import numpy.typing as npt
 
+from .._support.errors import ParameterError
+from .checks import GREATEST_SPACING, STRAIGHT
+from .table_file import StationTable
+
 if TYPE_CHECKING:
-    from .layout import Layout
+    from .layout import Layout, StationFunction
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -75,3 +79,100 @@ class ArcOutline:
         """
         taper = self.tip_width - self.tail_width
         return taper**2 / (8.0 * self._deepening) if self._deepening > 0 else 0.0
+
+
+FEWEST_ROWS: Final = 3
+"""Rows within the sidecut length without which nothing says how deep the sidecut is."""
+LEAST_SHARE: Final = 0.5
+"""Share of the sidecut length that these rows span at least (modelling assumption)."""
+_SAME_PLACE: Final = 1e-3  # m: a row at the end of the sidecut length, measured on another day
+
+
+def width_of_table(table: StationTable, layout: Layout) -> StationFunction:
+    """Widths (m) at stations (m).
+
+    A dense table is used as it is. Between the rows of a coarser one a parabola, fitted to those within the sidecut
+    length, carries the sidecut; what the rows differ from it follows the shape-preserving cubic of `StationTable`
+    (modelling assumption). Three rows give the side line of three widths; a cubic through the widths themselves would
+    be flat at the
+    widest and at the narrowest row, and bend between them as no ski does.
+
+    Raises
+    ------
+    ParameterError
+        There are too few rows within the sidecut length, or they lie together.
+    """
+    if np.max(-np.diff(table.station), initial=0.0) <= GREATEST_SPACING + 1e-9:
+        return table.at
+    parabola = _parabola(table, layout)
+    rest = StationTable(table.station, table.value - parabola(table.station))
+    return lambda station: parabola(station) + rest.at(station)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Parabola:
+    """Widths a + b s + c s² over the sidecut length; beyond its ends those of the ends."""
+
+    coefficients: FloatArray
+    front: float
+    rear: float
+
+    def __call__(self, station: FloatArray) -> FloatArray:
+        return np.asarray(np.polynomial.polynomial.polyval(np.clip(station, self.rear, self.front), self.coefficients))
+
+
+def _parabola(table: StationTable, layout: Layout) -> _Parabola:
+    front, rear = layout.widest_points
+    inside = (table.station <= front + _SAME_PLACE) & (table.station >= rear - _SAME_PLACE)
+    station = table.station[inside]
+    span = float(station[0] - station[-1]) if station.size else 0.0
+    if station.size < FEWEST_ROWS or span < LEAST_SHARE * layout.sidecut_length:
+        raise ParameterError(
+            f"the column width_mm has {station.size} rows, {span * 1e3:.0f} mm apart, within the sidecut length, from "
+            f"{front:.4g} to {rear:.4g} m. Allowed are {FEWEST_ROWS} rows or more over at least half of it: give rows "
+            "at both ends and at the waist, and better every 10 cm"
+        )
+    within = np.clip(station, rear, front)
+    coefficients = np.asarray(np.polynomial.polynomial.polyfit(within, table.value[inside], 2), dtype=np.float64)
+    return _Parabola(coefficients, front, rear)
+
+
+def radius_of_least_squares_circle(along: FloatArray, across: FloatArray) -> float:
+    """Radius of the circle with the least sum of squared distances to points of a plane (m).
+
+    Parameters
+    ----------
+    along, across
+        Coordinates of the points (m). Shape (n,), n ≥ 3.
+
+    Returns
+    -------
+    float
+        Above 0, in m; infinite where the points lie on a straight line to a tenth of a micrometre.
+
+    Notes
+    -----
+    Pratt's form A (x² + y²) + B x + C y + D = 0 with B² + C² - 4 A D = 1 (Pratt 1987, Computer Graphics 21:145). It
+    minimises Σ (d + d²/2R)², d the distance of a point from the circle. The edge of a ski is within 0.1 mm of its
+    circle and R is metres, so it is the circle of least squares to 5 digits beyond the first. Unlike the centre
+    and radius themselves it stays well posed as the line becomes straight.
+
+    Examples
+    --------
+    >>> turn = np.linspace(-0.05, 0.05, 41)
+    >>> round(radius_of_least_squares_circle(13.0 * np.sin(turn), 0.034 + 13.0 * (1.0 - np.cos(turn))), 9)
+    13.0
+    """
+    x, y = along - along.mean(), across - across.mean()
+    scale = float(np.max(np.abs(x)))
+    curvature = _pratt_curvature(x / scale, y / scale) / scale
+    return 1.0 / curvature if curvature * scale**2 / 2.0 > STRAIGHT else float("inf")
+
+
+def _pratt_curvature(x: FloatArray, y: FloatArray) -> float:
+    points = np.column_stack([x**2 + y**2, x, y, np.ones_like(x)])
+    constraint = np.array([[0.0, 0, 0, -2], [0, 1, 0, 0], [0, 0, 1, 0], [-2, 0, 0, 0]])
+    residuals, circles = np.linalg.eig(np.linalg.solve(constraint, points.T @ points / len(x)))
+    # the constraint has one negative direction, whose circle is imaginary: the answer is the one nearest to 0
+    A, B, C, D = np.real(circles[:, np.argmin(np.abs(residuals))])
+    return float(2.0 * abs(A) / np.sqrt(B**2 + C**2 - 4.0 * A * D))

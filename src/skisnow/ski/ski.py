@@ -21,8 +21,8 @@ from .checks import (
     require_on_ski,
     require_tables,
 )
-from .edge_line import radius_of_least_squares_circle
 from .layout import Layout, SkiSections
+from .outline import radius_of_least_squares_circle
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 

@@ -18,7 +18,7 @@ from .._support.errors import ParameterError
 from ..dynamics import BootPose
 from ..scenario import Plane, Scenario
 from ..scenario.skier import Skier
-from ..scenario.slope_surface import down_and_left, normals_of
+from ..scenario.terrain import down_and_left, normals_of
 from .edges import Edges
 from .legs import leg_poses
 from .seen import Moment, Seen, seen_at

@@ -9,7 +9,7 @@ from typing import Protocol, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from ..scenario.slope_surface import down_and_left
+from ..scenario.terrain import down_and_left
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 

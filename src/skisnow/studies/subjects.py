@@ -11,9 +11,9 @@ import numpy as np
 
 from .._support.display import ShownFields
 from .._support.errors import ParameterError, SkisnowError
-from .._support.json_number import json_number
 from .._support.processes.kept_rows import Row
 from .._support.units import MM
+from .._support.user_files.json_text import json_number
 from ..carving.answer import CarveAnswer, answered
 from ..carving.answer_dict import inputs_dict, scalars_dict
 from ..carving.keys import CARVE_KEYS
@@ -21,13 +21,12 @@ from ..carving.limits import require_clamp
 from ..carving.question import carve_question, require_complete
 from ..parameters import Quantity
 from ..scenario import ScenarioFile
-from ..scenario.built_in import scenario_names, scenario_place
 from ..scenario.keys import PATH_KEYS, SCENARIO_KEYS, SECTIONS, full_name
-from ..scenario.reading import build_input, input_files, load_input
+from ..scenario.reading import build_input, input_files, load_input, scenario_names, scenario_place
 from ..scenario.resolution import ScenarioInput
 from ..simulation.run import Run
 from ..simulation.run_summary import end_dict, energies_dict, least_turn_radius, radii_dict, run_warnings
-from ..ski.beam.clamped import CLAMP_LENGTH
+from ..ski.beam import CLAMP_LENGTH
 from ..ski.sources import Sources
 from ..snow.properties import require_stress
 from .points import Point, Points

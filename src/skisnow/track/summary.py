@@ -10,8 +10,8 @@ import numpy as np
 
 from .._support.display import Facts, Shown, amount
 from .._support.errors import ParameterError
-from .._support.json_number import json_number
 from .._support.units import DEGREE
+from .._support.user_files.json_text import json_number
 from .curvature import TrackMotion, integrated_arc_length, places_arc_length, segments, track_motion
 from .path_estimate import Interval
 from .runs import Day, Stretch, max_speed, split_day

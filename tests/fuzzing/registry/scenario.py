@@ -16,7 +16,7 @@ from skisnow.identification.parameter import parameter_table
 from skisnow.identification.problem import keys_of_runs
 from skisnow.identification.track_frame import _site
 from skisnow.scenario import load_scenario, read_profile, read_terrain, scenario_file, scenario_text
-from skisnow.scenario.boots_file import read_boots
+from skisnow.scenario.boots import read_boots
 from skisnow.scenario.identify_section import given_parameters
 from skisnow.scenario.keys import parse_change
 from skisnow.scenario.reading import load_input
@@ -226,6 +226,6 @@ READERS = (
     _of("heights.tif", _geotiff, _used_terrain, BINARY, "scenario.raster_formats:read_geotiff", needs=("rasterio",)),
     _of("map.csv", _MAP, _used_map, TABLE, "scenario.snow_map:read_snow_map"),
     _of("along.csv", _ALONG, _used_map, TABLE, "scenario.snow_map:read_snow_map"),
-    _of("boots.csv", _BOOTS, _used_boots, TABLE, "scenario.boots_file:read_boots"),
-    _of("boots.mot", _MOT, _used_boots, TEXT, "scenario.boots_file:read_boots"),
+    _of("boots.csv", _BOOTS, _used_boots, TABLE, "scenario.boots:read_boots"),
+    _of("boots.mot", _MOT, _used_boots, TEXT, "scenario.boots:read_boots"),
 )  # fmt: skip

@@ -10,7 +10,7 @@ from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wai
 from itertools import islice
 from typing import TypeAlias
 
-from skisnow._support.processes.worker_process import begin_worker, interrupts_ignored
+from skisnow._support.processes.crews import begin_worker, interrupts_ignored
 
 from .kept import KeptTwins, Row
 

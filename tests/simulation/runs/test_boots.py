@@ -11,8 +11,8 @@ import pytest
 from skisnow import BootMoment, BootPose, Boots, Run, Scenario, load_scenario, simulate
 from skisnow._support.errors import ParameterError
 from skisnow.replay import replay_of_run, ski_edges
-from skisnow.scenario.boots_file import read_boots
-from skisnow.simulation.boots_table import boots_text, write_boots
+from skisnow.scenario.boots import read_boots
+from skisnow.simulation.run_tables import boots_text, write_boots
 
 
 def turn(**changes: object) -> Scenario:

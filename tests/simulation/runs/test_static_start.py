@@ -16,8 +16,7 @@ from skisnow._support.errors import SolverError
 from skisnow.scenario import Solver, load_scenario
 from skisnow.simulation.run_record import at_nodes
 from skisnow.simulation.run_setup import set_up
-from skisnow.simulation.simulated_run import simulate
-from skisnow.simulation.standing import why_no_start
+from skisnow.simulation.simulated_run import simulate, why_no_start
 
 from ...carving.synthetic import snow
 from ..beyond_ranges import beyond

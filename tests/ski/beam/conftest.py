@@ -9,8 +9,7 @@ import numpy.typing as npt
 from scipy.linalg import eigh
 
 from skisnow.compiled import core
-from skisnow.ski.beam.banded import assembled, dense
-from skisnow.ski.beam.elements import GAUSS_POINTS, mass_matrices, stiffness_matrices
+from skisnow.ski.beam import GAUSS_POINTS, assembled, dense, mass_matrices, stiffness_matrices
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from scipy.linalg import eigh
 
 from skisnow.compiled import core
-from skisnow.ski.beam.banded import HALF_BANDWIDTH, assembled, dense, lowest_eigenvalue
+from skisnow.ski.beam import HALF_BANDWIDTH, assembled, dense, lowest_eigenvalue
 
 from .conftest import FloatArray, banded_solution, chain
 

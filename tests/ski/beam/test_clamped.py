@@ -9,8 +9,7 @@ import pytest
 
 from skisnow._support.errors import ParameterError
 from skisnow.ski import Ski, read_ski
-from skisnow.ski.beam.banded import dense
-from skisnow.ski.beam.clamped import beam_at, clamped
+from skisnow.ski.beam import beam_at, clamped, dense
 
 from .conftest import Chain, FloatArray, banded_solution, frequencies, observed_order
 

@@ -8,8 +8,14 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
-from skisnow.ski.beam.banded import dense
-from skisnow.ski.beam.elements import curvature_shape, deflection_shape, slope_shape, stiffness_matrices, twist_shape
+from skisnow.ski.beam import (
+    curvature_shape,
+    deflection_shape,
+    dense,
+    slope_shape,
+    stiffness_matrices,
+    twist_shape,
+)
 
 from .conftest import banded_solution, chain, frequencies, observed_order
 

@@ -12,8 +12,8 @@ import pytest
 
 from skisnow._support.errors import ParameterError
 from skisnow._support.processes.batch import run_batch
+from skisnow._support.processes.crews import begin_worker
 from skisnow._support.processes.kept_rows import KeptRows
-from skisnow._support.processes.worker_process import begin_worker
 
 POINTS = [[("n", n), ("third", n / 3.0), ("text", 'a "quoted", ü\nline')] for n in range(25)]
 ROWS = [dict(point) for point in POINTS]

@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import multiprocessing
+import os
 import pickle
+import signal
+import threading
 from abc import ABC, abstractmethod
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from concurrent.futures import (
     BrokenExecutor,
     CancelledError,
@@ -14,13 +17,13 @@ from concurrent.futures import (
     ProcessPoolExecutor,
     ThreadPoolExecutor,
 )
+from contextlib import contextmanager
 from multiprocessing.connection import Connection
 from pathlib import Path
 from typing import Final
 
 from ..errors import SkisnowError
 from .chunk import Done, Numbered, PointFunction, computed, computed_elsewhere, own_identity
-from .worker_process import begin_worker, interrupts_ignored
 
 LOST: Final = "the scheduler was lost, or gave the work up"
 LARGEST_FOR_A_PIPE: Final = 64
@@ -180,3 +183,29 @@ def _in_worker(points: list[Numbered]) -> Done:
     if _Worker.function is None:
         raise SkisnowError("a worker was not started by a Pool")
     return computed(_Worker.function, points)
+
+
+@contextmanager
+def interrupts_ignored() -> Iterator[None]:
+    """While processes start, which inherit it; in a thread other than the main one nothing is changed."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, before)
+
+
+def begin_worker(alive: Connection) -> None:
+    """Begin a worker process; it ends when the parent's end of `alive` is closed."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    threading.Thread(target=_end_with_parent, args=(alive,), daemon=True).start()
+
+
+def _end_with_parent(alive: Connection) -> None:
+    try:
+        alive.recv()
+    except (EOFError, OSError):
+        os._exit(1)

@@ -3,11 +3,8 @@
 All TOML and JSON of users is read here and nowhere else: campaigns, scenarios, skis, studies, results, design files.
 """
 
-from .errors import GivenError
-from .json_text import MOST_JSON_BYTES, json_value, own_json, read_json
-from .natural_number import natural_number
-from .own_record import read_record
-from .plain_file import is_file, plain_bytes, plain_text
+from .json_text import MOST_JSON_BYTES, json_value, own_json, read_json, read_record
+from .plain_file import GivenError, is_file, natural_number, plain_bytes, plain_text
 from .toml_text import MOST_TOML_BYTES, read_toml, toml_values
 from .workbook import workbook_sheets
 from .xml_tree import Element, xml_tree

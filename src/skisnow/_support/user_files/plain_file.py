@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import stat
 from pathlib import Path
+from typing import Final
 
-from .errors import GivenError
+from ..errors import ParameterError
 
 
 def plain_bytes(path: str | Path, *, most_bytes: int) -> bytes:
@@ -59,3 +60,41 @@ def plain_text(path: str | Path, *, most_bytes: int) -> str:
             f"{path} is not UTF-8 text ({error.reason}, byte {error.start + 1}). Save it as UTF-8."
         ) from error
     return text.replace("\r\n", "\n").replace("\r", "\n")
+
+
+class GivenError(ParameterError):
+    """A file, or a text in its stead, cannot be read.
+
+    Parameters
+    ----------
+    what
+        What is wrong and what is allowed, without the file.
+    line
+        Of the file, where one can be named.
+    title
+        The file, or what else the text is called by; empty until it is known.
+    sentence
+        The whole message, where it is not made of the others.
+    """
+
+    def __init__(self, what: str, *, line: int | None = None, title: str = "", sentence: str = "") -> None:
+        place = ", ".join(part for part in (title, f"line {line}" if line else "") if part)
+        super().__init__(sentence or (f"{place}: {what}" if place else what))
+        self.what, self.line = what, line
+
+    def of(self, title: str) -> GivenError:
+        """The same of a file."""
+        return GivenError(self.what, line=self.line, title=title)
+
+
+MOST_DIGITS: Final = 18
+"""Of a number that fits into 64 bits. Python itself rejects texts of more than 4,300 digits with a ValueError."""
+
+
+def natural_number(text: str) -> int | None:
+    """Whole number of 0 or more; None if the text is anything else than 1 to 18 decimal digits.
+
+    >>> natural_number("42"), natural_number("-1"), natural_number("9" * 5000)
+    (42, None, None)
+    """
+    return int(text) if len(text) <= MOST_DIGITS and text.isdecimal() else None

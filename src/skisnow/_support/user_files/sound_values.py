@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import Final, TypeAlias
 
-from .errors import GivenError
+from .plain_file import GivenError
 
 DEEPEST: Final = 32
 """Tables and lists within one another; the program's own files have six at most."""

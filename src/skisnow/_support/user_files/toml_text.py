@@ -6,8 +6,7 @@ import re
 import tomllib
 from typing import TYPE_CHECKING, Any, Final
 
-from .errors import GivenError
-from .plain_file import plain_text
+from .plain_file import GivenError, plain_text
 from .sound_values import DEEPEST, LONGEST_KEY, require_sound, too_deep
 
 if TYPE_CHECKING:

@@ -15,7 +15,7 @@ from datetime import date, datetime, time
 from typing import TYPE_CHECKING, Any, Final, TypeAlias
 from xml.parsers import expat
 
-from .errors import GivenError
+from .plain_file import GivenError
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from typing import Final
 from xml.parsers import expat
 
-from .errors import GivenError
+from .plain_file import GivenError
 
 DEEPEST: Final = 60
 MOST_ELEMENTS: Final = 500_000

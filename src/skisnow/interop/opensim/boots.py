@@ -15,8 +15,7 @@ from ..._support.errors import ParameterError
 from ..._support.nearest import require_choice
 from ..._support.units import DEGREE
 from ...geometry.boot_axes import angles_of
-from ...scenario.boots import LARGEST, Boots
-from ...scenario.boots_file import ANGLES, OF_SLOPE, SIDES
+from ...scenario.boots import ANGLES, LARGEST, OF_SLOPE, SIDES, Boots
 from .markers import Markers
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]

@@ -13,7 +13,7 @@ from matplotlib.ticker import MaxNLocator
 from ..._support.errors import ParameterError
 from ..._support.units import DEGREE
 from ...scenario import Plane
-from ...scenario.slope_surface import normals_of
+from ...scenario.terrain import normals_of
 from ...simulation.run_gates import run_gates
 from .style import BLACK, BLUE, DOUBLE_MM, GREY, VERMILLION, legend_below, new_figure
 

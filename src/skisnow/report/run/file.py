@@ -13,7 +13,7 @@ from scipy.io import netcdf_file
 from ..._support.optional_packages import needed
 from ..._support.staging import write_file
 from ...scenario.keys import SCENARIO_KEYS, in_sections, scenario_values
-from ...simulation.track_table import track_columns, track_table
+from ...simulation.run_tables import track_columns, track_table
 from .variables import PIECE, SKI, STATION, TIME, variables_of
 
 if TYPE_CHECKING:

@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 from markupsafe import Markup
 
-from ..._support.json_number import json_number
 from ..._support.language import ENGLISH
 from ..._support.staging import require_writable, write_file
 from ..._support.units import DEGREE, MM, N_PER_MM2, N_PER_MM3
+from ..._support.user_files.json_text import json_number
 from ...scenario.keys import SCENARIO_KEYS
 from ...scenario.plausibility import model_limits
 from ...simulation.run_gates import run_gates

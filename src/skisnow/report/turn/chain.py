@@ -12,7 +12,7 @@ from ..._support.language import ENGLISH
 
 if TYPE_CHECKING:
     from ...estimation import Analysis
-    from ...scenario.prior import Measured, Prior
+    from ...scenario.identify_section import Measured, Prior
     from ...simulation.run import Run
     from ...snow import SnowProperties
     from .figures import TimedTrack

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 import numpy.typing as npt
 
-from ..._support.json_number import json_number
 from ..._support.units import MM, N_PER_MM2, N_PER_MM3
+from ..._support.user_files.json_text import json_number
 from ...parameters import values_of
 from ...scenario.plausibility import implausible_values
 from ...simulation.run_summary import summary_dict

@@ -33,7 +33,7 @@ NAMES: Final = {
     "recreational-piste": "compact recreational piste",
     "spring-snow": "spring snow",
 }
-"""The paper's snow by the name that `skisnow.snow.published_snow` takes."""
+"""The paper's snow by the name that `skisnow.snow.from_results` takes."""
 
 
 def converted(pressure_slope: float, pressure_offset: float, edge_angle: float) -> tuple[float, float]:
@@ -56,6 +56,6 @@ def snows() -> dict[str, SnowProperties]:
 
 
 def named_snows() -> dict[str, SnowProperties]:
-    """The three snows by the names of `skisnow.snow.published_snow`."""
+    """The three snows by the names of `skisnow.snow.from_results`."""
     found = snows()
     return {name: found[words] for name, words in NAMES.items()}

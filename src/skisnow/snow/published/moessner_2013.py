@@ -31,7 +31,7 @@ NAMED_SNOWS: Final = {
     "fresh-snow": ("fresh snow on ski slopes", 0.04, 0.04),
     "glacier": ("late-summer glacier", 90.0, 0.30),
 }
-"""H_V (N/mm³) and S_f (N/mm²) that the paper prints for a named snow, by the name of `skisnow.snow.published_snow`."""
+"""H_V (N/mm³) and S_f (N/mm²) that the paper prints for a named snow, by the name of `skisnow.snow.from_results`."""
 TOOL_LENGTH_MM: Final = 200.0
 TOOL_WIDTH_MM: Final = 62.0
 
@@ -92,7 +92,7 @@ def failure_shear_stress_from_density(snow_density: npt.ArrayLike) -> FloatArray
 
 
 def named_snows() -> dict[str, SnowProperties]:
-    """Fresh snow and the late-summer glacier, by the names of `skisnow.snow.published_snow`.
+    """Fresh snow and the late-summer glacier, by the names of `skisnow.snow.from_results`.
 
     Notes
     -----

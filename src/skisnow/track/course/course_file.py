@@ -10,8 +10,8 @@ from typing import Any, Final, cast
 import numpy as np
 import numpy.typing as npt
 
-from ..._support.csv_rows import CsvRow, csv_rows
 from ..._support.errors import ParameterError
+from ..._support.spreadsheet_text import CsvRow, csv_rows
 from ..._support.units import DEGREE
 from ..projection import GeodeticPoint, east_north_up
 from ..slope_frame import slope_axes

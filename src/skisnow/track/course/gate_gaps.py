@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final, get_args
 
-from ..._support.csv_rows import CsvRow, csv_rows
+from ..._support.spreadsheet_text import CsvRow, csv_rows
 from .passages import GateOutcome
 
 GATES_FILE: Final = "gates.csv"

@@ -7,7 +7,7 @@ import io
 import math
 from typing import Any, Final
 
-from ..._support.json_number import json_number
+from ..._support.user_files.json_text import json_number
 from .passages import CourseResult, Passage
 
 COLUMNS: Final = (

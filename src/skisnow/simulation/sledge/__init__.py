@@ -1,1 +1,0 @@
-"""The sledge on two flexible skis as a body: its frames, and its mass matrix."""

@@ -1,1 +1,0 @@
-"""Finite elements of a flexible ski: bending, torsion, and the banded systems they make."""
