@@ -29,6 +29,7 @@ NO_READERS: Final[Mapping[str, str]] = {
     "samples.folder:_contents": "sample files that the program has just made",
     "cli.samples:run": "sample files that the program has just made",
     "_support.language.catalogue:_entries": "package data",
+    "_support.messages:translations": "package data",
     "replay.page:static_text": "package data",
     "report.campaign.page:_frame": "package data",
     "report.sheet:sheet": "package data",
