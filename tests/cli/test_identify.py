@@ -99,8 +99,8 @@ def test_too_few_points_exit_with_1_and_say_so(cells: Path, capsys: Printed) -> 
     ("words", "told"),
     [
         (["--free", "mu_9"], "friction.mu_0"),
-        (["--free", "S_f"], "plays no part"),
-        ([], "nothing is looked for"),
+        (["--free", "S_f"], "has no effect"),
+        ([], "No parameter is free"),
     ],
 )
 def test_what_is_wrong_is_told(cells: Path, capsys: Printed, words: list[str], told: str) -> None:

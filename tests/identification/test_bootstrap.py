@@ -13,12 +13,13 @@ from scipy.optimize import least_squares
 
 from skisnow._support.errors import ParameterError
 from skisnow.identification import Identification, identify
-from skisnow.identification.bootstrap import BootstrapBy, _resampled, bootstrapped
+from skisnow.identification.intervals import BootstrapBy, _resample, add_bootstrap_intervals
 from skisnow.identification.parameter import Parameter
-from skisnow.identification.problem import Fit, Kind, Values, problem_of
-from skisnow.identification.solution import identification_of
-from skisnow.identification.solving import Request, solution_of
+from skisnow.identification.problem import Fit, Kind, Values, unweighted_problem
+from skisnow.identification.solution import build_identification
+from skisnow.identification.solving import SearchRequest, solution_of
 
+from ..error_codes import raises_code
 from . import straight_tracks
 from .straight_tracks import SCENARIO, track
 
@@ -58,17 +59,17 @@ def resampled(by: BootstrapBy, seed: int) -> tuple[Decay, Identification]:
     decay = Decay(seed)
     parameters = tuple(Parameter(key=key, name=key, start=1.0, lower=0.01, upper=20.0, size=1.0) for key in ("a", "b"))
     rng = np.random.default_rng(3)
-    plan = Request(title="", starts=1, profile=False, bootstrap=0, posterior=0, rng=rng, progress=lambda _: None)
-    solution = solution_of(problem_of(parameters, (decay,)), plan)
-    found = identification_of(solution, "", (), ())
-    return decay, bootstrapped(found, solution, 80, by, np.random.default_rng(4), lambda _: None)
+    plan = SearchRequest(title="", starts=1, profile=False, bootstrap=0, posterior=0, rng=rng, progress=lambda _: None)
+    solution = solution_of(unweighted_problem(parameters, (decay,)), plan)
+    found = build_identification(solution, "", (), ())
+    return decay, add_bootstrap_intervals(found, solution, 80, by, np.random.default_rng(4), lambda _: None)
 
 
 def test_what_is_drawn_scatters_about_nothing() -> None:
     """Each series without its own mean: of constant ones nothing is left."""
     residuals = np.concatenate([np.full(7, 3.0), np.full(5, -2.0)])
-    assert _resampled(residuals, [7, 5], np.random.default_rng(1)).tolist() == [0.0] * 12
-    rising = _resampled(np.arange(9.0) + 5.0, [9], np.random.default_rng(1))
+    assert _resample(residuals, [7, 5], np.random.default_rng(1)).tolist() == [0.0] * 12
+    rising = _resample(np.arange(9.0) + 5.0, [9], np.random.default_rng(1))
     assert set(rising.tolist()) <= set((np.arange(9.0) - 4.0).tolist())
 
 
@@ -84,7 +85,7 @@ def refits_by_scipy(decay: Decay, found: Identification, linear: np.ndarray) -> 
     inflated = np.sqrt(len(X) / (len(X) - 2))
     refits = []
     for _ in linear:
-        drawn = inflated * _resampled(best, [len(X)], rng)
+        drawn = inflated * _resample(best, [len(X)], rng)
         rng.standard_normal(0)
 
         def residuals(place: np.ndarray, drawn: np.ndarray = drawn) -> np.ndarray:
@@ -172,7 +173,7 @@ class TestTracks:
         assert found["mu_0"].bootstrap_interval is not None
 
     def test_too_few_resamples_are_refused(self) -> None:
-        with pytest.raises(ParameterError, match="39 resamples are too few"):
+        with raises_code(ParameterError, "too_few_resamples"):
             found_from(track(), bootstrap=39)
-        with pytest.raises(ParameterError, match="by refit or linear"):
+        with raises_code(ParameterError, "unknown_bootstrap"):
             found_from(track(), bootstrap=100, bootstrap_by="hope")

@@ -14,6 +14,8 @@ from skisnow.scenario.identify_section import given_parameters
 from skisnow.scenario.keys import FREE_KEYS, free_key, free_keys, short_name
 from skisnow.scenario.reading import load_input
 
+from ..error_codes import raises_code
+
 VALUES = scenario_file("carved-46m").values
 
 
@@ -29,7 +31,7 @@ def test_every_key_is_found_by_its_short_name_alone(key: str) -> None:
         ("dragarea", "drag.drag_area_m2"),
         ("sf", "snow.S_f_N_per_mm2"),
         ("quark", "There are"),
-        ("step", r"solver\.step_ms cannot be looked for"),
+        ("step", r"solver\.step_ms"),
         ("inertia", "a whole table"),
         ("ski.name", "a text"),
     ],
@@ -46,7 +48,7 @@ def test_a_key_named_twice_is_refused() -> None:
 
 def test_bounds_that_exclude_the_start_are_refused() -> None:
     section = given_parameters({"mu_0": {"lower": 0.02, "upper": 0.3}})
-    with pytest.raises(ParameterError, match=r"friction\.mu_0: the bounds, 0\.02 to 0\.3, exclude the start, 0\.01"):
+    with raises_code(ParameterError, "start_outside_bounds"):
         parameter_table(["friction.mu_0"], VALUES, section)
 
 
@@ -54,10 +56,10 @@ def test_bounds_that_exclude_the_start_are_refused() -> None:
     ("table", "told"),
     [
         ({"mu_0": {"begin": 0.1}}, "start"),
-        ({"mu_0": {"prior_mean": 0.1}}, "prior_sd is missing"),
+        ({"mu_0": {"prior_mean": 0.1}}, "prior_sd"),
         ({"mu_0": {"prior_mean": 0.1, "prior_sd": 0.0}}, "above 0"),
-        ({"mu_0": {"lower": 0.3, "upper": 0.2}}, "lower must be below upper"),
-        ({"mu_0": {"upper": True}}, "upper is True; it must be a number"),
+        ({"mu_0": {"lower": 0.3, "upper": 0.2}}, "below upper"),
+        ({"mu_0": {"upper": True}}, "upper is True"),
         ({"mu_0": 0.3}, "must be a table"),
         ({"muu_0": {"upper": 0.3}}, "friction.mu_0"),
         ({"S_f": {"lower": -1.0}}, "allowed is above 0"),
@@ -85,7 +87,7 @@ def test_start_bounds_and_prior_come_from_the_section(tmp_path: Path) -> None:
 def test_a_section_that_is_no_table_is_refused(tmp_path: Path) -> None:
     path = tmp_path / "mine.toml"
     path.write_text("identify = 3\n" + scenario_text("carved-46m"), encoding="utf-8")
-    with pytest.raises(ParameterError, match="identify is 3; it must be a table"):
+    with pytest.raises(ParameterError, match="identify is 3"):
         load_input(path)
 
 

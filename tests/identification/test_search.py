@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from scipy.optimize import lsq_linear
 
-from skisnow.identification.search import FINE, Search, SearchOptions
-from skisnow.identification.uncertainty import uncertainty
+from skisnow.identification.search import CLOSED_FORM_SEARCH, Search, SearchOptions
+from skisnow.identification.uncertainty import linear_uncertainty
 
 FAR = np.full(2, 1e3)
 Places = Sequence[np.ndarray]
@@ -21,7 +21,9 @@ def rosenbrock(places: Places) -> list[np.ndarray | None]:
 
 
 def test_rosenbrocks_valley_ends_at_one_one() -> None:
-    found = Search(rosenbrock, -FAR, FAR, replace(FINE, accuracy_is_stated=True)).run(np.array([-1.2, 1.0]))
+    found = Search(rosenbrock, -FAR, FAR, replace(CLOSED_FORM_SEARCH, accuracy_is_stated=True)).run(
+        np.array([-1.2, 1.0])
+    )
     assert found is not None
     assert found.state == "converged"
     assert found.place == pytest.approx([1.0, 1.0], abs=1e-5)
@@ -31,7 +33,9 @@ def test_bounds_hold_as_in_bounded_linear_least_squares() -> None:
     rng = np.random.default_rng(1)
     design, wanted = rng.standard_normal((12, 3)), rng.standard_normal(12)
     low, high = np.full(3, -0.1), np.full(3, 0.15)
-    found = Search(lambda many: [design @ each - wanted for each in many], low, high, FINE).run(np.zeros(3))
+    found = Search(lambda many: [design @ each - wanted for each in many], low, high, CLOSED_FORM_SEARCH).run(
+        np.zeros(3)
+    )
     assert found is not None
     assert found.place == pytest.approx(lsq_linear(design, wanted, (low, high)).x, abs=1e-7)
 
@@ -75,7 +79,7 @@ def test_interrupts_keep_the_best_so_far() -> None:
             raise KeyboardInterrupt
         return rosenbrock(many)
 
-    found = Search(residuals, -FAR, FAR, FINE).run(np.array([-1.2, 1.0]))
+    found = Search(residuals, -FAR, FAR, CLOSED_FORM_SEARCH).run(np.array([-1.2, 1.0]))
     assert found is not None
     assert found.state == "interrupted"
     assert found.cost <= 24.2 + 1e-9  # of the start: 10² 0.44² + 2.2²
@@ -87,25 +91,30 @@ def test_places_without_residuals_are_avoided() -> None:
     def residuals(many: Places) -> list[np.ndarray | None]:
         return [None if each[0] > 0.7 else each - 0.65 for each in many]
 
-    found = Search(residuals, -FAR[:1], FAR[:1], FINE).run(np.zeros(1))
+    found = Search(residuals, -FAR[:1], FAR[:1], CLOSED_FORM_SEARCH).run(np.zeros(1))
     assert found is not None
     assert found.place == pytest.approx([0.65], abs=1e-6)
-    assert Search(lambda many: [None for _ in many], -FAR[:1], FAR[:1], FINE).run(np.zeros(1)) is None
+    assert Search(lambda many: [None for _ in many], -FAR[:1], FAR[:1], CLOSED_FORM_SEARCH).run(np.zeros(1)) is None
 
 
 def test_the_last_steps_go_with_other_residuals() -> None:
     """The quick ones miss by 0.1; the Jacobian is the same."""
-    search = Search(lambda many: [each - 0.4 for each in many], -FAR, FAR, replace(FINE, accuracy_is_stated=True))
+    search = Search(
+        lambda many: [each - 0.4 for each in many],
+        -FAR,
+        FAR,
+        replace(CLOSED_FORM_SEARCH, accuracy_is_stated=True),
+    )
     found = search.run(np.zeros(2))
     assert found is not None
-    better = search.polished(found, lambda many: [each - 0.5 for each in many])
+    better = search.polish(found, lambda many: [each - 0.5 for each in many])
     assert better.place == pytest.approx([0.5, 0.5], abs=1e-9)
 
 
 def test_uncertainty_is_that_of_linear_least_squares() -> None:
     rng = np.random.default_rng(2)
     design = rng.standard_normal((20, 3)) * np.array([1e-3, 1.0, 1e4])
-    found = uncertainty(design, degrees_of_freedom=None)
+    found = linear_uncertainty(design, degrees_of_freedom=None)
     covariance = np.linalg.inv(design.T @ design)
     assert found.covariance == pytest.approx(covariance, rel=1e-8)
     assert found.correlation[0, 2] == pytest.approx(covariance[0, 2] / np.sqrt(covariance[0, 0] * covariance[2, 2]))
@@ -115,7 +124,7 @@ def test_uncertainty_is_that_of_linear_least_squares() -> None:
 
 def test_parallel_columns_are_named_together_and_dead_ones_alone() -> None:
     t = np.linspace(0.0, 1.0, 9)
-    found = uncertainty(np.column_stack([t, 0.0 * t, 2.0 * t, 1.0 + t**2]), degrees_of_freedom=5.0)
+    found = linear_uncertainty(np.column_stack([t, 0.0 * t, 2.0 * t, 1.0 + t**2]), degrees_of_freedom=5.0)
     assert set(found.groups) == {(1,), (0, 2)}
     assert found.unknown.tolist()[:3] == [True, True, True]
     assert np.isinf(found.standard_errors[:3]).all()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 import sys
 from dataclasses import replace
 from pathlib import Path
@@ -23,6 +24,7 @@ from skisnow.simulation.simulated_run import simulate
 from skisnow.track.projection import GeodeticPoint
 from skisnow.track.track import Track
 
+from ..error_codes import raises_code
 from ..simulation.straight_run import straight_run
 from . import straight_tracks
 from .straight_tracks import SCENARIO, SD, TRUE_FRICTION, TRUE_SPEED, track
@@ -46,7 +48,7 @@ class TestStraight:
         said: list[str] = []
         found = found_from(track(), progress=said.append)
         assert said[:2] == ["starting; 1 simulated runs", "starting; 2 simulated runs"]
-        assert any("last steps with the scenario's own solver" in words for words in said)
+        assert any("own solver" in words for words in said)
         assert found.outcome == "converged"
         assert found["mu_0"].value == pytest.approx(TRUE_FRICTION, abs=1e-5)
         assert found["speed"].value == pytest.approx(TRUE_SPEED, abs=1e-4)
@@ -75,10 +77,10 @@ class TestStraight:
         def stopped(tasks: object) -> list[Row]:  # noqa: ARG001 - as it is called
             raise KeyboardInterrupt
 
-        positions = track_positions.TrackPositions((track_positions.measured(track()),), stopped)
+        positions = track_positions.TrackPositions((track_positions.track_points(track()),), stopped)
         values = values_of(load_scenario("carved-46m", changes=SCENARIO))
         (told,) = replace(positions, scenario_values=values)._near_limit({})
-        assert "not looked at: interrupted" in told
+        assert "interrupted" in told
 
     def test_standard_errors_are_those_of_linear_least_squares(self) -> None:
         """x = v₀ t + g (sin α - μ cos α) t²/2."""
@@ -94,16 +96,15 @@ class TestStraight:
         assert estimated_noise(one.time, one.place[:, :2]) == pytest.approx(SD, rel=0.5)
         found, known = found_from(one), found_from(track(seed=2))
         assert found["mu_0"].standard_error == pytest.approx(known["mu_0"].standard_error, rel=0.3)
-        law = "95 % intervals from the curvature of the sum of squares, by "
-        assert f"{law}Student's t with the noise that the residuals show; accuracy estimated" in found.methods
-        assert f"{law}the normal distribution; accuracy stated by the data" in known.methods
+        assert any("Student's t" in method and "estimated" in method for method in found.methods)
+        assert any("normal distribution" in method and "stated" in method for method in known.methods)
 
     def test_noise_beyond_the_stated_accuracy_widens_the_intervals_and_is_told(self) -> None:
         one = track(seed=3)
         assert one.place_sd is not None
         proud = replace(one, place_sd=one.place_sd / 10.0)
         found = found_from(proud)
-        assert any("times what the data's stated accuracy allows" in text for text in found.warnings)
+        assert any("stated accuracy" in text for text in found.warnings)
         assert found["mu_0"].standard_error == pytest.approx(found_from(one)["mu_0"].standard_error, rel=0.3)
 
     def test_two_tracks_have_starts_of_their_own(self) -> None:
@@ -161,13 +162,14 @@ class TestStraight:
     def test_a_track_of_another_place_is_refused(self) -> None:
         one = track()
         far = replace(one, place=one.place + np.array([350_000.0, 20_000.0, 0.0]))
-        with pytest.raises(ParameterError, match=r"begins 350\.6 km from the scenario's start"):
+        with raises_code(ParameterError, "other_place") as caught:
             found_from(far)
+        assert "350.6 km" in str(caught.value)
 
     def test_a_track_that_begins_somewhat_off_is_warned_of(self) -> None:
         one = track()
         off = replace(one, place=one.place + np.array([0.0, 3.0, 0.0]))
-        assert any("begins 3 m from the scenario's start" in text for text in found_from(off).warnings)
+        assert any("begins 3 m" in text for text in found_from(off).warnings)
         free = found_from(off, "mu_0,speed,start.x,start.y")
         assert free["y"].value == pytest.approx(3.0, abs=1e-4)
         assert not any("begins" in text for text in free.warnings)
@@ -185,7 +187,7 @@ class TestStraight:
 
     def test_five_points_are_never_taken_silently(self) -> None:
         found = found_from(track(points=5, seed=1))
-        assert any("5 points for 2 parameters are few" in text for text in found.warnings)
+        assert any("5 points" in text for text in found.warnings)
 
     def test_simulations_are_kept_and_found_again(self, tmp_path: Path) -> None:
         kept = tmp_path / "simulations.partial"
@@ -205,7 +207,7 @@ class TestStraight:
         again = identify(turn.with_(mass_kg=80.0), track(seed=5), "mu_0,speed", workers=1, checkpoint=kept)
         assert (again.effort.simulations, again.values) == (0, found.values)
         stiffer = turn.with_(ski=replace(turn.ski, torsional_stiffness=2.0 * turn.ski.torsional_stiffness))
-        with pytest.raises(ParameterError, match="finished points of another study"):
+        with pytest.raises(ParameterError, match="another study"):
             identify(stiffer, track(seed=5), "mu_0,speed", workers=1, checkpoint=kept)
 
     def test_changes_of_an_object_are_those_of_with(self) -> None:
@@ -213,7 +215,7 @@ class TestStraight:
         found = identify(turn, track(seed=5), "mu_0", changes={"speed_m_per_s": TRUE_SPEED}, workers=1)
         other = identify(turn.with_(speed_m_per_s=TRUE_SPEED), track(seed=5), "mu_0", workers=1)
         assert found.values == other.values != identify(turn, track(seed=5), "mu_0", workers=1).values
-        with pytest.raises(ParameterError, match=r"ski\.name is a word of a scenario's file"):
+        with pytest.raises(ParameterError, match=r"ski\.name"):
             identify(turn, track(seed=5), "mu_0", changes={"ski.name": "slalom"}, workers=1)
 
     def test_an_interrupt_keeps_the_best_so_far(self, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -252,7 +254,7 @@ class TestStraight:
 
     def test_east_north_up_needs_to_know_where_the_slope_falls(self) -> None:
         one = replace(track(), axes="east_north_up", origin=GeodeticPoint(47.0, 11.0, 2000.0))
-        with pytest.raises(ParameterError, match="fall_line_azimuth_deg"):
+        with raises_code(ParameterError, "site_missing"):
             found_from(one)
 
 
@@ -273,15 +275,14 @@ def test_east_north_up_is_turned_into_the_slope(tmp_path: Path, monkeypatch: pyt
     assert found["mu_0"].value == pytest.approx(TRUE_FRICTION, abs=1e-5)
     far = path.with_name("far.toml")
     far.write_text(scenario_text("carved-46m") + section + "latitude_deg = 11\nlongitude_deg = 47\n", encoding="utf-8")
-    with pytest.raises(ParameterError, match="latitude and longitude are swapped"):
+    with raises_code(ParameterError, "far_from_site"):
         identify(far, there, "mu_0,speed", changes=SCENARIO, workers=1)
     other = path.with_name("other.toml")  # Norway: 13.1° of latitude are 1459 km, straight through the earth 1456
     text = scenario_text("carved-46m") + section + "latitude_deg = 60.1\nlongitude_deg = 11\n"
     other.write_text(text, encoding="utf-8")
-    with pytest.raises(
-        ParameterError, match=r"is 14\d\d km from the site of \[identify.site\]: it is of another place"
-    ):
+    with raises_code(ParameterError, "far_from_site") as caught:
         identify(other, there, "mu_0,speed", changes=SCENARIO, workers=1)
+    assert re.search(r" 14\d\d km ", str(caught.value))
 
 
 def test_times_that_run_backwards_are_refused(tmp_path: Path) -> None:

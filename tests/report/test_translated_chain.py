@@ -107,7 +107,7 @@ def test_every_warning_about_identified_values_has_its_german_one() -> None:
     """Whatever pair, whatever value: as the report shows them, each with its full stop."""
     pairs = [f"mu_0 and mu_1 are hardly told apart (correlation 0.998): {each}" for each in words._HELPS.values()]
     alone = [f"S_f cannot be identified: it has no effect on these data. {each}" for each in words._ALONE.values()]
-    further = [words.model_warning(0.9), words.noise_warning(3.0), words.few_points(4, 2) or ""]
+    further = [words.model_warning(0.9), words.noise_warning(3.0), words.few_points_warning(4, 2) or ""]
     told = catalogue("de")
     german = [told.translated(f"{each}.") for each in (*pairs, *alone, *further)]
     assert [each for each in german if ENGLISH.search(each)] == []

@@ -88,8 +88,7 @@ def run(options: argparse.Namespace) -> int:
 def _prepared(options: argparse.Namespace) -> ScenarioFile:
     """What can be refused is refused before the work."""
     with announced("loading"):
-        from ..identification.bootstrap import require_bootstrap
-        from ..identification.intervals import require_emcee
+        from ..identification.intervals import require_bootstrap, require_emcee
         from ..scenario import scenario_file
 
         require_bootstrap(options.bootstrap, options.bootstrap_by)

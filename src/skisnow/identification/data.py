@@ -1,38 +1,45 @@
-"""Data of an identification: read from files, moved into the frame of the scenario, and checked."""
+"""Data of an identification: read from files, moved to the slope frame, and checked."""
 
 from __future__ import annotations
 
 import hashlib
 import json
+import math
 from collections.abc import Iterable, Mapping, Sequence, Set
 from dataclasses import dataclass, replace
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any, Final, TypeAlias
 
+import numpy as np
+import numpy.typing as npt
+
 from .._support.content import pieces_of
 from .._support.errors import ParameterError
 from .._support.spreadsheet_text import encoding_of, most_frequent_separator, named_separator
+from .._support.units import DEGREE
 from .._support.user_files import is_file
-from ..parameters import nearest
-from ..scenario import ScenarioFile
+from ..parameters import checked_table, made, nearest
+from ..scenario import Plane, ScenarioFile
+from ..scenario.identify_section import SITE, Site
 from ..scenario.keys import EACH, SCENARIO_KEYS, free_key
 from ..scenario.reading import input_files
 from ..scenario.resolution import ScenarioInput
+from ..track.projection import GeodeticPoint, east_north_up
 from ..track.readers.table import GEODETIC, LOCAL, TIMES
+from ..track.slope_frame import in_slope_frame
 from ..track.track import Track
 from .data_tables import (
     CELL_COLUMNS,
     GROOVE_COLUMNS,
     MeasuredGrooves,
     PhotoCells,
-    grooves_of,
-    photo_cells_of,
+    parse_grooves,
+    parse_photo_cells,
     read_table,
 )
 from .problem import START
-from .track_frame import in_scenario_frame
-from .track_positions import Measured, first_motion, measured, require_near
+from .track_positions import TrackPoints, first_motion, require_near, track_points
 
 _HEAD: Final = 4096
 _OF_CAMPAIGN: Final = {"experiment", "load_N", "moment_Nm", "lever_arm_mm"}
@@ -58,14 +65,15 @@ def read_data(path: str | Path) -> Data:
     if path.suffix.lower() in (".csv", ".txt", ".tsv"):
         head = _head(path)
         if set(CELL_COLUMNS) <= head or ("station_m" in head and not _is_track(head)):
-            return photo_cells_of(read_table(path))
+            return parse_photo_cells(read_table(path))
         if head & set(GROOVE_COLUMNS) and not _is_track(head):
             if of_campaign := sorted(head & _OF_CAMPAIGN):
                 raise ParameterError(
                     f"{path} has a column {of_campaign[0]}: it is a table of a campaign, no measured grooves. "
-                    "Give its folder to `skisnow analyse`, and results.json as snow.results"
+                    "Give its folder to `skisnow analyse`, and results.json as snow.results",
+                    code="table_of_campaign",
                 )
-            return grooves_of(read_table(path))
+            return parse_grooves(read_table(path))
     from ..track.read import read_track
 
     return read_track(path)
@@ -75,7 +83,7 @@ def _is_track(head: set[str]) -> bool:
     return bool(head & set(TIMES)) and any(set(place[:2]) <= head for place in (LOCAL, GEODETIC))
 
 
-def taken_for(data: Data) -> str:
+def data_description(data: Data) -> str:
     """Kind and size of the data recognised in a file, in words."""
     if isinstance(data, PhotoCells):
         return f"photo-cell times (runs: {len(data.runs)})"
@@ -85,7 +93,7 @@ def taken_for(data: Data) -> str:
 
 
 def _head(path: Path) -> set[str]:
-    """Names of the columns; the rest of the file, and what is wrong with it, is for its reader."""
+    """Names of the columns in the header of a table; the file is not validated."""
     with path.open("rb") as stream:
         head = stream.read(_HEAD)
     text = head.decode(encoding_of(head)[0], errors="replace").lstrip("\ufeff")
@@ -95,10 +103,10 @@ def _head(path: Path) -> set[str]:
     return {cell.strip(' "') for cell in lines[0].split(separator)} if lines else set()
 
 
-def fingerprint(scenario_input: ScenarioInput, tracks: Sequence[Measured]) -> str:
-    """The same for the same scenario, files that it names, times of the tracks, and version of skisnow.
+def fingerprint(scenario_input: ScenarioInput, tracks: Sequence[TrackPoints]) -> str:
+    """SHA-256 of the inputs of a simulation: scenario, files that it names, times of the tracks, version of skisnow.
 
-    Places do not count: a simulation does not know what it is held against.
+    Measured places are not included, because the simulated runs do not depend on them.
     """
     layers = json.dumps([sorted(layer.values.items()) for layer in scenario_input.layers], default=str)
     digest = hashlib.sha256(f"{version('skisnow')} {layers}".encode())
@@ -114,32 +122,32 @@ def fingerprint(scenario_input: ScenarioInput, tracks: Sequence[Measured]) -> st
 
 
 @dataclass(frozen=True, slots=True)
-class Collected:
-    """The data of an identification by kind, with names of runs that are all different.
+class IdentificationData:
+    """The data of an identification by kind; names of runs are unique.
 
     Attributes
     ----------
     tracks, cells, grooves
         Measured data.
     starts
-        Values of keys that a run has for itself, by run, from ``[identify.runs."NAME"]``.
+        Values of keys for single runs, by run, from ``[identify.runs."NAME"]``.
     fixed
         Values of keys in every simulated run.
     first_motions
-        Start keys as the first points of each track show them, where there are several.
-    taken
-        The name of each datum, and what it was taken for.
+        If there are several runs: values of the start keys, by track, estimated from its first points.
+    descriptions
+        Name and recognised kind of each datum.
     warnings, methods
-        About the data.
+        Warnings about the data, and sentences on how they were transformed.
     """
 
-    tracks: tuple[Measured, ...]
+    tracks: tuple[TrackPoints, ...]
     cells: tuple[PhotoCells, ...]
     grooves: tuple[MeasuredGrooves, ...]
     starts: Mapping[str, Mapping[str, float]]
     fixed: Mapping[str, float]
     first_motions: Mapping[str, Mapping[str, float]]
-    taken: tuple[tuple[str, str], ...]
+    descriptions: tuple[tuple[str, str], ...]
     warnings: tuple[str, ...]
     methods: tuple[str, ...]
 
@@ -149,121 +157,117 @@ class Collected:
         return tuple(track.name for track in self.tracks) + tuple(run.name for cell in self.cells for run in cell.runs)
 
 
-def collected(
+def collect_data(
     scenario_input: ScenarioInput, scenario: ScenarioFile, data: Sequence[Data | str | Path], keys: Sequence[str]
-) -> Collected:
-    """Read what are paths, turn tracks into the slope's frame, and refuse what does not go with the scenario.
+) -> IdentificationData:
+    """Read the files, move tracks into the slope's frame, and check the data against the scenario.
 
     Raises
     ------
     ParameterError, FieldDataError
-        A file cannot be used; a track is of another place; a run is named that is not there.
+        A file cannot be used; a track is from another place; the scenario names an unknown run.
     """
     if not data:
         raise ParameterError("there are no data: name one or several files")
-    _require_different([each for each in data if isinstance(each, str | Path)])
-    read = [read_data(each) if isinstance(each, str | Path) else each for each in data]
-    names = _Names()
+    _require_different([datum for datum in data if isinstance(datum, str | Path)])
+    measurements = [read_data(datum) if isinstance(datum, str | Path) else datum for datum in data]
+    names: set[str] = set()
     methods: list[str] = []
     tracks = []
-    for each in (each for each in read if isinstance(each, Track)):
-        track, how = in_scenario_frame(each, scenario, scenario_input.identify.get("site"))
-        methods += how
-        tracks.append(measured(replace(track, name=names.of(each.name))))
+    for measurement in measurements:
+        if isinstance(measurement, Track):
+            track, sentences = move_to_scenario_frame(measurement, scenario, scenario_input.identify.get("site"))
+            methods += sentences
+            tracks.append(track_points(replace(track, name=_unique_name(measurement.name, names))))
     cells = tuple(
-        replace(each, runs=tuple(replace(run, name=names.of(run.name)) for run in each.runs))
-        for each in read
-        if isinstance(each, PhotoCells)
+        replace(file, runs=tuple(replace(run, name=_unique_name(run.name, names)) for run in file.runs))
+        for file in measurements
+        if isinstance(file, PhotoCells)
     )
-    runs = [each.name for each in tracks] + [run.name for cell in cells for run in cell.runs]
-    starts = _starts(scenario_input.identify.get("runs", {}), runs)
+    runs = [track.name for track in tracks] + [run.name for file in cells for run in file.runs]
+    starts = _run_starts(scenario_input.identify.get("runs", {}), runs)
     _require_not_free(starts, keys)
     own = {key.partition("@")[0] for key in keys}
-    warnings = [_near(track, scenario, starts, own) for track in tracks]
+    warnings = [_start_warning(track, scenario, starts, own) for track in tracks]
     snow = set(SNOW_NUMBERS) & own.union(*starts.values())
-    return Collected(
+    return IdentificationData(
         tracks=tuple(tracks),
         cells=cells,
-        grooves=tuple(each for each in read if isinstance(each, MeasuredGrooves)),
+        grooves=tuple(table for table in measurements if isinstance(table, MeasuredGrooves)),
         starts=starts,
         fixed={key: float(scenario.values[key]) for key in SNOW_NUMBERS} if snow else {},
         first_motions={track.name: first_motion(track) for track in tracks} if len(runs) > 1 else {},
-        taken=tuple((_file_name(each, kind), taken_for(kind)) for each, kind in zip(data, read, strict=True)),
+        descriptions=tuple(
+            (str(datum) if isinstance(datum, str | Path) else datum.name, data_description(measurement))
+            for datum, measurement in zip(data, measurements, strict=True)
+        ),
         warnings=tuple(text for text in warnings if text),
         methods=tuple(dict.fromkeys(methods)),
     )
 
 
-def _file_name(given: Data | str | Path, read: Data) -> str:
-    return str(given) if isinstance(given, str | Path) else read.name
-
-
-def values_to_begin_with(scenario: ScenarioFile, data: Collected, given: Iterable[str]) -> dict[str, Any]:
-    """The scenario's values, and for runs with a start of their own what is said or seen of it."""
-    found = dict(scenario.values)
-    said = set(given)
+def start_values(scenario: ScenarioFile, data: IdentificationData, listed: Iterable[str]) -> dict[str, Any]:
+    """Values at which the search begins: the scenario's, and for several runs those of each run's start as KEY@RUN."""
+    values = dict(scenario.values)
+    listed_keys = set(listed)
     for run in data.runs:
-        own = {key: value for key, value in data.first_motions.get(run, {}).items() if key not in said}
-        found |= {f"{key}@{run}": value for key, value in {**own, **data.starts.get(run, {})}.items()}
+        first_motion = {key: value for key, value in data.first_motions.get(run, {}).items() if key not in listed_keys}
+        values |= {f"{key}@{run}": value for key, value in {**first_motion, **data.starts.get(run, {})}.items()}
     if len(data.runs) == 1:
-        found |= data.starts.get(data.runs[0], {})
-    return found
+        values |= data.starts.get(data.runs[0], {})
+    return values
 
 
-class _Names:
-    """Unique names of the runs."""
-
-    def __init__(self) -> None:
-        self._taken: set[str] = set()
-
-    def of(self, name: str) -> str:
-        """The name, with a number behind it where it is taken."""
-        clean = name.replace("@", "_")
-        free, number = clean, 2
-        while free in self._taken:
-            free, number = f"{clean}-{number}", number + 1
-        self._taken.add(free)
-        return free
+def _unique_name(name: str, taken: set[str]) -> str:
+    """Name of a run, with a number appended if it is in `taken`; the name is added to `taken`."""
+    clean = name.replace("@", "_")
+    unique, number = clean, 2
+    while unique in taken:
+        unique, number = f"{clean}-{number}", number + 1
+    taken.add(unique)
+    return unique
 
 
 def _require_different(paths: Sequence[str | Path]) -> None:
-    """Refuse a file that is given twice: its data would count double, and every interval be too narrow."""
+    """Reject two files with the same content: their data would count twice, and intervals would be too narrow."""
     seen: dict[bytes, str | Path] = {}
     for path in paths:
         if not is_file(path):
-            continue  # said by its reader
+            continue  # its reader reports it
         content = hashlib.sha256(Path(path).read_bytes()).digest()
         if content in seen:
-            raise ParameterError(f"{path} holds the same as {seen[content]}: what was measured once counts once")
+            raise ParameterError(
+                f"{path} has the same content as {seen[content]}. Name each file once", code="same_file"
+            )
         seen[content] = path
 
 
-def _starts(table: object, runs: Sequence[str]) -> dict[str, dict[str, float]]:
+def _run_starts(table: object, runs: Sequence[str]) -> dict[str, dict[str, float]]:
     if not isinstance(table, dict):
         raise ParameterError(f'identify.runs is {table!r}; write [identify.runs."NAME"] with keys below it')
-    found = {}
+    starts = {}
     for run, entries in table.items():
         if run not in runs:
             raise ParameterError(f'[identify.runs."{run}"]: there is no such run. {nearest(run, runs)}')
         if not isinstance(entries, dict):
             raise ParameterError(f'identify.runs."{run}" is {entries!r}; it must be a table of keys')
-        found[run] = dict(_own(run, word, value) for word, value in entries.items())
-    return found
+        starts[run] = dict(_run_entry(run, word, value) for word, value in entries.items())
+    return starts
 
 
-def _own(run: str, word: str, value: object) -> tuple[str, float]:
+def _run_entry(run: str, word: str, value: object) -> tuple[str, float]:
     try:
         key = free_key(word)
     except ParameterError as error:
         raise ParameterError(f'[identify.runs."{run}"]: {str(error).removeprefix("--free: ")}') from None
     number = SCENARIO_KEYS[key].in_range(value)
     if not isinstance(number, float):
-        raise ParameterError(f'[identify.runs."{run}"]: {word} is {value!r}; it must be a number')
+        raise ParameterError(f'[identify.runs."{run}"]: {word} is {value!r}; it must be a number', code="not_a_number")
     return key, number
 
 
-def _near(
-    track: Measured, scenario: ScenarioFile, starts: Mapping[str, Mapping[str, float]], keys: Set[str]
+def _start_warning(
+    track: TrackPoints, scenario: ScenarioFile, starts: Mapping[str, Mapping[str, float]], keys: Set[str]
 ) -> str | None:
     own = {**scenario.values, **starts.get(track.name, {})}
     free = {"start.x_m", "start.y_m"} <= keys
@@ -271,11 +275,100 @@ def _near(
 
 
 def _require_not_free(own: Mapping[str, Mapping[str, float]], keys: Sequence[str]) -> None:
-    """A value of one run cannot be known while one for all runs is looked for."""
+    """Reject a value for a single run if the same key is free with one value for all runs."""
     for run, values in own.items():
         for key in values:
             if key in keys and not key.startswith(START):
                 raise ParameterError(
-                    f'[identify.runs."{run}"] gives {key}, which is looked for in all runs alike. Look for '
-                    f"{key}@{EACH}, or take it out of the table"
+                    f'[identify.runs."{run}"] gives {key}, but one value of {key} is free for all runs. Free '
+                    f"{key}@{EACH} instead, or remove it from the table",
+                    code="value_of_free_key",
                 )
+
+
+FloatArray = npt.NDArray[np.float64]
+FARTHEST: Final = 50_000.0
+"""Largest distance (m) of a track from the site; beyond it the track is from another place and the earth not flat."""
+
+
+def move_to_scenario_frame(track: Track, scenario: ScenarioFile, site: object) -> tuple[Track, list[str]]:
+    """Move a track to the slope's frame (x down the fall line, y to the left).
+
+    Parameters
+    ----------
+    track
+        Track in any frame; a track in local metres is assumed to be in the slope's frame already.
+    scenario
+        The scenario.
+    site
+        Table ``[identify.site]`` with the place of the slope (optional).
+
+    Returns
+    -------
+    tuple
+        The moved track, and sentences on the method.
+
+    Raises
+    ------
+    ParameterError
+        The track is in east, north, up and `site` is missing; or the track is from another place.
+    """
+    if track.axes != "east_north_up":
+        return track, []
+    if site is None:
+        raise ParameterError(
+            f"{track.name} is in east, north and up, but the place of the slope is not given. Write [identify.site] "
+            "with fall_line_azimuth_deg (the compass direction in which it falls), and latitude_deg and longitude_deg "
+            "of its x = y = 0; without these two the track's first point is used as the scenario's start",
+            code="site_missing",
+        )
+    parsed = _site(site)
+    azimuth = parsed.fall_line_azimuth_deg * DEGREE
+    slope = scenario.scenario.slope
+    angle = slope.angle if isinstance(slope, Plane) else None
+    if parsed.latitude_deg is not None and parsed.longitude_deg is not None and track.origin is not None:
+        height = track.origin.height if parsed.height_m is None else parsed.height_m
+        point = GeodeticPoint(parsed.latitude_deg, parsed.longitude_deg, height)
+        origin = _place_of(point, track)
+        turned = in_slope_frame(
+            track, fall_line_azimuth=azimuth, slope_angle=angle, origin=origin, missing_height="on_slope"
+        )
+        return turned, [f"tracks are counted from the site at {point}"]
+    return _from_its_first_point(track, scenario, azimuth, angle)
+
+
+def _from_its_first_point(
+    track: Track, scenario: ScenarioFile, azimuth: float, angle: float | None
+) -> tuple[Track, list[str]]:
+    first = int(np.argmax(track.usable))
+    origin = np.nan_to_num(track.place[first])
+    turned = in_slope_frame(
+        track, fall_line_azimuth=azimuth, slope_angle=angle, origin=origin, missing_height="on_slope"
+    )
+    start = scenario.scenario.start
+    place = turned.place + np.array([start.x, start.y, 0.0])
+    method = "the first point of each track is taken as the scenario's start; its error is in all points"
+    return replace(turned, place=place), [method]
+
+
+def _place_of(point: GeodeticPoint, track: Track) -> FloatArray:
+    """Place (3,) of the site in the track's frame (m)."""
+    assert track.origin is not None
+    at = east_north_up(np.array([[point.latitude_deg, point.longitude_deg, point.height]]), origin=track.origin)[0]
+    distance = math.hypot(at[0], at[1])
+    if distance > FARTHEST:
+        raise ParameterError(
+            f"{track.name} is {distance / 1000.0:.4g} km from the site of [identify.site]. It is from another place, "
+            "or latitude and longitude are swapped",
+            code="far_from_site",
+        )
+    return at
+
+
+def _site(site: object) -> Site:
+    if not isinstance(site, Mapping):
+        raise ParameterError(f"identify.site is {site!r}; it must be a table with {', '.join(SITE)}")
+    parsed = made(Site, checked_table(Site, site, "[identify.site]"))
+    if (parsed.latitude_deg is None) != (parsed.longitude_deg is None):
+        raise ParameterError("[identify.site]: latitude_deg and longitude_deg go together; one is missing")
+    return parsed

@@ -24,12 +24,12 @@ FEWEST_FOR_SCATTER: Final = 3
 
 @dataclass(frozen=True, slots=True)
 class TableFile:
-    """Cells as they stand in a file.
+    """Cells of a table as text.
 
     Attributes
     ----------
     name
-        The file's, for messages.
+        Name of the file, for messages.
     columns
         Names in the header.
     rows
@@ -47,60 +47,63 @@ class TableFile:
     mark: str = "."
 
     def require(self, columns: tuple[str, ...]) -> None:
-        """Refuse a table without these columns, or without rows."""
+        """Reject a table without these columns, or without rows."""
         missing = [name for name in columns if name not in self.columns]
         if missing:
             raise ParameterError(
                 f"{self.name}, row {self.header_row}: there is no column {missing[0]} among {', '.join(self.columns)}; "
-                f"needed are {', '.join(columns)}"
+                f"needed are {', '.join(columns)}",
+                code="missing_column",
             )
         if not self.rows:
-            raise ParameterError(f"{self.name} has no rows below its header")
+            raise ParameterError(f"{self.name} has no rows below its header", code="no_rows")
 
-    def require_no_slip(self, known: tuple[str, ...]) -> None:
-        """Refuse a column that is named nearly like one that is known and not there: it would not be read."""
-        absent = [name for name in known if name not in self.columns]
+    def require_no_slip(self, expected: tuple[str, ...]) -> None:
+        """Reject a column whose name is similar to that of a missing one: it would not be read."""
+        absent = [name for name in expected if name not in self.columns]
         for name in self.columns:
-            near = difflib.get_close_matches(name.lower(), absent, n=1, cutoff=0.75) if name not in known else []
-            if near:
+            similar = difflib.get_close_matches(name.lower(), absent, n=1, cutoff=0.75) if name not in expected else []
+            if similar:
                 raise ParameterError(
-                    f"{self.name}, row {self.header_row}: there is a column {name}; is {near[0]} meant? Name it so, or "
-                    "something quite different if it is not to be read"
+                    f"{self.name}, row {self.header_row}: unknown column {name}. Did you mean {similar[0]}? Rename it, "
+                    "or give it a different name if it is not to be read",
+                    code="misspelled_column",
                 )
 
     def texts(self, column: str) -> list[str]:
         """The cells of a column, which must not be empty."""
         place = self.columns.index(column)
-        found = []
+        texts = []
         for row, cells in self.rows:
             text = cells[place] if place < len(cells) else ""
             if not text:
-                raise ParameterError(f"{self.name}, row {row}, column {column}: the cell is empty")
-            found.append(text)
-        return found
+                raise ParameterError(f"{self.name}, row {row}, column {column}: the cell is empty", code="empty_cell")
+            texts.append(text)
+        return texts
 
     def numbers(self, quantity: Quantity) -> FloatArray:
-        """The numbers of a column, in the unit of its name; NaN where a cell may be empty and is."""
+        """Numbers of a column (n,), in the unit of its name; NaN for an empty cell of an optional quantity."""
         column = quantity.name
         place = self.columns.index(column)
-        found = []
+        values = []
         for row, cells in self.rows:
             text = cells[place] if place < len(cells) else ""
             if not text and not quantity.needed:
-                found.append(math.nan)
+                values.append(math.nan)
                 continue
             value = number(text, self.mark)
             if not math.isfinite(value):
                 raise ParameterError(
-                    f"{self.name}, row {row}, column {column}: {text!r} is no finite number; write one with a decimal "
-                    f"{'comma, as others in the file' if self.mark == ',' else 'point'}, without its unit"
+                    f"{self.name}, row {row}, column {column}: {text!r} is not a finite number; write one with a "
+                    f"decimal {'comma, as others in the file' if self.mark == ',' else 'point'}, without its unit",
+                    code="not_a_number",
                 )
             try:
                 quantity.in_range(value)
             except ParameterError as error:
                 raise ParameterError(f"{self.name}, row {row}: {error}") from None
-            found.append(value)
-        return np.array(found)
+            values.append(value)
+        return np.array(values)
 
 
 def read_table(path: Path) -> TableFile:
@@ -109,7 +112,7 @@ def read_table(path: Path) -> TableFile:
     Raises
     ------
     ParameterError, FieldDataError
-        The file cannot be read, is no text, or is empty.
+        The file cannot be read, is not text, or is empty.
     """
     data = plain_bytes(path, most_bytes=MOST_CSV_BYTES)
     cells = cells_of(text_of(data, str(path)), str(path))
@@ -129,7 +132,7 @@ class Passage:
 
 
 _PASSAGE: Final = own_quantities(Passage)
-CELL_COLUMNS: Final = tuple(each.name for each in _PASSAGE if each.needed)
+CELL_COLUMNS: Final = tuple(quantity.name for quantity in _PASSAGE if quantity.needed)
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
@@ -143,9 +146,9 @@ class PhotoCellRun(ShownFields):
     station : (n,) m
         Distance from the start down to the cell, along the slope's surface, rising.
     time : (n,) s
-        Of the passage, rising.
+        Time of each passage, rising.
     time_sd : (n,) s or None
-        Standard deviation of each time; None where none is stated.
+        Standard deviation of each time; None if not stated.
     """
 
     name: str
@@ -155,11 +158,14 @@ class PhotoCellRun(ShownFields):
 
     def __post_init__(self) -> None:
         if len(self.station) < 1 or self.station.shape != self.time.shape:
-            raise ParameterError(f"run {self.name}: {len(self.station)} cells and {len(self.time)} times")
+            raise ParameterError(
+                f"run {self.name}: {len(self.station)} cells and {len(self.time)} times", code="unequal_lengths"
+            )
         if self.station[0] < 0.0:
             raise ParameterError(
-                f"run {self.name}: station {self.station[0]:g} m lies before the start; they count from the "
-                "scenario's start down"
+                f"run {self.name}: station {self.station[0]:g} m is before the start. Give distances from the "
+                "scenario's start down",
+                code="before_start",
             )
         for what, values, unit in (("station", self.station, "m"), ("time", self.time, "s")):
             wrong = np.flatnonzero(np.diff(values) <= 0.0)
@@ -167,7 +173,8 @@ class PhotoCellRun(ShownFields):
                 first, second = values[wrong[0]], values[wrong[0] + 1]
                 raise ParameterError(
                     f"run {self.name}: {what} {second:g} {unit} follows {first:g} {unit}; both must rise "
-                    "from cell to cell. Sort the rows of the run, and look for a clock that was set back"
+                    "from cell to cell. Sort the rows of the run, and look for a clock that was set back",
+                    code=f"{what}_not_rising",
                 )
         if self.time_sd is not None and not np.all(self.time_sd > 0.0):
             raise ParameterError(f"run {self.name}: time_sd_s must be above 0")
@@ -187,27 +194,27 @@ def read_photo_cells(path: str | Path) -> PhotoCells:
     Raises
     ------
     ParameterError
-        The file cannot be read, a column is missing, a cell is no number (row and column are named), distances or times
-        do not rise, or only some rows of a run state a standard deviation.
+        The file cannot be read, a column is missing, a cell is not a number (row and column are named), distances or
+        times do not rise, or only some rows of a run state a standard deviation.
     """
-    return photo_cells_of(read_table(Path(path)))
+    return parse_photo_cells(read_table(Path(path)))
 
 
-def photo_cells_of(table: TableFile) -> PhotoCells:
-    """The runs of a table that was read."""
+def parse_photo_cells(table: TableFile) -> PhotoCells:
+    """Convert a table to runs of photo cells; errors as in `read_photo_cells`."""
     table.require(CELL_COLUMNS)
-    table.require_no_slip(tuple(each.name for each in _PASSAGE))
+    table.require_no_slip(tuple(quantity.name for quantity in _PASSAGE))
     names = table.texts("run")
     _, station_m, time_s, time_sd_s = _PASSAGE
     station, time = table.numbers(station_m), table.numbers(time_s)
-    sd = table.numbers(time_sd_s) if time_sd_s.name in table.columns else None
+    spread = table.numbers(time_sd_s) if time_sd_s.name in table.columns else None
     runs = []
     for name in dict.fromkeys(names):
-        rows = np.array([each == name for each in names])
+        rows = np.array([run == name for run in names])
         try:
-            runs.append(PhotoCellRun(name, station[rows], time[rows], _sd_of_run(name, sd, rows)))
+            runs.append(PhotoCellRun(name, station[rows], time[rows], _sd_of_run(name, spread, rows)))
         except ParameterError as error:
-            raise ParameterError(f"{table.name}: {error}") from error
+            raise ParameterError(f"{table.name}: {error}", code=error.code) from error
     return PhotoCells(table.name, tuple(runs))
 
 
@@ -215,13 +222,16 @@ def _sd_of_run(name: str, sd: FloatArray | None, rows: npt.NDArray[np.bool_]) ->
     if sd is None or np.isnan(sd[rows]).all():
         return None
     if np.isnan(sd[rows]).any():
-        raise ParameterError(f"run {name}: time_sd_s stands in some rows only; write it in all of them, or in none")
+        raise ParameterError(
+            f"run {name}: time_sd_s is given in some rows only. Give it in all rows, or in none",
+            code="partial_accuracy",
+        )
     return sd[rows]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class GrooveRow:
-    """A row of a file of measured grooves; what was not measured is left out."""
+    """A row of a file of measured grooves; None for a quantity that was not measured."""
 
     depth: Annotated[float | None, Quantity("depth_mm", "depth of the groove", lowest=0.0, above=True)] = None
     width: Annotated[float | None, Quantity("width_mm", "width of the groove", lowest=0.0, above=True)] = None
@@ -234,8 +244,8 @@ class GrooveRow:
 
 
 _ROW: Final = own_quantities(GrooveRow)
-GROOVE_COLUMNS: Final = tuple(each.name for each in _ROW[:3])
-SPREADS: Final = tuple(each.name for each in _ROW[3:])
+GROOVE_COLUMNS: Final = tuple(quantity.name for quantity in _ROW[:3])
+SPREADS: Final = tuple(quantity.name for quantity in _ROW[3:])
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
@@ -245,15 +255,15 @@ class MeasuredGrooves(ShownFields):
     Attributes
     ----------
     name
-        Of the file.
+        Name of the file.
     depth, width
-        Of the groove that stays, and across it in the snow's surface; NaN where not measured.
+        Depth of the remaining groove, and its width across it in the snow's surface; NaN if not measured.
     turn_radius
-        Of the track, > 0 whatever the side; NaN where not measured.
+        Radius of the track, > 0 to either side; NaN if not measured.
     depth_sd, width_sd, turn_radius_sd
         Their standard deviations.
     stated
-        Whether all of them stand in the file; else they are the scatter of the places.
+        True if the file has all standard deviations; otherwise they are the scatter of the places.
     """
 
     name: str
@@ -285,18 +295,18 @@ class MeasuredGrooves(ShownFields):
 def read_measured_grooves(path: str | Path) -> MeasuredGrooves:
     """Read ``depth_mm, width_mm, turn_radius_m, depth_sd_mm, width_sd_mm, turn_radius_sd_m``, a row for each place.
 
-    Columns and cells may be missing; without standard deviations the scatter of three places or more takes their part.
+    Columns and cells may be missing. A missing standard deviation is estimated from the scatter of at least 3 places.
 
     Raises
     ------
     ParameterError
-        The file cannot be read, none of the three quantities is there, or a number is missing or not above 0.
+        The file cannot be read, all three quantities are missing, or a number is missing or not above 0.
     """
-    return grooves_of(read_table(Path(path)))
+    return parse_grooves(read_table(Path(path)))
 
 
-def grooves_of(table: TableFile) -> MeasuredGrooves:
-    """The grooves of a table that was read."""
+def parse_grooves(table: TableFile) -> MeasuredGrooves:
+    """Convert a table to measured grooves; errors as in `read_measured_grooves`."""
     table.require(())
     table.require_no_slip((*GROOVE_COLUMNS, *SPREADS))
     columns = {}
@@ -304,16 +314,16 @@ def grooves_of(table: TableFile) -> MeasuredGrooves:
     for quantity, spread in zip(_ROW[:3], _ROW[3:], strict=True):
         name = quantity.name
         values = _column(table, quantity) * quantity.factor
-        known = np.isfinite(values)
+        measured = np.isfinite(values)
         sd = _column(table, spread) * spread.factor
-        if np.isfinite(sd[known]).all():
+        if np.isfinite(sd[measured]).all():
             columns[name] = (values, sd)
             continue
         stated = False
-        columns[name] = (values, np.full(len(values), _scatter(table.name, name, values[known])))
+        columns[name] = (values, np.full(len(values), _scatter(table.name, name, values[measured])))
     (depth, depth_sd), (width, width_sd), (radius, radius_sd) = (columns[name] for name in GROOVE_COLUMNS)
-    if not any(np.isfinite(each).any() for each in (depth, width, radius)):
-        raise ParameterError(f"{table.name} holds none of {', '.join(GROOVE_COLUMNS)}")
+    if not any(np.isfinite(values).any() for values in (depth, width, radius)):
+        raise ParameterError(f"{table.name} has none of the columns {', '.join(GROOVE_COLUMNS)}")
     return MeasuredGrooves(table.name, depth, width, np.abs(radius), depth_sd, width_sd, radius_sd, stated)
 
 

@@ -20,17 +20,17 @@ from ..scenario.identify_section import given_parameters
 from ..scenario.keys import free_keys
 from ..scenario.reading import build_input, load_input
 from ..scenario.resolution import ScenarioInput
-from .bootstrap import BootstrapBy, require_bootstrap
-from .data import Collected, Data, collected, fingerprint, values_to_begin_with
+from .data import Data, IdentificationData, collect_data, fingerprint, start_values
 from .groove_residuals import GrooveResiduals, require_groove_stays
-from .grooves_alone import grooves_alone
-from .parameter import Parameter, fixed_by_given, parameter_table
+from .grooves_alone import identify_from_grooves
+from .intervals import BootstrapBy, require_bootstrap
+from .parameter import Parameter, parameter_table, unused_tables
 from .photo_cell_times import PhotoCellTimes
-from .problem import Observations, keys_of_runs, problem_of
+from .problem import Observations, expand_keys, unweighted_problem
 from .result import Effort, Identification
 from .simulations import RunSimulation, Simulations
-from .solution import too_few
-from .solving import Request, solved
+from .solution import too_few_points
+from .solving import SearchRequest, solve
 from .track_positions import TrackPositions
 
 _NOTHING: Final[Mapping[str, object]] = MappingProxyType({})
@@ -56,59 +56,60 @@ def identify(
     restart: bool = False,
     progress: Progress | None = None,
 ) -> Identification:
-    """Find the parameters of a scenario that fit what was measured.
+    """Estimate parameters of a scenario from measurements by least squares.
 
     Parameters
     ----------
     scenario
-        A scenario, a built-in name, the path of a file, or values as given.
+        A scenario, a built-in name, the path of a file, or a `ScenarioInput`.
     data
-        Tracks, photo-cell times, measured grooves, or paths of files with these; several together.
+        Tracks, photo-cell times, measured grooves, or paths of files with these; one or several.
     free
-        Free keys, with or without section and unit; ``KEY@RUN`` in one run of several, ``KEY@each`` in
-        each a value of its own, as keys of the start always. Default: those with a table ``[identify."KEY"]``.
+        Free keys, with or without section and unit. ``KEY@RUN`` is the key in one of several runs; ``KEY@each`` has a
+        separate value in each run, as keys of the start always have. Default: those with a table
+        ``[identify."KEY"]``.
     changes
-        Other values of the scenario, as `skisnow.scenario` takes them.
+        Other values of the scenario, as in `skisnow.scenario`.
     starts
-        Searches, the first from the scenario's values, the others from random places about them.
+        Number of searches: the first begins at the scenario's values, the others at random places around them.
     profile
-        Whether intervals are also found by refitting all others along each parameter.
+        True to compute profile-likelihood intervals as well.
     bootstrap, posterior
-        Numbers of resamples, and of samples of the posterior; 0: none.
+        Number of resamples, and of samples of the posterior; 0: none.
     bootstrap_by
-        "refit": each resample is refitted, with one to four simulated runs of each track; "linear": by the model
-        linearised at the best values, in no time.
+        "refit": each resample is refitted, with one to four simulated runs of each track; "linear": each is fitted by
+        the model linearised at the best values, without simulations.
     clock_is_free
-        Whether each photo-cell run's clock has a separate offset; None: as ``[identify] clock`` says, else not.
+        True if the clock of each photo-cell run has a separate offset (default: ``[identify] clock``, else False).
     rng
-        Source of random numbers, for starts, bootstrap and posterior; left out, one with the seed 0.
+        Source of random numbers for starts, bootstrap and posterior (default: a generator with seed 0).
     workers
-        Processes that simulate; None: as many as this process has cores.
+        Number of processes that simulate (default: the number of cores available to this process).
     executor
-        Executor used instead of processes of this computer, as of `skisnow.run_batch`.
+        Executor of the simulations, as in `skisnow.run_batch` (default: processes of this computer).
     checkpoint
-        File in which finished simulations are stored, and looked for first; None: nowhere.
+        File that stores finished simulations; those of an earlier search are used again (default: no file).
     restart
-        Whether what an earlier search stored there is forgotten, once everything that is asked has been found right.
+        True to delete the simulations of an earlier search in `checkpoint`, after all arguments have been validated.
     progress
-        Called with a line of text now and then.
+        Called with a line of text on the current step.
 
     Returns
     -------
     Identification
-        Whatever the outcome. Ctrl-C keeps the best so far with the outcome "interrupted".
+        The result with any outcome. Ctrl-C ends the search with the best values so far, outcome "interrupted".
 
     Raises
     ------
     ParameterError, FieldDataError
-        A name is unknown, bounds exclude the start, data are of another place or cannot be read.
+        A name is unknown, bounds exclude the start, or data are from another place or cannot be read.
     FitError
-        Not even the start can be computed.
+        Nothing can be computed at the start.
 
     See Also
     --------
     skisnow.simulate : the run that is fitted.
-    skisnow.compare_tracks : how far two tracks are apart, without a fit.
+    skisnow.compare_tracks : distances between two tracks, without a fit.
 
     Notes
     -----
@@ -124,24 +125,34 @@ def identify(
     begun = time.monotonic()
     require_bootstrap(bootstrap, bootstrap_by)
     require_executor(executor)
-    given = (scenario if isinstance(scenario, ScenarioInput) else load_input(scenario)).changed(changes)
-    asked = build_input(given)
-    own = given_parameters(given.identify)
-    keys = free_keys(free) or tuple(dict.fromkeys(key.partition("@")[0] for key in own))
+    scenario_input = (scenario if isinstance(scenario, ScenarioInput) else load_input(scenario)).changed(changes)
+    scenario_file = build_input(scenario_input)
+    tables = given_parameters(scenario_input.identify)
+    keys = free_keys(free) or tuple(dict.fromkeys(key.partition("@")[0] for key in tables))
     if not keys:
-        raise ParameterError('nothing is looked for: name keys with --free, or write [identify."KEY"] in the scenario')
-    read = collected(given, asked, [data] if isinstance(data, Data | str | Path) else data, keys)
-    parameters = parameter_table(keys_of_runs(keys, read.runs), values_to_begin_with(asked, read, own), own)
-    simulate = RunSimulation(given, tuple(track.time for track in read.tracks))
+        raise ParameterError('No parameter is free. Name keys with --free, or write [identify."KEY"] in the scenario')
+    measurements = collect_data(
+        scenario_input, scenario_file, [data] if isinstance(data, Data | str | Path) else data, keys
+    )
+    parameters = parameter_table(
+        expand_keys(keys, measurements.runs), start_values(scenario_file, measurements, tables), tables
+    )
+    simulate = RunSimulation(scenario_input, tuple(track.time for track in measurements.tracks))
     if restart and checkpoint is not None:
         forget(checkpoint)
-    rows = KeptRows() if checkpoint is None else KeptRows.opened(checkpoint, fingerprint(given, read.tracks))
-    counted = _Counted(progress or _silent)
+    rows = (
+        KeptRows()
+        if checkpoint is None
+        else KeptRows.opened(checkpoint, fingerprint(scenario_input, measurements.tracks))
+    )
+    counted = _ProgressCounter(progress or _silent)
     with Simulations(simulate, rows, workers, counted, executor) as simulations:
-        observations = _observations(asked, read, simulations, clock_is_free=_clock(given, clock_is_free))
+        observations = _observations(
+            scenario_file, measurements, simulations, clock_is_free=_clock(scenario_input, clock_is_free)
+        )
         _require_used(keys, observations)
-        plan = Request(
-            title=given.title,
+        request = SearchRequest(
+            title=scenario_input.title,
             starts=starts,
             profile=profile,
             bootstrap=bootstrap,
@@ -149,34 +160,36 @@ def identify(
             posterior=posterior,
             rng=np.random.default_rng(0) if rng is None else rng,
             progress=counted.about,
-            warnings=(*read.warnings, *_fixed(keys, own)),
-            methods=read.methods,
+            warnings=(*measurements.warnings, *_unused_warnings(keys, tables)),
+            methods=measurements.methods,
         )
-        found = _found(parameters, observations, plan)
+        result = _search(parameters, observations, request)
         return replace(
-            found,
-            data=read.taken,
+            result,
+            data=measurements.descriptions,
             effort=replace(
-                found.effort,
+                result.effort,
                 simulations=simulations.computed,
-                kept_simulations=simulations.found,
+                kept_simulations=simulations.restored,
                 wall_s=time.monotonic() - begun,
             ),
         )
 
 
-def _found(parameters: tuple[Parameter, ...], observations: tuple[Observations, ...], plan: Request) -> Identification:
-    problem = problem_of(parameters, observations)
+def _search(
+    parameters: tuple[Parameter, ...], observations: tuple[Observations, ...], request: SearchRequest
+) -> Identification:
+    problem = unweighted_problem(parameters, observations)
     if not problem.priors and problem.points < len(parameters) + problem.nuisances + (not problem.accuracy_is_stated):
-        return too_few(problem, plan.title, plan.warnings)
+        return too_few_points(problem, request.title, request.warnings)
     only = observations[0]
     if len(observations) == 1 and isinstance(only, GrooveResiduals):
-        return grooves_alone(parameters, only, plan)
-    return solved(problem, plan)
+        return identify_from_grooves(parameters, only, request)
+    return solve(problem, request)
 
 
 def _observations(
-    scenario: ScenarioFile, read: Collected, simulations: Simulations, *, clock_is_free: bool
+    scenario: ScenarioFile, read: IdentificationData, simulations: Simulations, *, clock_is_free: bool
 ) -> tuple[Observations, ...]:
     observationss: list[Observations] = []
     if read.tracks:
@@ -190,34 +203,36 @@ def _observations(
     return tuple(observationss)
 
 
-def _clock(scenario_input: ScenarioInput, asked: bool | None) -> bool:
-    return scenario_input.identify.get("clock", "start") == "free" if asked is None else asked
+def _clock(scenario_input: ScenarioInput, chosen: bool | None) -> bool:
+    return scenario_input.identify.get("clock", "start") == "free" if chosen is None else chosen
 
 
 def _require_used(keys: Sequence[str], observations: Sequence[Observations]) -> None:
     for key in (key.partition("@")[0] for key in keys):
         if not any(observation.depends_on(key) for observation in observations):
             kinds = " and ".join(dict.fromkeys(observation.kind.replace("_", " ") for observation in observations))
-            raise ParameterError(f"--free: {key} plays no part in {kinds}. Leave it out, or add data that depend on it")
+            raise ParameterError(
+                f"--free: {key} has no effect on {kinds}. Remove it, or add data that depend on it", code="unused_key"
+            )
 
 
-def _fixed(keys: Sequence[str], own: Mapping[str, object]) -> tuple[str, ...]:
-    fixed = fixed_by_given(keys, own)
+def _unused_warnings(keys: Sequence[str], own: Mapping[str, object]) -> tuple[str, ...]:
+    fixed = unused_tables(keys, own)
     if not fixed:
         return ()
-    return (f"{', '.join(fixed)} stand under [identify] and are not looked for: they keep the scenario's values",)
+    return (f"{', '.join(fixed)} have a table under [identify] but are not free. They keep the scenario's values",)
 
 
 @dataclass(slots=True)
-class _Counted:
-    """What is being done, with the number of simulated runs."""
+class _ProgressCounter:
+    """Progress of an identification: the current step and the number of simulated runs."""
 
     progress: Progress
     doing: str = "starting"
     runs: int = 0
 
     def __call__(self, runs: int) -> None:
-        """Take note of a finished run."""
+        """Report the number of finished runs."""
         self.runs = runs
         self.progress(f"{self.doing}; {runs} simulated runs")
 

@@ -1,4 +1,4 @@
-"""A body that glides straight down a slope: when it passes which cell.
+"""Passage times of a body that glides straight down a slope.
 
     m v' = m g sin α - μ(v) m (g cos α + κ v²) - ½ ρ C_dA v²,   s' = v,   μ(v) = μ_0 + μ_1 v
 
@@ -21,29 +21,28 @@ from ..scenario import Plane, Slope, Terrain
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
 
-STEPS: Final = 200
-"""Time steps over a run at least: the terms change over tens of seconds (modelling assumption)."""
-WAIT: Final = 5.0
-"""How many times as long as a run took its body is waited for."""
-CRAWL: Final = 0.1
-"""Speed (m/s) of a body that does not get there in that time, so that a search finds its direction."""
+LEAST_STEPS: Final = 200
+"""Minimum number of time steps of a run; the forces change over tens of seconds."""
+LONGEST_WAIT: Final = 5.0
+"""Longest simulated time, in durations of the measured run."""
+CRAWL_SPEED: Final = 0.1
+"""Speed (m/s) after the longest time, assumed so that the times of cells that were not reached have a gradient."""
 LONGEST_STEP_ON_PROFILE: Final = 0.02
-"""(s): 0.4 m at 20 m/s (modelling assumption); a step ends at every point of a profile besides."""
+"""Longest time step (s) on a profile: 0.4 m at 20 m/s. A step also ends at every point of the profile."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class SlopeLine:
-    """The slope along the path, from the start on, in n pieces on which its gradient changes linearly.
+    """The slope along the path from the start, in n pieces with a linearly changing gradient.
 
-    A profile's points do not say where between them it bends. Each of its segments has its gradient at its middle, and
-    from middle to middle the gradient changes linearly (modelling assumption): a hollow presses and a crest relieves
-    over the length
-    between the middles, by the whole angle and nowhere by the contrary, as cubics through the points would.
+    The points of a profile do not define where it bends between them. Each segment has its gradient at its middle, and
+    between the middles the gradient changes linearly (modelling assumption). The bend is then distributed between two
+    middles and never has the wrong sign, as it would with cubics through the points.
 
     Attributes
     ----------
     arc_length
-        (n + 1,) m: where the pieces begin, from 0 on, and where the last one ends; a plane has one without an end.
+        (n + 1,) m: the beginnings of the pieces, the first at 0, and the end of the last one; infinite for a plane.
     x
         (n + 1,) m: the horizontal distances of these places.
     gradient
@@ -57,7 +56,7 @@ class SlopeLine:
 
     @property
     def length(self) -> float:
-        """How far it goes (m); a plane has no end."""
+        """Length (m); infinite for a plane."""
         return float(self.arc_length[-1])
 
     def at(self, piece: IntArray, x: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
@@ -70,12 +69,12 @@ class SlopeLine:
 
 
 def slope_line(slope: Slope, start: float) -> SlopeLine:
-    """The slope along the fall line from x = `start` (m) on.
+    """The slope along the fall line from x = `start` (m).
 
     Raises
     ------
     ParameterError
-        The slope is a grid, whose fall line is no straight one.
+        The slope is a grid: its fall line is not straight.
 
     >>> line = slope_line(Plane(math.radians(30.0)), 0.0)
     >>> sine, _, curvature = line.at(np.zeros(1, int), np.zeros(1))
@@ -86,8 +85,8 @@ def slope_line(slope: Slope, start: float) -> SlopeLine:
         return planes(np.array([slope.angle]))
     if isinstance(slope, Terrain):
         raise ParameterError(
-            'photo-cell times are computed along one line; slope.kind = "grid" has none. Give the heights along it: '
-            'slope.kind = "profile"'
+            'Photo-cell times are computed along one line, and slope.kind = "grid" does not define one. Give the '
+            'heights along the line: slope.kind = "profile"'
         )
     middle = 0.5 * (slope.x[1:] + slope.x[:-1])
     of_segment = np.diff(slope.height) / np.diff(slope.x)
@@ -110,13 +109,13 @@ def _lengths(line: SlopeLine) -> FloatArray:
     place, weight = np.polynomial.legendre.leggauss(10)
     middle, half = 0.5 * (line.x[1:] + line.x[:-1]), 0.5 * np.diff(line.x)
     number = np.arange(len(middle))
-    stretch = [1.0 / line.at(number, middle + half * each)[1] for each in place]
+    stretch = [1.0 / line.at(number, middle + half * share)[1] for share in place]
     return np.asarray(half * np.tensordot(weight, stretch, axes=1))
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class Glide:
-    """Bodies that glide at once, one entry each, (k,).
+    """Parameters of k gliding bodies, (k,) each.
 
     Attributes
     ----------
@@ -125,9 +124,9 @@ class Glide:
     drag_per_mass
         ½ ρ C_dA / m (1/m).
     speed
-        At the start (m/s).
+        Speed at the start (m/s).
     gravity
-        (m/s²).
+        Gravity (m/s²).
     """
 
     friction: FloatArray
@@ -137,7 +136,7 @@ class Glide:
     gravity: FloatArray
 
     def rates(self, line: SlopeLine, piece: IntArray, x: FloatArray, speed: FloatArray) -> FloatArray:
-        """Of change of x (m/s), arc length (m/s) and speed (m/s²), (3, k); the snow presses but does not pull."""
+        """Rates of x (m/s), arc length (m/s) and speed (m/s²), shape (3, k); the normal force is at least 0."""
         sine, cosine, curvature = line.at(piece, x)
         pressed = np.maximum(self.gravity * cosine + curvature * speed**2, 0.0)
         friction = (self.friction + self.friction_by_speed * speed) * pressed
@@ -145,7 +144,7 @@ class Glide:
 
 
 def passage_times(line: SlopeLine, glide: Glide, station: FloatArray, longest: float) -> FloatArray:
-    """When each body passes each cell.
+    """Times at which each body passes each cell.
 
     Parameters
     ----------
@@ -154,35 +153,35 @@ def passage_times(line: SlopeLine, glide: Glide, station: FloatArray, longest: f
     glide
         k bodies.
     station
-        (n,) or (k, n) m, rising, from 0 on.
+        (n,) or (k, n) m, rising, at least 0.
     longest
-        About how long the runs take (s); the step follows from it, and so many times `WAIT` is waited.
+        Approximate duration of the runs (s); it sets the time step, and `LONGEST_WAIT` times it is simulated.
 
     Returns
     -------
     array
-        (k, n) s. A body that stops before, or is not there after the wait, is taken to crawl on at 0.1 m/s from then:
-        later than any that gets there, and the later the farther it is from there.
+        (k, n) s. For a cell that a body has not reached in the longest time, the body is assumed to continue at
+        0.1 m/s: the time is later than any time of a cell that was reached, and grows with the missing distance.
 
     Notes
     -----
-    Runge-Kutta of fourth order in time, which a start from rest does not trouble as ∫ ds/v would. The curvature of a
-    profile jumps between its pieces: there a step ends, and no step sees two. Between the steps a cubic through
-    places and speeds.
+    Runge-Kutta method of fourth order in time, which also works for a start from rest, unlike ∫ ds/v. The curvature of
+    a profile jumps between its pieces, so a step ends at each jump. Passages between steps are interpolated by a cubic
+    through places and speeds.
     """
     k = len(glide.speed)
     stations = np.broadcast_to(np.asarray(station, float), (k, np.shape(station)[-1]))
-    h = longest / STEPS if math.isinf(line.length) else min(longest / STEPS, LONGEST_STEP_ON_PROFILE)
-    time, arc_length, speed = _histories(line, glide, h, float(stations.max()), WAIT * longest)
-    found = [_passages(time[:, j], arc_length[:, j], speed[:, j], stations[j]) for j in range(k)]
-    crawling = WAIT * longest + (stations - arc_length[-1][:, None]) / CRAWL
-    return np.where(np.isfinite(found), found, crawling)
+    h = longest / LEAST_STEPS if math.isinf(line.length) else min(longest / LEAST_STEPS, LONGEST_STEP_ON_PROFILE)
+    time, arc_length, speed = _histories(line, glide, h, float(stations.max()), LONGEST_WAIT * longest)
+    times = [_passages(time[:, j], arc_length[:, j], speed[:, j], stations[j]) for j in range(k)]
+    crawling = LONGEST_WAIT * longest + (stations - arc_length[-1][:, None]) / CRAWL_SPEED
+    return np.where(np.isfinite(times), times, crawling)
 
 
 def _histories(
     line: SlopeLine, glide: Glide, h: float, last: float, longest: float
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Times, ways and speeds after each step, (m, k) each; a body that is there, or waited for in vain, stays."""
+    """Times, arc lengths and speeds after each of m steps, (m, k) each; a body stays at its last cell."""
     k = len(glide.speed)
     piece, time = np.zeros(k, np.int64), np.zeros(k)
     state = np.stack([np.full(k, line.x[0]), np.zeros(k), glide.speed.astype(float)])
@@ -190,18 +189,19 @@ def _histories(
     with np.errstate(over="ignore", invalid="ignore"):
         for _ in range(math.ceil(longest / h) + len(line.arc_length)):
             step = np.where((state[1] < last) & (time < longest), h, 0.0)
-            state, piece, share = _stepped(line, glide, piece, state, step)
+            state, piece, share = _step_on(line, glide, piece, state, step)
             time = time + share * step
             history.append((time, state))
             if not np.any((state[1] < last) & (state[2] > 0.0) & (time < longest)):
                 break
-    return np.array([each for each, _ in history]), *np.array([each[1:] for _, each in history]).transpose(1, 0, 2)
+    arc_length, speed = np.array([state[1:] for _, state in history]).transpose(1, 0, 2)
+    return np.array([time for time, _ in history]), arc_length, speed
 
 
-def _stepped(
+def _step_on(
     line: SlopeLine, glide: Glide, piece: IntArray, state: FloatArray, h: FloatArray
 ) -> tuple[FloatArray, IntArray, FloatArray]:
-    """State and piece after a step, and which share of it was taken: all, or what leads to the end of the piece."""
+    """State and piece after a step, and the share of the step that was taken: it ends at the end of a piece."""
     share = np.ones_like(h)
     moved = _runge_kutta(line, glide, piece, state, h)
     end = line.arc_length[piece + 1]
@@ -217,8 +217,8 @@ def _stepped(
 
 
 def _runge_kutta(line: SlopeLine, glide: Glide, piece: IntArray, state: FloatArray, h: FloatArray) -> FloatArray:
-    def rates(of: FloatArray) -> FloatArray:
-        return glide.rates(line, piece, of[0], of[2])
+    def rates(at: FloatArray) -> FloatArray:
+        return glide.rates(line, piece, at[0], at[2])
 
     first = rates(state)
     second = rates(state + 0.5 * h * first)
@@ -230,7 +230,7 @@ def _runge_kutta(line: SlopeLine, glide: Glide, piece: IntArray, state: FloatArr
 
 
 def _passages(time: FloatArray, arc_length: FloatArray, speed: FloatArray, station: FloatArray) -> FloatArray:
-    """Times (s) at the cells, infinite at those that are not reached."""
+    """Times (s) at the cells; infinite for cells that are not reached."""
     number = np.searchsorted(arc_length, station, side="left") - 1
     reached = number < len(arc_length) - 1
     at = np.clip(number, 0, len(arc_length) - 2)
@@ -240,7 +240,7 @@ def _passages(time: FloatArray, arc_length: FloatArray, speed: FloatArray, stati
 
 
 def _share(first: FloatArray, last: FloatArray, begin: FloatArray, end: FloatArray, place: FloatArray) -> FloatArray:
-    """Where a cubic through first and last place, with slopes begin and end, is at a place: by Newton's method."""
+    """Share of the interval at which the cubic from `first` to `last`, with slopes `begin` and `end`, is at `place`."""
     u = np.clip(np.divide(place - first, last - first, out=np.zeros_like(first), where=last > first), 0.0, 1.0)
     for _ in range(6):
         at = (

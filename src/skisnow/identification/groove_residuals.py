@@ -1,9 +1,9 @@
-"""Residuals of the track left in the snow: the groove and the radius of a ski that carves, or that the snow lets slide.
+"""Residuals of measured grooves: depth, width and turn radius of a ski that carves or slides.
 
-The ski is the one of `skisnow.carve`: half of the weight's part along the snow's normal on each, edge angle given. The
-depth that stays is e_max (1 - H_V/k_u), the width across the groove e_max/tan ϑ where it is deepest, the radius that of
-the circle through the edge line at the boot and both ends of the contact. S_f plays no part while the edge holds.
-Where it slides, the snow gives all it has, 2 S_f ∫ e ds, and the radius follows from the balance across the path:
+The ski is computed by `skisnow.carve` at the given edge angle, with half of the normal component of the weight on each
+ski. The remaining depth is e_max (1 - H_V/k_u), the width e_max/tan ϑ at the deepest place, the radius that of the
+circle through the edge line at the boot and both ends of the contact. S_f has no effect while the edge holds. If the
+edge slides, the snow gives its whole resistance 2 S_f ∫ e ds, and the radius follows from the balance across the path:
 
     m v²/R = 2 S_f ∫ e ds - m g sin α sin χ (turn to the left; χ heading from the fall line)
 """
@@ -31,10 +31,10 @@ from .problem import Fit, Kind, Values
 
 FloatArray = npt.NDArray[np.float64]
 
-HARDNESS, STRENGTH = "snow.H_V_N_per_mm3", "snow.S_f_N_per_mm2"
-USED: Final = (
-    HARDNESS,
-    STRENGTH,
+HARDNESS_KEY, STRENGTH_KEY = "snow.H_V_N_per_mm3", "snow.S_f_N_per_mm2"
+USED_KEYS: Final = (
+    HARDNESS_KEY,
+    STRENGTH_KEY,
     "snow.unloading_ratio",
     "sledge.edge_angle_deg",
     "sledge.mass_kg",
@@ -45,12 +45,12 @@ USED: Final = (
 )
 """Keys that the grooves depend on."""
 STRAIGHTEST: Final = 1e6
-"""Radius (m) that stands for a straight path: grip too small for any turn."""
+"""Radius (m) of a practically straight path, used if the grip is too small for a turn."""
 
 
 @dataclass(frozen=True, slots=True)
 class Groove:
-    """What a ski leaves, and what it needs: depth that stays, width, radius (m), grip length ∫ e ds (m²), load (N)."""
+    """Groove of one ski: remaining depth, width and turn radius (m), grip area ∫ e ds (m²), load (N)."""
 
     depth: float
     width: float
@@ -61,23 +61,22 @@ class Groove:
 
 @dataclass(slots=True)
 class GrooveResiduals:
-    """Measured grooves, and the ski that is taken to have left them.
+    """Measured grooves, and the ski that is assumed to have made them.
 
     Attributes
     ----------
     measured
         Measured data.
-    asked
+    scenario
         The scenario: ski, mass, slope, speed, heading, edge angle, and the values of the fixed inputs.
     slides
-        Whether the edge is taken to slide: then the radius follows from S_f, and the width, swept sideways, tells
-        nothing.
+        True if the edge is assumed to slide: then the radius follows from S_f, and the width is not used.
     """
 
     measured: MeasuredGrooves
-    asked: ScenarioFile
+    scenario: ScenarioFile
     slides: bool = False
-    _kept: dict[tuple[float, ...], Groove | None] = field(init=False, default_factory=dict)
+    _cache: dict[tuple[float, ...], Groove | None] = field(init=False, default_factory=dict)
 
     @property
     def kind(self) -> Kind:
@@ -91,7 +90,7 @@ class GrooveResiduals:
 
     def depends_on(self, key: str) -> bool:
         """Snow, edge angle, mass, slope; speed and heading only where the edge slides."""
-        return key in USED
+        return key in USED_KEYS
 
     @property
     def points(self) -> int:
@@ -138,28 +137,28 @@ class GrooveResiduals:
         )  # fmt: skip
 
     def warnings(self, values: Values) -> tuple[str, ...]:
-        """That a model of equal loads stands behind it."""
+        """Warning if the ski has no equilibrium with these values."""
         if self.groove(values) is None:
             return ("no ski carves with these values: start elsewhere",)
         return ()
 
     def groove(self, values: Values) -> Groove | None:
-        """What the ski leaves with these values; None where it finds no balance."""
-        of = {**self.asked.values, **values}
-        number = tuple(float(of[key]) for key in USED if key not in (STRENGTH, "start.speed_m_per_s"))
-        if number not in self._kept:
-            self._kept[number] = _groove(self.asked, of)
-        return self._kept[number]
+        """Groove of the ski with these values; None without an equilibrium."""
+        of = {**self.scenario.values, **values}
+        number = tuple(float(of[key]) for key in USED_KEYS if key not in (STRENGTH_KEY, "start.speed_m_per_s"))
+        if number not in self._cache:
+            self._cache[number] = _groove(self.scenario, of)
+        return self._cache[number]
 
     def demand(self, values: Values, turn_radius: float) -> float:
-        """Force (N) across the path that both skis together need from the snow on that radius."""
-        of = {**self.asked.values, **values}
+        """Side force (N) that both skis together need from the snow on that radius."""
+        of = {**self.scenario.values, **values}
         side = math.copysign(1.0, float(of["sledge.edge_angle_deg"]))
-        pull = _angle(self.asked, of) * math.sin(float(of["start.heading_deg"]) * DEGREE) * side
-        return _mass(self.asked, of) * (float(of["start.speed_m_per_s"]) ** 2 / turn_radius + pull)
+        pull = _downhill_pull(self.scenario, of) * math.sin(float(of["start.heading_deg"]) * DEGREE) * side
+        return _mass(self.scenario, of) * (float(of["start.speed_m_per_s"]) ** 2 / turn_radius + pull)
 
-    def strength_for(self, values: Values, turn_radius: float) -> float | None:
-        """S_f (N/mm²) that just holds the skis on that radius; None where they find no balance."""
+    def required_strength(self, values: Values, turn_radius: float) -> float | None:
+        """Smallest S_f (N/mm²) that holds the skis on that radius; None without an equilibrium."""
         groove = self.groove(values)
         if groove is None or groove.grip_area <= 0.0:
             return None
@@ -199,56 +198,63 @@ class GrooveResiduals:
     def _radius(self, values: Values, groove: Groove) -> float:
         if not self.slides:
             return groove.turn_radius
-        of = {**self.asked.values, **values}
-        grip = 2.0 * float(of[STRENGTH]) * N_PER_MM2 * groove.grip_area
+        of = {**self.scenario.values, **values}
+        grip = 2.0 * float(of[STRENGTH_KEY]) * N_PER_MM2 * groove.grip_area
         left = grip - self.demand(values, math.inf)
-        mass, speed = _mass(self.asked, of), float(of["start.speed_m_per_s"])
+        mass, speed = _mass(self.scenario, of), float(of["start.speed_m_per_s"])
         return min(mass * speed**2 / left, STRAIGHTEST) if left > 0.0 else STRAIGHTEST
 
 
 def require_groove_stays(scenario: ScenarioFile) -> None:
-    """Refuse scenarios whose ski leaves no groove, or that say nothing of a turn."""
+    """Reject scenarios whose ski leaves no groove, or whose edge angle is 0."""
     if scenario.scenario.contact.unloading_ratio <= 1.0:
-        raise ParameterError("snow.unloading_ratio is 1: elastic snow keeps no groove. Give the snow that kept these")
+        raise ParameterError(
+            "snow.unloading_ratio is 1: elastic snow keeps no groove. Give the measured unloading ratio of the snow",
+            code="elastic_snow",
+        )
     if scenario.scenario.sledge.edge_angle == 0.0:
-        raise ParameterError("sledge.edge_angle_deg is 0: a flat ski leaves no groove of an edge. Give the edge angle")
+        raise ParameterError(
+            "sledge.edge_angle_deg is 0: a flat ski leaves no groove of an edge. Give the edge angle", code="flat_ski"
+        )
 
 
-def _mass(scenario: ScenarioFile, of: Mapping[str, Any]) -> float:
-    return float(of["sledge.mass_kg"]) + 2.0 * scenario.scenario.ski.mass
+def _mass(scenario: ScenarioFile, values: Mapping[str, Any]) -> float:
+    return float(values["sledge.mass_kg"]) + 2.0 * scenario.scenario.ski.mass
 
 
-def _inclination(scenario: ScenarioFile, of: Mapping[str, Any]) -> float:
+def _inclination(scenario: ScenarioFile, values: Mapping[str, Any]) -> float:
     slope = scenario.scenario.slope
     if isinstance(slope, Plane):
-        return float(of["slope.angle_deg"]) * DEGREE
+        return float(values["slope.angle_deg"]) * DEGREE
     start = scenario.scenario.start
     normal = normals_of(slope, start.x, start.y)
     return math.atan2(float(normal[0]), float(normal[2]))
 
 
-def _angle(scenario: ScenarioFile, of: Mapping[str, Any]) -> float:
-    """G sin α (m/s²)."""
-    return float(of["slope.gravity_m_per_s2"]) * math.sin(_inclination(scenario, of))
+def _downhill_pull(scenario: ScenarioFile, values: Mapping[str, Any]) -> float:
+    """Acceleration g sin α (m/s²)."""
+    return float(values["slope.gravity_m_per_s2"]) * math.sin(_inclination(scenario, values))
 
 
-def _groove(scenario: ScenarioFile, of: Mapping[str, Any]) -> Groove | None:
-    gravity = float(of["slope.gravity_m_per_s2"])
-    load = 0.5 * _mass(scenario, of) * gravity * math.cos(_inclination(scenario, of))
-    angle = abs(float(of["sledge.edge_angle_deg"])) * DEGREE
-    ratio = float(of["snow.unloading_ratio"])
-    snow = SnowProperties(float(of[HARDNESS]) * N_PER_MM3, 1.0 * N_PER_MM2, source="looked for")
+def _groove(scenario: ScenarioFile, values: Mapping[str, Any]) -> Groove | None:
+    gravity = float(values["slope.gravity_m_per_s2"])
+    load = 0.5 * _mass(scenario, values) * gravity * math.cos(_inclination(scenario, values))
+    angle = abs(float(values["sledge.edge_angle_deg"])) * DEGREE
+    ratio = float(values["snow.unloading_ratio"])
+    snow = SnowProperties(float(values[HARDNESS_KEY]) * N_PER_MM3, 1.0 * N_PER_MM2, source="looked for")
     try:
-        found = carve(
+        equilibrium = carve(
             scenario.scenario.flexing_ski, snow, edge_angle=angle, load=load, unloading_ratio=ratio,
             clamp_length=scenario.scenario.clamp_length, footprint_stiffness=scenario.scenario.footprint_stiffness,
         )  # fmt: skip
     except SkisnowError:
         return None
-    return _of_equilibrium(found, scenario.scenario.ski, angle, ratio, load)
+    return _groove_of_equilibrium(equilibrium, scenario.scenario.ski, angle, ratio, load)
 
 
-def _of_equilibrium(equilibrium: Equilibrium, ski: Ski, angle: float, ratio: float, load: float) -> Groove | None:
+def _groove_of_equilibrium(
+    equilibrium: Equilibrium, ski: Ski, angle: float, ratio: float, load: float
+) -> Groove | None:
     depth, twist, radius, limit = (
         equilibrium.edge_depth,
         equilibrium.twist,

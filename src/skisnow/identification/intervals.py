@@ -1,60 +1,61 @@
-"""Profile-likelihood intervals and samples of the posterior distribution."""
+"""Profile-likelihood, bootstrap and posterior intervals of identified parameters."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import replace
-from typing import Any, Final
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+from typing import Any, Final, Literal, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 from scipy.interpolate import PchipInterpolator
 
+from .._support.errors import ParameterError
 from .._support.optional_packages import needed
 from ..statistics import percentile_interval
 from .parameter import Parameter, bounds_of
 from .result import Identification, Identified, Interval, Profile
 from .search import step_inside
-from .solution import Solution, residuals_about_best, samples_in_values
+from .solution import Solution, best_fit_residuals, values_at
 
 FloatArray = npt.NDArray[np.float64]
 Progress = Callable[[str], None]
 
 PLACES: Final = (-3.0, -2.0, -1.0, 1.0, 2.0, 3.0)
-"""Of a profile, in standard errors from the best value."""
+"""Positions of the values of a profile, in standard errors from the best value."""
 REFITS: Final = 2
-"""Gauss-Newton steps of all other parameters at each place, with the Jacobian of the best one."""
-SIMULATED: Final = (
+"""Number of Gauss-Newton steps of the other parameters at each value, with the Jacobian of the best place."""
+QUADRATIC_POSTERIOR: Final = (
     "posterior: emcee on the likelihood of residuals that are quadratic in each parameter (from the runs of the last "
     "Jacobian), for a simulated run takes too long; terms that mix two parameters are linear"
 )
-TRUE: Final = "posterior: emcee on the likelihood itself"
+EXACT_POSTERIOR: Final = "posterior: emcee on the likelihood itself"
 _WALKERS_PER_PARAMETER: Final = 4
 _BURN_IN: Final = 0.3
 _SMALL_BALL: Final = 0.5
 
 
-def profiled(identification: Identification, solution: Solution, progress: Progress) -> Identification:
-    """Hold each parameter at several values, refit all others, and see how the sum of squares rises.
+def add_profile_intervals(identification: Identification, solution: Solution, progress: Progress) -> Identification:
+    """Add profile-likelihood intervals: fix each parameter at several values and refit all others.
 
     Notes
     -----
     The interval ends where the rise is the square of the factor of the interval by curvature: 3.84 with stated noise.
     """
-    known = solution.known()
-    if known is None:
+    uncertainty = solution.uncertainty()
+    if uncertainty is None:
         return identification
-    limit = known.factor**2 * (solution.widening**2)
+    limit = uncertainty.factor**2 * (solution.widening**2)
     profiles, parameters = [], list(identification.parameters)
     for j, parameter in enumerate(solution.problem.parameters):
         progress(f"profile of {parameter.name}")
-        error = float(known.standard_errors[j])
+        error = float(uncertainty.standard_errors[j])
         if not np.isfinite(error):
             continue
         place, rise = _along(solution, j, error)
         profile = Profile(parameter.key, np.array([parameter.value(float(u)) for u in place]), rise, limit)
         profiles.append(profile)
-        ends = _ends(solution.found.place[j], place, rise, limit)
+        ends = _ends(solution.optimum.place[j], place, rise, limit)
         parameters[j] = replace(parameters[j], profile_interval=_as_values(parameter, ends))
     method = f"profiles: others refitted by {REFITS} Gauss-Newton steps at each value"
     return replace(
@@ -66,41 +67,41 @@ def profiled(identification: Identification, solution: Solution, progress: Progr
 
 
 def _along(solution: Solution, j: int, error: float) -> tuple[FloatArray, FloatArray]:
-    """Places of parameter j in sizes, rising, and the rise of the sum of squares; the best one among them."""
-    problem, found = solution.problem, solution.found
+    """Sorted positions of parameter j (in sizes, with the best one) and the rise of the sum of squares there."""
+    problem, optimum = solution.problem, solution.optimum
     lower, upper = bounds_of(problem.parameters)
-    centre = found.place
+    centre = optimum.place
     ends = np.unique(np.clip(centre[j] + error * np.array(PLACES), lower[j], upper[j]))
     ends = ends[np.abs(ends - centre[j]) > 1e-9]
-    ask = residuals_about_best(solution)
-    begun = [_moved(solution, j, float(end)) for end in ends]
+    compute = best_fit_residuals(solution)
+    points = [_moved(solution, j, float(end)) for end in ends]
     costs = np.full(len(ends), np.inf)
     for _ in range(REFITS):
-        for i, residuals in enumerate(ask(begun)):
+        for i, residuals in enumerate(compute(points)):
             if residuals is not None:
                 costs[i] = min(costs[i], float(residuals @ residuals))
-                begun[i] = _refitted(solution, j, begun[i], residuals)
-    for i, residuals in enumerate(ask(begun)):
+                points[i] = _refit(solution, j, points[i], residuals)
+    for i, residuals in enumerate(compute(points)):
         if residuals is not None:
             costs[i] = min(costs[i], float(residuals @ residuals))
     places = np.concatenate([ends, [centre[j]]])
-    rise = np.concatenate([costs - found.cost, [0.0]])
+    rise = np.concatenate([costs - optimum.cost, [0.0]])
     order = np.argsort(places)
     return places[order], rise[order]
 
 
 def _moved(solution: Solution, j: int, end: float) -> FloatArray:
-    """The place with parameter j at `end`, the others where the linear model has its least."""
-    found = solution.found
-    assert found.jacobian is not None
-    place = found.place.copy()
+    """Place with parameter j at `end` and the others at the minimum of the linearised model."""
+    optimum = solution.optimum
+    assert optimum.jacobian is not None
+    place = optimum.place.copy()
     place[j] = end
-    away = found.residuals + found.jacobian[:, j] * (end - found.place[j])
-    return _refitted(solution, j, place, away)
+    residuals = optimum.residuals + optimum.jacobian[:, j] * (end - optimum.place[j])
+    return _refit(solution, j, place, residuals)
 
 
-def _refitted(solution: Solution, j: int, place: FloatArray, residuals: FloatArray) -> FloatArray:
-    jacobian = solution.found.jacobian
+def _refit(solution: Solution, j: int, place: FloatArray, residuals: FloatArray) -> FloatArray:
+    jacobian = solution.optimum.jacobian
     assert jacobian is not None
     others = np.array([i for i in range(len(place)) if i != j], dtype=int)
     if not len(others):
@@ -113,17 +114,17 @@ def _refitted(solution: Solution, j: int, place: FloatArray, residuals: FloatArr
 
 
 def _ends(best: float, place: FloatArray, rise: FloatArray, limit: float) -> tuple[float | None, float | None]:
-    """Where the signed root of the rise passes that of the limit; None where it does not."""
+    """Positions at which the rise reaches the limit, below and above the best one; None if it does not."""
     root = np.sign(place - best) * np.sqrt(np.maximum(rise, 0.0))
-    known = np.isfinite(root)
-    place, root = place[known], np.maximum.accumulate(root[known])
+    finite = np.isfinite(root)
+    place, root = place[finite], np.maximum.accumulate(root[finite])
     rising = np.concatenate([[True], np.diff(root) > 0.0])
     place, root = place[rising], root[rising]
-    found: list[float | None] = []
+    ends: list[float | None] = []
     for target in (-np.sqrt(limit), np.sqrt(limit)):
         inside = len(root) > 1 and root[0] <= target <= root[-1]
-        found.append(float(PchipInterpolator(root, place)(target)) if inside else None)
-    return found[0], found[1]
+        ends.append(float(PchipInterpolator(root, place)(target)) if inside else None)
+    return ends[0], ends[1]
 
 
 def _as_values(parameter: Parameter, ends: tuple[float | None, float | None]) -> Interval:
@@ -131,14 +132,14 @@ def _as_values(parameter: Parameter, ends: tuple[float | None, float | None]) ->
     return low, high
 
 
-def with_posterior(
+def add_posterior_intervals(
     identification: Identification, solution: Solution, samples: int, rng: np.random.Generator, progress: Progress
 ) -> Identification:
-    """Sample the posterior with emcee, inside the bounds."""
+    """Add posterior samples and intervals, sampled by emcee inside the bounds."""
     places, how = posterior_places(solution, samples, rng, progress)
     if places is None:
         return replace(identification, warnings=(*identification.warnings, how))
-    values = samples_in_values(solution, places)
+    values = values_at(solution, places)
     intervals = percentile_interval(values)
     parameters: list[Identified] = [
         replace(parameter, posterior_interval=(float(low), float(high)))
@@ -150,7 +151,7 @@ def with_posterior(
 
 
 def require_emcee() -> Any:
-    """The sampler's package.
+    """Import emcee, the package that samples the posterior.
 
     Raises
     ------
@@ -163,43 +164,43 @@ def require_emcee() -> Any:
 def posterior_places(
     solution: Solution, samples: int, rng: np.random.Generator, progress: Callable[[str], None]
 ) -> tuple[FloatArray | None, str]:
-    """About that many samples (N, p) on the scale of the search, and how they came about.
+    """About `samples` samples (N, p) on the scale of the search, and a sentence on the method.
 
     Notes
     -----
-    Normal noise of the stated or estimated size, priors as they were given, flat inside the bounds otherwise (in the
-    logarithm for logarithmic parameters).
+    Noise is normal with the stated or estimated standard deviation. Parameters without a prior have a flat one inside
+    the bounds (in the logarithm for logarithmic parameters).
     """
     emcee = require_emcee()
-    known = solution.known()
-    if known is None or known.groups:
+    uncertainty = solution.uncertainty()
+    if uncertainty is None or uncertainty.groups:
         return None, "no posterior: the data leave a parameter open"
     simulated = any(observation.kind == "track" for observation in solution.problem.observations)
     likelihood = _quadratic(solution) if simulated else _true(solution)
-    p = len(solution.found.place)
+    p = len(solution.optimum.place)
     walkers = max(_WALKERS_PER_PARAMETER * p, 16)
     steps = max(round(samples / walkers / (1.0 - _BURN_IN)), 20)
     lower, upper = bounds_of(solution.problem.parameters)
-    about = _SMALL_BALL * known.standard_errors * rng.standard_normal((walkers, p))
-    begin = np.clip(solution.found.place + about, lower, upper)
+    about = _SMALL_BALL * uncertainty.standard_errors * rng.standard_normal((walkers, p))
+    begin = np.clip(solution.optimum.place + about, lower, upper)
     sampler = emcee.EnsembleSampler(walkers, p, likelihood, vectorize=True)
     sampler.random_state = np.random.RandomState(int(rng.integers(2**31))).get_state()
     for number, _ in enumerate(sampler.sample(begin, iterations=steps)):
         progress(f"posterior: step {number + 1} of {steps}")
     chain = sampler.get_chain(discard=round(_BURN_IN * steps), flat=True)
-    return np.asarray(chain, dtype=float), SIMULATED if simulated else TRUE
+    return np.asarray(chain, dtype=float), QUADRATIC_POSTERIOR if simulated else EXACT_POSTERIOR
 
 
 def _quadratic(solution: Solution) -> Callable[[FloatArray], FloatArray]:
-    found = solution.found
+    optimum = solution.optimum
     lower, upper = bounds_of(solution.problem.parameters)
-    jacobian, second = found.jacobian, found.second
+    jacobian, second = optimum.jacobian, optimum.second
     assert jacobian is not None and second is not None
     widening = solution.widening
 
     def log_probability(places: FloatArray) -> FloatArray:
-        away = places - found.place
-        residuals = found.residuals + away @ jacobian.T + 0.5 * away**2 @ second.T
+        away = places - optimum.place
+        residuals = optimum.residuals + away @ jacobian.T + 0.5 * away**2 @ second.T
         inside = np.all((places >= lower) & (places <= upper), axis=1)
         return np.where(inside, -0.5 * np.sum(residuals**2, axis=1) / widening**2, -np.inf)
 
@@ -212,11 +213,168 @@ def _true(solution: Solution) -> Callable[[FloatArray], FloatArray]:
 
     def log_probability(places: FloatArray) -> FloatArray:
         inside = np.all((places >= lower) & (places <= upper), axis=1)
-        found = np.full(len(places), -np.inf)
-        asked = solution.problem.residuals(list(places[inside]))
-        found[inside] = [
-            -np.inf if residuals is None else -0.5 * float(residuals @ residuals) / widening**2 for residuals in asked
+        log_probabilities = np.full(len(places), -np.inf)
+        residual_sets = solution.problem.residuals(list(places[inside]))
+        log_probabilities[inside] = [
+            -np.inf if residuals is None else -0.5 * float(residuals @ residuals) / widening**2
+            for residuals in residual_sets
         ]
-        return found
+        return log_probabilities
 
     return log_probability
+
+
+FloatArray = npt.NDArray[np.float64]
+Progress = Callable[[str], None]
+BootstrapBy: TypeAlias = Literal["refit", "linear"]
+
+FEWEST: Final = 40
+"""Minimum number of resamples: the ends of a 95 % interval are then the smallest and the largest of them."""
+MOST_STEPS: Final = 4
+"""Maximum number of Gauss-Newton steps of a resample."""
+SETTLED: Final = 0.1
+"""A resample's search ends after a step that moves the residuals by fewer standard deviations of one residual."""
+AT_ONCE: Final = 32
+"""Number of resamples that are simulated in one batch."""
+
+
+@dataclass(slots=True)
+class _Resample:
+    """One resample: its residuals at the best place, the current place of its search, its best place and cost."""
+
+    drawn: FloatArray
+    place: FloatArray
+    best: FloatArray
+    cost: float = np.inf
+    ended: bool = False
+
+
+def require_bootstrap(resamples: int, by: str) -> None:
+    """Validate the options of the bootstrap.
+
+    Raises
+    ------
+    ParameterError
+        Between 1 and `FEWEST` resamples, or an unknown method.
+    """
+    if by not in ("refit", "linear"):
+        raise ParameterError(f"Unknown bootstrap method {by!r}. Allowed: refit, linear", code="unknown_bootstrap")
+    if resamples != 0 and resamples < FEWEST:
+        raise ParameterError(
+            f"{resamples} resamples are too few for 95 % intervals: at least {FEWEST} are needed, some hundred are "
+            "recommended",
+            code="too_few_resamples",
+        )
+
+
+def add_bootstrap_intervals(
+    identification: Identification,
+    solution: Solution,
+    resamples: int,
+    by: BootstrapBy,
+    rng: np.random.Generator,
+    progress: Progress,
+) -> Identification:
+    """Add bootstrap intervals: resample blocks of residuals and refit each resample.
+
+    Notes
+    -----
+    The length of a block is the cube root of that of its series, at least 3, so correlated noise stays correlated.
+    A resample's search begins at the minimum of the linearised model and continues with Gauss-Newton steps and
+    separate simulations; derivatives are those of the best place, with their change along each parameter. With
+    "linear" it ends at the start: this needs no simulation and ignores all nonlinearity.
+    """
+    if solution.optimum.jacobian is None or solution.degrees_of_freedom < 1:
+        return identification
+    samples = [_Resample(drawn, place, place) for drawn, place in _begin(solution, resamples, rng)]
+    lost = 0
+    if by == "refit":
+        progress("bootstrap: first resamples")
+        _refit_samples(solution, samples, progress)
+        lost = sum(not np.isfinite(sample.cost) for sample in samples)
+        samples = [sample for sample in samples if np.isfinite(sample.cost)]
+    warnings = (f"{lost} of {resamples} resamples of the bootstrap could not be computed",) if lost else ()
+    if len(samples) < FEWEST:
+        return replace(identification, warnings=(*identification.warnings, *warnings))
+    values = values_at(solution, np.array([sample.best for sample in samples]))
+    parameters = tuple(
+        parameter
+        if parameter.standard_error is None
+        else replace(parameter, bootstrap_interval=(float(low), float(high)))
+        for parameter, (low, high) in zip(identification.parameters, percentile_interval(values), strict=True)
+    )
+    how = "refitted" if by == "refit" else "fitted by the model linearised at the best values"
+    method = f"bootstrap: {len(samples)} resamples of stretches of residuals, each {how}"
+    return replace(
+        identification,
+        bootstrap=values,
+        parameters=parameters,
+        warnings=(*identification.warnings, *warnings),
+        methods=(*identification.methods, method),
+    )
+
+
+def _begin(solution: Solution, resamples: int, rng: np.random.Generator) -> Iterator[tuple[FloatArray, FloatArray]]:
+    """Residuals of each resample at the best place, and the bounded minimum of the linearised model."""
+    fitted, jacobian = solution.optimum.residuals, solution.optimum.jacobian
+    assert jacobian is not None
+    data = sum(solution.problem.lengths)
+    series = [length for observation in solution.problem.observations for length in observation.series]
+    inflated = np.sqrt(data / max(solution.degrees_of_freedom, 1))
+    lower, upper = bounds_of(solution.problem.parameters)
+    best = solution.optimum.place
+    for _ in range(resamples):
+        drawn = np.zeros_like(fitted)
+        drawn[:data] = inflated * _resample(fitted[:data], series, rng)
+        drawn[data:] = rng.standard_normal(len(fitted) - data)
+        yield drawn, best + step_inside(jacobian, drawn, lower - best, upper - best)
+
+
+def _resample(residuals: FloatArray, series: list[int], rng: np.random.Generator) -> FloatArray:
+    """Residuals resampled in blocks, series by series, each without its mean."""
+    parts, first = [], 0
+    for length in series:
+        part = residuals[first : first + length] - float(np.mean(residuals[first : first + length]))
+        first += length
+        stretch = min(length, max(3, round(length ** (1.0 / 3.0))))
+        begin = rng.integers(0, length, size=-(-length // stretch))
+        places = (begin[:, None] + np.arange(stretch)).ravel()[:length] % length  # circular: all points equally often
+        parts.append(part[places])
+    return np.concatenate(parts)
+
+
+def _refit_samples(solution: Solution, samples: list[_Resample], progress: Progress) -> None:
+    """Refit all samples; those of one batch take their steps together, so all processes have work."""
+    compute = best_fit_residuals(solution)
+    for first in range(0, len(samples), AT_ONCE):
+        batch = samples[first : first + AT_ONCE]
+        for _ in range(MOST_STEPS):
+            active = [sample for sample in batch if not sample.ended]
+            if not active:
+                break
+            for sample, residuals in zip(active, compute([sample.place for sample in active]), strict=True):
+                _step(solution, sample, residuals)
+        progress(f"bootstrap: {min(first + AT_ONCE, len(samples))} of {len(samples)} resamples")
+
+
+def _step(solution: Solution, sample: _Resample, residuals: FloatArray | None) -> None:
+    """Evaluate a sample's residuals and take its next step; end its search if it no longer improves or moves."""
+    optimum = solution.optimum
+    if residuals is None:
+        sample.ended = True
+        return
+    own = residuals - optimum.residuals + sample.drawn
+    cost = float(own @ own)
+    if cost >= sample.cost:
+        sample.ended = True
+        return
+    sample.best, sample.cost = sample.place, cost
+    jacobian = optimum.jacobian
+    assert jacobian is not None
+    if optimum.second is not None:
+        jacobian = jacobian + optimum.second * (sample.place - optimum.place)
+    lower, upper = bounds_of(solution.problem.parameters)
+    step = step_inside(jacobian, own, lower - sample.place, upper - sample.place)
+    sample.place = np.clip(sample.place + step, lower, upper)
+    if float(np.linalg.norm(jacobian @ step)) <= min(SETTLED, solution.options.tolerance):
+        sample.best, sample.ended = sample.place, True

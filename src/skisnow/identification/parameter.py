@@ -25,19 +25,20 @@ class Parameter:
     Attributes
     ----------
     key
-        Full name of the scenario's key; behind an ``@`` the run that it belongs to, where each has its own.
+        Full name of the scenario's key; ``KEY@RUN`` if each run has a separate value.
     name, unit
-        The short name, and the unit's symbol.
+        Short name, and symbol of the unit.
     start, lower, upper
         Start of the search, and its bounds.
     size
-        A usual size of the parameter, or of its logarithm: the search counts in it, derivatives step by 1 to 5 % of it.
+        Typical size of the parameter or of its logarithm, the unit of length of the search; finite differences take
+        1 to 5 % of it.
     logarithmic
-        Whether its logarithm is searched: a quantity above zero that spans decades. Its interval is then a factor.
+        True if the search uses its logarithm, for a positive quantity that spans decades; its interval is a factor.
     prior_mean, prior_sd
-        What is known of it from elsewhere, as a normal distribution; None: nothing.
+        Normal prior distribution; None without a prior.
     free
-        Whether it is free; a fixed one keeps its start.
+        False if the parameter keeps its start.
 
     Raises
     ------
@@ -70,12 +71,14 @@ class Parameter:
                 raise ParameterError(f"{self.key}: {name} is {getattr(self, name)}; it must be a finite number")
         if not self.lower < self.upper:
             raise ParameterError(
-                f"{self.key}: lower is {self.lower:g} and upper {self.upper:g}{self._unit}; lower must be below upper"
+                f"{self.key}: lower is {self.lower:g} and upper {self.upper:g}{self._unit}; lower must be below upper",
+                code="swapped_bounds",
             )
         if not self.lower <= self.start <= self.upper:
             raise ParameterError(
                 f"{self.key}: the bounds, {self.lower:g} to {self.upper:g}{self._unit}, exclude the start, "
-                f"{self.start:g}. Widen them, or start inside"
+                f"{self.start:g}. Widen them, or start inside",
+                code="start_outside_bounds",
             )
         if self.logarithmic and self.lower <= 0.0:
             raise ParameterError(f"{self.key}: lower is {self.lower:g}{self._unit}; it must be above 0")
@@ -84,9 +87,13 @@ class Parameter:
     def _require_prior(self) -> None:
         if (self.prior_mean is None) != (self.prior_sd is None):
             missing = "prior_sd" if self.prior_sd is None else "prior_mean"
-            raise ParameterError(f"{self.key}: {missing} is missing; a prior has a mean and a standard deviation")
+            raise ParameterError(
+                f"{self.key}: {missing} is missing; a prior has a mean and a standard deviation", code="half_prior"
+            )
         if self.prior_sd is not None and not (math.isfinite(self.prior_sd) and self.prior_sd > 0.0):
-            raise ParameterError(f"{self.key}: prior_sd is {self.prior_sd:g}{self._unit}; it must be above 0")
+            raise ParameterError(
+                f"{self.key}: prior_sd is {self.prior_sd:g}{self._unit}; it must be above 0", code="out_of_range"
+            )
         if self.prior_mean is not None and not math.isfinite(self.prior_mean):
             raise ParameterError(f"{self.key}: prior_mean is {self.prior_mean}; it must be a finite number")
 
@@ -95,22 +102,22 @@ class Parameter:
         return f" {self.unit}" if self.unit else ""
 
     def scaled(self, value: float) -> float:
-        """The value on the scale of the search: 0 at the start, 1 a usual size away."""
+        """The value on the scale of the search: 0 at the start, 1 at one `size` from it."""
         away = math.log(value / self.start) if self.logarithmic else value - self.start
         return away / self.size
 
     def value(self, scaled: float) -> float:
-        """The value at a place on the scale of the search, held inside the bounds against rounding."""
+        """The value at a place on the scale of the search, clipped to the bounds."""
         away = scaled * self.size
         value = self.start * math.exp(away) if self.logarithmic else self.start + away
         return min(max(value, self.lower), self.upper)
 
     def slope(self, value: float) -> float:
-        """Change of the value per step of one on the scale of the search."""
+        """Derivative of the value with respect to the place on the scale of the search."""
         return value * self.size if self.logarithmic else self.size
 
     def prior_residual(self, value: float) -> float | None:
-        """How many standard deviations the value lies above the prior's mean; None without a prior."""
+        """Distance of the value from the prior's mean, in its standard deviations; None without a prior."""
         if self.prior_mean is None or self.prior_sd is None:
             return None
         return (value - self.prior_mean) / self.prior_sd
@@ -128,8 +135,8 @@ def bounds_of(parameters: tuple[Parameter, ...]) -> tuple[FloatArray, FloatArray
     return lower, upper
 
 
-def usual(key: str, start: float) -> Search:
-    """Size and bounds of a key for a search that begins at `start`; bounds hold the start and the key's own range."""
+def default_search(key: str, start: float) -> Search:
+    """Size and bounds of a key for a search that begins at `start`, inside the key's allowed range."""
     own = SCENARIO_KEYS[key.partition("@")[0]]
     search = own.search
     if search is None:
@@ -147,54 +154,54 @@ def usual(key: str, start: float) -> Search:
 
 
 def parameter_table(
-    keys: Sequence[str], values: Mapping[str, Any], given: Mapping[str, Mapping[str, float]]
+    keys: Sequence[str], values: Mapping[str, Any], tables: Mapping[str, Mapping[str, float]]
 ) -> tuple[Parameter, ...]:
     """The free parameters in the order of their keys.
 
     Parameters
     ----------
     keys
-        Full names; with ``@run`` behind where each run has its own.
+        Full names, or ``KEY@RUN`` for a separate value of a run.
     values
-        Where the search begins unless `given` says otherwise, by the same names or by those without ``@run``.
-    given
-        What `given_parameters` gives.
+        Start values by the same names or by those without ``@RUN``; `tables` override them.
+    tables
+        Entries of the tables ``[identify."KEY"]``, from `given_parameters`.
 
     Raises
     ------
     ParameterError
-        A key has no value to begin at, or what `Parameter` refuses.
+        A key has no start value, or an entry is not valid for a `Parameter`.
     """
-    return tuple(_parameter(key, values, given) for key in keys)
+    return tuple(_parameter(key, values, tables) for key in keys)
 
 
-def _parameter(key: str, values: Mapping[str, Any], given: Mapping[str, Mapping[str, float]]) -> Parameter:
+def _parameter(key: str, values: Mapping[str, Any], tables: Mapping[str, Mapping[str, float]]) -> Parameter:
     own = key.partition("@")[0]
-    said = {**given.get(own, {}), **given.get(key, {})}
-    start = said.get("start", values.get(key, values.get(own)))
+    entries = {**tables.get(own, {}), **tables.get(key, {})}
+    start = entries.get("start", values.get(key, values.get(own)))
     if start is None:
         raise ParameterError(f'{own} has no value in the scenario; give it one, or [identify."{own}"] start = …')
     start = float(start)
-    about = usual(own, start)
+    defaults = default_search(own, start)
     scenario_key = SCENARIO_KEYS[own]
     for name in ("start", "lower", "upper"):
-        if name in said:
-            scenario_key.in_range(said[name])
+        if name in entries:
+            scenario_key.in_range(entries[name])
     return Parameter(
         key=key,
         name=short_name(key),
         unit=scenario_key.unit,
         start=start,
-        lower=said.get("lower", about.lower),
-        upper=said.get("upper", about.upper),
-        size=about.size,
-        logarithmic=about.logarithmic,
-        prior_mean=said.get("prior_mean"),
-        prior_sd=said.get("prior_sd"),
+        lower=entries.get("lower", defaults.lower),
+        upper=entries.get("upper", defaults.upper),
+        size=defaults.size,
+        logarithmic=defaults.logarithmic,
+        prior_mean=entries.get("prior_mean"),
+        prior_sd=entries.get("prior_sd"),
     )
 
 
-def fixed_by_given(free: Sequence[str], given: Mapping[str, Any]) -> tuple[str, ...]:
-    """Keys with a table ``[identify."KEY"]`` that are not free: they keep the scenario's value."""
+def unused_tables(free: Sequence[str], tables: Mapping[str, Any]) -> tuple[str, ...]:
+    """Keys with a table ``[identify."KEY"]`` that are not free; they keep the scenario's value."""
     own = {key.partition("@")[0] for key in free}
-    return tuple(key for key in given if key.partition("@")[0] not in own)
+    return tuple(key for key in tables if key.partition("@")[0] not in own)

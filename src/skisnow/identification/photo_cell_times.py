@@ -14,11 +14,11 @@ from .._support.units import DEGREE
 from ..scenario import Plane, ScenarioFile
 from .data_tables import PhotoCellRun, PhotoCells
 from .glide import Glide, SlopeLine, passage_times, planes, slope_line
-from .problem import Fit, Kind, Values, values_of_run
+from .problem import Fit, Kind, Values, run_values
 
 FloatArray = npt.NDArray[np.float64]
 
-USED: Final = (
+USED_KEYS: Final = (
     "friction.mu_0",
     "friction.mu_1_s_per_m",
     "drag.drag_area_m2",
@@ -30,7 +30,7 @@ USED: Final = (
 )
 """Keys that the times depend on."""
 NOMINAL_SD: Final = 0.01
-"""Standard deviation (s) where none is stated: it cancels, the noise is then estimated from the residuals."""
+"""Standard deviation (s) if none is stated; it cancels, because the noise is then estimated from the residuals."""
 
 
 @dataclass(slots=True)
@@ -41,29 +41,30 @@ class PhotoCellTimes:
     ----------
     cells
         Measured data.
-    asked
+    scenario
         The scenario: slope, mass with both skis, and the values of the fixed inputs.
     starts
-        Values of ``start.…`` keys by run, where a run has its own.
+        Values of ``start.…`` keys for single runs, by run.
     clock_is_free
-        Whether each run's clock has a separate offset; else it shows 0 when the body leaves the start.
+        True if each run's clock has a separate offset; otherwise it is 0 when the body leaves the start.
     """
 
     cells: PhotoCells
-    asked: ScenarioFile
+    scenario: ScenarioFile
     starts: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
     clock_is_free: bool = False
     _line: SlopeLine = field(init=False)
     _skis: float = field(init=False)
 
     def __post_init__(self) -> None:
-        scenario = self.asked.scenario
+        scenario = self.scenario.scenario
         self._line = slope_line(scenario.slope, scenario.start.x)
         self._skis = 2.0 * scenario.ski.mass
         stated = {run.time_sd is not None for run in self.cells.runs}
         if len(stated) > 1:
             raise ParameterError(
-                f"{self.cells.name}: some runs state time_sd_s and some do not; write it for all of them, or for none"
+                f"{self.cells.name}: some runs state time_sd_s and some do not; write it for all of them, or for none",
+                code="partial_accuracy",
             )
         for run in self.cells.runs:
             if run.station[-1] > self._line.length:
@@ -84,11 +85,11 @@ class PhotoCellTimes:
 
     def depends_on(self, key: str) -> bool:
         """Friction, drag, start speed, mass, slope."""
-        return key in USED
+        return key in USED_KEYS
 
     @property
     def points(self) -> int:
-        """Passages; one at the start with a clock that starts there says nothing."""
+        """Number of passages, without those at the start of a clock that starts there."""
         return sum(len(run.station) for run in self.cells.runs) - self._trivial
 
     @property
@@ -108,44 +109,44 @@ class PhotoCellTimes:
     @property
     def series(self) -> tuple[int, ...]:
         """Passages of each run."""
-        return tuple(len(self._telling(run)[0]) for run in self.cells.runs)
+        return tuple(len(self._informative(run)[0]) for run in self.cells.runs)
 
     def residuals(self, many: Sequence[Values]) -> list[FloatArray | None]:
         """(Computed - measured)/sd of every passage, run after run."""
-        found: list[list[FloatArray]] = [[] for _ in many]
+        residuals: list[list[FloatArray]] = [[] for _ in many]
         for run in self.cells.runs:
-            station, time, sd = self._telling(run)
-            for parts, late in zip(found, self._times(run, station, many) - time, strict=True):
+            station, time, sd = self._informative(run)
+            for parts, late in zip(residuals, self._times(run, station, many) - time, strict=True):
                 parts.append(self._without_offset(late, sd) / sd)
-        return [np.concatenate(parts) for parts in found]
+        return [np.concatenate(parts) for parts in residuals]
 
     final_residuals = residuals
 
     def fits(self, values: Values) -> tuple[Fit, ...]:
         """Times over the distance."""
-        found = []
+        fits = []
         for run in self.cells.runs:
-            station, time, sd = self._telling(run)
+            station, time, sd = self._informative(run)
             late = self._times(run, station, [values])[0] - time
             fitted = time + self._without_offset(late, sd)
-            columns = (each[:, None] for each in (time, fitted, sd))
+            columns = (values[:, None] for values in (time, fitted, sd))
             measured, computed, spread = columns
-            found.append(
+            fits.append(
                 Fit(
                     name=run.name, kind="photo_cells", along=station, labels=("time (s)",), measured=measured,
                     fitted=computed, sd=spread,
                 )
             )  # fmt: skip
-        return tuple(found)
+        return tuple(fits)
 
     def warnings(self, values: Values) -> tuple[str, ...]:  # noqa: ARG002 - the same for all values
-        """A heading that plays no part."""
-        if self.asked.scenario.start.heading == 0.0:
+        """Warning if the scenario's heading has no effect."""
+        if self.scenario.scenario.start.heading == 0.0:
             return ()
-        heading = self.asked.scenario.start.heading / DEGREE
+        heading = self.scenario.scenario.start.heading / DEGREE
         return (f"the scenario's heading of {heading:g}° plays no part: photo cells stand down the fall line",)
 
-    def _telling(self, run: PhotoCellRun) -> tuple[FloatArray, FloatArray, FloatArray]:
+    def _informative(self, run: PhotoCellRun) -> tuple[FloatArray, FloatArray, FloatArray]:
         sd = run.time_sd if run.time_sd is not None else np.full(len(run.time), NOMINAL_SD)
         first = int(not self.clock_is_free and run.station[0] == 0.0)
         return run.station[first:], run.time[first:], sd[first:]
@@ -157,20 +158,20 @@ class PhotoCellTimes:
         return np.asarray(late - np.sum(weight * late) / np.sum(weight))
 
     def _times(self, run: PhotoCellRun, station: FloatArray, many: Sequence[Values]) -> FloatArray:
-        of = {**self.asked.values, **self.starts.get(run.name, {})}
-        sets = [{**of, **values_of_run(each, run.name)} for each in many]
-        taken = float(run.time[-1] - (run.time[0] if self.clock_is_free else 0.0))
-        return passage_times(self._line_of(sets), self._glide(sets), station, max(taken, 1e-3))
+        fixed = {**self.scenario.values, **self.starts.get(run.name, {})}
+        sets = [{**fixed, **run_values(values, run.name)} for values in many]
+        descriptions = float(run.time[-1] - (run.time[0] if self.clock_is_free else 0.0))
+        return passage_times(self._line_of(sets), self._glide(sets), station, max(descriptions, 1e-3))
 
     def _line_of(self, sets: Sequence[Mapping[str, Any]]) -> SlopeLine:
-        if not isinstance(self.asked.scenario.slope, Plane):
+        if not isinstance(self.scenario.scenario.slope, Plane):
             return self._line
-        angle = np.array([each["slope.angle_deg"] for each in sets]) * DEGREE
+        angle = np.array([values["slope.angle_deg"] for values in sets]) * DEGREE
         return planes(angle)
 
     def _glide(self, sets: Sequence[Mapping[str, Any]]) -> Glide:
         def column(key: str) -> FloatArray:
-            return np.array([float(each[key]) for each in sets])
+            return np.array([float(values[key]) for values in sets])
 
         mass = column("sledge.mass_kg") + self._skis
         return Glide(

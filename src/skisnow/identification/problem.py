@@ -20,21 +20,21 @@ Values: TypeAlias = Mapping[str, float]
 """Parameters by key, in the units that the keys name."""
 Kind: TypeAlias = Literal["track", "photo_cells", "marks"]
 START: Final = "start."
-"""Keys that every run has for itself."""
+"""Beginning of the keys that have a separate value in each run."""
 
 
 @dataclass(frozen=True, slots=True)
 class Problem:
-    """What a search makes small.
+    """Least-squares problem of a search.
 
     Attributes
     ----------
     parameters
-        The free ones.
+        The free parameters.
     observations
-        Data of one kind or several.
+        Data of one or several kinds.
     noise
-        For each of them the standard deviation of its residuals: one where accuracies are stated, else an estimate.
+        Standard deviation of the residuals of each of them: 1 if accuracies are stated, otherwise estimated.
     """
 
     parameters: tuple[Parameter, ...]
@@ -58,46 +58,46 @@ class Problem:
 
     @property
     def priors(self) -> int:
-        """How many parameters have one."""
+        """Number of parameters with a prior."""
         return sum(parameter.prior_sd is not None for parameter in self.parameters)
 
     @property
     def lengths(self) -> tuple[int, ...]:
-        """How many residuals each kind of data has."""
+        """Number of residuals of each kind of data."""
         return tuple(sum(observation.series) for observation in self.observations)
 
     def residuals(self, places: Sequence[FloatArray]) -> list[FloatArray | None]:
-        """Of data and priors at places of the search."""
-        return self._collected(places, lambda each, many: each.residuals(many))
+        """Residuals of data and priors at each place of the search; None for a place without a simulation."""
+        return self._stacked(places, lambda observation, many: observation.residuals(many))
 
     def final_residuals(self, places: Sequence[FloatArray]) -> list[FloatArray | None]:
-        """The same with the accuracy of the answer."""
-        return self._collected(places, lambda each, many: each.final_residuals(many))
+        """Residuals computed with the scenario's solver, at the accuracy of the result."""
+        return self._stacked(places, lambda observation, many: observation.final_residuals(many))
 
     def values(self, place: FloatArray) -> dict[str, float]:
         """Parameters by key."""
         return values_of(self.parameters, place)
 
     def with_noise_of(self, residuals: FloatArray) -> Problem:
-        """The same with the noise that these residuals show, where it is not stated."""
+        """The problem with the noise estimated from these residuals, unless it is stated."""
         share = max(1.0 - (len(self.parameters) + self.nuisances) / max(sum(self.lengths), 1), 1e-3)
-        found, first = [], 0
+        noises, first = [], 0
         for observation, length, noise in zip(self.observations, self.lengths, self.noise, strict=True):
             part = residuals[first : first + length]
             first += length
             measured = noise * float(np.sqrt(np.mean(part**2) / share))
-            found.append(1.0 if observation.accuracy_is_stated else max(measured, 1e-12))
-        return replace(self, noise=tuple(found))
+            noises.append(1.0 if observation.accuracy_is_stated else max(measured, 1e-12))
+        return replace(self, noise=tuple(noises))
 
     def weights(self, other: Problem) -> FloatArray:
-        """By which residuals of `other` are multiplied to become residuals of this one."""
+        """Factors (n,) that convert residuals of `other` to residuals of this problem."""
         ratios = [
             np.full(length, theirs / ours)
             for length, theirs, ours in zip(self.lengths, other.noise, self.noise, strict=True)
         ]
         return np.concatenate([*ratios, np.ones(self.priors)])
 
-    def _collected(
+    def _stacked(
         self,
         places: Sequence[FloatArray],
         of: Callable[[Observations, Sequence[Values]], list[FloatArray | None]],
@@ -117,25 +117,25 @@ class Problem:
         return np.concatenate(pieces)
 
 
-def problem_of(parameters: tuple[Parameter, ...], observations: tuple[Observations, ...]) -> Problem:
-    """A problem before anything is known of its noise."""
+def unweighted_problem(parameters: tuple[Parameter, ...], observations: tuple[Observations, ...]) -> Problem:
+    """A problem whose noise is not estimated yet."""
     return Problem(parameters, observations, tuple(1.0 for _ in observations))
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True, repr=False)
 class Fit(ShownFields):
-    """One run's data beside what the parameters give.
+    """Measured and fitted values of one run.
 
     Attributes
     ----------
     name, kind
-        Name of the run.
+        Name of the run, and kind of its data.
     along : (n,)
         Abscissa of the points: time (s) of a track, distance (m) of photo cells, number of a place of a groove.
     labels
         Names of the k quantities, with units.
     measured, fitted, sd : (n, k)
-        NaN where a quantity was not measured; `sd` is what the residual was divided by.
+        Values and the standard deviations that divide the residuals; NaN if a quantity was not measured.
     """
 
     name: str
@@ -161,77 +161,77 @@ class Observations(Protocol):
 
     @property
     def runs(self) -> tuple[str, ...]:
-        """Names of the runs; each may have a start of its own."""
+        """Names of the runs; each can have a separate start."""
 
     @property
     def points(self) -> int:
         """Number of points: times of a track, cells passed, places of grooves."""
 
     def depends_on(self, key: str) -> bool:
-        """Whether the scenario's key can play a part in these data."""
+        """True if the scenario's key can affect these data."""
 
     @property
     def nuisances(self) -> int:
-        """Numbers that are fitted inside the residuals, such as the offset of a clock."""
+        """Number of values that are fitted inside the residuals, such as the offset of a clock."""
 
     @property
     def accuracy_is_stated(self) -> bool:
-        """Whether residuals are in stated standard deviations, or in estimated ones that only weigh them."""
+        """True if residuals are in stated standard deviations, False if these are estimated."""
 
     @property
     def series(self) -> tuple[int, ...]:
-        """Lengths of the pieces of the residuals that follow each other in time."""
+        """Lengths of the time series in the residuals."""
 
     def residuals(self, many: Sequence[Values]) -> list[FloatArray | None]:
-        """(Computed - measured)/standard deviation for each set of parameters; None where nothing can be computed."""
+        """(Computed - measured)/standard deviation (n,) for each set of parameters; None if it cannot be computed."""
 
     def final_residuals(self, many: Sequence[Values]) -> list[FloatArray | None]:
-        """The same with the accuracy of the answer, where the search is content with less."""
+        """Residuals at the accuracy of the result; those of the search can be less accurate."""
 
     def fits(self, values: Values) -> tuple[Fit, ...]:
-        """What to draw."""
+        """Measured and fitted values of each run."""
 
     def warnings(self, values: Values) -> tuple[str, ...]:
-        """What a user should know of these data at these parameters."""
+        """Warnings about these data at these parameters."""
 
 
-def keys_of_runs(keys: Sequence[str], runs: Sequence[str]) -> tuple[str, ...]:
-    """The keys, those of the start and those that end in ``@each`` once for each run where there are several.
+def expand_keys(keys: Sequence[str], runs: Sequence[str]) -> tuple[str, ...]:
+    """The free keys; with several runs, keys of the start and keys with ``@each`` are repeated for each run.
 
     Raises
     ------
     ParameterError
-        A run is named that is not there, or a key is looked for twice in one run.
+        A run is unknown, or a key is free twice in one run.
 
     Examples
     --------
-    >>> keys_of_runs(["friction.mu_0", "start.speed_m_per_s"], ["a", "b"])
+    >>> expand_keys(["friction.mu_0", "start.speed_m_per_s"], ["a", "b"])
     ('friction.mu_0', 'start.speed_m_per_s@a', 'start.speed_m_per_s@b')
-    >>> keys_of_runs(["drag.drag_area_m2@each", "friction.mu_0@b"], ["a", "b"])
+    >>> expand_keys(["drag.drag_area_m2@each", "friction.mu_0@b"], ["a", "b"])
     ('drag.drag_area_m2@a', 'drag.drag_area_m2@b', 'friction.mu_0@b')
     """
-    found: list[str] = []
+    expanded: list[str] = []
     for key in keys:
         own, at, run = key.partition("@")
         if at and run != EACH and run not in runs:
-            raise ParameterError(f"--free: {key}: there is no run {run!r}. {nearest(run, runs)}")
+            raise ParameterError(f"--free: {key}: there is no run {run!r}. {nearest(run, runs)}", code="unknown_run")
         if len(runs) < 2:
-            found.append(own)
+            expanded.append(own)
         elif run == EACH or (own.startswith(START) and not at):
-            found += [f"{own}@{each}" for each in runs]
+            expanded += [f"{own}@{name}" for name in runs]
         else:
-            found.append(key)
-    for key in found:
-        if found.count(key) > 1:
-            raise ParameterError(f"--free: {key} is looked for twice. Remove one of them")
-    return tuple(found)
+            expanded.append(key)
+    for key in expanded:
+        if expanded.count(key) > 1:
+            raise ParameterError(f"--free: {key} is given twice. Remove one of them", code="repeated_key")
+    return tuple(expanded)
 
 
-def values_of_run(values: Values, run: str) -> dict[str, float]:
-    """The parameters that a run is computed with, under the scenario's own keys."""
-    found = {}
+def run_values(values: Values, run: str) -> dict[str, float]:
+    """The parameters of one run, by the scenario's keys."""
+    selected = {}
     for key, value in values.items():
-        own, at, whose = key.partition("@")
-        if not at or whose == run:
-            found[own] = value
-    return found
+        own, at, key_run = key.partition("@")
+        if not at or key_run == run:
+            selected[own] = value
+    return selected

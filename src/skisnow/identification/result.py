@@ -34,20 +34,20 @@ REASONS: dict[Outcome, str] = {
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class Identified(Shown):
-    """One parameter, in the unit that its key names; None where a number does not exist.
+    """Estimate of one parameter, in the unit that its key names; None if a number does not exist.
 
     Attributes
     ----------
     parameter
         The free parameter.
     value, standard_error, interval
-        The best value, and what the curvature of the sum of squares says of it; an end that is open is None.
+        Best value; standard error and 95 % interval from the curvature of the sum of squares; None for an open end.
     profile_interval, bootstrap_interval, posterior_interval
-        By other ways, where they were asked for.
+        95 % intervals by other methods, if requested.
     at_bound
-        Whether the best value sits on a bound.
+        True if the best value is on a bound.
     identifiable
-        Whether the data say something about it.
+        True if the data determine the parameter.
     """
 
     parameter: Parameter
@@ -79,12 +79,14 @@ class Profile(Shown):
 
     Attributes
     ----------
+    key
+        Key of the parameter.
     value
-        (m,) of the parameter, rising.
+        (m,) values of the parameter, rising.
     rise
-        (m,) of the sum of squares above its least, in squared standard deviations of the data.
+        (m,) rise of the sum of squares above its minimum, in squared standard deviations of the data.
     limit
-        The rise at the ends of the 95 % interval.
+        Rise at the ends of the 95 % interval.
     """
 
     key: str
@@ -98,7 +100,7 @@ class Profile(Shown):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Effort:
-    """What it took: simulated runs computed and taken from an earlier start, Jacobians, time (s)."""
+    """Effort of a search: runs simulated, runs restored from an earlier search, Jacobians, time (s)."""
 
     simulations: int = 0
     kept_simulations: int = 0
@@ -113,29 +115,29 @@ class Identification(Shown):
     Attributes
     ----------
     outcome, reason
-        How it ended, and what that means, in words.
+        Outcome, and a sentence that explains it.
     scenario
-        Its title.
+        Title of the scenario.
     parameters
-        The free ones, in the order in which they were named.
+        Estimates of the free parameters, in the order of the request.
     correlation
-        (p, p); NaN where nothing is known.
+        (p, p); NaN for undetermined parameters.
     covariance
-        (p, p) in the keys' units, linearised; infinite or NaN where nothing is known.
+        (p, p) in the keys' units, linearised; infinite or NaN for undetermined parameters.
     noise
-        Standard deviation of each kind of data's residuals over the stated one (1 where it is stated and true).
+        Standard deviation of the residuals of each kind of data, relative to the stated one (ideally 1).
     accuracy_is_stated
-        Whether the data state theirs.
+        True if the data state their accuracy.
     points, degrees_of_freedom
-        Points measured; residuals and priors less what was fitted.
+        Number of measured points; number of residuals and priors minus fitted values.
     warnings, methods
-        What to beware of; how it was computed.
+        Warnings, and sentences on how the result was computed.
     fits
-        What was measured and what the best parameters give, run by run.
+        Measured and fitted values of each run.
     starts
-        Places (p,) of several starts and the sums of squares that they led to; None where nothing could be computed.
+        Places (p,) of the starts and the sums of squares of their searches; None for a start without a simulation.
     profiles, bootstrap, posterior
-        Where asked for; samples are (N, p) in the keys' units.
+        If requested; samples are (N, p) in the keys' units.
     effort
         Effort of the search.
     data
@@ -214,7 +216,7 @@ def identification_dict(identification: Identification, *, files: Iterable[Path]
         "points": identification.points,
         "degrees_of_freedom": identification.degrees_of_freedom,
         "accuracy_is_stated": identification.accuracy_is_stated,
-        "noise": [json_number(each) for each in identification.noise],
+        "noise": [json_number(noise) for noise in identification.noise],
         "runs": [{"name": fit.name, "kind": fit.kind, "rms": _rms(fit)} for fit in identification.fits],
         "effort": {
             "simulations": identification.effort.simulations,
@@ -255,8 +257,8 @@ def _pair(interval: Interval | None) -> list[float | None] | None:
 
 
 def _rms(fit: Fit) -> dict[str, float | None]:
-    found: dict[str, float | None] = {}
+    rms: dict[str, float | None] = {}
     for i, label in enumerate(fit.labels):
-        known = fit.residual[np.isfinite(fit.residual[:, i]), i]
-        found[label] = float(np.sqrt(np.mean(known**2))) if known.size else None
-    return found
+        residuals = fit.residual[np.isfinite(fit.residual[:, i]), i]
+        rms[label] = float(np.sqrt(np.mean(residuals**2))) if residuals.size else None
+    return rms

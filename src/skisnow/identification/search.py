@@ -1,7 +1,7 @@
-"""Least squares inside bounds, made for residuals that come from simulations: Levenberg and Marquardt in batches.
+"""Bounded least squares for simulated residuals: the Levenberg-Marquardt method in batches.
 
-Everything that can be asked at once is asked at once: the runs of a Jacobian, and trial steps of several lengths. Steps
-of the differences are large, 1 to 5 % of a parameter's size: smaller ones see contact that switches, not the trend.
+All runs of a Jacobian are simulated in one batch, and so are trial steps of several lengths. Finite differences take
+large steps, 1 to 5 % of a parameter's size: smaller ones show switching contacts instead of the trend.
 """
 
 from __future__ import annotations
@@ -16,47 +16,47 @@ from scipy.optimize import lsq_linear
 
 FloatArray = npt.NDArray[np.float64]
 Residuals: TypeAlias = Callable[[Sequence[FloatArray]], list[FloatArray | None]]
-"""From places of the search to residuals, all at once; None where there are none."""
+"""Function from places of the search to their residuals, all in one batch; None for a place without residuals."""
 State: TypeAlias = Literal["converged", "not_converged", "interrupted"]
 Progress: TypeAlias = Callable[[str], None]
 
 _SMALLEST_DAMPING, _LARGEST_DAMPING = 1e-9, 1e9
 _FIRST_DAMPING: Final = 1e-3
 _SLIGHT: Final = 3.0
-"""Change of the residuals (standard deviations of one) over which derivatives hold, however far the parameters went."""
-_KEPT_PROMISE: Final = 0.5
-"""Share of the fall that derivatives foretold, below which they are taken again."""
+"""Change of the residuals (in standard deviations of one) up to which a Jacobian stays valid after a long move."""
+_PREDICTED_FALL: Final = 0.5
+"""The Jacobian is computed again if the sum of squares fell by less than this share of the predicted fall."""
 _AT_BOUND: Final = 1e-9
 """Distance (sizes) from a bound that counts as on it."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SearchOptions:
-    """How the search goes.
+    """Step sizes and stopping rules of a search; lengths are in parameters' sizes.
 
     Attributes
     ----------
     smallest_step, largest_step
-        Of the differences, in parameters' sizes; between them the parameter's standard error so far.
+        Limits of the finite-difference step; between them it is the parameter's current standard error.
     tolerance
-        A full step that moves the residuals by less than this many standard deviations of one is the end.
+        The search converged if a full step moves the residuals by fewer standard deviations of one residual.
     worth
-        Fall of the sum of squares, in squared standard deviations, that is worth another round.
+        Smallest fall of the sum of squares, in squared standard deviations, for which the search continues.
     rough
-        Residuals move by so many standard deviations for no reason: where no step improves and what is left to gain
-        is smaller than this, the search is at its end too.
+        Numerical roughness of the residuals in standard deviations: the search also converged if no step improves and
+        the remaining gain is smaller.
     keeps_jacobian
-        Derivatives are taken again farther away than this from where they were taken, in sizes; 0: always.
+        Distance from its place up to which a Jacobian is used again; 0: it is always computed again.
     longest_move
-        Of a parameter in one step, in sizes: beyond it nothing is known yet.
+        Longest step of a parameter.
     smallest_move
-        A full step shorter than this, in sizes, is the end: of data without noise.
+        The search converged if a full step is shorter (for data without noise).
     most_rounds
-        Jacobians at most.
+        Maximum number of Jacobians.
     candidates
-        Trial steps at once.
+        Number of trial steps in one batch.
     accuracy_is_stated
-        Whether one is the standard deviation of a residual, or it is estimated from them.
+        True if residuals have a standard deviation of 1; otherwise it is estimated from them.
     """
 
     smallest_step: float = 0.01
@@ -72,7 +72,7 @@ class SearchOptions:
     accuracy_is_stated: bool = False
 
 
-FINE: Final = SearchOptions(
+CLOSED_FORM_SEARCH: Final = SearchOptions(
     smallest_step=1e-3,
     largest_step=1e-3,
     tolerance=1e-5,
@@ -88,20 +88,21 @@ FINE: Final = SearchOptions(
 
 @dataclass(frozen=True, slots=True, eq=False)
 class SearchState:
-    """Where a search is, or ended.
+    """Current or final place of a search.
 
     Attributes
     ----------
     place
         (p,) in sizes from the start.
     residuals, jacobian, second
-        (n,), (n, p), and (n, p) second differences along each parameter; the last two None before they are known.
+        Residuals (n,), their derivatives (n, p), and second differences along each parameter (n, p); None if not
+        computed yet.
     state
-        How it ended.
+        Outcome of the search.
     rounds
-        Jacobians by central differences so far.
+        Number of Jacobians computed by central differences.
     differentiated_at, is_central, is_trusted
-        Where the derivatives were taken, whether from both sides, and whether the last step did what they foretold.
+        Place of the derivatives; True if they are central differences; True if they predicted the last step well.
     """
 
     place: FloatArray
@@ -122,18 +123,20 @@ class SearchState:
 
 @dataclass(slots=True)
 class Search:
-    """One search.
+    """Search for the minimum of a sum of squares.
 
     Attributes
     ----------
     residuals
-        What is made small.
+        Function that computes the residuals.
     lower, upper
-        Bounds, in sizes from the start.
+        Bounds (p,), in sizes from the start.
     options
-        How.
+        Step sizes and stopping rules.
     progress
-        Called with where the search is.
+        Called with a line of text after each round.
+    best
+        Best place so far.
     """
 
     residuals: Residuals
@@ -144,47 +147,50 @@ class Search:
     best: SearchState | None = None
 
     def run(self, start: FloatArray) -> SearchState | None:
-        """Search from a place; None where there are no residuals at the start.
+        """Search from a place; return None if the residuals cannot be computed there.
 
-        Ctrl-C ends it with what is best so far in the state "interrupted"; before the first residuals it passes on.
+        Ctrl-C ends the search: it returns the best place so far with the state "interrupted". Before the first
+        residuals KeyboardInterrupt is raised.
         """
         try:
-            self.best = self._begun(start)
-            return None if self.best is None else self._searched()
+            self.best = self._begin(start)
+            return None if self.best is None else self._iterate()
         except KeyboardInterrupt:
             if self.best is None:
                 raise
             return replace(self.best, state="interrupted")
 
-    def _searched(self) -> SearchState:
+    def _iterate(self) -> SearchState:
         damping = _FIRST_DAMPING
         for _ in range(self.options.most_rounds):
-            here = self._with_jacobian(self._seen())
+            here = self._with_jacobian(self._require_best())
             left = self._left_to_gain(here)
             ends = left <= self.options.tolerance or self._settled(here)
             if ends and here.is_central:
                 return replace(here, state="converged")
             if ends:
-                self._differentiated(here)
+                self._differentiate(here)
                 continue
-            better, damping = self._stepped(here, damping)
+            better, damping = self._step_on(here, damping)
             if better is not None:
                 self.best = better
             if better is None or here.cost - better.cost < self.options.worth * self.noise(here) ** 2:
                 if here.is_central and here.differentiated_at is here.place:
-                    return replace(self._seen(), state="converged" if left <= self.options.rough else "not_converged")
-                self._differentiated(self._seen())
+                    return replace(
+                        self._require_best(), state="converged" if left <= self.options.rough else "not_converged"
+                    )
+                self._differentiate(self._require_best())
                 damping = _FIRST_DAMPING
-        return replace(self._differentiated(self._seen()), state="not_converged")
+        return replace(self._differentiate(self._require_best()), state="not_converged")
 
-    def _seen(self) -> SearchState:
+    def _require_best(self) -> SearchState:
         assert self.best is not None
         return self.best
 
     def _with_jacobian(self, state: SearchState) -> SearchState:
-        """With derivatives that hold here: not one-sided ones, nor of a place too far away, nor such as failed."""
+        """Return the state with a valid Jacobian; it is computed again if one-sided, too far away, or inaccurate."""
         if state.jacobian is None or state.differentiated_at is None:
-            return self._differentiated(state)
+            return self._differentiate(state)
         away = state.place - state.differentiated_at
         if not np.any(away):
             return state
@@ -192,10 +198,10 @@ class Search:
             _SLIGHT, 1e3 * self.options.keeps_jacobian
         )
         if far or not state.is_central or not state.is_trusted:
-            return self._differentiated(state)
+            return self._differentiate(state)
         return state
 
-    def _differentiated(self, state: SearchState) -> SearchState:
+    def _differentiate(self, state: SearchState) -> SearchState:
         jacobian, second = self._differences(state)
         renewed = replace(
             state,
@@ -210,24 +216,24 @@ class Search:
         self.progress(f"round {renewed.rounds}: rms residual {np.sqrt(renewed.cost / len(renewed.residuals)):.4g}")
         return renewed
 
-    def _begun(self, start: FloatArray) -> SearchState | None:
-        """Residuals of the start and one-sided derivatives there, in one batch: enough for a first step."""
+    def _begin(self, start: FloatArray) -> SearchState | None:
+        """Residuals and one-sided derivatives at the start, computed in one batch."""
         places = [start]
         steps = np.full(len(start), np.sqrt(self.options.smallest_step * self.options.largest_step))
         for j, step in enumerate(steps):
             place = start.copy()
             place[j] += step if start[j] + step <= self.upper[j] else -step
             places.append(np.clip(place, self.lower, self.upper))
-        asked = self.residuals(places)
-        first = asked[0]
+        batch = self.residuals(places)
+        first = batch[0]
         if first is None:
             return None
-        ends = [(places[j + 1][j] - start[j], asked[j + 1]) for j in range(len(start))]
+        ends = [(places[j + 1][j] - start[j], batch[j + 1]) for j in range(len(start))]
         jacobian = np.column_stack([_slope_and_bend([end], first)[0] for end in ends])
         return SearchState(start, first, jacobian, np.zeros_like(jacobian), differentiated_at=start)
 
-    def polished(self, state: SearchState, residuals: Residuals, *, most: int = 2) -> SearchState:
-        """Go on with other, dearer residuals and the Jacobian that is known; the best place seen with those."""
+    def polish(self, state: SearchState, residuals: Residuals, *, most: int = 2) -> SearchState:
+        """Take at most `most` steps with other, more expensive residuals and the current Jacobian; return the best."""
         assert state.jacobian is not None
         first = residuals([state.place])[0]
         if first is None:
@@ -268,19 +274,20 @@ class Search:
         return self._step(state, _SMALLEST_DAMPING)
 
     def _step(self, state: SearchState, damping: float) -> FloatArray:
-        """The damped step inside the bounds, no longer than is known."""
+        """Damped step inside the bounds and no longer than `longest_move`."""
         assert state.jacobian is not None
         low = np.maximum(self.lower - state.place, -self.options.longest_move)
         high = np.minimum(self.upper - state.place, self.options.longest_move)
         return step_inside(state.jacobian, state.residuals, low, high, damping=damping)
 
-    def _stepped(self, state: SearchState, damping: float) -> tuple[SearchState | None, float]:
-        """The best of some trial steps; None where none of ever shorter ones improves."""
+    def _step_on(self, state: SearchState, damping: float) -> tuple[SearchState | None, float]:
+        """Best of several trial steps and the next damping; None if even the shortest step does not improve."""
         for _ in range(4):
             dampings = [damping * 10.0 ** (2 * i - 1) for i in range(self.options.candidates)]
-            places = [np.clip(state.place + self._step(state, each), self.lower, self.upper) for each in dampings]
+            steps = [self._step(state, trial_damping) for trial_damping in dampings]
+            places = [np.clip(state.place + step, self.lower, self.upper) for step in steps]
             tried = self.residuals(places)
-            costs = [np.inf if each is None else float(each @ each) for each in tried]
+            costs = [np.inf if residuals is None else float(residuals @ residuals) for residuals in tried]
             number = int(np.argmin(costs))
             best = tried[number]
             if best is not None and costs[number] < state.cost:
@@ -289,7 +296,7 @@ class Search:
         return None, damping
 
     def _differences(self, state: SearchState) -> tuple[FloatArray, FloatArray]:
-        """Central differences, one-sided where a bound is near or there are no residuals."""
+        """Central differences; one-sided next to a bound or next to a place without residuals."""
         steps = self._difference_steps(state)
         places = []
         for j, step in enumerate(steps):
@@ -297,11 +304,11 @@ class Search:
                 place = state.place.copy()
                 place[j] = np.clip(place[j] + sign * step, self.lower[j], self.upper[j])
                 places.append(place)
-        asked = self.residuals(places)
+        batch = self.residuals(places)
         jacobian = np.zeros((len(state.residuals), len(steps)))
         second = np.zeros_like(jacobian)
         for j in range(len(steps)):
-            ends = [(places[i][j] - state.place[j], asked[i]) for i in (2 * j, 2 * j + 1)]
+            ends = [(places[i][j] - state.place[j], batch[i]) for i in (2 * j, 2 * j + 1)]
             jacobian[:, j], second[:, j] = _slope_and_bend(ends, state.residuals)
         return jacobian, second
 
@@ -332,33 +339,33 @@ def step_inside(
     system = np.vstack([jacobian / scale, np.sqrt(damping) * np.eye(len(scale))])
     wanted = np.concatenate([-residuals, np.zeros(len(scale))])
     room = np.maximum(high - low, _AT_BOUND)
-    solved = lsq_linear(system, wanted, bounds=(low * scale, (low + room) * scale), method="bvls")
-    return np.asarray(np.clip(solved.x / scale, low, high))
+    solution = lsq_linear(system, wanted, bounds=(low * scale, (low + room) * scale), method="bvls")
+    return np.asarray(np.clip(solution.x / scale, low, high))
 
 
 def _moved(state: SearchState, place: FloatArray, residuals: FloatArray) -> SearchState:
-    """At a better place, with the derivatives as they were.
+    """State at a better place, with the derivatives of the old one.
 
-    Broyden's update is left away: along a direction that hardly shows in the data it would learn the roughness of the
-    simulation, and make the direction look well known.
+    Broyden's update is not used: along a direction that hardly affects the data it would fit the roughness of the
+    simulation, and the direction would look well determined.
     """
     assert state.jacobian is not None
-    foretold = state.residuals + state.jacobian @ (place - state.place)
-    promised = state.cost - float(foretold @ foretold)
-    kept = state.cost - float(residuals @ residuals)
-    return replace(state, place=place, residuals=residuals, is_trusted=kept >= _KEPT_PROMISE * promised)
+    predicted = state.residuals + state.jacobian @ (place - state.place)
+    predicted_fall = state.cost - float(predicted @ predicted)
+    actual_fall = state.cost - float(residuals @ residuals)
+    return replace(state, place=place, residuals=residuals, is_trusted=actual_fall >= _PREDICTED_FALL * predicted_fall)
 
 
 def _slope_and_bend(
     ends: Sequence[tuple[float, FloatArray | None]], middle: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    """First and second derivative from the residuals at two places beside the middle, as far as there are any."""
-    known = [(away, value) for away, value in ends if value is not None and abs(away) > 1e-12]
-    slopes = [(value - middle) / away for away, value in known]
+    """First and second derivative of the residuals from the places beside `middle`; 0 if both are missing."""
+    sides = [(away, value) for away, value in ends if value is not None and abs(away) > 1e-12]
+    slopes = [(value - middle) / away for away, value in sides]
     if not slopes:
         return np.zeros_like(middle), np.zeros_like(middle)
     if len(slopes) == 1:
         return slopes[0], np.zeros_like(middle)
-    (one, _), (other, _) = known
+    (one, _), (other, _) = sides
     bend = 2.0 * (slopes[0] - slopes[1]) / (one - other)
     return slopes[0] - 0.5 * bend * one, bend

@@ -26,48 +26,48 @@ from ..ski.sources import Sources
 
 FloatArray = npt.NDArray[np.float64]
 SEARCH_STEP: Final = 4e-3
-"""Fixed step (s) of the fast mode in a search: 1 to 3 cm off after 46 m, on very hard snow too long (modelling
-assumption)."""
+"""Fixed step (s) of the fast mode in a search: error of 1 to 3 cm after 46 m; too long on very hard snow."""
 OUTPUT_INTERVAL: Final = 0.02
-"""Between the outputs (s) that a cubic with their velocities joins: exact to 0.1 mm on R = 5 m at 10 m/s."""
+"""Time (s) between outputs, which are interpolated by cubics with their velocities: error of 0.1 mm on R = 5 m at
+10 m/s."""
 _AFTER_THE_LAST: Final = 1e-9
 _SNOW: Final = ("snow.H_V_N_per_mm3", "snow.S_f_N_per_mm2")
 
 
 @dataclass(slots=True)
 class Simulations:
-    """Runs tasks, all at once, each only once.
+    """Simulates batches of tasks in parallel; each different task is simulated once.
 
     Attributes
     ----------
     simulate
-        What does one.
-    kept
-        Rows that are finished, and where new ones are kept.
+        Simulates one task.
+    stored
+        Storage of finished rows.
     workers
-        Number of processes; None: as many as this process has cores; 1: this process itself.
+        Number of processes (default: the number of cores available to this process); 1: this process itself.
     progress
         Called with the number of runs computed so far.
     executor
         Executor of the simulations (default: processes of this computer).
-    computed, found
-        How many were computed here, and how many were finished before.
+    computed, restored
+        Number of runs computed here, and of runs restored from `stored`.
     """
 
     simulate: RunSimulation
-    kept: KeptRows = field(default_factory=KeptRows)
+    stored: KeptRows = field(default_factory=KeptRows)
     workers: int | None = None
     progress: Callable[[int], None] = field(default=lambda _: None)
     executor: ExecutorLike | None = None
     computed: int = 0
-    found: int = 0
+    restored: int = 0
     _pool: Pool = field(init=False)
     _before: frozenset[int] = field(init=False)
 
     def __post_init__(self) -> None:
         advice = "finished runs are kept. Start again with --resume, with fewer workers"
         self._pool = Pool(self.simulate, workers_in_force(self.workers), advice=advice, executor=self.executor)
-        self._before = frozenset(self.kept.numbers())
+        self._before = frozenset(self.stored.numbers())
 
     def __call__(self, tasks: Sequence[RunTask]) -> list[Row]:
         """Rows of all tasks, in their order.
@@ -75,18 +75,18 @@ class Simulations:
         Raises
         ------
         SkisnowError
-            A process ended unexpectedly; what was finished is kept.
+            A process ended unexpectedly; finished rows stay stored.
         """
         numbers = [task_number(task) for task in tasks]
-        missing = {number: task for number, task in zip(numbers, tasks, strict=True) if number not in self.kept}
-        self.found += sum(number in self._before for number in dict.fromkeys(numbers))
+        missing = {number: task for number, task in zip(numbers, tasks, strict=True) if number not in self.stored}
+        self.restored += sum(number in self._before for number in dict.fromkeys(numbers))
         for rows in self._pool.rows(list(missing.items())):
-            self.computed += self.kept.add(rows)
+            self.computed += self.stored.add(rows)
             self.progress(self.computed)
-        return [self.kept.row(number) for number in numbers]
+        return [self.stored.row(number) for number in numbers]
 
     def __enter__(self) -> Self:
-        """Start nothing yet."""
+        """Return self; processes start with the first tasks."""
         return self
 
     def __exit__(
@@ -94,11 +94,11 @@ class Simulations:
     ) -> None:
         """End the processes."""
         self._pool.__exit__(kind, error, trace)
-        self.kept.close()
+        self.stored.close()
 
 
 def task_number(task: RunTask) -> int:
-    """The same number for the same task, at every start.
+    """Number that identifies a task, the same in every process.
 
     >>> task_number(RunTask({"friction.mu_0": 0.05}, 0, False))
     851841852695433548
@@ -118,7 +118,7 @@ class RunTask:
     run
         Number of the track.
     final
-        Whether with the accuracy of the answer: the scenario's own solver.
+        True to use the scenario's solver, with the accuracy of the result.
     """
 
     values: Mapping[str, float]
@@ -128,22 +128,22 @@ class RunTask:
 
 @dataclass(slots=True)
 class RunSimulation:
-    """Simulates what tracks are compared with. An instance can be handed to another process.
+    """Simulates a run that tracks are compared with; instances can be sent to other processes.
 
     Attributes
     ----------
-    given
+    scenario_input
         The scenario.
     times
-        For each track the times (s) that are wanted, rising, from the start.
+        Output times (s) for each track, rising, from the start.
     """
 
-    given: ScenarioInput
+    scenario_input: ScenarioInput
     times: tuple[FloatArray, ...]
     _sources: Sources = field(init=False, default_factory=Sources)
 
     def __call__(self, task: RunTask) -> Row:
-        """Lists x_m, y_m, speed_m_per_s at the times, and how many times the run reached; or why no run exists."""
+        """Row with x_m, y_m and speed_m_per_s at the times and the number of times reached, or with an error."""
         from ..simulation.simulated_run import simulate
 
         try:
@@ -151,18 +151,18 @@ class RunSimulation:
             run = simulate(scenario)
         except SkisnowError as error:
             return {"outcome": "error", "reason": str(error)}
-        if run.outcome == "interrupted":  # half a run does not count: the search is what was interrupted
+        if run.outcome == "interrupted":  # an incomplete run is not stored; the search is interrupted instead
             raise KeyboardInterrupt
         return _row(run, self.times[task.run])
 
     def _scenario(self, task: RunTask) -> Scenario:
-        asked = build_input(self.given.changed(task.values), sources=self._sources).scenario
+        scenario = build_input(self.scenario_input.changed(task.values), sources=self._sources).scenario
         duration = max(float(self.times[task.run][-1]), 1e-3) + _AFTER_THE_LAST
-        interval = min(asked.solver.output_interval, OUTPUT_INTERVAL) if task.final else OUTPUT_INTERVAL
-        solver = replace(asked.solver, output_interval=interval)
+        interval = min(scenario.solver.output_interval, OUTPUT_INTERVAL) if task.final else OUTPUT_INTERVAL
+        solver = replace(scenario.solver, output_interval=interval)
         if not task.final:
             solver = _search_solver(solver)
-        return replace(asked, stop=Stop(duration=duration), solver=solver)
+        return replace(scenario, stop=Stop(duration=duration), solver=solver)
 
 
 def _search_solver(solver: Solver) -> Solver:
@@ -170,55 +170,55 @@ def _search_solver(solver: Solver) -> Solver:
 
 
 def _row(run: Run, times: FloatArray) -> Row:
-    """Where the run ended before a time it is taken to go on straight, as fast as it was."""
-    known = np.isfinite(run.place).all(axis=1) & np.isfinite(run.velocity).all(axis=1)
-    count = len(run.time) if known.all() else int(np.argmin(known))
+    """Row of a run; after its end it is extrapolated straight at its last velocity."""
+    finite = np.isfinite(run.place).all(axis=1) & np.isfinite(run.velocity).all(axis=1)
+    count = len(run.time) if finite.all() else int(np.argmin(finite))
     if count < 2:
         return {"outcome": "error", "reason": run.remedy}
     time, place, velocity = run.time[:count], run.place[:count, :2], run.velocity[:count, :2]
     within = np.minimum(times, time[-1])
-    found = CubicHermiteSpline(time, place, velocity)(within) + (times - within)[:, None] * velocity[-1]
+    places = CubicHermiteSpline(time, place, velocity)(within) + (times - within)[:, None] * velocity[-1]
     speed = np.interp(within, time, np.linalg.norm(run.velocity[:count], axis=1))
     return {
         "outcome": run.outcome,
         "reached": int(np.sum(times <= time[-1] + 1e-6)),
-        "x_m": found[:, 0].tolist(),
-        "y_m": found[:, 1].tolist(),
+        "x_m": places[:, 0].tolist(),
+        "y_m": places[:, 1].tolist(),
         "speed_m_per_s": speed.tolist(),
     }
 
 
-def nudged_tasks(task: RunTask, values: Mapping[str, float]) -> dict[str, tuple[RunTask, ...]]:
-    """A quick run with a thousandth more and one with a thousandth less of each input, by key.
+def perturbed_tasks(task: RunTask, values: Mapping[str, float]) -> dict[str, tuple[RunTask, ...]]:
+    """Tasks of fast runs with each input increased and decreased by 0.1 %, by key.
 
     Parameters
     ----------
     task
-        Of the run that was found.
+        Task of the run with the best values.
     values
-        The scenario's, where the task has none. One that is 0 is not nudged.
+        Values of the scenario for keys that the task does not have. A value of 0 is not changed.
     """
     base = {**{key: values[key] for key in _SNOW}, **task.values}  # numbers replace a published snow
-    found: dict[str, tuple[RunTask, ...]] = {}
+    tasks: dict[str, tuple[RunTask, ...]] = {}
     for key in NUDGED:
-        own = base.get(key, values[key])
-        if own:
-            each = ({**base, key: own * (1.0 + sign * NUDGE)} for sign in (1.0, -1.0))
-            found[key] = tuple(RunTask(nudged, task.run, final=False) for nudged in each)
-    return found
+        value = base.get(key, values[key])
+        if value:
+            changed = ({**base, key: value * (1.0 + sign * NUDGE)} for sign in (1.0, -1.0))
+            tasks[key] = tuple(RunTask(inputs, task.run, final=False) for inputs in changed)
+    return tasks
 
 
-def limit_of(own: Row, nudged: Mapping[str, Sequence[Row]]) -> tuple[str, ...]:
-    """The sentence of `simulate --verify`, from the ends of the run that was found and of the nudged ones."""
+def grip_limit_sentences(own: Row, nudged: Mapping[str, Sequence[Row]]) -> tuple[str, ...]:
+    """Warning as of `simulate --verify` if small changes of the inputs move the end of the run too far."""
     if "x_m" not in own or len(own["x_m"]) < 2:
         return ()
     length = float(np.sum(np.hypot(np.diff(own["x_m"]), np.diff(own["y_m"]))))
-    moves = {key: max((_apart(own, row) for row in rows), default=0.0) for key, rows in nudged.items()}
+    moves = {key: max((_end_distance(own, row) for row in rows), default=0.0) for key, rows in nudged.items()}
     return limit_sentences(moves, length)
 
 
-def _apart(own: Row, other: Row) -> float:
-    """Distance (m) of the ends; 0 if the other run does not exist."""
+def _end_distance(own: Row, other: Row) -> float:
+    """Distance (m) between the ends of two runs; 0 if the other run does not exist."""
     if "x_m" not in other:
         return 0.0
     return float(np.hypot(other["x_m"][-1] - own["x_m"][-1], other["y_m"][-1] - own["y_m"][-1]))

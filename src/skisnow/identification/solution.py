@@ -18,21 +18,21 @@ from .uncertainty import (
     Uncertainty,
     bound_warnings,
     correlation_warnings,
-    few_points,
+    few_points_warning,
+    linear_uncertainty,
     model_warning,
     noise_warning,
-    uncertainty,
     unknown_warnings,
 )
 
 FloatArray = npt.NDArray[np.float64]
 
-ON_BOUND: Final = 1e-6
+BOUND_DISTANCE: Final = 1e-6
 """Distance (sizes) from a bound that counts as on it."""
-SURE: Final = 1e-3
-"""Probability below which residuals are not those of the stated accuracy."""
-ALIKE: Final = 0.3
-"""Correlation of neighbouring residuals from which on it is reported, where it is also beyond three standard errors."""
+NOISE_MISMATCH_PROBABILITY: Final = 1e-3
+"""Probability of the residuals, given the stated accuracy, below which the intervals are widened."""
+REPORTED_CORRELATION: Final = 0.3
+"""Smallest reported correlation of neighbouring residuals; it must also exceed three standard errors."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,19 +42,19 @@ class Solution:
     Attributes
     ----------
     problem
-        With its noise.
-    found
-        Place, residuals, derivatives, state.
+        The problem with its noise.
+    optimum
+        Place, residuals, derivatives and outcome of the search.
     tried
         Starts, and the sum of squares that each led to.
     methods
-        How it was computed, in words.
+        Sentences on how it was computed.
     options
-        Of the search.
+        Options of the search.
     """
 
     problem: Problem
-    found: SearchState
+    optimum: SearchState
     tried: tuple[tuple[FloatArray, float | None], ...]
     methods: tuple[str, ...]
     options: SearchOptions
@@ -62,64 +62,74 @@ class Solution:
     @property
     def degrees_of_freedom(self) -> int:
         """Residuals and priors less parameters and nuisances."""
-        return len(self.found.residuals) - len(self.problem.parameters) - self.problem.nuisances
+        return len(self.optimum.residuals) - len(self.problem.parameters) - self.problem.nuisances
 
     @property
     def widening(self) -> float:
-        """By how much the stated accuracy is too small: the root of χ² per degree of freedom, beyond chance."""
+        """Factor by which intervals are widened: √(χ² per degree of freedom) if significantly above 1, otherwise 1."""
         dof = self.degrees_of_freedom
-        if not self.problem.accuracy_is_stated or dof < 1 or chi2.sf(self.found.cost, dof) > SURE:
+        if (
+            not self.problem.accuracy_is_stated
+            or dof < 1
+            or chi2.sf(self.optimum.cost, dof) > NOISE_MISMATCH_PROBABILITY
+        ):
             return 1.0
-        return float(np.sqrt(self.found.cost / dof))
+        return float(np.sqrt(self.optimum.cost / dof))
 
     @property
     def estimates_noise(self) -> bool:
-        """Whether the noise is known from the residuals alone."""
+        """True if the noise is estimated from the residuals."""
         return not self.problem.accuracy_is_stated or self.widening > 1.0
 
-    def known(self) -> Uncertainty | None:
-        """How well the parameters are known; None before there are derivatives."""
-        if self.found.jacobian is None:
+    def uncertainty(self) -> Uncertainty | None:
+        """Uncertainty of the parameters; None without derivatives."""
+        if self.optimum.jacobian is None:
             return None
         dof = float(self.degrees_of_freedom) if self.estimates_noise else None
-        return uncertainty(self.found.jacobian / self.widening, degrees_of_freedom=dof)
+        return linear_uncertainty(self.optimum.jacobian / self.widening, degrees_of_freedom=dof)
 
 
-def identification_of(
+def build_identification(
     solution: Solution, title: str, warnings: tuple[str, ...], methods: tuple[str, ...]
 ) -> Identification:
-    """Put everything together."""
-    problem, found = solution.problem, solution.found
-    values = problem.values(found.place)
-    known = solution.known()
-    interrupted = found.state == "interrupted"
+    """Build the result from a solution, with further warnings and methods."""
+    problem, optimum = solution.problem, solution.optimum
+    values = problem.values(optimum.place)
+    uncertainty = solution.uncertainty()
+    interrupted = optimum.state == "interrupted"
     observed = () if interrupted else problem.observations
-    outcome = _outcome(found, known)
+    outcome = _outcome(optimum, uncertainty)
     p = len(problem.parameters)
     slope = np.array([parameter.slope(values[parameter.key]) for parameter in problem.parameters])
     with np.errstate(invalid="ignore"):
-        covariance = np.full((p, p), np.nan) if known is None else known.covariance * slope[:, None] * slope[None, :]
+        covariance = (
+            np.full((p, p), np.nan) if uncertainty is None else uncertainty.covariance * slope[:, None] * slope[None, :]
+        )
     return Identification(
         outcome=outcome,
         reason=REASONS[outcome],
         scenario=title,
-        parameters=tuple(_identified(solution, known)),
-        correlation=np.full((p, p), np.nan) if known is None else known.correlation,
+        parameters=tuple(_identified_parameters(solution, uncertainty)),
+        correlation=np.full((p, p), np.nan) if uncertainty is None else uncertainty.correlation,
         covariance=covariance,
         noise=tuple(noise * solution.widening for noise in problem.noise),
         accuracy_is_stated=problem.accuracy_is_stated,
         points=problem.points,
         degrees_of_freedom=solution.degrees_of_freedom,
-        warnings=(*warnings, *_warned(solution, known), *(w for each in observed for w in each.warnings(values))),
-        methods=(*methods, *solution.methods, *_interval_words(solution)),
-        fits=tuple(fit for each in observed for fit in each.fits(values)),
+        warnings=(
+            *warnings,
+            *_result_warnings(solution, uncertainty),
+            *(warning for observation in observed for warning in observation.warnings(values)),
+        ),
+        methods=(*methods, *solution.methods, *_interval_methods(solution)),
+        fits=tuple(fit for observation in observed for fit in observation.fits(values)),
         starts=solution.tried,
-        effort=Effort(rounds=found.rounds),
+        effort=Effort(rounds=optimum.rounds),
     )
 
 
-def too_few(problem: Problem, title: str, warnings: tuple[str, ...]) -> Identification:
-    """Nothing identified: fewer points than what is looked for."""
+def too_few_points(problem: Problem, title: str, warnings: tuple[str, ...]) -> Identification:
+    """Result without estimates: fewer points than free parameters."""
     p = len(problem.parameters)
     needed = p + problem.nuisances + (not problem.accuracy_is_stated)
     warning = (
@@ -142,8 +152,8 @@ def too_few(problem: Problem, title: str, warnings: tuple[str, ...]) -> Identifi
     )
 
 
-def interval_of(parameter: Parameter, place: float, half: float) -> Interval:
-    """The interval of a place plus and minus half a width, in sizes, as values inside the bounds."""
+def interval_around(parameter: Parameter, place: float, half: float) -> Interval:
+    """Interval of half-width `half` (sizes) around a place of the search, as values clipped to the bounds."""
     lower, upper = bounds_of((parameter,))
     ends = np.clip([place - half, place + half], lower[0], upper[0])
     return parameter.value(float(ends[0])), parameter.value(float(ends[1]))
@@ -157,12 +167,12 @@ def _outcome(state: SearchState, spread: Uncertainty | None) -> Outcome:
     return state.state
 
 
-def _identified(solution: Solution, spread: Uncertainty | None) -> Iterator[Identified]:
-    problem, place = solution.problem, solution.found.place
+def _identified_parameters(solution: Solution, spread: Uncertainty | None) -> Iterator[Identified]:
+    problem, place = solution.problem, solution.optimum.place
     lower, upper = bounds_of(problem.parameters)
     for j, parameter in enumerate(problem.parameters):
         value = parameter.value(float(place[j]))
-        at_bound = bool(min(place[j] - lower[j], upper[j] - place[j]) <= ON_BOUND)
+        at_bound = bool(min(place[j] - lower[j], upper[j] - place[j]) <= BOUND_DISTANCE)
         error = None if spread is None else float(spread.standard_errors[j])
         if error is None or spread is None or not np.isfinite(error):
             yield Identified(parameter=parameter, value=value, at_bound=at_bound, identifiable=spread is None)
@@ -171,39 +181,41 @@ def _identified(solution: Solution, spread: Uncertainty | None) -> Iterator[Iden
             parameter=parameter,
             value=value,
             standard_error=error * parameter.slope(value),
-            interval=interval_of(parameter, float(place[j]), spread.factor * error),
+            interval=interval_around(parameter, float(place[j]), spread.factor * error),
             at_bound=at_bound,
             identifiable=not bool(spread.unknown[j]),
         )
 
 
-def _warned(solution: Solution, spread: Uncertainty | None) -> Iterator[str]:
+def _result_warnings(solution: Solution, spread: Uncertainty | None) -> Iterator[str]:
     parameters = solution.problem.parameters
-    few = few_points(solution.problem.points, len(parameters))
+    few = few_points_warning(solution.problem.points, len(parameters))
     if few:
         yield few
     if spread is not None:
         yield from unknown_warnings(parameters, spread)
         yield from correlation_warnings(parameters, spread.correlation)
-    yield from bound_warnings(parameters, [each.at_bound for each in _identified(solution, spread)])
-    if solution.found.state == "interrupted":
+    yield from bound_warnings(
+        parameters, [identified.at_bound for identified in _identified_parameters(solution, spread)]
+    )
+    if solution.optimum.state == "interrupted":
         yield "the search had not ended: intervals and correlations are those of a place on the way"
         return
     if solution.widening > 1.0:
         yield noise_warning(solution.widening)
-    alike = _likeness(solution)
-    if alike is not None:
-        yield model_warning(alike)
-    yield from _starts_apart(solution)
+    correlation = _neighbour_correlation(solution)
+    if correlation is not None:
+        yield model_warning(correlation)
+    yield from _start_warnings(solution)
 
 
-def _likeness(solution: Solution) -> float | None:
-    """Correlation of neighbouring residuals, where it is too large for chance."""
+def _neighbour_correlation(solution: Solution) -> float | None:
+    """Correlation of neighbouring residuals; None unless it is significant."""
     products = squares = pairs = 0.0
     first = 0
     for observation in solution.problem.observations:
         for length in observation.series if observation.kind != "marks" else ():
-            part = solution.found.residuals[first : first + length]
+            part = solution.optimum.residuals[first : first + length]
             first += length
             products += float(part[1:] @ part[:-1])
             squares += float(part @ part) * (length - 1) / max(length, 1)
@@ -211,11 +223,11 @@ def _likeness(solution: Solution) -> float | None:
         first += sum(observation.series) if observation.kind == "marks" else 0
     if pairs < 10 or squares == 0.0:
         return None
-    alike = products / squares
-    return alike if alike > max(ALIKE, 3.0 / np.sqrt(pairs)) else None
+    correlation = products / squares
+    return correlation if correlation > max(REPORTED_CORRELATION, 3.0 / np.sqrt(pairs)) else None
 
 
-def _starts_apart(solution: Solution) -> Iterator[str]:
+def _start_warnings(solution: Solution) -> Iterator[str]:
     costs = [cost for _, cost in solution.tried if cost is not None]
     missing = len(solution.tried) - len(costs)
     if missing:
@@ -232,8 +244,8 @@ def _starts_apart(solution: Solution) -> Iterator[str]:
         )
 
 
-def _interval_words(solution: Solution) -> Iterator[str]:
-    if solution.found.jacobian is None:
+def _interval_methods(solution: Solution) -> Iterator[str]:
+    if solution.optimum.jacobian is None:
         return
     law = (
         "Student's t with the noise that the residuals show" if solution.estimates_noise else "the normal distribution"
@@ -245,20 +257,20 @@ def _interval_words(solution: Solution) -> Iterator[str]:
         yield f"{several} starts"
 
 
-def residuals_about_best(solution: Solution) -> Callable[[Sequence[FloatArray]], list[FloatArray | None]]:
-    """Those of the search, moved so that at the best place they are those of the answer."""
-    problem, found = solution.problem, solution.found
-    quick = problem.residuals([found.place])[0]
-    apart = np.zeros_like(found.residuals) if quick is None else found.residuals - quick
+def best_fit_residuals(solution: Solution) -> Callable[[Sequence[FloatArray]], list[FloatArray | None]]:
+    """Residuals of the search, corrected by a constant so that they equal the final residuals at the best place."""
+    problem, optimum = solution.problem, solution.optimum
+    quick = problem.residuals([optimum.place])[0]
+    correction = np.zeros_like(optimum.residuals) if quick is None else optimum.residuals - quick
 
     def residuals(places: Sequence[FloatArray]) -> list[FloatArray | None]:
-        return [None if residual is None else residual + apart for residual in problem.residuals(places)]
+        return [None if residual is None else residual + correction for residual in problem.residuals(places)]
 
     return residuals
 
 
-def samples_in_values(solution: Solution, places: FloatArray) -> FloatArray:
-    """Places (N, p) of the search as values (N, p) in the keys' units."""
+def values_at(solution: Solution, places: FloatArray) -> FloatArray:
+    """Values (N, p) in the keys' units at places (N, p) of the search."""
     parameters = solution.problem.parameters
     return np.array(
         [[parameter.value(float(u)) for parameter, u in zip(parameters, row, strict=True)] for row in places]

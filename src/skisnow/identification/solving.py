@@ -1,4 +1,4 @@
-"""Search, noise, polish: from a problem to its best place, with derivatives in standard deviations of the data."""
+"""Solver of an identification: searches, estimate of the noise, and final steps with the scenario's solver."""
 
 from __future__ import annotations
 
@@ -10,47 +10,52 @@ import numpy as np
 import numpy.typing as npt
 
 from .._support.errors import FitError, ParameterError
-from .bootstrap import BootstrapBy, bootstrapped
-from .intervals import profiled, with_posterior
+from .intervals import BootstrapBy, add_bootstrap_intervals, add_posterior_intervals, add_profile_intervals
 from .parameter import bounds_of
 from .problem import Problem
 from .result import Identification
-from .search import FINE, Search, SearchOptions, SearchState
-from .solution import Solution, identification_of
+from .search import CLOSED_FORM_SEARCH, Search, SearchOptions, SearchState
+from .solution import Solution, build_identification
 
 FloatArray = npt.NDArray[np.float64]
 Progress = Callable[[str], None]
 
-OF_GROOVES: Final = replace(
-    FINE, smallest_step=0.005, largest_step=0.005, tolerance=1e-3, worth=1e-6, rough=0.05, smallest_move=1e-6
+GROOVE_SEARCH: Final = replace(
+    CLOSED_FORM_SEARCH,
+    smallest_step=0.005,
+    largest_step=0.005,
+    tolerance=1e-3,
+    worth=1e-6,
+    rough=0.05,
+    smallest_move=1e-6,
 )
-"""For equilibria, which are found to some digits."""
+"""Options for grooves, whose equilibria have a limited accuracy."""
 _NOISE_ROUNDS: Final = 3
 _SAME_NOISE: Final = 0.05
 _STEPS_APART: Final = 3.0
-"""Rms change of residuals (in standard deviations) by the finer solver from which on the search is repeated with it."""
+"""The search is repeated with the scenario's solver if it changes the residuals by more standard deviations (rms)."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Request:
-    """What is wanted beside the best values.
+class SearchRequest:
+    """Options of an identification; see `identify`.
 
     Attributes
     ----------
     title
-        Of the scenario.
+        Title of the scenario.
     starts
-        Searches.
+        Number of searches.
     profile, bootstrap, posterior
-        Further intervals.
+        Requested intervals, with the numbers of resamples and samples.
     bootstrap_by
-        Whether each resample is refitted, or by the linearised model.
+        Method of the bootstrap.
     rng
         Source of random numbers.
     progress
         Called with the current step.
     warnings, methods
-        What is known before the search.
+        Warnings and sentences on methods from before the search.
     """
 
     title: str
@@ -65,8 +70,8 @@ class Request:
     methods: tuple[str, ...] = ()
 
 
-def solved(problem: Problem, plan: Request) -> Identification:
-    """Search from every start, and go on from the best.
+def solve(problem: Problem, plan: SearchRequest) -> Identification:
+    """Search from every start and compute the result at the best place.
 
     Raises
     ------
@@ -76,44 +81,48 @@ def solved(problem: Problem, plan: Request) -> Identification:
     if plan.starts < 1:
         raise ParameterError(f"starts is {plan.starts}; at least 1 is needed")
     solution = solution_of(problem, plan)
-    return with_further_intervals(identification_of(solution, plan.title, plan.warnings, plan.methods), solution, plan)
+    return add_requested_intervals(
+        build_identification(solution, plan.title, plan.warnings, plan.methods), solution, plan
+    )
 
 
-def with_further_intervals(identification: Identification, solution: Solution, plan: Request) -> Identification:
-    """Profile, bootstrap and posterior, where they were asked for; Ctrl-C keeps those that are complete."""
+def add_requested_intervals(identification: Identification, solution: Solution, plan: SearchRequest) -> Identification:
+    """Add profile, bootstrap and posterior intervals if requested; Ctrl-C keeps those that are complete."""
     if identification.outcome == "interrupted":
         return identification
     try:
         if plan.profile:
-            identification = profiled(identification, solution, plan.progress)
+            identification = add_profile_intervals(identification, solution, plan.progress)
         if plan.bootstrap:
-            identification = bootstrapped(
+            identification = add_bootstrap_intervals(
                 identification, solution, plan.bootstrap, plan.bootstrap_by, plan.rng, plan.progress
             )
         if plan.posterior:
-            identification = with_posterior(identification, solution, plan.posterior, plan.rng, plan.progress)
+            identification = add_posterior_intervals(identification, solution, plan.posterior, plan.rng, plan.progress)
     except KeyboardInterrupt:
-        warning = "what was asked beside the values was interrupted; values and intervals by curvature are complete"
+        warning = "The requested further intervals were interrupted; values and intervals by curvature are complete"
         return replace(identification, outcome="interrupted", warnings=(*identification.warnings, warning))
     return identification
 
 
-def solution_of(problem: Problem, plan: Request) -> Solution:
+def solution_of(problem: Problem, plan: SearchRequest) -> Solution:
     """The best place, with derivatives in standard deviations of the data."""
     return _Solver(problem, plan).solution()
 
 
-def options_of(problem: Problem) -> SearchOptions:
-    """How to search: by the roughest of the data."""
+def search_options(problem: Problem) -> SearchOptions:
+    """Options of the search for the least accurate kind of data."""
     kinds = {observation.kind for observation in problem.observations}
-    options = SearchOptions() if "track" in kinds else OF_GROOVES if "marks" in kinds else FINE
+    options = SearchOptions() if "track" in kinds else GROOVE_SEARCH if "marks" in kinds else CLOSED_FORM_SEARCH
     return replace(options, accuracy_is_stated=problem.accuracy_is_stated)
 
 
 @dataclass(slots=True)
 class _Solver:
+    """Solves one problem; `tried` and `methods` record the starts and how the solution was computed."""
+
     problem: Problem
-    plan: Request
+    plan: SearchRequest
     tried: list[tuple[FloatArray, float | None]] = field(default_factory=list)
     methods: list[str] = field(default_factory=list)
 
@@ -122,8 +131,8 @@ class _Solver:
         if best.state != "interrupted":
             best = self._with_noise(best)
         if best.state != "interrupted" and self._has_tracks:
-            best = self._polished(best)
-        return self._weighed(best)
+            best = self._polish(best)
+        return self._weigh(best)
 
     @property
     def _has_tracks(self) -> bool:
@@ -132,22 +141,24 @@ class _Solver:
     def _search(self, problem: Problem, about: str, *, final: bool = False) -> Search:
         lower, upper = bounds_of(problem.parameters)
         residuals = problem.final_residuals if final else problem.residuals
-        return Search(residuals, lower, upper, options_of(problem), lambda text: self.plan.progress(f"{about}{text}"))
+        return Search(
+            residuals, lower, upper, search_options(problem), lambda text: self.plan.progress(f"{about}{text}")
+        )
 
     def _best(self) -> SearchState:
         best: SearchState | None = None
-        for number, start in enumerate(self._starts()):
+        for number, start in enumerate(self._run_starts()):
             about = f"start {number + 1} of {self.plan.starts}: " if self.plan.starts > 1 else ""
             try:
-                found = self._search(self.problem, about).run(start)
+                state = self._search(self.problem, about).run(start)
             except KeyboardInterrupt:
                 if best is None:
                     raise
                 return replace(best, state="interrupted")
-            self.tried.append((start, None if found is None else found.cost))
-            if found is not None and (best is None or found.cost < best.cost):
-                best = found
-            if found is not None and found.state == "interrupted":
+            self.tried.append((start, None if state is None else state.cost))
+            if state is not None and (best is None or state.cost < best.cost):
+                best = state
+            if state is not None and state.state == "interrupted":
                 assert best is not None
                 return replace(best, state="interrupted")
         if best is None:
@@ -158,7 +169,7 @@ class _Solver:
             raise FitError(f"nothing can be computed at the start: {warnings or 'no residuals'}")
         return best
 
-    def _starts(self) -> list[FloatArray]:
+    def _run_starts(self) -> list[FloatArray]:
         """The given start, and others up to one size about it."""
         lower, upper = bounds_of(self.problem.parameters)
         p = len(lower)
@@ -166,7 +177,10 @@ class _Solver:
         return [np.zeros(p), *others]
 
     def _with_noise(self, state: SearchState) -> SearchState:
-        """Weigh priors, and data of several kinds, by the noise that the residuals show, until that stays."""
+        """Repeat the search with the noise estimated from its residuals, until that estimate is stable.
+
+        This is needed if priors or several kinds of data have to be weighted against each other.
+        """
         problem = self.problem
         if problem.accuracy_is_stated or not (problem.priors or len(problem.observations) > 1):
             return state
@@ -182,13 +196,13 @@ class _Solver:
         self.problem = problem
         return state
 
-    def _polished(self, state: SearchState) -> SearchState:
-        """The last steps with the scenario's own solver; all with it where the quick one was too far off."""
+    def _polish(self, state: SearchState) -> SearchState:
+        """Take the last steps with the scenario's solver; search again with it if the fast one is too inaccurate."""
         self.plan.progress("last steps with the scenario's own solver")
         search = self._search(self.problem, "")
         quick = state.residuals
         try:
-            polished = search.polished(state, self.problem.final_residuals)
+            polished = search.polish(state, self.problem.final_residuals)
             first = self.problem.final_residuals([state.place])[0]
             apart = 0.0 if first is None else float(np.sqrt(np.mean((first - quick) ** 2))) / search.noise(state)
             if apart > _STEPS_APART:
@@ -205,8 +219,8 @@ class _Solver:
         )
         return polished
 
-    def _weighed(self, state: SearchState) -> Solution:
-        """Residuals and derivatives in standard deviations of the data, stated or seen."""
+    def _weigh(self, state: SearchState) -> Solution:
+        """Solution with residuals and derivatives in standard deviations of the data, stated or estimated."""
         problem = self.problem
         if not problem.accuracy_is_stated:
             seen = problem.with_noise_of(state.residuals)
@@ -218,4 +232,4 @@ class _Solver:
                 second=None if state.second is None else state.second * weight[:, None],
             )
             problem = seen
-        return Solution(problem, state, tuple(self.tried), tuple(self.methods), options_of(problem))
+        return Solution(problem, state, tuple(self.tried), tuple(self.methods), search_options(problem))

@@ -16,13 +16,13 @@ from .parameter import Parameter
 FloatArray = npt.NDArray[np.float64]
 
 SINGULAR: Final = 1e-6
-"""Of scaled columns: a singular value below this share of the largest counts as 0."""
-WIDEST: Final = 1.5
-"""Half an interval, in sizes of its parameter; a wider interval counts as undetermined (modelling assumption)."""
-TAKES_PART: Final = 0.2
-"""Least share of an undetermined direction with which a parameter takes part in it (modelling assumption)."""
-CLOSE: Final = 0.9
-"""Correlation beyond which two parameters are warned of."""
+"""A singular value of the scaled Jacobian below this share of the largest counts as 0."""
+WIDEST_HALF_INTERVAL: Final = 1.5
+"""Half-width of an interval, in sizes of its parameter, above which the parameter counts as undetermined."""
+LEAST_SHARE: Final = 0.2
+"""Smallest component of an undetermined direction for which a parameter belongs to its group."""
+REPORTED_PAIR_CORRELATION: Final = 0.9
+"""Correlation above which two parameters get a warning."""
 _HELPS: Final = {
     frozenset({"friction.mu_0", "drag.drag_area_m2"}): "both brake; only drag grows with the speed. Runs on slopes of "
     "different inclination, slow parts and fast ones, and a known start speed tell them apart",
@@ -64,22 +64,22 @@ _COMMON: Final = "fix one of them, give it a prior from elsewhere, or add a run 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Uncertainty:
-    """Of p parameters, in their sizes.
+    """Uncertainty of p parameters, in their sizes.
 
     Attributes
     ----------
     covariance
-        (p, p); infinite on the diagonal where nothing is known.
+        (p, p); infinite on the diagonal for undetermined parameters.
     correlation
-        (p, p), NaN where nothing is known.
+        (p, p); NaN for undetermined parameters.
     factor
-        Half an interval over its standard error.
+        Half-width of a 95 % interval over the standard error.
     unknown
-        (p,) whether the data leave it open.
+        (p,) True if the data do not determine the parameter.
     groups
-        Parameters of which only a combination is known, by number; one alone has no effect at all.
+        Numbers of the parameters of which only a combination is determined; a single one has no effect on the data.
     alone
-        (p,) standard errors if all others were known; infinite without effect.
+        (p,) standard errors if all other parameters were known; infinite without effect.
     """
 
     covariance: FloatArray
@@ -90,43 +90,43 @@ class Uncertainty:
     alone: FloatArray
 
     def would_be_known(self, j: int) -> bool:
-        """Whether the data tell parameter j once all others are known."""
-        return bool(self.factor * self.alone[j] <= WIDEST)
+        """True if the data would determine parameter j if all others were known."""
+        return bool(self.factor * self.alone[j] <= WIDEST_HALF_INTERVAL)
 
     @property
     def standard_errors(self) -> FloatArray:
-        """(p,)."""
+        """Standard errors (p,)."""
         return np.asarray(np.sqrt(np.diag(self.covariance)))
 
 
-def uncertainty(jacobian: FloatArray, *, degrees_of_freedom: float | None) -> Uncertainty:
-    """From the derivatives of the residuals, each divided by its standard deviation.
+def linear_uncertainty(jacobian: FloatArray, *, degrees_of_freedom: float | None) -> Uncertainty:
+    """Uncertainty by linearisation, from the derivatives of residuals divided by their standard deviations.
 
     Parameters
     ----------
     jacobian
-        (n, p), by parameters in their sizes.
+        (n, p), with respect to parameters in their sizes.
     degrees_of_freedom
-        Of the estimate of the noise, for Student's t; None where the noise is stated.
+        Degrees of freedom of the estimate of the noise, for Student's t; None if the noise is stated.
 
     Examples
     --------
     Two readings of one number, each with standard deviation 1: its standard error is 1/√2.
 
-    >>> found = uncertainty(np.ones((2, 1)), degrees_of_freedom=None)
-    >>> round(float(found.standard_errors[0]) ** 2, 9), round(found.factor, 3)
+    >>> estimate = linear_uncertainty(np.ones((2, 1)), degrees_of_freedom=None)
+    >>> round(float(estimate.standard_errors[0]) ** 2, 9), round(estimate.factor, 3)
     (0.5, 1.96)
     """
     p = jacobian.shape[1]
     length = np.linalg.norm(jacobian, axis=0)
     unit = np.where(length > 0.0, length, 1.0)
     _, singular, directions = np.linalg.svd(jacobian / unit, full_matrices=False)
-    known = singular > SINGULAR * max(float(singular.max(initial=0.0)), 1e-300)
-    inverse = (directions[known].T / singular[known] ** 2) @ directions[known]
+    determined = singular > SINGULAR * max(float(singular.max(initial=0.0)), 1e-300)
+    inverse = (directions[determined].T / singular[determined] ** 2) @ directions[determined]
     covariance = inverse / unit[:, None] / unit[None, :]
     covariance = 0.5 * (covariance + covariance.T)  # the same above and below the diagonal, to the last digit
-    open_directions = np.vstack([directions[~known], np.zeros((0, p))])
-    lost = (np.abs(open_directions) > TAKES_PART).any(axis=0) | (length == 0.0)
+    open_directions = np.vstack([directions[~determined], np.zeros((0, p))])
+    lost = (np.abs(open_directions) > LEAST_SHARE).any(axis=0) | (length == 0.0)
     error = np.sqrt(np.where(lost, 1.0, np.diag(covariance)))
     correlation = covariance / np.outer(error, error)
     correlation[lost, :] = np.nan
@@ -135,44 +135,44 @@ def uncertainty(jacobian: FloatArray, *, degrees_of_freedom: float | None) -> Un
     covariance[lost, lost] = np.inf
     tail = 0.5 * (1.0 + CONFIDENCE)
     factor = float(norm.ppf(tail) if degrees_of_freedom is None else t.ppf(tail, max(degrees_of_freedom, 1.0)))
-    alone = np.where(length > 0.0, 1.0 / unit, np.inf)
+    single_errors = np.where(length > 0.0, 1.0 / unit, np.inf)
     with np.errstate(invalid="ignore"):
-        unknown = lost | (factor * np.sqrt(np.diag(covariance)) > WIDEST)
-    return Uncertainty(covariance, correlation, factor, unknown, _groups(open_directions, length), alone)
+        unknown = lost | (factor * np.sqrt(np.diag(covariance)) > WIDEST_HALF_INTERVAL)
+    return Uncertainty(covariance, correlation, factor, unknown, _groups(open_directions, length), single_errors)
 
 
 def _groups(directions: FloatArray, length: FloatArray) -> tuple[tuple[int, ...], ...]:
     alone = [(int(j),) for j in np.flatnonzero(length == 0.0)]
     together = [
-        tuple(int(j) for j in np.flatnonzero((np.abs(direction) > TAKES_PART) & (length > 0.0)))
+        tuple(int(j) for j in np.flatnonzero((np.abs(direction) > LEAST_SHARE) & (length > 0.0)))
         for direction in directions
     ]
     return tuple(dict.fromkeys([*alone, *(group for group in together if group)]))
 
 
 def correlation_warnings(parameters: Sequence[Parameter], correlation: FloatArray) -> Iterator[str]:
-    """A sentence for each pair of parameters that the data hardly distinguish."""
+    """Warning of each pair of parameters that the data hardly distinguish."""
     for i, one in enumerate(parameters):
         for j in range(i):
             r = float(correlation[i, j])
-            if abs(r) > CLOSE:
+            if abs(r) > REPORTED_PAIR_CORRELATION:
                 yield (
                     f"{parameters[j].name} and {one.name} are hardly told apart (correlation {r:.3f}): "
-                    f"{_help(parameters[j], one)}"
+                    f"{_pair_help(parameters[j], one)}"
                 )
 
 
 def unknown_warnings(parameters: Sequence[Parameter], spread: Uncertainty) -> Iterator[str]:
-    """A sentence for each parameter, or group of them, that the data leave open."""
+    """Warning of each parameter or group of parameters that the data do not determine."""
     named: set[int] = set()
     for group in spread.groups:
         named.update(group)
         if len(group) == 1:
             alone = parameters[group[0]]
-            yield f"{alone.name} cannot be identified: it has no effect on these data. {_alone(alone)}"
+            yield f"{alone.name} cannot be identified: it has no effect on these data. {_single_help(alone)}"
         else:
             names = " and ".join(parameters[j].name for j in group)
-            helps = _help(parameters[group[0]], parameters[group[1]]) if len(group) == 2 else _COMMON
+            helps = _pair_help(parameters[group[0]], parameters[group[1]]) if len(group) == 2 else _COMMON
             yield f"{names} cannot be told apart at all by these data: {helps}"
     for j in np.flatnonzero(spread.unknown).tolist():
         if j not in named:
@@ -183,7 +183,7 @@ def unknown_warnings(parameters: Sequence[Parameter], spread: Uncertainty) -> It
 
 
 def bound_warnings(parameters: Sequence[Parameter], at_bound: Sequence[bool]) -> Iterator[str]:
-    """A sentence for each parameter on a bound."""
+    """Warning of each parameter on a bound."""
     for parameter, there in zip(parameters, at_bound, strict=True):
         if there:
             unit = f" {parameter.unit}" if parameter.unit else ""
@@ -193,8 +193,8 @@ def bound_warnings(parameters: Sequence[Parameter], at_bound: Sequence[bool]) ->
             )
 
 
-def few_points(points: int, parameters: int) -> str | None:
-    """A warning where so few points are hardly a fit."""
+def few_points_warning(points: int, parameters: int) -> str | None:
+    """Warning of too few points for a reliable fit."""
     if points >= max(10, 3 * parameters):
         return None
     return (
@@ -204,7 +204,7 @@ def few_points(points: int, parameters: int) -> str | None:
 
 
 def noise_warning(ratio: float) -> str:
-    """Of residuals that are larger than their stated accuracy allows."""
+    """Warning of residuals that are larger than the stated accuracy allows."""
     return (
         f"the residuals are {ratio:.2g} times what the data's stated accuracy allows: the accuracy is too good to be "
         "true, or the model misses something. Intervals are widened by that factor"
@@ -212,7 +212,7 @@ def noise_warning(ratio: float) -> str:
 
 
 def model_warning(correlation: float) -> str:
-    """Of residuals that hang together."""
+    """Warning of correlated residuals."""
     return (
         f"neighbouring residuals are alike (correlation {correlation:.2f}): the model misses something, or the noise "
         "wanders, and the intervals by curvature are too narrow; --bootstrap resamples stretches of residuals"
@@ -220,20 +220,20 @@ def model_warning(correlation: float) -> str:
 
 
 def _why_open(parameters: Sequence[Parameter], spread: Uncertainty, j: int) -> str:
-    """It has little effect, or others take its effect up."""
+    """Reason why parameter j is not determined, and a remedy."""
     if not spread.would_be_known(j):
-        return _alone(parameters[j])
-    close = [i for i, r in enumerate(spread.correlation[j]) if i != j and abs(r) > CLOSE]
+        return _single_help(parameters[j])
+    close = [i for i, r in enumerate(spread.correlation[j]) if i != j and abs(r) > REPORTED_PAIR_CORRELATION]
     if not close:
         return "It would be known if the others were: fix some of them, or give them priors from elsewhere"
     names = " and ".join(parameters[i].name for i in close)
     return f"It would be known if {names} were: what one does the other can do"
 
 
-def _help(one: Parameter, other: Parameter) -> str:
-    keys = frozenset(each.key.partition("@")[0] for each in (one, other))
+def _pair_help(one: Parameter, other: Parameter) -> str:
+    keys = frozenset(parameter.key.partition("@")[0] for parameter in (one, other))
     return _HELPS.get(keys, _COMMON)
 
 
-def _alone(one: Parameter) -> str:
+def _single_help(one: Parameter) -> str:
     return _ALONE.get(one.key.partition("@")[0], "Fix it, or give it a prior from elsewhere")

@@ -10,11 +10,10 @@ from tempfile import TemporaryDirectory
 import numpy as np
 
 from skisnow import read_ski, snow_from_results
-from skisnow.identification.data import collected, values_to_begin_with
+from skisnow.identification.data import _site, collect_data, start_values
 from skisnow.identification.fitting import _clock
 from skisnow.identification.parameter import parameter_table
-from skisnow.identification.problem import keys_of_runs
-from skisnow.identification.track_frame import _site
+from skisnow.identification.problem import expand_keys
 from skisnow.scenario import load_scenario, read_profile, read_terrain, scenario_file, scenario_text
 from skisnow.scenario.boots import read_boots
 from skisnow.scenario.identify_section import given_parameters
@@ -121,9 +120,9 @@ def _read_identify(folder: Path) -> object:
     _clock(given, None)
     _site(given.identify.get("site", {"fall_line_azimuth_deg": 0}))
     asked = scenario_file(path)
-    read = collected(given, asked, [folder / "cells.csv"], ["friction.mu_0"])
-    keys = keys_of_runs(["friction.mu_0"], read.runs)
-    return parameter_table(keys, values_to_begin_with(asked, read, own), own)
+    read = collect_data(given, asked, [folder / "cells.csv"], ["friction.mu_0"])
+    keys = expand_keys(["friction.mu_0"], read.runs)
+    return parameter_table(keys, start_values(asked, read, own), own)
 
 
 def _read_changes(folder: Path) -> object:
