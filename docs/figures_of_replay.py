@@ -23,6 +23,9 @@ if TYPE_CHECKING:
 FOLDER = Path(__file__).resolve().parent / "_static" / "replay"
 SCENARIO = "carved-46m"
 MOMENT = 2.5
+SLALOM = "slalom-20-gates"
+FRAMES_PER_SECOND = 12
+FILM_S = (2.0, 10.0)
 QUALITY = 88
 SOFTWARE = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist"]
 
@@ -33,6 +36,7 @@ VIEWS = (
     "replay.look('above'); replay.nearer(1.7)",
     "replay.show('ghost', true); replay.seek(4.6); replay.look('chase'); replay.turn(0.5, 0.1)",
 )
+FILM = "replay.pause(); replay.show('forces', false); replay.look('chase')"
 
 
 def replays() -> tuple[Replay, Replay]:
@@ -72,6 +76,24 @@ def sheet(pictures: list[Image.Image]) -> Image.Image:
     return whole
 
 
+def film(browser: Any, folder: Path) -> None:
+    """A skier through gates as a moving picture."""
+    run = simulate(load_scenario(SLALOM))
+    page = browser.new_page(viewport={"width": 960, "height": 760})
+    page.goto(write_replay(replay_of_run(run, title=SLALOM), folder / "slalom.html").as_uri())
+    does(page, FILM)
+    start, end = (round(FRAMES_PER_SECOND * moment) for moment in FILM_S)
+    frames = []
+    for number in range(start, end):
+        page.evaluate(f"() => window.skisnowReplay.seek({number / FRAMES_PER_SECOND})")
+        page.wait_for_timeout(80)
+        frames.append(picture(page.locator(".replay-canvas").screenshot(), width=560))
+    spacing = round(1000 / FRAMES_PER_SECOND)
+    frames[0].save(
+        FOLDER / "slalom.webp", save_all=True, append_images=frames[1:], duration=spacing, loop=0, quality=60, method=6
+    )
+
+
 def main() -> None:
     """Simulate, write the page, look at it."""
     from playwright.sync_api import sync_playwright
@@ -96,6 +118,7 @@ def main() -> None:
         phone.goto(address)
         does(phone, PAGE)
         write(picture(phone.screenshot(), width=300), "phone")
+        film(browser, Path(folder))
         browser.close()
 
 

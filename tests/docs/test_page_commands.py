@@ -1,4 +1,4 @@
-"""The commands of the README and the how-to pages run as printed, from an empty folder."""
+"""The commands of the README, the start and the how-to pages run as printed, from an empty folder."""
 
 from __future__ import annotations
 
