@@ -11,7 +11,7 @@ from pathlib import Path
 
 from skisnow import compare_tracks, load_scenario, simulate
 from skisnow.report.figures.figure_files import write_figure
-from skisnow.report.track.comparison import track_comparison
+from skisnow.report.track.report import track_comparison
 from skisnow.simulation.run_tables import write_track
 from skisnow.track.read import read_track
 from skisnow.track.track import Track

@@ -54,8 +54,7 @@ def undrawn(monkeypatch: pytest.MonkeyPatch) -> None:
         each = svg.encode()
         return Picture(drawing.name, drawing.whole_caption, drawing.alt, drawing.wide, svg, each, each, each)
 
-    for place in ("campaign.figures", "figures.figure_files"):
-        monkeypatch.setattr(f"skisnow.report.{place}.pictured", empty)
+    monkeypatch.setattr("skisnow.report.figures.figure_files.render", empty)
 
 
 @contextmanager
@@ -68,12 +67,12 @@ def without_png() -> Iterator[None]:
 @contextmanager
 def only_drawn(*forms: figure_drawing.Form) -> Iterator[None]:
     """Pictures in these forms; the others are empty files."""
-    drawn_as = figure_drawing._drawn_as
+    drawn_as = figure_drawing._render_as
 
     def drawn(form: figure_drawing.Form, drawing: Drawing) -> bytes:
         return drawn_as(form, drawing) if form in forms else b""
 
-    with patch.object(figure_drawing, "_drawn_as", drawn):
+    with patch.object(figure_drawing, "_render_as", drawn):
         yield
 
 

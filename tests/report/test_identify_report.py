@@ -15,9 +15,8 @@ from skisnow.identification.problem import Fit
 from skisnow.identification.result import Effort, Identification, Identified, Profile, identification_dict
 from skisnow.report.figures.drawing import FORMS
 from skisnow.report.figures.style import journal_style
-from skisnow.report.identification.figures import profiles_drawn, residuals_along, tracks_above
-from skisnow.report.identification.page import write_identify_report
-from skisnow.report.identification.summary import identify_summary
+from skisnow.report.identification import draw_profiles, draw_residuals, draw_tracks, write_identify_report
+from skisnow.report.summaries import identify_summary
 
 MU = Parameter(key="friction.mu_0", name="mu_0", start=0.04, lower=0.0, upper=0.5, size=0.05)
 AREA = Parameter(
@@ -152,7 +151,7 @@ def test_one_parameter_has_no_correlations_and_an_earlier_figure_goes(found: Ide
 def test_profiles_are_drawn_with_what_the_curvature_foretells(found: Identification) -> None:
     """Here the profile is the parabola itself: both curves are the same, over the whole width."""
     with journal_style():
-        figure = profiles_drawn(found)
+        figure = draw_profiles(found)
     (axes,) = figure.axes
     profile, curve, limit = (np.asarray(line.get_xydata(), dtype=float) for line in axes.lines)
     assert profile == pytest.approx(np.stack([found.profiles[0].value, found.profiles[0].rise], axis=1))
@@ -163,16 +162,16 @@ def test_profiles_are_drawn_with_what_the_curvature_foretells(found: Identificat
     assert (axes.get_xlabel(), axes.get_ylabel()) == ("mu 0", "rise of the sum of squares")
     one, four = found.profiles[0], [found.profiles[0]] * 4
     with journal_style():
-        panels = profiles_drawn(replace(found, profiles=tuple(four))).axes
+        panels = draw_profiles(replace(found, profiles=tuple(four))).axes
     assert [axes.get_visible() for axes in panels] == [True] * 4 + [False] * 2  # two rows of three
     area = replace(one, key="drag.drag_area_m2")
     with journal_style():
-        assert profiles_drawn(replace(found, profiles=(area,))).axes[0].get_xlabel() == "drag area (m²)"
+        assert draw_profiles(replace(found, profiles=(area,))).axes[0].get_xlabel() == "drag area (m²)"
 
 
 def test_residuals_are_measured_minus_identified_in_a_band_of_two_deviations(found: Identification) -> None:
     with journal_style():
-        figure = residuals_along(found.fits)
+        figure = draw_residuals(found.fits)
     (axes,) = figure.axes
     first, second, zero = (np.asarray(line.get_xydata(), dtype=float) for line in axes.lines)
     assert first == pytest.approx(np.array([[20.0, 0.01], [60.0, 0.0]]))
@@ -186,7 +185,7 @@ def test_residuals_are_measured_minus_identified_in_a_band_of_two_deviations(fou
 
 def test_a_quantity_that_nobody_measured_has_no_panel() -> None:
     with journal_style():
-        figure = residuals_along([along_a_track("gps")])
+        figure = draw_residuals([along_a_track("gps")])
     assert [axes.get_ylabel().partition("\n")[0] for axes in figure.axes] == ["x", "y"]
     assert figure.axes[-1].get_xlabel() == "time (s)"
     assert np.asarray(figure.axes[1].lines[0].get_ydata()) == pytest.approx(np.full(11, -0.2))
@@ -194,7 +193,7 @@ def test_a_quantity_that_nobody_measured_has_no_panel() -> None:
 
 def test_tracks_are_seen_from_above_with_the_measured_points() -> None:
     with journal_style():
-        figure = tracks_above([along_a_track("first"), along_a_track("second")])
+        figure = draw_tracks([along_a_track("first"), along_a_track("second")])
     (axes,) = figure.axes
     line, points = (np.asarray(drawn.get_xydata(), dtype=float) for drawn in axes.lines[:2])
     assert line[-1] == pytest.approx([10.0, 4.0])

@@ -8,7 +8,7 @@ from dataclasses import replace
 
 from skisnow.report.campaign.data import ReportData
 from skisnow.report.campaign.tables import campaign_tables
-from skisnow.report.tables.table import Column, Table, table_csv
+from skisnow.report.table import Column, Table, table_csv
 
 from .conftest import Reported
 

@@ -11,8 +11,8 @@ from typing import Any
 import pytest
 
 from skisnow.report.symbols import latex_escaped
-from skisnow.report.tables.table import Column, Table
-from skisnow.report.tables.table_latex import PACKAGES, table_latex
+from skisnow.report.table import Column, Table
+from skisnow.report.table_latex import PACKAGES, table_latex
 
 from .conftest import Reported
 

@@ -15,15 +15,14 @@ from matplotlib.text import Text
 from skisnow._support.errors import ParameterError
 from skisnow.report import write_report
 from skisnow.report.campaign.data import ReportData
-from skisnow.report.campaign.figures import DRAWERS
+from skisnow.report.campaign.page import DRAWERS
 from skisnow.report.figures.drawing import Drawing, Picture
 from skisnow.report.figures.style import journal_style, site_styles
 from skisnow.report.figures.translated import translate_figure
 from skisnow.report.run.drawings import run_drawings
 from skisnow.report.run.page import run_page
 from skisnow.report.symbols import figure_text
-from skisnow.report.track.comparison import comparison_drawing
-from skisnow.report.track.report import track_drawings
+from skisnow.report.track.report import comparison_drawing, track_drawings
 from skisnow.report.translated import translated_html
 from skisnow.scenario.keys import SCENARIO_KEYS
 from skisnow.track.comparison import compare_tracks

@@ -12,10 +12,10 @@ from skisnow._support.errors import ParameterError
 from skisnow._support.language import catalogue
 from skisnow.identification import uncertainty as words
 from skisnow.identification.result import Identification
+from skisnow.report import identification as identify_report
 from skisnow.report.figures.drawing import Drawing, Picture
 from skisnow.report.figures.style import journal_style
 from skisnow.report.figures.translated import translate_figure
-from skisnow.report.identification import page as identify_report
 from skisnow.report.race import folder as gaps_report
 from skisnow.report.symbols import figure_text
 from skisnow.report.turn import page as turn_report

@@ -23,9 +23,15 @@ from skisnow.report.turn.numbers import (
     middle_track,
     used_grip,
 )
-from skisnow.report.turn.page import FIGURES, write_turn_report
+from skisnow.report.turn.page import (
+    FIGURES,
+    contacts_table,
+    ensemble_table,
+    parameters_table,
+    shares_table,
+    write_turn_report,
+)
 from skisnow.report.turn.sentences import contrast, ensemble_sentence, key_sentences, meaning
-from skisnow.report.turn.tables import contacts_table, ensemble_table, parameters_table, shares_table
 from skisnow.scenario.identify_section import Prior, measured_of
 from skisnow.simulation.run import Run
 from skisnow.snow import SnowProperties

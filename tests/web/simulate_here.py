@@ -16,5 +16,5 @@ def empty(drawing: Drawing) -> Picture:
 
 
 if __name__ == "__main__":
-    with patch("skisnow.report.figures.figure_files.pictured", empty):
+    with patch("skisnow.report.figures.figure_files.render", empty):
         sys.exit(main())

@@ -16,7 +16,7 @@ from skisnow.campaign import QUALITY_FLAGS, read_campaign
 from skisnow.campaign.problems import Problem
 from skisnow.campaign.store import Journals, NewEntry, Store, export_corrected
 from skisnow.estimation import analyse
-from skisnow.report.campaign.figures import DRAWERS
+from skisnow.report.campaign.page import DRAWERS
 from skisnow.report.formatting import significant
 from skisnow.snow import snow_from_results
 from skisnow.web.analysis_cache import Analyses, CampaignSource

@@ -93,9 +93,9 @@ def run(options: argparse.Namespace) -> int:
     _warn(answers)
     found = answers_dict(answers)
     if options.figure is not None:
-        from ..report.carving.figures import carved_skis
-        from ..report.carving.summary import answers_of, ski_titles
+        from ..report.carving_figure import carved_skis
         from ..report.figures.figure_files import write_figure
+        from ..report.summaries import answers_of, ski_titles
 
         names = frozenset(ski_titles(answers_of(found)))
         write_figure(options.figure, lambda: carved_skis(found), language=options.language, names=names)
@@ -103,7 +103,7 @@ def run(options: argparse.Namespace) -> int:
     if options.json:
         print(json.dumps(found, ensure_ascii=False, allow_nan=False, indent=1))
     else:
-        from ..report.carving.summary import carve_summary
+        from ..report.summaries import carve_summary
 
         print(carve_summary(found))
     return _status(answers)

@@ -175,7 +175,7 @@ def _write(folder: Path, found: Comparison, text: str, language: str, gaps: tupl
     from .._support.staging import staged, write_file
     from ..report.figures.figure_files import write_pictures
     from ..report.race.folder import FILES, write_gaps
-    from ..report.track.comparison import comparison_drawing
+    from ..report.track.report import comparison_drawing
 
     with staged(folder, last="compare.json") as stage:
         stage.stale += FILES

@@ -143,11 +143,11 @@ def _tell(options: argparse.Namespace, found: Identification, asked: ScenarioFil
     if options.json:
         print(json.dumps(contents, ensure_ascii=False, allow_nan=False, indent=1), flush=True)
     else:
-        from ..report.identification.summary import identify_summary
+        from ..report.summaries import identify_summary
 
         print(identify_summary(found), flush=True)
     if options.out is not None:
-        from ..report.identification.page import write_identify_report
+        from ..report.identification import write_identify_report
 
         with Progress() as progress:
             page = write_identify_report(

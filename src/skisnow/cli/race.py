@@ -192,8 +192,7 @@ def _checked(found: QuickestLine, scenario: Scenario, progress: Progress) -> tup
 
 
 def _tell(options: argparse.Namespace, raced: _Raced) -> None:
-    from ..report.race.folder import write_race
-    from ..report.race.summary import race_dict, race_summary, worth_summary
+    from ..report.race.folder import race_dict, race_summary, worth_summary, write_race
 
     found, checked, worth = raced.found, raced.checked, raced.worth
     place = write_race(found, options.out, checked=checked, worth=worth, run=raced.run, against=tuple(options.against))

@@ -133,7 +133,7 @@ def _tell(
     if options.json:
         print(json.dumps(summary, ensure_ascii=False, allow_nan=False, indent=1), flush=True)
     else:
-        from ..report.run.summary import simulate_summary
+        from ..report.summaries import simulate_summary
 
         print(simulate_summary(summary, title=asked.title), flush=True)
     for text in (*near, *run_warnings(found)):

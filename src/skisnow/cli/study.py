@@ -148,7 +148,7 @@ def _tell(place: Path, table: StudyTable) -> None:
 
 def _draw(options: argparse.Namespace, table: StudyTable) -> None:
     from ..report.figures.figure_files import write_figure
-    from ..report.study.maps import grip_map, radius_map
+    from ..report.study_maps import grip_map, radius_map
 
     draw = {"radius": radius_map, "grip": grip_map}[options.map]
     names = frozenset(str(row[column]) for row in table.rows for column in ("ski", "ski_name") if row.get(column))

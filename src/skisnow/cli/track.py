@@ -83,7 +83,7 @@ def run(options: argparse.Namespace) -> int:
 
         print(track_text(values, flag_sentences={code: flag.sentence for code, flag in FLAGS.items()}), flush=True)
         if result is not None:
-            from ..report.run.summary import gates_text
+            from ..report.summaries import gates_text
 
             print(f"\n{gates_text(result)}", flush=True)
     if options.out is not None:

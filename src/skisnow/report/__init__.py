@@ -1,6 +1,6 @@
-"""Tables, figures and the self-contained report of an analysed campaign.
+"""Reports: tables, figures and self-contained pages.
 
-What draws is fetched on first use: the terminal's summary must not wait for the drawing library.
+Modules that draw are imported on first use, so that a summary in the terminal does not wait for Matplotlib.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Data of the charts that the lab draws in the browser: series with their law, and skis."""
+"""Data of the lab's charts: readings of series with their fitted law, and tables along a ski."""
 
 from __future__ import annotations
 
@@ -18,21 +18,19 @@ if TYPE_CHECKING:
     from ..geometry import GeometryForm, Tool
 
     FloatArray = npt.NDArray[np.float64]
-    import numpy.typing as npt
-
     from ..ski import Ski
 
 
 _NOTHING: Final = (np.zeros(0), np.zeros(0))
 POINTS: Final = 31
-"""Points of a curve: the chords of a parabola then stray by 1/3600 of its height, less than a screen shows."""
+"""Points of a curve: the chords of a parabola deviate by 1/3600 of its height, less than a pixel."""
 
 
 @dataclass(frozen=True, slots=True)
 class SeriesCurve:
-    """The readings of a series, e (mm) and F (N), and its law as points; no law where H_V does not exist.
+    """Readings of a series, e (mm) and F (N), and points of its fitted law; no law without H_V.
 
-    The readings of the unloading stand behind those of the loading.
+    Readings of the unloading follow those of the loading.
     """
 
     experiment: str
@@ -56,7 +54,7 @@ def law_of_series(
 def series_curves(
     campaign: Campaign, snow_hardness: FloatArray, *, geometry: GeometryForm = "extended"
 ) -> tuple[SeriesCurve, ...]:
-    """The curve of each series of a campaign; its H_V (N/m³), NaN where there is none, one for each series."""
+    """Curve of each series of a campaign; ``snow_hardness`` is H_V of each series (N/m³), NaN without one."""
     tests = campaign.penetration
     if tests is None:
         return ()
@@ -64,24 +62,24 @@ def series_curves(
     curves = []
     for index in range(len(tests)):
         series = tests.series(index)
-        back_depth, back_load = _way_back(tests, index)
-        depth, load = np.append(series.penetration_depth, back_depth) / MM, np.append(series.load, back_load)
-        numbers = (depth, load, *laws.get(index, _NOTHING))
-        curves.append(SeriesCurve(series.experiment, *(tuple(each.tolist()) for each in numbers)))
+        unloading_depth, unloading_load = _unloading(tests, index)
+        depth = np.append(series.penetration_depth, unloading_depth) / MM
+        columns = (depth, np.append(series.load, unloading_load), *laws.get(index, _NOTHING))
+        curves.append(SeriesCurve(series.experiment, *(tuple(column.tolist()) for column in columns)))
     return tuple(curves)
 
 
-def _way_back(tests: PenetrationTests, index: int) -> tuple[FloatArray, FloatArray]:
+def _unloading(tests: PenetrationTests, index: int) -> tuple[FloatArray, FloatArray]:
     if tests.unloading is None:
         return _NOTHING
-    own = slice(*tests.unloading.first[index : index + 2].tolist())
-    return tests.unloading.penetration_depth[own], tests.unloading.load[own]
+    rows = slice(*tests.unloading.first[index : index + 2].tolist())
+    return tests.unloading.penetration_depth[rows], tests.unloading.load[rows]
 
 
 def _laws(
     campaign: Campaign, tests: PenetrationTests, snow_hardness: FloatArray, geometry: GeometryForm
 ) -> dict[int, tuple[FloatArray, FloatArray]]:
-    """The law by the index of its series: those of one tool together, for a site may have hundreds."""
+    """Points of the law by the index of its series, computed for all series of one tool together."""
     by_tool: dict[str, list[int]] = {}
     for index in np.flatnonzero(np.isfinite(snow_hardness)).tolist():
         by_tool.setdefault(tests.tool[index], []).append(index)
@@ -90,8 +88,8 @@ def _laws(
         angle, hardness = tests.edge_angle[chosen][:, None], snow_hardness[chosen][:, None]
         deepest = np.array([tests.series(index).penetration_depth.max() for index in chosen])[:, None]
         depths = deepest * np.linspace(0.0, 1.0, POINTS)
-        drawn = law_of_series(in_form(campaign.tools[name], geometry), angle, hardness, depths)
-        laws.update(zip(chosen, zip(*drawn, strict=True), strict=True))
+        points = law_of_series(in_form(campaign.tools[name], geometry), angle, hardness, depths)
+        laws.update(zip(chosen, zip(*points, strict=True), strict=True))
     return laws
 
 
@@ -104,11 +102,11 @@ class SkiDrawing:
     name, source
         As in `skisnow.ski.Ski`.
     station_m
-        From the boot, positive forward.
+        Distance from the boot, positive forward.
     half_width_mm, base_height_mm, EI_N_m2, GJ_N_m2
         Half of the width from edge to edge, height of the unloaded base, bending and torsional stiffness.
     facts
-        Key data of a ski, in words and with units.
+        Key data of the ski as texts with units, by name.
     """
 
     name: str
@@ -122,19 +120,19 @@ class SkiDrawing:
 
 
 def ski_drawing(ski: Ski) -> SkiDrawing:
-    """The picture of a ski; every second table point, 5 mm apart, is enough for any screen."""
+    """Tables of a ski for a chart, with every second point (5 mm apart)."""
 
-    def drawn(table: FloatArray) -> tuple[float, ...]:
+    def thinned(table: FloatArray) -> tuple[float, ...]:
         return tuple(np.append(table[:-1:2], table[-1]).tolist())
 
     return SkiDrawing(
         name=ski.name,
         source=" ".join(ski.source.split()),
-        station_m=drawn(ski.station),
-        half_width_mm=drawn(ski.width / (2.0 * MM)),
-        base_height_mm=drawn(ski.base_height / MM),
-        EI_N_m2=drawn(ski.bending_stiffness),
-        GJ_N_m2=drawn(ski.torsional_stiffness),
+        station_m=thinned(ski.station),
+        half_width_mm=thinned(ski.width / (2.0 * MM)),
+        base_height_mm=thinned(ski.base_height / MM),
+        EI_N_m2=thinned(ski.bending_stiffness),
+        GJ_N_m2=thinned(ski.torsional_stiffness),
         facts=_facts(ski),
     )
 

@@ -1,14 +1,15 @@
-"""Numbers and dates as text: significant digits, intervals, p values, months as words."""
+"""Numbers, dates, rows and JSON as text: significant digits, intervals, p values, months as words."""
 
 from __future__ import annotations
 
+import json
 from datetime import UTC, date, datetime
-from typing import TYPE_CHECKING, Final, Literal, TypeAlias
+from typing import TYPE_CHECKING, Any, Final, Literal, TypeAlias
 
 from markupsafe import Markup
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
 Style: TypeAlias = Literal["typeset", "plain", "latex"]
 """Typeset: Unicode minus and powers; plain: what any terminal shows; latex: for text mode, by siunitx."""
@@ -19,7 +20,7 @@ _SMALLEST_P: Final = 0.001
 
 
 def significant(value: float | None, digits: int = 3, *, style: Style = "typeset") -> str:
-    """Round to significant digits, without rounding whole numbers below 10⁶ away.
+    """A number with so many significant digits; the digits before the point are kept below 10⁶.
 
     >>> significant(0.034412), significant(1652.4), significant(-2.0e-7), significant(None)
     ('0.0344', '1652', '−2.00×10⁻⁷', '–')
@@ -37,6 +38,11 @@ def significant(value: float | None, digits: int = 3, *, style: Style = "typeset
     if style == "latex":
         return rf"\num{{{mantissa}e{exponent}}}"
     return f"{_signed(mantissa, style)}×10{str(exponent).translate(_SUPERSCRIPTS)}"
+
+
+def plain(value: float | None, digits: int = 3) -> str:
+    """A number for a terminal; a hyphen for None."""
+    return significant(value, digits, style="plain")
 
 
 def _signed(text: str, style: Style) -> str:
@@ -57,6 +63,21 @@ def interval(pair: Sequence[float] | None, digits: int = 3, *, style: Style = "t
     return f"[{significant(low, digits, style=style)}, {significant(high, digits, style=style)}]"
 
 
+def aligned_rows(rows: Sequence[Sequence[str]]) -> list[str]:
+    """Lines of a table for a terminal, all columns right-aligned.
+
+    >>> aligned_rows([("gate", "time (s)"), ("1", "2.50")])
+    ['gate  time (s)', '   1      2.50']
+    """
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    return ["  ".join(cell.rjust(width) for cell, width in zip(row, widths, strict=True)) for row in rows]
+
+
+def json_text(contents: Mapping[str, Any]) -> str:
+    """JSON with one space of indentation; NaN and infinity raise ValueError."""
+    return json.dumps(contents, ensure_ascii=False, allow_nan=False, indent=1)
+
+
 def from_to(pair: Sequence[float] | None, digits: int = 3, *, style: Style = "typeset") -> str:
     """Minimum and maximum of a range.
 
@@ -69,7 +90,7 @@ def from_to(pair: Sequence[float] | None, digits: int = 3, *, style: Style = "ty
 
 
 def probability(p: float | None, *, style: Style = "typeset") -> str:
-    """A p value to two digits; below 0.001 only that.
+    """A p value with two digits; below 0.001 and above 0.99 only the limit.
 
     >>> probability(0.5234), probability(3e-12), probability(0.9999)
     ('0.52', '< 0.001', '> 0.99')
@@ -99,7 +120,7 @@ def counted(number: int, singular: str, plural: str | None = None) -> str:
 
 
 def whole(number: int) -> str:
-    """A count, grouped by thousands from five digits on."""
+    """A count; five digits and more are grouped by thousands."""
     return str(number) if abs(number) < 10_000 else f"{number:,}".replace(",", "\u202f")
 
 
@@ -110,20 +131,20 @@ _MONTHS = (
 
 
 def date_words(day: str) -> str:
-    """A day that was written year first; what is none stays as it is.
+    """An ISO date in words; any other text unchanged.
 
     >>> date_words("2026-01-09"), date_words("2026-02-30")
     ('9 January 2026', '2026-02-30')
     """
     try:
-        found = date.fromisoformat(day)
+        parsed = date.fromisoformat(day)
     except ValueError:
         return day
-    return f"{found.day} {_MONTHS[found.month - 1]} {found.year}"
+    return f"{parsed.day} {_MONTHS[parsed.month - 1]} {parsed.year}"
 
 
 def days_words(first: str, last: str) -> Markup:
-    """First and last day of a campaign, what they share said once.
+    """First and last day of a campaign; a common month and year appear once.
 
     >>> print(days_words("2026-01-09", "2026-01-12").striptags())
     9 to 12 January 2026
@@ -133,28 +154,27 @@ def days_words(first: str, last: str) -> Markup:
     30 December 2025 to 2 January 2026
     """
     if first == last:
-        return _marked(first, date_words(first))
+        return _time_element(first, date_words(first))
     begin, end = date_words(first).split(), date_words(last).split()
     if len(begin) == len(end) == 3 and begin[2] == end[2]:  # of one year
         begin = begin[:1] if begin[1] == end[1] else begin[:2]
-    return _marked(first, " ".join(begin)) + " to " + _marked(last, date_words(last))
+    return _time_element(first, " ".join(begin)) + " to " + _time_element(last, date_words(last))
 
 
 def moment_words(moment: str) -> Markup:
-    """When something was computed, in UTC to the minute.
+    """Day and minute of an ISO time, in UTC if it has a time zone.
 
     >>> print(moment_words("2026-01-09T14:58:12+00:00").striptags())
     9 January 2026, 14:58 UTC
     """
     try:
-        found = datetime.fromisoformat(moment)
+        time = datetime.fromisoformat(moment)
     except ValueError:
         return Markup.escape(moment)
-    if found.tzinfo is None:
-        return _marked(moment, f"{date_words(found.date().isoformat())}, {found:%H:%M}")
-    there = found.astimezone(UTC)
-    return _marked(moment, f"{date_words(there.date().isoformat())}, {there:%H:%M} UTC")
+    zone = "" if time.tzinfo is None else " UTC"
+    time = time if time.tzinfo is None else time.astimezone(UTC)
+    return _time_element(moment, f"{date_words(time.date().isoformat())}, {time:%H:%M}{zone}")
 
 
-def _marked(written: str, words: str) -> Markup:
-    return Markup('<time datetime="{}">{}</time>').format(written, words)
+def _time_element(iso_time: str, words: str) -> Markup:
+    return Markup('<time datetime="{}">{}</time>').format(iso_time, words)

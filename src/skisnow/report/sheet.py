@@ -1,4 +1,4 @@
-"""A short report as one HTML file that needs nothing else: sections of sentences, figures and tables."""
+"""A report as one self-contained HTML file: sections of sentences, figures and tables."""
 
 from __future__ import annotations
 
@@ -6,34 +6,34 @@ from collections.abc import Sequence, Set
 from dataclasses import dataclass
 from importlib.metadata import version
 from importlib.resources import files
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
 from markupsafe import Markup
 
 from .._support.language import ENGLISH
 from .environment import page_environment
-from .tables.table_html import table_html
+from .table import table_html
 from .translated import translated_html
 
 if TYPE_CHECKING:
     from .figures.drawing import Picture
-    from .tables.table import Table
+    from .table import Table
 
 
 @dataclass(frozen=True, slots=True)
 class Header:
-    """What stands above the sections.
+    """Head of a report.
 
     Attributes
     ----------
     eyebrow, title
-        What kind of report, and of what.
+        Kind of report, and its title.
     facts
         Names with texts.
     synthetic
-        A sentence where the numbers were not measured; empty: nothing is said.
+        Sentence that the numbers were not measured (default: none).
     headline
-        The key result in a sentence: one number, with how sure it is or how far it goes; empty: there is none.
+        Key result as a sentence with one number and its uncertainty (default: none).
     """
 
     eyebrow: str
@@ -45,7 +45,7 @@ class Header:
 
 @dataclass(frozen=True, slots=True)
 class Section:
-    """One section, drawn in this order: key sentences in a box, paragraphs, figures, tables, paragraphs after them."""
+    """One section in this order: key sentences in a box, paragraphs, figures, tables, paragraphs after them."""
 
     name: str
     title: str
@@ -63,23 +63,29 @@ CITED: Final = (
     "vs an elastic force-penetration relation, Scandinavian Journal of Medicine & Science in Sports, "
     "doi 10.1111/sms.12035."
 )
-"""What a reader cites of such a page: the program and the papers whose methods it has, as CITATION.cff has them."""
+"""Citations on such a page: the program and the papers of its methods, as in CITATION.cff."""
 
 
 def sheet(
     header: Header, sections: Sequence[Section], *, language: str = ENGLISH, names: Set[str] = frozenset()
 ) -> str:
-    """The HTML in a language; ``names`` are what users wrote."""
-    environment = page_environment(language)
+    """HTML of a report in a language; ``names`` from users are not translated."""
     pictures = [picture for section in sections for picture in section.pictures]
     every = [table for section in sections for table in section.tables]
-    english = environment.get_template("sheet.html").render(
+    english = render_template(
+        "sheet.html",
+        language,
         header=header,
         sections=sections,
         version=version("skisnow"),
         cited=CITED.format(version=version("skisnow")),
         figure_numbers={picture.name: number for number, picture in enumerate(pictures, start=1)},
         tables={table.name: table_html(table, number=number) for number, table in enumerate(every, start=1)},
-        css=Markup(files("skisnow.report").joinpath("templates", "report.css").read_text(encoding="utf-8")),
     )
     return translated_html(english, language, names=names)
+
+
+def render_template(name: str, language: str, /, **values: Any) -> str:
+    """HTML of a template of this package in a language; ``css`` is the style sheet. A missing value is an error."""
+    css = files("skisnow.report").joinpath("templates", "report.css").read_text(encoding="utf-8")
+    return page_environment(language).get_template(name).render(css=Markup(css), **values)

@@ -1,7 +1,6 @@
-"""Symbols of the field and users' names in the languages of a report: HTML, LaTeX, text of figures.
+"""Symbols and names from users in the formats of a report: HTML, LaTeX, text of figures.
 
-Texts written here carry symbols as ``H_V``, ``S_f``, ``b_0``. Text that users wrote is never looked through for them;
-it is escaped.
+Texts of skisnow contain symbols as ``H_V``, ``S_f``, ``b_0``. Text from users is escaped and not searched for symbols.
 """
 
 from __future__ import annotations
@@ -24,7 +23,7 @@ _LATEX_SPECIAL: Final = {
     "_": r"\_",
     "~": r"\textasciitilde{}",
     "^": r"\textasciicircum{}",
-    "[": "{[}",  # a line break in front of it would take it for an option, as it would a star
+    "[": "{[}",  # after a line break it would start an option, as would a star
     "*": "{*}",
     "<": r"\textless{}",
     ">": r"\textgreater{}",
@@ -62,7 +61,7 @@ _LATEX_SPECIAL: Final = {
 
 
 def prose(template: str, **values: Any) -> Markup:
-    """A sentence as HTML: symbols of the template are set, ``{values}`` are escaped unless they are Markup.
+    """HTML of a template: its symbols become markup, ``{values}`` are escaped unless they are Markup.
 
     >>> str(prose("H_V at {site}", site="a_b <i>"))
     '<i>H</i><sub>V</sub> at a_b &lt;i&gt;'
@@ -71,26 +70,26 @@ def prose(template: str, **values: Any) -> Markup:
 
 
 def html(text: str) -> Markup:
-    """Our own words with their symbols set in HTML."""
+    """HTML of a text of skisnow, with markup for its symbols."""
     tied = _PERCENT.sub("\u00a0%", text)
     return Markup(SYMBOL.sub(r"<i>\1</i><sub>\2</sub>", str(Markup.escape(tied))))
 
 
 def latex(text: str) -> str:
-    r"""Our own words with their symbols set in LaTeX.
+    r"""LaTeX of a text of skisnow, with markup for its symbols.
 
     >>> latex("S_f in N/mm²")
     '$S_\\mathrm{f}$ in N/mm\\textsuperscript{2}'
     """
     pieces, end = [], 0
-    for found in SYMBOL.finditer(text):
-        pieces += [latex_escaped(text[end : found.start()]), rf"${found[1]}_\mathrm{{{found[2]}}}$"]
-        end = found.end()
+    for symbol in SYMBOL.finditer(text):
+        pieces += [latex_escaped(text[end : symbol.start()]), rf"${symbol[1]}_\mathrm{{{symbol[2]}}}$"]
+        end = symbol.end()
     return "".join([*pieces, latex_escaped(text[end:])])
 
 
 def latex_escaped(text: str) -> str:
-    r"""Text that a user wrote, safe in LaTeX.
+    r"""LaTeX of a text from a user.
 
     >>> latex_escaped("a & b_c 100%")
     'a \\& b\\_c 100\\%'
@@ -101,10 +100,10 @@ def latex_escaped(text: str) -> str:
 
 
 def figure_text(text: str, *, longest: int = 28) -> str:
-    """Text that a user wrote, as it stands in a figure: no mathtext, one line, not endless.
+    """Text from a user for a figure: one line without mathtext, at most `longest` characters.
 
-    A long one is shortened in its middle, as names that are alike mostly differ at their ends. A leading underscore
-    would hide a legend's entry; a thin space before it does not show.
+    A long text is shortened in the middle, because similar names mostly differ at their ends. A leading underscore
+    would hide a legend's entry, so a thin space precedes it.
     """
     line = " ".join("".join(letter if letter.isprintable() else " " for letter in text).split()) or "(no name)"
     head = longest // 2

@@ -15,9 +15,8 @@ from ..campaign.quality_flags import ALWAYS_EXCLUDE
 from ..estimation import analyse
 from ..report import write_report
 from ..report.campaign.data import ReportData
-from ..report.campaign.figures import DRAWERS
 from ..report.campaign.key_results import key_results
-from ..report.campaign.page import tables_html
+from ..report.campaign.page import DRAWERS, tables_html
 from ..report.campaign.tables import campaign_tables
 from ..report.figures.drawing import Drawing, data_uri, drawing_svg
 from ..report.figures.style import journal_style, site_styles

@@ -11,11 +11,11 @@ from skisnow._support.errors import ParameterError
 from skisnow.carving.answer import answered
 from skisnow.carving.answer_dict import answers_dict
 from skisnow.carving.question import carve_question
-from skisnow.report.carving.figures import arc_through, carved_skis, contact_ends
+from skisnow.report.carving_figure import arc_through, carved_skis, contact_ends
 from skisnow.report.figures.figure_files import PNG_WIDTH, require_drawable, write_figure
 from skisnow.report.figures.style import journal_style
-from skisnow.report.study.layout import map_layout
-from skisnow.report.study.maps import grip_map, radius_map, share_of_limit
+from skisnow.report.study_layout import map_layout
+from skisnow.report.study_maps import grip_map, radius_map, share_of_limit
 from skisnow.studies import StudyTable
 
 ASKED = {"edge_angle_deg": 45, "load_N": 800, "published": "race-piste", "unloading_ratio": 10}

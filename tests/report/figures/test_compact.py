@@ -9,8 +9,7 @@ import numpy as np
 import pytest
 from markupsafe import Markup
 
-from skisnow.report.figures.compact import compact_svg
-from skisnow.report.figures.drawing import Drawing, drawing_svg
+from skisnow.report.figures.drawing import Drawing, compact_svg, drawing_svg
 from skisnow.report.figures.style import journal_style, new_figure
 
 NUMBER = re.compile(r"-?\d+(?:\.\d+)?")

@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 
-from skisnow.report.figures.drawing import FORMS, Drawing, Picture, letter_panels, make_opaque, pictured
+from skisnow.report.figures.drawing import FORMS, Drawing, Picture, letter_panels, make_opaque, render
 from skisnow.report.figures.style import DOUBLE_MM, journal_style, legend_below, new_figure
 
 
@@ -30,7 +30,7 @@ def test_each_file_is_drawn_once_after_the_axes_were_placed(monkeypatch: pytest.
         axes.set_ylabel("a label")
         before = axes.get_position().bounds
         monkeypatch.setattr(Figure, "draw", noted)
-        picture = pictured(Drawing("name", Markup(""), "words", figure))
+        picture = render(Drawing("name", Markup(""), "words", figure))
     assert picture.svg.lstrip().startswith("<?xml") and picture.png.startswith(b"\x89PNG")
     assert len(drawn) == 4  # each form once
     assert drawn[0] == drawn[1] == drawn[2] != before  # of what the layout made of it
@@ -81,7 +81,7 @@ def test_files_of_print_are_the_same_each_time() -> None:
         with journal_style():
             figure = new_figure()
             figure.subplots().plot([0, 1], [0, 1], alpha=0.5)
-            return pictured(Drawing("name", Markup(""), "words", figure))
+            return render(Drawing("name", Markup(""), "words", figure))
 
     first, second = once(), once()
     assert first.pdf.startswith(b"%PDF") and first.eps.startswith(b"%!PS-Adobe-3.0 EPSF")

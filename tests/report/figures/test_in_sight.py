@@ -12,14 +12,14 @@ from matplotlib.axes import Axes
 from matplotlib.collections import PathCollection
 
 from skisnow.report.campaign.data import ReportData
-from skisnow.report.campaign.figures import DRAWERS
 from skisnow.report.campaign.model_figures import model_rmse
+from skisnow.report.campaign.page import DRAWERS
 from skisnow.report.campaign.penetration_figures import seating_offsets
 from skisnow.report.campaign.shear_figures import shear_force_depth
 from skisnow.report.figures.drawing import Drawing
 from skisnow.report.figures.style import journal_style, site_styles
 from skisnow.report.run.time_figures import run_motion
-from skisnow.report.study.maps import grip_map, radius_map
+from skisnow.report.study_maps import grip_map, radius_map
 from skisnow.track.comparison import compare_tracks
 
 from ..conftest import Reported, altered

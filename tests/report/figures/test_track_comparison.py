@@ -8,7 +8,7 @@ import pytest
 from matplotlib.axes import Axes
 
 from skisnow.report.figures.style import journal_style
-from skisnow.report.track.comparison import MOST_DRAWN, track_comparison
+from skisnow.report.track.report import MOST_DRAWN, track_comparison
 from skisnow.track.comparison import Comparison, compare_tracks
 from skisnow.track.track import Track
 

@@ -13,7 +13,7 @@ from ..symbols import html, prose
 from .data import numbers, pairs
 from .key_results import SIGNIFICANT
 from .series_tables import count_resolved_offsets
-from .site_tables import QUANTITY
+from .tables import QUANTITY
 
 if TYPE_CHECKING:
     from .data import Json, ReportData

@@ -11,7 +11,7 @@ from ...estimation.regressions import FEWEST_VALUES
 from ..formatting import counted, interval, p_equals, significant, whole
 from ..symbols import html, prose
 from .model_tables import formula, model_name
-from .site_tables import QUANTITY
+from .tables import QUANTITY
 
 if TYPE_CHECKING:
     from .data import Json, ReportData, TextArray

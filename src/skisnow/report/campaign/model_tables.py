@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 from ...estimation.models import MODELS
 from ...snow.published.moessner_2013 import PRINTED_RMSE_N
-from ..tables.table import ROWS_IN_HTML, Column, Table, record_table
+from ..table import ROWS_IN_HTML, Column, Table, record_table
 from .series_tables import EXPERIMENT, SITE, USED
 
 if TYPE_CHECKING:

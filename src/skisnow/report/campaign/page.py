@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections import defaultdict
 from dataclasses import replace
 from importlib.metadata import version
-from importlib.resources import files
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
@@ -17,15 +16,16 @@ from ..._support.memory import paused_collector
 from ..._support.staging import staged, tidied, write_file
 from ...estimation import Analysis
 from ...estimation.results import results_json
-from ..environment import page_environment
-from ..figures.figure_files import picture_files, write_picture
+from ..figures.drawing import Drawing
+from ..figures.figure_files import picture_files, render_pictures, silent, write_picture
+from ..figures.style import site_styles
 from ..formatting import counted, days_words, moment_words, significant, whole
-from ..tables.table import table_csv
-from ..tables.table_html import table_html
-from ..tables.table_latex import table_latex
+from ..sheet import render_template
+from ..symbols import figure_text
+from ..table import table_csv, table_html
+from ..table_latex import table_latex
 from ..translated import translated_html
 from .data import ReportData
-from .figures import campaign_figures
 from .findings import (
     caveats,
     procedure_comparison,
@@ -35,13 +35,17 @@ from .findings import (
     unloading_findings,
 )
 from .key_results import headline, key_results
+from .model_figures import model_rmse, residuals
+from .penetration_figures import force_depth, hardness_density, hardness_mean_force, seating_offsets, unloading_ratios
+from .shear_figures import machining, shear_force_depth, stress_angle, stress_density, stress_hardness
 from .tables import campaign_tables
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
     from ..figures.drawing import LeftOut, Picture
-    from ..tables.table import Table
+    from ..table import Table
+    from .data import ReportData
 
 RESULTS: Final = "results.json"
 SECTIONS: Final = {
@@ -113,7 +117,7 @@ def write_report(
             f"{type(analysis).__name__}"
         )
     require_language(language)
-    report = progress or (lambda _message: None)
+    report = progress or silent
     out = Path(out)
     for message in tidied(out):
         report(message)
@@ -158,8 +162,9 @@ def page(
     language: str = ENGLISH,
 ) -> str:
     """HTML of the report, with styles, figures and tables inside."""
-    environment = page_environment(language)
-    english = environment.get_template("report.html").render(
+    english = render_template(
+        "report.html",
+        language,
         **_frame(data),
         key_results=key_results(data),
         caveats=caveats(data),
@@ -210,7 +215,6 @@ def _frame(data: ReportData) -> dict[str, Any]:
         "sections": [(name, SECTIONS[name]) for name in ids],
         "titles": SECTIONS,
         "numbers": {name: number for number, name in enumerate(ids, start=1)},
-        "css": Markup(files("skisnow.report").joinpath("templates", "report.css").read_text(encoding="utf-8")),
     }
 
 
@@ -234,3 +238,40 @@ def _uncertainties(campaign: dict[str, Any]) -> dict[str, str]:
         "moment": in_words("moment_uncertainty_Nm", "N m"),
         "lever_arm": in_words("lever_arm_uncertainty_mm", "mm"),
     }
+
+
+DRAWERS: Final = (
+    force_depth,
+    model_rmse,
+    residuals,
+    seating_offsets,
+    unloading_ratios,
+    hardness_density,
+    shear_force_depth,
+    stress_angle,
+    machining,
+    stress_density,
+    stress_hardness,
+)
+"""Functions that draw one figure each, in the order of the report."""
+RECORDING_DRAWERS: Final = (hardness_mean_force,)
+"""Figures of a campaign with recordings of a SnowMicroPen."""
+
+
+def campaign_figures(
+    data: ReportData, *, language: str = ENGLISH, progress: Callable[[str], None] | None = None
+) -> tuple[list[Picture], list[LeftOut]]:
+    """Figures for which the campaign has data, and the reasons for the missing ones."""
+    missing: list[LeftOut] = []
+
+    def drawings() -> Iterator[Drawing]:
+        styles = site_styles(data)
+        for draw in (*DRAWERS, *RECORDING_DRAWERS) if data.campaign.snow_micro_pen else DRAWERS:
+            drawing = draw(data, styles)
+            if isinstance(drawing, Drawing):
+                yield drawing
+            else:
+                missing.append(drawing)
+
+    names = frozenset(map(figure_text, data.names))
+    return render_pictures(drawings(), language=language, names=names, progress=progress), missing

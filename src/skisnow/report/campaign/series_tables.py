@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from ..._support.units import MM
-from ..tables.table import Column, Table, record_table
+from ..table import Column, Table, record_table
 from .data import numbers, pairs
 
 if TYPE_CHECKING:

@@ -1,4 +1,4 @@
-"""The results as a compact text for a terminal; every sign of it prints on any of them, but for the users' names."""
+"""Results of a campaign as text for a terminal, in ASCII and units."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 from ...estimation.comparisons import FEWEST_SITES
 from ...estimation.regressions import FEWEST_VALUES
-from ..formatting import interval, p_equals, significant
+from ..formatting import interval, p_equals, plain
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -23,14 +23,14 @@ def summary(results: Json) -> str:
     Parameters
     ----------
     results
-        What `skisnow.estimation.results_dict` gives.
+        Contents of `skisnow.estimation.results_dict`.
     """
     return "\n".join(_lines(results))
 
 
 def _lines(results: Json) -> Iterator[str]:
     name = results["campaign"]["name"]
-    # said here too, because numbers are copied line by line
+    # in each line, because numbers are copied line by line
     tag = " (synthetic)" if "synthetic" in name.casefold() else ""
     yield f"{name}, {results['campaign']['place']}" if results["campaign"]["place"] else name
     yield ""
@@ -39,7 +39,7 @@ def _lines(results: Json) -> Iterator[str]:
     yield from _unloading(results, tag)
     yield from _measured(results, "S_f_N_per_mm2", f"S_f{tag}", "N/mm²", "mean")
     yield from _displacement(results, tag)
-    yield from _not_stated(results["campaign"])
+    yield from _missing_values(results["campaign"])
     if results["penetration"]["selected"]:
         yield ""
         yield from _models(results["penetration"], tag)
@@ -74,7 +74,7 @@ def _codes(rows: list[Json]) -> str:
 
 
 def _measured(results: Json, quantity: str, symbol: str, unit: str, kind: str) -> Iterator[str]:
-    """The mean over all sites and each site's own; few sites come first, with their comparison."""
+    """Mean over all sites and that of each site; of few sites, first the sites and their ratios."""
     row = next((row for row in results["comparisons"] if row["quantity"] == quantity), None)
     if row is None or row["own"] is None:
         yield f"{symbol}: none"
@@ -93,9 +93,9 @@ def _measured(results: Json, quantity: str, symbol: str, unit: str, kind: str) -
 
 
 def _unloading(results: Json, tag: str) -> Iterator[str]:
-    """k_u/H_V of each site whose discs were taken off, and of all."""
-    found = results["penetration"]["unloading"]
-    for row in found if len(found) > 2 else found[:1]:
+    """k_u/H_V of each site with unloading, and over all sites."""
+    rows = results["penetration"]["unloading"]
+    for row in rows if len(rows) > 2 else rows[:1]:
         where = "over all" if row["site"] is None else f"at {row['site']}"
         yield f"k_u/H_V{tag} {where}: {_ratio_in_words(row)}, n = {row['n']} series"
 
@@ -104,16 +104,16 @@ def _displacement(results: Json, tag: str) -> Iterator[str]:
     """u_y over all tests with turning angles."""
     for row in results["shear"]["displacement"][-1:]:
         ends = row["shear_displacement_interval_mm"]
-        known = f", 95 % interval {interval(ends, style='plain')}" if ends else ""
-        yield f"u_y{tag}: {significant(row['shear_displacement_mm'], style='plain')} mm{known}, n = {row['n']} tests"
+        spread = f", 95 % interval {interval(ends, style='plain')}" if ends else ""
+        yield f"u_y{tag}: {plain(row['shear_displacement_mm'])} mm{spread}, n = {row['n']} tests"
 
 
 def _ratio_in_words(row: Json) -> str:
     ends, rebound = row["unloading_ratio_interval"], row["rebound_ratio_interval"]
     if ends:
-        return f"{significant(row['unloading_ratio'], style='plain')}, 95 % interval {interval(ends, style='plain')}"
+        return f"{plain(row['unloading_ratio'])}, 95 % interval {interval(ends, style='plain')}"
     if rebound and rebound[1] > 0:
-        return f"above {significant(1.0 / rebound[1], style='plain')}"
+        return f"above {plain(1.0 / rebound[1])}"
     return "not resolved"
 
 
@@ -122,10 +122,10 @@ def _over(sites: list[Json]) -> str:
 
 
 def _mean(symbol: str, kind: str, unit: str, numbers: tuple[float, list[float] | None, list[float]], over: str) -> str:
-    mean, ends, least_and_greatest = numbers
-    known = f"95 % interval {interval(ends, style='plain')} {over}" if ends else f"no interval {over}"
-    spread = " to ".join(significant(end, style="plain") for end in least_and_greatest)
-    return f"{symbol}: {kind} {significant(mean, style='plain')} {unit}, {known}, range {spread}"
+    mean, ends, extremes = numbers
+    interval_words = f"95 % interval {interval(ends, style='plain')} {over}" if ends else f"no interval {over}"
+    spread = " to ".join(plain(end) for end in extremes)
+    return f"{symbol}: {kind} {plain(mean)} {unit}, {interval_words}, range {spread}"
 
 
 def _site(item: Json, symbol: str, unit: str, kind: str) -> str:
@@ -136,11 +136,11 @@ def _site(item: Json, symbol: str, unit: str, kind: str) -> str:
 def _ratio(pair: Json, symbol: str) -> str:
     ends = f" 95 % interval {interval(pair['interval'], style='plain')}" if pair["interval"] else " no interval"
     p = "" if pair["p"] is None else f", {p_equals(pair['p'], style='plain')}"
-    ratio = significant(pair["ratio"], style="plain")
+    ratio = plain(pair["ratio"])
     return f"  {symbol} at {pair['site_a']} over {pair['site_b']}: {ratio},{ends}{p}"
 
 
-def _not_stated(campaign: Json) -> Iterator[str]:
+def _missing_values(campaign: Json) -> Iterator[str]:
     if campaign["corrections"]:
         yield f"corrections applied: {len(campaign['corrections'])}"
     yield from (f"note: {note}" for note in campaign["remarks"])
@@ -157,9 +157,7 @@ def _models(penetration: Json, tag: str) -> Iterator[str]:
     chosen = penetration["selected"]["id"]
     for row in penetration["models"]:
         mark = "*" if row["id"] == chosen else " "
-        rmse = "".join(
-            f"{significant(row[key], 4, style='plain'):>9}" for key in ("rmse_N", "rmse_dof_N", "rmse_free_N")
-        )
+        rmse = "".join(f"{plain(row[key], 4):>9}" for key in ("rmse_N", "rmse_dof_N", "rmse_free_N"))
         yield f"{mark} {row['id']:<32}{rmse}   {_coefficients(row)}".rstrip()
     yield f"* {penetration['selected']['reason']}"
     yield from (f"warning: {text}" for text in penetration["warnings"])
@@ -169,14 +167,14 @@ def _coefficients(row: Json) -> str:
     terms = {"a": ("constant", "linear"), "b": ("constant", "linear")}
     fitted = [f"{name}0" for name, fits in terms.items() if row[name] in fits]
     fitted += [f"{name}1" for name in terms if row[name] == "linear" and row[f"{name}1"] is not None]
-    text = ", ".join(f"{name} = {significant(row[name], style='plain')}" for name in sorted(fitted))
+    text = ", ".join(f"{name} = {plain(row[name])}" for name in sorted(fitted))
     bounds = f"; at bound: {', '.join(row['at_bound'])}" if row["at_bound"] else ""
     return text + bounds
 
 
 def _regression(row: Json) -> str:
     head = f"  {row['response']} on {row['terms'][1]}, {row['group']}, n = {row['n']}: "
-    slope = significant(row["b"][1], style="plain")
+    slope = plain(row["b"][1])
     if row["withheld"]:
         return f"{head}{slope}, not judged (values of the predictor: {row['predictor_values']})"
     by_site = row["interval_by_site"]

@@ -1,12 +1,16 @@
-"""All tables of a campaign's report in order, with those of its sources: files, corrections, warnings, flags."""
+"""Tables that compare: sites, published values, regressions, weather, recordings of a SnowMicroPen."""
 
 from __future__ import annotations
 
+from collections import Counter
 from dataclasses import replace
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
 
 from ...campaign import QUALITY_FLAGS
-from ..tables.table import Column, Table, record_table
+from ...estimation.comparisons import own_mean
+from ..table import Column, Table, record_table
 from .model_tables import errors_in_depth_table, fitted_hardness_table, models_table, nested_table
 from .series_tables import (
     displacement_sites_table,
@@ -21,17 +25,202 @@ from .series_tables import (
     unloading_sites_table,
     unloading_table,
 )
-from .site_tables import (
-    published_table,
-    regressions_table,
-    site_comparison_table,
-    sites_table,
-    snow_micro_pen_table,
-    weather_table,
-)
 
 if TYPE_CHECKING:
-    from .data import Json, ReportData
+    from .data import FloatArray, Json, ReportData, TextArray
+
+QUANTITY: Final = {
+    "S_f_N_per_mm2": ("S_f", "N/mm²"),
+    "H_V_N_per_mm3": ("H_V", "N/mm³"),
+    "edge_angle_rad": ("edge angle ϑ", "rad"),
+    "snow_density_kg_per_m3": ("snow density ρ", "kg/m³"),
+    "drop_cone_depth_mm": ("drop-cone depth H_p", "mm"),
+    "smp_mean_force_N": ("SnowMicroPen mean force", "N"),
+    "smp_snow_density_kg_per_m3": ("SnowMicroPen density", "kg/m³"),
+}
+"""Symbol and unit of each response and predictor of a regression."""
+
+_PUBLISHED: Final = {
+    "H_V_N_per_mm3": "H_V in N/mm³",
+    "S_f_N_per_mm2": "S_f in N/mm²",
+    "b0": "b_0 of Eqn 11",
+    "b1_per_rad": "b_1 of Eqn 11, per rad",
+}
+
+
+def sites_table(data: ReportData) -> Table:
+    """Mean and range of H_V and S_f for each site, and for all if there are several."""
+    n_penetration = Counter(row["site"] for row in data.penetration)
+    n_shear = Counter(row["site"] for row in data.shear)
+    rows = []
+    for site in data.sites:
+        in_penetration, in_shear = data.penetration_site == site, data.shear_site == site
+        hardness = _mean_and_range(data.hardness[in_penetration], data.penetration_site[in_penetration], geometric=True)
+        stress = _mean_and_range(data.stress[in_shear], data.shear_site[in_shear], geometric=False)
+        rows.append((site, n_penetration[site], *hardness, n_shear[site], *stress))
+    if len(data.sites) > 1:
+        hardness = _mean_and_range(data.hardness, data.penetration_site, geometric=True)
+        stress = _mean_and_range(data.stress, data.shear_site, geometric=False)
+        rows.append(("all sites", len(data.penetration), *hardness, len(data.shear), *stress))
+    return Table(
+        "sites",
+        "Snow hardness and failure shear stress by site, with 95 % intervals of the means.",
+        (
+            Column("site", "Site", "text"),
+            Column("penetration_n", "penetration tests", "count"),
+            Column("penetration_used", "used", "count"),
+            Column("H_V_N_per_mm3", "H_V, geometric mean", "estimate", "N/mm³"),
+            Column("H_V_range_N_per_mm3", "H_V, range", "range", "N/mm³"),
+            Column("shear_n", "shear tests", "count"),
+            Column("shear_used", "used", "count"),
+            Column("S_f_N_per_mm2", "S_f, mean", "estimate", "N/mm²"),
+            Column("S_f_range_N_per_mm2", "S_f, range", "range", "N/mm²"),
+        ),
+        rows,
+        note="The interval of a site comes from the scatter between its experiments; that of all sites from the "
+        "scatter between sites, and is withheld for fewer than four. H_V spans decades, so its mean is the geometric "
+        "one. All intervals are computed on "
+        "logarithms: no bound is negative.",
+    )
+
+
+def _mean_and_range(values: FloatArray, sites: TextArray, *, geometric: bool) -> tuple[Any, ...]:
+    """Number of values, mean with interval, minimum and maximum."""
+    if len(values) == 0:
+        return 0, (None, None), None
+    mean = own_mean(values, sites.tolist(), geometric=geometric)
+    interval = (mean.low, mean.high) if np.isfinite(mean.low) and np.isfinite(mean.high) else None
+    value = mean.value if np.isfinite(mean.value) else None
+    return len(values), (value, interval), (mean.minimum, mean.maximum) if np.isfinite(mean.minimum) else None
+
+
+def site_comparison_table(data: ReportData) -> Table:
+    """Ratio of the means of every pair of sites."""
+    columns = (
+        Column("quantity", "Quantity", "words"),
+        Column("site_a", "Site A", "text"),
+        Column("site_b", "Site B", "text"),
+        Column("ratio", "A / B", "estimate", interval="interval"),
+        Column("p", "p", "p"),
+        Column("n_for_10_percent", "tests per site to tell 10 %", "count"),
+    )
+    return record_table(
+        "site_comparisons",
+        "Is one site harder than another: ratio of the geometric means of site A over site B, with 95 % interval.",
+        columns,
+        data.results["site_comparisons"],
+        note="Welch's test on logarithms, each pair by itself: of twenty pairs of equal sites one is expected below "
+        "p = 0.05. Last column: tests at each site that would find a difference of 10 % with a power of 80 %.",
+    )
+
+
+def published_table(data: ReportData) -> Table:
+    """Published values next to those of this campaign."""
+    records = [
+        row
+        | {
+            "quantity": _PUBLISHED.get(row["quantity"], row["quantity"]),
+            "own_over_published": row["own"] / row["value"] if row["own"] is not None and row.get("value") else None,
+        }
+        for row in data.results["comparisons"]
+    ]
+    columns = (
+        Column("source", "Source", "text"),
+        Column("quantity", "Quantity", "words"),
+        Column("value", "published"),
+        Column("range", "published range", "range"),
+        Column("own", "this campaign", "estimate", interval="own_interval"),
+        Column("own_range", "its range", "range"),
+        Column("own_over_published", "own / published"),
+    )
+    caption = (
+        "Published values beside this campaign's own: mean (H_V: geometric) with 95 % interval, and range over the "
+        "used experiments."
+    )
+    return record_table("comparisons", caption, columns, records)
+
+
+def regressions_table(data: ReportData) -> Table:
+    """Coefficients, intervals and F test of every regression."""
+    return Table(
+        "regressions",
+        "Linear regressions with intercept: coefficients with 95 % intervals, goodness of fit and F test of the slope.",
+        (
+            Column("response", "Response", "words"),
+            Column("predictor", "on", "words"),
+            Column("group", "group", "text"),
+            Column("n", "n", "count"),
+            Column("intercept", "intercept", "estimate"),
+            Column("slope", "slope", "estimate"),
+            Column("slope_by_site", "sites as clusters", "interval"),
+            Column("rmse", "RMSE with 1/n"),
+            Column("rmse_dof", "RMSE with 1/(n − 2)"),
+            Column("r2", "R²"),
+            Column("F", "F"),
+            Column("p", "p", "p"),
+        ),
+        [_regression_row(row) for row in data.results["regressions"]],
+        note="Intercept and rmse are in the unit of the response, slopes in that per unit of the predictor. Sites as "
+        "clusters: the interval of the slope that knows that experiments of one site belong together; it is absent for "
+        "a single site and where the sites do not tell. F and p are withheld where the predictor takes fewer than four "
+        "different values: whatever else differs between them would show as well.",
+    )
+
+
+def _regression_row(row: Json) -> tuple[Any, ...]:
+    coefficients, intervals = row["b"] or (None, None), row["interval"] or (None, None)
+    by_site = row["interval_by_site"]
+    names = ("{} ({})".format(*QUANTITY[key]) for key in (row["response"], row["terms"][1]))
+    estimates = zip(coefficients, intervals, strict=True)
+    fit = (row[key] for key in ("rmse", "rmse_dof", "r2", "F", "p"))
+    return (*names, row["group"], row["n"], *estimates, by_site[1] if by_site else None, *fit)
+
+
+def weather_table(data: ReportData) -> Table:
+    """Means of the weather at the experiments, by site."""
+    weather = data.results["weather"]
+    columns = (
+        Column("site", "Site", "text"),
+        Column("n", "experiments", "count"),
+        Column("air_temperature_C", "air", unit="°C"),
+        Column("relative_humidity_percent", "humidity", unit="%"),
+        Column("snow_surface_temperature_C", "snow surface", unit="°C"),
+        Column("wind_speed_m_per_s", "wind", unit="m/s"),
+        Column("incoming_short_wave_W_per_m2", "short-wave radiation", unit="W/m²"),
+    )
+    caption = f"Weather at the times of the experiments, by the station {weather['station']}: means by site."
+    note = "Linear between the station's readings; experiments whose time of day is not noted are not counted."
+    return record_table("weather", caption, columns, [row for row in weather["sites"] if row["n"]], note=note)
+
+
+def snow_micro_pen_table(data: ReportData) -> Table:
+    """Every recording of a SnowMicroPen."""
+    recordings = data.results["snow_micro_pen"]
+    columns = (
+        Column("recording", "Recording", "text"),
+        Column("site", "Site", "text"),
+        Column("spot", "spot", "text"),
+        Column("surface_mm", "surface at", unit="mm", digits=4),
+        Column("air_force_N", "force in air", unit="N"),
+        Column("mean_force_N", "mean force", unit="N"),
+        Column("rupture_force_N", "f₀", unit="N"),
+        Column("deflection_mm", "δ", unit="mm"),
+        Column("element_size_mm", "L", unit="mm"),
+        Column("snow_density_kg_per_m3", "ρ", unit="kg/m³"),
+        Column("specific_surface_area_m2_per_kg", "SSA", unit="m²/kg"),
+        Column("used", "used", "yes"),
+        Column("flags", "flags", "codes"),
+    )
+    depths = f"{recordings['from_depth_mm']:g} to {recordings['to_depth_mm']:g} mm below the surface"
+    return record_table(
+        "snow_micro_pen",
+        f"Recordings of the SnowMicroPen, {depths}, density and surface area by {recordings['relation']}.",
+        columns,
+        recordings["recordings"],
+        note="f₀ is the force at which an element of the snow ruptures, δ its deflection, L the elements' size: "
+        "medians over windows. The relations for density and specific surface area were fitted to snow that nobody "
+        "had groomed; the other published ones stand in results.json.",
+    )
 
 
 def files_table(data: ReportData) -> Table:

@@ -1,4 +1,4 @@
-"""A line through the gates of a course from above, with a colour for a quantity along it."""
+"""Figure of a line through the gates of a course from above, coloured by a quantity along it."""
 
 from __future__ import annotations
 
@@ -27,9 +27,9 @@ if TYPE_CHECKING:
 FloatArray = npt.NDArray[np.float64]
 
 STRETCHED: Final = 5.0
-"""Length over width of a course above which it is drawn wider than it is."""
+"""Ratio of length to width of a course above which both axes have different scales."""
 SINGLE_POLE: Final = 1.5
-"""Length (m) of line that is drawn at a gate without an outer pole."""
+"""Drawn length (m) of the line of a gate without an outer pole."""
 MOST_NAMES: Final = 40
 _HEIGHT_MM: Final = 82.0
 _MARGIN: Final = 0.04
@@ -38,49 +38,48 @@ _MARGIN: Final = 0.04
 def course_line(
     result: CourseResult, place: FloatArray, values: FloatArray, *, label: str, diverging: bool, axes_words: str = ""
 ) -> Figure:
-    """Draw it.
+    """Draw the figure.
 
     Parameters
     ----------
     result
-        The course, and what became of its gates.
+        Course with the passages of its gates.
     place
-        Places (n, 2) or (n, 3) of the line (m).
+        Places of the line (m), shape (n, 2) or (n, 3).
     values
-        (n,) what is shown as colour.
+        Quantity shown as colour, shape (n,).
     label
-        Of the colour, with its unit.
+        Label of the colour scale, with the unit.
     diverging
-        Whether values below 0 are as much as those above: left and right.
+        True for a colour scale that is symmetric about 0, such as left and right.
     axes_words
-        What x is, where it is known.
+        Label of x without the unit (default: the symbol).
     """
     figure = new_figure(width_mm=DOUBLE_MM, height_mm=_HEIGHT_MM)
     axes = figure.add_subplot()
     points = np.concatenate([place[:, :2], [gate.turning for gate in result.course.gates]])
-    _gates(axes, result)
-    drawn = _line(axes, place, values, diverging=diverging)
-    _frame(axes, points, axes_words)
-    figure.colorbar(drawn, ax=axes, label=label, pad=0.01, aspect=22)
+    _draw_gates(axes, result)
+    line = _draw_line(axes, place, values, diverging=diverging)
+    _set_axes(axes, points, axes_words)
+    figure.colorbar(line, ax=axes, label=label, pad=0.01, aspect=22)
     legend_below(figure, _handles(result))
     return figure
 
 
-def _line(axes: Axes, place: FloatArray, values: FloatArray, *, diverging: bool) -> LineCollection:
+def _draw_line(axes: Axes, place: FloatArray, values: FloatArray, *, diverging: bool) -> LineCollection:
     pieces = np.stack([place[:-1, :2], place[1:, :2]], axis=1)
     middle = 0.5 * (values[:-1] + values[1:])
-    drawn = LineCollection(
-        list(pieces), array=middle, cmap="PuOr_r" if diverging else "viridis", linewidth=2.2, zorder=3
-    )
-    known = np.abs(middle[np.isfinite(middle)])
-    most = float(known.max()) if known.size else 1.0
-    drawn.set_clim(-most if diverging else 0.0, most or 1.0)
-    drawn.set_capstyle("round")
-    axes.add_collection(drawn)
-    return drawn
+    colours = "PuOr_r" if diverging else "viridis"
+    line = LineCollection(list(pieces), array=middle, cmap=colours, linewidth=2.2, zorder=3)
+    magnitude = np.abs(middle[np.isfinite(middle)])
+    largest = float(magnitude.max()) if magnitude.size else 1.0
+    line.set_clim(-largest if diverging else 0.0, largest or 1.0)
+    line.set_capstyle("round")
+    axes.add_collection(line)
+    return line
 
 
-def _gates(axes: Axes, result: CourseResult) -> None:
+def _draw_gates(axes: Axes, result: CourseResult) -> None:
     for number, (passage, line) in enumerate(zip(result.passages, result.course.lines, strict=True)):
         reach = line.width if np.isfinite(line.width) else SINGLE_POLE
         end = line.pole + reach * line.across
@@ -101,7 +100,7 @@ def _gates(axes: Axes, result: CourseResult) -> None:
             )  # fmt: skip
 
 
-def _frame(axes: Axes, points: FloatArray, words: str) -> None:
+def _set_axes(axes: Axes, points: FloatArray, words: str) -> None:
     low, high = points.min(axis=0), points.max(axis=0)
     size = np.maximum(high - low, 1.0)
     margin = np.maximum(_MARGIN * size, 1.0)
@@ -126,7 +125,7 @@ def _handles(result: CourseResult) -> list[Line2D]:
 
 
 def run_course(run: Run) -> Figure:
-    """Draw it; a run without a course has none."""
+    """Draw the line of a run over its course; ParameterError for a run without a course."""
     result = run_gates(run)
     if result is None:
         raise ParameterError("the run has no course, or ended before its first step; give the scenario course.file")
@@ -137,12 +136,12 @@ def run_course(run: Run) -> Figure:
 
 
 def edge_angles(run: Run) -> FloatArray:
-    """Angle of the bases at the boots to the snow's surface, mean of both skis, positive: left edges down (rad)."""
+    """Mean edge angle of both skis at the boots, shape (n,), positive with the left edges down (rad)."""
     return edge_angles_of_skis(run).mean(axis=1)
 
 
 def edge_angles_of_skis(run: Run) -> FloatArray:
-    """The same of each ski, (n, 2), or (n, 1) of skis that are edged alike."""
+    """Edge angle of each ski as in `edge_angles`, shape (n, 2); (n, 1) if both have the same."""
     normal = normals_of(run.scenario.slope, run.place[:, 0], run.place[:, 1])
     if run.boots is not None:
         left = run.boots.axes[:, :, 1]

@@ -6,6 +6,7 @@ import base64
 import io
 import re
 import warnings
+from collections import Counter
 from dataclasses import dataclass
 from string import ascii_lowercase
 from typing import TYPE_CHECKING, Any, Final, Literal, TypeAlias
@@ -19,7 +20,6 @@ from matplotlib.patches import Patch
 from matplotlib.text import Text
 
 from ..symbols import html
-from .compact import compact_svg
 from .style import thinning_sentence
 
 if TYPE_CHECKING:
@@ -27,21 +27,21 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-_UNDATED: Final[dict[str, dict[str, Any]]] = {
+UNDATED: Final[dict[str, dict[str, Any]]] = {
     "svg": {"Date": None, "Creator": None, "Format": None, "Type": None},
     "png": {"Software": None},
     "pdf": {"CreationDate": None, "Creator": None, "Producer": None},
     "eps": {"Creator": "skisnow"},
 }
 _EPS_DPI: Final = 150
-"""Of clouds of points inside an EPS, which holds them as text."""
+"""Resolution of clouds of points in an EPS, which stores them as text."""
 _EPS_DATE: Final = re.compile(rb"^%%CreationDate:.*\n", re.MULTILINE)
 _FAMILY: Final = re.compile(r"'DejaVu Sans'(?!,)")
 
 
 @dataclass(frozen=True)
 class Drawing:
-    """A figure with its words. ``wide``: two columns of a journal; ``points``: how many the cloud has."""
+    """A figure with its caption. ``wide``: two columns of a journal; ``points``: number of points of its cloud."""
 
     name: str
     caption: Markup
@@ -52,13 +52,13 @@ class Drawing:
 
     @property
     def whole_caption(self) -> Markup:
-        """The caption, and what is said of a cloud that was thinned."""
+        """The caption with the sentence about a thinned cloud of points."""
         return self.caption + html(thinning_sentence(self.points))
 
 
 @dataclass(frozen=True)
 class LeftOut:
-    """A figure that the campaign has no data for. ``what`` and ``reason`` make a sentence: what: reason."""
+    """A figure without data: its title ``what``, and the reason why it is missing."""
 
     name: str
     what: str
@@ -67,7 +67,7 @@ class LeftOut:
 
 @dataclass(frozen=True)
 class Picture:
-    """A drawing as files."""
+    """A drawing rendered to files."""
 
     name: str
     caption: Markup
@@ -80,12 +80,12 @@ class Picture:
 
     @property
     def data_uri(self) -> str:
-        """The SVG inside an attribute of the HTML, in fewer bytes than its file."""
+        """Address of the image that contains the compacted SVG itself."""
         return data_uri(self.svg)
 
     @property
     def files(self) -> dict[str, str | bytes]:
-        """Contents by the endings of file names."""
+        """Contents by file suffix without the point."""
         return {"svg": self.svg, "png": self.png, "pdf": self.pdf, "eps": self.eps}
 
 
@@ -98,40 +98,39 @@ def data_uri(svg: str) -> str:
     return "data:image/svg+xml;base64," + base64.b64encode(compact_svg(svg).encode()).decode("ascii")
 
 
-def pictured(drawing: Drawing) -> Picture:
-    """Draw it, the same bytes for the same data."""
+def render(drawing: Drawing) -> Picture:
+    """Render a drawing as SVG, PNG, PDF and EPS; the same bytes for the same data."""
     letter_panels(drawing.figure)
-    svg, png, pdf = _svg(drawing), _drawn_as("png", drawing), _drawn_as("pdf", drawing)
+    svg, png, pdf = _render_svg(drawing), _render_as("png", drawing), _render_as("pdf", drawing)
     make_opaque(drawing.figure)
-    eps = _EPS_DATE.sub(b"", _drawn_as("eps", drawing))
-    words = drawing.name, drawing.whole_caption, drawing.alt, drawing.wide
-    return Picture(*words, svg, png, pdf, eps)
+    eps = _EPS_DATE.sub(b"", _render_as("eps", drawing))
+    return Picture(drawing.name, drawing.whole_caption, drawing.alt, drawing.wide, svg, png, pdf, eps)
 
 
 def drawing_svg(drawing: Drawing) -> str:
     """SVG of a drawing, for a page that needs no other format."""
     letter_panels(drawing.figure)
-    return _svg(drawing)
+    return _render_svg(drawing)
 
 
-def _svg(drawing: Drawing) -> str:
+def _render_svg(drawing: Drawing) -> str:
     # Verdana has the widths of DejaVu Sans where that is not installed
-    return _FAMILY.sub("'DejaVu Sans', Verdana, sans-serif", _drawn_as("svg", drawing).decode("utf-8"))
+    return _FAMILY.sub("'DejaVu Sans', Verdana, sans-serif", _render_as("svg", drawing).decode("utf-8"))
 
 
-def _drawn_as(form: Form, drawing: Drawing) -> bytes:
+def _render_as(form: Form, drawing: Drawing) -> bytes:
     content = io.BytesIO()
     options: dict[str, Any] = {"dpi": _EPS_DPI} if form == "eps" else {}
     with warnings.catch_warnings():
         # a site's name in a script that the font lacks: boxes in the PNG, right in the SVG, whose text is text
         warnings.filterwarnings("ignore", message=r"Glyph \d+ .* missing from font")
         _lay_out(drawing.figure)
-        drawing.figure.savefig(content, format=form, metadata=_UNDATED[form], **options)
+        drawing.figure.savefig(content, format=form, metadata=UNDATED[form], **options)
     return content.getvalue()
 
 
 def _lay_out(figure: Figure) -> None:
-    """Place the axes, once for both files: that takes as long as drawing them."""
+    """Place the axes once for all files: this takes as long as drawing them."""
     engine = figure.get_layout_engine()
     if engine is not None:
         engine.execute(figure)
@@ -139,7 +138,7 @@ def _lay_out(figure: Figure) -> None:
 
 
 def _set_no_engine(figure: Figure) -> None:
-    """Leave the axes where they are. With any engine, the one called "none" too, each file is drawn twice."""
+    """Remove the layout engine. With any engine, even the one called "none", each file would be drawn twice."""
     from matplotlib import rc_context
 
     with rc_context({"figure.constrained_layout.use": False, "figure.autolayout": False}):
@@ -150,18 +149,18 @@ _COLOUR_BAR = "<colorbar>"
 
 
 def panels_of(figure: Figure) -> list[Axes]:
-    """The visible axes that stand in a grid for themselves: no scale of colours, no second axis over another."""
-    found: dict[tuple[object, ...], Axes] = {}
+    """Visible axes with a cell of a grid, without colour scales and second axes over the same cell."""
+    panels: dict[tuple[object, ...], Axes] = {}
     for axes in figure.axes:
         place = axes.get_subplotspec()
         if place is None or axes.get_label() == _COLOUR_BAR or not axes.get_visible():
             continue
-        found.setdefault((id(place.get_gridspec()), place.num1, place.num2), axes)
-    return list(found.values())
+        panels.setdefault((id(place.get_gridspec()), place.num1, place.num2), axes)
+    return list(panels.values())
 
 
 def letter_panels(figure: Figure) -> None:
-    """Put a letter before the title at the left of each panel, or in its place."""
+    """Add (a), (b), … to the left title of each panel if there are several."""
     panels = panels_of(figure)
     if len(panels) < 2:
         return
@@ -174,16 +173,16 @@ def letter_panels(figure: Figure) -> None:
 
 
 def left_title(axes: Axes) -> Text | None:
-    """The title at the left as it stands there; None where there is none."""
+    """The left title of axes; None without one."""
     text = axes.get_title(loc="left")
     if not text:
         return None
-    own = (each for each in axes.get_children() if isinstance(each, Text) and each.get_text() == text)
-    return next(own, None)
+    titles = (artist for artist in axes.get_children() if isinstance(artist, Text) and artist.get_text() == text)
+    return next(titles, None)
 
 
 def make_opaque(figure: Figure) -> None:
-    """Change the figure itself."""
+    """Replace transparent colours of a figure by opaque ones, as an EPS has no transparency."""
     for artist in figure.findobj():
         _make_opaque(artist)
 
@@ -191,7 +190,7 @@ def make_opaque(figure: Figure) -> None:
 def _make_opaque(artist: Artist) -> None:
     alpha = artist.get_alpha()
     if isinstance(artist, Collection):
-        faces, edges = _blended(artist.get_facecolor(), None), _blended(artist.get_edgecolor(), None)
+        faces, edges = _blend(artist.get_facecolor(), None), _blend(artist.get_edgecolor(), None)
         if artist.get_array() is None:  # else its colours come from a map
             artist.set_alpha(None)
             artist.set_facecolor(faces)
@@ -199,27 +198,67 @@ def _make_opaque(artist: Artist) -> None:
     elif alpha is None or np.ndim(alpha) or alpha >= 1.0:
         return
     elif isinstance(artist, Line2D):
-        artist.set_color(_one(artist.get_color(), alpha))
+        artist.set_color(_blend_one(artist.get_color(), alpha))
         artist.set_alpha(None)
     elif isinstance(artist, Patch):
-        face, edge = _one(artist.get_facecolor(), None), _one(artist.get_edgecolor(), None)
+        face, edge = _blend_one(artist.get_facecolor(), None), _blend_one(artist.get_edgecolor(), None)
         artist.set_alpha(None)
         artist.set_facecolor(face)
         artist.set_edgecolor(edge)
     elif isinstance(artist, Text):
-        artist.set_color(_one(artist.get_color(), alpha))
+        artist.set_color(_blend_one(artist.get_color(), alpha))
         artist.set_alpha(None)
 
 
-def _one(colour: Any, alpha: float | None) -> tuple[float, float, float, float]:
-    red, green, blue, share = _blended([colour], alpha)[0].tolist()
-    return red, green, blue, share
+def _blend_one(colour: Any, alpha: float | None) -> tuple[float, float, float, float]:
+    red, green, blue, opacity = _blend([colour], alpha)[0].tolist()
+    return red, green, blue, opacity
 
 
-def _blended(colours: Any, alpha: float | None) -> Any:
-    """Over white; what is wholly transparent stays so."""
-    found = to_rgba_array(colours, alpha)
-    share = found[:, 3:]
-    found[:, :3] = share * found[:, :3] + 1.0 - share
-    found[:, 3] = np.where(share[:, 0] > 0.0, 1.0, 0.0)
-    return found
+def _blend(colours: Any, alpha: float | None) -> Any:
+    """Colours blended over white, shape (n, 4); fully transparent ones stay transparent."""
+    rgba = to_rgba_array(colours, alpha)
+    opacity = rgba[:, 3:]
+    rgba[:, :3] = opacity * rgba[:, :3] + 1.0 - opacity
+    rgba[:, 3] = np.where(opacity[:, 0] > 0.0, 1.0, 0.0)
+    return rgba
+
+
+DIGITS: Final = 2
+"""Decimals of a length in points: steps of 0.01 pt are 3.5 µm on paper."""
+_LENGTH: Final = re.compile(r"-?\d+\.\d{3,}")
+_PLACED: Final = re.compile(r' (?:d|x|y)="[^"]*"|translate\([^)]*\)')
+_PATH: Final = re.compile(r' d="[^"]*"')
+_STYLE: Final = re.compile(r' style="([^"]*)"')
+_NAME: Final = re.compile(r'(?:id="|#)([mpc][0-9a-f]{8,})')
+_FEW: Final = 2
+
+
+def compact_svg(svg: str) -> str:
+    r"""An SVG of Matplotlib in about half the bytes: rounded lengths, shared styles, no unused names.
+
+    >>> compact_svg('<svg>\n <g id="a">\n  <path d="M 1.23456 2 \nL 3 4 \n" style="fill: none"/>\n </g>\n</svg>')
+    '<svg><g><path d="M 1.23 2 L 3 4 " style="fill: none"/></g></svg>'
+    """
+    svg = _PLACED.sub(lambda match: _LENGTH.sub(_round_length, match[0]), svg)
+    svg = _PATH.sub(lambda match: match[0].replace("\n", ""), svg)
+    svg = re.sub(r'<g id="[^"]*"', "<g", re.sub(r">\s*\n\s*<", "><", svg)).replace("xlink:href", "href")
+    for number, name in enumerate(dict.fromkeys(_NAME.findall(svg))):
+        svg = svg.replace(name, f"i{number}")
+    return _share_styles(svg)
+
+
+def _round_length(match: re.Match[str]) -> str:
+    text = f"{float(match[0]):.{DIGITS}f}".rstrip("0").rstrip(".")
+    return "0" if text == "-0" else text
+
+
+def _share_styles(svg: str) -> str:
+    """Replace styles that several elements have by classes."""
+    often = [style for style, count in Counter(_STYLE.findall(svg)).most_common() if count > _FEW]
+    if not often:
+        return svg
+    classes = {style: f"s{number}" for number, style in enumerate(often)}
+    rules = "".join(f".{name}{{{style}}}" for style, name in classes.items())
+    svg = _STYLE.sub(lambda match: f' class="{classes[match[1]]}"' if match[1] in classes else match[0], svg)
+    return svg.replace("</svg>", f"<style>{rules}</style></svg>")

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Final
 from ..._support.errors import ParameterError
 from ..._support.language import ENGLISH
 from ..._support.staging import require_writable, write_file
-from .drawing import FORMS, pictured
+from .drawing import FORMS, UNDATED, render
 from .style import journal_style
 from .translated import translate_figure
 
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 
 def picture_files(names: Iterable[str]) -> list[str]:
-    """The files of these figures below a report's folder."""
+    """Paths of all files of these figures in a report's folder."""
     return [f"figures/{name}.{ending}" for name in names for ending in FORMS]
 
 
@@ -37,30 +37,55 @@ def write_pictures(
     names: Set[str] = frozenset(),
     progress: Callable[[str], None] | None = None,
 ) -> list[Picture]:
-    """Draw one after the other in the house style, and write each as PNG, SVG, PDF and EPS.
+    """Render drawings, see `render_pictures`, and write each as PNG, SVG, PDF and EPS.
 
     Parameters
     ----------
     drawings
-        Made as they are asked for: a figure takes its style when it is made.
+        The drawings of the report.
     folder
-        Of the files; it is made where it is missing.
+        Folder of the files, created if necessary.
     every
-        Names that such a report may have; files of those that are not drawn now are removed.
-    language, names
-        Of the figures, and what users wrote in them.
-    progress
-        Called with the name of each figure.
+        Names of all figures that such a report can have; files of those without a drawing are removed.
+    language, names, progress
+        See `render_pictures`.
 
     Returns
     -------
     list of Picture
-        For a page.
+        The pictures, for a page.
 
     Raises
     ------
     OutputError
         A file cannot be written.
+    """
+    pictures = render_pictures(drawings, language=language, names=names, progress=progress)
+    for picture in pictures:
+        write_picture(picture, folder)
+    for name in set(every) - {picture.name for picture in pictures}:
+        for ending in FORMS:
+            (folder / f"{name}.{ending}").unlink(missing_ok=True)
+    return pictures
+
+
+def render_pictures(
+    drawings: Iterable[Drawing],
+    *,
+    language: str = ENGLISH,
+    names: Set[str] = frozenset(),
+    progress: Callable[[str], None] | None = None,
+) -> list[Picture]:
+    """Render drawings in the house style.
+
+    Parameters
+    ----------
+    drawings
+        An iterator that draws each figure when it is requested: a figure takes its style when it is created.
+    language, names
+        Language of the figures, and names from users, which are not translated.
+    progress
+        Callback for the name of each figure.
     """
     pictures = []
     with journal_style():
@@ -68,13 +93,12 @@ def write_pictures(
             if progress is not None:
                 progress(f"figure {drawing.name}")
             translate_figure(drawing.figure, language, names=names)
-            pictures.append(pictured(drawing))
-    for picture in pictures:
-        write_picture(picture, folder)
-    for name in set(every) - {picture.name for picture in pictures}:
-        for ending in FORMS:
-            (folder / f"{name}.{ending}").unlink(missing_ok=True)
+            pictures.append(render(drawing))
     return pictures
+
+
+def silent(_message: str) -> None:
+    """Progress callback that ignores the message."""
 
 
 def write_picture(picture: Picture, folder: Path) -> None:
@@ -90,24 +114,19 @@ def write_picture(picture: Picture, folder: Path) -> None:
 
 
 PNG_WIDTH: Final = 1200
-"""Pixels."""
+"""Width of a PNG in pixels."""
 SUFFIXES: Final = (".png", ".svg", ".pdf")
-_NO_DATE: Final[dict[str, dict[str, None]]] = {
-    "png": {"Software": None},
-    "svg": {"Date": None, "Creator": None, "Format": None, "Type": None},
-    "pdf": {"CreationDate": None, "Creator": None, "Producer": None},
-}
 
 
 def require_drawable(path: Path) -> None:
-    """Refuse a place for a figure before long work is done for it.
+    """Reject the path of a figure before long computations.
 
     Raises
     ------
     ParameterError
-        The file's ending is no kind of figure.
+        The suffix is not one of a figure.
     OutputError
-        The folder cannot be made or written.
+        The folder cannot be created or written.
     """
     if path.suffix.lower() not in SUFFIXES:
         raise ParameterError(f"{path}: a figure is a file that ends in {', '.join(SUFFIXES)}. Change its ending")
@@ -117,16 +136,16 @@ def require_drawable(path: Path) -> None:
 def write_figure(
     path: Path, draw: Callable[[], Figure], *, language: str = ENGLISH, names: Set[str] = frozenset()
 ) -> None:
-    """Draw in the house style and write in one piece; the same bytes for the same data.
+    """Draw in the house style and write a complete file; the same bytes for the same data.
 
     Parameters
     ----------
     path
-        Ends in .png (1200 pixels wide), .svg or .pdf.
+        Path with the suffix .png (1200 pixels wide), .svg or .pdf.
     draw
-        Gives the figure; it is called inside the house style.
+        Function that draws the figure; it is called inside the house style.
     language, names
-        What its words are in: en, or a language that there is a catalogue of (de); names that users gave stay.
+        Language of the figure (en, de), and names from users, which are not translated.
     """
     require_drawable(path)
     kind = path.suffix.lower().removeprefix(".")
@@ -137,5 +156,5 @@ def write_figure(
         translate_figure(figure, language, names=names)
         content = io.BytesIO()
         options: dict[str, Any] = {"dpi": PNG_WIDTH / figure.get_figwidth()} if kind == "png" else {}
-        figure.savefig(content, format=kind, metadata=_NO_DATE[kind], **options)
+        figure.savefig(content, format=kind, metadata=UNDATED[kind], **options)
     write_file(path, content.getvalue())

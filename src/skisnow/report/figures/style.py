@@ -1,4 +1,4 @@
-"""How the figures look: journal widths, 8 pt, colours that colour-blind readers tell apart, a symbol for each site."""
+"""Style of the figures: journal widths, 8 pt, colours for colour-blind readers, a symbol for each site."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ MM_PER_INCH: Final = 25.4
 SINGLE_MM: Final = 85.0
 DOUBLE_MM: Final = 180.0
 RASTERISE_FROM: Final = 2000
-"""Points above which a cloud is drawn as an image inside the SVG."""
+"""Number of points above which a cloud is an image inside the SVG."""
 MOST_POINTS: Final = 40_000
 
 BLACK, ORANGE, SKY, GREEN = "#000000", "#E69F00", "#56B4E9", "#009E73"
@@ -37,7 +37,7 @@ PALE: Final = "#B8B8B8"
 BROWN: Final = "#8C510A"
 SAND: Final = "#D8B365"
 COLOURS: Final = (BLUE, VERMILLION, GREEN, PURPLE, ORANGE, SKY, BLACK)
-"""Okabe and Ito (2008), without the yellow that white paper swallows."""
+"""Colours of Okabe and Ito (2008) without yellow, which is too pale on white paper."""
 MARKERS: Final = ("o", "^", "s", "D", "v", "P", "X", "<", "p", ">", "*", "h", "d", "8")
 NAMED_SITES: Final = 14
 _LETTER_MM: Final = 1.4
@@ -45,7 +45,7 @@ _HANDLE_MM: Final = 9.0
 _ROW_MM: Final = 3.6
 
 _RC: Final[dict[str, Any]] = {
-    "font.family": "DejaVu Sans",  # comes with the drawing library: the same picture on every machine
+    "font.family": "DejaVu Sans",  # installed with Matplotlib: the same picture on every machine
     "font.size": 8.0,
     "axes.labelsize": 8.0,
     "axes.titlesize": 8.0,
@@ -81,7 +81,7 @@ _RC: Final[dict[str, Any]] = {
 
 @contextmanager
 def journal_style() -> Iterator[None]:
-    """The library's own defaults plus ours while drawing and writing, whatever the user has set; put back after."""
+    """Matplotlib's defaults with the style of the figures inside the block, independent of the user's settings."""
     with matplotlib.rc_context():
         matplotlib.rcdefaults()
         matplotlib.rcParams.update(cast("Any", _RC))
@@ -89,13 +89,13 @@ def journal_style() -> Iterator[None]:
 
 
 def new_figure(*, width_mm: float = SINGLE_MM, height_mm: float = 68.0) -> Figure:
-    """An empty figure of a journal's width."""
+    """An empty figure with the width of one journal column by default."""
     return Figure(figsize=(width_mm / MM_PER_INCH, height_mm / MM_PER_INCH), layout="constrained")
 
 
 @dataclass(frozen=True, slots=True)
 class SiteStyle:
-    """How a site is drawn; ``sites`` are the ones that share it."""
+    """Colour and symbol of a site, or of several ``sites`` that share them."""
 
     label: str
     colour: str
@@ -104,7 +104,7 @@ class SiteStyle:
 
 
 def site_styles(data: ReportData) -> tuple[SiteStyle, ...]:
-    """A symbol and a colour for each site; with many, the ones with most experiments, the rest together in grey."""
+    """Style of each site; of many sites, those with fewest experiments share one grey style."""
     counts = dict.fromkeys(data.sites, 0)
     for names in (data.penetration_site, data.shear_site):
         for name, count in zip(*np.unique(names, return_counts=True), strict=True):
@@ -122,7 +122,7 @@ def site_styles(data: ReportData) -> tuple[SiteStyle, ...]:
 
 
 def masks(styles: Sequence[SiteStyle], site: TextArray) -> Iterator[tuple[SiteStyle, BoolArray]]:
-    """Which observations belong to each style; styles without one are left out."""
+    """Styles with the mask of their observations; styles without observations are omitted."""
     names, inverse = np.unique(site, return_inverse=True)
     for style in styles:
         mask = np.isin(names, style.sites)[inverse]
@@ -133,7 +133,7 @@ def masks(styles: Sequence[SiteStyle], site: TextArray) -> Iterator[tuple[SiteSt
 def scatter(
     axes: Axes, x: FloatArray, y: FloatArray, site: TextArray, styles: Sequence[SiteStyle], *, size: float | None = None
 ) -> list[Line2D]:
-    """Points by site; returns the handles of the legend."""
+    """Draw points by site; returns the handles of the legend."""
     many, part = len(x) > RASTERISE_FROM, thinned(len(x))
     x, y, site = x[part], y[part], site[part]
     handles = []
@@ -151,9 +151,9 @@ def scatter(
 
 
 def thinned(count: int) -> slice:
-    """Every k-th of many points: a cloud looks the same with MOST_POINTS of them.
+    """Slice of every k-th point, at most MOST_POINTS of them.
 
-    k has no small divisor: every seventh reading would always be the same load step.
+    k has no divisor below 11: every seventh reading could always be the same load step.
     """
     step = max(1, -(-count // MOST_POINTS))
     while step > 1 and any(step % divisor == 0 for divisor in range(2, 11)):
@@ -162,7 +162,7 @@ def thinned(count: int) -> slice:
 
 
 def thinning_sentence(count: int) -> str:
-    """What the caption says of it."""
+    """Sentence of the caption about a thinned cloud; empty if all points are drawn."""
     step = thinned(count).step
     return f" One point in {step} is drawn." if step > 1 else ""
 
@@ -173,50 +173,50 @@ def _marker(style: SiteStyle, size: float | None) -> dict[str, Any]:
 
 
 def error_bars(axes: Axes, x: FloatArray, ends: FloatArray, site: TextArray, styles: Sequence[SiteStyle]) -> None:
-    """Intervals behind the points; left away where they would be a cloud of ink."""
+    """Draw intervals behind the points, unless there are too many to distinguish."""
     if len(x) > RASTERISE_FROM:
         return
-    known = np.isfinite(ends).all(axis=1)
+    closed = np.isfinite(ends).all(axis=1)
     for style, mask in masks(styles, site):
-        chosen = mask & known
+        chosen = mask & closed
         axes.vlines(x[chosen], ends[chosen, 0], ends[chosen, 1], color=style.colour, linewidth=0.5, alpha=0.5, zorder=2)
 
 
 def legend_below(figure: Figure, handles: Sequence[Artist]) -> None:
-    """The entries below the axes, where they cover nothing, in as many even columns as fit."""
+    """Draw the legend below the axes, in as many equal columns as fit."""
     if not handles:
         return
     room_mm = figure.get_figwidth() * MM_PER_INCH - 4.0
     widths = [_LETTER_MM * len(str(handle.get_label())) + _HANDLE_MM for handle in handles]
     columns = next(n for n in range(len(handles), 0, -1) if n == 1 or _width(widths, n) <= room_mm)
     rows = -(-len(handles) // columns)
-    # a tall legend takes its room from the page and not from the axes
+    # a tall legend makes the figure higher instead of the axes lower
     figure.set_figheight(figure.get_figheight() + max(0, rows - 2) * _ROW_MM / MM_PER_INCH)
     figure.legend(handles=list(handles), loc="outside lower center", ncols=-(-len(handles) // rows))
 
 
 def _width(widths: list[float], columns: int) -> float:
-    """Width of a legend that is filled column by column, as the library does."""
+    """Width (mm) of a legend that is filled column by column, as Matplotlib does."""
     rows = -(-len(widths) // columns)
     return sum(max(widths[start : start + rows]) for start in range(0, len(widths), rows))
 
 
 def mark_synthetic(data: ReportData, axes: Axes) -> None:
-    """Say inside the picture that nobody measured this."""
+    """Mark a picture of synthetic data."""
     if data.synthetic:
         axes.set_title("synthetic data", loc="right", fontsize=7.0, color=GREY, fontstyle="italic", pad=3.0)
 
 
 def spans_a_decade(values: FloatArray) -> bool:
-    """Whether positive values ask for a logarithmic axis."""
-    known = values[np.isfinite(values) & (values > 0)]
-    return bool(known.size and known.max() > 10.0 * known.min())
+    """True if the positive values span more than a factor of 10."""
+    positive = values[np.isfinite(values) & (values > 0)]
+    return bool(positive.size and positive.max() > 10.0 * positive.min())
 
 
 def logarithmic(axes: Axes, which: str, values: FloatArray) -> None:
-    """A logarithmic axis just around the values, labelled with plain numbers, within two decades at 2 and 5 too."""
-    known = values[np.isfinite(values) & (values > 0)]
-    low, high = float(known.min()) / 1.3, float(known.max()) * 1.3
+    """Set a logarithmic axis around the positive values, with plain numbers; below two decades also at 2 and 5."""
+    positive = values[np.isfinite(values) & (values > 0)]
+    low, high = float(positive.min()) / 1.3, float(positive.max()) * 1.3
     if which == "x":
         axes.set_xscale("log")
         axes.set_xlim(low, high)
@@ -231,7 +231,7 @@ def logarithmic(axes: Axes, which: str, values: FloatArray) -> None:
 
 
 def plain_number(value: float, _place: float | None = None) -> str:
-    """A tick's label: 0.05 and not 5 × 10⁻², with a true minus."""
+    """Label of a tick: 0.05 instead of 5 × 10⁻², with a minus sign."""
     if value != 0 and not 1e-4 <= abs(value) < 1e5:
         return f"$10^{{{np.log10(abs(value)):.0f}}}$"
     return f"{value:g}".replace("-", "−")
@@ -239,7 +239,7 @@ def plain_number(value: float, _place: float | None = None) -> str:
 
 @dataclass(frozen=True)
 class SitePlot:
-    """One panel of points by site, drawn in this order: lines, intervals, points, title, legend."""
+    """One panel of points by site, finished with title and legend."""
 
     figure: Figure
     axes: Axes

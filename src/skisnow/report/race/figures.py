@@ -1,4 +1,4 @@
-"""Figures of a race: lines from above, progress of the search, worth of variants, time between gates."""
+"""Figures of a race: lines from above, progress of the search, effect of variants on the time, gaps at gates."""
 
 from __future__ import annotations
 
@@ -25,42 +25,42 @@ if TYPE_CHECKING:
 _HEIGHT_MM = 105.0
 
 
-def race_lines(found: QuickestLine) -> Figure:
-    """Above the lines with the poles, below the values of all evaluations."""
+def race_lines(result: QuickestLine) -> Figure:
+    """Draw the lines with the poles from above, and below them the times of all evaluations."""
     figure = new_figure(width_mm=DOUBLE_MM, height_mm=_HEIGHT_MM)
     above, below = figure.subplots(2, 1, height_ratios=(1.2, 1.0))
-    _lines(above, found)
-    _history(below, found)
+    _draw_lines(above, result)
+    _draw_history(below, result)
     legend_below(figure, above.get_legend_handles_labels()[0] + below.get_legend_handles_labels()[0])
     return figure
 
 
-def _lines(axes: Axes, found: QuickestLine) -> None:
-    for line, colour, label in ((found.start, GREY, "where the search began"), (found.line, BLUE, "quickest line")):
-        x, y = _drawn(line)
+def _draw_lines(axes: Axes, result: QuickestLine) -> None:
+    for line, colour, label in ((result.start, GREY, "where the search began"), (result.line, BLUE, "quickest line")):
+        x, y = _points_of_line(line)
         axes.plot(x, y, color=colour, linewidth=1.6, label=label)
         apex = np.array(line.apexes[1:])
         axes.plot(*apex.T, linestyle="none", marker="|", color=colour, markersize=7.0)
-    poles = np.array([gate.turning for gate in found.line.course.gates])
+    poles = np.array([gate.turning for gate in result.line.course.gates])
     axes.plot(*poles.T, linestyle="none", marker="o", color=VERMILLION, markersize=4.2, label="turning pole")
     axes.set_xlabel("down the slope $x$ (m)")
     axes.set_ylabel("to the left $y$ (m)")
     axes.yaxis.set_major_locator(MaxNLocator("auto", steps=[1, 2, 5, 10], min_n_ticks=3))
 
 
-def _drawn(line: RacingLine) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
+def _points_of_line(line: RacingLine) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
     x = np.arange(line.start[0], line.apexes[-1][0] + 2.0, 0.1)
-    return x, np.array([line.at(float(each))[0] for each in x])
+    return x, np.array([line.at(float(distance))[0] for distance in x])
 
 
-def _history(axes: Axes, found: QuickestLine) -> None:
-    whole = [each for each in found.history if len(each.row["turns"]) == len(found.line.turns)]
-    number, value = np.array([(each.number, each.value) for each in whole]).T
+def _draw_history(axes: Axes, result: QuickestLine) -> None:
+    whole = [entry for entry in result.history if len(entry.row["turns"]) == len(result.line.turns)]
+    number, value = np.array([(entry.number, entry.value) for entry in whole]).T
     through = value < 1000.0
     axes.plot(number[through], value[through], ".", color=PALE, markersize=3.0, label="evaluation")
     if through.any():
-        least = np.minimum.accumulate(np.where(through, value, np.inf))
-        axes.plot(number[np.isfinite(least)], least[np.isfinite(least)], color=BLUE, label="best so far")
+        best = np.minimum.accumulate(np.where(through, value, np.inf))
+        axes.plot(number[np.isfinite(best)], best[np.isfinite(best)], color=BLUE, label="best so far")
         low = float(value[through].min())
         axes.set_ylim(low - 0.05, low + 0.03 + max(0.3, float(np.quantile(value[through], 0.9)) - low))
     lost = number[~through]
@@ -73,20 +73,20 @@ def _history(axes: Axes, found: QuickestLine) -> None:
 _ROW_MM, _FRAME_MM = 9.0, 28.0
 
 
-def race_worth(found: Sequence[Worth]) -> Figure:
-    """One row for each variant; left of zero it is faster."""
-    figure = new_figure(width_mm=1.5 * SINGLE_MM, height_mm=_FRAME_MM + _ROW_MM * len(found))
+def race_worth(variants: Sequence[Worth]) -> Figure:
+    """Draw one row for each variant: its time less that of the unchanged scenario."""
+    figure = new_figure(width_mm=1.5 * SINGLE_MM, height_mm=_FRAME_MM + _ROW_MM * len(variants))
     axes = figure.add_subplot()
-    for row, each in enumerate(found):
-        values = each.differences
+    for row, variant in enumerate(variants):
+        values = variant.differences
         axes.plot(values, np.full(len(values), row), "|", color=BLUE, markersize=9.0)
         if not len(values):
             axes.text(0.0, row, "not through all gates ", ha="right", va="center", fontsize=7.0)
-        if each.on_own_snow is not None:
-            axes.plot(each.on_own_snow, row, "D", color=BLACK, markersize=4.5)
+        if variant.on_own_snow is not None:
+            axes.plot(variant.on_own_snow, row, "D", color=BLACK, markersize=4.5)
     axes.axvline(0.0, color=GREY, linewidth=0.7)
-    axes.set_yticks(range(len(found)), [each.name for each in found])
-    axes.set_ylim(len(found) - 0.4, -0.6)
+    axes.set_yticks(range(len(variants)), [variant.name for variant in variants])
+    axes.set_ylim(len(variants) - 0.4, -0.6)
     axes.set_xlabel("time more than as it is (s)")
     legend_below(
         figure, [_handle(BLACK, "D", 4.5, "on the snow of the scenario"), _handle(BLUE, "|", 9.0, "on each snow")]
@@ -99,13 +99,13 @@ def _handle(colour: str, marker: str, size: float, label: str) -> Line2D:
 
 
 MOST_NAMES = 26
-"""Gates above which only some have their names on the axis."""
+"""Maximum number of gate names on the axis; of more gates, every k-th has its name."""
 
 
 def gate_gaps_drawing(gaps: Sequence[GateGap], names: tuple[str, str]) -> Drawing:
-    """The figure with its words; names of the run and of the one that it is held against."""
-    known = [each for each in gaps if each.gap is not None]
-    last = f" {last_words(gaps, names)}" if known else ""
+    """Figure with its caption; ``names`` of the run and of the run that it is compared with."""
+    is_crossed = any(gap.gap is not None for gap in gaps)
+    last = f" {last_words(gaps, names)}" if is_crossed else ""
     return Drawing(
         "gate_gaps",
         prose(
@@ -120,8 +120,8 @@ def gate_gaps_drawing(gaps: Sequence[GateGap], names: tuple[str, str]) -> Drawin
 
 
 def last_words(gaps: Sequence[GateGap], names: tuple[str, str]) -> str:
-    """Who is ahead at the last gate that both crossed."""
-    last = [each for each in gaps if each.gap is not None][-1]
+    """Sentence about who is ahead at the last gate that both crossed."""
+    last = [gap for gap in gaps if gap.gap is not None][-1]
     gap = last.gap or 0.0
     own, other = names
     if abs(gap) < 0.005:
@@ -130,24 +130,24 @@ def last_words(gaps: Sequence[GateGap], names: tuple[str, str]) -> str:
 
 
 def gate_gaps_figure(gaps: Sequence[GateGap], names: tuple[str, str]) -> Figure:
-    """Draw gap over gates, and below it what was lost between them."""
+    """Draw the gap at each gate, and below it the time lost between gates."""
     figure = new_figure(width_mm=DOUBLE_MM, height_mm=100.0)
     above, below = figure.subplots(2, 1, sharex=True)
-    known = [i for i, each in enumerate(gaps) if each.gap is not None]
-    gap, lost = (np.array([getattr(gaps[i], name) for i in known], dtype=float) for name in ("gap", "lost"))
+    crossed = [i for i, gate in enumerate(gaps) if gate.gap is not None]
+    gap, lost = (np.array([getattr(gaps[i], name) for i in crossed], dtype=float) for name in ("gap", "lost"))
     for axes in (above, below):
         axes.axhline(0.0, color=PALE, linewidth=0.8, zorder=0)
-    above.plot(known, gap, marker="o", markersize=3.4, color=BLUE, linewidth=1.1)
+    above.plot(crossed, gap, marker="o", markersize=3.4, color=BLUE, linewidth=1.1)
     above.set_ylabel(f"gap to {figure_text(names[1], longest=24)} (s)\nbehind +")
-    below.bar(known, lost, width=0.7, color=[VERMILLION if each > 0 else BLUE for each in lost.tolist()])
+    below.bar(crossed, lost, width=0.7, color=np.where(lost > 0, VERMILLION, BLUE).tolist())
     below.set_ylabel("lost since the\ngate before (s)")
     below.set_xlabel("gate")
-    _names(below, gaps)
+    _name_gates(below, gaps)
     figure.align_ylabels()
     return figure
 
 
-def _names(axes: Axes, gaps: Sequence[GateGap]) -> None:
+def _name_gates(axes: Axes, gaps: Sequence[GateGap]) -> None:
     every = range(0, len(gaps), 1 + (len(gaps) - 1) // MOST_NAMES)
     axes.set_xticks(list(every), [figure_text(gaps[i].gate, longest=8) for i in every])
     axes.set_xlim(-0.7, len(gaps) - 0.3)

@@ -1,10 +1,11 @@
-"""Files of a race, and the comparison of two lines gate by gate."""
+"""Files of a race: summary, tables and figures; and the comparison of two runs gate by gate."""
 
 from __future__ import annotations
 
-import json
+import csv
+import io
 from pathlib import Path
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
 from markupsafe import Markup
 
@@ -14,15 +15,13 @@ from ..._support.staging import write_file
 from ...racing import write_line
 from ...track.course.gate_gaps import COLUMNS, gap_rows, gaps_csv, gate_gaps
 from ..figures.course import run_course
-from ..figures.drawing import FORMS, pictured
-from ..figures.figure_files import write_figure, write_pictures
-from ..figures.style import journal_style
-from ..figures.translated import translate_figure
+from ..figures.drawing import FORMS
+from ..figures.figure_files import render_pictures, write_figure, write_pictures
+from ..formatting import aligned_rows, json_text
 from ..sheet import Header, Section, sheet
 from ..symbols import prose
-from ..tables.table import Column, Table
+from ..table import Column, Table
 from .figures import gate_gaps_drawing, gate_gaps_figure, last_words, race_lines, race_worth
-from .summary import evaluations_csv, race_dict, worth_csv
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -33,11 +32,12 @@ if TYPE_CHECKING:
     from ...track.course.gate_gaps import GateGap
     from ..figures.drawing import Drawing, Picture
 
+
 SUMMARY = "race.json"
 
 
 def write_race(
-    found: QuickestLine,
+    result: QuickestLine,
     folder: str | Path,
     *,
     checked: Sequence[tuple[str, Score]] = (),
@@ -45,27 +45,27 @@ def write_race(
     run: Run | None = None,
     against: Sequence[str] = (),
 ) -> Path:
-    """Write it; race.json last, so that what it tells of is there.
+    """Write the files of a race; race.json is last: a folder with it is complete.
 
     Parameters
     ----------
-    found
-        The line.
+    result
+        The quickest line.
     folder
-        Where to.
+        Output folder.
     checked
-        The quickest line and where it began, raced again as the scenario says it.
+        Scores of the quickest line and of the start of the search, simulated again with the scenario's own settings.
     worth
-        What was compared.
+        Variants compared with the scenario.
     run
-        On the quickest line, drawn over the course.
+        Run on the quickest line, drawn over the course.
     against
-        Of what was compared the names whose time is told gate by gate.
+        Names of the variants whose times are written gate by gate.
 
     Returns
     -------
     Path
-        Of race.json.
+        Path of race.json.
 
     Raises
     ------
@@ -73,52 +73,49 @@ def write_race(
         A file cannot be written.
     """
     folder = Path(folder)
-    write_line(found.line, folder / "line.csv")
-    write_file(folder / "evaluations.csv", evaluations_csv(found))
-    write_figure(folder / "lines.png", lambda: race_lines(found))
+    write_line(result.line, folder / "line.csv")
+    write_file(folder / "evaluations.csv", evaluations_csv(result))
+    write_figure(folder / "lines.png", lambda: race_lines(result))
     if worth:
         write_file(folder / "worth.csv", worth_csv(worth))
         write_figure(folder / "worth.png", lambda: race_worth(worth))
     if run is not None and len(run.time) > 1:
         write_figure(folder / "course.png", lambda: run_course(run))
-    gates = [gate.name for gate in found.line.course.gates]
-    for each in worth:
-        if each.name in against and each.scores[0].gates and each.base[0].gates:
-            _write_gaps(each, gates, folder, found.scenario.ski.name)
-    contents = race_dict(found, checked, worth)
-    text = json.dumps(contents, ensure_ascii=False, allow_nan=False, indent=1)
-    write_file(folder / SUMMARY, f"{text}\n")
+    gates = [gate.name for gate in result.line.course.gates]
+    for variant in worth:
+        if variant.name in against and variant.scores[0].gates and variant.base[0].gates:
+            _write_gaps(variant, gates, folder, result.scenario.ski.name)
+    write_file(folder / SUMMARY, f"{json_text(race_dict(result, checked, worth))}\n")
     return folder / SUMMARY
 
 
 def _write_gaps(worth: Worth, gates: Sequence[str], folder: Path, own: str) -> None:
-    """Time lost gate by gate to the scenario's own ski; the file is named after the other one."""
+    """Write the time lost gate by gate to the scenario's own ski; the files have the name of the variant."""
     name = Path(worth.name).stem
     gaps = worth.gaps(gates)
     write_file(folder / f"gaps_{name}.csv", gaps_csv(gaps))
-    if any(each.gap is not None for each in gaps):
+    if any(gap.gap is not None for gap in gaps):
         write_figure(folder / f"gaps_{name}.png", lambda: gate_gaps_figure(gaps, (name, own)))
 
 
 GAPS_CSV: Final = "gate_gaps.csv"
 PAGE: Final = "report.html"
 FILES: Final = (GAPS_CSV, PAGE, *(f"gate_gaps.{form}" for form in FORMS))
-"""All that may be written."""
+"""Files that `write_gaps` can write."""
 _TIMES: Final = ("time_s", "other_time_s", "gap_s", "lost_s")
 
 
 def gaps_text(gaps: tuple[GateGap, ...], names: tuple[str, str]) -> str:
-    """A line for each gate: both times, the gap and what was lost since the gate before."""
+    """Table for a terminal with a line for each gate: both times, the gap, the time lost since the gate before."""
     rows: list[tuple[str, ...]] = [("gate", "time (s)", "other (s)", "gap (s)", "lost (s)")]
     for row in gap_rows(gaps):
         rows.append((str(row["gate"]), *(_hundredths(row[name], signed=name in _TIMES[2:]) or "-" for name in _TIMES)))
-    widths = [max(len(row[i]) for row in rows) for i in range(len(rows[0]))]
-    lines = ["  ".join(cell.rjust(width) for cell, width in zip(row, widths, strict=True)) for row in rows]
-    return "\n".join([f"Gates of {names[0]} against {names[1]}, behind +", *lines, _result(gaps, names)])
+    heading = f"Gates of {names[0]} against {names[1]}, behind +"
+    return "\n".join([heading, *aligned_rows(rows), _result(gaps, names)])
 
 
 def write_gaps(gaps: tuple[GateGap, ...], names: tuple[str, str], folder: Path, *, language: str = ENGLISH) -> None:
-    """Write gate_gaps.csv, the figure gate_gaps and report.html, figure and page in a language.
+    """Write gate_gaps.csv, the figure gate_gaps and report.html; the language applies to figure and page.
 
     Raises
     ------
@@ -131,30 +128,26 @@ def write_gaps(gaps: tuple[GateGap, ...], names: tuple[str, str], folder: Path, 
 
 
 def gaps_of_folders(folder: Path, other: Path, language: str = ENGLISH) -> str:
-    """The page of two runs by their folders, in a language, without writing anything.
+    """HTML of the page that compares the runs of two folders; nothing is written.
 
     Raises
     ------
     ParameterError
-        They have no gates in common.
+        The runs have no gates in common.
     """
     gaps, names = gate_gaps(folder, other), (folder.name, other.name)
     if gaps is None:
         raise ParameterError(
             f"{names[0]} and {names[1]} did not go through the same gates: choose two runs on one course"
         )
-    with journal_style():
-        drawn = list(_drawings(gaps, names))
-        for each in drawn:
-            translate_figure(each.figure, language, names=frozenset(names))
-        pictures = [pictured(each) for each in drawn]
+    pictures = render_pictures(_drawings(gaps, names), language=language, names=frozenset(names))
     return gaps_page(gaps, names, pictures, language=language)
 
 
 def gaps_page(
     gaps: tuple[GateGap, ...], names: tuple[str, str], pictures: Sequence[Picture], *, language: str = ENGLISH
 ) -> str:
-    """The HTML."""
+    """HTML of the page that compares two runs gate by gate."""
     key, table = prose("{text}", text=_result(gaps, names)), gaps_table(gaps, names)
     header = Header(
         "Two runs through the same gates", f"Gates of {names[0]} against {names[1]}", [], headline=_headline(gaps)
@@ -164,12 +157,12 @@ def gaps_page(
 
 
 def _drawings(gaps: tuple[GateGap, ...], names: tuple[str, str]) -> Iterator[Drawing]:
-    if _known(gaps):
+    if _crossed_by_both(gaps):
         yield gate_gaps_drawing(gaps, names)
 
 
 def gaps_table(gaps: tuple[GateGap, ...], names: tuple[str, str]) -> Table:
-    """A row for each gate, times to a hundredth of a second."""
+    """Table with a row for each gate, times to a hundredth of a second."""
     headings = ("Gate", "Outcome", "Time", "Outcome of the other", "Its time", "Gap", "Lost")
     columns = [
         Column(name, words, "text", unit="s" if name in _TIMES else "")
@@ -185,23 +178,23 @@ def gaps_table(gaps: tuple[GateGap, ...], names: tuple[str, str]) -> Table:
 
 
 def _headline(gaps: tuple[GateGap, ...]) -> Markup:
-    known = _known(gaps)
-    if not known:
+    crossed = _crossed_by_both(gaps)
+    if not crossed:
         return Markup("")
-    gap = known[-1].gap or 0.0
+    gap = crossed[-1].gap or 0.0
     return prose(
         "{value} at gate {gate}; {number} of {all} gates were crossed by both.",
         value=Markup("<strong>{:.2f} s {}</strong>").format(abs(gap), "behind" if gap > 0.0 else "ahead"),
-        gate=known[-1].gate, number=str(len(known)), all=str(len(gaps)),
+        gate=crossed[-1].gate, number=str(len(crossed)), all=str(len(gaps)),
     )  # fmt: skip
 
 
 def _result(gaps: tuple[GateGap, ...], names: tuple[str, str]) -> str:
-    return last_words(gaps, names) if _known(gaps) else "No gate was crossed by both."
+    return last_words(gaps, names) if _crossed_by_both(gaps) else "No gate was crossed by both."
 
 
-def _known(gaps: tuple[GateGap, ...]) -> list[GateGap]:
-    return [each for each in gaps if each.gap is not None]
+def _crossed_by_both(gaps: tuple[GateGap, ...]) -> list[GateGap]:
+    return [gap for gap in gaps if gap.gap is not None]
 
 
 def _hundredths(value: float | None, *, signed: bool = False) -> str | None:
@@ -212,3 +205,104 @@ def _hundredths(value: float | None, *, signed: bool = False) -> str | None:
 
 def _words(cell: str) -> str:
     return cell.replace("_", " ")
+
+
+def race_summary(result: QuickestLine, checked: Sequence[tuple[str, Score]]) -> str:
+    """Text for a terminal: times, time gained, and the turns of the line; parameters as in `write_race`."""
+    gates = len(result.line.turns)
+    gained = "" if result.gained is None else f", {result.gained:.3f} s less than where the search began"
+    lines = [f"{gates} gates in {_time(result.score)}{gained}; {len(result.history)} evaluations"]
+    lines += [f"{name}: {_time(score)}" for name, score in checked]
+    lines.append(f"{'gate':>6} {'aside (m)':>10} {'along':>7} {'turning':>8}")
+    for gate, turn in zip(result.line.course.gates, result.line.turns, strict=True):
+        lines.append(f"{gate.name:>6} {turn.aside:10.2f} {turn.along:7.3f} {turn.turning:8.2f}")
+    return "\n".join(lines)
+
+
+def worth_summary(variants: Sequence[Worth]) -> str:
+    """Table of variants for a terminal."""
+    width = max(len(variant.name) for variant in variants)
+    lines = [f"{'time more than as it is (s)':{width}}  {'own snow':>9} {'mean':>8} {'± s.d.':>8}  faster on"]
+    for variant in variants:
+        through = len(variant.differences)
+        deviation = "-" if variant.deviation is None else f"{variant.deviation:.3f}"
+        lines.append(
+            f"{variant.name:{width}}  {_signed(variant.on_own_snow):>9} {_signed(variant.mean):>8} "
+            f"{deviation:>8}  {variant.faster} of {through} snows"
+            + ("" if through == len(variant.scores) else f", {len(variant.scores) - through} not through all gates")
+        )
+    return "\n".join(lines)
+
+
+def race_dict(
+    result: QuickestLine, checked: Sequence[tuple[str, Score]], worth: Sequence[Worth] = ()
+) -> dict[str, Any]:
+    """Contents of race.json."""
+    return {
+        "model": result.model,
+        "seed": result.seed,
+        "evaluations": len(result.history),
+        "time_s": result.score.time,
+        "began_from_s": result.start_score.time,
+        "gained_s": result.gained,
+        "outcome": result.score.words,
+        "checked": {name: {"time_s": score.time, "outcome": score.words} for name, score in checked},
+        "turns": [
+            {"gate": gate.name, "aside_m": turn.aside, "along": turn.along, "turning": turn.turning}
+            for gate, turn in zip(result.line.course.gates, result.line.turns, strict=True)
+        ],
+        "worth": [
+            {
+                "name": variant.name,
+                "on_own_snow_s": variant.on_own_snow,
+                "mean_s": variant.mean,
+                "deviation_s": variant.deviation,
+                "faster_on": variant.faster,
+                "snows": len(variant.scores),
+                "compared": len(variant.differences),
+            }
+            for variant in worth
+        ],
+    }
+
+
+def evaluations_csv(result: QuickestLine) -> str:
+    """Contents of evaluations.csv: one row for each evaluation of the search."""
+    head = ("evaluation", "gates", "passed", "value", "time_s", "outcome")
+    rows = [
+        (
+            entry.number,
+            len(entry.row["turns"]),
+            entry.row["passed"],
+            entry.value,
+            entry.row["time"],
+            entry.row["words"],
+        )
+        for entry in result.history
+    ]
+    return _csv([head, *rows])
+
+
+def worth_csv(variants: Sequence[Worth]) -> str:
+    """Contents of worth.csv: times of each variant and of the unchanged scenario on each snow."""
+    head = ("variant", "snow", "time_s", "time_as_it_is_s", "outcome", "outcome_as_it_is")
+    rows = [
+        (variant.name, i, score.time, base.time, score.words, base.words)
+        for variant in variants
+        for i, (score, base) in enumerate(zip(variant.scores, variant.base, strict=True))
+    ]
+    return _csv([head, *rows])
+
+
+def _csv(rows: Sequence[Sequence[object]]) -> str:
+    text = io.StringIO()
+    csv.writer(text, lineterminator="\n").writerows(rows)
+    return text.getvalue()
+
+
+def _time(score: Score) -> str:
+    return score.words if score.time is None else f"{score.time:.3f} s"
+
+
+def _signed(value: float | None) -> str:
+    return "-" if value is None else f"{value:+.3f}"

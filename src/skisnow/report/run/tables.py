@@ -12,7 +12,7 @@ from ...scenario.keys import SCENARIO_KEYS
 from ...simulation.run import OPEN_SHARE
 from ...track.course.gates_table import COLUMNS, gate_rows
 from ..formatting import significant
-from ..tables.table import Column, Table
+from ..table import Column, Table
 from .time_figures import used_share_of_skis
 
 if TYPE_CHECKING:

@@ -6,7 +6,10 @@ import json
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
+import numpy as np
+import numpy.typing as npt
 from markupsafe import Markup
+from matplotlib.lines import Line2D
 
 from ..._support.language import ENGLISH
 from ..._support.staging import require_writable, staged, write_file
@@ -15,12 +18,31 @@ from ...track.summary import summary_dict
 from ..figures.course import course_line
 from ..figures.drawing import Drawing
 from ..figures.figure_files import picture_files, write_pictures
+from ..figures.style import (
+    BLACK,
+    BLUE,
+    DOUBLE_MM,
+    GREEN,
+    PALE,
+    PURPLE,
+    VERMILLION,
+    legend_below,
+    new_figure,
+    plain_number,
+)
+from ..formatting import significant
+from ..run.track_figure import plan_axes, plan_height_mm, track_limits
 from ..symbols import figure_text, prose
 from .figures import track_along, track_map
+from .summary import TITLES
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
 
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from ...track.comparison import Comparison, Distances
     from ...track.course import CourseResult
     from ...track.summary import TrackSummary
 
@@ -131,3 +153,149 @@ def track_drawings(summary: TrackSummary, gates: CourseResult | None = None) -> 
             ),
             wide=True,
         )
+
+
+FloatArray = npt.NDArray[np.float64]
+MEASURED: Final[dict[str, Any]] = {"color": BLACK, "linewidth": 1.1}
+SIMULATED: Final[dict[str, Any]] = {"color": VERMILLION, "linewidth": 1.1, "linestyle": (0, (5, 1.5))}
+BEFORE: Final[dict[str, Any]] = {"color": PALE, "linewidth": 0.8}
+LINE_STYLES: Final[dict[str, dict[str, Any]]] = {
+    "nearest": {"color": BLUE, "linestyle": "-"},
+    "arc_length": {"color": GREEN, "linestyle": (0, (5, 1.5))},
+    "time": {"color": PURPLE, "linestyle": (0, (1, 1))},
+}
+MOST_DRAWN: Final = 20_000
+"""Points of a line above which every k-th is drawn, the largest among them."""
+EXACTNESS: Final = 1e-6
+"""Distances (m) below this are none."""
+_HIDES: Final = 20.0
+_MARGIN: Final = 0.02
+_DISTANCES_MM: Final = 58.0
+_FRAME_MM: Final = 34.0
+_AXIS_WORDS: Final = {
+    "east_north_up": ("to the east $x$ (m)", "to the north $y$ (m)"),
+    "file": ("$x$ (m)", "$y$ (m)"),
+}
+
+
+def track_comparison(comparison: Comparison) -> Figure:
+    """Draw both tracks from above, and the three distances along the measured one with their largest marked."""
+    lines = [comparison.measured, comparison.simulated]
+    if comparison.fitted is not None:
+        lines.append(comparison.fitted.before.simulated)
+    limits = _limits(np.concatenate([line.place[:, :2] for line in lines]))
+    height = plan_height_mm(limits)
+    figure = new_figure(width_mm=DOUBLE_MM, height_mm=height + _DISTANCES_MM + _FRAME_MM)
+    grid = figure.add_gridspec(2, 1, height_ratios=(height + 10.0, _DISTANCES_MM))
+    plan = figure.add_subplot(grid[0])
+    _plan(plan, comparison)
+    plan_axes(plan, limits)
+    if comparison.axes in _AXIS_WORDS:
+        _other_axes(plan, *_AXIS_WORDS[comparison.axes])
+    _along(figure.add_subplot(grid[1]), comparison)
+    legend_below(figure, _handles(comparison))
+    return figure
+
+
+def comparison_drawing(comparison: Comparison) -> Drawing:
+    """The same with its words; it stands on no page."""
+    simulated, measured = comparison.names
+    words = "{simulated} and {measured} from above, and the distance between them along the latter."
+    alt = f"{simulated} and {measured} from above, and the distance between them."
+    caption = prose(words, simulated=simulated, measured=measured)
+    return Drawing("track_comparison", caption, alt, track_comparison(comparison))
+
+
+def _limits(points: FloatArray) -> tuple[float, float, float, float]:
+    """With a margin that suits a turn and a day."""
+    room = _MARGIN * float(np.ptp(points, axis=0).max())
+    return track_limits(np.concatenate([points - room, points + room]))
+
+
+def _other_axes(axes: Axes, x_label: str, y_label: str) -> None:
+    """Neither x nor an arrow points down the fall line."""
+    axes.set_xlabel(x_label)
+    axes.set_ylabel(y_label)
+    for text in list(axes.texts):
+        text.remove()
+
+
+def _plan(axes: Axes, comparison: Comparison) -> None:
+    if comparison.fitted is not None:
+        before = comparison.fitted.before.simulated.place
+        axes.plot(*_drawn(before[:, 0], before[:, 1]), **BEFORE)
+    for line, line_style in ((comparison.measured, MEASURED), (comparison.simulated, SIMULATED)):
+        axes.plot(*_drawn(line.place[:, 0], line.place[:, 1]), **line_style)
+        axes.plot(*line.place[0, :2], marker="o", markersize=3.2, linestyle="none", color=line_style["color"])
+        axes.plot(*line.place[-1, :2], marker="s", markersize=3.2, linestyle="none", color=line_style["color"])
+    for kind, line_style in LINE_STYLES.items():
+        _tie(axes, comparison, getattr(comparison, kind), line_style["color"])
+
+
+def _tie(axes: Axes, comparison: Comparison, found: Distances, colour: str) -> None:
+    """A line between both places where the distance is largest."""
+    if found.numbers is None or found.apart is None:
+        return
+    largest = int(np.nanargmax(found.apart.distance))
+    own = comparison.measured.at_arc_length(found.apart.arc_length[[largest]])[0, :2]
+    other = own + found.apart.offset[largest, :2]
+    axes.plot([own[0], other[0]], [own[1], other[1]], color=colour, linewidth=1.4, solid_capstyle="butt", zorder=4)
+
+
+def _along(axes: Axes, comparison: Comparison) -> None:
+    for kind, line_style in LINE_STYLES.items():
+        found: Distances = getattr(comparison, kind)
+        if found.numbers is None or found.apart is None:
+            continue
+        axes.plot(*_drawn(found.apart.arc_length, found.apart.distance), **line_style)
+        place = (found.numbers.max_at, found.numbers.max)
+        axes.plot(
+            *place, marker="o", markersize=3.0, linestyle="none", color=line_style["color"], clip_on=False, zorder=4
+        )
+    axes.set_xlim(0.0, comparison.measured.length)
+    _scale(axes, comparison)
+    axes.set_xlabel("distance along the measured track (m)")
+    axes.set_ylabel("distance of the\nsimulated track (m)")
+
+
+def _scale(axes: Axes, comparison: Comparison) -> None:
+    """From 0; logarithmic where one distance would hide another."""
+    every = [getattr(comparison, kind).numbers for kind in LINE_STYLES]
+    largest = [numbers.max for numbers in every if numbers is not None and numbers.max > EXACTNESS]
+    if largest and max(largest) > _HIDES * min(largest):
+        axes.set_yscale("log")
+        axes.set_ylim(0.01 * min(largest), 2.0 * max(largest))
+        axes.yaxis.set_major_formatter(plain_number)
+    else:
+        axes.set_ylim(bottom=0.0)
+
+
+def _drawn(x: FloatArray, y: FloatArray) -> tuple[Any, Any]:
+    """Every k-th point of a long line, and those with the largest and smallest y of each stretch."""
+    step = 2 * -(-len(x) // MOST_DRAWN)
+    if len(x) <= MOST_DRAWN:
+        return x, y
+    whole = len(x) // step * step
+    stretches = np.where(np.isnan(y[:whole]), -np.inf, y[:whole]).reshape(-1, step)
+    chosen = np.arange(0, whole, step)
+    chosen = np.concatenate(
+        [chosen, chosen + stretches.argmax(axis=1), chosen + stretches.argmin(axis=1), [len(x) - 1]]
+    )
+    chosen = np.unique(chosen)
+    return x[chosen], y[chosen]
+
+
+def _handles(comparison: Comparison) -> list[Line2D]:
+    simulated, measured = (figure_text(name, longest=40) for name in comparison.names)
+    moved = "" if comparison.fitted is None else f", {' and '.join(comparison.fitted.what)} fitted"
+    handles = [
+        Line2D([], [], label=f"measured: {measured}", **MEASURED),
+        Line2D([], [], label=f"simulated: {simulated}{moved}", **SIMULATED),
+    ]
+    if comparison.fitted is not None:
+        handles.append(Line2D([], [], label="simulated, before the fit", **BEFORE))
+    for kind, line_style in LINE_STYLES.items():
+        numbers = getattr(comparison, kind).numbers
+        text = "none" if numbers is None else f"maximum {significant(numbers.max)} m"
+        handles.append(Line2D([], [], label=f"{TITLES[kind]}: {text}", **line_style))
+    return handles

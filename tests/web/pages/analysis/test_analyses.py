@@ -11,7 +11,7 @@ import pytest
 from skisnow._support.errors import FieldDataError, ParameterError, StoreError
 from skisnow.campaign.reading import FilesInMemory
 from skisnow.campaign.store import Journals
-from skisnow.report.campaign.figures import DRAWERS
+from skisnow.report.campaign.page import DRAWERS
 from skisnow.web import analysis_cache as analyses_module
 from skisnow.web import campaign_analysis as analysing
 from skisnow.web.analysis_cache import Analysed, Analyses, CampaignSource

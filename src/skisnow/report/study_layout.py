@@ -1,4 +1,4 @@
-"""Layout of a map of a study: which input is the axis, the lines and the panels."""
+"""Layout of a map of a study: inputs of the axis, the lines and the panels."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 import numpy.typing as npt
 
-from ..._support.errors import ParameterError
-from ...carving.keys import CARVE_KEYS
-from ...studies import StudyTable
-from ..symbols import figure_text
+from .._support.errors import ParameterError
+from ..carving.keys import CARVE_KEYS
+from ..studies import StudyTable
+from .symbols import figure_text
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -31,9 +31,9 @@ MOST_COLUMNS: Final = 5
 _LOG_FROM: Final = 20.0
 _CROWDED: Final = 4  # columns, from which neighbours' axis labels would touch
 _CAPTION_LETTERS: Final = 125
-"""Of a line of the caption, with the signs that set its symbols."""
+"""Maximum length of a line of the caption, including the markup of symbols."""
 _LETTERS: Final = 105
-"""Of a title, over the whole width of a figure."""
+"""Maximum length of a title over the whole width of a figure."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,13 +43,13 @@ class MapLayout:
     Attributes
     ----------
     x
-        Along the axis.
+        Input along the axis.
     second
-        The lines of the radius map, the ordinate of the grip map; None where nothing else varies.
+        Input of the lines of the radius map and of the ordinate of the grip map; None if nothing else varies.
     panels
-        What is left.
+        The other inputs; of a sample only names and switches.
     sampled
-        Whether the points are a sample and no grid: then what is left has no panels but for names and switches.
+        True if the points are a sample instead of a grid.
     """
 
     x: str
@@ -59,7 +59,7 @@ class MapLayout:
 
 
 def map_layout(table: StudyTable, *, second_is_number: bool) -> MapLayout:
-    """Choose: the edge angle along the axis and the load beside it where they vary, else the next number that does.
+    """Choose the edge angle for the axis and the load as second input if they vary, otherwise the next number.
 
     Raises
     ------
@@ -89,12 +89,12 @@ def map_layout(table: StudyTable, *, second_is_number: bool) -> MapLayout:
 
 
 def drawn_table(table: StudyTable) -> StudyTable:
-    """The points that could be asked, each ski under its own name where names tell the skis apart.
+    """Rows with an answer; each ski has its own name if the names are unique.
 
     Raises
     ------
     ParameterError
-        Not one point could be asked.
+        No row has an answer.
     """
     rows = table.answers()
     if not rows:
@@ -106,8 +106,8 @@ def drawn_table(table: StudyTable) -> StudyTable:
     return StudyTable(table.columns, rows, table.varied)
 
 
-def what_is_fixed(table: StudyTable) -> str:
-    """The inputs that are the same in all rows, without those at their defaults: a map's caption."""
+def fixed_inputs(table: StudyTable) -> str:
+    """Caption of a map: inputs that are equal in all rows and differ from their defaults."""
     words = []
     for name, key in CARVE_KEYS.items():
         values = {row.get(name) for row in table.rows}
@@ -117,8 +117,8 @@ def what_is_fixed(table: StudyTable) -> str:
     return "\n".join(textwrap.wrap(", ".join(words), _CAPTION_LETTERS, break_on_hyphens=False))
 
 
-def caption(figure: Figure, text: str) -> None:
-    """Write it over the panels, at the left."""
+def write_caption(figure: Figure, text: str) -> None:
+    """Write the caption above the panels."""
     if text:
         figure.suptitle(text, x=0.01, ha="left", fontsize=8.0)
 
@@ -126,17 +126,17 @@ def caption(figure: Figure, text: str) -> None:
 def panels_of(table: StudyTable, layout: MapLayout) -> list[tuple[str, list[Json]]]:
     """Title and rows of each panel."""
     combinations = itertools.product(*(_distinct(table, name) for name in layout.panels))
-    found = []
+    panels = []
     for values in combinations:
         rows = [row for row in table.rows if all(row[n] == v for n, v in zip(layout.panels, values, strict=True))]
         if rows:
             title = ", ".join(short(name, value) for name, value in zip(layout.panels, values, strict=True))
-            found.append((title, rows))
-    return found
+            panels.append((title, rows))
+    return panels
 
 
 def panel_columns(table: StudyTable, layout: MapLayout, count: int) -> int:
-    """Columns of panels: one for each value of the last input where they fit, else as even as possible."""
+    """Number of columns of panels: one for each value of the last input if they fit, otherwise equal rows."""
     last = len(_distinct(table, layout.panels[-1])) if layout.panels else 1
     if len(layout.panels) > 1 and last <= MOST_COLUMNS and count % last == 0:
         return last
@@ -145,15 +145,12 @@ def panel_columns(table: StudyTable, layout: MapLayout, count: int) -> int:
 
 
 def wants_logarithm(name: str, values: FloatArray) -> bool:
-    """Whether an input's axis is logarithmic: its values are positive and span more than a factor of twenty.
-
-    An angle is never drawn so.
-    """
+    """True if an input's values are positive and span more than a factor of 20; False for an angle."""
     return name != "edge_angle_deg" and bool(values.min() > 0 and values.max() > _LOG_FROM * values.min())
 
 
 def lines_of(rows: Sequence[Json], name: str | None) -> Iterator[tuple[Any, list[Json]]]:
-    """The rows of each value of an input, values rising."""
+    """Rows of each value of an input, in rising order."""
     if name is None:
         yield None, list(rows)
         return
@@ -181,7 +178,7 @@ def label(name: str) -> str:
 
 
 def _around(name: str) -> tuple[str, str]:
-    """What stands before and behind a value in few letters."""
+    """Short texts before and after a value."""
     key = CARVE_KEYS.get(name)
     if key is None or not (key.label or key.symbol or (key.kind == "text" and not key.choices)):
         return f"{name.replace('_', ' ')} ", ""
@@ -192,21 +189,21 @@ def _around(name: str) -> tuple[str, str]:
 
 
 def axes_of_panels(figure: Figure, titles: Sequence[str], columns: int) -> list[Axes]:
-    """One pair of axes for each title, sharing both scales; unused places stay empty."""
+    """Axes of each panel with shared scales; unused cells of the grid stay empty."""
     rows = -(-len(titles) // columns)
     grid = figure.subplots(rows, columns, squeeze=False, sharex=True, sharey=True)
-    every: list[Axes] = list(grid.flat)
-    for spare in every[len(titles) :]:
+    all_axes: list[Axes] = list(grid.flat)
+    for spare in all_axes[len(titles) :]:
         spare.set_visible(False)
     long = max(len(title) for title in titles) > _LETTERS // columns
-    for place, (axes, title) in enumerate(zip(every, titles, strict=False)):
+    for place, (axes, title) in enumerate(zip(all_axes, titles, strict=False)):
         axes.set_title(title.replace(", ", "\n") if long else title, loc="left", fontsize=7.5)
         axes.tick_params(labelbottom=place + columns >= len(titles), labelleft=place % columns == 0)
-    return every[: len(titles)]
+    return all_axes[: len(titles)]
 
 
 def label_outside(panels: Sequence[Axes], columns: int, x: str, y: str) -> None:
-    """Axis labels at the left and the lower rim of the panels; of many columns only the middle one is labelled."""
+    """Label the axes at the left and the lower rim; of many columns only the middle one."""
     for place, axes in enumerate(panels):
         lowest = place + columns >= len(panels)
         if lowest and (columns < _CROWDED or place % columns == columns // 2 or len(panels) % columns):

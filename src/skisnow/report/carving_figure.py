@@ -1,24 +1,25 @@
-"""Figure of skis in snow side by side: edge depth, force per length, bending, twist, plan."""
+"""Figure of one or several skis in snow: edge depth, force per length, deflection, twist, plan."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Final
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any, Final, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 from matplotlib.lines import Line2D
 
-from ..._support.units import MM
-from ..figures.style import BLACK, COLOURS, DOUBLE_MM, GREY, PALE, legend_below, new_figure
-from ..formatting import significant
-from ..symbols import figure_text
-from .summary import answers_of, ski_titles
+from .._support.units import MM
+from .figures.style import BLACK, COLOURS, DOUBLE_MM, GREY, PALE, legend_below, new_figure
+from .formatting import significant
+from .summaries import answers_of, ski_titles
+from .symbols import figure_text
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-Json = dict[str, Any]
+Json: TypeAlias = Mapping[str, Any]
 FloatArray = npt.NDArray[np.float64]
 
 _PANELS: Final = (
@@ -34,24 +35,24 @@ _CHORD_CIRCLE: Final = (0, (1, 1))
 _LINE_STYLES: Final = ("-", (0, (5, 1.5)), (0, (1, 1)), "-.", (0, (7, 2, 1, 2, 1, 2)))
 
 
-def carved_skis(found: Json) -> Figure:
-    """Draw the answers of `skisnow carve`, one colour and line for each ski.
+def carved_skis(contents: Json) -> Figure:
+    """Draw the answers of `skisnow carve`, one colour and line style for each ski.
 
     Parameters
     ----------
-    found
-        What `skisnow.carving.answer_dict.answers_dict` gives.
+    contents
+        JSON of `skisnow.carving.answer_dict.answers_dict`.
     """
-    answers = answers_of(found)
+    answers = answers_of(contents)
     figure = new_figure(width_mm=DOUBLE_MM, height_mm=150.0)
     grid = figure.add_gridspec(3, 2, height_ratios=(1.0, 1.0, 1.15))
     first: Axes | None = None
     for place, (key, label) in enumerate(_PANELS):
         axes = figure.add_subplot(grid[place // 2, place % 2], sharex=first)
         first = first or axes
-        _along_ski(axes, answers, key, label)
-    _plan(figure.add_subplot(grid[2, :], sharex=first), answers)
-    figure.suptitle(_asked(answers[0]), x=0.01, ha="left", fontsize=8.0)
+        _draw_along_ski(axes, answers, key, label)
+    _draw_plan(figure.add_subplot(grid[2, :], sharex=first), answers)
+    figure.suptitle(_inputs_in_words(answers[0]), x=0.01, ha="left", fontsize=8.0)
     handles = [
         Line2D([], [], color=_colour(place), linestyle=_line(place), label=_label(title, answer["outcome"]))
         for place, (title, answer) in enumerate(zip(ski_titles(answers), answers, strict=True))
@@ -77,7 +78,7 @@ def _label(title: str, outcome: str) -> str:
     return figure_text(title) + ("" if outcome == "equilibrium" else f" ({outcome.replace('_', ' ')})")
 
 
-def _asked(answer: Json) -> str:
+def _inputs_in_words(answer: Json) -> str:
     inputs = answer["inputs"]
     words = [f"ϑ = {inputs['edge_angle_deg']:g}°, load {inputs['load_N']:g} N"]
     words.append(f"$H_V$ = {significant(inputs['H_V_N_per_mm3'])} N/mm³")
@@ -88,20 +89,20 @@ def _asked(answer: Json) -> str:
     return ("At rest: " if inputs["at_rest"] else "Steady carve: ") + ", ".join(words)
 
 
-def _along_ski(axes: Axes, answers: list[Json], key: str, label: str) -> None:
+def _draw_along_ski(axes: Axes, answers: list[Json], key: str, label: str) -> None:
     for place, answer in enumerate(answers):
         if answer[key] is not None:
-            axes.plot(answer["station_m"], _known(answer[key]), color=_colour(place), linestyle=_line(place))
+            axes.plot(answer["station_m"], _with_nan(answer[key]), color=_colour(place), linestyle=_line(place))
     axes.axhline(0.0, color=GREY, linewidth=0.6, zorder=1)
     axes.axvline(0.0, color=PALE, linewidth=0.5, zorder=0)
     axes.set_ylabel(label)
     axes.set_xlabel("position along the ski (m), boot = 0")
     if key == "edge_depth_mm":
-        _surface(axes, answers)
+        _draw_surface(axes, answers)
 
 
-def _surface(axes: Axes, answers: list[Json]) -> None:
-    """Depth grows downwards; a tip that stands high above the snow does not press the groove flat."""
+def _draw_surface(axes: Axes, answers: list[Json]) -> None:
+    """Let depth grow downwards, and limit the height above the snow so that the groove stays visible."""
     depths = [depth for answer in answers for depth in answer["edge_depth_mm"] or () if depth is not None]
     deepest = max(depths, default=1.0)
     axes.set_ylim(1.15 * deepest, -min(0.6 * deepest, max(0.0, -min(depths, default=0.0)) + 0.08 * deepest))
@@ -111,12 +112,12 @@ def _surface(axes: Axes, answers: list[Json]) -> None:
     )  # fmt: skip
 
 
-def _plan(axes: Axes, answers: list[Json]) -> None:
-    """The edge from above, wide, with the two circles that define a radius, thin; the scales of both axes differ."""
+def _draw_plan(axes: Axes, answers: list[Json]) -> None:
+    """Draw the edges from above with the arcs of both circles; the scales of the axes differ."""
     for place, answer in enumerate(answers):
         if answer["edge_line_mm"] is None:
             continue
-        station, line = np.asarray(answer["station_m"])[::-1], _known(answer["edge_line_mm"])[::-1] * MM
+        station, line = np.asarray(answer["station_m"])[::-1], _with_nan(answer["edge_line_mm"])[::-1] * MM
         line -= np.interp(0.0, station, line)
         axes.plot(station, line / MM, color=_colour(place), linewidth=3.0, alpha=0.35, solid_capstyle="butt")
         for style, (rear, front) in _circles(answer):
@@ -128,18 +129,18 @@ def _plan(axes: Axes, answers: list[Json]) -> None:
 
 
 def _circles(answer: Json) -> list[tuple[Any, tuple[float, float]]]:
-    """Line style and ends of the arcs whose radius is known."""
-    found = []
+    """Line style and ends of each arc that has a radius."""
+    circles = []
     if answer["turn_radius_boot_m"] is not None:
-        found.append((_BOOT_CIRCLE, (-BOOT_REACH, BOOT_REACH)))
+        circles.append((_BOOT_CIRCLE, (-BOOT_REACH, BOOT_REACH)))
     if answer["turn_radius_chord_m"] is not None:
-        found.append((_CHORD_CIRCLE, contact_ends(answer)))
-    return found
+        circles.append((_CHORD_CIRCLE, contact_ends(answer)))
+    return circles
 
 
 def contact_ends(answer: Json) -> tuple[float, float]:
     """Rear and front station (m) at which the edge passes the undisturbed surface."""
-    station, depth = np.asarray(answer["station_m"])[::-1], _known(answer["edge_depth_mm"])[::-1]
+    station, depth = np.asarray(answer["station_m"])[::-1], _with_nan(answer["edge_depth_mm"])[::-1]
     below = np.flatnonzero(depth > 0.0)
     rear, front = int(below[0]), int(below[-1])
 
@@ -153,19 +154,19 @@ def contact_ends(answer: Json) -> tuple[float, float]:
 
 
 def arc_through(station: FloatArray, line: FloatArray, rear: float, front: float) -> tuple[FloatArray, FloatArray]:
-    """The arc through an edge line at three places: rear, boot (0) and front.
+    """Arc through an edge line at three places: rear, boot (0) and front.
 
     Parameters
     ----------
     station, line
-        The line (m), stations rising.
+        Line (m) with rising stations.
     rear, front
-        The ends of the arc (m).
+        Stations of the ends of the arc (m).
 
     Returns
     -------
     x, y
-        Points of the arc (m), rear to front.
+        Points of the arc (m) from rear to front.
 
     Examples
     --------
@@ -185,5 +186,5 @@ def arc_through(station: FloatArray, line: FloatArray, rear: float, front: float
     return x, -E / 2.0 - np.copysign(root, -E)
 
 
-def _known(values: list[float | None]) -> FloatArray:
+def _with_nan(values: list[float | None]) -> FloatArray:
     return np.array([np.nan if value is None else value for value in values])

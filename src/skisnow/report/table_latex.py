@@ -1,12 +1,12 @@
-"""A table as LaTeX that fits a page: numbers and units by siunitx, notes below; `PACKAGES` says what it needs."""
+"""Tables of reports as LaTeX that fits a page: numbers and units by siunitx, notes below; see `PACKAGES`."""
 
 from __future__ import annotations
 
 import re
 from typing import TYPE_CHECKING, Any, Final
 
-from .. import formatting
-from ..symbols import latex, latex_escaped
+from . import formatting
+from .symbols import latex, latex_escaped
 from .table import ROWS_IN_LATEX
 
 if TYPE_CHECKING:
@@ -18,24 +18,24 @@ PACKAGES: Final = (
     "array", "booktabs", "longtable", "siunitx", "makecell", "adjustbox", "rotating", "pdflscape", "textcomp",
     "amssymb",
 )  # fmt: skip
-"""A paper that reads such tables in loads them."""
+"""LaTeX packages that a document with such tables loads."""
 ROWS_ON_A_PAGE: Final = 45
 _COLUMNS_UPRIGHT: Final = 6
-"""A long table with more columns lies across its pages."""
+"""A long table with more columns is printed in landscape."""
 _LETTERS_UPRIGHT: Final = 115
-"""A table of more letters in a line is turned by a quarter (the text of A4 has some 85 in a line)."""
+"""A table with longer lines is rotated by 90° (A4 has about 85 characters in a line)."""
 _LONGEST_TEXT: Final = 30
 _TEXT_WIDTH: Final = "45mm"
-"""Of a column with longer texts, which are broken."""
+"""Width of a column with longer texts, which are wrapped."""
 _ALIGNED: Final = ("number", "count", "angle", "hundredths")
-"""Kinds of single numbers, which siunitx aligns by their points."""
+"""Kinds of single numbers, which siunitx aligns at the decimal point."""
 _COMMAND: Final = re.compile(r"\\[A-Za-z]+|[{}$]")
 _PLAIN: Final = re.compile(r"(-?)(\d+)(?:\.(\d+))?")
 _UNITS: Final = str.maketrans({"²": "^2", "³": "^3", "·": ".", " ": ".", "°": r"\degree", "%": r"\percent"})
 
 
 def table_latex(table: Table) -> str:
-    """The table with caption and label, to be read in by a paper."""
+    """LaTeX of a table with caption and label."""
     shown = table.rows[:ROWS_IN_LATEX]
     cells = [_column(column, [row[i] for row in shown]) for i, column in enumerate(table.columns)]
     alignment = "".join(_alignment(column, of) for column, of in zip(table.columns, cells, strict=True))
@@ -55,7 +55,7 @@ def table_latex(table: Table) -> str:
 def _on_one_page(
     alignment: str, caption: str, head: str, body: Sequence[str], notes: str, *, is_wide: bool
 ) -> list[str]:
-    """Shrunk where it would be wider than the text; a wide one lies across the page."""
+    """Lines of a table that is shrunk to the width of the text, or rotated if `is_wide`."""
     form = "sidewaystable" if is_wide else "table"
     below = [rf"\par\smallskip\begin{{minipage}}{{\linewidth}}\footnotesize {notes}\end{{minipage}}"] if notes else []
     return [
@@ -66,7 +66,7 @@ def _on_one_page(
 
 
 def _long(alignment: str, caption: str, head: str, body: Sequence[str], notes: str) -> list[str]:
-    """Over several pages in small type, the head on each."""
+    """Lines of a table over several pages in small type, with the head on each."""
     below = [rf"\noindent{{\footnotesize {notes}\par}}"] if notes else []
     return [
         r"\begingroup\scriptsize\setlength{\tabcolsep}{3pt}", rf"\begin{{longtable}}{{{alignment}}}", caption + r" \\",
@@ -83,14 +83,14 @@ def _notes(table: Table) -> str:
 
 
 def _header(column: Column) -> str:
-    """Name over unit."""
+    """Header cell: name above unit."""
     if not column.unit:
         return f"{{{latex(column.header)}}}"
     return rf"{{\makecell{{{latex(column.header)} \\ (\unit{{{column.unit.translate(_UNITS)}}})}}}}"
 
 
 def _column(column: Column, values: Sequence[Any]) -> list[str]:
-    """Cells of a column; bare numbers where they are aligned by their points."""
+    """Cells of a column; plain numbers if they are aligned at the decimal point."""
     plain = _plain_numbers(column, values)
     if plain is None:
         return [_cell(column, value) for value in values]
@@ -98,7 +98,7 @@ def _column(column: Column, values: Sequence[Any]) -> list[str]:
 
 
 def _plain_numbers(column: Column, values: Sequence[Any]) -> list[str | None] | None:
-    """Numbers without a power of ten as siunitx's S columns want them; None where one is something else."""
+    """Numbers for an S column of siunitx; None if one cell is not a plain number."""
     if column.kind not in _ALIGNED or all(value is None for value in values):
         return None
     texts = [None if value is None else _bare(column, value) for value in values]
@@ -115,16 +115,16 @@ def _alignment(column: Column, cells: Sequence[str]) -> str:
     if not column.numeric:
         is_broken = max(map(_letters, cells), default=0) > _LONGEST_TEXT and any(" " in cell for cell in cells)
         return rf">{{\raggedright\arraybackslash}}p{{{_TEXT_WIDTH}}}" if is_broken else "l"
-    found = [match for cell in cells if (match := _PLAIN.fullmatch(cell))]
-    if not found or column.kind not in _ALIGNED:
+    numbers = [match for cell in cells if (match := _PLAIN.fullmatch(cell))]
+    if not numbers or column.kind not in _ALIGNED:
         return "r"
-    sign = "-" if any(match[1] for match in found) else ""
-    whole, places = (max(len(match[group] or "") for match in found) for group in (2, 3))
+    sign = "-" if any(match[1] for match in numbers) else ""
+    whole, places = (max(len(match[group] or "") for match in numbers) for group in (2, 3))
     return f"S[table-format={sign}{whole}{f'.{places}' if places else ''}]"
 
 
 def _width(cells: Sequence[str]) -> int:
-    """Letters that a column takes, with the gap beside it."""
+    """Width of a column in characters, including the gap."""
     longest = max(map(_letters, cells), default=0)
     return 2 + (min(longest, _LONGEST_TEXT) if any(" " in cell and "num" not in cell for cell in cells) else longest)
 

@@ -11,8 +11,8 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.colors import BoundaryNorm, ListedColormap, Normalize
 from matplotlib.lines import Line2D
 
-from ..._support.units import DEGREE
-from ..figures.style import (
+from .._support.units import DEGREE
+from .figures.style import (
     BLACK,
     BLUE,
     COLOURS,
@@ -25,11 +25,11 @@ from ..figures.style import (
     new_figure,
     plain_number,
 )
-from .layout import (
+from .study_layout import (
     MOST_LINES,
     axes_of_panels,
-    caption,
     drawn_table,
+    fixed_inputs,
     label,
     label_outside,
     lines_of,
@@ -38,7 +38,7 @@ from .layout import (
     panels_of,
     short,
     wants_logarithm,
-    what_is_fixed,
+    write_caption,
 )
 
 if TYPE_CHECKING:
@@ -47,26 +47,25 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from ...studies import StudyTable
-    from .layout import MapLayout
-
+    from ..studies import StudyTable
+    from .study_layout import MapLayout
 
 Json = dict[str, Any]
 FloatArray = npt.NDArray[np.float64]
 
 LEVELS: Final = (0.125, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0)
-"""Shares of the side force in its limit at which the colour changes; at 1 the edge lets go."""
+"""Grip utilisations at which the colour changes; at 1 the edge loses grip."""
 _COLOURS: Final = ("#2166AC", "#5E9BC9", "#A6CDE3", "#DDEBF3", "#FBE3D0", "#F4B183", "#DD7F4B", "#B8431C")
 _LEAST: Final = 1e-3  # a flat ski draws no side force; its logarithm must exist
 
 
 def grip_map(table: StudyTable) -> Figure:
-    """Draw the side force over the shear capacity, and the line at which the edge lets go.
+    """Draw the grip utilisation, and the line at which the edge loses grip.
 
     Raises
     ------
     ParameterError
-        The table has nothing to put along the axis, or too many panels.
+        No number of the table varies, or the map would have too many panels.
     """
     layout = map_layout(table, second_is_number=True)
     table = drawn_table(table)
@@ -77,27 +76,27 @@ def grip_map(table: StudyTable) -> Figure:
     every = axes_of_panels(figure, [title for title, _ in panels], columns)
     for axes, (_, of_panel) in zip(every, panels, strict=True):
         if layout.second is None:
-            _share_lines(axes, of_panel, layout)
+            _draw_share_lines(axes, of_panel, layout)
         else:
             if not layout.sampled:
-                _field(axes, of_panel, layout)
-            _points(axes, of_panel, layout)
+                _draw_field(axes, of_panel, layout)
+            _draw_points(axes, of_panel, layout)
     ordinate = "side force / limit" if layout.second is None else label(layout.second)
-    _scales(every[0], table.rows, layout)
+    _set_scales(every[0], table.rows, layout)
     if layout.second is not None:
         for axes in every:  # room for the symbols at the rim
             axes.use_sticky_edges = False
             axes.margins(0.03)
     label_outside(every, columns, label(layout.x), ordinate)
     if layout.second is not None and not layout.sampled:
-        _colour_bar(figure, every)
-    caption(figure, what_is_fixed(table))
+        _draw_colour_bar(figure, every)
+    write_caption(figure, fixed_inputs(table))
     legend_below(figure, _grip_handles(layout, table.rows))
     return figure
 
 
 def share_of_limit(row: Json) -> float:
-    """Side force over its limit; NaN where there is no equilibrium."""
+    """Side force over its limit; NaN without an equilibrium."""
     force, limit = row["side_force_N"], row["side_force_limit_N"]
     if force is None or limit is None:
         return float("nan")
@@ -106,7 +105,7 @@ def share_of_limit(row: Json) -> float:
     return float(force / limit) if limit > 0.0 else float("inf")
 
 
-def _field(axes: Axes, rows: Sequence[Json], layout: MapLayout) -> None:
+def _draw_field(axes: Axes, rows: Sequence[Json], layout: MapLayout) -> None:
     x, y, share = _grid(rows, layout)
     logarithm = np.log(np.clip(share, _LEAST, 1.0 / _LEAST))
     bounds = np.log([_LEAST / 10.0, *LEVELS, 10.0 / _LEAST])
@@ -116,7 +115,7 @@ def _field(axes: Axes, rows: Sequence[Json], layout: MapLayout) -> None:
 
 
 def _grid(rows: Sequence[Json], layout: MapLayout) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Shares (y, x), averaged over nothing: a grid has one row for each place."""
+    """Values of both inputs, and the grip utilisations as an array (y, x); a grid has one row for each cell."""
     second = str(layout.second)
     x, y = (np.array(sorted({float(row[name]) for row in rows})) for name in (layout.x, second))
     share = np.full((len(y), len(x)), np.nan)
@@ -125,7 +124,7 @@ def _grid(rows: Sequence[Json], layout: MapLayout) -> tuple[FloatArray, FloatArr
     return x, y, share
 
 
-def _points(axes: Axes, rows: Sequence[Json], layout: MapLayout) -> None:
+def _draw_points(axes: Axes, rows: Sequence[Json], layout: MapLayout) -> None:
     for holds, line_style in _styles(layout.sampled).items():
         chosen = [row for row in rows if row["holds"] is holds]
         axes.plot(
@@ -143,7 +142,7 @@ def _styles(sampled: bool) -> dict[bool | None, dict[str, Any]]:
     }
 
 
-def _share_lines(axes: Axes, rows: Sequence[Json], layout: MapLayout) -> None:
+def _draw_share_lines(axes: Axes, rows: Sequence[Json], layout: MapLayout) -> None:
     ordered = sorted(rows, key=lambda row: float(row[layout.x]))
     axes.plot([row[layout.x] for row in ordered], [share_of_limit(row) for row in ordered], color=GREY, zorder=1)
     for holds, line_style in _styles(True).items():
@@ -154,19 +153,19 @@ def _share_lines(axes: Axes, rows: Sequence[Json], layout: MapLayout) -> None:
     axes.axhline(1.0, color=BLACK, linewidth=1.8, zorder=2)
 
 
-def _scales(axes: Axes, rows: Sequence[Json], layout: MapLayout) -> None:
+def _set_scales(axes: Axes, rows: Sequence[Json], layout: MapLayout) -> None:
     for which, name in (("x", layout.x), ("y", layout.second)):
         if name is None:
             shares = np.array([share_of_limit(row) for row in rows])
-            known = shares[np.isfinite(shares)]
-            axes.set_ylim(0.0, 1.08 * max(1.0, float(known.max(initial=1.0))))
+            finite = shares[np.isfinite(shares)]
+            axes.set_ylim(0.0, 1.08 * max(1.0, float(finite.max(initial=1.0))))
             continue
         values = np.array([float(row[name]) for row in rows])
         if wants_logarithm(name, values):
             logarithmic(axes, which, values)
 
 
-def _colour_bar(figure: Figure, panels: Sequence[Axes]) -> None:
+def _draw_colour_bar(figure: Figure, panels: Sequence[Axes]) -> None:
     bounds = [LEVELS[0] / 2.0, *LEVELS, LEVELS[-1] * 2.0]
     scale = ScalarMappable(BoundaryNorm(bounds, len(_COLOURS)), ListedColormap(_COLOURS))
     bar = figure.colorbar(scale, ax=list(panels), pad=0.01, aspect=35, spacing="uniform")
@@ -196,38 +195,38 @@ def radius_map(table: StudyTable) -> Figure:
     Raises
     ------
     ParameterError
-        The table has nothing to put along the axis, or too many panels.
+        No number of the table varies, or the map would have too many panels.
     """
     layout = map_layout(table, second_is_number=False)
     table = drawn_table(table)
     panels = panels_of(table, layout)
     columns = panel_columns(table, layout, len(panels))
-    colours = _Colours.of(layout, table.rows)
+    colours = _ColourScale.of(layout, table.rows)
     rows = -(-len(panels) // columns)
     figure = new_figure(width_mm=DOUBLE_MM, height_mm=18.0 + (75.0 if rows == 1 else 52.0 * rows))
     values = [value for value, _ in lines_of(table.rows, layout.second)]
     every = axes_of_panels(figure, [title for title, _ in panels], columns)
     for axes, (_, of_panel) in zip(every, panels, strict=True):
         if layout.x == "edge_angle_deg":
-            _sidecut(axes, of_panel)
-        if _lined(layout, values):
-            _lines(axes, of_panel, layout, values)
+            _draw_sidecut(axes, of_panel)
+        if _has_lines(layout, values):
+            _draw_lines(axes, of_panel, layout, values)
         else:
-            _cloud(axes, of_panel, layout, colours)
-    _limits(every[0], table.rows, layout)
+            _draw_cloud(axes, of_panel, layout, colours)
+    _set_limits(every[0], table.rows, layout)
     label_outside(every, columns, label(layout.x), "turn radius (m):\ncircle through boot and ±0.4 m")
-    caption(figure, what_is_fixed(table))
-    if colours is not None and not _lined(layout, values):
+    write_caption(figure, fixed_inputs(table))
+    if colours is not None and not _has_lines(layout, values):
         colours.bar(figure)
     legend_below(figure, _radius_handles(layout, values, table.rows))
     return figure
 
 
-def _lined(layout: MapLayout, values: list[Any]) -> bool:
+def _has_lines(layout: MapLayout, values: list[Any]) -> bool:
     return not layout.sampled and len(values) <= MOST_LINES
 
 
-def _lines(axes: Axes, rows: Sequence[Json], layout: MapLayout, values: list[Any]) -> None:
+def _draw_lines(axes: Axes, rows: Sequence[Json], layout: MapLayout, values: list[Any]) -> None:
     for value, of_line in lines_of(rows, layout.second):
         place = values.index(value)
         ordered = sorted(of_line, key=lambda row: float(row[layout.x]))
@@ -241,27 +240,27 @@ def _lines(axes: Axes, rows: Sequence[Json], layout: MapLayout, values: list[Any
 
 
 @dataclass(frozen=True, slots=True)
-class _Colours:
-    """The second input as a colour, where the points are a sample or it has too many values for lines."""
+class _ColourScale:
+    """Colour scale of the second input, for a sample or too many values for lines."""
 
     name: str
     ends: tuple[float, float]
 
     @classmethod
-    def of(cls, layout: MapLayout, rows: Sequence[Json]) -> _Colours | None:
-        """None where no number varies beside the one along the axis."""
+    def of(cls, layout: MapLayout, rows: Sequence[Json]) -> _ColourScale | None:
+        """Scale of a layout; None if no second number varies."""
         values = [] if layout.second is None else [row[layout.second] for row in rows]
         if layout.second is None or isinstance(values[0], str | bool):
             return None
         return cls(layout.second, (min(values), max(values)))
 
     def bar(self, figure: Figure) -> None:
-        """The scale of the colours."""
+        """Draw the colour scale."""
         scale = ScalarMappable(Normalize(*self.ends), "cividis")
         figure.colorbar(scale, ax=figure.axes, label=label(self.name), pad=0.01, aspect=40)
 
 
-def _cloud(axes: Axes, rows: Sequence[Json], layout: MapLayout, colours: _Colours | None) -> None:
+def _draw_cloud(axes: Axes, rows: Sequence[Json], layout: MapLayout, colours: _ColourScale | None) -> None:
     for holds, marker in ((True, "o"), (False, "X")):
         chosen = [row for row in rows if row["holds"] is holds]
         x, y = _numbers(chosen, layout.x), _numbers(chosen, RADIUS)
@@ -273,8 +272,8 @@ def _cloud(axes: Axes, rows: Sequence[Json], layout: MapLayout, colours: _Colour
             axes.scatter(x, y, c=shade, vmin=low, vmax=high, cmap="cividis", marker=marker, s=12, linewidths=0)
 
 
-def _sidecut(axes: Axes, rows: Sequence[Json]) -> None:
-    """R_sc cos ϑ, the radius of a ski that is bent onto a hard plane without twist."""
+def _draw_sidecut(axes: Axes, rows: Sequence[Json]) -> None:
+    """Draw R_sc cos ϑ, the radius of a ski that is bent onto a hard plane without twist."""
     radii = {row["sidecut_radius_of_three_widths_m"] for row in rows} - {None}
     ends = [float(row["edge_angle_deg"]) for row in rows]
     angle = np.linspace(min(ends), max(ends), 91)
@@ -282,7 +281,7 @@ def _sidecut(axes: Axes, rows: Sequence[Json]) -> None:
         axes.plot(angle, radius * np.cos(angle * DEGREE), color=GREY, linestyle=(0, (1, 1.2)), linewidth=0.9, zorder=1)
 
 
-def _limits(axes: Axes, rows: Sequence[Json], layout: MapLayout) -> None:
+def _set_limits(axes: Axes, rows: Sequence[Json], layout: MapLayout) -> None:
     x = _numbers(rows, layout.x)
     if wants_logarithm(layout.x, x):
         logarithmic(axes, "x", x)
@@ -293,7 +292,7 @@ def _limits(axes: Axes, rows: Sequence[Json], layout: MapLayout) -> None:
 
 def _radius_handles(layout: MapLayout, values: list[Any], rows: Sequence[Json]) -> list[Line2D]:
     handles = []
-    lined = _lined(layout, values)
+    lined = _has_lines(layout, values)
     if lined and layout.second is not None:
         handles = [
             Line2D(

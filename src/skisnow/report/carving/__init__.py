@@ -1,1 +1,0 @@
-"""Summary and figures of skis in snow."""

@@ -1,0 +1,357 @@
+"""Report of an identification: identification.json, fits.csv, figures and page."""
+
+from __future__ import annotations
+
+import csv
+import io
+import math
+from importlib.metadata import version
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+import numpy.typing as npt
+from markupsafe import Markup
+from matplotlib.lines import Line2D
+
+from .._support.language import ENGLISH, require_language
+from .._support.spreadsheet_text import guarded
+from .._support.staging import require_writable, staged, write_file
+from .figures.drawing import Drawing
+from .figures.figure_files import picture_files, silent, write_pictures
+from .figures.style import BLACK, BLUE, COLOURS, DOUBLE_MM, GREY, ORANGE, PALE, legend_below, new_figure
+from .formatting import counted, interval, json_text, significant
+from .sheet import Header, Section, sheet
+from .symbols import figure_text, html, prose
+from .table import Column, Table
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator, Mapping, Sequence
+
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from ..identification.problem import Fit
+    from ..identification.result import Identification, Interval
+    from .figures.drawing import Picture
+
+ANSWER: Final = "identification.json"
+FIGURES: Final = ("tracks", "residuals_track", "residuals_photo_cells", "residuals_marks", "profiles")
+"""Names of an identification's figures, in figures/ as .png and .svg."""
+COLUMNS: Final = ("run", "kind", "along", "quantity", "measured", "identified", "sd")
+
+
+def write_identify_report(
+    result: Identification,
+    contents: Mapping[str, Any],
+    folder: str | Path,
+    *,
+    language: str = ENGLISH,
+    progress: Callable[[str], None] | None = None,
+) -> Path:
+    """Write identification.json, fits.csv, figures/ and report.html; returns the page's path.
+
+    Parameters
+    ----------
+    result
+        The identification.
+    contents
+        Contents of identification.json, from `identification_dict`.
+    folder
+        Output folder, created if necessary. Figures of an earlier identification are replaced or removed; other files
+        stay.
+    language
+        Language of the page and the figures (en, de).
+    progress
+        Callback for progress messages.
+
+    Raises
+    ------
+    OutputError
+        A file cannot be written.
+    ParameterError
+        The language is unknown.
+    """
+    require_language(language)
+    folder = Path(folder)
+    require_writable(folder)
+    report = progress or silent
+    with staged(folder, last=ANSWER) as stage:
+        stage.stale += picture_files(FIGURES)
+        write_file(stage.path / ANSWER, f"{json_text(contents)}\n")
+        write_file(stage.path / "fits.csv", fits_csv(result))
+        pictures = write_pictures(
+            _drawings(result), stage.path / "figures", every=FIGURES, language=language,
+            names=frozenset(map(figure_text, names_in(result))), progress=report,
+        )  # fmt: skip
+        report("report.html")
+        write_file(stage.path / "report.html", identify_page(result, pictures, language=language))
+    return folder / "report.html"
+
+
+def fits_csv(result: Identification) -> str:
+    """fits.csv: every measured number next to the identified one, with all digits; empty cells for NaN."""
+    stream = io.StringIO()
+    writer = csv.writer(stream, lineterminator="\n")
+    writer.writerow(COLUMNS)
+    for fit in result.fits:
+        for i, along in enumerate(fit.along):
+            for k, label in enumerate(fit.labels):
+                numbers = (fit.measured[i, k], fit.fitted[i, k], fit.sd[i, k])
+                if math.isfinite(numbers[0]):
+                    cells = [repr(float(number)) if math.isfinite(number) else "" for number in numbers]
+                    writer.writerow([guarded(fit.name), fit.kind, repr(float(along)), label, *cells])
+    return stream.getvalue()
+
+
+def names_in(result: Identification) -> frozenset[str]:
+    """Names of files and keys of the scenario, which are not translated."""
+    parameters = {text for row in result.parameters for text in (row.parameter.name, row.parameter.key)}
+    return frozenset(
+        {result.scenario, *(fit.name for fit in result.fits), *(name for name, _ in result.data), *parameters}
+    )
+
+
+def identify_page(result: Identification, pictures: list[Picture], *, language: str = ENGLISH) -> str:
+    """The HTML of the report."""
+    fits = [picture for picture in pictures if picture.name != "profiles"]
+    profiles = [picture for picture in pictures if picture.name == "profiles"]
+    outcome = result.outcome.replace("_", " ")
+    sections = [
+        Section(
+            "outcome",
+            "Outcome",
+            key=[prose("Outcome: {outcome}. {reason}", outcome=outcome, reason=result.reason)],
+            tables=[parameters_table(result)],
+        )
+    ]
+    if result.warnings:
+        sections.append(
+            Section("warnings", "Warnings", words=[prose("{text}.", text=text) for text in result.warnings])
+        )
+    if fits:
+        sections.append(Section("fit", "Measured and identified", pictures=fits))
+    if len(result.parameters) > 1:
+        sections.append(Section("correlation", "Correlations", tables=[correlation_table(result)]))
+    if profiles:
+        sections.append(Section("profiles", "Profiles", pictures=profiles))
+    sections.append(Section("provenance", "How it was computed", words=_methods(result)))
+    facts = [
+        ("Scenario", result.scenario),
+        ("Points", str(result.points)),
+        ("Computed", f"skisnow {version('skisnow')}"),
+    ]
+    header = Header("Parameters identified from measurements", _title(result), facts, headline=_headline(result))
+    return sheet(header, sections, language=language, names=names_in(result))
+
+
+def _headline(result: Identification) -> Markup:
+    """The first parameter with its interval."""
+    if not result.parameters:
+        return Markup("")
+    first = result.parameters[0]
+    ends = "without an interval"
+    if first.interval is not None and None not in first.interval:
+        ends = f"95 % interval {interval([float(end) for end in first.interval if end is not None])}"
+    value = Markup("<strong>{}</strong>").format(f"{significant(first.value)} {first.parameter.unit}".strip())
+    return prose("{name} {value}, {ends}.", name=first.parameter.name, value=value, ends=ends)
+
+
+def _title(result: Identification) -> str:
+    names = ", ".join(row.parameter.name for row in result.parameters)
+    return f"{names}: {result.outcome.replace('_', ' ')}"
+
+
+def _methods(result: Identification) -> list[Markup]:
+    effort = result.effort
+    runs = counted(effort.simulations, "simulated run")
+    last = prose(
+        "{runs}, {rounds}, {wall} s.", runs=runs, rounds=counted(effort.rounds, "Jacobian"), wall=f"{effort.wall_s:.1f}"
+    )
+    data = [prose("{name} was taken for {kind}.", name=name, kind=kind) for name, kind in result.data]
+    return [*data, *(prose("{text}.", text=text) for text in result.methods), last]
+
+
+def _drawings(result: Identification) -> Iterator[Drawing]:
+    """All figures in order; each is drawn when it is requested, so that it gets the style in force."""
+    tracks = [fit for fit in result.fits if fit.kind == "track"]
+    if tracks:
+        yield Drawing(
+            "tracks",
+            html("Tracks from above: points measured, lines with the identified parameters."),
+            "Measured points and identified tracks from above.",
+            draw_tracks(tracks),
+            wide=True,
+        )
+    for kind, words in (("track", "along the run"), ("photo_cells", "over the distance"), ("marks", "place by place")):
+        fits = [fit for fit in result.fits if fit.kind == kind]
+        if fits:
+            yield Drawing(
+                f"residuals_{kind}",
+                prose(
+                    "Measured minus identified {words}; the band is ± two standard deviations of the data.", words=words
+                ),
+                f"Residuals {words}.",
+                draw_residuals(fits),
+                wide=True,
+            )
+    if result.profiles:
+        yield Drawing(
+            "profiles",
+            html("Rise of the sum of squares, in squared standard deviations, along each parameter."),
+            "Profiles of the sum of squares.",
+            draw_profiles(result),
+            wide=True,
+        )
+
+
+def parameters_table(result: Identification) -> Table:
+    """Table of the identified parameters: values, intervals, bounds, priors."""
+    return Table(
+        "identified",
+        "What was identified, with 95 % intervals; a dash: not asked for, or open.",
+        (
+            Column("key", "Key", "text"),
+            Column("value", "Value", digits=4),
+            Column("unit", "Unit", "text"),
+            Column("interval", "Interval by curvature", "interval"),
+            Column("profile", "By profile", "interval"),
+            Column("bootstrap", "By bootstrap", "interval"),
+            Column("posterior", "Posterior", "interval"),
+            Column("start", "Start"),
+            Column("bounds", "Bounds", "range"),
+            Column("prior_mean", "Prior mean"),
+            Column("prior_sd", "Prior s.d."),
+        ),
+        [
+            (
+                row.parameter.key, row.value, row.parameter.unit, _pair(row.interval), _pair(row.profile_interval),
+                _pair(row.bootstrap_interval), _pair(row.posterior_interval), row.parameter.start,
+                [row.parameter.lower, row.parameter.upper], row.parameter.prior_mean, row.parameter.prior_sd,
+            )
+            for row in result.parameters
+        ],
+    )  # fmt: skip
+
+
+def correlation_table(result: Identification) -> Table:
+    """Correlations of the estimates."""
+    names = [row.parameter.name for row in result.parameters]
+    rows = [
+        (names[i], *(float(r) if np.isfinite(r) else None for r in result.correlation[i])) for i in range(len(names))
+    ]
+    return Table(
+        "correlation",
+        "Correlations of the estimates. Beyond ±0.9 two parameters are hardly told apart.",
+        (Column("parameter", "Parameter", "text"), *(Column(name, name.replace("_", " ")) for name in names)),
+        rows,
+    )
+
+
+def _pair(interval: Interval | None) -> list[float] | None:
+    """Both ends of an interval; None if one of them is open."""
+    if interval is None or interval[0] is None or interval[1] is None:
+        return None
+    return [interval[0], interval[1]]
+
+
+_MARKERS: Final = ("o", "^", "s", "D", "v", "P", "X")
+_LARGEST_MM, _SMALLEST_MM = 120.0, 55.0
+_MOST_RUNS: Final = 7
+
+
+def draw_tracks(fits: Sequence[Fit]) -> Figure:
+    """Measured points and identified lines from above, the same scale along both axes."""
+    places = np.vstack([fit.measured[:, :2] for fit in fits])
+    x, y = np.ptp(places[:, 0]) + 2.0, np.ptp(places[:, 1]) + 2.0
+    height = float(np.clip((DOUBLE_MM - 25.0) * y / x + 25.0, _SMALLEST_MM, _LARGEST_MM))
+    figure = new_figure(width_mm=DOUBLE_MM, height_mm=height)
+    axes = figure.subplots()
+    handles: list[Line2D] = []
+    for number, fit in enumerate(fits[:_MOST_RUNS]):
+        colour = COLOURS[number % len(COLOURS)]
+        axes.plot(fit.fitted[:, 0], fit.fitted[:, 1], color=colour, zorder=3)
+        marker = _MARKERS[number % len(_MARKERS)]
+        points = axes.plot(
+            fit.measured[:, 0],
+            fit.measured[:, 1],
+            linestyle="none",
+            marker=marker,
+            markerfacecolor="none",
+            markersize=3.0,
+            color=BLACK,
+            zorder=2,
+            label=f"{figure_text(fit.name)}, measured",
+        )
+        handles += [*points, Line2D([], [], color=colour, label=f"{figure_text(fit.name)}, identified")]
+    axes.set_aspect("equal", adjustable="datalim")
+    axes.set_xlabel("x, down the fall line (m)")
+    axes.set_ylabel("y, to the left (m)")
+    legend_below(figure, handles)
+    return figure
+
+
+def draw_residuals(fits: Sequence[Fit]) -> Figure:
+    """Measured minus identified for each quantity; the band is twice the standard deviation."""
+    labels = [label for i, label in enumerate(fits[0].labels) if any(_measured_mask(fit, i).any() for fit in fits)]
+    figure = new_figure(width_mm=DOUBLE_MM, height_mm=30.0 + 34.0 * len(labels))
+    rows = figure.subplots(len(labels), 1, sharex=True, squeeze=False)[:, 0]
+    handles = []
+    for number, fit in enumerate(fits[:_MOST_RUNS]):
+        colour, marker = COLOURS[number % len(COLOURS)], _MARKERS[number % len(_MARKERS)]
+        for axes, label in zip(rows, labels, strict=True):
+            _draw_residuals_of(axes, fit, fit.labels.index(label), colour, marker)
+        handles.append(Line2D([], [], color=colour, marker=marker, markerfacecolor="none", label=figure_text(fit.name)))
+    for axes, label in zip(rows, labels, strict=True):
+        axes.axhline(0.0, color=GREY, linewidth=0.6, zorder=1)
+        axes.set_ylabel(label.replace(" (", "\nmeasured − identified ("))
+    x_labels = {"track": "time (s)", "photo_cells": "distance from the start (m)", "marks": "place"}
+    rows[-1].set_xlabel(x_labels[fits[0].kind])
+    figure.align_ylabels()
+    legend_below(figure, handles)
+    return figure
+
+
+def _measured_mask(fit: Fit, i: int) -> npt.NDArray[np.bool_]:
+    return np.isfinite(fit.measured[:, i]) & np.isfinite(fit.sd[:, i])
+
+
+def _draw_residuals_of(axes: Axes, fit: Fit, i: int, colour: str, marker: str) -> None:
+    use = _measured_mask(fit, i)
+    if not use.any():
+        return
+    along, residual, sd = fit.along[use], fit.residual[use, i], fit.sd[use, i]
+    axes.fill_between(along, -2.0 * sd, 2.0 * sd, color=PALE, alpha=0.35, linewidth=0.0, zorder=0)
+    axes.plot(along, residual, color=colour, marker=marker, markerfacecolor="none", linewidth=0.6, zorder=3)
+
+
+def draw_profiles(result: Identification) -> Figure:
+    """One panel for each parameter: its profile, the parabola from the curvature, the limit of the 95 % interval."""
+    columns = min(3, len(result.profiles))
+    rows = -(-len(result.profiles) // columns)
+    figure = new_figure(width_mm=DOUBLE_MM, height_mm=20.0 + 50.0 * rows)
+    panels = figure.subplots(rows, columns, squeeze=False).ravel()
+    for axes, profile in zip(panels, result.profiles, strict=False):
+        row = result[profile.key]
+        finite = np.isfinite(profile.rise)
+        axes.plot(profile.value[finite], profile.rise[finite], color=BLUE, marker="o", markerfacecolor="none")
+        if row.value is not None and row.standard_error:
+            value = np.linspace(profile.value[0], profile.value[-1], 101)
+            parabola = ((value - row.value) / row.standard_error) ** 2
+            axes.plot(value, parabola, color=ORANGE, linestyle=(0, (4, 2)))
+        axes.axhline(profile.limit, color=GREY, linewidth=0.8, linestyle=(0, (1, 1.2)))
+        unit = f" ({row.parameter.unit})" if row.parameter.unit else ""
+        axes.set_xlabel(f"{row.parameter.name.replace('_', ' ')}{unit}")
+        axes.set_ylim(-0.5, 3.0 * profile.limit)
+    for axes in panels[len(result.profiles) :]:
+        axes.set_visible(False)
+    panels[0].set_ylabel("rise of the sum of squares")
+    handles = [
+        Line2D([], [], color=BLUE, marker="o", markerfacecolor="none", label="others refitted"),
+        Line2D([], [], color=ORANGE, linestyle=(0, (4, 2)), label="from the curvature"),
+        Line2D([], [], color=GREY, linestyle=(0, (1, 1.2)), label="limit of the 95 % interval"),
+    ]
+    legend_below(figure, handles)
+    for axes in panels:
+        axes.tick_params(colors=BLACK)
+    return figure

@@ -1,0 +1,282 @@
+"""Results as text for a terminal: skis in snow, an identification, a run and its gates."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Mapping
+from typing import TYPE_CHECKING, Any, Final, TypeAlias
+
+from ..simulation.run import OPEN_SHARE
+from ..track.course.gates_table import gate_rows
+from .formatting import aligned_rows, plain
+
+if TYPE_CHECKING:
+    from ..identification.result import Identification, Identified, Interval
+    from ..track.course import CourseResult
+
+Json: TypeAlias = Mapping[str, Any]
+
+
+def answers_of(contents: Json) -> list[Json]:
+    """Answers in the JSON of `skisnow carve`: those under ``skis``, or the only one."""
+    answers: list[Json] = contents.get("skis", [contents])
+    return answers
+
+
+def ski_titles(answers: list[Json]) -> list[str]:
+    """Title of each ski: its name, or the given word if the names are not unique."""
+    words = [str(answer["inputs"]["ski"]) for answer in answers]
+    names = [str(answer["ski"]["name"]) for answer in answers]
+    return names if len(set(names)) == len(set(zip(words, names, strict=True))) else words
+
+
+def carve_summary(contents: Json) -> str:
+    """Inputs, choices of the model, and a table with one column for each ski.
+
+    Parameters
+    ----------
+    contents
+        JSON of `skisnow.carving.answer_dict.answers_dict`.
+    """
+    return "\n".join(_carve_lines(answers_of(contents)))
+
+
+def _carve_lines(answers: list[Json]) -> Iterator[str]:
+    inputs = answers[0]["inputs"]
+    kind = "at rest" if inputs["at_rest"] else "carving"
+    angle, load, moment = (plain(inputs[key]) for key in ("edge_angle_deg", "load_N", "moment_Nm"))
+    yield f"{kind}: edge angle {angle} degrees, load {load} N, boot moment {moment} N m"
+    yield f"snow: {_snow_in_words(answers[0])}"
+    yield f"model: {_model_in_words(inputs)}"
+    yield ""
+    yield from _carve_table(answers)
+    for title, answer in zip(ski_titles(answers), answers, strict=True):
+        if answer["remedy"]:
+            yield ""
+            yield f"{title}: {answer['outcome'].replace('_', ' ')}: {answer['remedy']}"
+
+
+def _snow_in_words(answer: Json) -> str:
+    inputs = answer["inputs"]
+    words = [f"H_V {_with_interval(answer, 'H_V', 'N_per_mm3')} N/mm3"]
+    if inputs["S_f_N_per_mm2"] is not None:
+        words.append(f"S_f {_with_interval(answer, 'S_f', 'N_per_mm2')} N/mm2")
+    if inputs["unloading_ratio"] is not None and not inputs["at_rest"]:
+        words.append(f"k_u/H_V {plain(inputs['unloading_ratio'])}")
+    return f"{', '.join(words)} ({answer['snow']['source']})"
+
+
+def _with_interval(answer: Json, symbol: str, unit: str) -> str:
+    value = plain(answer["inputs"][f"{symbol}_{unit}"])
+    ends = answer["snow"][f"{symbol}_interval_{unit}"]
+    return value if ends is None else f"{value} [{', '.join(plain(end) for end in ends)}]"
+
+
+def _model_in_words(inputs: Json) -> str:
+    words = [f"clamp length {plain(inputs['clamp_length_m'])} m"]
+    if inputs["footprint_stiffness_N_per_mm2"] is not None:
+        words.append(f"footprint stiffness {plain(inputs['footprint_stiffness_N_per_mm2'])} N/mm²")
+    if not inputs["at_rest"]:
+        words.append(f"side force bends the ski: {_yes_or_no(inputs['side_force_bending'])}")
+        words.append(f"side force spread: {inputs['side_force_spread']}")
+        words.append(f"groove follows the {inputs['groove']}")
+        words.append(f"moment balance: {inputs['moment_balance']}")
+    return ", ".join([*words, f"twist: {_yes_or_no(inputs['twist'])}", f"elements {inputs['elements']}"])
+
+
+def _yes_or_no(value: bool) -> str:
+    return "yes" if value else "no"
+
+
+def _maximum(key: str, *, by: Callable[[float], float] = float) -> Callable[[Json], str]:
+    def maximum(answer: Json) -> str:
+        values = [value for value in answer[key] or () if value is not None]
+        return plain(max(values, key=by)) if values else "-"
+
+    return maximum
+
+
+def _number(key: str) -> Callable[[Json], str]:
+    return lambda answer: plain(answer[key])
+
+
+def _ski_number(key: str) -> Callable[[Json], str]:
+    return lambda answer: plain(answer["ski"][key])
+
+
+_ROWS: Final[tuple[tuple[str, Callable[[Json], str]], ...]] = (
+    ("outcome", lambda answer: answer["outcome"].replace("_", " ")),
+    ("grip holds", lambda answer: "-" if answer["holds"] is None else _yes_or_no(answer["holds"])),
+    ("side force (N)", _number("side_force_N")),
+    ("shear capacity of the snow (N)", _number("side_force_limit_N")),
+    ("grip utilisation (1: side-slip)", _number("grip_utilisation")),
+    ("total force of the snow (N)", _number("total_force_N")),
+    ("turn radius, boot and 0.4 m to each side (m)", _number("turn_radius_boot_m")),
+    ("the same, side force spread the other way (m)", _number("turn_radius_boot_other_spread_m")),
+    ("turn radius, boot and ends of contact (m)", _number("turn_radius_chord_m")),
+    ("sidecut radius of three widths (m)", _ski_number("sidecut_radius_of_three_widths_m")),
+    ("sidecut radius of the whole edge line (m)", _ski_number("sidecut_radius_of_edge_line_m")),
+    ("contact length (m)", _number("contact_length_m")),
+    ("loaded contact length (m)", _number("bearing_length_m")),
+    ("edge depth, afterbody / forebody", _number("afterbody_depth_ratio")),
+    ("edge depth, maximum (mm)", _maximum("edge_depth_mm")),
+    ("normal force per length, maximum (N/m)", _maximum("force_per_length_N_per_m")),
+    ("deflection, maximum (mm)", _maximum("bending_mm", by=abs)),
+    ("twist, maximum (degrees)", _maximum("twist_deg", by=abs)),
+    ("boot moment about the ski's cross axis (N m)", _number("boot_pitch_moment_Nm")),
+    ("force out of balance (N)", _number("residual_force_N")),
+    ("moment out of balance (N m)", _number("residual_moment_Nm")),
+)
+
+
+def _carve_table(answers: list[Json]) -> Iterator[str]:
+    cells = [["", *ski_titles(answers)]]
+    cells += [[name, *(of(answer) for answer in answers)] for name, of in _ROWS]
+    widths = [max(len(row[column]) for row in cells) for column in range(len(cells[0]))]
+    for row in cells if len(answers) > 1 else cells[1:]:
+        first, *rest = (cell.rjust(width) for cell, width in zip(row, widths, strict=True))
+        yield "  ".join([first.strip().ljust(widths[0]), *rest]).rstrip()
+
+
+def identify_summary(result: Identification) -> str:
+    """Outcome, values with intervals, correlations, and effort of the search."""
+    lines = [f"{result.scenario}: {result.outcome.replace('_', ' ')}", result.reason, ""]
+    lines += [f"{name}: {kind}" for name, kind in result.data] + [""] * bool(result.data)
+    rows = [_parameter_row(parameter) for parameter in result.parameters]
+    widths = [max(len(row[i]) for row in rows) for i in range(2)]
+    lines += [f"{key.ljust(widths[0])}  {value.ljust(widths[1])}  {rest}".rstrip() for key, value, rest in rows]
+    correlations = list(_correlations(result))
+    if correlations:
+        lines += ["", "correlations: " + ", ".join(correlations)]
+    lines += ["", f"points {result.points}, degrees of freedom {result.degrees_of_freedom}", *result.methods]
+    effort = result.effort
+    earlier = f", {effort.kept_simulations} kept from before" if effort.kept_simulations else ""
+    lines.append(f"{effort.simulations} simulated runs{earlier}, {plain(effort.wall_s)} s")
+    return "\n".join(lines)
+
+
+def _parameter_row(row: Identified) -> tuple[str, str, str]:
+    unit = f" {row.parameter.unit}" if row.parameter.unit else ""
+    others = (
+        ("profile", row.profile_interval),
+        ("bootstrap", row.bootstrap_interval),
+        ("posterior", row.posterior_interval),
+    )
+    error = row.standard_error
+    more = [f"{name} {_interval_text(interval, error)}" for name, interval in others if interval is not None]
+    bound = ["on its bound"] if row.at_bound else []
+    return (
+        row.parameter.key,
+        f"{_rounded(row.value, error)}{unit}",
+        "  ".join([_interval_text(row.interval, error), *more, *bound]),
+    )
+
+
+def _interval_text(interval: Interval | None, error: float | None) -> str:
+    if interval is None:
+        return "no interval"
+    low, high = interval
+    if high is None and low is not None:
+        return f"at least {_rounded(low, error)}"
+    return f"[{_rounded(low, error)}, {_rounded(high, error)}]"
+
+
+def _rounded(value: float | None, error: float | None) -> str:
+    """A value rounded to two digits of its standard error."""
+    if value is None or not error or not 1e-9 < error < 1e5:
+        return plain(value)
+    return f"{value:.{max(1 - math.floor(math.log10(error)), 0)}f}"
+
+
+def _correlations(result: Identification) -> Iterator[str]:
+    names = [row.parameter.name for row in result.parameters]
+    for i in range(len(names)):
+        for j in range(i):
+            r = float(result.correlation[i, j])
+            if math.isfinite(r):
+                yield f"{names[j]} and {names[i]} {r:.2f}"
+
+
+def simulate_summary(summary: Json, *, title: str) -> str:
+    """Outcome of a run with its numbers.
+
+    Parameters
+    ----------
+    summary
+        Contents of `skisnow.simulation.run_summary.summary_dict`.
+    title
+        Title of the scenario.
+    """
+    lines = [f"{title}: {summary['outcome'].replace('_', ' ')}"]
+    if summary["remedy"]:
+        lines.append(summary["remedy"])
+    rows = list(_run_rows(summary))
+    width = max(len(name) for name, _ in rows)
+    lines += ["", *(f"{name.ljust(width)}  {text}" for name, text in rows)]
+    if "verification" in summary:
+        lines += ["", *_verification(summary["verification"])]
+    return "\n".join(lines)
+
+
+def _run_rows(summary: Json) -> Iterator[tuple[str, str]]:
+    end = summary["end"]
+    yield "run length", f"{plain(summary['run_length_m'], 4)} m in {plain(summary['simulated_s'], 4)} s"
+    yield "end point", f"x {plain(end['x_m'], 4)} m, y {plain(end['y_m'], 4)} m, z {plain(end['z_m'], 4)} m"
+    yield "heading at the end", f"{plain(end['heading_deg'])} degrees from the fall line, positive left"
+    speed = f"{plain(end['speed_m_per_s'])} m/s at the end, maximum {plain(summary['greatest_speed_m_per_s'])} m/s"
+    yield "speed", speed
+    yield "turn radius", _radius(summary)
+    if summary.get("gates_passed") is not None:
+        yield "gates", _gates(summary)
+    yield "energy residual", _residual(summary["energy_balance_error"])
+    yield "steps", f"{summary['steps']}, {summary['rejected_steps']} rejected"
+    yield "computed in", _computed(summary)
+
+
+def _gates(summary: Json) -> str:
+    """Number of passed gates, and the time from the first to the last one."""
+    times = [time for time in summary["gate_times_s"] if time is not None]
+    passed = f"{summary['gates_passed']} of {len(summary['gate_times_s'])} passed"
+    if len(times) < 2:
+        return passed
+    return f"{passed}, {times[-1] - times[0]:.2f} s between the first and the last that was reached"
+
+
+def _radius(summary: Json) -> str:
+    median, minimum = summary["turn_radius_median_m"], summary["turn_radius_p5_m"]
+    if median is None:
+        return "none, the run is straight or was over within half a second"
+    return f"median {plain(median)} m, 5 % of the time below {plain(minimum)} m"
+
+
+def _residual(error: float | None) -> str:
+    if error is None:
+        return "no energy was exchanged"
+    return f"{plain(100.0 * error, 2)} % of the energy exchanged{'' if error <= OPEN_SHARE else ', too large'}"
+
+
+def _computed(summary: Json) -> str:
+    wall, simulated = summary["wall_s"], summary["simulated_s"]
+    rate = f", {plain(simulated / wall)} times real time" if wall and simulated else ""
+    return f"{plain(wall)} s{rate}"
+
+
+def _verification(verification: Mapping[str, Json]) -> Iterator[str]:
+    yield "computed again, finer or with another input, one at a time:"
+    width = max((len(key) for key in verification), default=0)
+    for key, row in verification.items():
+        outcome = "" if row["outcome"] == "finished" else f" ({row['outcome'].replace('_', ' ')})"
+        change = f"{plain(row['was'])} to {plain(row['now'])}"
+        yield f"  {key.ljust(width)}  {change}: the end moves by {plain(row['end_moves_cm'])} cm{outcome}"
+
+
+def gates_text(result: CourseResult) -> str:
+    """Table with a line for each gate: name, outcome, times to a hundredth of a second, speed, distance."""
+    rows = [("gate", "outcome", "time (s)", "split (s)", "speed (m/s)", "from the pole (m)")]
+    for row in gate_rows(result):
+        time, split = (f"{row[name]:.2f}" if row[name] is not None else "-" for name in ("time_s", "split_s"))
+        speed, clearance = (plain(row[name], 3) for name in ("speed_m_per_s", "clearance_m"))
+        rows.append((row["gate"], row["outcome"].replace("_", " "), time, split, speed, clearance))
+    fault = result.fault
+    end = [] if fault is None else [f"{fault.words[0].upper()}{fault.words[1:]}."]
+    return "\n".join([f"{result.passed} of {len(result.passages)} gates passed", *aligned_rows(rows), *end])

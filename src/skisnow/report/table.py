@@ -1,0 +1,265 @@
+"""Tables of reports, as CSV (RFC 4180) and as HTML."""
+
+from __future__ import annotations
+
+import csv
+import io
+from dataclasses import dataclass
+from itertools import chain
+from typing import TYPE_CHECKING, Any, Final, Literal, TypeAlias
+
+import orjson
+from markupsafe import Markup
+
+from .._support.spreadsheet_text import guarded
+from . import formatting
+from .symbols import html, prose
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Mapping, Sequence
+
+Kind: TypeAlias = Literal[
+    "text", "words", "codes", "yes", "tick", "count", "angle", "hundredths", "number", "p", "interval", "range",
+    "estimate",
+]  # fmt: skip
+"""Kind of the cells of a column.
+
+text: text from a user; words: text of skisnow, with symbols; codes: list of names; yes: truth value; tick: truth value,
+shown only if true; count: integer; angle: degrees with all given digits; hundredths: number with two decimals; number:
+float or None; p: p value; interval: pair or None; range: minimum and maximum or None; estimate: (value, pair), one cell
+in HTML and LaTeX.
+"""
+
+ROWS_IN_HTML: Final = 300
+ROWS_IN_LATEX: Final = 2000
+
+
+@dataclass(frozen=True, slots=True)
+class Column:
+    """One column.
+
+    Attributes
+    ----------
+    key
+        Name in CSV, including the unit; a key of the records.
+    header, unit
+        Texts in HTML and LaTeX, with symbols as ``H_V``.
+    kind
+        Kind of the cells.
+    digits
+        Significant digits in HTML and LaTeX; CSV has all digits.
+    interval
+        Key of the 95 % interval of an estimate.
+    """
+
+    key: str
+    header: str
+    kind: Kind = "number"
+    unit: str = ""
+    digits: int = 3
+    interval: str = ""
+
+    @property
+    def numeric(self) -> bool:
+        """True if the cells are right-aligned."""
+        return self.kind in ("count", "angle", "hundredths", "number", "p", "interval", "range", "estimate")
+
+    def cell(self, record: Mapping[str, Any]) -> Any:
+        """Content of this column in the row of a record; an estimate gets its interval."""
+        value = record.get(self.key)
+        return (value, record.get(self.interval)) if self.kind == "estimate" else value
+
+
+@dataclass(frozen=True)
+class Table:
+    """One table; a row has one cell for each column.
+
+    ``note`` is printed below the table. ``rows_in_html`` is the maximum number of rows in HTML; CSV has all rows.
+    ``synthetic`` marks numbers that were not measured.
+    """
+
+    name: str
+    caption: str
+    columns: tuple[Column, ...]
+    rows: Sequence[tuple[Any, ...]]
+    note: str = ""
+    rows_in_html: int = ROWS_IN_HTML
+    synthetic: bool = False
+
+    @property
+    def file_stem(self) -> str:
+        """Name of the table's files without their ending."""
+        return f"{self.name}_synthetic" if self.synthetic else self.name
+
+    @property
+    def full_caption(self) -> str:
+        """The caption, marked if the data are synthetic."""
+        return f"{self.caption} Synthetic data." if self.synthetic else self.caption
+
+
+def record_table(
+    name: str, caption: str, columns: tuple[Column, ...], records: Iterable[Mapping[str, Any]], **options: Any
+) -> Table:
+    """Table with one row for each record; the keys of the columns are those of the records."""
+    return Table(
+        name, caption, columns, [tuple(column.cell(record) for column in columns) for record in records], **options
+    )
+
+
+def table_csv(table: Table) -> str:
+    """CSV of the whole table; an interval has two columns, ``…_low`` and ``…_high``."""
+    buffer = io.StringIO(newline="")
+    writer = csv.writer(buffer, lineterminator="\r\n")
+    writer.writerow(chain.from_iterable(_csv_names(column) for column in table.columns))
+    columns = [_csv_cells(column, [row[i] for row in table.rows]) for i, column in enumerate(table.columns)]
+    writer.writerows(zip(*chain.from_iterable(columns), strict=True))
+    return buffer.getvalue()
+
+
+def _csv_names(column: Column) -> tuple[str, ...]:
+    ends = (f"{column.key}_low", f"{column.key}_high")
+    return {"interval": ends, "range": ends, "estimate": (column.key, *ends)}.get(column.kind, (column.key,))
+
+
+def _csv_cells(column: Column, values: Sequence[Any]) -> list[Sequence[str]]:
+    if column.kind in ("interval", "range"):
+        return _ends(values)
+    if column.kind == "estimate":
+        return [_digits([value for value, _ in values]), *_ends([pair for _, pair in values])]
+    if column.numeric:
+        return [_digits(values)]
+    return [list(map(_CSV_TEXT[column.kind], values))]
+
+
+def _ends(pairs: Sequence[Any]) -> list[Sequence[str]]:
+    return [_digits([None if pair is None else pair[end] for pair in pairs]) for end in (0, 1)]
+
+
+def _digits(values: Sequence[float | None]) -> list[str]:
+    """Numbers of a column with the fewest digits that are read as the same number; "" for None."""
+    return orjson.dumps(values).decode("ascii")[1:-1].replace("null", "").split(",") if values else []
+
+
+def _text(value: Any) -> str:
+    return "" if value is None else guarded(str(value))
+
+
+def _truth(value: bool) -> str:
+    return "true" if value else "false"
+
+
+_CSV_TEXT: Final[dict[str, Callable[[Any], str]]] = {
+    "text": _text,
+    "words": _text,
+    "yes": _truth,
+    "tick": _truth,
+    "codes": lambda codes: guarded("; ".join(codes)),
+}
+
+
+LISTED_NAMES: Final = 20
+COLUMNS_OF_NARROW: Final = 7
+"""Maximum number of columns of a table that has intervals next to the values instead of below them."""
+
+
+def table_html(table: Table, *, number: int) -> Markup:
+    """HTML of a table in a scrolling box.
+
+    On a narrow screen each cell is a line with the column's name (report.css); roles keep it a table.
+    """
+    head = Markup("").join(_header(column) for column in table.columns)
+    shown = table.rows[: table.rows_in_html]
+    body = Markup("\n").join(
+        Markup('<tr role="row">')
+        + Markup("").join(_cell(column, value, index) for index, (column, value) in _pairs(table, row))
+        + Markup("</tr>")
+        for row in shown
+    )
+    return Markup(
+        '<div class="table" id="table-{name}" role="region" aria-label="{label}" tabindex="0">'
+        '<table role="table"{kind}>\n'
+        "<caption><b>Table {number}.</b> {caption}</caption>\n"
+        '<thead role="rowgroup"><tr role="row">{head}</tr></thead>\n<tbody role="rowgroup">\n{body}\n</tbody>'
+        "</table></div>\n{below}"
+    ).format(
+        name=table.name,
+        kind=Markup(' class="narrow"') if len(table.columns) <= COLUMNS_OF_NARROW else Markup(""),
+        label=f"Table {number}",
+        number=number,
+        caption=html(table.full_caption),
+        head=head,
+        body=body,
+        below=_below(table),
+    )
+
+
+def _pairs(table: Table, row: tuple[Any, ...]) -> enumerate[tuple[Column, Any]]:
+    return enumerate(zip(table.columns, row, strict=True))
+
+
+def _header(column: Column) -> Markup:
+    unit = Markup(" <small>{}</small>").format(html(column.unit)) if column.unit else Markup("")
+    return Markup('<th scope="col" role="columnheader"{kind}>{text}{unit}</th>').format(
+        kind=Markup(' class="n"') if column.numeric else Markup(""), text=html(column.header), unit=unit
+    )
+
+
+def _cell(column: Column, value: Any, index: int) -> Markup:
+    content = cell_html(column, value)
+    if index == 0:
+        return Markup('<th scope="row" role="rowheader">{}</th>').format(content)
+    named = column.header + (f" ({column.unit})" if column.unit else "")
+    kind = Markup(' class="n"') if column.numeric else Markup("")
+    return Markup('<td role="cell"{} data-name="{}">{}</td>').format(kind, named, content)
+
+
+def cell_html(column: Column, value: Any) -> Markup:
+    """HTML of the content of a cell."""
+    return Markup(formatting.ABSENT["typeset"]) if value is None else _SET[column.kind](value, column.digits)
+
+
+def _estimate(value: tuple[float | None, Any], digits: int) -> Markup:
+    number, pair = value
+    if pair is None:
+        return Markup(formatting.significant(number, digits))
+    return Markup('{} <span class="i">{}</span>').format(
+        formatting.significant(number, digits), formatting.interval(pair, digits)
+    )
+
+
+def _first_names(names: list[str]) -> Markup:
+    listed = Markup(", ").join(names[:LISTED_NAMES])
+    more = len(names) - LISTED_NAMES
+    return listed + f" and {formatting.whole(more)} more" if more > 0 else listed
+
+
+_SET: Final[dict[Kind, Callable[[Any, int], Markup]]] = {
+    "text": lambda value, _: Markup.escape(value),
+    "words": lambda value, _: html(value),
+    "codes": lambda value, _: _first_names(value),
+    "yes": lambda value, _: Markup("yes" if value else "no"),
+    "tick": lambda value, _: Markup('<span role="img" aria-label="yes">✓</span>' if value else ""),
+    "count": lambda value, _: Markup(formatting.whole(value)),
+    "angle": lambda value, _: Markup(f"{value:.6g}"),
+    "hundredths": lambda value, _: Markup(f"{value:.2f}".replace("-", "−")),
+    "number": lambda value, digits: Markup(formatting.significant(value, digits)),
+    "p": lambda value, _: Markup.escape(formatting.probability(value).replace(" ", "\u00a0")),
+    "interval": lambda value, digits: Markup(formatting.interval(value, digits)),
+    "range": lambda value, digits: Markup(formatting.from_to(value, digits)),
+    "estimate": _estimate,
+}
+
+
+def _below(table: Table) -> Markup:
+    cut = len(table.rows) - table.rows_in_html
+    sentences = [html(table.note)] if table.note else []
+    if cut > 0:
+        sentences.append(
+            prose(
+                "The first {shown} of {all} rows; {file} holds them all.",
+                shown=formatting.whole(table.rows_in_html),
+                all=formatting.whole(len(table.rows)),
+                file=Markup("<code>tables/{}.csv</code>").format(table.file_stem),
+            )
+        )
+    return Markup('<p class="note">{}</p>').format(Markup(" ").join(sentences)) if sentences else Markup("")

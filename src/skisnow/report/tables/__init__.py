@@ -1,1 +1,0 @@
-"""Tables of the reports of a run, a turn, a course and an identification."""
