@@ -11,9 +11,7 @@ ROOT = Path(__file__).resolve().parents[2]
 PAGES = (
     "README.md",
     *sorted(
-        path.relative_to(ROOT).as_posix()
-        for part in ("start", "how-to")
-        for path in (ROOT / "docs" / part).glob("*.md")
+        path.relative_to(ROOT).as_posix() for part in ("start", "how-to") for path in ROOT.glob(f"docs/{part}/*.md")
     ),
 )
 FIRST_WORDS = ("skisnow ", ".venv/bin/skisnow ", "python ", "make ", "pip ", "dask ", "cc ", "#!/bin/bash")
