@@ -5,6 +5,7 @@ from __future__ import annotations
 import inspect
 import re
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -17,9 +18,12 @@ from skisnow._support.errors import ParameterError, SkisnowError
 from skisnow.geometry import SkiPiece, in_form
 from skisnow.interop.opensim import BootMarkers, Markers, boots_of_markers
 from skisnow.racing import compared
-from skisnow.scenario import Boots, Solver
+from skisnow.scenario import Boots, Solver, scenario_values
 from skisnow.scenario.keys import SCENARIO_KEYS
-from skisnow.scenario.resolution import COMPANIONS, ContradictionError
+from skisnow.scenario.reading import build_input, load_input
+from skisnow.scenario.resolution import CONDITIONS, ContradictionError
+from skisnow.scenario.shear import Shear
+from skisnow.scenario.skier import Skier
 from skisnow.ski.editing import SkiEdit, edit_stations
 from tests.fuzzing.reader import Reader
 from tests.fuzzing.registry import BY_NAME
@@ -135,20 +139,49 @@ def test_misspelt_choice(call: Callable[[], object], nearest: str) -> None:
         call()
 
 
-@pytest.mark.parametrize("key", [key for key, (main, _) in COMPANIONS.items() if main != "slope.kind"])
+WITHOUT_EFFECT: dict[str, tuple[str, str | float]] = {
+    "shear.law": ("carved-46m", "constant"),
+    "skier.steers": ("slalom-20-gates", "gates"),
+    "snow.delayed_share": ("carved-46m", 0.0),
+    "shear.residual_ratio": ("carved-46m", 1.0),
+}
+"""Scenario and value of each key that can leave others without effect."""
+
+
+@pytest.mark.parametrize("key", [key for key, needed in CONDITIONS.items() if needed.key != "slope.kind"])
 def test_key_without_effect(key: str) -> None:
-    """A key of one law of shear or one kind of steering is rejected with another, unless a later change replaced it."""
-    main, value = COMPANIONS[key]
-    other = {"shear.law": "constant", "skier.steers": "gates"}[main]
-    base = {"shear.law": "carved-46m", "skier.steers": "slalom-20-gates"}[main]
+    """A key that another one leaves without effect is rejected, unless a later change did that."""
+    main, needed = CONDITIONS[key].key, CONDITIONS[key]
+    base, other = WITHOUT_EFFECT[main]
+    value = 0.5 if needed.differs else needed.value
+    other = "turns" if value == "gates" else other
     quantity = SCENARIO_KEYS[key]
-    given = True if quantity.kind == "switch" else max(quantity.lowest or 0.0, 0.0) + 0.05
+    given = not quantity.default if quantity.kind == "switch" else max(quantity.lowest or 0.0, 0.0) + 0.05
     with pytest.raises(ContradictionError) as caught:
         load_scenario(base, changes={key: given, main: other})
     assert caught.value.keys == (key, main)
     with pytest.raises(ContradictionError) as caught:
         load_scenario(base, changes={main: other}).with_(**{key.partition(".")[2]: given})
     assert caught.value.keys == (key, main)
-    needed = {"shear.snow_density_kg_per_m3": 300.0} if value == "by-density" else {}
-    found = load_scenario(base, changes={**needed, key: needed.get(key, given), main: value})
-    assert found.with_(**{main.partition(".")[2]: other}) is not None
+    density = {"shear.snow_density_kg_per_m3": 300.0} if value == "by-density" else {}
+    found = load_scenario(base, changes={**density, key: density.get(key, given), main: value})
+    changed = found.with_(**{main.partition(".")[2]: other})
+    assert scenario_values(changed)[key] == quantity.default
+    assert scenario_values(build_input(load_input(found).changed({main: other})).scenario)[key] == quantity.default
+
+
+@pytest.mark.parametrize(
+    "call",
+    [
+        lambda: Shear(transverse_friction=0.3),
+        lambda: Shear(law="by-angle", snow_density=300.0),
+        lambda: Shear(slip_weakening=5e-3),
+        lambda: replace(TURN.contact, retardation_time=0.5),
+        lambda: TURN.with_(solver=Solver(delayed_spacing=2e-3)),
+        lambda: Skier(steers="gates", turns=3),
+    ],
+)
+def test_value_without_effect_in_a_constructor(call: Callable[[], object]) -> None:
+    with pytest.raises(ParameterError) as caught:
+        call()
+    assert caught.value.code == "no_effect"

@@ -28,7 +28,7 @@ def test_plan() -> None:
 
 def line() -> LineThroughGates:
     gates = tuple(Gate(name=str(i), turning=(10.0 * i, y), side=side) for i, (y, side) in enumerate(POLES, 1))  # type: ignore[arg-type]
-    return LineThroughGates(Course(gates=gates), Skier(pole_clearance=1.0, sight=0.2), (0.0, 0.0))
+    return LineThroughGates(Course(gates=gates), Skier(steers="gates", pole_clearance=1.0, sight=0.2), (0.0, 0.0))
 
 
 POLES = ((2.0, "left"), (-2.0, "right"), (2.0, "left"))

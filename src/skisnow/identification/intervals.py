@@ -224,8 +224,6 @@ def _true(solution: Solution) -> Callable[[FloatArray], FloatArray]:
     return log_probability
 
 
-FloatArray = npt.NDArray[np.float64]
-Progress = Callable[[str], None]
 BootstrapBy: TypeAlias = Literal["refit", "linear"]
 
 FEWEST: Final = 40

@@ -12,13 +12,15 @@ from .declared import (
     own_quantities,
     quantities,
     require_declared,
+    require_effect,
     values_of,
 )
-from .quantity import SMALLEST, InputValue, Kind, Quantity, Search
+from .quantity import SMALLEST, Condition, InputValue, Kind, Quantity, Search
 
 __all__ = [
     "APART",
     "SMALLEST",
+    "Condition",
     "InputValue",
     "Kind",
     "Quantity",
@@ -34,5 +36,6 @@ __all__ = [
     "own_quantities",
     "quantities",
     "require_declared",
+    "require_effect",
     "values_of",
 ]

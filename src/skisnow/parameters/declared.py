@@ -24,6 +24,7 @@ import sys
 import textwrap
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import MISSING, Field, dataclass, fields, is_dataclass, replace
+from functools import cache
 from types import NoneType, UnionType
 from typing import Annotated, Any, Final, Literal, NamedTuple, TypeVar, Union, get_args, get_origin
 
@@ -103,6 +104,34 @@ def require_declared(thing: Any) -> None:
             for quantity in slot.own:
                 if not isinstance(quantity, Word):
                     quantity.require(value if quantity.index is None else value[quantity.index])
+    require_effect(thing)
+
+
+def require_effect(thing: Any) -> None:
+    """Reject values other than the default that have no effect because of another value of the same dataclass.
+
+    Raises
+    ------
+    ParameterError
+        With the code ``no_effect``: the first such value.
+    """
+    owner: Any = type(thing)
+    conditional = _conditional_quantities(owner)
+    values = values_of(thing) if conditional else {}
+    for quantity in conditional:
+        condition, value = quantity.condition, values.get(quantity.name)
+        if condition is None or condition.key not in values or value in (None, quantity.default):
+            continue
+        if not condition.holds(values[condition.key]):
+            raise ParameterError(
+                f"{quantity.name} is {_in_short(value)}; it goes with {condition.in_words}. Change one of them",
+                code="no_effect",
+            )
+
+
+@cache
+def _conditional_quantities(owner: type) -> tuple[Quantity, ...]:
+    return tuple(quantity for quantity in quantities(owner) if quantity.condition is not None)
 
 
 def made(owner: type[T], values: Mapping[str, Any], *, section: str = "", **parts: Any) -> T:
@@ -153,6 +182,8 @@ def changed(thing: T, values: Mapping[str, Any], *, section: str = "") -> T:
         for each in slot.own:
             name = _full(section, each.name)
             if isinstance(each, Word) or name not in values:
+                if _loses_effect(each, values):
+                    parts[slot.field.name] = slot.field.default
                 continue
             value = each.in_si(each.in_range(values[name]))
             if each.index is None:
@@ -166,6 +197,12 @@ def changed(thing: T, values: Mapping[str, Any], *, section: str = "") -> T:
             if inside is not now:
                 parts[slot.field.name] = inside
     return replace(thing, **parts) if parts else thing  # type: ignore[type-var]
+
+
+def _loses_effect(quantity: Quantity, values: Mapping[str, Any]) -> bool:
+    """True if the new value of another key leaves a quantity without effect."""
+    condition = quantity.condition
+    return condition is not None and condition.key in values and not condition.holds(values[condition.key])
 
 
 def values_of(thing: Any, *, section: str = "") -> dict[str, Any]:

@@ -44,6 +44,40 @@ class Search:
 
 
 @dataclass(frozen=True, slots=True)
+class Condition:
+    """Value of another key without which a quantity has no effect.
+
+    Attributes
+    ----------
+    key
+        The other key.
+    value
+        The value that it needs.
+    differs
+        True if it needs any other value than this one.
+    """
+
+    key: str
+    value: InputValue
+    differs: bool = False
+
+    def holds(self, actual: object) -> bool:
+        """True if a quantity with this condition has an effect."""
+        return (actual == self.value) != self.differs
+
+    @property
+    def in_words(self) -> str:
+        """The condition for a message.
+
+        >>> Condition("shear.law", "machining").in_words, Condition("snow.delayed_share", 0.0, differs=True).in_words
+        ('shear.law = "machining"', 'snow.delayed_share other than 0')
+        """
+        if self.differs:
+            return f"{self.key} other than {self.value:g}"
+        return f'{self.key} = "{self.value}"'
+
+
+@dataclass(frozen=True, slots=True)
 class Quantity:
     """What may stand under one key; stands in the annotation of the field that holds it, see `declared`.
 
@@ -71,6 +105,8 @@ class Quantity:
         Its place, where the field holds several numbers.
     needed
         Whether a value must be given, where the field has no default.
+    condition
+        Without it the quantity has no effect, and any other value than the default is rejected (default: none).
     kind, choices, default, field
         Come from the field: what its type allows, the words of a ``Literal``, the default in the unit of the name (None
         where there is none), the field's name.
@@ -99,6 +135,7 @@ class Quantity:
     default: InputValue | None = None
     field: str = ""
     needed: bool = True
+    condition: Condition | None = None
 
     @property
     def unit(self) -> str:

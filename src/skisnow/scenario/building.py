@@ -20,7 +20,7 @@ from ..track.course import Course, course_names, read_course
 from .boots import Boots, read_boots
 from .contact import ELASTIC, Contact
 from .keys import SCENARIO_KEYS, full_name
-from .resolution import COMPANIONS, DISPLACEMENT, H_V, KEYS_OF_KIND, S_F, UNLOADING, ContradictionError, Resolution
+from .resolution import CONDITIONS, DISPLACEMENT, H_V, S_F, UNLOADING, ContradictionError, Resolution
 from .scenario import Scenario, course_on_slope
 from .slope import Plane, read_profile
 from .snow_map import SnowMap
@@ -86,9 +86,8 @@ def _slope(resolution: Resolution) -> Slope:
     plane = 'Give it, or a plane: slope.kind = "plane" and slope.angle_deg'
     if kind == "grid":
         _require(values, "slope.grid", plane)
-        smoothing, *origin = (float(_value(values, name)) for name in KEYS_OF_KIND["grid"][1:])
-        path = resolution.files["slope.grid"]
-        return read_terrain(path, smoothing=smoothing, origin_x=origin[0], origin_y=origin[1])
+        smoothing, x, y = (float(_value(values, f"slope.{key}")) for key in ("smooth_m", "origin_x_m", "origin_y_m"))
+        return read_terrain(resolution.files["slope.grid"], smoothing=smoothing, origin_x=x, origin_y=y)
     _require(values, "slope.profile", plane)
     return read_profile(resolution.files["slope.profile"], gap=_value(values, "slope.profile_gap"))
 
@@ -188,7 +187,7 @@ def changed_scenario(scenario: Scenario, changes: Mapping[str, object]) -> Scena
         parts["contact"] = _on_map(parts.get("contact", scenario.contact), parts.pop("snow_map"))
     scenario = replace(scenario, **parts)
     _require_changeable(scenario, numbers)
-    _require_companions(scenario, numbers)
+    _require_effect(scenario, numbers)
     measured = {"unloading": UNLOADING in numbers, "displacement": DISPLACEMENT in numbers}
     snow = with_numbers(without_measured(scenario.contact.snow, **measured), _in_range(numbers))
     if snow is not scenario.contact.snow:
@@ -203,13 +202,15 @@ def _full_name(name: str, part_names: Collection[str]) -> str:
         raise ParameterError(f"{error} Parts: {nearest(name, part_names)}.") from error
 
 
-def _require_companions(scenario: Scenario, numbers: Mapping[str, object]) -> None:
-    """Reject a number that has no effect with the scenario's law of shear or kind of steering."""
-    actual = {"shear.law": scenario.shear.law, "skier.steers": scenario.skier and scenario.skier.steers, **numbers}
+def _require_effect(scenario: Scenario, numbers: Mapping[str, object]) -> None:
+    """Reject a number that has no effect with the other values of the scenario."""
+    values = {**values_of(scenario), **numbers}
     for name in numbers:
-        main, needed = COMPANIONS.get(name, ("", ""))
-        if main in actual and actual[main] != needed:
-            raise ContradictionError((name, main), f'{name} goes with {main} = "{needed}"; it is "{actual[main]}".')
+        condition = CONDITIONS.get(name)
+        if condition is not None and not condition.holds(values.get(condition.key)):
+            raise ContradictionError(
+                (name, condition.key), f"{name} goes with {condition.in_words}. Change one of them"
+            )
 
 
 def _in_range(numbers: Mapping[str, object]) -> dict[str, Any]:

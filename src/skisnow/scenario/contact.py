@@ -8,7 +8,7 @@ from typing import Annotated, Final, Literal, TypeAlias, get_args
 from ..forces.friction.load import ActsOn
 from ..forces.penetration.rate import DAMPING, DELAYED_SHARE, RETARDATION_TIME
 from ..forces.shear.displacement import SHEAR_DISPLACEMENT
-from ..parameters import Quantity, Search, Section, Word, declared_text, require_declared
+from ..parameters import Condition, Quantity, Search, Section, Word, declared_text, require_declared
 from ..snow import SnowProperties
 from .snow_map import SnowMap
 
@@ -136,6 +136,7 @@ class Contact:
             highest=1e7,
             origin="choice: what a ski takes to pass; not measured",
             search=Search(1.0, 1.0, 1e4, logarithmic=True),
+            condition=Condition("snow.delayed_share", 0.0, differs=True),
         ),
     ] = RETARDATION_TIME
     friction: Annotated[

@@ -22,7 +22,7 @@ from .building import build, changed_scenario
 from .identify_section import require_known
 from .keys import PATH_KEYS, SCENARIO_KEYS, SECTIONS, flatten_sections, scenario_values, validate
 from .plausibility import implausible_values
-from .resolution import COMPANIONS, ContradictionError, Layer, Resolution, ScenarioInput, resolve
+from .resolution import CONDITIONS, ContradictionError, Layer, Resolution, ScenarioInput, resolve
 from .scenario import Scenario
 
 IDENTIFY: Final = "identify"
@@ -269,7 +269,7 @@ def _defaults(text: str) -> dict[str, str]:
     """By section, the lines of the keys that the text does not name and that have a default."""
     given = {f"{section}.{key}": value for section, table in toml_values(text).items() for key, value in table.items()}
     values = {name: key.default for name, key in SCENARIO_KEYS.items()} | given
-    unused = {name for name, (main, needed) in COMPANIONS.items() if values[main] != needed}
+    unused = {name for name, condition in CONDITIONS.items() if not condition.holds(values[condition.key])}
     lines = dict.fromkeys(SECTIONS, "")
     for name, key in SCENARIO_KEYS.items():
         if key.default is not None and name not in given and name not in unused:

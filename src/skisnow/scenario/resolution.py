@@ -8,7 +8,7 @@ Defaults come below all layers. Two rules decide:
 2. Within one layer, two keys that give the same quantity contradict each other. Exceptions: a snow map next to a named
    snow, and a number for k_u/H_V or u_y next to a named snow; there the map or the number counts.
 
-A key that belongs to another one (`COMPANIONS`) is dropped together with it if a later layer replaces that one.
+A key without effect (`CONDITIONS`) is dropped if a later layer made it so, and otherwise an error.
 """
 
 from __future__ import annotations
@@ -43,36 +43,8 @@ OVERRIDES_NAMED_SNOW: Final = {
 ALTERNATIVES: Final = {"ski.name": "ski", "ski.file": "ski", "course.name": "course", "course.file": "course"}
 """Quantity of each key that is not a quantity itself."""
 
-KEYS_OF_KIND: Final = {
-    "plane": ("slope.angle_deg",),
-    "profile": ("slope.profile", "slope.profile_gap"),
-    "grid": ("slope.grid", "slope.smooth_m", "slope.origin_x_m", "slope.origin_y_m"),
-}
-"""Keys that only one kind of slope has."""
-
-KEYS_OF_LAW: Final = {
-    "by-angle": ("shear.relative_decrease_per_rad",),
-    "by-density": ("shear.snow_density_kg_per_m3",),
-    "machining": (
-        "shear.dynamic_shear_strength_N_per_mm2",
-        "shear.transverse_friction",
-        "shear.least_shear_plane_deg",
-    ),
-}
-"""Keys that only one law of the shear strength has."""
-
-KEYS_OF_STEERING: Final = {
-    "turns": ("skier.first_turn_s", "skier.turn_time_s", "skier.turns", "skier.first_to_left"),
-}
-"""Keys that only one kind of steering has."""
-
-COMPANIONS: Final = {
-    name: (main, value)
-    for main, groups in (("slope.kind", KEYS_OF_KIND), ("shear.law", KEYS_OF_LAW), ("skier.steers", KEYS_OF_STEERING))
-    for value, names in groups.items()
-    for name in names
-}
-"""Keys that need a certain value of another key."""
+CONDITIONS: Final = {name: key.condition for name, key in SCENARIO_KEYS.items() if key.condition is not None}
+"""Values of other keys without which a key has no effect."""
 
 
 class ContradictionError(ParameterError):
@@ -196,7 +168,7 @@ def resolve(given: ScenarioInput, sources: Sources) -> Resolution:
     values = {name: value for name, value in given.values.items() if name in counting or not _replaceable(name)}
     if UNLOADING in counting and values[UNLOADING] != 1.0 and values.get("snow.penetration") == "elastic":
         del values["snow.penetration"]  # the number comes from a later layer, else the two contradict each other
-    values = dict(_without_companions(values, latest, providers))
+    values = dict(_with_effect(values, latest, providers))
     _require_unmapped(providers, snows, latest)
     snow = next((snows[name] for name in NAMED_SNOWS if name in values), None)
     snow_map = snows["snow.map_file"] if "snow.map_file" in values else None
@@ -284,17 +256,21 @@ def _contradiction(first: str, second: str, quantity: str) -> ContradictionError
     return ContradictionError((first, second), f"{first} and {second} both give {what}. Keep one of them")
 
 
-def _without_companions(
+def _with_effect(
     values: Mapping[str, InputValue], latest: Mapping[str, int], providers: Mapping[str, tuple[int, str]]
 ) -> Iterator[tuple[str, InputValue]]:
-    """Values without the keys whose main key a later layer replaced."""
+    """Values without the keys that a later layer left without effect."""
     for name, value in values.items():
-        main, needed = COMPANIONS.get(name, ("", ""))
-        actual = values.get(main, SCENARIO_KEYS[main].default) if main else needed
-        if name == "snow.site" and "snow.results" not in values:
-            main, needed, actual = H_V, "snow.results", providers.get(H_V, (-1, ""))[1]
-        if actual == needed:
+        condition = CONDITIONS.get(name)
+        if condition is not None:
+            main, words = condition.key, condition.in_words
+            effective = condition.holds(values.get(main, SCENARIO_KEYS[main].default))
+        elif name == "snow.site" and "snow.results" not in values:
+            main, words = H_V, "snow.results"
+            effective = providers.get(H_V, (-1, ""))[1] == words
+        else:
+            effective = True
+        if effective:
             yield name, value
         elif latest.get(main, -1) <= latest[name] and providers.get(main, (-1, ""))[0] <= latest[name]:
-            condition = needed if name == "snow.site" else f'{main} = "{needed}"; it is "{actual}"'
-            raise ContradictionError((name, main), f"{name} goes with {condition}. Change one of them")
+            raise ContradictionError((name, main), f"{name} goes with {words}. Change one of them")

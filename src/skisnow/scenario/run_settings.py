@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Annotated, Literal, TypeAlias
 
 from ..forces.penetration.rate import DELAYED_SPACING
-from ..parameters import Quantity, Search, declared_text, require_declared
+from ..parameters import Condition, Quantity, Search, declared_text, require_declared
 from ..ski.beam import MOST_ELEMENTS
 
 
@@ -206,6 +206,7 @@ class Solver:
             lowest=0.01,
             highest=20.0,
             origin="choice: see the page on rate",
+            condition=Condition("snow.delayed_share", 0.0, differs=True),
         ),
     ] = DELAYED_SPACING
     output_interval: Annotated[

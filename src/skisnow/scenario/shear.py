@@ -11,7 +11,7 @@ from .._support.errors import ParameterError, RangeWarning
 from .._support.units import DEGREE
 from ..forces.shear import AngleShear, DensityShear, MachiningShear, ShearLaw
 from ..forces.shear.slip import RESIDUAL_RATIO, SLIP_WEAKENING
-from ..parameters import Quantity, declared_text, require_declared
+from ..parameters import Condition, Quantity, declared_text, require_declared
 from ..snow.published.moessner_2013 import STRESS_BY_ANGLE
 
 Law: TypeAlias = Literal["constant", "by-angle", "by-density", "machining"]
@@ -55,6 +55,7 @@ class Shear:
             lowest=0.0,
             highest=0.6366,  # 2/π: beyond, an upright edge would have none
             origin="Eqn 13, one soft snow",
+            condition=Condition("shear.law", "by-angle"),
         ),
     ] = STRESS_BY_ANGLE[1]
     snow_density: Annotated[
@@ -66,6 +67,7 @@ class Shear:
             symbol="ρ",
             lowest=151.7,  # below, Eqn 14 gives none
             highest=917.0,
+            condition=Condition("shear.law", "by-density"),
         ),
     ] = None
     dynamic_shear_strength: Annotated[
@@ -76,6 +78,7 @@ class Shear:
             label="dynamic shear strength",
             lowest=0.0,
             above=True,
+            condition=Condition("shear.law", "machining"),
         ),
     ] = None
     transverse_friction: Annotated[
@@ -87,6 +90,7 @@ class Shear:
             lowest=0.0,
             highest=2.0,
             origin="choice: as the paper compares it; not measured",
+            condition=Condition("shear.law", "machining"),
         ),
     ] = 0.0
     least_shear_plane: Annotated[
@@ -98,6 +102,7 @@ class Shear:
             lowest=1.0,
             highest=45.0,
             origin="choice: strength and thrust grow without bound as it falls to 0",
+            condition=Condition("shear.law", "machining"),
         ),
     ] = 5.0 * DEGREE
     residual_ratio: Annotated[
@@ -120,6 +125,7 @@ class Shear:
             lowest=0.001,
             highest=1000.0,
             origin="choice: not measured",
+            condition=Condition("shear.residual_ratio", 1.0, differs=True),
         ),
     ] = SLIP_WEAKENING
 

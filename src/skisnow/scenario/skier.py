@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Annotated, Literal, TypeAlias
 
 from .._support.units import DEGREE
-from ..parameters import Quantity, declared_text, require_declared
+from ..parameters import Condition, Quantity, declared_text, require_declared
 
 Steers: TypeAlias = Literal["turns", "gates"]
 
@@ -62,6 +62,7 @@ class Skier:
             label="first turn",
             lowest=0.0,
             origin="choice: time to begin to lean",
+            condition=Condition("skier.steers", "turns"),
         ),
     ] = 0.8
     turn_time: Annotated[
@@ -74,6 +75,7 @@ class Skier:
             highest=1e6,
             above=True,
             origin="choice: an easy rhythm",
+            condition=Condition("skier.steers", "turns"),
         ),
     ] = 2.0
     turns: Annotated[
@@ -86,11 +88,17 @@ class Skier:
             highest=1e6,
             above=True,
             origin="choice: as in the published simulation of consecutive turns",
+            condition=Condition("skier.steers", "turns"),
         ),
     ] = 4.5
     first_to_left: Annotated[
         bool,
-        Quantity("skier.first_to_left", "whether the first turn goes to the left", label="first turn to the left"),
+        Quantity(
+            "skier.first_to_left",
+            "whether the first turn goes to the left",
+            label="first turn to the left",
+            condition=Condition("skier.steers", "turns"),
+        ),
     ] = True
     pole_clearance: Annotated[
         float,
@@ -101,6 +109,7 @@ class Skier:
             lowest=0.0,
             highest=10.0,
             origin="choice: half the stance, and what the line is missed by",
+            condition=Condition("skier.steers", "gates"),
         ),
     ] = 0.8
     sight: Annotated[
@@ -112,6 +121,7 @@ class Skier:
             lowest=0.05,
             highest=5.0,
             origin="found by trial",
+            condition=Condition("skier.steers", "gates"),
         ),
     ] = 0.3
     line_rate: Annotated[
@@ -123,6 +133,7 @@ class Skier:
             lowest=0.0,
             highest=100.0,
             origin="found by trial",
+            condition=Condition("skier.steers", "gates"),
         ),
     ] = 2.0
     longest_leg: Annotated[

@@ -16,7 +16,7 @@ import numpy.typing as npt
 from .._support.display import Facts, Shown, ends
 from .._support.errors import ParameterError
 from .._support.spreadsheet_text import csv_rows
-from ..parameters import Quantity, Search, Word, declared_text, require_declared
+from ..parameters import Condition, Quantity, Search, Word, declared_text, require_declared
 from .raster import number_within, profile_limits
 
 if TYPE_CHECKING:
@@ -54,6 +54,7 @@ class Plane:
             highest=STEEPEST_DEG,
             origin="choice: steeper is a cliff",
             search=Search(10.0, -15.0, 15.0, about=True),
+            condition=Condition("slope.kind", "plane"),
         ),
     ]
 
@@ -107,6 +108,7 @@ class Profile(Shown):
             label="file of the profile",
             word_of=str,
             names_file=True,
+            condition=Condition("slope.kind", "profile"),
         ),
     ] = field(default="given as numbers", kw_only=True)
     gap: Annotated[
@@ -116,6 +118,7 @@ class Profile(Shown):
             "what to do where points of the profile are more than 5 m apart",
             label="gaps in the profile",
             origin="choice: nobody measured what lies between",
+            condition=Condition("slope.kind", "profile"),
         ),
     ] = field(default="error", kw_only=True)
     _curve: PchipInterpolator = field(init=False, repr=False)

@@ -15,7 +15,7 @@ from .._support.errors import ParameterError
 from ..geometry import surfaces
 from ..geometry.smoothing import smoothed
 from ..geometry.surfaces import Grid
-from ..parameters import Quantity, Word, require_declared
+from ..parameters import Condition, Quantity, Word, require_declared
 from .raster import PlacedValues
 from .raster_formats import read_esri_ascii, read_geotiff, read_grid_table
 from .slope import STEEPEST_DEG, Plane, Profile
@@ -80,6 +80,7 @@ class Terrain(Shown):
             'with the extra geotiff); only with kind = "grid"',
             word_of=str,
             names_file=True,
+            condition=Condition("slope.kind", "grid"),
         ),
     ] = field(default="given as numbers", kw_only=True)
     smoothing: Annotated[
@@ -90,6 +91,7 @@ class Terrain(Shown):
             lowest=0.0,
             highest=1000.0,
             origin="choice: the surface as it was measured",
+            condition=Condition("slope.kind", "grid"),
         ),
     ] = field(default=0.0, kw_only=True)
     origin_x: Annotated[
@@ -99,6 +101,7 @@ class Terrain(Shown):
             "x of the grid's file (east of a map) where the scenario's x is 0; only with kind = \"grid\"",
             label="x of the grid at the origin",
             origin="choice: the file's own",
+            condition=Condition("slope.kind", "grid"),
         ),
     ] = field(default=0.0, kw_only=True)
     origin_y: Annotated[
@@ -108,6 +111,7 @@ class Terrain(Shown):
             "y of the grid's file (north of a map) where the scenario's y is 0; only with kind = \"grid\"",
             label="y of the grid at the origin",
             origin="choice: the file's own",
+            condition=Condition("slope.kind", "grid"),
         ),
     ] = field(default=0.0, kw_only=True)
     surface: Grid = field(init=False, repr=False)

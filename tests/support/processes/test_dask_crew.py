@@ -176,6 +176,34 @@ def test_a_batch_system_is_asked_with_its_options(monkeypatch: pytest.MonkeyPatc
         batch_cluster(SchedulerFile(system="slurm", options={"wrong": 1}))
 
 
+class Job:
+    def __init__(self, *, queue: str = "", cores: int = 1, memory: str = "") -> None: ...
+
+
+class SLURMJob(Job):
+    def __init__(self, *, account: str = "", **options: Any) -> None: ...
+
+
+class SLURMCluster:
+    job_cls = SLURMJob
+
+    def __init__(self, processes: int = 1, **options: Any) -> None: ...
+
+
+@pytest.mark.parametrize("name", ["acount", "queu", "options", "self"])
+def test_unknown_option_of_a_batch_system(monkeypatch: pytest.MonkeyPatch, tmp_path: Path, name: str) -> None:
+    """Options of the cluster's and the job's constructors are known, also those that one passes on to the other."""
+    monkeypatch.setattr(dask_cluster, "_distributed", lambda: None)
+    monkeypatch.setattr(dask_cluster, "_jobqueue", lambda: SimpleNamespace(SLURMCluster=SLURMCluster))
+    file, table = tmp_path / "slurm.toml", '[slurm]\ncores = 2\nmemory = "2GB"\nqueue = "a"\naccount = "b"\n'
+    file.write_text(table)
+    dask_cluster.require_scheduler(file)
+    file.write_text(f'{table}{name} = "c"\n')
+    with pytest.raises(ParameterError) as caught:
+        dask_cluster.require_scheduler(file)
+    assert caught.value.code == "unknown_option"
+
+
 def test_who_does_not_answer_is_told_with_what_to_start() -> None:
     plain = dask_cluster._unanswered(SchedulerFile(address="tcp://h:1"), OSError("refused"))
     assert plain.startswith("no scheduler answers at tcp://h:1 (refused). Start one with `dask scheduler`")
@@ -190,7 +218,13 @@ def test_what_a_scheduler_needs_is_asked_for_before_the_work_begins(
     """Dask for an address, the certificates that are named, and dask-jobqueue for a batch system alone."""
     asked: list[str] = []
     monkeypatch.setattr(dask_cluster, "_distributed", lambda: asked.append("distributed"))
-    monkeypatch.setattr(dask_cluster, "_jobqueue", lambda: asked.append("jobqueue"))
+    jobqueue = SimpleNamespace(SLURMCluster=SLURMCluster)
+
+    def load_jobqueue() -> SimpleNamespace:
+        asked.append("jobqueue")
+        return jobqueue
+
+    monkeypatch.setattr(dask_cluster, "_jobqueue", load_jobqueue)
     require_scheduler("tcp://h:1")
     assert asked == ["distributed"]
     file = tmp_path / "scheduler.toml"
@@ -226,8 +260,12 @@ def test_jobs_of_a_batch_system_are_ended_behind_the_client(monkeypatch: pytest.
         def close(self) -> None:
             said.append("client closed")
 
+    class Started(SLURMCluster):
+        def __new__(cls, **_: Any) -> Any:
+            return cluster
+
     monkeypatch.setattr(dask_cluster, "_distributed", lambda: SimpleNamespace(Client=ClusterClient))
-    monkeypatch.setattr(dask_cluster, "_jobqueue", lambda: SimpleNamespace(SLURMCluster=lambda **_: cluster))
+    monkeypatch.setattr(dask_cluster, "_jobqueue", lambda: SimpleNamespace(SLURMCluster=Started))
     file = tmp_path / "scheduler.toml"
     file.write_text('[slurm]\njobs = 3\ncores = 2\nmemory = "2GB"\n', encoding="utf-8")
     crew = crew_of_scheduler(file, dict)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 import ssl
 import time
 from collections.abc import Callable, Mapping
@@ -29,6 +30,7 @@ BATCH_SYSTEMS: Final = {
 }
 """By the name of their table: the class of dask-jobqueue."""
 TLS_KEYS: Final = ("ca_file", "cert", "key", "ciphers")
+_ANY: Final = inspect.Parameter.VAR_KEYWORD
 _NOT_LOADED: Final = ("Can't get attribute", "deserializ")
 """What Python and Dask say where a function is not there."""
 WAIT_S: Final = 30.0
@@ -74,13 +76,32 @@ def require_scheduler(scheduler: str | Path) -> None:
     Raises
     ------
     ParameterError
-        Dask is not installed, or the address, the file or a certificate cannot be read.
+        Dask is not installed, the address, the file or a certificate cannot be read, or an option of the batch system
+        is unknown (code ``unknown_option``).
     """
     asked = scheduler_of(scheduler)
     _distributed()
     _require_certificates(asked.tls or {})
     if asked.system is not None:
-        _jobqueue()
+        _require_options(asked.system, asked.options or {})
+
+
+def _require_options(system: str, options: Mapping[str, Any]) -> None:
+    """Reject an option that the batch system's class of dask-jobqueue does not have."""
+    cluster = getattr(_jobqueue(), BATCH_SYSTEMS[system])
+    classes = (*cluster.__mro__, *cluster.job_cls.__mro__)
+    parameters = [
+        inspect.signature(vars(cls)["__init__"]).parameters
+        for cls in classes
+        if cls is not object and "__init__" in vars(cls)
+    ]
+    names = {name for each in parameters for name, parameter in each.items() if parameter.kind is not _ANY} - {"self"}
+    for name in options:
+        if name not in names:
+            raise ParameterError(
+                f"{system}.{name} is not an option of dask-jobqueue. {nearest(name, sorted(names))}",
+                code="unknown_option",
+            )
 
 
 def is_plain(scheduler: str | Path) -> bool:
