@@ -52,7 +52,13 @@ def extract(package: str) -> list[Template]:
     for pattern, (method, keywords) in KEYWORDS.items():
         calls = extract_from_dir(SOURCES / package, [(pattern, method)], OPTIONS, keywords)
         templates.update((message, None) for _, _, message, _, _ in sorted(calls, key=lambda call: call[:2]))
-    return list(templates)
+    return [template for template in templates if _has_words(template)]
+
+
+def _has_words(template: Template) -> bool:
+    """False for templates such as "{place}: {problem}", which need no translation."""
+    literals = (literal for text in _texts(template) for literal, *_ in Formatter().parse(text))
+    return any(letter.isalnum() for literal in literals for letter in literal)
 
 
 def read(language: str, package: str) -> Any:

@@ -30,7 +30,7 @@ NEITHER_WAY = "Give H_V_N_per_mm3 and S_f_N_per_mm2, or results, or published"
         (ASKED | {"published": "race-piste", "site": "A"}, "site goes with results"),
         (SNOW | {"ski": "slalom", "load_N": 800.0, "unloading_ratio": 1.0}, "edge_angle_deg is missing: angle"),
         ({name: ASKED[name] for name in ("ski", "edge_angle_deg", "load_N")} | SNOW, "unloading_ratio is missing"),
-        (ASKED | SNOW | {"edge_angle": 45.0}, "edge_angle is no input of a carved turn. Is edge_angle_deg meant"),
+        (ASKED | SNOW | {"edge_angle": 45.0}, "edge_angle is no input of a carved turn. Did you mean edge_angle_deg"),
         (ASKED | SNOW | {"load_N": 0.0}, "load_N is 0.0"),
     ],
 )

@@ -301,7 +301,7 @@ def test_values_beyond_what_was_measured_are_warned_of_and_used(capsys: Printed)
         ([*ASKED, "--published", "race-pist", *SNOW[4:]], "did you mean 'race-piste'?"),
         ([*ASKED, "--published", "race-piste", "--site", "A", *SNOW[4:]], "site goes with results"),
         ([*ASKED, "--results", "nowhere.json", *SNOW[4:]], "nowhere.json cannot be read"),
-        ([*ASKED[2:], "--ski", "slalon", *SNOW], "Is slalom meant?"),
+        ([*ASKED[2:], "--ski", "slalon", *SNOW], "Did you mean slalom?"),
         ([*ASKED[2:], "--ski", "mine/ski.toml", *SNOW], "ski.toml cannot be read"),
         ([*ASKED[:3], "95", *ASKED[4:], *SNOW], "edge_angle_deg is 95.0; allowed is from 0 to 85 °"),
         ([*ASKED[:3], "-5", *ASKED[4:], *SNOW], "edge_angle_deg is -5.0"),
@@ -335,8 +335,8 @@ def test_wrong_words_exit_2(words: list[str]) -> None:
 @pytest.mark.parametrize(
     ("words", "told"),
     [
-        (["--ski", "slalom", "--edge-angel-deg", "45"], "no option --edge-angel-deg. Is --edge-angle-deg meant?"),
-        ([*ASKED, "--h-v-n-per-mm3=0.2"], "no option --h-v-n-per-mm3. Is --H-V-N-per-mm3 meant?"),
+        (["--ski", "slalom", "--edge-angel-deg", "45"], "no option --edge-angel-deg. Did you mean --edge-angle-deg?"),
+        ([*ASKED, "--h-v-n-per-mm3=0.2"], "no option --h-v-n-per-mm3. Did you mean --H-V-N-per-mm3?"),
         ([*ASKED, "--colour", "red"], "no option --colour. skisnow carve --help names all"),
         (
             [*ASKED, "--load-N", "80kg"],

@@ -129,9 +129,9 @@ def test_no_words_print_the_help(capsys: pytest.CaptureFixture[str]) -> None:
 @pytest.mark.parametrize(
     ("words", "told"),
     [
-        (["simlate", "carved-46m"], "there is no command simlate. Is simulate meant?"),
-        (["store", "vrify"], "there is no command vrify. Is verify meant? skisnow store --help names all"),
-        (["new", "campain", "x"], "Is campaign meant?"),
+        (["simlate", "carved-46m"], "there is no command simlate. Did you mean simulate?"),
+        (["store", "vrify"], "there is no command vrify. Did you mean verify? skisnow store --help names all"),
+        (["new", "campain", "x"], "Did you mean campaign?"),
         (["xxxxxxx"], "there is no command xxxxxxx. skisnow --help names all"),
     ],
 )

@@ -319,16 +319,16 @@ def test_list_names_the_built_in_scenarios_and_prints_one(capsys: Printed) -> No
     assert main(["simulate", "carver-42m", "--list"]) == 0
     assert 'published = "race-piste"' in capsys.readouterr().out
     assert main(["simulate", "carver-42", "--list"]) == 1
-    assert "Is carver-42m meant?" in capsys.readouterr().err
+    assert "Did you mean carver-42m?" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(
     ("words", "told"),
     [
-        (["carved-46"], "Is carved-46m meant?"),
+        (["carved-46"], "Did you mean carved-46m?"),
         (["nowhere.toml"], "nowhere.toml cannot be read"),
         (["carved-46m", "--set", "mass_kg"], "changes nothing; write section.key=value"),
-        (["carved-46m", "--set", "mas_kg=3"], "Is sledge.mass_kg meant?"),
+        (["carved-46m", "--set", "mas_kg=3"], "Did you mean sledge.mass_kg?"),
         (["carved-46m", "--set", "mass_kg=0"], "sledge.mass_kg is 0; allowed is above 0 to 1000 kg"),
         (["carved-46m", "--set", "edge_angle_deg=90"], "sledge.edge_angle_deg is 90; allowed is from -85 to 85 °"),
         (["carved-46m", "--set", "step_ms=1000"], "solver.step_ms is 1000; allowed is from 0.001 to 5 ms"),

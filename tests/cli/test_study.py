@@ -117,7 +117,7 @@ def test_warnings_of_points_are_counted_and_the_first_is_said(tmp_path: Path, ca
 @pytest.mark.parametrize(
     ("text", "words", "told"),
     [
-        (SMALL.replace("load_N", "laod_N"), [], "grid.laod_N is no input. Is load_N meant?"),
+        (SMALL.replace("load_N", "laod_N"), [], "grid.laod_N is no input. Did you mean load_N?"),
         (SMALL, ["--figure", "map.jpg"], "ends in .png, .svg, .pdf"),
         (SMALL.replace("tables/table.csv", "study.toml"), [], "must end in .csv"),
     ],

@@ -155,7 +155,7 @@ def test_a_recording_becomes_depth_and_force(tmp_path: Path, capsys: pytest.Capt
         ("a.caaml", ["--site", "C"], "has no site 'C'; it has A, B"),
         ("a.csv", ["--site", "A"], "--snow-height-cm"),
         ("a.docx", ["--site", "A"], "tells no format"),
-        ("a.caam", ["--site", "A"], "Is .caaml meant?"),
+        ("a.caam", ["--site", "A"], "Did you mean .caaml?"),
         ("a.pnt", ["--site", "A"], "campaign to SnowMicroPen is not known. Known are campaign to CAAML"),
     ],
 )

@@ -88,8 +88,8 @@ def test_label_of_an_axis() -> None:
 def test_a_table_is_checked_and_made() -> None:
     assert made(Range, checked_table(Range, {"from": 20, "n": 11}, "[grid]")) == Range(20.0, 11)
     for table, told in (
-        ({"from": 1, "till": 2}, r"^\[grid\]: there is no 'till'\. There are from, n$"),
-        ({"form": 1}, r"^\[grid\]: there is no 'form'\. Is from meant\? There are from, n$"),
+        ({"from": 1, "till": 2}, r"^\[grid\]: there is no 'till'\. Allowed: from, n\.$"),
+        ({"form": 1}, r"^\[grid\]: there is no 'form'\. Did you mean from\? Allowed: from, n\.$"),
         ({"n": 2}, r"^\[grid\]: from is missing: its begin$"),
         ({"from": 1, "n": 1}, r"^\[grid\]: n is 1; allowed is whole numbers 2 or more$"),
         ({"from": "1"}, r"^\[grid\]: from is '1'; it must be a number$"),

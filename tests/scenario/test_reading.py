@@ -329,14 +329,14 @@ def test_scenario_tells_its_values_back(name: str) -> None:
 @pytest.mark.parametrize(
     ("changes", "told"),
     [
-        ({"snow.H_V": 1}, "Is snow.H_V_N_per_mm3 meant?"),
-        ({"sledge.H_V_N_per_mm3": 1}, "Is snow.H_V_N_per_mm3 meant?"),
-        ({"edge_angel_deg": 1}, "Is sledge.edge_angle_deg meant?"),
+        ({"snow.H_V": 1}, "Did you mean snow.H_V_N_per_mm3?"),
+        ({"sledge.H_V_N_per_mm3": 1}, "Did you mean snow.H_V_N_per_mm3?"),
+        ({"edge_angel_deg": 1}, "Did you mean sledge.edge_angle_deg?"),
         ({"slope.profile": "a.csv"}, 'slope.profile goes with slope.kind = "profile"'),
         ({"slope.kind": "profile"}, "slope.profile is missing"),
         ({"site": "A"}, "snow.site goes with snow.results"),
         ({"published": "race-pist"}, "did you mean 'race-piste'"),
-        ({"ski.name": "slalon"}, "Is slalom meant?"),
+        ({"ski.name": "slalon"}, "Did you mean slalom?"),
         ({"ski.file": "nowhere.toml"}, "nowhere.toml cannot be read"),
         ({"stance_width_m": 0.05}, "is 0.11 m wide"),
         ({"clamp_length_m": 2}, "the ski giant-slalom allows less than 1.71 m"),
@@ -352,8 +352,8 @@ def test_bad_change_is_refused_in_a_sentence(changes: dict[str, object], told: s
 @pytest.mark.parametrize(
     ("replaced", "told"),
     [
-        ({"[snow]": "[sno]"}, "there is no section [sno]. Is snow meant?"),
-        ({"mass_kg": "mas_kg = 80"}, "sledge.mas_kg is no key of a scenario. Is sledge.mass_kg meant?"),
+        ({"[snow]": "[sno]"}, "there is no section [sno]. Did you mean snow?"),
+        ({"mass_kg": "mas_kg = 80"}, "sledge.mas_kg is no key of a scenario. Did you mean sledge.mass_kg?"),
         ({"mass_kg": ""}, "sledge.mass_kg is missing: mass without the skis. It has no default"),
         ({"unloading_ratio": ""}, "snow.unloading_ratio is missing"),
         ({"H_V": ""}, "no snow is given: H_V has no default"),
@@ -361,7 +361,7 @@ def test_bad_change_is_refused_in_a_sentence(changes: dict[str, object], told: s
         ({"angle_deg": ""}, "slope.angle_deg is missing"),
         ({"name": ""}, "neither is there"),
         ({"duration_s": ""}, "the run has no end: give run.duration_s or run.length_m"),
-        ({"mass_kg": "mass_kg ="}, "is no TOML"),
+        ({"mass_kg": "mass_kg ="}, "is not TOML"),
         ({"mass_kg": "mass_kg = 0"}, "sledge.mass_kg is 0; allowed is above 0"),
         ({"step_ms": "step_ms = 1000"}, "solver.step_ms is 1000; allowed is from 0.001 to 5 ms"),
     ],
@@ -381,7 +381,7 @@ def test_value_in_place_of_a_section_is_refused(tmp_path: Path) -> None:
 
 
 def test_scenario_that_is_not_there_is_told_with_the_nearest(tmp_path: Path) -> None:
-    with pytest.raises(ParameterError, match="Is carved-46m meant"):
+    with pytest.raises(ParameterError, match="Did you mean carved-46m"):
         load_scenario("carved-46")
     with pytest.raises(ParameterError, match=r"nowhere\.toml cannot be read"):
         load_scenario(tmp_path / "nowhere.toml")
@@ -403,7 +403,7 @@ def test_a_file_of_the_current_folder_needs_no_ending(tmp_path: Path, monkeypatc
 
 
 def test_the_text_of_a_scenario_that_is_not_built_in_is_refused() -> None:
-    with pytest.raises(ParameterError, match=r"no built-in scenario 'carved-46'\. Is carved-46m meant"):
+    with pytest.raises(ParameterError, match=r"no built-in scenario 'carved-46'\. Did you mean carved-46m"):
         scenario_text("carved-46")
 
 
@@ -466,9 +466,9 @@ def test_a_copy_of_a_built_in_scenario_is_warned_of(tmp_path: Path) -> None:
         ('[identify."mu_9"]\nlower = 0', r"Near are .*friction\.mu_0"),
         ("[identify]\nclok = 'free'", "Or is clock meant"),
         ("[identify]\nclock = 'fre'", 'it must be "start" or "free"'),
-        ("[identify.mu_0]\nlowr = 0", "Is lower meant"),
+        ("[identify.mu_0]\nlowr = 0", "Did you mean lower"),
         ("[identify.mu_0]\nlower = nan", "lower is nan; allowed is any finite number"),
-        ("[identify.site]\nfall_line_azimut_deg = 0", "Is fall_line_azimuth_deg meant"),
+        ("[identify.site]\nfall_line_azimut_deg = 0", "Did you mean fall_line_azimuth_deg"),
         ("[identify]\nsite = 3", r"begun by the line \[identify.site\]"),
         ('[identify.runs."a"]\nmas_kg = 3', r"sledge\.mass_kg"),
         ("[identify.runs]\na = 3", "must be a table of keys"),

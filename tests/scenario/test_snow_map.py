@@ -14,6 +14,7 @@ from skisnow.geometry.surfaces import Grid
 from skisnow.scenario import SnowMap, load_scenario, read_snow_map, scenario_file
 from skisnow.simulation.run_setup import laid_out
 from skisnow.snow import published_snow
+from tests.coded import raises
 
 ALONG = "x_m,H_V_N_per_mm3,S_f_N_per_mm2\n0,0.1,0.3\n10,0.4,0.5\n40,0.4,0.4\n"
 OVER = "x_m,y_m,S_f_N_per_mm2\n0,-5,0.2\n0,5,0.4\n20,-5,0.2\n20,5,0.4\n"
@@ -95,7 +96,7 @@ def test_hardness_where_it_matters(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("text", "said"),
     [
-        ("y_m,H_V_N_per_mm3\n0,1\n", "row 1: there is no column x_m"),
+        ("y_m,H_V_N_per_mm3\n0,1\n", "row 1: column x_m is missing"),
         ("x_m,y_m\n0,0\n", "there is no column H_V_N_per_mm3 and none S_f_N_per_mm2, or no row"),
         ("x_m,H_V_N_per_mm3\n0,1\n1,-2\n", "row 3, column H_V_N_per_mm3: '-2'"),
         ("x_m,H_V_N_per_mm3\n0,1\n1,0\n", "row 3, column H_V_N_per_mm3: '0'"),
@@ -105,8 +106,8 @@ def test_hardness_where_it_matters(tmp_path: Path) -> None:
         ("x_m,H_V_N_per_mm3\n0,1\n5e-324,1\n", "row 3, column x_m: '5e-324'"),
         (OVER.replace("20,5,", "20,1e308,"), "row 5, column y_m: '1e308'"),
         (OVER.replace("20,", "0.0002,").replace("5,0.", ".00005,0."), "looks like degrees"),
-        ("x_m,H_V_N_per_mm3\n0,1\n1,soft\n", "row 3, column H_V_N_per_mm3: 'soft' is no finite number"),
-        ("x_m,H_V_N_per_mm3\n0,1\n0,2\n", "row 3, column x_m: '0' does not rise"),
+        ("x_m,H_V_N_per_mm3\n0,1\n1,soft\n", "row 3, column H_V_N_per_mm3: 'soft': A finite number is needed"),
+        ("x_m,H_V_N_per_mm3\n0,1\n0,2\n", "row 3, column x_m: '0': x does not rise"),
         ("x_m,H_V_N_per_mm3\n0,1\n", "there are 1 rows"),
         (OVER + "20,5,0.3\n", "row 6: x_m = 20, y_m = 5 stand in row 5, too"),
     ],
@@ -148,7 +149,7 @@ def test_a_large_map_is_looked_through_as_finely() -> None:
 
 def test_given_twice_is_refused(tmp_path: Path) -> None:
     path = written(tmp_path, ALONG)
-    with pytest.raises(ParameterError, match=r"snow\.map_file and snow\.H_V_N_per_mm3 both give"):
+    with raises(ParameterError, "contradiction"):
         load_scenario("carved-46m", changes={"snow.map_file": str(path), "snow.H_V_N_per_mm3": 0.3})
     turn = load_scenario("carved-46m", changes={"snow.map_file": str(path)})
     with pytest.raises(ParameterError, match=r"S_f_N_per_mm2 is given over the place by snow\.map_file"):

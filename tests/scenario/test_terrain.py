@@ -12,6 +12,7 @@ from skisnow._support.errors import ParameterError
 from skisnow.geometry.surfaces import Grid
 from skisnow.scenario import Plane, Profile, Terrain, load_scenario, read_terrain
 from skisnow.scenario.terrain import down_and_left, normals_of, surface_of
+from tests.coded import raises
 
 ASC = """ncols 3
 nrows 2
@@ -108,7 +109,7 @@ def test_scenario_reads_its_grid_from_its_folder_and_shows_its_keys(tmp_path: Pa
     changed = {"slope.kind": "grid", "slope.grid": str(tmp_path / "heights.asc"), "start.x_m": 102, "start.y_m": 52}
     assert isinstance(load_scenario("carved-46m", changes=changed).slope, Terrain)
     assert isinstance(rest.slope, Plane)
-    with pytest.raises(ParameterError, match=r'slope\.smooth_m goes with slope.kind = "grid"'):
+    with raises(ParameterError, "contradiction"):
         load_scenario("carved-46m", changes={"slope.smooth_m": 3})
     with pytest.raises(ParameterError, match=r"slope\.grid is missing"):
         load_scenario("carved-46m", changes={"slope.kind": "grid"})
@@ -126,20 +127,23 @@ def _without_slope() -> str:
 @pytest.mark.parametrize(
     ("text", "said"),
     [
-        ("x_m,y_m\n0,0\n", "row 1: there is no column z_m among x_m, y_m"),
-        (CSV.replace("2,3\n", "2,low\n"), "row 4, column z_m: 'low' is no finite number"),
-        (CSV.replace("0,2,3\n", "0,2,inf\n"), "row 4, column z_m: 'inf' is no finite number"),
+        ("x_m,y_m\n0,0\n", "row 1: column z_m is missing among x_m, y_m"),
+        (CSV.replace("2,3\n", "2,low\n"), "row 4, column z_m: 'low': A finite number is needed"),
+        (CSV.replace("0,2,3\n", "0,2,inf\n"), "row 4, column z_m: 'inf': A finite number is needed"),
         (CSV + "1,2,4\n", "row 6: x_m = 1, y_m = 2 stand in row 5, too"),
         (CSV.replace("0,2,3\n", ""), "no row has x_m = 0 and y_m = 2, of 2 places in x and 2 in y"),
         ("x_m,y_m,z_m\n0,0,1\n0,1,1\n", "column x_m: there is only 0 m; a grid needs two or more"),
         ("x_m,y_m,z_m\n", "column x_m: there is only nothing"),
         (
             CSV + "1.5,0,4\n1.5,2,5\n",
-            r"row 3, column x_m: '1' is off the even places from 0 to 1.5 m, which are 0.75 m apart",
+            r"row 3, column x_m: '1': This is off the even places from 0 to 1.5 m, which are 0.75 m apart",
         ),
         (CSV.replace("0,2,3\n", "0,2,30\n"), r"a cliff of .* degrees at x = .* m, y = .* m"),
-        (CSV.replace("0,2,3", '0,2,"3,5"'), "'3,5' is no finite number"),
-        (CSV.replace("0,2,3", "0,2,3,5"), "row 4: 4 cells stand under 3 names of columns, as a decimal comma"),
+        (CSV.replace("0,2,3", '0,2,"3,5"'), "'3,5': A finite number is needed"),
+        (
+            CSV.replace("0,2,3", "0,2,3,5"),
+            "row 4: there are 4 cells under 3 names of columns, perhaps because of decimal comma",
+        ),
         ("".join(["x_m,y_m,z_m\n", *(f"{0.1 * i * i},{0.3 * i * i},0\n" for i in range(30))]), "column x_m"),
     ],
 )

@@ -130,7 +130,7 @@ def test_shapes_that_are_refused(design: Callable[..., Path], changes: dict[str,
 
 
 @pytest.mark.parametrize(
-    ("text", "named"), [("{", "is no JSON text"), ("[]", "no section 'board'"), ("{}", "no section")]
+    ("text", "named"), [("{", "is not JSON text"), ("[]", "no section 'board'"), ("{}", "no section")]
 )
 def test_what_is_no_design_file(tmp_path: Path, text: str, named: str) -> None:
     path = tmp_path / "ski-def.json"

@@ -136,7 +136,7 @@ def test_keys_that_contradict_the_table(with_table: Written, changes: dict[str, 
     [
         (
             ROWS.replace("width_mm", "widht_mm"),
-            r"rows\.csv, line 1: the column 'widht_mm' is not known\. Is width_mm meant",
+            r"rows\.csv, line 1: the column 'widht_mm' is not known\. Did you mean width_mm",
         ),
         (ROWS.replace("GJ_N_m2", "EI_N_m2"), "column EI_N_m2 stands there twice"),
         (

@@ -108,8 +108,8 @@ def test_a_missing_file_is_named(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("contents", "told"),
     [
-        (b"", "is no JSON text"),
-        (b"experiment,site\n", "is no JSON text"),
+        (b"", "is not JSON text"),
+        (b"experiment,site\n", "is not JSON text"),
         (b"\xff\xfe\x00", "is not UTF-8 text"),
         (b"[]", "has no entries 'penetration' and 'shear'"),
         (b'{"outcome": "finished"}', "has no entries 'penetration' and 'shear'"),

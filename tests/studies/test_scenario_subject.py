@@ -156,10 +156,10 @@ def test_scenario_of_a_file_and_files_of_points_count_in_the_fingerprint(tmp_pat
     [
         ('"carved-46m"', '"carved-46"', "carved-46"),
         ('"carved-46m"', "3", "scenario is 3; it is a name or a file"),
-        ("drag_area_m2", "drag_aria_m2", "Is drag.drag_area_m2 meant?"),
+        ("drag_area_m2", "drag_aria_m2", "Did you mean drag.drag_area_m2?"),
         ("drag_area_m2 = 0", "drag_area_m2 = 0\ndrag = { drag_area_m2 = 1 }", "drag.drag_area_m2 is given twice"),
         ("drag_area_m2 = 0", "drag_area_m2 = -1", "fixed.drag.drag_area_m2 is -1"),
-        ("drag_area_m2 = 0", "drag_area_m2 = 0\nski.name = 'slalon'", "Is slalom meant?"),
+        ("drag_area_m2 = 0", "drag_area_m2 = 0\nski.name = 'slalon'", "Did you mean slalom?"),
         ("slope.angle_deg", "duration_s", "run.duration_s stands in [grid] and in [fixed]"),
         ("[5, 6, 7]", "[[5, 6, 7], [6, 7, 8]]", "it must be [a, b, c]"),
     ],

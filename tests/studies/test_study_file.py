@@ -92,9 +92,12 @@ def test_fingerprint_follows_points_and_files_but_not_the_place_of_the_table(tmp
         (OUT + FIXED, r"either \[grid\] or \[latin_hypercube\]; neither"),
         (OUT + FIXED + GRID + "[latin_hypercube]\nn = 3\nseed = 1\nload_N = { from = 1, to = 2 }", "both are there"),
         (OUT + FIXED + "[grid]\n", "holds no input that varies"),
-        (OUT + FIXED + "[gird]\nload_N = [1]\n", "gird is no key of a study. Is grid meant"),
-        (OUT + FIXED + "[grid]\nedge_angel_deg = [30]\n", "grid.edge_angel_deg is no input. Is edge_angle_deg meant"),
-        (OUT + FIXED + "laod_N = 3\n" + GRID, "fixed.laod_N is no input. Is load_N meant"),
+        (OUT + FIXED + "[gird]\nload_N = [1]\n", "gird is no key of a study. Did you mean grid"),
+        (
+            OUT + FIXED + "[grid]\nedge_angel_deg = [30]\n",
+            "grid.edge_angel_deg is no input. Did you mean edge_angle_deg",
+        ),
+        (OUT + FIXED + "laod_N = 3\n" + GRID, "fixed.laod_N is no input. Did you mean load_N"),
         (OUT + FIXED + "[grid]\nload_N = [400]\n", r"load_N stands in \[grid\] and in \[fixed\]"),
         (OUT + FIXED + "[grid]\nedge_angle_deg = []\n", "empty list"),
         (OUT + FIXED + "[grid]\nedge_angle_deg = [30, 30.0]\n", "30.0 twice"),
@@ -105,7 +108,7 @@ def test_fingerprint_follows_points_and_files_but_not_the_place_of_the_table(tmp
         (OUT + FIXED + "[grid]\nedge_angle_deg = { from = 3, n = 60 }\n", "to is missing"),
         (OUT + FIXED + "[grid]\nedge_angle_deg = { from = 60, to = 3, n = 6 }\n", "from must be the smaller one"),
         (OUT + FIXED.replace("race-piste", "race-pist") + GRID, "did you mean 'race-piste'"),
-        (OUT + FIXED.replace("slalom", "slalon") + GRID, "no ski named 'slalon'. Is slalom meant"),
+        (OUT + FIXED.replace("slalom", "slalon") + GRID, "no ski named 'slalon'. Did you mean slalom"),
         (OUT + FIXED.replace("slalom", "mine.toml") + GRID, "mine.toml cannot be read"),
         (OUT + FIXED.replace("_ratio = 10", "_ratio = 0.5") + GRID, "fixed.unloading_ratio is 0.5; allowed is 1 or"),
         (OUT + FIXED.replace("= 800", "= -800") + GRID, "fixed.load_N is -800; allowed is above 0 N"),
@@ -147,7 +150,7 @@ def test_fingerprint_follows_points_and_files_but_not_the_place_of_the_table(tmp
         (OUT + FIXED.replace('published = "race-piste"\n', "") + GRID, "no snow is given"),
         (OUT + FIXED + "H_V_N_per_mm3 = 3\n" + GRID, "in two ways"),
         (OUT + FIXED.replace("unloading_ratio = 10\n", "") + GRID, "unloading_ratio is missing"),
-        ("out = table.csv\n", "is no TOML"),
+        ("out = table.csv\n", "is not TOML"),
     ],
 )
 def test_each_mistake_is_told_with_the_file(text: str, told: str, tmp_path: Path) -> None:

@@ -6,9 +6,11 @@ from pathlib import Path
 import pytest
 
 from skisnow._support.errors import ParameterError
+from skisnow._support.messages import Message
 from skisnow._support.spreadsheet_text import CsvRow, csv_rows
+from tests.coded import Coded, coded, raises
 
-ACTION = "mend it"
+ACTION = Message("Mend it.")
 
 
 def rows_of(folder: Path, text: str, further: tuple[str, ...] = ("z",)) -> list[CsvRow]:
@@ -40,36 +42,37 @@ def test_decimal_commas_where_the_separator_is_none(tmp_path: Path, text: str, x
 def test_the_case_of_headings_does_not_matter(tmp_path: Path) -> None:
     (row,) = rows_of(tmp_path, "X,Y,Z\n1,2,3\n")
     assert row.cells == {"x": "1", "y": "2", "z": "3"}
-    with pytest.raises(ParameterError, match="column x stands there twice"):
+    with raises(ParameterError, "repeated_column", column="x"):
         rows_of(tmp_path, "X,y,x\n1,2,3\n")
 
 
 @pytest.mark.parametrize("cell", ["a", "", "inf", "nan", "1e999"])
 def test_a_cell_without_a_finite_number_is_refused_with_its_place(tmp_path: Path, cell: str) -> None:
     (row,) = rows_of(tmp_path, f"x,y\n{cell},1\n")
-    with pytest.raises(ParameterError) as refused:
+    place = {"path": tmp_path / "table.csv", "row": 2}
+    with raises(ParameterError, "not_a_number", **place, column="x", value=cell, action=ACTION):
         row.number("x")
-    assert str(refused.value) == f"{tmp_path / 'table.csv'}, row 2, column x: {cell!r} is no finite number; {ACTION}"
-    assert str(row.refused("y", "is odd", action="look")).endswith(", row 2, column y: '1' is odd; look")
+    error = row.refused("y", Message("This is odd."), code="odd", action=Message("Look."))
+    assert (error.code, str(error)) == ("odd", f"{place['path']}, row 2, column y: '1': This is odd. Look.")
     assert math.isfinite(row.number("y"))
 
 
 @pytest.mark.parametrize(
     ("text", "told"),
     [
-        ("x,z\n1,2\n", "row 1: there is no column y among x, z; mend it"),
-        ("", "row 1: there is no column x among ; mend it"),
-        ("x,y,x\n1,2,3\n", "row 1: the column x stands there twice; keep one of them"),
-        ("x,y,z,z\n1,2,3,4\n", "row 1: the column z stands there twice; keep one of them"),
+        ("x,z\n1,2\n", coded("missing_column", column="y", action="Mend it.")),
+        ("", coded("missing_column", column="x", action="Mend it.")),
+        ("x,y,x\n1,2,3\n", coded("repeated_column", column="x")),
+        ("x,y,z,z\n1,2,3,4\n", coded("repeated_column", column="z")),
         (
             'x,y\n1,"' + "a" * 140_000 + '"\n',
-            r"table\.csv is no CSV text \(field larger than field limit .*\); mend it",
+            coded("not_csv", action="Mend it."),
         ),
-        ("x,y\n1,2\n1,5,2\n", "row 3: 3 cells stand under 2 names of columns, as a decimal comma makes them; mend it"),
+        ("x,y\n1,2\n1,5,2\n", coded("too_many_cells", row=3, count=3, columns=2, action="Mend it.")),
     ],
 )
-def test_tables_that_are_none(tmp_path: Path, text: str, told: str) -> None:
-    with pytest.raises(ParameterError, match=told):
+def test_tables_that_are_none(tmp_path: Path, text: str, told: str | Coded) -> None:
+    with raises(ParameterError, told):
         rows_of(tmp_path, text)
 
 

@@ -6,7 +6,7 @@ instead of the wording.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Self
 
 from .messages import ENGLISH, Message, count_message, joined, translated
 
@@ -40,6 +40,11 @@ class _Coded(Exception):  # noqa: N818 -- of errors and warnings
     def text(self, language: str = ENGLISH) -> str:
         """The message in a language."""
         return translated(self.message, language)
+
+    def at(self, place: object) -> Self:
+        """The same error with its file, key or other place before the message."""
+        fields = {name: value for name, value in self.fields.items() if name not in ("place", "problem")}
+        return type(self)(Message("{place}: {problem}", place=place, problem=self.message, **fields), code=self.code)
 
 
 class SkisnowError(_Coded):

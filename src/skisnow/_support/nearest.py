@@ -6,22 +6,26 @@ import difflib
 from collections.abc import Iterable
 
 from .errors import ParameterError
+from .messages import Message
 
 
-def nearest(word: str, known: Iterable[str]) -> str:
-    """The known word most like a misspelt one as a question, and all of them."""
+def nearest(word: str, known: Iterable[str]) -> Message:
+    """The known word most like a misspelt one as a question, and all of them; sentences with their full stop."""
     words = list(known)
-    return f"{meant(word, words)}There are {', '.join(words)}"
+    like = most_like(word, words)
+    if like is None:
+        return Message("Allowed: {allowed}.", allowed=words)
+    return Message("Did you mean {similar}? Allowed: {allowed}.", similar=like, allowed=words)
 
 
 def meant(word: str, known: Iterable[str]) -> str:
     """The known word most like a misspelt one as a question with a space behind; empty where none is like it.
 
     >>> meant("angel", ["angle", "mass"])
-    'Is angle meant? '
+    'Did you mean angle? '
     """
     like = most_like(word, known)
-    return f"Is {like} meant? " if like else ""
+    return f"Did you mean {like}? " if like else ""
 
 
 def most_like(word: str, known: Iterable[str]) -> str | None:
@@ -41,4 +45,7 @@ def require_choice(name: str, value: object, choices: Iterable[str]) -> None:
     """
     words = list(choices)
     if value not in words:
-        raise ParameterError(f"{name} is {value!r}. {nearest(str(value), words)}.")
+        raise ParameterError(
+            Message("{name} is {value!r}. {allowed}", name=name, value=value, allowed=nearest(str(value), words)),
+            code="unknown_choice",
+        )

@@ -6,9 +6,10 @@ from importlib import import_module
 from typing import Any
 
 from .errors import ParameterError
+from .messages import Message, joined
 
 
-def needed(module: str, *, extra: str, what: str, instead: str = "") -> Any:
+def needed(module: str, *, extra: str, what: Message, instead: Message | None = None) -> Any:
     """The module of a package that an extra installs.
 
     Parameters
@@ -18,9 +19,9 @@ def needed(module: str, *, extra: str, what: str, instead: str = "") -> Any:
     extra
         The name of the extra in ``pyproject.toml``.
     what
-        What cannot be done without it, as the beginning of a sentence.
+        Work that is impossible without it, a noun phrase.
     instead
-        What else can be done, as the end of that sentence.
+        Another way, a whole sentence.
 
     Raises
     ------
@@ -30,6 +31,11 @@ def needed(module: str, *, extra: str, what: str, instead: str = "") -> Any:
     try:
         return import_module(module)
     except ImportError as error:
-        raise ParameterError(
-            f"{what} needs {module}, which cannot be loaded ({error}): pip install 'skisnow[{extra}]'{instead}"
-        ) from error
+        problem = Message(
+            "{what} needs {module}, which cannot be loaded ({error}). Install it: pip install 'skisnow[{extra}]'.",
+            what=what,
+            module=module,
+            error=error,
+            extra=extra,
+        )
+        raise ParameterError(joined([problem, instead]) if instead else problem, code="package_missing") from error

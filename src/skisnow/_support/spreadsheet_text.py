@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from .errors import ParameterError
+from .messages import Message
 from .user_files import plain_text
 
 if TYPE_CHECKING:
@@ -80,9 +81,9 @@ def decoded(data: bytes) -> DecodedText:
     try:
         text = data.decode(codec)
     except UnicodeDecodeError as error:
-        raise NoTextError(f"byte {error.start + 1}", foreign or "UTF-8") from None
+        raise NoTextError(Message("byte {byte}", byte=error.start + 1), foreign or "UTF-8") from None
     if "\0" in text:
-        raise NoTextError("a NUL character", foreign or "UTF-8")
+        raise NoTextError(Message("a NUL character"), foreign or "UTF-8")
     return DecodedText(text.lstrip("\ufeff"), codec, foreign)
 
 
@@ -222,7 +223,7 @@ class CsvRow:
     path: Path
     row: int
     cells: dict[str, str]
-    action: str
+    action: Message
     mark: str = "."
 
     def number(self, column: str) -> float:
@@ -235,16 +236,28 @@ class CsvRow:
         """
         value = number(self.cells[column], self.mark)
         if not math.isfinite(value):
-            raise self.refused(column, "is no finite number")
+            raise self.refused(column, Message("A finite number is needed."), code="not_a_number")
         return value
 
-    def refused(self, column: str, what: str, *, action: str = "") -> ParameterError:
-        """The error of a cell."""
-        place = f"{self.path}, row {self.row}, column {column}"
-        return ParameterError(f"{place}: {self.cells[column]!r} {what}; {action or self.action}")
+    def refused(self, column: str, problem: Message, *, code: str, action: Message | None = None) -> ParameterError:
+        """The error of a cell: whole sentences for the problem and for what to do."""
+        return ParameterError(
+            Message(
+                "{path}, row {row}, column {column}: {value!r}: {problem} {action}",
+                path=self.path,
+                row=self.row,
+                column=column,
+                value=self.cells[column],
+                problem=problem,
+                action=action or self.action,
+            ),
+            code=code,
+        )
 
 
-def csv_rows(path: str | Path, columns: Sequence[str], *, further: Sequence[str] = (), action: str) -> Iterator[CsvRow]:
+def csv_rows(
+    path: str | Path, columns: Sequence[str], *, further: Sequence[str] = (), action: Message
+) -> Iterator[CsvRow]:
     """The rows of a table that are not blank, one after the other: a wrong row is rejected before the next is read.
 
     Parameters
@@ -273,7 +286,9 @@ def csv_rows(path: str | Path, columns: Sequence[str], *, further: Sequence[str]
             mark, lines = decimal_mark([chain.from_iterable(every[1:])], separator=separator), iter(every)
         yield from _rows(path, lines, columns, further, action, mark)
     except csv.Error as error:
-        raise ParameterError(f"{path} is no CSV text ({error}); {action}") from error
+        raise ParameterError(
+            Message("{path} is not CSV text ({error}). {action}", path=path, error=error, action=action), code="not_csv"
+        ) from error
 
 
 def _rows(
@@ -282,16 +297,37 @@ def _rows(
     head = column_names(next(lines, []), (*columns, *further))
     missing = [name for name in columns if name not in head]
     if missing:
-        raise ParameterError(f"{path}, row 1: there is no column {missing[0]} among {', '.join(head)}; {action}")
+        raise ParameterError(
+            Message(
+                "{path}, row 1: column {column} is missing among {columns}. {action}",
+                path=path,
+                column=missing[0],
+                columns=head,
+                action=action,
+            ),
+            code="missing_column",
+        )
     twice = [name for name in (*columns, *further) if head.count(name) > 1]
     if twice:
-        raise ParameterError(f"{path}, row 1: the column {twice[0]} stands there twice; keep one of them")
+        raise ParameterError(
+            Message("{path}, row 1: the column {column} is there twice. Keep one of them.", path=path, column=twice[0]),
+            code="repeated_column",
+        )
     places = {name: head.index(name) for name in (*columns, *further) if name in head}
     for row, cells in enumerate(lines, start=2):
         if any(cell.strip() for cell in cells[len(head) :]):
             raise ParameterError(
-                f"{path}, row {row}: {len(cells)} cells stand under {len(head)} names of columns, as a decimal comma "
-                f"makes them; {action}"
+                Message(
+                    "{path}, row {row}: there are {count} cells under {columns} names of columns, perhaps "
+                    "because of decimal "
+                    "commas. {action}",
+                    path=path,
+                    row=row,
+                    count=len(cells),
+                    columns=len(head),
+                    action=action,
+                ),
+                code="too_many_cells",
             )
         if any(cell.strip() for cell in cells):
             found = {name: cells[at].strip() if at < len(cells) else "" for name, at in places.items()}

@@ -20,6 +20,7 @@ from pathlib import Path, PurePath
 from typing import TYPE_CHECKING, Final
 
 from .errors import OutputError
+from .messages import Message
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -260,4 +261,9 @@ def require_writable(folder: str | Path) -> None:
 def cannot_write(path: str | Path, error: OSError) -> OutputError:
     """The sentence for a place that cannot be written."""
     reason = error.strerror or error
-    return OutputError(f"{path} cannot be written: {reason}. Choose another place or free some space.")
+    return OutputError(
+        Message(
+            "{path} cannot be written: {reason}. Choose another place or free some space.", path=path, reason=reason
+        ),
+        code="cannot_write",
+    )

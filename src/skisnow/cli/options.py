@@ -84,7 +84,7 @@ def add_changes(parser: argparse.ArgumentParser) -> None:
 def _meant(name: str, options: Iterable[str]) -> str:
     by_small = {option.lower(): option for option in sorted(options)}
     like = difflib.get_close_matches(name.lower(), by_small, n=1, cutoff=0.6)
-    return f" Is {by_small[like[0]]} meant?" if like else ""
+    return f" Did you mean {by_small[like[0]]}?" if like else ""
 
 
 def number(

@@ -11,6 +11,7 @@ import numpy.typing as npt
 from scipy.interpolate import PchipInterpolator
 
 from .._support.errors import ParameterError
+from .._support.messages import Message
 from .._support.optional_packages import needed
 from ..statistics import percentile_interval
 from .parameter import Parameter, bounds_of
@@ -158,7 +159,7 @@ def require_emcee() -> Any:
     ParameterError
         It is not installed.
     """
-    return needed("emcee", extra="posterior", what="a posterior")
+    return needed("emcee", extra="posterior", what=Message("A posterior"))
 
 
 def posterior_places(

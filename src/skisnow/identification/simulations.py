@@ -14,6 +14,7 @@ import numpy.typing as npt
 from scipy.interpolate import CubicHermiteSpline
 
 from .._support.errors import SkisnowError
+from .._support.messages import Message
 from .._support.processes.executors import ExecutorLike
 from .._support.processes.kept_rows import KeptRows, Row
 from .._support.processes.pool import Pool, workers_in_force
@@ -65,7 +66,7 @@ class Simulations:
     _before: frozenset[int] = field(init=False)
 
     def __post_init__(self) -> None:
-        advice = "finished runs are kept. Start again with --resume, with fewer workers"
+        advice = Message("Finished runs are kept. Start again with --resume, with fewer workers.")
         self._pool = Pool(self.simulate, workers_in_force(self.workers), advice=advice, executor=self.executor)
         self._before = frozenset(self.stored.numbers())
 

@@ -14,6 +14,7 @@ from typing import Final
 
 from .._support.display import Facts, Shown, ShownFields, amount
 from .._support.errors import ParameterError
+from .._support.messages import Message
 from .._support.spreadsheet_text import csv_rows
 from .._support.staging import write_file
 from ..scenario import Scenario, Skier
@@ -269,12 +270,14 @@ def read_line(path: Path, course: Course, start: tuple[float, float]) -> RacingL
     ParameterError
         It cannot be read, a column is missing, a cell is no number, or its gates are not the course's.
     """
-    rows = list(csv_rows(path, COLUMNS[:4], action="write the line with `skisnow race` again"))
+    rows = list(csv_rows(path, COLUMNS[:4], action=Message("Write the line with `skisnow race` again.")))
     if not 0 < len(rows) <= len(course.gates):
         raise ParameterError(f"{path}: it has {len(rows)} rows. Allowed: 1 to {len(course.gates)}, a row for each gate")
     for row, gate in zip(rows, course.gates, strict=False):
         if row.cells["gate"] != gate.name:
-            raise row.refused("gate", f"is not {gate.name!r}, the course's gate there")
+            raise row.refused(
+                "gate", Message("The course has the gate {gate!r} there.", gate=gate.name), code="another_gate"
+            )
     turns = tuple(
         LineTurn(aside=row.number("aside_m"), along=row.number("along"), turning=row.number("turning")) for row in rows
     )

@@ -12,6 +12,7 @@ from typing import get_args
 from .._support.content import pieces_of
 from .._support.display import Facts, Shown, amount
 from .._support.errors import ParameterError
+from .._support.messages import Message
 from .._support.nearest import require_choice
 from .._support.processes.executors import ExecutorLike, require_executor
 from .._support.processes.kept_rows import KeptRows
@@ -183,7 +184,7 @@ def quickest_line(
     tell = progress or _silent
     settings = (evaluations, search, population, spread, settled, window, step, ahead, seed)
     kept = KeptRows() if checkpoint is None else KeptRows.opened(checkpoint, _fingerprint(racer, begun, settings))
-    advice = "finished evaluations are kept. Start again, with fewer workers"
+    advice = Message("Finished evaluations are kept. Start again, with fewer workers.")
     try:
         with Pool(ScoredLine(racer), workers_in_force(workers), advice=advice, executor=executor) as pool:
             made = Evaluations(pool, kept, [])

@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .._support.errors import ParameterError
+from .._support.messages import Message
 from .._support.optional_packages import needed
 from .._support.processes.kept_rows import KeptRows, Row
 from .._support.processes.pool import Pool
@@ -128,7 +129,7 @@ def require_cmaes() -> Any:
     ParameterError
         It is not installed.
     """
-    return needed("cmaes", extra="racing", what="a race")
+    return needed("cmaes", extra="racing", what=Message("A race"))
 
 
 def least_of(

@@ -199,7 +199,7 @@ def _full_name(name: str, part_names: Collection[str]) -> str:
     try:
         return full_name(name)
     except ParameterError as error:
-        raise ParameterError(f"{error} Parts: {nearest(name, part_names)}.") from error
+        raise ParameterError(f"{error} Parts: {nearest(name, part_names)}") from error
 
 
 def _require_effect(scenario: Scenario, numbers: Mapping[str, object]) -> None:

@@ -44,7 +44,7 @@ def full_name(name: str) -> str:
     if not section and key in _FULL_NAMES:
         return _FULL_NAMES[key]
     if key in _FULL_NAMES:
-        raise ParameterError(f"{name} is no key of a scenario. Is {_FULL_NAMES[key]} meant?")
+        raise ParameterError(f"{name} is no key of a scenario. Did you mean {_FULL_NAMES[key]}?")
     keys = [full for full in SCENARIO_KEYS if full.startswith(f"{section}.")] if section in SECTIONS else []
     raise ParameterError(f"{name} is no key of a scenario. {_suggestion(name, key, keys)}".strip())
 
@@ -52,7 +52,9 @@ def full_name(name: str) -> str:
 def _suggestion(name: str, key: str, keys: Iterable[str]) -> str:
     candidates = list(keys)
     short = most_like(key, _FULL_NAMES)
-    question = meant(name, candidates) or (f"Is {_FULL_NAMES[short]} meant? " if short else meant(name, SCENARIO_KEYS))
+    question = meant(name, candidates) or (
+        f"Did you mean {_FULL_NAMES[short]}? " if short else meant(name, SCENARIO_KEYS)
+    )
     return f"{question}There are {', '.join(candidates)}" if candidates else question
 
 

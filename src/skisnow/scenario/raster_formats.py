@@ -13,6 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .._support.errors import ParameterError
+from .._support.messages import Message
 from .._support.optional_packages import needed
 from .._support.spreadsheet_text import CsvRow, csv_rows
 from .._support.user_files import is_file, plain_text
@@ -58,8 +59,8 @@ def read_geotiff(path: str | Path, *, column: str) -> PlacedValues:
 
 
 def _rasterio(path: str | Path) -> Any:
-    grid = ", or write the heights as an ESRI ASCII grid, such as by gdal_translate -of AAIGrid"
-    return needed("rasterio", extra="geotiff", what=f"{path}: a GeoTIFF", instead=grid)
+    grid = Message("Or write the heights as an ESRI ASCII grid, such as by gdal_translate -of AAIGrid.")
+    return needed("rasterio", extra="geotiff", what=Message("The GeoTIFF {path}", path=path), instead=grid)
 
 
 def _require_one_band(path: str | Path, source: Any) -> None:
@@ -266,7 +267,7 @@ SPARSE: Final = 10
 """Places for each row beyond which rows lie on no grid at all."""
 
 
-def read_grid_table(path: str | Path, columns: Sequence[str], *, action: str) -> PlacedValues:
+def read_grid_table(path: str | Path, columns: Sequence[str], *, action: Message) -> PlacedValues:
     """Read columns over ``x_m, y_m``: rows in any order, one for each place of a grid.
 
     Raises
@@ -311,8 +312,14 @@ def _even(
     if off[worst] > ROUNDED * step:
         raise rows[worst].refused(
             column,
-            f"is off the even places from {kept[0]:g} to {kept[-1]:g} m, which are {step:.6g} m apart on average",
-            action="interpolate onto evenly spaced places, or add what is missing",
+            Message(
+                "This is off the even places from {first:g} to {last:g} m, which are {step:.6g} m apart on average.",
+                first=kept[0],
+                last=kept[-1],
+                step=step,
+            ),
+            code="uneven_places",
+            action=Message("Interpolate onto evenly spaced places, or add what is missing."),
         )
     return kept[0] + step * np.arange(len(kept)), number
 

@@ -130,7 +130,7 @@ def load_input(name_or_path: str | Path | Scenario) -> ScenarioInput:
     path = Path(name_or_path)
     if not (isinstance(name_or_path, Path) or path.suffix.lower() == ".toml" or path.name != word or is_file(path)):
         raise ParameterError(
-            f"there is no scenario named {word!r}. {nearest(word, scenario_names())}. Any other scenario is read from "
+            f"there is no scenario named {word!r}. {nearest(word, scenario_names())} Any other scenario is read from "
             "a file ending in .toml"
         )
     return _parse(str(path), path, plain_text(path, most_bytes=MOST_TOML_BYTES))

@@ -15,6 +15,7 @@ import numpy.typing as npt
 
 from .._support.display import Facts, Shown, ends
 from .._support.errors import ParameterError
+from .._support.messages import Message
 from .._support.spreadsheet_text import csv_rows
 from ..parameters import Condition, Quantity, Search, Word, declared_text, require_declared
 from .raster import number_within, profile_limits
@@ -209,7 +210,7 @@ def _require_no_cliff(x: FloatArray, coefficients: FloatArray) -> None:
 
 
 COLUMNS: Final = ("x", "y")
-_ACTION: Final = "write horizontal distance and height in m, with a decimal point, under a first line x,y"
+_ACTION: Final = Message("Write horizontal distance and height in m, with a decimal point, under a first line x,y.")
 
 
 def read_profile(path: str | Path, *, gap: Gap = "error") -> Profile:

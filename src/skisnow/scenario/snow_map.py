@@ -13,6 +13,7 @@ import numpy.typing as npt
 
 from .._support.display import Facts, Shown, span
 from .._support.errors import ParameterError
+from .._support.messages import Message
 from .._support.spreadsheet_text import CsvRow, csv_rows
 from .._support.units import N_PER_MM2, N_PER_MM3
 from ..geometry.surfaces import Grid
@@ -143,9 +144,9 @@ PLACES_PER_STEP: Final = 16
 MOST_PLACES: Final = 20_000
 CLOSEST: Final = 1e-6
 """Rows nearer to each other (m) are at the same place (modelling assumption)."""
-_ACTION: Final = (
-    "write x_m and H_V_N_per_mm3, S_f_N_per_mm2 or both, one row for each place along the slope; with y_m one row for "
-    "each place of an even grid"
+_ACTION: Final = Message(
+    "Write x_m and H_V_N_per_mm3, S_f_N_per_mm2 or both, one row for each place along the slope; with y_m one row for "
+    "each place of an even grid."
 )
 
 
@@ -182,7 +183,7 @@ def _positive(row: CsvRow) -> CsvRow:
     """The row, if what it says of the snow is above 0."""
     for name in SIZES:
         if name in row.cells and not number_within(row, name) > 0.0:
-            raise row.refused(name, "is not above 0")
+            raise row.refused(name, Message("A number above 0 is needed."), code="out_of_range")
     return row
 
 
@@ -198,7 +199,12 @@ def _along(path: str | Path, rows: Sequence[CsvRow], names: Sequence[str]) -> di
         raise ParameterError(f"{path}: there are {len(x)} rows; snow that varies needs two or more")
     for row, step in zip(rows[1:], np.diff(x), strict=True):
         if not step > CLOSEST:
-            raise row.refused("x_m", "does not rise", action="sort the rows, and keep one of those at the same place")
+            raise row.refused(
+                "x_m",
+                Message("x does not rise."),
+                code="not_rising",
+                action=Message("Sort the rows, and keep one of those at the same place."),
+            )
     from scipy.interpolate import PchipInterpolator  # slow to load
 
     count = min(MOST_PLACES, PLACES_PER_STEP * math.ceil((x[-1] - x[0]) / np.diff(x).min()) + 1)

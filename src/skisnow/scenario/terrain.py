@@ -12,6 +12,7 @@ import numpy.typing as npt
 
 from .._support.display import Facts, Shown, amount, ends
 from .._support.errors import ParameterError
+from .._support.messages import Message
 from ..geometry import surfaces
 from ..geometry.smoothing import smoothed
 from ..geometry.surfaces import Grid
@@ -156,8 +157,8 @@ def _require_no_cliff(surface: Grid) -> None:
 
 
 HEIGHT: Final = "z_m"
-_ACTION: Final = (
-    "write one row for each place of an even grid, with a decimal point, in m, under a first line x_m,y_m,z_m"
+_ACTION: Final = Message(
+    "Write one row for each place of an even grid, with a decimal point, in m, under a first line x_m,y_m,z_m."
 )
 
 

@@ -149,7 +149,7 @@ def file_values(path: Path) -> FileValues:
     values = read_toml(path)
     for key in values:
         if key not in SKI_KEYS:
-            raise ParameterError(f"{path}: the key {key} is not known. {nearest(key, SKI_KEYS)}.")
+            raise ParameterError(f"{path}: the key {key} is not known. {nearest(key, SKI_KEYS)}")
     given = {key: checked(path, value, SKI_KEYS[key]) for key, value in values.items()}
     for key, value in given.items():
         if isinstance(value, tuple):

@@ -119,7 +119,7 @@ def ski_names() -> tuple[str, ...]:
 
 def _no_such_ski(name: str) -> ParameterError:
     others = "Any other ski is read from a file ending in .toml."
-    return ParameterError(f"there is no ski named {name!r}. {nearest(name, ski_names())}. {others}")
+    return ParameterError(f"there is no ski named {name!r}. {nearest(name, ski_names())} {others}")
 
 
 def _ski_in(path: Path) -> Ski:

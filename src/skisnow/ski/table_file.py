@@ -51,7 +51,7 @@ def read_table(path: Path) -> dict[str, StationTable]:
     header = column_names(cells, COLUMNS)
     for place, name in enumerate(header):
         if name not in COLUMNS:
-            raise ParameterError(f"{path}, line {first}: the column {name!r} is not known. {nearest(name, COLUMNS)}.")
+            raise ParameterError(f"{path}, line {first}: the column {name!r} is not known. {nearest(name, COLUMNS)}")
         if name in header[:place]:
             raise ParameterError(f"{path}, line {first}: the column {name} stands there twice. Remove one.")
     if "station_m" not in header or len(header) < 2:

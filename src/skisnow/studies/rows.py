@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import IO, Any, Final, overload
 
 from .._support.errors import ParameterError
+from .._support.messages import Message
 from .._support.optional_packages import needed
 from .._support.processes.kept_rows import Row
 from .._support.sqlite_file import connect, first_damage, place_reason, require_schema, require_sound_pages
@@ -246,6 +247,6 @@ def require_pyarrow() -> Any:
         It is not installed.
     """
     pyarrow, _ = (
-        needed(module, extra="parquet", what="a table in Parquet") for module in ("pyarrow", "pyarrow.parquet")
+        needed(module, extra="parquet", what=Message("A table in Parquet")) for module in ("pyarrow", "pyarrow.parquet")
     )
     return pyarrow

@@ -118,7 +118,7 @@ def test_a_course_of_the_catalogue_or_of_a_file_is_read_with_the_scenario(tmp_pa
 
 def test_refusals_of_a_course() -> None:
     for changes, said in (
-        ({"course.name": "slalom-21"}, "no course of the catalogue. Is slalom-20-gates meant"),
+        ({"course.name": "slalom-21"}, "no course of the catalogue. Did you mean slalom-20-gates"),
         ({"course.discipline": "slalom"}, "course.discipline is there without a course"),
         ({"course.file": "none.csv"}, "none.csv cannot be read"),
     ):

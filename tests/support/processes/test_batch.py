@@ -14,6 +14,7 @@ from skisnow._support.errors import ParameterError
 from skisnow._support.processes.batch import run_batch
 from skisnow._support.processes.crews import begin_worker
 from skisnow._support.processes.kept_rows import KeptRows
+from tests.coded import raises
 
 POINTS = [[("n", n), ("third", n / 3.0), ("text", 'a "quoted", ü\nline')] for n in range(25)]
 ROWS = [dict(point) for point in POINTS]
@@ -99,5 +100,5 @@ def test_error_of_the_function_ends_the_batch_and_keeps_what_was_done(place: Pat
 
 
 def test_no_worker_is_refused() -> None:
-    with pytest.raises(ParameterError, match="workers is 0"):
+    with raises(ParameterError, "too_few_workers", workers=0):
         run_batch(POINTS, dict, workers=0)

@@ -12,10 +12,12 @@ from typing import Any, cast
 import pytest
 
 from skisnow._support.errors import ParameterError, SkisnowError
+from skisnow._support.messages import Message
 from skisnow._support.processes.chunk import computed
 from skisnow._support.processes.crews import LARGEST_FOR_A_PIPE, ProcessCrew, _in_worker
 from skisnow._support.processes.kept_rows import NumberedText
 from skisnow._support.processes.pool import Pool, workers_in_force
+from tests.coded import raises
 
 
 def own_process(_point: Any) -> dict[str, Any]:
@@ -54,8 +56,8 @@ def test_what_still_runs_is_ended_with_the_pool() -> None:
 
 def test_a_process_that_is_killed_is_told_with_advice() -> None:
     with (
-        pytest.raises(SkisnowError, match="ended unexpectedly, perhaps for lack of memory; take fewer"),
-        Pool(killed, 2, advice="take fewer") as pool,
+        raises(SkisnowError, "pool_failed", advice="Take fewer."),
+        Pool(killed, 2, advice=Message("Take fewer.")) as pool,
     ):
         list(pool.rows([(0, None), (1, None)]))
 
@@ -63,7 +65,7 @@ def test_a_process_that_is_killed_is_told_with_advice() -> None:
 def test_workers_are_at_least_one_and_as_many_as_cores_where_left_out() -> None:
     assert workers_in_force(3) == 3
     assert 1 <= workers_in_force(None) <= (os.cpu_count() or 1)
-    with pytest.raises(ParameterError, match="workers is 0; at least 1 is needed"):
+    with raises(ParameterError, "too_few_workers", workers=0):
         workers_in_force(0)
 
 
@@ -87,7 +89,7 @@ def test_quick_points_are_handed_over_many_at_a_time() -> None:
 
 
 def test_only_a_pool_starts_a_worker() -> None:
-    with pytest.raises(SkisnowError, match="not started by a Pool"):
+    with raises(SkisnowError, "no_pool"):
         _in_worker([(0, None)])
 
 

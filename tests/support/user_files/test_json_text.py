@@ -8,6 +8,7 @@ import pytest
 
 from skisnow._support.user_files import GivenError, json_value
 from skisnow._support.user_files.sound_values import DEEPEST
+from tests.coded import Coded, coded, raises
 
 
 def test_what_is_within_the_limits_is_as_json_reads_it() -> None:
@@ -21,21 +22,21 @@ def test_what_is_within_the_limits_is_as_json_reads_it() -> None:
 @pytest.mark.parametrize(
     ("text", "told"),
     [
-        ("[" * (DEEPEST + 1) + "]" * (DEEPEST + 1), "nested more than 32 deep"),
-        ('{"a":' * 100_000, "nested more than 32 deep"),
-        ("9" * 5000, "a whole number has 5000 digits"),
-        ('{"a": [0, 9223372036854775808]}', r"a\[2\] is beyond the whole numbers"),
-        ('{"a": 1e400}', "a is beyond the numbers"),
-        ("[NaN]", "NaN is no number of JSON"),
-        ("-Infinity", "-Infinity is no number of JSON"),
-        ('{"a": 1, "b": 2, "a": 3}', "the key a stands twice"),
-        (r'{"a": "\u0000"}', "a has a NUL character"),
-        (r'{"a": "\ud800"}', "half a letter"),
-        ('{"a": 1', "is no JSON text: .*line 1"),
-        ("", "is no JSON text"),
+        ("[" * (DEEPEST + 1) + "]" * (DEEPEST + 1), coded("nested_too_deep", deepest=32)),
+        ('{"a":' * 100_000, coded("nested_too_deep", deepest=32)),
+        ("9" * 5000, coded("number_too_large", count=5000)),
+        ('{"a": [0, 9223372036854775808]}', coded("number_too_large", place="a[2]")),
+        ('{"a": 1e400}', coded("number_too_large", place="a")),
+        ("[NaN]", coded("not_json", word="NaN")),
+        ("-Infinity", coded("not_json", word="-Infinity")),
+        ('{"a": 1, "b": 2, "a": 3}', coded("repeated_key", key="a")),
+        (r'{"a": "\u0000"}', coded("invalid_character", place="a")),
+        (r'{"a": "\ud800"}', coded("invalid_character", place="a")),
+        ('{"a": 1', "not_json"),
+        ("", "not_json"),
     ],
 )
-def test_beyond_the_limits(text: str, told: str) -> None:
-    with pytest.raises(GivenError, match=told) as error:
+def test_beyond_the_limits(text: str, told: str | Coded) -> None:
+    with raises(GivenError, told) as error:
         json_value(text, title="some.json")
     assert str(error.value).startswith("some.json")

@@ -8,6 +8,7 @@ import pytest
 
 from skisnow._support.user_files import GivenError, xml_tree
 from skisnow._support.user_files.xml_tree import DEEPEST
+from tests.coded import Coded, coded, raises
 
 TEXT = b"""<?xml version="1.0"?>
 <p:pit xmlns:p="urn:pit" xmlns:q="urn:other" q:id="7" plain="x y">
@@ -42,25 +43,25 @@ def nested(depth: int) -> bytes:
 
 def test_what_is_beyond_a_limit_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     assert xml_tree(nested(DEEPEST)).name == "a"
-    with pytest.raises(GivenError, match="60 within each other"):
+    with raises(GivenError, "too_large", depth=60):
         xml_tree(nested(DEEPEST + 1))
     monkeypatch.setattr(
         sys.modules["skisnow._support.user_files.xml_tree"], "MOST_ELEMENTS", 3
     )  # the function hides it
     assert len(xml_tree(b"<a><b/><b/></a>").children) == 2
-    with pytest.raises(GivenError, match="more than 3 elements"):
+    with raises(GivenError, "too_large", count=3):
         xml_tree(b"<a><b/><b/><b/></a>")
 
 
 @pytest.mark.parametrize(
     ("data", "line", "told"),
     [
-        (b"<a>\n<b></a>", 2, "line 2: no XML, or a damaged one"),
-        (b"", 1, "no XML"),
-        (b"<!DOCTYPE a [<!ENTITY b 'c'>]><a>&b;</a>", None, "document type is declared"),
+        (b"<a>\n<b></a>", 2, coded("not_xml", line=2)),
+        (b"", 1, "not_xml"),
+        (b"<!DOCTYPE a [<!ENTITY b 'c'>]><a>&b;</a>", None, "document_type"),
     ],
 )
-def test_what_is_no_xml_is_refused(data: bytes, line: int | None, told: str) -> None:
-    with pytest.raises(GivenError, match=told) as error:
+def test_what_is_no_xml_is_refused(data: bytes, line: int | None, told: str | Coded) -> None:
+    with raises(GivenError, told) as error:
         xml_tree(data)
     assert error.value.line == line

@@ -57,11 +57,14 @@ def test_table_is_read_as_it_stands(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("text", "said"),
     [
-        ("gate,x_m,y_m\n", "row 1: there is no column side"),
-        (HEAD + ROWS.replace("left,10", "up,10"), "row 2, column side: 'up' must be left or right"),
-        (HEAD + ROWS.replace("2,20,1", "2,2o,1"), "row 3, column x_m: '2o' is no finite number"),
-        (HEAD + ROWS.replace("2,20,1", ",20,1"), "row 3, column gate: '' is no name"),
-        (HEAD + ROWS.replace("20,-4", "20,"), "row 3, column outer_x_m: '20' stands alone"),
+        ("gate,x_m,y_m\n", "row 1: column side is missing"),
+        (HEAD + ROWS.replace("left,10", "up,10"), "row 2, column side: 'up': Must be left or right"),
+        (HEAD + ROWS.replace("2,20,1", "2,2o,1"), "row 3, column x_m: '2o': A finite number is needed"),
+        (HEAD + ROWS.replace("2,20,1", ",20,1"), "row 3, column gate: '': This is not a name"),
+        (
+            HEAD + ROWS.replace("20,-4", "20,"),
+            "row 3, column outer_x_m: '20': The other coordinate of the outer pole is missing",
+        ),
         (HEAD + ROWS.replace("2,20,1", "1,20,1"), "two gates are called '1'"),
         (HEAD + "1,10,-1,left,10,4\n", "a course needs 2 gates or more, it has 1"),
         (HEAD + ROWS.replace("2,20,1,right,20,-4", "2,10,-1,right,,"), "the gates 1 and 2 stand at one place"),

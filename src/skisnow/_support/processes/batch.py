@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import Any, TypeAlias
 
+from ..messages import Message
 from .chunk import PointFunction
 from .executors import ExecutorLike
 from .kept_rows import KeptRows, Row
@@ -107,7 +108,7 @@ def compute_missing(
     missing = len(numbers) - done
     tell = progress or _silent
     tell(done, len(numbers))
-    advice = "finished points are kept. Start again, with fewer workers"
+    advice = Message("Finished points are kept. Start again, with fewer workers.")
     with Pool(function, max(1, min(wanted, missing)), advice=advice, executor=executor) as pool:
         for rows in pool.rows(((number, points[number]) for number in numbers if not finished[number]), missing):
             done += kept.add(rows)

@@ -15,6 +15,7 @@ from typing import Any, NamedTuple, Protocol, TypeAlias, runtime_checkable
 
 from ...compiled import core
 from ..errors import SkisnowError
+from ..messages import Message
 from .kept_rows import NumberedText, Row, row_text
 
 PointFunction: TypeAlias = Callable[[Any], Row | list[Any]]
@@ -92,7 +93,13 @@ def computed_elsewhere(packed: bytes, asked: Identity, folder: str, points: Sequ
     """
     if asked != own_identity():
         raise SkisnowError(
-            f"the worker on {platform.node()} has {own_identity()}, this computer has {asked}. Install the same on both"
+            Message(
+                "The worker on {node} has {installed}, this computer has {expected}. Install the same on both.",
+                node=platform.node(),
+                installed=own_identity(),
+                expected=asked,
+            ),
+            code="different_versions",
         )
     return computed(_unpacked(packed, folder), points)
 

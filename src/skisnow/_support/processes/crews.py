@@ -23,15 +23,22 @@ from pathlib import Path
 from typing import Final
 
 from ..errors import SkisnowError
+from ..messages import Message
 from .chunk import Done, Numbered, PointFunction, computed, computed_elsewhere, own_identity
 
-LOST: Final = "the scheduler was lost, or gave the work up"
+LOST: Final = "scheduler_lost"
+"""Code of the error."""
 LARGEST_FOR_A_PIPE: Final = 64
 """Points; their rows stay well below the 64 kB that a pipe takes in one piece."""
 LARGEST: Final = 10_000
 """Points of one chunk: some megabytes of rows (modelling assumption)."""
 CHUNK_S: Final = 0.25
 """Work (s) that is handed over at once, and that a kill loses (modelling assumption: handing over costs 1 ms here)."""
+
+
+def lost() -> Message:
+    """Explanation of a lost scheduler."""
+    return Message("The scheduler was lost, or gave the work up.")
 
 
 class Crew(ABC):
@@ -50,11 +57,11 @@ class Crew(ABC):
     def submit(self, points: list[Numbered]) -> Future[Done]:
         """Hand out a chunk."""
 
-    def told(self, error: Exception) -> str | None:
-        """What an error that is none of the function means, in words; None: it is passed on."""
+    def told(self, error: Exception) -> Message | None:
+        """Explanation of an error that the function did not raise; None: it is passed on."""
         if isinstance(error, BrokenExecutor):
-            return "a worker process ended unexpectedly, perhaps for lack of memory"
-        return LOST if isinstance(error, CancelledError) else None
+            return Message("A worker process ended unexpectedly, perhaps for lack of memory.")
+        return lost() if isinstance(error, CancelledError) else None
 
     def require_alive(self) -> None:  # noqa: B027 - most have nothing to look after
         """Called now and then while chunks are waited for; raises where none will come."""
@@ -181,7 +188,7 @@ def _begin(function: PointFunction, alive: Connection) -> None:
 
 def _in_worker(points: list[Numbered]) -> Done:
     if _Worker.function is None:
-        raise SkisnowError("a worker was not started by a Pool")
+        raise SkisnowError(Message("A worker was not started by a Pool."), code="no_pool")
     return computed(_Worker.function, points)
 
 

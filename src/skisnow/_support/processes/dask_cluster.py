@@ -13,11 +13,12 @@ from typing import Any, Final
 
 from ..certificates import load_certificate
 from ..errors import ParameterError, SkisnowError
+from ..messages import Message, template
 from ..nearest import nearest
 from ..optional_packages import needed
 from ..user_files import read_toml
 from .chunk import PointFunction
-from .crews import LOST, Crew, GivenCrew
+from .crews import LOST, Crew, GivenCrew, lost
 
 BATCH_SYSTEMS: Final = {
     "slurm": "SLURMCluster",
@@ -125,46 +126,78 @@ def scheduler_of(scheduler: str | Path) -> SchedulerFile:
         return SchedulerFile(address=scheduler)
     if Path(scheduler).suffix.lower() != ".toml":
         raise ParameterError(
-            f"the scheduler is {str(scheduler)!r}; it must be an address such as tcp://host:8786, a file that ends in "
-            ".toml, threads or processes"
+            Message(
+                "The scheduler is {scheduler!r}. It must be an address such as tcp://host:8786, a file "
+                "that ends in .toml, threads or processes.",
+                scheduler=scheduler,
+            ),
+            code="unknown_executor",
         )
     try:
         return _of_table(read_toml(scheduler), Path(scheduler).parent)
     except ParameterError as error:
-        raise ParameterError(f"{scheduler}: {error}" if str(scheduler) not in str(error) else str(error)) from error
+        raise (error if str(scheduler) in str(error) else error.at(scheduler)) from error
 
 
 def _of_table(table: Mapping[str, Any], folder: Path) -> SchedulerFile:
     known = ("address", "wait_s", "tls", *BATCH_SYSTEMS)
     for key in table:
         if key not in known:
-            raise ParameterError(f"{key} is no key of a scheduler. {nearest(key, known)}")
+            raise ParameterError(
+                Message("{key} is not a key of a scheduler. {allowed}", key=key, allowed=nearest(key, known)),
+                code="unknown_key",
+            )
     places = [key for key in table if key == "address" or key in BATCH_SYSTEMS]
     if len(places) != 1:
-        found = f"{' and '.join(places)} are there" if places else "none is there"
-        raise ParameterError(f"a scheduler has either an address or one of [{'], ['.join(BATCH_SYSTEMS)}]; {found}")
+        tables = [f"[{name}]" for name in BATCH_SYSTEMS]
+        problem = (
+            Message("A scheduler has an address or one of {tables}, not {given} together.", tables=tables, given=places)
+            if places
+            else Message("A scheduler needs an address or one of {tables}.", tables=tables)
+        )
+        raise ParameterError(problem, code="scheduler_place")
     (place,) = places
     wait = table.get("wait_s", WAIT_S)
     if isinstance(wait, bool) or not isinstance(wait, int | float) or not wait > 0:
-        raise ParameterError(f"wait_s is {wait!r}; it must be a number above 0")
+        raise ParameterError(
+            Message("wait_s is {wait!r}. It must be a number above 0.", wait=wait), code="out_of_range"
+        )
     tls = _tls(table.get("tls"), folder)
     if place == "address":
         if not isinstance(table[place], str) or "://" not in table[place]:
-            raise ParameterError(f'address is {table[place]!r}; it must be a text such as "tcp://host:8786"')
+            raise ParameterError(
+                Message('address is {value!r}. It must be a text such as "tcp://host:8786".', value=table[place]),
+                code="wrong_kind",
+            )
         return SchedulerFile(table[place], wait, tls)
     return _of_batch_system(place, table[place], wait, tls)
 
 
 def _of_batch_system(system: str, given: object, wait: float, tls: Mapping[str, str] | None) -> SchedulerFile:
     if not isinstance(given, dict):
-        raise ParameterError(f"{system} is {given!r}; it must be a table, begun by the line [{system}]")
+        raise ParameterError(
+            Message(
+                "{key} is {value!r}. It must be a table that begins with the line [{key}].", key=system, value=given
+            ),
+            code="wrong_kind",
+        )
     options = dict(given)
     jobs = options.pop("jobs", 1)
     if isinstance(jobs, bool) or not isinstance(jobs, int) or jobs < 1:
-        raise ParameterError(f"{system}.jobs is {jobs!r}; it must be a whole number from 1 on")
+        raise ParameterError(
+            Message("{system}.jobs is {jobs!r}. It must be a whole number of 1 or more.", system=system, jobs=jobs),
+            code="out_of_range",
+        )
     for name in ("cores", "memory"):
         if name not in options:
-            raise ParameterError(f'{system}.{name} is missing: what one job has, such as cores = 16, memory = "32GB"')
+            raise ParameterError(
+                Message(
+                    '{system}.{name} is missing. It is what one job has, such as cores = 16, memory = "32GB".',
+                    system=system,
+                    name=name,
+                ),
+                code="missing_key",
+            )
     # one process for each core: see docs/decisions/studies.md
     return SchedulerFile(None, wait, tls, system, {"processes": options["cores"], **options}, jobs)
 
@@ -174,17 +207,28 @@ def _tls(given: object, folder: Path) -> Mapping[str, str] | None:
     if given is None:
         return None
     if not isinstance(given, dict):
-        raise ParameterError(f"tls is {given!r}; it must be a table, begun by the line [tls]")
+        raise ParameterError(
+            Message(
+                "{key} is {value!r}. It must be a table that begins with the line [{key}].", key="tls", value=given
+            ),
+            code="wrong_kind",
+        )
     for key, value in given.items():
         if key not in TLS_KEYS:
-            raise ParameterError(f"tls.{key} is no key of a scheduler. {nearest(key, TLS_KEYS)}")
+            raise ParameterError(
+                Message("tls.{key} is not a key of a scheduler. {allowed}", key=key, allowed=nearest(key, TLS_KEYS)),
+                code="unknown_key",
+            )
         if not isinstance(value, str):
-            raise ParameterError(f"tls.{key} is {value!r}; it must be {_meaning(key)}")
+            raise ParameterError(
+                Message(_MEANINGS.get(key, _PATH), key=key, value=value),
+                code="wrong_kind",
+            )
     return {key: value if key == "ciphers" else str(folder / value) for key, value in given.items()}
 
 
-def _meaning(key: str) -> str:
-    return "a text, as OpenSSL writes ciphers" if key == "ciphers" else "the path of a PEM file"
+_PATH: Final = template("tls.{key} is {value!r}. It must be the path of a PEM file.")
+_MEANINGS: Final = {"ciphers": template("tls.{key} is {value!r}. It must be a text, as OpenSSL writes ciphers.")}
 
 
 def crew_of_scheduler(scheduler: str | Path, function: PointFunction) -> Crew:
@@ -208,7 +252,7 @@ def crew_of_scheduler(scheduler: str | Path, function: PointFunction) -> Crew:
     try:
         client = distributed.Client(asked.address, timeout=asked.wait_s, security=_security(asked.tls), name="skisnow")
     except (OSError, ValueError, TypeError) as error:
-        raise SkisnowError(_unanswered(asked, error)) from error
+        raise SkisnowError(_unanswered(asked, error), code="no_scheduler") from error
     return crew_of_client(client, function, close=lambda: _closed(client))
 
 
@@ -222,20 +266,29 @@ def _require_certificates(tls: Mapping[str, str]) -> None:
             load_certificate(context, what, tls.get("key"))
     except (OSError, ssl.SSLError, ValueError) as error:
         raise ParameterError(
-            f"{what}: no certificate can be read ({error}). [tls] needs PEM files: ca_file, the authority; cert and "
-            "key, a certificate that it signed and its private key"
+            Message(
+                "{file}: no certificate can be read ({error}). [tls] needs PEM files: ca_file, the "
+                "authority; cert and key, a certificate that it signed and its private key.",
+                file=what,
+                error=error,
+            ),
+            code="no_certificate",
         ) from error
 
 
-def _unanswered(asked: SchedulerFile, error: Exception) -> str:
+def _unanswered(asked: SchedulerFile, error: Exception) -> Message:
     if _is_encrypted(asked):
-        return (
-            f"no connection to the scheduler at {asked.address} ({error}). It runs with certificates: is it there, is "
-            "its certificate signed by ca_file, and does it accept cert and key of [tls]"
+        return Message(
+            "No connection to the scheduler at {address} ({error}). It uses certificates. Check that it runs, that "
+            "ca_file signed its certificate, and that it accepts cert and key of [tls].",
+            address=asked.address,
+            error=error,
         )
-    return (
-        f"no scheduler answers at {asked.address} ({error}). Start one with `dask scheduler`, and workers with "
-        "`dask worker`; both print their address"
+    return Message(
+        "No scheduler answers at {address} ({error}). Start one with `dask scheduler`, and workers with "
+        "`dask worker`; both print their address.",
+        address=asked.address,
+        error=error,
     )
 
 
@@ -253,7 +306,10 @@ def batch_cluster(asked: SchedulerFile) -> Any:
     try:
         return getattr(jobqueue, BATCH_SYSTEMS[asked.system or ""])(**options)
     except (TypeError, ValueError) as error:
-        raise ParameterError(f"[{asked.system}]: dask-jobqueue refuses it: {error}") from error
+        raise ParameterError(
+            Message("[{system}]: dask-jobqueue rejects it: {error}", system=asked.system, error=error),
+            code="rejected_by_dask",
+        ) from error
 
 
 def crew_of_client(client: Any, function: PointFunction, close: Callable[[], None] | None = None) -> Crew:
@@ -283,14 +339,16 @@ class _DaskCrew(GivenCrew):
         if self._client.status == "running":
             self._last_seen = time.monotonic()
         elif time.monotonic() - self._last_seen > AWAY_S or self._client.status == "closed":
-            raise SkisnowError(LOST)
+            raise SkisnowError(lost(), code=LOST)
 
-    def told(self, error: Exception) -> str | None:
-        """What an error of Dask means."""
+    def told(self, error: Exception) -> Message | None:
+        """Explanation of an error of Dask."""
         if isinstance(error, ImportError) or any(word in str(error) for word in _NOT_LOADED):
-            return f"a worker cannot load what it is to compute ({error}). Install the same skisnow there"
+            return Message(
+                "A worker cannot load what it is to compute ({error}). Install the same skisnow there.", error=error
+            )
         if type(error).__module__.startswith("distributed"):
-            return f"Dask gave up: {type(error).__name__}: {error}"
+            return Message("Dask gave up: {kind}: {error}.", kind=type(error).__name__, error=error)
         return super().told(error)
 
 
@@ -312,8 +370,8 @@ def _security(tls: Mapping[str, str] | None) -> Any:
 
 
 def _distributed() -> Any:
-    return needed("distributed", extra="dask", what="a scheduler")
+    return needed("distributed", extra="dask", what=Message("A scheduler"))
 
 
 def _jobqueue() -> Any:
-    return needed("dask_jobqueue", extra="dask", what="a batch system")
+    return needed("dask_jobqueue", extra="dask", what=Message("A batch system"))

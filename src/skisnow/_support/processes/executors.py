@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any, Final, TypeAlias
 
 from ..errors import ParameterError
+from ..messages import Message
 from .chunk import PointFunction
 from .crews import Crew, GivenCrew, ProcessCrew, ThreadCrew
 
@@ -49,8 +50,13 @@ def crew_of(executor: ExecutorLike, function: PointFunction, workers: int) -> Cr
     if hasattr(executor, "get_executor"):
         return crew_of_client(executor, function)
     raise ParameterError(
-        f"executor is {executor!r}; it must be one of {', '.join(LOCAL)}, a concurrent.futures.Executor, a Dask "
-        "client, the address of a Dask scheduler or a TOML file of one"
+        Message(
+            "executor is {executor!r}; it must be one of {names}, a concurrent.futures.Executor, a "
+            "Dask client, the address of a Dask scheduler or a TOML file of one",
+            executor=executor,
+            names=list(LOCAL),
+        ),
+        code="unknown_executor",
     )
 
 

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any, Final, Self, TypeAlias
 
 from ..errors import OutputError, ParameterError
+from ..messages import Message
 from ..sqlite_file import connect, first_damage, place_reason, primary_code, require_schema, require_sound_pages
 from ..staging import cannot_write
 from ..user_files import own_json
@@ -106,7 +107,9 @@ class KeptRows:
             It cannot be opened, or another run is writing it.
         """
         if not path.is_file():
-            raise ParameterError(f"{path} cannot be read: there is no such file. Check the path")
+            raise ParameterError(
+                Message("{path} cannot be read: there is no such file. Check the path.", path=path), code="cannot_read"
+            )
         with _errors(path):
             found = cls(path)
         try:
@@ -280,7 +283,10 @@ def _errors(path: Path | None, database: sqlite3.Connection | None = None) -> It
         yield
     except (sqlite3.DatabaseError, UnicodeDecodeError) as error:  # the latter where a name in the schema is no text
         if primary_code(error) in (sqlite3.SQLITE_BUSY, sqlite3.SQLITE_LOCKED):
-            raise OutputError(f"{path} is being written by another run of this study. Wait for it or stop it") from None
+            raise OutputError(
+                Message("{path} is being written by another run of this study. Wait for it or stop it.", path=path),
+                code="in_use",
+            ) from None
         if place_reason(error) is not None:
             raise cannot_write(path or Path("memory"), OSError(str(error))) from error
         found = None if database is None else first_damage(database)
@@ -289,13 +295,23 @@ def _errors(path: Path | None, database: sqlite3.Connection | None = None) -> It
 
 def _another(path: Path) -> ParameterError:
     return ParameterError(
-        f"{path} holds the finished points of another study, or of this one before its inputs, one of its files or "
-        "skisnow changed. Undo the change to go on with them, or remove that file to begin anew"
+        Message(
+            "{path} holds the finished points of another study, or of this one before its inputs, "
+            "one of its files or skisnow changed. Undo the change to go on with them, or remove that "
+            "file to begin again.",
+            path=path,
+        ),
+        code="another_study",
     )
 
 
 def _damaged(path: Path | None, why: str) -> ParameterError:
     return ParameterError(
-        f"{path} is damaged, or it is not a file of finished points: {why}. Remove it to compute its points again, or "
-        "move it away"
+        Message(
+            "{path} is damaged, or it is not a file of finished points: {reason}. Remove it to compute "
+            "its points again, or move it away.",
+            path=path,
+            reason=why,
+        ),
+        code="damaged",
     )

@@ -10,8 +10,9 @@ from types import TracebackType
 from typing import Final, Self
 
 from ..errors import ParameterError, SkisnowError
+from ..messages import Message
 from .chunk import Done, Numbered, PointFunction
-from .crews import LOST, Crew, ProcessCrew
+from .crews import LOST, Crew, ProcessCrew, lost
 from .executors import ExecutorLike, crew_of
 from .kept_rows import NumberedText, row_text
 
@@ -60,7 +61,7 @@ class Pool:
             return ([(number, row_text(self._function(point)))] for number, point in points)
         if count is None:
             if not isinstance(points, Collection):
-                raise ParameterError("count is missing: how many points there are")
+                raise ParameterError(Message("count, the number of points, is missing."), code="count_missing")
             count = len(points)
         if count == 0:
             return iter(())
@@ -106,10 +107,12 @@ class Pool:
                     size = max(1, min(crew.largest, int(crew.chunk_s / max(done.seconds_per_point, 1e-9))))
                     yield done.rows
         except Exception as error:
-            told = str(error) if isinstance(error, SkisnowError) and str(error) == LOST else crew.told(error)
+            told = lost() if isinstance(error, SkisnowError) and error.code == LOST else crew.told(error)
             if told is None:
                 raise
-            raise SkisnowError(f"{told}; {self._advice}") from error
+            raise SkisnowError(
+                Message("{problem} {advice}", problem=told, advice=self._advice), code="pool_failed"
+            ) from error
 
 
 def workers_in_force(workers: int | None) -> int:
@@ -123,7 +126,9 @@ def workers_in_force(workers: int | None) -> int:
     if workers is None:
         return available_cores()
     if workers < 1:
-        raise ParameterError(f"workers is {workers}; at least 1 is needed")
+        raise ParameterError(
+            Message("workers is {workers}; at least 1 is needed.", workers=workers), code="too_few_workers"
+        )
     return workers
 
 

@@ -10,6 +10,7 @@ from dataclasses import MISSING, fields
 from types import NoneType, UnionType
 from typing import TYPE_CHECKING, Any, Final, Literal, TypeVar, get_args, get_origin, get_type_hints
 
+from ..messages import Message
 from .plain_file import GivenError, plain_text
 from .sound_values import LARGEST_WHOLE, require_sound, shown, too_deep
 
@@ -50,7 +51,12 @@ def json_value(text: str | bytes, *, title: str = "") -> Any:
     except RecursionError:
         raise too_deep().of(title) from None
     except ValueError as error:
-        raise GivenError(f"{title or 'this'} is no JSON text: {error}. Correct that place.") from error
+        sentence = (
+            Message("{file} is not JSON text: {reason}. Correct that place.", file=title, reason=str(error))
+            if title
+            else Message("This is not JSON text: {reason}. Correct that place.", reason=str(error))
+        )
+        raise GivenError(sentence, code="not_json") from error
     return value
 
 
@@ -69,18 +75,30 @@ def _object(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
     found = dict(pairs)
     if len(found) != len(pairs):
         twice = Counter(key for key, _ in pairs).most_common(1)[0][0]
-        raise GivenError(f"the key {shown(twice)} stands twice in one object. Remove one.")
+        raise GivenError(
+            Message("the key {key} is twice in one object. Remove one.", key=shown(twice)),
+            code="repeated_key",
+        )
     return found
 
 
 def _whole(digits: str) -> int:
     if len(digits) > _MOST_DIGITS:
-        raise GivenError(f"a whole number has {len(digits)} digits; allowed is ±{LARGEST_WHOLE}. Correct it.")
+        raise GivenError(
+            Message(
+                "a whole number has {count} digits; allowed is ±{largest}. Correct it.",
+                count=len(digits),
+                largest=LARGEST_WHOLE,
+            ),
+            code="number_too_large",
+        )
     return int(digits)
 
 
 def _refuse_constant(word: str) -> None:
-    raise GivenError(f"{word} is no number of JSON. Write null or a finite number.")
+    raise GivenError(
+        Message("{word} is not a number of JSON. Write null or a finite number.", word=word), code="not_json"
+    )
 
 
 T = TypeVar("T", bound="DataclassInstance")
@@ -105,18 +123,32 @@ def read_record(path: str | Path, kind: type[T], *, only_known: bool = True) -> 
     """
     values = read_json(path)
     if not isinstance(values, dict):
-        raise GivenError(f"{path} is damaged: it is not a JSON object. Remove it.")
+        raise GivenError(Message("{path} is damaged: it is not a JSON object. Remove it.", path=path), code="damaged")
     hints = get_type_hints(kind)
     for name in values if only_known else ():
         if name not in hints:
-            raise GivenError(f"{path} is damaged: {name[:60]!r} is not one of its keys. Remove it.")
+            raise GivenError(
+                Message("{path} is damaged: {key!r} is not one of its keys. Remove it.", path=path, key=name[:60]),
+                code="damaged",
+            )
     known = {name: value for name, value in values.items() if name in hints}
     for field in fields(kind):
         if field.name not in known and field.default is MISSING and field.default_factory is MISSING:
-            raise GivenError(f"{path} is damaged: the key {field.name} is missing. Remove it.")
+            raise GivenError(
+                Message("{path} is damaged: the key {key} is missing. Remove it.", path=path, key=field.name),
+                code="damaged",
+            )
     for name, value in known.items():
         if not _fits(value, hints[name]):
-            raise GivenError(f"{path} is damaged: {name} is {str(value)[:60]!r}, of another type. Remove it.")
+            raise GivenError(
+                Message(
+                    "{path} is damaged: {key} is {value!r}, of another type. Remove it.",
+                    path=path,
+                    key=name,
+                    value=str(value)[:60],
+                ),
+                code="damaged",
+            )
     return kind(**known)
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Final
 
 from ..errors import ParameterError
+from ..messages import Message
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -38,7 +39,12 @@ def degrees_stated(path: str | Path, head: Mapping[str, str]) -> bool | None:
     if word is None:
         return None
     if word.lower() not in _WORDS:
-        raise ParameterError(f"{path}: the head says inDegrees={word}. Allowed: yes, no. Correct the line.")
+        raise ParameterError(
+            Message(
+                "{path}: the head says inDegrees={word}. Allowed: yes, no. Correct the line.", path=path, word=word
+            ),
+            code="head_says_indegrees",
+        )
     return _WORDS[word.lower()]
 
 
@@ -53,8 +59,12 @@ def is_in_degrees(path: str | Path, head: Mapping[str, str]) -> bool:
     stated = degrees_stated(path, head)
     if stated is None and "version" not in _said(head) and str(path).lower().endswith(".mot"):
         raise ParameterError(
-            f"{path}: the head says neither whether angles are in degrees nor a version. Add the line inDegrees=yes "
-            "or inDegrees=no before endheader."
+            Message(
+                "{path}: the head says neither whether angles are in degrees nor a version. Add the line "
+                "inDegrees=yes or inDegrees=no before endheader.",
+                path=path,
+            ),
+            code="head_says_neither_whether",
         )
     return stated is True
 
@@ -66,8 +76,14 @@ def require_whole(path: str | Path, head: Mapping[str, str], *, rows: int, colum
         word = said.get(key.lower(), "")
         if word.isdecimal() and word.lstrip("0") != str(there).lstrip("0"):  # int refuses 4300 digits
             raise ParameterError(
-                f"{path}: the head says {key}={word[:_LONGEST_SHOWN]}, there are {there}; it is cut or joined, or its "
-                "head wrong"
+                Message(
+                    "{path}: the head says {key}={word}, there are {there}; it is cut or joined, or its head wrong",
+                    path=path,
+                    key=key,
+                    word=word[:_LONGEST_SHOWN],
+                    there=there,
+                ),
+                code="head_says",
             )
 
 

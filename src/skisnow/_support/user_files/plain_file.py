@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Final
 
 from ..errors import ParameterError
+from ..messages import Message
 
 
 def plain_bytes(path: str | Path, *, most_bytes: int) -> bytes:
@@ -19,20 +20,40 @@ def plain_bytes(path: str | Path, *, most_bytes: int) -> bytes:
     """
     try:
         if not stat.S_ISREG((place := Path(path)).stat().st_mode):
-            kind = "a folder" if place.is_dir() else "a pipe, a device or the like, no plain file"
-            raise GivenError(f"{path} cannot be read: it is {kind}. Check the path.")
+            if place.is_dir():
+                problem = Message("{path} cannot be read: it is a folder. Check the path.", path=path)
+            else:
+                problem = Message(
+                    "{path} cannot be read: it is a pipe, a device or the like, no plain file. Check the path.",
+                    path=path,
+                )
+            raise GivenError(problem, code="cannot_read")
         with place.open("rb") as stream:
             data = stream.read(most_bytes + 1)
     except GivenError:
         raise
     except OSError as error:
-        raise GivenError(f"{path} cannot be read: {error.strerror or error}. Check the path.") from error
+        raise GivenError(
+            Message("{path} cannot be read: {reason}. Check the path.", path=path, reason=error.strerror or error),
+            code="cannot_read",
+        ) from error
     except UnicodeEncodeError as error:
-        raise GivenError(f"{path!r} cannot be read: its name is no valid text. Correct it.") from error
+        raise GivenError(
+            Message("{path!r} cannot be read: its name is no valid text. Correct it.", path=path), code="cannot_read"
+        ) from error
     except ValueError as error:  # the system's paths end at a NUL character
-        raise GivenError(f"{str(path)!r} is no path: it has a NUL character. Correct it.") from error
+        raise GivenError(
+            Message("{path!r} is no path: it has a NUL character. Correct it.", path=path), code="invalid_character"
+        ) from error
     if len(data) > most_bytes:
-        raise GivenError(f"{path} is too large: at most {most_bytes / 2**20:g} MiB are read of such a file.")
+        raise GivenError(
+            Message(
+                "{path} is too large: at most {limit:g} MiB are read of such a file.",
+                path=path,
+                limit=most_bytes / 2**20,
+            ),
+            code="too_large",
+        )
     return data
 
 
@@ -57,7 +78,13 @@ def plain_text(path: str | Path, *, most_bytes: int) -> str:
         text = data.decode("utf-8-sig")
     except UnicodeDecodeError as error:
         raise GivenError(
-            f"{path} is not UTF-8 text ({error.reason}, byte {error.start + 1}). Save it as UTF-8."
+            Message(
+                "{path} is not UTF-8 text ({reason}, byte {byte}). Save it as UTF-8.",
+                path=path,
+                reason=error.reason,
+                byte=error.start + 1,
+            ),
+            code="not_text",
         ) from error
     return text.replace("\r\n", "\n").replace("\r", "\n")
 
@@ -68,23 +95,34 @@ class GivenError(ParameterError):
     Parameters
     ----------
     what
-        What is wrong and what is allowed, without the file.
+        Problem and what is allowed, without the file.
+    code
+        As in `skisnow.SkisnowError`.
     line
-        Of the file, where one can be named.
+        Line of the file, where one can be named.
     title
-        The file, or what else the text is called by; empty until it is known.
+        The file, or another name of the text; empty until it is known.
     sentence
-        The whole message, where it is not made of the others.
+        The whole message, if it is not made of the others.
     """
 
-    def __init__(self, what: str, *, line: int | None = None, title: str = "", sentence: str = "") -> None:
-        place = ", ".join(part for part in (title, f"line {line}" if line else "") if part)
-        super().__init__(sentence or (f"{place}: {what}" if place else what))
+    def __init__(
+        self, what: str, *, code: str = "", line: int | None = None, title: str = "", sentence: str = ""
+    ) -> None:
+        super().__init__(sentence or _placed(what, line, title), code=code)
         self.what, self.line = what, line
 
     def of(self, title: str) -> GivenError:
-        """The same of a file."""
-        return GivenError(self.what, line=self.line, title=title)
+        """The same error of a file."""
+        return GivenError(self.what, code=self.code, line=self.line, title=title)
+
+
+def _placed(what: str, line: int | None, title: str) -> str:
+    if line and title:
+        return Message("{file}, line {line}: {problem}", file=title, line=line, problem=what)
+    if line:
+        return Message("line {line}: {problem}", line=line, problem=what)
+    return Message("{file}: {problem}", file=title, problem=what) if title else what
 
 
 MOST_DIGITS: Final = 18

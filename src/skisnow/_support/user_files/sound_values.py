@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import Final, TypeAlias
 
+from ..messages import Message
 from .plain_file import GivenError
 
 DEEPEST: Final = 32
@@ -39,11 +40,18 @@ def require_sound(value: object, *, infinite: bool, place: Place = ()) -> None:
         _require_text(value, place, LONGEST_TEXT)
     elif isinstance(value, int):
         if not -LARGEST_WHOLE - 1 <= value <= LARGEST_WHOLE:
-            what = f"{named(place)} is beyond the whole numbers, ±{LARGEST_WHOLE}. Write it with a decimal point."
-            raise GivenError(what)
+            problem = Message(
+                "{place} is beyond the whole numbers, ±{largest}. Write it with a decimal point.",
+                place=named(place),
+                largest=LARGEST_WHOLE,
+            )
+            raise GivenError(problem, code="number_too_large")
     elif isinstance(value, float):
         if not infinite and not math.isfinite(value):
-            raise GivenError(f"{named(place)} is beyond the numbers, ±1.8e308. Correct it.")
+            raise GivenError(
+                Message("{place} is beyond the numbers, ±1.8e308. Correct it.", place=named(place)),
+                code="number_too_large",
+            )
     elif isinstance(value, dict | list):
         if len(place) >= DEEPEST:
             raise too_deep()
@@ -57,18 +65,33 @@ def require_sound(value: object, *, infinite: bool, place: Place = ()) -> None:
 
 def too_deep(line: int | None = None) -> GivenError:
     """The error for brackets within brackets within brackets."""
-    return GivenError(f"brackets are nested more than {DEEPEST} deep. Take some out.", line=line)
+    return GivenError(
+        Message("brackets are nested more than {deepest} deep. Take some out.", deepest=DEEPEST),
+        line=line,
+        code="nested_too_deep",
+    )
 
 
 def _require_text(text: str, place: Place, longest: int) -> None:
     if len(text) > longest:
-        raise GivenError(f"{named(place)} has {len(text)} characters; allowed are {longest}. Shorten it.")
+        raise GivenError(
+            Message(
+                "{place} has {count} characters; allowed are {longest}. Shorten it.",
+                place=named(place),
+                count=len(text),
+                longest=longest,
+            ),
+            code="text_too_long",
+        )
     if text.isascii():
         sound = "\0" not in text
     else:
         sound = not any(letter == "\0" or "\ud800" <= letter <= "\udfff" for letter in text)
     if not sound:
-        raise GivenError(f"{named(place)} has a NUL character or half a letter, which no text has. Remove it.")
+        raise GivenError(
+            Message("{place} has a NUL character or half a letter, which no text has. Remove it.", place=named(place)),
+            code="invalid_character",
+        )
 
 
 def named(place: Place) -> str:
@@ -78,7 +101,7 @@ def named(place: Place) -> str:
     ('tool[2].name', 'the value')
     """
     text = "".join(f"[{part}]" if isinstance(part, int) else f".{shown(part)}" for part in place)
-    return text.removeprefix(".") or "the value"
+    return text.removeprefix(".") or Message("the value")
 
 
 def shown(text: str, limit: int = 60) -> str:

@@ -6,6 +6,7 @@ import re
 import tomllib
 from typing import TYPE_CHECKING, Any, Final
 
+from ..messages import Message
 from .plain_file import GivenError, plain_text
 from .sound_values import DEEPEST, LONGEST_KEY, require_sound, too_deep
 
@@ -55,7 +56,14 @@ def toml_values(text: str, *, title: str = "") -> dict[str, Any]:
     """
     try:
         if len(text) > MOST_TOML_BYTES:
-            raise GivenError(f"the text has {len(text)} characters; allowed are {MOST_TOML_BYTES}.")
+            raise GivenError(
+                Message(
+                    "the text has {count} characters; allowed are {longest}.",
+                    count=len(text),
+                    longest=MOST_TOML_BYTES,
+                ),
+                code="too_large",
+            )
         _require_short(text)
         values = tomllib.loads(text)
         require_sound(values, infinite=True)
@@ -65,8 +73,12 @@ def toml_values(text: str, *, title: str = "") -> dict[str, Any]:
         raise too_deep().of(title) from None
     except ValueError as error:  # TOMLDecodeError, and dates that there are not
         line = re.search(r"at line (\d+)", str(error))
-        sentence = f"{title or 'this'} is no TOML: {error}. Correct that place."
-        raise GivenError(str(error), line=int(line[1]) if line else None, sentence=sentence) from error
+        sentence = (
+            Message("{file} is not TOML: {reason}. Correct that place.", file=title, reason=str(error))
+            if title
+            else Message("This is not TOML: {reason}. Correct that place.", reason=str(error))
+        )
+        raise GivenError(str(error), code="not_toml", line=int(line[1]) if line else None, sentence=sentence) from error
     return values
 
 
@@ -87,10 +99,18 @@ def _require_short(text: str) -> None:
         elif first not in "\"'#":
             dots += word.count(".")
             if dots > MOST_DOTS:
-                raise GivenError(f"a key has more than {MOST_DOTS} dots. Shorten it.", line=_line(text, token))
+                raise GivenError(
+                    Message("a key has more than {count} dots. Shorten it.", count=MOST_DOTS),
+                    line=_line(text, token),
+                    code="key_too_long",
+                )
             if len(word) > LONGEST_KEY:
-                what = f"a number or key of {len(word)} characters; allowed are {LONGEST_KEY}. Shorten it."
-                raise GivenError(what, line=_line(text, token))
+                problem = Message(
+                    "A number or key has {count} characters; allowed are {longest}. Shorten it.",
+                    count=len(word),
+                    longest=LONGEST_KEY,
+                )
+                raise GivenError(problem, code="key_too_long", line=_line(text, token))
 
 
 def _line(text: str, token: re.Match[str]) -> int:

@@ -15,6 +15,7 @@ from datetime import date, datetime, time
 from typing import TYPE_CHECKING, Any, Final, TypeAlias
 from xml.parsers import expat
 
+from ..messages import Message
 from .plain_file import GivenError
 
 if TYPE_CHECKING:
@@ -36,9 +37,6 @@ DEEPEST_ELEMENT: Final = 64
 _TYPED_FRACTION: Final = re.compile(r"\s*[+-]?[0-9]++([.,])[0-9]++\s*")
 _CHUNK: Final = 1 << 18
 _OLD_KIND: Final = b"\xd0\xcf\x11\xe0"
-_DAMAGED: Final = (
-    "is no workbook that can be read, or it is damaged. Open it in a spreadsheet program, save it as .xlsx."
-)
 
 
 def workbook_sheets(data: bytes, *, wanted: Callable[[str], bool]) -> dict[str, Rows | None]:
@@ -69,7 +67,14 @@ def workbook_sheets(data: bytes, *, wanted: Callable[[str], bool]) -> dict[str, 
         warnings.simplefilter("ignore")  # of parts that are not read: validations, drawings
         book = _undamaged(lambda: load_workbook(io.BytesIO(data), read_only=True, data_only=True, keep_links=False))
         if len(book.worksheets) > MOST_SHEETS:
-            raise GivenError(f"has {len(book.worksheets)} sheets; at most {MOST_SHEETS} are read. Take some out.")
+            raise GivenError(
+                Message(
+                    "The workbook has {count} sheets; at most {limit} are read. Remove some.",
+                    count=len(book.worksheets),
+                    limit=MOST_SHEETS,
+                ),
+                code="too_large",
+            )
         return {sheet.title: _rows(sheet) if wanted(sheet.title) else None for sheet in book.worksheets}
 
 
@@ -80,7 +85,13 @@ def _undamaged(doing: Callable[[], Any]) -> Any:
     except GivenError:
         raise
     except Exception as error:
-        raise GivenError(_DAMAGED) from error
+        raise GivenError(
+            Message(
+                "This is not a workbook that can be read, or it is damaged. Open it in a spreadsheet program, "
+                "and save it as .xlsx."
+            ),
+            code="not_readable",
+        ) from error
 
 
 def _rows(sheet: Any) -> Rows:
@@ -92,7 +103,14 @@ def _rows(sheet: Any) -> Rows:
     def read() -> None:
         for cells in sheet.iter_rows(values_only=True):
             if len(found) >= MOST_ROWS:
-                raise GivenError(f"has more than {MOST_ROWS} rows in the sheet {sheet.title!r}. Take some out.")
+                raise GivenError(
+                    Message(
+                        "The sheet {sheet!r} has more than {limit} rows. Remove some.",
+                        limit=MOST_ROWS,
+                        sheet=sheet.title,
+                    ),
+                    code="too_large",
+                )
             texts = [_text(value) for value in cells]
             for value in cells:
                 if isinstance(value, str) and (fraction := _TYPED_FRACTION.fullmatch(value)):
@@ -101,8 +119,17 @@ def _rows(sheet: Any) -> Rows:
             while texts and not texts[-1]:
                 texts.pop()
             if len(texts) > MOST_COLUMNS:
-                what = f"has {len(texts)} cells in row {len(found) + 1} of the sheet {sheet.title!r}"
-                raise GivenError(f"{what}; at most {MOST_COLUMNS} columns are read. Take out what is not needed.")
+                raise GivenError(
+                    Message(
+                        "Row {row} of the sheet {sheet!r} has {count} cells; at most {limit} columns are read. "
+                        "Remove what is not needed.",
+                        row=len(found) + 1,
+                        sheet=sheet.title,
+                        count=len(texts),
+                        limit=MOST_COLUMNS,
+                    ),
+                    code="too_large",
+                )
             found.append(texts)
 
     _undamaged(read)
@@ -133,12 +160,24 @@ def _moment(value: date | time) -> str:
 def _require_sound(data: bytes) -> None:
     if len(data) > MOST_WORKBOOK_BYTES:
         raise GivenError(
-            f"is too large: workbooks of at most {MOST_WORKBOOK_BYTES >> 20} MiB are read. Save it as CSV."
+            Message(
+                "The workbook is too large: at most {limit} MiB are read. Save it as CSV.",
+                limit=MOST_WORKBOOK_BYTES >> 20,
+            ),
+            code="too_large",
         )
     if data.startswith(_OLD_KIND):
-        raise GivenError("is protected by a password, or in Excel's old form. Save it as .xlsx without a password.")
+        raise GivenError(
+            Message(
+                "The workbook is protected by a password, or in Excel's old form. Save it as .xlsx without a password."
+            ),
+            code="not_readable",
+        )
     if data.count(b"PK\1\2") > MOST_PARTS:
-        raise GivenError(f"has more than {MOST_PARTS} parts, which no table has.")
+        raise GivenError(
+            Message("The workbook has more than {limit} parts, which no table has.", limit=MOST_PARTS),
+            code="too_large",
+        )
     archive: zipfile.ZipFile = _undamaged(lambda: zipfile.ZipFile(io.BytesIO(data)))
     with archive:
         _require_small(archive)
@@ -153,7 +192,13 @@ def _require_small(archive: zipfile.ZipFile) -> None:
             unpacked += len(piece)
             if unpacked > MOST_UNPACKED_BYTES:
                 most = MOST_UNPACKED_BYTES >> 20
-                raise GivenError(f"holds more than {most} MiB when it is unpacked. Save its sheets as CSV.")
+                raise GivenError(
+                    Message(
+                        "The workbook has more than {limit} MiB when it is unpacked. Save its sheets as CSV.",
+                        limit=most,
+                    ),
+                    code="too_large",
+                )
             if looked_at is not None:
                 looked_at.take(piece)
         if looked_at is not None:
@@ -186,13 +231,24 @@ class _Part:
         _undamaged(lambda: self._parser.Parse(b"", True))
 
     def _refuse_document_type(self, *_: object) -> None:
-        raise GivenError(f"has a document type in its part {self._name}, which no spreadsheet program writes.")
+        raise GivenError(
+            Message(
+                "The workbook has a document type in its part {part}, which no spreadsheet program writes.",
+                part=self._name,
+            ),
+            code="not_readable",
+        )
 
     def _begin(self, name: str, attributes: dict[str, str]) -> None:
         self._elements += 1
         self._depth += 1
         if self._elements > MOST_ELEMENTS or self._depth > DEEPEST_ELEMENT:
-            raise GivenError(f"has a part {self._name} that is larger than any table. Save its sheets as CSV.")
+            raise GivenError(
+                Message(
+                    "The part {part} of the workbook is larger than any table. Save its sheets as CSV.", part=self._name
+                ),
+                code="too_large",
+            )
         local = name.rpartition(" ")[2]
         if local == "c":
             self._cell = attributes.get("r", "?")
@@ -203,5 +259,12 @@ class _Part:
     def _end(self, name: str) -> None:
         self._depth -= 1
         if name.endswith(" c") and self._in_cell == {"f"}:
-            what = f"has a formula without its value in the cell {self._cell[:20]} ({self._name})"
-            raise GivenError(f"{what}. Open it in a spreadsheet program and save it.")
+            raise GivenError(
+                Message(
+                    "The cell {cell} ({part}) has a formula without its value. Open the workbook in a "
+                    "spreadsheet program and save it.",
+                    cell=self._cell[:20],
+                    part=self._name,
+                ),
+                code="formula_without_value",
+            )

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from typing import Final
 from xml.parsers import expat
 
+from ..messages import Message
 from .plain_file import GivenError
 
 DEEPEST: Final = 60
@@ -54,7 +55,14 @@ class _Builder:
     def start(self, name: str, attributes: Mapping[str, str]) -> None:
         self._count += 1
         if self._count > MOST_ELEMENTS or len(self._open) >= DEEPEST:
-            raise GivenError(f"more than {MOST_ELEMENTS} elements, or {DEEPEST} within each other, are not read")
+            raise GivenError(
+                Message(
+                    "More than {count} elements, or {depth} within each other, are not read.",
+                    count=MOST_ELEMENTS,
+                    depth=DEEPEST,
+                ),
+                code="too_large",
+            )
         namespace, _, local = name.rpartition("}")
         element = Element(namespace, local, {key.rpartition("}")[2]: value for key, value in attributes.items()})
         if self._open:
@@ -71,7 +79,10 @@ class _Builder:
         self._open.pop()
 
     def document_type(self, *_what: object) -> None:
-        raise GivenError("a document type is declared, which is refused: it may hold entities without end")
+        raise GivenError(
+            Message("A document type is declared, which is rejected: it may have endless entities."),
+            code="document_type",
+        )
 
 
 def xml_tree(data: bytes) -> Element:
@@ -89,12 +100,20 @@ def xml_tree(data: bytes) -> Element:
     try:
         parser.Parse(data, True)
     except expat.ExpatError as error:
-        raise GivenError(f"no XML, or a damaged one ({expat.ErrorString(error.code)})", line=error.lineno) from error
+        raise GivenError(
+            Message("This is not XML, or it is damaged ({reason}).", reason=expat.ErrorString(error.code)),
+            line=error.lineno,
+            code="not_xml",
+        ) from error
     except GivenError:
         raise
     except (LookupError, ValueError) as error:  # Python's codec of the encoding that the first line declares
         what = str(error)[:_LONGEST_REASON]
-        raise GivenError(f"text in an encoding that cannot be read ({what}). Save it as UTF-8.", line=1) from error
+        raise GivenError(
+            Message("The text has an encoding that cannot be read ({reason}). Save it as UTF-8.", reason=what),
+            line=1,
+            code="not_text",
+        ) from error
     if builder.root is None:
-        raise GivenError("no element")
+        raise GivenError(Message("The file has no element."), code="not_xml")
     return builder.root

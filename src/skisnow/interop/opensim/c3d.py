@@ -15,6 +15,7 @@ from typing import Any, Final, TypeAlias
 import numpy as np
 
 from ..._support.errors import OutputError, ParameterError
+from ..._support.messages import Message
 from ..._support.optional_packages import needed
 from ..._support.staging import write_file
 from ..._support.user_files import GivenError, plain_bytes
@@ -197,7 +198,7 @@ def _require_names(path: Path, what: str, names: tuple[str, ...]) -> None:
 
 
 def _ezc3d(path: str | Path) -> Any:
-    return needed("ezc3d", extra="c3d", what=f"{path}: a .c3d file that is to be written")
+    return needed("ezc3d", extra="c3d", what=Message("Writing the .c3d file {path}", path=path))
 
 
 Values: TypeAlias = Sequence[str] | Sequence[float]

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 from scipy.io import netcdf_file
 
+from ..._support.messages import Message
 from ..._support.optional_packages import needed
 from ..._support.staging import write_file
 from ...scenario.keys import SCENARIO_KEYS, in_sections, scenario_values
@@ -137,13 +138,13 @@ def _write(file: Any, variable: RunVariable, run: Run) -> None:
 
 def run_dataframe(run: Run) -> DataFrame:
     """The rows of track.csv; see `Run.to_dataframe`."""
-    pandas = needed("pandas", extra="pandas", what="a table of a run as a DataFrame")
+    pandas = needed("pandas", extra="pandas", what=Message("A run as a DataFrame"))
     return pandas.DataFrame(track_table(run), columns=list(track_columns(run)))
 
 
 def run_dataset(run: Run) -> Dataset:
     """Every variable of run.nc with its unit and meaning; see `Run.to_xarray`."""
-    xarray = needed("xarray", extra="xarray", what="a run as a Dataset")
+    xarray = needed("xarray", extra="xarray", what=Message("A run as a Dataset"))
     stored = variables_of(run)
     coordinates = {each.name for each in stored if (each.name,) == each.dimensions}
     variables = {each.name: _variable(each, run) for each in stored}

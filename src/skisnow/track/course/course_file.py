@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..._support.errors import ParameterError
+from ..._support.messages import Message
 from ..._support.spreadsheet_text import CsvRow, csv_rows
 from ..._support.units import DEGREE
 from ..projection import GeodeticPoint, east_north_up
@@ -26,9 +27,9 @@ SHARPEST: Final = 0.05
 """Bend (rad) of the line from pole to pole below which it does not tell a gate's side."""
 _COLUMNS: Final = ("gate", "x_m", "y_m", "side")
 _OUTER: Final = ("outer_x_m", "outer_y_m")
-_ACTION: Final = (
-    "write one row for each gate, in their order, with its name, its turning pole in m and left or right, the side on "
-    "which it is passed, under a first line gate,x_m,y_m,side"
+_ACTION: Final = Message(
+    "Write one row for each gate, in their order, with its name, its turning pole in m and left or right, the side on "
+    "which it is passed, under a first line gate,x_m,y_m,side."
 )
 
 
@@ -96,12 +97,26 @@ def _rows(path: Path) -> Iterator[CsvRow]:
 def _gate(row: CsvRow) -> Gate:
     side = row.cells["side"].lower()
     if side not in ("left", "right"):
-        raise row.refused("side", "must be left or right, the side on which the turning pole is passed")
+        raise row.refused(
+            "side",
+            Message("Must be left or right, the side on which the turning pole is passed."),
+            code="unknown_choice",
+        )
     if not row.cells["gate"]:
-        raise row.refused("gate", "is no name; give each gate a number or a name")
+        raise row.refused(
+            "gate",
+            Message("This is not a name."),
+            code="missing_name",
+            action=Message("Give each gate a number or a name."),
+        )
     known = [name for name in _OUTER if row.cells.get(name)]
     if len(known) == 1:
-        raise row.refused(known[0], "stands alone", action=f"give {' and '.join(_OUTER)}, or neither")
+        raise row.refused(
+            known[0],
+            Message("The other coordinate of the outer pole is missing."),
+            code="missing_column",
+            action=Message("Give both columns ({columns}), or neither.", columns=_OUTER),
+        )
     outer = (row.number("outer_x_m"), row.number("outer_y_m")) if known else None
     place = (row.number("x_m"), row.number("y_m"))
     return Gate(name=row.cells["gate"], turning=place, side=cast("Side", side), outer=outer)

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final, get_args
 
+from ..._support.messages import Message
 from ..._support.spreadsheet_text import CsvRow, csv_rows
 from .passages import GateOutcome
 
@@ -84,13 +85,17 @@ def _same_course(one: list[dict[str, Any]], other: list[dict[str, Any]]) -> bool
 
 
 def _rows(place: Path) -> list[dict[str, Any]]:
-    rows = csv_rows(place, ("gate", "outcome", "time_s", "x_m", "y_m"), action="simulate the run again with --out")
+    rows = csv_rows(
+        place, ("gate", "outcome", "time_s", "x_m", "y_m"), action=Message("Simulate the run again with --out.")
+    )
     return [_row(row) for row in rows]
 
 
 def _row(row: CsvRow) -> dict[str, Any]:
     if row.cells["outcome"] not in get_args(GateOutcome):
-        raise row.refused("outcome", f"is not one of {', '.join(get_args(GateOutcome))}")
+        raise row.refused(
+            "outcome", Message("Must be one of {choices}.", choices=get_args(GateOutcome)), code="unknown_choice"
+        )
     return {
         **row.cells,
         "time_s": row.number("time_s") if row.cells["time_s"] else None,

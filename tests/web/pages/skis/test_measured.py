@@ -330,7 +330,7 @@ def test_a_text_is_read_with_its_table_and_its_warnings() -> None:
     assert " ski.toml: " in words and words.count("ski.toml: ") == 2
     with pytest.raises(ParameterError, match=r"^ski\.toml: length_mm is 'x'"):
         ski_of_texts(TEXT.replace("length_mm = 1755", 'length_mm = "x"'), "")
-    with pytest.raises(ParameterError, match=r"^ski\.toml is no TOML"):
+    with pytest.raises(ParameterError, match=r"^ski\.toml is not TOML"):
         ski_of_texts("[", "")
     with pytest.raises(ParameterError, match=r"^ski\.csv"):
         ski_of_texts(named, "x\n")
