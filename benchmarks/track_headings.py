@@ -13,8 +13,8 @@ from typing import Final, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from skisnow.track.alignment import Motion, fitted_motion
-from skisnow.track.polyline import Polyline, polyline
+from skisnow.comparison.alignment import Motion, fit_motion
+from skisnow.comparison.distances import Polyline, polyline
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -57,7 +57,7 @@ def fitted_track(shape: str, correlation: float, seed: int) -> FittedTrack:
         error[point] = correlation * error[point - 1] + math.sqrt(1.0 - correlation**2) * error[point]
     cosine, sine = math.cos(turned), math.sin(turned)
     place = (place - path[0]) @ np.array([[cosine, sine], [-sine, cosine]]) + path[0] + rng.normal(size=2) * 20.0
-    motion = fitted_motion(_timed(path), _timed(place + size * error), start=True, heading=True)
+    motion = fit_motion(_timed(path), _timed(place + size * error), start=True, heading=True)
     return FittedTrack(motion, math.remainder(motion.turned - turned, math.tau))
 
 

@@ -19,10 +19,10 @@ from fewer_colours import write_fewer_colours
 from matplotlib.lines import Line2D
 
 from skisnow import load_scenario, simulate
+from skisnow.comparison.nearest_place import distance_from_path
 from skisnow.report.figures.figure_files import write_figure
 from skisnow.report.figures.style import COLOURS, DOUBLE_MM, GREY, legend_below, new_figure
 from skisnow.report.turn.figures import LINE_STYLES, runs_compared
-from skisnow.track.nearest_place import distance_beside
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -98,7 +98,7 @@ def _over(values: FloatArray, station: FloatArray, where: npt.NDArray[np.bool_])
 def apart(run: Run, other: Run) -> float:
     """Largest distance (m) of a run from the other's path, which goes on straight at its end."""
     onwards = other.place[-1] + other.velocity[-1] / np.linalg.norm(other.velocity[-1])
-    return float(np.nanmax(distance_beside(run.place, np.vstack([other.place, onwards]))))
+    return float(np.nanmax(distance_from_path(run.place, np.vstack([other.place, onwards]))))
 
 
 def _computed(asked: tuple[str, dict[str, Any]]) -> Run:

@@ -17,7 +17,7 @@ from skisnow.report.figures.figure_files import write_figure
 from skisnow.report.figures.style import BLUE, DOUBLE_MM, GREY, PALE, VERMILLION, legend_below, new_figure
 from skisnow.report.track.figures import track_map
 from skisnow.track.curvature import TrackMotion, track_motion
-from skisnow.track.resolution import Resolution
+from skisnow.track.smoothing import Resolution
 from skisnow.track.summary import track_summary
 from skisnow.track.track import Track
 

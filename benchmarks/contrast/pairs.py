@@ -12,6 +12,7 @@ import numpy.typing as npt
 
 from skisnow._support.errors import SkisnowError
 from skisnow._support.user_files.json_text import json_number
+from skisnow.comparison.nearest_place import distance_from_path
 from skisnow.parameters import Quantity
 from skisnow.report.turn.numbers import afterbody_depth_ratio, median_radius, used_grip
 from skisnow.scenario import Scenario, load_scenario
@@ -19,7 +20,6 @@ from skisnow.simulation.run import Run
 from skisnow.simulation.run_setup import laid_out
 from skisnow.simulation.simulated_run import simulate
 from skisnow.ski import Ski
-from skisnow.track.nearest_place import distance_beside
 
 from .unknowns import UNKNOWNS
 
@@ -141,7 +141,7 @@ def pair(elastic: Run, plastic: Run) -> dict[str, Any]:
 def distance_from(run: Run, other: Run) -> FloatArray:
     """Distance (m) of each place of a run from the other's path, which goes on straight at its end."""
     onwards = other.place[-1] + other.velocity[-1] / max(float(np.linalg.norm(other.velocity[-1])), 1e-9)
-    return distance_beside(run.place, np.vstack([other.place, onwards]))
+    return distance_from_path(run.place, np.vstack([other.place, onwards]))
 
 
 def _outside(elastic: Run, plastic: Run) -> float:

@@ -74,6 +74,7 @@ if TYPE_CHECKING:
     from .campaign.store import Store
     from .carving import Equilibrium, rest
     from .carving.equilibrium import carve
+    from .comparison import Comparison, compare_tracks
     from .contact import ContactForces, Runner, SnowContact, SnowField
     from .dynamics import BootPose
     from .estimation import Analysis, analyse, results_dict
@@ -108,7 +109,6 @@ if TYPE_CHECKING:
     from .statistics import regress
     from .studies import Study, StudyTable, read_study
     from .studies import run_study as study
-    from .track.comparison import Comparison, compare_tracks
     from .track.course import Course, CourseResult, Gate, course_names, read_course
     from .track.projection import GeodeticPoint
     from .track.read import read_track
@@ -248,7 +248,7 @@ _PACKAGES = {
     "snow": ("SnowProperties", "published_names", "published_snow", "snow_from_results"),
     "statistics": ("regress",),
     "studies": ("Study", "StudyTable", "read_study", "run_study"),
-    "track.comparison": ("Comparison", "compare_tracks"),
+    "comparison": ("Comparison", "compare_tracks"),
     "track.course": ("Course", "CourseResult", "Gate", "course_names", "read_course"),
     "track.projection": ("GeodeticPoint",),
     "track.read": ("read_track",),

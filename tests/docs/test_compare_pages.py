@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any
 
 import skisnow.track
-from skisnow.track.alignment import OFFSETS
+from skisnow.comparison.alignment import OFFSETS
 
 DOCS = Path(__file__).resolve().parents[2] / "docs"
 

@@ -27,7 +27,7 @@ from skisnow.racing.line import cut
 from skisnow.racing.quickest import _fingerprint
 from skisnow.racing.racers import Racer
 from skisnow.racing.worth import AS_IT_IS, compared
-from skisnow.track.course.gate_gaps import GateGap
+from skisnow.track.course.gates_table import GateGap
 
 from .test_point import straight_course
 from .test_search import EASY, SLALOM, raced

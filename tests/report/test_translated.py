@@ -13,6 +13,7 @@ import pytest
 from matplotlib.text import Text
 
 from skisnow._support.errors import ParameterError
+from skisnow.comparison import compare_tracks
 from skisnow.report import write_report
 from skisnow.report.campaign.data import ReportData
 from skisnow.report.campaign.page import DRAWERS
@@ -25,7 +26,6 @@ from skisnow.report.symbols import figure_text
 from skisnow.report.track.report import comparison_drawing, track_drawings
 from skisnow.report.translated import translated_html
 from skisnow.scenario.keys import SCENARIO_KEYS
-from skisnow.track.comparison import compare_tracks
 from skisnow.track.summary import track_summary
 from skisnow.track.track import Track
 

@@ -21,7 +21,7 @@ from skisnow.report.symbols import figure_text
 from skisnow.report.turn import page as turn_report
 from skisnow.report.turn.chain import TurnChain
 from skisnow.scenario.keys import SCENARIO_KEYS
-from skisnow.track.course.gate_gaps import GateGap
+from skisnow.track.course.gates_table import GateGap
 
 from . import test_identify_report, test_turn_report
 from .test_translated import ENGLISH, VERSION, texts, written

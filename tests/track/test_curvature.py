@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from skisnow.track.curvature import _curvature, running_mean, track_motion
-from skisnow.track.smoothing import smoothed_track
+from skisnow.track.smoothing import smooth_track
 
 from .paths import NOISE, FloatArray, along, circle, track
 
@@ -141,7 +141,7 @@ def test_error_of_the_curvature_is_that_of_drawn_velocities_and_accelerations() 
     """Fast turning, with errors of the velocity that count: 40,000 draws tell a standard deviation within 0.4 %."""
     of_one = np.array([[1e-4, 0.0, 0.0], [0.0, 0.04, 0.03], [0.0, 0.03, 0.25]])
     smoothed = replace(
-        smoothed_track(track(circle(RADIUS, SPEED))),
+        smooth_track(track(circle(RADIUS, SPEED))),
         velocity=np.array([[3.0, 5.0]]), acceleration=np.array([[-14.0, 6.0]]), covariance=of_one[None],
     )  # fmt: skip
     curvature, error = _curvature(smoothed, np.array([math.sqrt(34.0)]))

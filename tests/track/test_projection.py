@@ -15,7 +15,7 @@ from skisnow.track.projection import (
     east_north_up_axes,
     geodetic,
     place_from_origin,
-    turned_to_origin,
+    rotate_to_origin,
 )
 
 from . import metres_per_degree
@@ -104,9 +104,9 @@ def test_missing_height_spoils_the_height_alone() -> None:
 def test_north_far_to_the_east_is_not_quite_north_here() -> None:
     """Meridians converge by Δλ sin φ: 1° of longitude at 30° north turns north by 0.5°."""
     origin = GeodeticPoint(30.0, 10.0)
-    turned = turned_to_origin(np.array([[0.0, 1.0, 0.0]]), np.array([[30.0, 11.0, 0.0]]), origin=origin)
+    turned = rotate_to_origin(np.array([[0.0, 1.0, 0.0]]), np.array([[30.0, 11.0, 0.0]]), origin=origin)
     assert math.degrees(math.atan2(-turned[0, 0], turned[0, 1])) == pytest.approx(0.5, abs=1e-3)
-    course = turned_to_origin(np.array([[0.0, 1.0, np.nan]]), np.array([[30.0, 11.0, 0.0]]), origin=origin)
+    course = rotate_to_origin(np.array([[0.0, 1.0, np.nan]]), np.array([[30.0, 11.0, 0.0]]), origin=origin)
     np.testing.assert_array_equal(course[:, :2], turned[:, :2])
     assert np.isnan(course[0, 2])
 

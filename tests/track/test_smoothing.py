@@ -1,13 +1,19 @@
 """Local cubics against polynomials, against the library's own filter, and against statistics."""
 
+from __future__ import annotations
+
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 from scipy.signal import savgol_filter
+from scipy.special import spherical_jn
 
+from skisnow import read_track, track_summary
 from skisnow._support.errors import ParameterError
-from skisnow.track.smoothing import parts, smoothed_track, window_bounds
+from skisnow.track.curvature import track_motion
+from skisnow.track.smoothing import MOST_IN_WINDOW, Resolution, parts, smooth_track, window_bounds
 from skisnow.track.track import Track
 
 from .paths import NOISE, circle, track
@@ -18,7 +24,7 @@ def test_cubic_at_uneven_times_comes_back_exactly() -> None:
     time -= time[0]
     place = np.stack([1.0 - 2.0 * time + 0.5 * time**3, 3.0 * time**2], axis=1)
     made = replace(track(place), time=time)
-    found = smoothed_track(made, window=1.2)
+    found = smooth_track(made, window=1.2)
     assert found.velocity[:, 0] == pytest.approx(-2.0 + 1.5 * time**2, abs=1e-7)
     assert found.velocity[:, 1] == pytest.approx(6.0 * time, abs=1e-7)
     assert found.acceleration[:, 0] == pytest.approx(3.0 * time, abs=1e-5)  # a ridge of 1e-13 and rounding, over h²
@@ -27,7 +33,7 @@ def test_cubic_at_uneven_times_comes_back_exactly() -> None:
 
 def test_even_times_give_the_filter_of_savitzky_and_golay() -> None:
     made = track(circle(15.0, 8.0), noise=NOISE)
-    found = smoothed_track(made, window=1.0)
+    found = smooth_track(made, window=1.0)
     for derivative, values in ((0, found.place), (1, found.velocity), (2, found.acceleration)):
         filtered = savgol_filter(made.place[:, :2], 11, 3, deriv=derivative, delta=0.1, axis=0, mode="interp")
         assert values == pytest.approx(filtered, abs=1e-7)  # the ends too: windows keep their length
@@ -35,15 +41,15 @@ def test_even_times_give_the_filter_of_savitzky_and_golay() -> None:
 
 def test_noise_is_estimated_from_the_scatter() -> None:
     """Its relative standard error is about 1/√(2 · degrees of freedom): 3 % with 8 s at 10 Hz, 1 % over 20 of them."""
-    noises = [smoothed_track(track(circle(15.0, 8.0), noise=NOISE, seed=seed)).place_noise for seed in range(20)]
+    noises = [smooth_track(track(circle(15.0, 8.0), noise=NOISE, seed=seed)).place_noise for seed in range(20)]
     assert np.mean(noises) == pytest.approx(NOISE, rel=0.04)
 
 
 def test_jump_without_a_mark_does_not_raise_the_noise_but_its_own_errors() -> None:
     made = track(circle(15.0, 8.0, duration=30.0), noise=NOISE)
-    before = smoothed_track(made)
+    before = smooth_track(made)
     made.place[150, 0] += 5.0
-    after = smoothed_track(made)
+    after = smooth_track(made)
     assert after.place_noise == pytest.approx(before.place_noise, rel=0.05)
     assert after.covariance[150, 2, 2] > 1e3 * before.covariance[150, 2, 2]
     assert after.covariance[100, 2, 2] == pytest.approx(before.covariance[100, 2, 2], rel=0.2)
@@ -53,9 +59,9 @@ def test_marked_points_take_no_part() -> None:
     made = track(circle(15.0, 8.0), noise=NOISE)
     jump = np.zeros(len(made), dtype=bool)
     jump[40] = True
-    without = smoothed_track(replace(made, flags={"jump": jump}))
+    without = smooth_track(replace(made, flags={"jump": jump}))
     made.place[40] += 30.0
-    assert smoothed_track(replace(made, flags={"jump": jump})).velocity == pytest.approx(without.velocity, abs=1e-9)
+    assert smooth_track(replace(made, flags={"jump": jump})).velocity == pytest.approx(without.velocity, abs=1e-9)
 
 
 def test_recorded_velocities_make_the_acceleration_surer_and_right() -> None:
@@ -65,7 +71,7 @@ def test_recorded_velocities_make_the_acceleration_surer_and_right() -> None:
     angle = 8.0 * made.time / 15.0
     velocity = np.stack([8.0 * np.cos(angle), 8.0 * np.sin(angle), np.full_like(angle, np.nan)], axis=1)
     velocity[:, :2] += 0.05 * np.random.default_rng(5).standard_normal((len(angle), 2))
-    plain, better = smoothed_track(made), smoothed_track(replace(made, velocity=velocity))
+    plain, better = smooth_track(made), smooth_track(replace(made, velocity=velocity))
     assert better.speed_noise == pytest.approx(0.05, rel=0.2)
     middle = len(made) // 2
     assert better.covariance[middle, 2, 2] < 0.15 * plain.covariance[middle, 2, 2]
@@ -78,7 +84,7 @@ def test_windows_end_at_gaps() -> None:
     straight = np.stack([np.arange(60.0), np.zeros(60)], axis=1)
     made = track(straight)
     time = made.time + np.where(np.arange(60) >= 30, 20.0, 0.0)
-    found = smoothed_track(replace(made, time=time))
+    found = smooth_track(replace(made, time=time))
     assert found.part.tolist() == [0] * 30 + [1] * 30
     assert found.velocity[:, 0] == pytest.approx(np.full(60, 10.0), abs=1e-7)  # 1 m each 0.1 s, never 1 m in 20 s
     flagged = np.zeros(60, dtype=bool)
@@ -96,7 +102,7 @@ def test_repeated_times_and_missing_places_are_left_out() -> None:
     made = track(np.stack([np.arange(40.0), np.zeros(40)], axis=1))
     made.time[20] = made.time[19]
     made.place[30] = np.nan
-    found = smoothed_track(made)
+    found = smooth_track(made)
     assert not found.usable[[20, 30]].any()
     assert found.velocity[:, 0] == pytest.approx(np.full(40, 10.0), abs=1e-7)
 
@@ -107,8 +113,8 @@ def test_stated_accuracies_are_weights() -> None:
     bad = np.arange(len(made)) % 2 == 1
     made.place[bad, :2] += 10.0 * NOISE * np.random.default_rng(9).standard_normal((int(bad.sum()), 2))
     stated = np.where(bad, 10.0, 1.0)[:, None] * np.full(3, NOISE)
-    told = smoothed_track(replace(made, place_sd=stated), window=2.0)
-    untold = smoothed_track(made, window=2.0)
+    told = smooth_track(replace(made, place_sd=stated), window=2.0)
+    untold = smooth_track(made, window=2.0)
     angle = 8.0 * made.time / 15.0
     errors = [np.std(found.velocity[:, 0] - 8.0 * np.cos(angle)) for found in (told, untold)]
     assert errors[0] < 0.4 * errors[1]
@@ -117,7 +123,7 @@ def test_stated_accuracies_are_weights() -> None:
 def test_dense_points_share_fits_and_know_it() -> None:
     """1 kHz, 801 points in a window: fits 20 points apart are the filter's own there, and differ little between."""
     made = track(circle(15.0, 8.0, duration=3.0, interval=0.001), interval=0.001, noise=0.002)
-    found = smoothed_track(made, window=0.8)
+    found = smooth_track(made, window=0.8)
     for derivative, values, error in ((0, found.place, 0), (1, found.velocity, 1), (2, found.acceleration, 2)):
         filtered = savgol_filter(made.place[:, :2], 801, 3, deriv=derivative, delta=0.001, axis=0, mode="interp")
         typical = float(np.median(np.sqrt(found.covariance[:, error, error])))
@@ -139,4 +145,56 @@ def test_dense_points_share_fits_and_know_it() -> None:
 def test_what_cannot_be_smoothed_is_refused(points: int, options: dict[str, float], words: str) -> None:
     made: Track = track(np.stack([np.arange(float(points)), np.zeros(points)], axis=1))
     with pytest.raises(ParameterError, match=words):
-        smoothed_track(made, **options)
+        smooth_track(made, **options)
+
+
+def test_more_points_at_one_time_than_a_window_holds(tmp_path: Path) -> None:
+    path = tmp_path / "crowded.csv"
+    rows = [f"{time},{10 * time},0,0" for time in (0, 1, 2, *[3] * (MOST_IN_WINDOW + 5), 4, 5, 6)]
+    path.write_text("\n".join(["time_s,x_m,y_m,z_m", *rows]))
+    track = read_track(path)
+    with pytest.raises(ParameterError, match=r"crowded\.csv.*points are within"):
+        track_summary(track)
+
+
+@pytest.mark.parametrize("period", [0.5, 0.8, 1.2, 3.0])
+def test_dense_points_pass_what_the_projection_on_a_parabola_passes(period: float) -> None:
+    """The second derivative of the projection of exp(iωt) on P₂ is 15 j₂(z)/z² of its own, z = ω · half a window."""
+    z = 2.0 * np.pi / period * 0.5
+    found = Resolution.of_window(1.0, 0.0005, 0.02, None).share_passed(period)
+    assert found == pytest.approx(15.0 * spherical_jn(2, z) / z**2, abs=3e-3)  # 401 points in place of an integral
+
+
+def test_long_swings_lose_a_fourteenth_of_z_squared() -> None:
+    z = 2.0 * np.pi / 20.0 * 0.5
+    assert 1.0 - Resolution.of_window(1.0, 0.0005, 0.02, None).share_passed(20.0) == pytest.approx(
+        z**2 / 14.0, rel=0.02
+    )
+
+
+@pytest.mark.parametrize("share", [0.5, 0.9])
+def test_wave_of_the_stated_period_keeps_the_stated_share(share: float) -> None:
+    """A path y = a sin(2πt/T), x = vt with a slope of at most 0.01: its curvature is y''/v² within 0.02 %."""
+    speed, interval, window = 10.0, 0.02, 1.0
+    period = Resolution.of_window(window, interval, 1.0, None).period_passed(share)
+    time = interval * np.arange(round(6.0 * period / interval))
+    angular = 2.0 * np.pi / period
+    amplitude = 0.01 * speed / angular
+    place = np.stack([speed * time, amplitude * np.sin(angular * time)], axis=1)
+    curvature = track_motion(track(place, interval=interval), window=window).curvature
+    inner = slice(60, -60)
+    true = -amplitude * angular**2 * np.sin(angular * time[inner]) / speed**2
+    assert curvature[inner] @ true / (true @ true) == pytest.approx(share, rel=2e-3)
+
+
+@pytest.mark.parametrize("period", [0.8, 1.2, 3.0])
+def test_good_velocities_pass_what_the_projection_on_a_line_passes(period: float) -> None:
+    """Their slope is that of the projection on P₁: 3 j₁(z)/z of a wave's own; surer than by places, not finer."""
+    z = 2.0 * np.pi / period * 0.5
+    found = Resolution.of_window(1.0, 0.0005, 1e6, 0.02).share_passed(period)
+    assert found == pytest.approx(3.0 * spherical_jn(1, z) / z, abs=3e-3)
+
+
+def test_resolution_scales_with_the_window() -> None:
+    short, long = (Resolution.of_window(window, 0.001, 0.02, None).half_period for window in (1.0, 3.0))
+    assert long == pytest.approx(3.0 * short, rel=2e-3)

@@ -5,7 +5,7 @@ import pytest
 
 from skisnow._support.units import DEGREE
 from skisnow.track.curvature import track_motion
-from skisnow.track.turns import turns_of
+from skisnow.track.turns import find_turns
 
 from .paths import NOISE, FloatArray, along, track
 
@@ -26,7 +26,7 @@ def test_sine_has_its_turns_switch_points_angles_and_radii(seed: int) -> None:
     at one point; a line through several does better: 0.05 s.
     """
     motion = track_motion(track(along(sine(4), STEP)[::100], noise=NOISE, seed=seed))
-    turns = turns_of(motion)
+    turns = find_turns(motion)
     assert [turn.direction for turn in turns] == ["left", "right", "left", "right"]
     assert [turn.end for turn in turns[:-1]] == pytest.approx([1.5, 3.0, 4.5], abs=0.06)
     assert [turn.start for turn in turns[1:]] == [turn.end for turn in turns[:-1]]
@@ -42,7 +42,7 @@ def test_sine_has_its_turns_switch_points_angles_and_radii(seed: int) -> None:
 def test_straight_line_has_no_turn() -> None:
     straight = np.stack([np.arange(300.0), np.zeros(300)], axis=1)
     for seed in range(10):
-        assert turns_of(track_motion(track(straight, noise=NOISE, seed=seed))) == ()
+        assert find_turns(track_motion(track(straight, noise=NOISE, seed=seed))) == ()
 
 
 def test_wiggle_below_ten_degrees_does_not_part_a_turn() -> None:
@@ -50,8 +50,8 @@ def test_wiggle_below_ten_degrees_does_not_part_a_turn() -> None:
     curvature = np.full(round(41.5 / STEP) + 1, 1.0 / 20.0)
     curvature[round(20.0 / STEP) : round(21.5 / STEP)] = -4.0 * DEGREE / 1.5
     motion = track_motion(track(along(curvature, STEP)[::10], interval=0.01), window=0.06)
-    assert [turn.direction for turn in turns_of(motion)] == ["left"]
-    parted = turns_of(motion, least_angle=3.0 * DEGREE)
+    assert [turn.direction for turn in find_turns(motion)] == ["left"]
+    parted = find_turns(motion, least_angle=3.0 * DEGREE)
     assert [turn.direction for turn in parted] == ["left", "right", "left"]
     assert [turn.start for turn in parted[1:]] == pytest.approx([2.0, 2.15], abs=0.02)
 
@@ -59,7 +59,7 @@ def test_wiggle_below_ten_degrees_does_not_part_a_turn() -> None:
 def test_long_straight_parts_two_turns_to_one_side() -> None:
     """Between them 30 m, 3 s; each turns 20/20 rad."""
     curvature = np.concatenate([np.full(2000, 1.0 / 20.0), np.zeros(3000), np.full(2001, 1.0 / 20.0)])
-    turns = turns_of(track_motion(track(along(curvature, STEP)[::100], noise=0.002, seed=1)))
+    turns = find_turns(track_motion(track(along(curvature, STEP)[::100], noise=0.002, seed=1)))
     assert [turn.direction for turn in turns] == ["left", "left"]
     assert [turns[0].end, turns[1].start] == pytest.approx([2.0, 5.0], abs=0.35)  # the smoothing spreads 0.4 s
     for turn in turns:
@@ -70,7 +70,7 @@ def test_turn_ends_at_a_gap() -> None:
     place = along(np.full(4001, 1.0 / 20.0), STEP)[::100]
     made = track(place, noise=0.002)
     made.time[20:] += 30.0
-    turns = turns_of(track_motion(made))
+    turns = find_turns(track_motion(made))
     assert [turn.direction for turn in turns] == ["left", "left"]
     assert turns[0].end <= made.time[19]
     assert turns[1].start >= made.time[20]
@@ -78,19 +78,19 @@ def test_turn_ends_at_a_gap() -> None:
 
 def test_part_of_a_track() -> None:
     motion = track_motion(track(along(sine(4), STEP)[::100], noise=0.005))
-    assert [turn.direction for turn in turns_of(motion, first=16, last=29)] == ["right"]
+    assert [turn.direction for turn in find_turns(motion, first=16, last=29)] == ["right"]
 
 
 def test_wide_bend_is_straight() -> None:
     motion = track_motion(track(along(np.full(100_001, 1.0 / 600.0), STEP)[::100]))
-    assert turns_of(motion) == ()
+    assert find_turns(motion) == ()
     motion = track_motion(track(along(np.full(100_001, 1.0 / 400.0), STEP)[::100]))
-    assert len(turns_of(motion)) == 1
+    assert len(find_turns(motion)) == 1
 
 
 def test_share_passed_is_that_of_half_a_sine_as_long_as_the_turn() -> None:
     """A window of 1.6 s leaves 0.81 of turns of 1.5 s; the given radius times the share is the true one, 12 m."""
     motion = track_motion(track(along(sine(4), STEP)[::10], interval=0.01), window=1.6)
-    for turn in turns_of(motion)[1:-1]:
+    for turn in find_turns(motion)[1:-1]:
         assert turn.least_radius > 14.0
         assert turn.share_passed * turn.least_radius == pytest.approx(12.0, rel=0.02)

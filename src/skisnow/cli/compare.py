@@ -15,8 +15,8 @@ from .output_folder import ready
 from .progress import announced
 
 if TYPE_CHECKING:
-    from ..track.comparison import Comparison
-    from ..track.course.gate_gaps import GateGap
+    from ..comparison import Comparison
+    from ..track.course.gates_table import GateGap
     from ..track.track import Track
 
 
@@ -81,10 +81,10 @@ def run(options: argparse.Namespace) -> int:
     if options.out is not None:
         ready(options.out)
     found = _compared(options)
-    from ..track.comparison_dict import comparison_dict
-    from ..track.course.gate_gaps import gap_rows, gate_gaps
+    from ..comparison import comparison_dict
+    from ..track.course.gates_table import gap_rows, read_gate_gaps
 
-    gaps = gate_gaps(options.simulated, options.measured)
+    gaps = read_gate_gaps(options.simulated, options.measured)
     answer = comparison_dict(found) | ({} if gaps is None else {"gates": gap_rows(gaps)})
     for text in found.warnings:
         print(f"warning: {text}", file=sys.stderr)
@@ -105,12 +105,12 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _compared(options: argparse.Namespace) -> Comparison:
-    from ..track.alignment import require_offsets
+    from ..comparison.alignment import require_offsets
 
     fit = _offsets(options)
     require_offsets(fit)
     with announced("reading the tracks and finding nearest places"):
-        from ..track.comparison import compare_tracks
+        from ..comparison import compare_tracks
 
         measured = _read(options.measured)
         simulated = _read(options.simulated)

@@ -16,7 +16,7 @@ from .._support.errors import ParameterError
 from .._support.spreadsheet_text import MOST_CSV_BYTES, number
 from .._support.user_files import plain_bytes
 from ..parameters import Quantity, own_quantities
-from ..track.readers.text import cells_of, decimal_mark_of, require_width, text_of
+from ..track.readers.text import decimal_mark_of, decode_text, require_width, split_cells
 
 FloatArray = npt.NDArray[np.float64]
 FEWEST_FOR_SCATTER: Final = 3
@@ -115,7 +115,7 @@ def read_table(path: Path) -> TableFile:
         The file cannot be read, is not text, or is empty.
     """
     data = plain_bytes(path, most_bytes=MOST_CSV_BYTES)
-    cells = cells_of(text_of(data, str(path)), str(path))
+    cells = split_cells(decode_text(data, str(path)), str(path))
     require_width(cells, str(path))
     mark = decimal_mark_of((cell for row in cells.rows for cell in row), cells.separator)
     return TableFile(str(path), cells.header, tuple(zip(cells.lines, cells.rows, strict=True)), cells.header_line, mark)

@@ -24,7 +24,7 @@ from ..scenario import Scenario
 from ..ski import Ski
 from ..snow import SnowProperties
 from ..snow.mean_snow import drawn_snows
-from ..track.course.gate_gaps import GateGap, gaps_of
+from ..track.course.gates_table import GateGap, compare_gates
 from .line import RacingLine
 from .racers import LinePoint, Racer, RacerModel, ScoredLine, score_in
 from .score import Score
@@ -89,7 +89,7 @@ class Worth(Shown):
             ]
             for gates in (self.scores[0].gates, self.base[0].gates)
         )
-        return gaps_of(own, base)
+        return compare_gates(own, base)
 
     def _facts(self) -> Facts:
         rows = (

@@ -40,11 +40,11 @@ def climb_samples(
         Number of the part without a gap of each point.
     nodes : (m,) s
     """
-    known = np.isfinite(height)
-    if np.count_nonzero(known) < max(2.0, LEAST_SHARE * len(time)):
+    has_height = np.isfinite(height)
+    if np.count_nonzero(has_height) < max(2.0, LEAST_SHARE * len(time)):
         return None
-    found = np.zeros((count, len(nodes)), dtype=np.float32)
-    parts = [np.flatnonzero(known & (part == number)) for number in np.unique(part)]
+    rates = np.zeros((count, len(nodes)), dtype=np.float32)
+    parts = [np.flatnonzero(has_height & (part == number)) for number in np.unique(part)]
     longest = max(parts, key=len)[:_EXCERPT]
     scale = _scale(time[longest], height[longest])
     for points in parts:
@@ -55,7 +55,7 @@ def climb_samples(
         fit = model.fit(*scale)
         if fit is None:
             continue
-        rate, factor = fit
+        state, factor = fit
         place = np.interp(nodes[inside], time[points], np.arange(float(len(points))))
         before = np.minimum(place.astype(np.int64), len(points) - 2)
         share = place - before
@@ -64,9 +64,9 @@ def climb_samples(
             rows = slice(begin, min(begin + most, count))
             noise = rng.standard_normal((2 * len(points), rows.stop - begin))
             solved, _ = lapack.dtbtrs(factor, noise, uplo="L", trans="T")
-            samples = rate[:, 1] + solved.reshape(len(points), 2, -1)[:, 1].T
-            found[rows, inside] = samples[:, before] * (1.0 - share) + samples[:, before + 1] * share
-    return found
+            samples = state[:, 1] + solved.reshape(len(points), 2, -1)[:, 1].T
+            rates[rows, inside] = samples[:, before] * (1.0 - share) + samples[:, before + 1] * share
+    return rates
 
 
 def _scale(time: FloatArray, height: FloatArray) -> tuple[float, float]:

@@ -12,7 +12,7 @@ from scipy.stats import norm
 from .._support.display import ShownFields
 from .._support.units import CONFIDENCE
 from .path_estimate import PathEstimate, estimate_path
-from .smoothing import SmoothedTrack, filled, smoothed_track
+from .smoothing import SmoothedTrack, fill_rows, smooth_track
 from .track import Track
 
 FloatArray = npt.NDArray[np.float64]
@@ -92,7 +92,7 @@ def track_motion(track: Track, *, window: float | None = None, place_noise: floa
     Parameters
     ----------
     track, window, place_noise
-        As in `skisnow.track.smoothing.smoothed_track`.
+        As in `skisnow.track.smoothing.smooth_track`.
 
     Raises
     ------
@@ -105,7 +105,7 @@ def track_motion(track: Track, *, window: float | None = None, place_noise: floa
     Errors are propagated to first order. Smoothing makes curvature less, never more, in turns of constant direction:
     by how much stands in ``smoothed.resolution``; the standard errors do not contain it.
     """
-    smoothed = smoothed_track(track, window=window, place_noise=place_noise)
+    smoothed = smooth_track(track, window=window, place_noise=place_noise)
     fitted = np.linalg.norm(smoothed.velocity, axis=1)
     recorded, speed_source = _recorded_speed(track)
     path = _path(track, smoothed) if speed_source == "fitted" else None
@@ -136,8 +136,8 @@ def _recorded_speed(track: Track) -> tuple[FloatArray, SpeedSource]:
     speed = track.speed.astype(float)
     if track.velocity is not None:
         whole = np.linalg.norm(np.nan_to_num(track.velocity), axis=1)
-        known = np.isfinite(track.velocity[:, :2]).all(axis=1)
-        speed = np.where(np.isnan(speed) & known, whole, speed)
+        has_velocity = np.isfinite(track.velocity[:, :2]).all(axis=1)
+        speed = np.where(np.isnan(speed) & has_velocity, whole, speed)
     placed = np.flatnonzero(np.isfinite(speed) & track.usable)
     if len(placed) < 2:
         return speed, "fitted"
@@ -173,21 +173,21 @@ def _arc_length(
 def odometer_arc_length(track: Track) -> FloatArray:
     """The device's own distance (n,) (m), its gaps filled evenly in time; it may begin above 0."""
     assert track.odometer is not None
-    known = np.isfinite(track.odometer)
+    recorded = np.isfinite(track.odometer)
     time = np.maximum.accumulate(track.time)
-    return np.interp(time, time[known], np.maximum.accumulate(track.odometer[known]))
+    return np.interp(time, time[recorded], np.maximum.accumulate(track.odometer[recorded]))
 
 
 def integrated_arc_length(track: Track, smoothed: SmoothedTrack, speed: FloatArray) -> FloatArray:
     """Integral (n,) (m) of the speed by the trapezoidal rule; straight over gaps, nothing between segments."""
     rising = np.maximum.accumulate(track.time)
-    known = np.isfinite(speed) & track.usable
-    if not known.any():
+    has_speed = np.isfinite(speed) & track.usable
+    if not has_speed.any():
         return np.zeros_like(rising)
-    whole = np.interp(rising, rising[known], speed[known])
+    whole = np.interp(rising, rising[has_speed], speed[has_speed])
     steps = np.diff(rising) * (whole[1:] + whole[:-1]) / 2.0
     gap = np.diff(smoothed.part) > 0
-    steps[gap] = np.linalg.norm(np.diff(filled(track.place[:, :2], track.usable), axis=0)[gap], axis=1)
+    steps[gap] = np.linalg.norm(np.diff(fill_rows(track.place[:, :2], track.usable), axis=0)[gap], axis=1)
     steps[np.diff(segments(track)) > 0] = 0.0
     return np.concatenate([[0.0], np.cumsum(steps)])
 
@@ -222,18 +222,18 @@ def segments(track: Track) -> IntArray:
 
 def running_mean(time: FloatArray, values: FloatArray, window: float, segment: IntArray) -> FloatArray:
     """Mean (n,) of the known values of a segment within half a window (s) of each point, NaN if none is known."""
-    known = np.isfinite(values)
+    finite = np.isfinite(values)
     rising = np.maximum.accumulate(time)
     first = np.searchsorted(rising, rising - window / 2.0, side="left")
     last = np.searchsorted(rising, rising + window / 2.0, side="right")
     first = np.maximum(first, np.searchsorted(segment, segment, side="left"))
     last = np.minimum(last, np.searchsorted(segment, segment, side="right"))
-    base = float(np.mean(values[known])) if known.any() else 0.0
-    sums = np.concatenate([[0.0], np.cumsum(np.where(known, values - base, 0.0))])
-    counts = np.concatenate([[0], np.cumsum(known)])
+    base = float(np.mean(values[finite])) if finite.any() else 0.0
+    sums = np.concatenate([[0.0], np.cumsum(np.where(finite, values - base, 0.0))])
+    counts = np.concatenate([[0], np.cumsum(finite)])
     count = counts[last] - counts[first]
     mean = base + (sums[last] - sums[first]) / np.maximum(count, 1)
-    return np.where(known & (count > 0), mean, np.nan)
+    return np.where(finite & (count > 0), mean, np.nan)
 
 
 def _moving(smoothed: SmoothedTrack, fitted: FloatArray) -> npt.NDArray[np.bool_]:
@@ -259,10 +259,10 @@ def _curvature(smoothed: SmoothedTrack, fitted: FloatArray) -> tuple[FloatArray,
     curvature = (vx * ay - vy * ax) / speed**3
     by_velocity = np.stack([ay, -ax]) / speed**3 - 3.0 * curvature * np.stack([vx, vy]) / speed**2
     by_acceleration = np.stack([-vy, vx]) / speed**3
-    of = smoothed.covariance
+    covariance = smoothed.covariance
     variance = (
-        of[:, 1, 1] * np.sum(by_velocity**2, axis=0)
-        + 2.0 * of[:, 1, 2] * np.sum(by_velocity * by_acceleration, axis=0)
-        + of[:, 2, 2] * np.sum(by_acceleration**2, axis=0)
+        covariance[:, 1, 1] * np.sum(by_velocity**2, axis=0)
+        + 2.0 * covariance[:, 1, 2] * np.sum(by_velocity * by_acceleration, axis=0)
+        + covariance[:, 2, 2] * np.sum(by_acceleration**2, axis=0)
     )
     return curvature, np.sqrt(np.maximum(variance, 0.0))

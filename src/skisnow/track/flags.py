@@ -106,8 +106,8 @@ def point_flags(
     repeated[1:] = np.diff(time) == 0.0
     sure = np.flatnonzero(placed & ~repeated)
     jump, impossible = np.zeros(len(time), bool), np.zeros(len(time), bool)
-    jumped, stepped = _impossible(time[sure], place[sure, :2], fastest)
-    apart = _apart(time, place, sure, segment, fastest)
+    jumped, stepped = _impossible_points(time[sure], place[sure, :2], fastest)
+    apart = _segment_starts(time, place, sure, segment, fastest)
     jump[sure[jumped]] = True
     impossible[sure[stepped]] = True
     jump &= ~apart
@@ -136,7 +136,9 @@ def _after_gap(time: FloatArray, factor: float) -> BoolArray:
     return after
 
 
-def _apart(time: FloatArray, place: FloatArray, sure: IntArray, segment: IntArray | None, fastest: float) -> BoolArray:
+def _segment_starts(
+    time: FloatArray, place: FloatArray, sure: IntArray, segment: IntArray | None, fastest: float
+) -> BoolArray:
     """First points (n,) bool of segments that do not continue the one before."""
     apart = np.zeros(len(time), bool)
     if segment is None or len(sure) < 2:
@@ -148,7 +150,7 @@ def _apart(time: FloatArray, place: FloatArray, sure: IntArray, segment: IntArra
     return apart
 
 
-def _impossible(time: FloatArray, place: FloatArray, fastest: float) -> tuple[list[int], list[int]]:
+def _impossible_points(time: FloatArray, place: FloatArray, fastest: float) -> tuple[list[int], list[int]]:
     """Numbers of the points that jump out and back, and of those reached at an impossible speed for good."""
     lengths = np.hypot(*np.diff(place, axis=0).T)
     fast = lengths > fastest * np.diff(time)
@@ -158,8 +160,8 @@ def _impossible(time: FloatArray, place: FloatArray, fastest: float) -> tuple[li
         jumps.insert(0, 0)  # the first point alone is far from all that follow
     if last > 1 and fast[-1] and last - 1 not in jumps:
         jumps.append(last)
-    known = set(jumps)
-    steps = [point for point in (np.flatnonzero(fast) + 1).tolist() if not known & {point - 1, point}]
+    jump_set = set(jumps)
+    steps = [point for point in (np.flatnonzero(fast) + 1).tolist() if not jump_set & {point - 1, point}]
     return jumps, steps
 
 

@@ -31,7 +31,7 @@ _CHUNK: Final = 8192
 
 
 @dataclass(frozen=True, slots=True)
-class Observed:
+class WeightedValues:
     """What is fitted: values (n, d) with weights (n,); a weight of 0 leaves the point out, whatever its value."""
 
     values: FloatArray
@@ -63,7 +63,11 @@ class LocalCubic:
 
 
 def local_cubic(
-    time: FloatArray, windows: tuple[IntArray, IntArray], half: float, place: Observed, rate: Observed | None
+    time: FloatArray,
+    windows: tuple[IntArray, IntArray],
+    half: float,
+    place: WeightedValues,
+    rate: WeightedValues | None,
 ) -> LocalCubic:
     """Fit every window; where points are dense, one for several points, a fortieth of a window apart at most.
 
@@ -86,9 +90,9 @@ def local_cubic(
         sums = _Moments(len(chunk), place.values.shape[1])
         for offset in range(int((first[chunk] - chunk).min()), int((last[chunk] - chunk).max())):
             sums.add(time, (chunk, first[chunk], last[chunk], offset), half, place, rate)
-        pieces.append(_solved(sums, half))
+        pieces.append(_solve(sums, half))
     fits = LocalCubic(*(np.concatenate(parts) for parts in zip(*pieces, strict=True)))
-    return fits if len(centres) == len(time) else _shifted(fits, (time, half), centres, centre_of, place.values)
+    return fits if len(centres) == len(time) else _shift_fits(fits, (time, half), centres, centre_of, place.values)
 
 
 def _centres(time: FloatArray, windows: tuple[IntArray, IntArray], half: float) -> tuple[IntArray, IntArray]:
@@ -107,7 +111,7 @@ def _centres(time: FloatArray, windows: tuple[IntArray, IntArray], half: float) 
     return np.cumsum(begins) - 1, (starts + ends) // 2
 
 
-def _shifted(
+def _shift_fits(
     fits: LocalCubic, scale: tuple[FloatArray, float], centres: IntArray, centre_of: IntArray, values: FloatArray
 ) -> LocalCubic:
     """The fits about each point in place of those about the centres: the same cubics in another variable."""
@@ -148,8 +152,8 @@ class _Moments:
         time: FloatArray,
         where: tuple[IntArray, IntArray, IntArray, int],
         half: float,
-        place: Observed,
-        rate: Observed | None,
+        place: WeightedValues,
+        rate: WeightedValues | None,
     ) -> None:
         """Add the point that lies ``offset`` after each point, where that is in its window."""
         point, first, last, offset = where
@@ -180,7 +184,7 @@ def _add_powers(
         power *= tau
 
 
-def _solved(sums: _Moments, half: float) -> tuple[npt.NDArray[np.generic], ...]:
+def _solve(sums: _Moments, half: float) -> tuple[npt.NDArray[np.generic], ...]:
     """Solve the normal equations; the parts of a LocalCubic."""
     order = np.arange(TERMS)
     of_place = np.moveaxis(sums.place[order[:, None] + order], -1, 0)
@@ -194,12 +198,12 @@ def _solved(sums: _Moments, half: float) -> tuple[npt.NDArray[np.generic], ...]:
     enough = sums.place_count >= FEWEST_POINTS
     covariance = np.full_like(of_place, np.nan)
     covariance[enough] = _inverse((of_place + of_rate)[enough])
-    found = covariance @ (right_place + right_rate)
+    coefficients = covariance @ (right_place + right_rate)
     return (
-        found,
+        coefficients,
         covariance,
-        _misfit(sums.place_squares, found, of_place, right_place),
-        _misfit(sums.rate_squares, found, of_rate, right_rate),
+        _misfit(sums.place_squares, coefficients, of_place, right_place),
+        _misfit(sums.rate_squares, coefficients, of_rate, right_rate),
         sums.place_count,
         sums.rate_count,
     )
@@ -211,7 +215,7 @@ def _inverse(normal: FloatArray) -> FloatArray:
     return np.linalg.inv(normal + ridge[:, None, None] * np.eye(TERMS))
 
 
-def _misfit(squares: FloatArray, found: FloatArray, normal: FloatArray, right: FloatArray) -> FloatArray:
+def _misfit(squares: FloatArray, coefficients: FloatArray, normal: FloatArray, right: FloatArray) -> FloatArray:
     """Σ w (y − Xβ)² = Σ w y² − 2 β·b + βᵀ N β, for the observations of one kind."""
-    explained = np.einsum("nkd,nkd->n", found, 2.0 * right - normal @ found)
+    explained = np.einsum("nkd,nkd->n", coefficients, 2.0 * right - normal @ coefficients)
     return np.maximum(squares - explained, 0.0)

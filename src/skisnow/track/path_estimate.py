@@ -144,7 +144,7 @@ def estimate_path(
         None if no part has three points or no path can be fitted.
     """
     rng = np.random.default_rng(seed)
-    pieces = [_binned(time[part == number], place[part == number]) for number in np.unique(part)]
+    pieces = [_average_close_points(time[part == number], place[part == number]) for number in np.unique(part)]
     interval = float(np.median(np.diff(time))) if len(time) > 1 else 0.0
     scales = TimeScales(max(LONGEST_STEP, interval / 4.0), float(np.clip(RESOLVED * interval, *SPEED_TIMES)))
     pieces = [piece for piece in pieces if len(piece[0]) > 1]
@@ -157,18 +157,18 @@ def estimate_path(
     nodes = sum(_node_count(at, scales.longest_step) for at, _ in pieces)
     samples = int(np.clip(_MOST_NUMBERS / nodes, *_SAMPLES))
     fits = min(_NODES_FITTED / nodes, _PARTS_FITTED / len(pieces))
-    drawn = _drawn(weighted, int(np.clip(fits, *_FITS)), samples, rng)
-    found = [_piece_samples(at, where, scales, drawn, rng) for at, where in pieces]
-    if any(each is None for each in found):
+    drawn = _draw_parameters(weighted, int(np.clip(fits, *_FITS)), samples, rng)
+    samples_of_pieces = [_piece_samples(at, where, scales, drawn, rng) for at, where in pieces]
+    if any(piece is None for piece in samples_of_pieces):
         return None
-    return _joined(time, place, part, segment, [each for each in found if each is not None], rng)
+    return _join(time, place, part, segment, [piece for piece in samples_of_pieces if piece is not None], rng)
 
 
 def _node_count(time: FloatArray, longest_step: float) -> int:
     return int(np.sum(np.maximum(1, np.ceil(np.diff(time) / longest_step)))) + 1
 
 
-def _binned(time: FloatArray, place: FloatArray) -> tuple[FloatArray, FloatArray]:
+def _average_close_points(time: FloatArray, place: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Times and places, averaged over points that are closer in time than the shortest step; the ends stay."""
     if len(time) < 2 or float(np.median(np.diff(time))) >= SHORTEST_STEP:
         return time, place
@@ -194,11 +194,11 @@ def _excerpt(pieces: list[tuple[FloatArray, FloatArray]], scales: TimeScales) ->
     return PathModel(best[1], best[2] - best[2][0], scales)
 
 
-def _drawn(
+def _draw_parameters(
     weighted: list[WeightedParameters], fits: int, samples: int, rng: np.random.Generator
 ) -> list[tuple[WeightedParameters, int]]:
     """Parameters drawn by their weights, and the number of samples for each: systematic resampling."""
-    logs = np.array([each.log_weight for each in weighted])
+    logs = np.array([parameters.log_weight for parameters in weighted])
     weights = np.exp(logs - logs.max())
     ends = np.cumsum(weights) / np.sum(weights)
     chosen = np.searchsorted(ends, (rng.random() + np.arange(fits)) / fits)
@@ -223,15 +223,15 @@ def _piece_samples(
         end = min(begin + WINDOW, len(time) - 1)
         first, last = max(begin - OVERLAP, 0), min(end + OVERLAP + 1, len(time))
         model = PathModel(time[first:last], place[first:last, :2] - place[first, :2], scales)
-        kept = slice(int(model.points[begin - first]), int(model.points[end - first]) + (end == len(time) - 1))
-        found = []
+        nodes = slice(int(model.points[begin - first]), int(model.points[end - first]) + (end == len(time) - 1))
+        speeds_of_window = []
         for (parameters, _), count in drawn:
             fit = model.fit(parameters, model.initial_state(parameters.place_noise))
             if fit is None:
                 return None
-            found += [_samples(fit, number, rng)[:, kept] for number in _chunks(count, len(fit.state))]
-        times.append(model.time[kept])
-        speeds.append(np.concatenate(found))
+            speeds_of_window += [_samples(fit, number, rng)[:, nodes] for number in _chunks(count, len(fit.state))]
+        times.append(model.time[nodes])
+        speeds.append(np.concatenate(speeds_of_window))
     return np.concatenate(times), np.concatenate(speeds, axis=1)
 
 
@@ -258,7 +258,7 @@ def _samples(fit: PathFit, count: int, rng: np.random.Generator) -> FloatSamples
     return np.asarray(forward * (speed + change[:, _SPEED].T) * (1.0 + longer[:, None]), dtype=np.float32)
 
 
-def _joined(
+def _join(
     time: FloatArray,
     place: FloatArray,
     part: IntArray,

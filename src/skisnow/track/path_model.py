@@ -219,14 +219,14 @@ class PathModel:
                     return None
                 change = cho_solve_banded((factor, True), gradient.ravel(), check_finite=False)
                 moved = state - change.reshape(-1, STATES)
-                found = self._residuals(moved, parameters, weight)
-                if found.misfit <= residuals.misfit * (1.0 + 1e-9) + 1e-9:
+                moved_residuals = self._residuals(moved, parameters, weight)
+                if moved_residuals.misfit <= residuals.misfit * (1.0 + 1e-9) + 1e-9:
                     break
                 damping = max(5.0 * damping, 1e-4)
                 if not damping < 1e6:
                     return None
-            decrease = residuals.misfit - found.misfit
-            state, residuals = moved, found
+            decrease = residuals.misfit - moved_residuals.misfit
+            state, residuals = moved, moved_residuals
             if damping == 0.0 and decrease < _SETTLED * max(1.0, residuals.misfit) and decrease < 1e-2:
                 break
             damping = damping / 10.0 if damping > 1e-4 else 0.0

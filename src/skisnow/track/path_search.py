@@ -140,18 +140,18 @@ def likely_parameters(model: PathModel) -> list[WeightedParameters]:
     search, start = _best_start(model)
     if start is None:
         return []
-    found: list[_Optimum | None] = [None] * len(ACCELERATIONS)
-    found[start[0]] = search.optimum(start[1], float(ACCELERATIONS[start[0]]), start[2])
+    optima: list[_Optimum | None] = [None] * len(ACCELERATIONS)
+    optima[start[0]] = search.optimum(start[1], float(ACCELERATIONS[start[0]]), start[2])
     for numbers in (range(start[0] - 1, -1, -1), range(start[0] + 1, len(ACCELERATIONS))):
-        before = found[start[0]]
+        before = optima[start[0]]
         for number in numbers:
             if before is None:
                 break
-            before = found[number] = search.optimum(before.logs, float(ACCELERATIONS[number]), before.state)
-            best = max(other.value for other in found if other is not None)
+            before = optima[number] = search.optimum(before.logs, float(ACCELERATIONS[number]), before.state)
+            best = max(other.value for other in optima if other is not None)
             if before is not None and before.value < best - 2.0 * _NEGLIGIBLE:
                 break
-    return _points(search, found)
+    return _points(search, optima)
 
 
 def _best_start(model: PathModel) -> tuple[_Search, tuple[int, FloatArray, FloatArray] | None]:
@@ -172,8 +172,8 @@ def _best_start(model: PathModel) -> tuple[_Search, tuple[int, FloatArray, Float
 
 def _points(search: _Search, optima: list[_Optimum | None]) -> list[WeightedParameters]:
     """Cubature points about each optimum that has weight."""
-    masses = [-np.inf if each is None else each.log_mass + LOG_PRIOR[n] for n, each in enumerate(optima)]
-    found = []
+    masses = [-np.inf if optimum is None else optimum.log_mass + LOG_PRIOR[n] for n, optimum in enumerate(optima)]
+    points = []
     for number, optimum in enumerate(optima):
         if optimum is None or masses[number] < max(masses) - _NEGLIGIBLE:
             continue
@@ -184,5 +184,5 @@ def _points(search: _Search, optima: list[_Optimum | None]) -> list[WeightedPara
             value, _ = search.value(logs, acceleration, optimum.state)
             weight = value + 0.5 * size + float(np.linalg.slogdet(optimum.root)[1]) + LOG_PRIOR[number]
             if np.isfinite(weight):
-                found.append(WeightedParameters(search.parameters(logs, acceleration), float(weight)))
-    return found
+                points.append(WeightedParameters(search.parameters(logs, acceleration), float(weight)))
+    return points

@@ -171,7 +171,7 @@ def place_from_origin(place: FloatArray, before: GeodeticPoint, after: GeodeticP
     return np.asarray(moved)
 
 
-def turned_to_origin(vectors: FloatArray, points: FloatArray, *, origin: GeodeticPoint) -> FloatArray:
+def rotate_to_origin(vectors: FloatArray, points: FloatArray, *, origin: GeodeticPoint) -> FloatArray:
     """Vectors (n, 3) east, north, up at their own points (n, 3) as east, north, up at the origin.
 
     A vector without vertical part (NaN) is turned as if it had none; its vertical part stays NaN. The axes of two
@@ -180,7 +180,7 @@ def turned_to_origin(vectors: FloatArray, points: FloatArray, *, origin: Geodeti
     own = east_north_up_axes(points[:, 0], points[:, 1])
     here = east_north_up_axes(origin.latitude_deg, origin.longitude_deg)
     missing = np.isnan(vectors[:, 2])
-    known = np.where(missing[:, None] & np.array([False, False, True]), 0.0, vectors)
-    turned = np.einsum("ij,nkj,nk->ni", here, own, known)
+    complete = np.where(missing[:, None] & np.array([False, False, True]), 0.0, vectors)
+    turned = np.einsum("ij,nkj,nk->ni", here, own, complete)
     turned[missing, 2] = np.nan
     return np.asarray(turned)

@@ -9,15 +9,14 @@ from typing import TYPE_CHECKING, Final, Literal, TypeAlias, get_args
 
 from .._support.errors import ParameterError
 from .flags import FASTEST, GAP_FACTOR
-from .readers.conversion import track_of
+from .readers.conversion import build_track
 from .readers.fit import read_fit
 from .readers.gpx import read_gpx
 from .readers.nmea import SENTENCE, read_nmea
-from .readers.recording import Recording
-from .readers.refusal import refusal
+from .readers.recording import Recording, track_error
 from .readers.rtklib import HEADER, read_rtklib
 from .readers.table import read_table
-from .readers.text import text_of
+from .readers.text import decode_text
 from .readers.ubx import SYNC, has_places, read_ubx
 
 if TYPE_CHECKING:
@@ -94,15 +93,15 @@ def read_track(
         raise ParameterError(f"there is no track format {kind!r}; there are {', '.join(get_args(TrackFormat))}")
     path = Path(path)
     data = _bytes(path)
-    recording = _recording(data, path.name, kind or _kind(data, path.suffix))
-    return track_of(recording, origin=origin, fastest=fastest, gap_factor=gap_factor)
+    recording = _recording(data, path.name, kind or _guess_format(data, path.suffix))
+    return build_track(recording, origin=origin, fastest=fastest, gap_factor=gap_factor)
 
 
-def format_of(data: bytes, suffix: str) -> TrackFormat:
+def recognise_format(data: bytes, suffix: str) -> TrackFormat:
     """The format of a file by its content; by its ending where the content is of none; else CSV.
 
-    >>> format_of(b"time_s,x_m,y_m", ".txt"), format_of(b"$GPGGA,120000.00,", ".log"), format_of(b"", ".FIT")
-    ('csv', 'nmea', 'fit')
+    >>> recognise_format(b"time_s,x_m,y_m", ".txt"), recognise_format(b"$GPGGA,120000.00,", ".log")
+    ('csv', 'nmea')
     """
     head = data[:_HEAD]
     signs: tuple[tuple[TrackFormat, object], ...] = (
@@ -116,9 +115,9 @@ def format_of(data: bytes, suffix: str) -> TrackFormat:
     return next((kind for kind, sign in signs if sign), SUFFIXES.get(suffix.lower(), "csv"))
 
 
-def _kind(data: bytes, suffix: str) -> TrackFormat:
+def _guess_format(data: bytes, suffix: str) -> TrackFormat:
     """The format of the content; sentences in a file with UBX frames if no NAV-PVT among them has a place."""
-    kind = format_of(data, suffix)
+    kind = recognise_format(data, suffix)
     return "nmea" if kind == "ubx" and not has_places(data) and SENTENCE.search(data) else kind
 
 
@@ -131,7 +130,7 @@ def _bytes(path: Path) -> bytes:
     if data is None:
         raise _unreadable(path, "it is no plain file")
     if not data.strip():
-        raise refusal(
+        raise track_error(
             "empty_file",
             path.name,
             allowed="a track",
@@ -141,7 +140,7 @@ def _bytes(path: Path) -> bytes:
 
 
 def _unreadable(path: Path, reason: str) -> Exception:
-    return refusal(
+    return track_error(
         "unreadable_file",
         str(path),
         value=reason,
@@ -157,7 +156,7 @@ def _recording(data: bytes, name: str, kind: TrackFormat) -> Recording:
         return read_ubx(data, name)
     if kind == "nmea":
         return read_nmea(data, name)
-    text = text_of(data, name)
+    text = decode_text(data, name)
     if kind == "gpx":
         return read_gpx(text, name)
     return read_rtklib(text, name) if kind == "rtklib" else read_table(text, name)

@@ -13,7 +13,6 @@ import numpy.typing as npt
 from .._support.display import ShownFields
 from .._support.units import STANDARD_GRAVITY
 from .curvature import TrackMotion, running_mean, segments
-from .phases import turning_points
 from .track import Track
 
 FloatArray = npt.NDArray[np.float64]
@@ -100,7 +99,7 @@ def split_day(track: Track, motion: TrackMotion) -> Day:
     heights differ by less than 15 m, or there are none, every stretch in motion is a run; stops up to 30 s do not end
     it. An ascent between two segments of the file separates runs, but it is not listed as a lift.
     """
-    height, remarks = known_height(track, motion)
+    height, remarks = height_or_reason(track, motion)
     if height is None:
         return Day(tuple(_moving_stretches(track, motion, None)), (), "motion", remarks)
     smooth = running_mean(track.time, height, HEIGHT_WINDOW, segments(track))
@@ -112,16 +111,16 @@ def split_day(track: Track, motion: TrackMotion) -> Day:
     ascents = [
         (low, high)
         for low, high, rise in zip(corners[:-1], corners[1:], changes, strict=True)
-        if rise >= max(LEAST_HEIGHT, _carried(motion, low))
+        if rise >= max(LEAST_HEIGHT, _coasting_height(motion, low))
     ]
     climbs = [_climb(smooth, *ascent) for ascent in ascents if _recorded_rise(track, smooth, *ascent) >= LEAST_HEIGHT]
     lifts = [_stretch(track, motion, height, *climb) for climb in climbs]
-    found = (_descent(motion, smooth, corners, area) for area in _between(ascents, len(track)))
-    runs = [_stretch(track, motion, height, *ends) for ends in found if ends is not None]
+    spans = (_descent(motion, smooth, corners, area) for area in _areas_between(ascents, len(track)))
+    runs = [_stretch(track, motion, height, *ends) for ends in spans if ends is not None]
     return Day(tuple(run for run in runs if _is_run(run)), tuple(lifts), "height", remarks)
 
 
-def known_height(track: Track, motion: TrackMotion) -> tuple[FloatArray | None, tuple[str, ...]]:
+def height_or_reason(track: Track, motion: TrackMotion) -> tuple[FloatArray | None, tuple[str, ...]]:
     """Height (n,) (m) with its holes filled evenly, or None; and in words why there is none."""
     recorded = np.isfinite(track.place[:, 2])
     if track.axes == "slope":
@@ -141,13 +140,13 @@ def _recorded_rise(track: Track, smooth: FloatArray, low: int, high: int) -> flo
     return float(np.sum(np.diff(smooth[low : high + 1])[~between]))
 
 
-def _carried(motion: TrackMotion, foot: int) -> float:
+def _coasting_height(motion: TrackMotion, foot: int) -> float:
     """Height (m) to which the speed at the foot of an ascent carries."""
     speed = motion.speed[foot]
     return float(speed**2 / (2.0 * STANDARD_GRAVITY)) if np.isfinite(speed) else 0.0
 
 
-def _between(ascents: list[tuple[int, int]], count: int) -> Iterator[tuple[int, int]]:
+def _areas_between(ascents: list[tuple[int, int]], count: int) -> Iterator[tuple[int, int]]:
     """First and last point of what lies before, between and after the ascents."""
     begin = 0
     for low, high in ascents:
@@ -227,13 +226,52 @@ def max_speed(track: Track, motion: TrackMotion, inside: slice) -> tuple[float |
     """Highest speed (m/s) in a stretch, recorded or of the estimated path, and the ends of its 95 % interval."""
     if motion.path is not None:
         times = track.time[inside]
-        found = motion.path.max_speed(float(times[0]), float(times[-1]))
-        return (None, None) if found is None else (found.value, (found.low, found.high))
+        speed = motion.path.max_speed(float(times[0]), float(times[-1]))
+        return (None, None) if speed is None else (speed.value, (speed.low, speed.high))
     speeds = motion.speed[inside][track.usable[inside]]
     speeds = speeds[np.isfinite(speeds)]
     return float(speeds.max()) if len(speeds) else None, None
 
 
-def _is_run(found: Stretch) -> bool:
+def _is_run(stretch: Stretch) -> bool:
     """A height that wanders while someone stands is none: the distance travelled is longer than it is deep."""
-    return found.distance >= max(LEAST_DISTANCE, found.descent or 0.0)
+    return stretch.distance >= max(LEAST_DISTANCE, stretch.descent or 0.0)
+
+
+def turning_points(values: FloatArray, least: float) -> list[int]:
+    """Numbers of the first value, of the highest and lowest in turn, and of the last.
+
+    Parameters
+    ----------
+    values : (n,)
+        Finite.
+    least
+        Two neighbouring turning points but the first and the last differ at least by this.
+
+    >>> turning_points(np.array([0.0, 5.0, 4.5, 9.0, 1.0, 1.5, 0.0, 6.0]), 2.0)
+    [0, 3, 6, 7]
+    """
+    turning = [0]
+    direction = high = low = 0
+    for here in _local_extremes(values):
+        if direction >= 0 and values[here] > values[high]:
+            high = here
+        if direction <= 0 and values[here] < values[low]:
+            low = here
+        if direction >= 0 and values[high] - values[here] >= least:
+            turning.append(high)
+            direction, low = -1, here
+        elif direction <= 0 and values[here] - values[low] >= least:
+            turning.append(low)
+            direction, high = 1, here
+    if direction:
+        turning.append(high if direction > 0 else low)
+    return sorted({*turning, len(values) - 1})
+
+
+def _local_extremes(values: FloatArray) -> list[int]:
+    """Numbers at which the direction changes, with the last: only these can be turning points."""
+    signs = np.sign(np.diff(values))
+    moving = np.flatnonzero(signs)
+    changes = np.flatnonzero(np.diff(signs[moving])) + 1
+    return [*moving[changes].tolist(), len(values) - 1] if len(values) else []

@@ -91,9 +91,9 @@ def in_slope_frame(
     _require(track, fall_line_azimuth, slope_angle, origin)
     angle = slope_angle or 0.0
     axes = slope_axes(fall_line_azimuth, angle)
-    place = _turned(track.place - np.asarray(origin, float), axes, missing_height)
-    velocity = None if track.velocity is None else _turned(track.velocity, axes, missing_height)
-    place_sd = None if track.place_sd is None else _turned_sd(track.place_sd, axes)
+    place = _rotate(track.place - np.asarray(origin, float), axes, missing_height)
+    velocity = None if track.velocity is None else _rotate(track.velocity, axes, missing_height)
+    place_sd = None if track.place_sd is None else _rotate_sd(track.place_sd, axes)
     return replace(
         track,
         place=place,
@@ -105,7 +105,7 @@ def in_slope_frame(
     )
 
 
-def _turned(vectors: FloatArray, axes: FloatArray, missing_height: str) -> FloatArray:
+def _rotate(vectors: FloatArray, axes: FloatArray, missing_height: str) -> FloatArray:
     """Components along the axes; a missing vertical part spoils only what it takes part in."""
     horizontal = vectors[:, :2]
     vertical = vectors[:, 2]
@@ -115,7 +115,7 @@ def _turned(vectors: FloatArray, axes: FloatArray, missing_height: str) -> Float
     return np.asarray(horizontal @ axes[:, :2].T + np.stack(parts, axis=-1))
 
 
-def _turned_sd(sd: FloatArray, axes: FloatArray) -> FloatArray:
+def _rotate_sd(sd: FloatArray, axes: FloatArray) -> FloatArray:
     parts = np.where(axes[None] == 0.0, 0.0, (axes[None] * sd[:, None, :]) ** 2)
     return np.asarray(np.sqrt(parts.sum(axis=-1)))
 
@@ -190,10 +190,10 @@ def inclination(track: Track) -> Inclination | None:
     >>> round(found.angle, 12)
     0.2
     """
-    known = track.usable & np.isfinite(track.place[:, 2])
-    if known.sum() < _FEWEST:
+    points = track.usable & np.isfinite(track.place[:, 2])
+    if points.sum() < _FEWEST:
         return None
-    place = track.place[known] - track.place[known].mean(axis=0)
+    place = track.place[points] - track.place[points].mean(axis=0)
     left, sizes, right = np.linalg.svd(place[:, :2], full_matrices=False)
     if not sizes[0] > 0.0:
         return None
@@ -204,7 +204,7 @@ def inclination(track: Track) -> Inclination | None:
     return Inclination(math.atan(float(np.linalg.norm(slope))), float(error[0]))
 
 
-class Laid(NamedTuple):
+class LaidTracks(NamedTuple):
     """Two tracks after one of them was laid on the map.
 
     Attributes
@@ -226,7 +226,7 @@ class Laid(NamedTuple):
     warnings: tuple[str, ...] = ()
 
 
-def lay_for_fit(simulated: Track, measured: Track, slope_angle: float | None) -> Laid:
+def lay_for_fit(simulated: Track, measured: Track, slope_angle: float | None) -> LaidTracks:
     """Lay the track in a slope's axes on the map of the other one, before start and heading are fitted.
 
     The inclination is the one that is given, else that of the track's slope, else that of the other track's heights.
@@ -249,14 +249,14 @@ def lay_for_fit(simulated: Track, measured: Track, slope_angle: float | None) ->
     if angle is None and falls is not None and other is not None and (steeper or (apart and other.error < DEGREE)):
         angle, source = max(falls, 0.0), f"from the heights of {measured.name}"
     if angle is None:
-        return Laid(simulated, measured, warnings=(_unknown(simulated),) if apart else ())
+        return LaidTracks(simulated, measured, warnings=(_unknown(simulated),) if apart else ())
     warnings: tuple[str, ...] = ()
     if other is not None and abs(other.angle - angle - _own_fall(simulated, own)) > CLEARLY * max(other.error, DEGREE):
         warnings = (
             f"{measured.name} falls by {other.angle / DEGREE:.1f}°, the slope by {angle / DEGREE:.1f}° ({source}): "
             "check the slope's angle and the heights, or compare from above",
         )
-    return Laid(lay_on_slope(simulated, angle) if angle else simulated, measured, angle, source, warnings)
+    return LaidTracks(lay_on_slope(simulated, angle) if angle else simulated, measured, angle, source, warnings)
 
 
 def _own_fall(track: Track, own: Inclination | None) -> float:

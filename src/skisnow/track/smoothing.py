@@ -7,13 +7,13 @@ from typing import Final
 
 import numpy as np
 import numpy.typing as npt
+from scipy.optimize import brentq
 from scipy.stats import chi2
 
 from .._support.display import ShownFields
 from .._support.errors import ParameterError
 from .flags import GAP_FACTOR
-from .local_cubic import FEWEST_POINTS, TERMS, LocalCubic, Observed, local_cubic
-from .resolution import Resolution
+from .local_cubic import FEWEST_POINTS, TERMS, LocalCubic, WeightedValues, local_cubic
 from .track import Track
 
 FloatArray = npt.NDArray[np.float64]
@@ -65,7 +65,7 @@ class SmoothedTrack(ShownFields):
     resolution: Resolution
 
 
-def smoothed_track(track: Track, *, window: float | None = None, place_noise: float | None = None) -> SmoothedTrack:
+def smooth_track(track: Track, *, window: float | None = None, place_noise: float | None = None) -> SmoothedTrack:
     """Fit cubics to the track's places and recorded velocities.
 
     Parameters
@@ -104,12 +104,12 @@ def smoothed_track(track: Track, *, window: float | None = None, place_noise: fl
     place, rate = _places(track, usable), _rates(track, usable)
     noises = _noises(track.time, windows, length / 2.0, place, rate)
     noises = (noises[0] if place_noise is None else place_noise, noises[1])
-    place = Observed(place.values, place.weight / noises[0] ** 2)
-    rate = None if rate is None or noises[1] is None else Observed(rate.values, rate.weight / noises[1] ** 2)
+    place = WeightedValues(place.values, place.weight / noises[0] ** 2)
+    rate = None if rate is None or noises[1] is None else WeightedValues(rate.values, rate.weight / noises[1] ** 2)
     fits = local_cubic(track.time, windows, length / 2.0, place, rate)
     fits.coefficients[:, 0] += place.values  # the fits count from each point's own place
     typical = (noises[0], None if rate is None else noises[1])
-    return _smoothed(fits, length, part, usable, typical, Resolution.of_window(length, step, *typical))
+    return _build_smoothed_track(fits, length, part, usable, typical, Resolution.of_window(length, step, *typical))
 
 
 def usable_points(track: Track) -> BoolArray:
@@ -173,39 +173,43 @@ def _require_positive(name: str, unit: str, value: float | None) -> None:
         raise ParameterError(f"{name} = {value:g} {unit} is no smoothing; give a number above 0, or leave it out")
 
 
-def _places(track: Track, usable: BoolArray) -> Observed:
+def _places(track: Track, usable: BoolArray) -> WeightedValues:
     """Places with weights relative to the median one, as far as the track states standard deviations."""
     weight = usable.astype(float)
     if track.place_sd is not None:
         stated = np.sqrt(np.mean(track.place_sd[:, :2] ** 2, axis=1))
-        known = usable & np.isfinite(stated) & (stated > 0.0)
-        if known.any():
-            weight[known] *= (np.median(stated[known]) / stated[known]) ** 2
-    return Observed(filled(track.place[:, :2], usable), weight)
+        has_sd = usable & np.isfinite(stated) & (stated > 0.0)
+        if has_sd.any():
+            weight[has_sd] *= (np.median(stated[has_sd]) / stated[has_sd]) ** 2
+    return WeightedValues(fill_rows(track.place[:, :2], usable), weight)
 
 
-def _rates(track: Track, usable: BoolArray) -> Observed | None:
+def _rates(track: Track, usable: BoolArray) -> WeightedValues | None:
     if track.velocity is None:
         return None
-    known = usable & np.isfinite(track.velocity[:, :2]).all(axis=1)
-    if np.count_nonzero(known) < FEWEST_POINTS:
+    has_velocity = usable & np.isfinite(track.velocity[:, :2]).all(axis=1)
+    if np.count_nonzero(has_velocity) < FEWEST_POINTS:
         return None
-    weight = known.astype(float)
+    weight = has_velocity.astype(float)
     if track.speed_sd is not None:
-        stated = known & np.isfinite(track.speed_sd) & (track.speed_sd > 0.0)
+        stated = has_velocity & np.isfinite(track.speed_sd) & (track.speed_sd > 0.0)
         if stated.any():
             weight[stated] *= (np.median(track.speed_sd[stated]) / track.speed_sd[stated]) ** 2
-    return Observed(np.where(known[:, None], track.velocity[:, :2], 0.0), weight)
+    return WeightedValues(np.where(has_velocity[:, None], track.velocity[:, :2], 0.0), weight)
 
 
-def filled(values: FloatArray, known: BoolArray) -> FloatArray:
+def fill_rows(values: FloatArray, is_known: BoolArray) -> FloatArray:
     """Each unknown row (of n, d) as the last known one; those before the first known one as that one."""
-    last = np.maximum.accumulate(np.where(known, np.arange(len(values)), -1))
-    return values[np.where(last < 0, int(np.argmax(known)), last)]
+    last = np.maximum.accumulate(np.where(is_known, np.arange(len(values)), -1))
+    return values[np.where(last < 0, int(np.argmax(is_known)), last)]
 
 
 def _noises(
-    time: FloatArray, windows: tuple[IntArray, IntArray], half: float, place: Observed, rate: Observed | None
+    time: FloatArray,
+    windows: tuple[IntArray, IntArray],
+    half: float,
+    place: WeightedValues,
+    rate: WeightedValues | None,
 ) -> tuple[float, float | None]:
     """Noise of places about cubics through them alone, and of velocities about cubics through them alone."""
     fits = local_cubic(time, windows, half, place, None)
@@ -218,14 +222,14 @@ def _noises(
 
 def _noise(misfit: FloatArray, freedom: IntArray) -> float:
     """Standard deviation from the windows' scatter: their median, so that single windows do not decide."""
-    known = np.isfinite(misfit) & (freedom > 0)
-    if not known.any():
+    usable = np.isfinite(misfit) & (freedom > 0)
+    if not usable.any():
         return 0.0
-    degrees = 2.0 * freedom[known]  # two coordinates
-    return float(np.sqrt(np.median(misfit[known] / chi2.ppf(0.5, degrees))))
+    degrees = 2.0 * freedom[usable]  # two coordinates
+    return float(np.sqrt(np.median(misfit[usable] / chi2.ppf(0.5, degrees))))
 
 
-def _smoothed(
+def _build_smoothed_track(
     fits: LocalCubic,
     length: float,
     part: IntArray,
@@ -235,9 +239,11 @@ def _smoothed(
 ) -> SmoothedTrack:
     half = length / 2.0
     to_si = np.array([1.0, 1.0 / half, 2.0 / half**2])
-    found = fits.coefficients[:, :3] * to_si[:, None]
+    derivatives = fits.coefficients[:, :3] * to_si[:, None]
     covariance = fits.covariance[:, :3, :3] * np.outer(to_si, to_si) * _excess(fits)[:, None, None]
-    return SmoothedTrack(found[:, 0], found[:, 1], found[:, 2], covariance, part, usable, *noises, resolution)
+    return SmoothedTrack(
+        derivatives[:, 0], derivatives[:, 1], derivatives[:, 2], covariance, part, usable, *noises, resolution
+    )
 
 
 def _excess(fits: LocalCubic) -> FloatArray:
@@ -246,3 +252,72 @@ def _excess(fits: LocalCubic) -> FloatArray:
     scatter = (fits.place_misfit + fits.rate_misfit) / np.maximum(degrees, 1.0)
     limit = chi2.ppf(_SURPRISING, np.maximum(degrees, 1.0)) / np.maximum(degrees, 1.0)
     return np.where(scatter > limit, scatter, 1.0)
+
+
+@dataclass(frozen=True, slots=True)
+class Resolution:
+    """The transfer function of local cubics on evenly spaced points, away from ends and gaps.
+
+    Attributes
+    ----------
+    window
+        Length of the window (s).
+    offsets
+        Times (s) of the points of a window from its middle.
+    place_weights, rate_weights
+        The estimate of the acceleration is the sum of these times places (1/s²) and recorded velocities (1/s).
+    """
+
+    window: float
+    offsets: tuple[float, ...]
+    place_weights: tuple[float, ...]
+    rate_weights: tuple[float, ...]
+
+    @classmethod
+    def of_window(cls, window: float, interval: float, place_noise: float, rate_noise: float | None) -> Resolution:
+        """Of points ``interval`` (s) apart, with these noises (m, and m/s or None without velocities)."""
+        each_side = int(np.floor(window / 2.0 / interval + 1e-9))
+        stride = max(1, each_side // 200)  # a dense window's transfer function needs no more points
+        tau = np.arange(-each_side, each_side + 1, stride) * interval
+        powers = np.arange(4)
+        rows = tau[:, None] ** powers / place_noise
+        if rate_noise is not None:
+            slopes = powers * tau[:, None] ** np.maximum(powers - 1, 0) / rate_noise
+            rows = np.concatenate([rows, slopes])
+        scale = (window / 2.0) ** powers
+        weights = 2.0 * np.linalg.pinv(rows / scale)[2] / scale[2]
+        place, rate = weights[: len(tau)] / place_noise, weights[len(tau) :]
+        faster = () if rate_noise is None else tuple((rate / rate_noise).tolist())
+        return cls(window, tuple(tau.tolist()), tuple(place.tolist()), faster)
+
+    def share_passed(self, period: float) -> float:
+        """Share of the amplitude of a curvature that swings with this period (s), on a path that is nearly straight."""
+        angular = 2.0 * np.pi / period
+        tau = np.array(self.offsets)
+        passed = np.array(self.place_weights) @ np.cos(angular * tau)
+        if self.rate_weights:
+            passed -= angular * (np.array(self.rate_weights) @ np.sin(angular * tau))
+        return float(-passed / angular**2)
+
+    def period_passed(self, share: float) -> float:
+        """Shortest period (s) of which this share of the amplitude passes, and of all longer ones more.
+
+        Parameters
+        ----------
+        share
+            Between 0.1 and 0.99.
+        """
+        low, high = 0.4 * self.window, 0.4 * self.window
+        while self.share_passed(high) < share:
+            low, high = high, 1.05 * high
+        return high if low == high else float(brentq(lambda period: self.share_passed(period) - share, low, high))
+
+    @property
+    def half_period(self) -> float:
+        """Period (s) of which half of the amplitude is left: the resolution. Shorter swings are smoothed away."""
+        return self.period_passed(0.5)
+
+    @property
+    def faithful_period(self) -> float:
+        """Period (s) of which 90 % of the amplitude is left."""
+        return self.period_passed(0.9)

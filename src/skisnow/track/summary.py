@@ -17,7 +17,7 @@ from .path_estimate import Interval
 from .runs import Day, Stretch, max_speed, split_day
 from .solution import solution_counts
 from .track import Track
-from .turns import Turn, turns_of
+from .turns import Turn, find_turns
 
 SCHEMA_VERSION: Final = 1
 _APART: Final = 0.03
@@ -65,7 +65,7 @@ class TrackSummary(Shown):
     remarks: tuple[str, ...]
 
     def _facts(self) -> Facts:
-        distances = ", ".join(f"{amount(each, 'm')} by {name}" for name, each in self.distances.items())
+        distances = ", ".join(f"{amount(distance, 'm')} by {name}" for name, distance in self.distances.items())
         rows = (
             ("points", str(len(self.track))),
             ("distance", f"{distances or 'unknown'}{_shown_interval(self.distance_interval, 'm')}"),
@@ -119,7 +119,7 @@ def track_summary(track: Track, *, window: float | None = None, place_noise: flo
             "Give a longer window"
         )
     day = split_day(track, motion)
-    turns = tuple(turn for run in day.runs for turn in turns_of(motion, first=run.first, last=run.last))
+    turns = tuple(turn for run in day.runs for turn in find_turns(motion, first=run.first, last=run.last))
     distances = _distances(track, motion)
     length = None if motion.path is None else motion.path.length()
     return TrackSummary(
@@ -151,24 +151,24 @@ def _reading_remarks(track: Track) -> tuple[str, ...]:
 
 
 def _remarks(track: Track, motion: TrackMotion, distances: dict[str, float]) -> tuple[str, ...]:
-    found = []
+    remarks = []
     chosen = distances[motion.arc_length_source]
     for name, distance in distances.items():
         if chosen > 0.0 and abs(distance - chosen) > _APART * chosen:
-            found.append(
+            remarks.append(
                 f"The distance by {name}, {distance:.0f} m, is not that by {motion.arc_length_source}, {chosen:.0f} m; "
                 "the latter counts."
             )
     if motion.speed_source == "fitted":
-        found.append("No speeds in the track: they are estimated from the places.")
+        remarks.append("No speeds in the track: they are estimated from the places.")
     pauses = int(segments(track)[-1])
     if pauses:
-        found.append(f"{pauses + 1} segments: nothing between them counts as path.")
+        remarks.append(f"{pauses + 1} segments: nothing between them counts as path.")
     gaps = int(np.count_nonzero(np.diff(motion.smoothed.part))) - pauses
     if gaps > 0:
         count = "1 gap" if gaps == 1 else f"{gaps} gaps"
-        found.append(f"{count}: nothing is smoothed across, and the path over it is straight.")
-    return tuple(found)
+        remarks.append(f"{count}: nothing is smoothed across, and the path over it is straight.")
+    return tuple(remarks)
 
 
 def summary_dict(summary: TrackSummary) -> Json:
@@ -216,9 +216,9 @@ def summary_dict(summary: TrackSummary) -> Json:
 def half_wavelength(summary: TrackSummary) -> float | None:
     """Length (m) of a swing of which half passes the smoothing, at the median speed in runs; None without runs."""
     speeds = [summary.motion.speed[run.first : run.last + 1] for run in summary.day.runs]
-    known = np.concatenate(speeds) if speeds else np.empty(0)
-    known = known[np.isfinite(known)]
-    return float(np.median(known)) * summary.motion.smoothed.resolution.half_period if len(known) else None
+    speed = np.concatenate(speeds) if speeds else np.empty(0)
+    speed = speed[np.isfinite(speed)]
+    return float(np.median(speed)) * summary.motion.smoothed.resolution.half_period if len(speed) else None
 
 
 def _stretch_dict(stretch: Stretch, height_key: str, sign: float) -> Json:

@@ -16,7 +16,7 @@ from .curvature import INTERVAL_FACTOR, TrackMotion
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
 
-SURE: Final = 3.0
+SIGNIFICANCE: Final = 3.0
 """Standard errors by which a curvature differs from 0 where it counts as that of a turn (modelling assumption)."""
 STRAIGHT: Final = 500.0
 """Radius (m) beyond which a path is straight, however exact it is known (modelling assumption)."""
@@ -75,7 +75,7 @@ class _Piece:
     sign: int
 
 
-def turns_of(
+def find_turns(
     motion: TrackMotion, *, first: int = 0, last: int | None = None, least_angle: float = LEAST_ANGLE
 ) -> tuple[Turn, ...]:
     """Find the turns between two points.
@@ -99,11 +99,11 @@ def turns_of(
     """
     end = len(motion.time) - 1 if last is None else last
     patience = max(LONGEST_STRAIGHT, 2.0 * motion.smoothed.resolution.window)
-    pieces = _merged(motion, list(_pieces(motion, first, end, patience)), least_angle, patience)
+    pieces = _merge_pieces(motion, list(_pieces(motion, first, end, patience)), least_angle, patience)
     starts = [motion.time[piece.first] for piece in pieces]
     ends = [motion.time[piece.last] for piece in pieces]
     for number, (one, other) in enumerate(pairwise(pieces)):
-        if one.sign != other.sign and _joined(motion, one, other, patience):
+        if one.sign != other.sign and _join(motion, one, other, patience):
             ends[number] = starts[number + 1] = _switch_time(motion, one.last, other.first)
     spans = zip(pieces, starts, ends, strict=True)
     return tuple(_turn(motion, piece, float(start), float(end)) for piece, start, end in spans)
@@ -112,7 +112,7 @@ def turns_of(
 def _signs(motion: TrackMotion) -> npt.NDArray[np.int8]:
     """1 where the track surely turns left, −1 where right, 0 elsewhere."""
     with np.errstate(invalid="ignore"):
-        sure = np.abs(motion.curvature) > np.maximum(SURE * motion.curvature_sd, 1.0 / STRAIGHT)
+        sure = np.abs(motion.curvature) > np.maximum(SIGNIFICANCE * motion.curvature_sd, 1.0 / STRAIGHT)
     return np.where(sure & motion.smoothed.usable, np.sign(np.nan_to_num(motion.curvature)), 0).astype(np.int8)
 
 
@@ -135,18 +135,18 @@ def _pieces(motion: TrackMotion, first: int, last: int, patience: float) -> Iter
         yield _Piece(int(sure[begin]), int(sure[end]), int(signs[begin]))
 
 
-def _merged(motion: TrackMotion, pieces: list[_Piece], least_angle: float, patience: float) -> list[_Piece]:
+def _merge_pieces(motion: TrackMotion, pieces: list[_Piece], least_angle: float, patience: float) -> list[_Piece]:
     """Without pieces that turn too little; neighbours to one side become one where only such a piece lay between."""
-    found: list[_Piece] = []
+    merged: list[_Piece] = []
     for piece in pieces:
-        if found and found[-1].sign == piece.sign and _joined(motion, found[-1], piece, patience):
-            found[-1] = _Piece(found[-1].first, piece.last, piece.sign)
+        if merged and merged[-1].sign == piece.sign and _join(motion, merged[-1], piece, patience):
+            merged[-1] = _Piece(merged[-1].first, piece.last, piece.sign)
         elif abs(motion.heading[piece.last] - motion.heading[piece.first]) >= least_angle:
-            found.append(piece)
-    return found
+            merged.append(piece)
+    return merged
 
 
-def _joined(motion: TrackMotion, one: _Piece, other: _Piece, patience: float) -> bool:
+def _join(motion: TrackMotion, one: _Piece, other: _Piece, patience: float) -> bool:
     """Whether nothing but a short stretch in motion lies between two pieces."""
     between = slice(one.last, other.first + 1)
     moving = np.isfinite(motion.curvature[between]) | ~motion.smoothed.usable[between]
@@ -157,8 +157,8 @@ def _joined(motion: TrackMotion, one: _Piece, other: _Piece, patience: float) ->
 def _switch_time(motion: TrackMotion, before: int, after: int) -> float:
     """When the line through the curvatures from one turn's last sure point to the next one's first passes 0 (s)."""
     time, curvature = motion.time[before : after + 1], motion.curvature[before : after + 1]
-    known = np.isfinite(curvature)
-    slope, value = np.polyfit(time[known] - time[0], curvature[known], 1)
+    finite = np.isfinite(curvature)
+    slope, value = np.polyfit(time[finite] - time[0], curvature[finite], 1)
     passes = time[0] - value / slope if slope != 0.0 else np.nan
     inside = np.isfinite(passes) and time[0] <= passes <= time[-1]
     return float(passes) if inside else float((time[0] + time[-1]) / 2.0)
@@ -189,10 +189,10 @@ def _turn(motion: TrackMotion, piece: _Piece, start: float, end: float) -> Turn:
 def _sharpest(motion: TrackMotion, piece: _Piece) -> int:
     """Number of the point of the largest curvature, of those that are known about as well as the others."""
     inside = np.arange(piece.first, piece.last + 1)
-    known = inside[np.isfinite(motion.curvature[inside])]
-    error = motion.curvature_sd[known]
-    known = known[error <= 2.0 * np.median(error)]
-    return int(known[int(np.argmax(piece.sign * motion.curvature[known]))])
+    points = inside[np.isfinite(motion.curvature[inside])]
+    error = motion.curvature_sd[points]
+    points = points[error <= 2.0 * np.median(error)]
+    return int(points[int(np.argmax(piece.sign * motion.curvature[points]))])
 
 
 def _radius_interval(curvature: float, error: float) -> tuple[float, float]:
@@ -206,6 +206,6 @@ def _at_times(motion: TrackMotion, times: tuple[float, float]) -> tuple[FloatArr
     first = max(int(np.searchsorted(motion.time, start, side="left")) - 1, 0)
     last = int(np.searchsorted(motion.time, end, side="right"))
     around = slice(first, last + 1)
-    known = np.isfinite(motion.heading[around])
-    time, heading, error = (values[around][known] for values in (motion.time, motion.heading, motion.heading_sd))
+    has_heading = np.isfinite(motion.heading[around])
+    time, heading, error = (values[around][has_heading] for values in (motion.time, motion.heading, motion.heading_sd))
     return np.interp(times, time, heading), np.interp(times, time, error)

@@ -8,7 +8,7 @@ from pathlib import Path
 from skisnow import read_course, read_track, track_summary
 from skisnow.identification.data import read_data
 from skisnow.racing.line import read_line
-from skisnow.track.course.gate_gaps import gate_gaps
+from skisnow.track.course.gates_table import read_gate_gaps
 
 from ..binaries import BINARY, sealed_fit, sealed_nmea, sealed_ubx
 from ..markup import XML
@@ -97,7 +97,7 @@ READERS = (
     ),
     Reader(
         name="gates.csv", target="one/gates.csv", files=lambda: {"one/gates.csv": _GATES, "other/gates.csv": _GATES},
-        read=lambda folder: gate_gaps(folder / "one", folder / "other"), mutations=TABLE,
-        covers=("track.course.gate_gaps:_rows",),
+        read=lambda folder: read_gate_gaps(folder / "one", folder / "other"), mutations=TABLE,
+        covers=("track.course.gates_table:_gate_rows",),
     ),
 )  # fmt: skip

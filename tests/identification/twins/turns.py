@@ -9,8 +9,8 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 
 from skisnow import Run
+from skisnow.comparison import compare_tracks
 from skisnow.identification import Identification, identify
-from skisnow.track.comparison import compare_tracks
 from skisnow.track.track import Track
 
 from .interval_row import interval_row

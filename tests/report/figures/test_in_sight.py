@@ -11,6 +11,7 @@ import pytest
 from matplotlib.axes import Axes
 from matplotlib.collections import PathCollection
 
+from skisnow.comparison import compare_tracks
 from skisnow.report.campaign.data import ReportData
 from skisnow.report.campaign.model_figures import model_rmse
 from skisnow.report.campaign.page import DRAWERS
@@ -20,7 +21,6 @@ from skisnow.report.figures.drawing import Drawing
 from skisnow.report.figures.style import journal_style, site_styles
 from skisnow.report.run.time_figures import run_motion
 from skisnow.report.study_maps import grip_map, radius_map
-from skisnow.track.comparison import compare_tracks
 
 from ..conftest import Reported, altered
 from ..runs import SPEED, circle_run

@@ -12,6 +12,8 @@ from matplotlib.axes import Axes
 from matplotlib.collections import PolyCollection, QuadMesh
 from matplotlib.figure import Figure
 
+from skisnow.comparison.distances import arc_lengths
+from skisnow.comparison.nearest_place import distance_from_path
 from skisnow.report.figures.style import BLUE, VERMILLION, journal_style
 from skisnow.report.run.time_figures import (
     drawn_radius,
@@ -25,8 +27,6 @@ from skisnow.report.run.time_figures import (
 from skisnow.report.run.track_figure import beside_track, groove_corners, run_track
 from skisnow.report.turn.figures import TimedTrack, band_of, loaded_ski, offsets, runs_compared, track_band
 from skisnow.simulation.run import LOST, STORED, Run
-from skisnow.track.nearest_place import distance_beside
-from skisnow.track.polyline import arc_lengths
 
 from ..runs import RADIUS, SPEED, STANCE, circle_run
 
@@ -170,7 +170,7 @@ def test_distance_between_circles_of_one_centre() -> None:
     inner, outer = (
         np.stack([radius * np.cos(angle), radius * np.sin(angle), 0.0 * angle], axis=1) for radius in (12.0, 12.5)
     )
-    assert distance_beside(outer, inner) == pytest.approx(np.full(2001, 0.5), abs=1e-6)
+    assert distance_from_path(outer, inner) == pytest.approx(np.full(2001, 0.5), abs=1e-6)
     assert arc_lengths(inner)[-1] == pytest.approx(12.0, rel=1e-6)
 
 

@@ -7,9 +7,9 @@ import numpy.typing as npt
 import pytest
 from matplotlib.axes import Axes
 
+from skisnow.comparison import Comparison, compare_tracks
 from skisnow.report.figures.style import journal_style
 from skisnow.report.track.report import MOST_DRAWN, track_comparison
-from skisnow.track.comparison import Comparison, compare_tracks
 from skisnow.track.track import Track
 
 FloatArray = npt.NDArray[np.float64]

@@ -9,7 +9,7 @@ import pytest
 from skisnow._support.errors import ParameterError
 from skisnow.report.race.figures import gate_gaps_drawing, last_words
 from skisnow.report.race.folder import gaps_of_folders, gaps_text
-from skisnow.track.course.gate_gaps import gaps_csv, gate_gaps
+from skisnow.track.course.gates_table import gaps_csv, read_gate_gaps
 
 HEAD = "gate,side,outcome,time_s,split_s,speed_m_per_s,clearance_m,x_m,y_m"
 
@@ -31,7 +31,7 @@ def pair(tmp_path: Path) -> tuple[Path, Path]:
 
 
 def test_gap_and_loss_at_each_gate(pair: tuple[Path, Path]) -> None:
-    gaps = gate_gaps(*pair)
+    gaps = read_gate_gaps(*pair)
     assert gaps is not None
     assert [each.gate for each in gaps] == ["1", "2", "3", "4"]
     assert [each.gap for each in gaps] == [pytest.approx(0.2), None, pytest.approx(-0.1), None]
@@ -44,7 +44,7 @@ def test_gap_and_loss_at_each_gate(pair: tuple[Path, Path]) -> None:
 
 
 def test_terminal_and_page_tell_the_same(pair: tuple[Path, Path]) -> None:
-    gaps = gate_gaps(*pair)
+    gaps = read_gate_gaps(*pair)
     assert gaps is not None
     lines = gaps_text(gaps, ("mine", "theirs")).splitlines()
     assert lines[2].split() == ["1", "1.20", "1.00", "+0.20", "+0.20"]
@@ -57,7 +57,7 @@ def test_terminal_and_page_tell_the_same(pair: tuple[Path, Path]) -> None:
 
 
 def test_the_figure_has_a_point_for_each_gate_that_both_crossed(pair: tuple[Path, Path]) -> None:
-    gaps = gate_gaps(*pair)
+    gaps = read_gate_gaps(*pair)
     assert gaps is not None
     drawing = gate_gaps_drawing(gaps, ("mine", "theirs"))
     above, below = drawing.figure.axes
@@ -68,14 +68,14 @@ def test_the_figure_has_a_point_for_each_gate_that_both_crossed(pair: tuple[Path
 
 
 def test_other_courses_are_not_compared_and_damage_is_named(pair: tuple[Path, Path], tmp_path: Path) -> None:
-    assert gate_gaps(pair[0], folder_of(tmp_path / "shifted", [1.0, 2.0, 3.0, 4.0], beside=0.5)) is None
-    assert gate_gaps(pair[0], folder_of(tmp_path / "short", [1.0])) is None
-    assert gate_gaps(pair[0], tmp_path) is None
+    assert read_gate_gaps(pair[0], folder_of(tmp_path / "shifted", [1.0, 2.0, 3.0, 4.0], beside=0.5)) is None
+    assert read_gate_gaps(pair[0], folder_of(tmp_path / "short", [1.0])) is None
+    assert read_gate_gaps(pair[0], tmp_path) is None
     with pytest.raises(ParameterError, match="did not go through the same gates"):
         gaps_of_folders(pair[0], tmp_path)
     (pair[1] / "gates.csv").write_text(f"{HEAD}\n1,left,passed,soon,,,,1,2\n", encoding="utf-8")
     with pytest.raises(ParameterError, match=r"gates\.csv.*soon"):
-        gate_gaps(*pair)
+        read_gate_gaps(*pair)
 
 
 @pytest.mark.parametrize(("beside", "same"), [(0.4, True), (-0.6, False)])
@@ -85,4 +85,4 @@ def test_a_course_beside_the_fall_line_is_the_same_where_its_gates_are(
     """All gates 0.4 m to the left in both; -0.6 m is 1 m away and another course, as it is from either side."""
     pair = (folder_of(tmp_path / "a", [1.0, 2.0], beside=0.4), folder_of(tmp_path / "b", [1.1, 2.3], beside=beside))
     for one, other in (pair, pair[::-1]):
-        assert (gate_gaps(one, other) is not None) is same
+        assert (read_gate_gaps(one, other) is not None) is same

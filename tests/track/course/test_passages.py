@@ -10,7 +10,7 @@ import pytest
 
 from skisnow._support.errors import ParameterError
 from skisnow.track.course import Course, CourseResult, Gate, MovingPoint, passages
-from skisnow.track.course.gate import Point, Side
+from skisnow.track.course.course import Point, Side
 
 FloatArray = npt.NDArray[np.float64]
 

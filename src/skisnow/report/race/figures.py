@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from ...racing import QuickestLine, RacingLine, Worth
-    from ...track.course.gate_gaps import GateGap
+    from ...track.course.gates_table import GateGap
 
 _HEIGHT_MM = 105.0
 

@@ -13,7 +13,7 @@ from ..._support.errors import ParameterError
 from ..._support.language import ENGLISH
 from ..._support.staging import write_file
 from ...racing import write_line
-from ...track.course.gate_gaps import COLUMNS, gap_rows, gaps_csv, gate_gaps
+from ...track.course.gates_table import GAP_COLUMNS, gap_rows, gaps_csv, read_gate_gaps
 from ..figures.course import run_course
 from ..figures.drawing import FORMS
 from ..figures.figure_files import render_pictures, write_figure, write_pictures
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
     from ...racing import QuickestLine, Score, Worth
     from ...simulation.run import Run
-    from ...track.course.gate_gaps import GateGap
+    from ...track.course.gates_table import GateGap
     from ..figures.drawing import Drawing, Picture
 
 
@@ -135,7 +135,7 @@ def gaps_of_folders(folder: Path, other: Path, language: str = ENGLISH) -> str:
     ParameterError
         The runs have no gates in common.
     """
-    gaps, names = gate_gaps(folder, other), (folder.name, other.name)
+    gaps, names = read_gate_gaps(folder, other), (folder.name, other.name)
     if gaps is None:
         raise ParameterError(
             f"{names[0]} and {names[1]} did not go through the same gates: choose two runs on one course"
@@ -166,11 +166,11 @@ def gaps_table(gaps: tuple[GateGap, ...], names: tuple[str, str]) -> Table:
     headings = ("Gate", "Outcome", "Time", "Outcome of the other", "Its time", "Gap", "Lost")
     columns = [
         Column(name, words, "text", unit="s" if name in _TIMES else "")
-        for name, words in zip(COLUMNS, headings, strict=True)
+        for name, words in zip(GAP_COLUMNS, headings, strict=True)
     ]
     rows = [
         tuple(_hundredths(row[name], signed=name in _TIMES[2:]) if name in _TIMES else _words(row[name])
-              for name in COLUMNS)
+              for name in GAP_COLUMNS)
         for row in gap_rows(gaps)
     ]  # fmt: skip
     note = "Times count from the start of each run. Gap and lost: above 0 the first run is behind or loses."

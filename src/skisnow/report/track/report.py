@@ -42,7 +42,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from ...track.comparison import Comparison, Distances
+    from ...comparison import Comparison, Distances
     from ...track.course import CourseResult
     from ...track.summary import TrackSummary
 

@@ -165,7 +165,7 @@ def compare_summary(found: Mapping[str, Any]) -> str:
     Parameters
     ----------
     found
-        What `skisnow.track.comparison_dict.comparison_dict` gives.
+        What `skisnow.comparison.comparison_dict` gives.
     """
     simulated, measured, exact = found["simulated"], found["measured"], found["known_to_m"]
     lines = [

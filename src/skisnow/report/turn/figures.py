@@ -12,9 +12,9 @@ import numpy.typing as npt
 from matplotlib.lines import Line2D
 
 from ..._support.units import MM
+from ...comparison.distances import arc_lengths
+from ...comparison.nearest_place import distance_from_path
 from ...scenario import Plane
-from ...track.nearest_place import distance_beside
-from ...track.polyline import arc_lengths
 from ..figures.style import BLACK, BLUE, COLOURS, DOUBLE_MM, GREY, PALE, SKY, VERMILLION, legend_below, new_figure
 from ..run.track_figure import plan_axes, plan_height_mm, track_limits
 from ..symbols import figure_text
@@ -186,7 +186,7 @@ def _line_style(place: int) -> dict[str, Any]:
 def _distances(axes: Axes, named: list[tuple[str, Run]]) -> None:
     (first, reference), *others = named
     for place, (_, run) in enumerate(others, start=1):
-        axes.plot(arc_lengths(run.place), distance_beside(run.place, reference.place), **_line_style(place))
+        axes.plot(arc_lengths(run.place), distance_from_path(run.place, reference.place), **_line_style(place))
     axes.set_xlim(left=0.0)
     axes.set_ylim(bottom=0.0)
     axes.set_xlabel("distance travelled (m)")

@@ -11,12 +11,12 @@ import numpy.typing as npt
 
 from ..._support.units import MM, N_PER_MM2, N_PER_MM3
 from ..._support.user_files.json_text import json_number
+from ...comparison.nearest_place import distance_from_path
 from ...parameters import values_of
 from ...scenario.plausibility import implausible_values
 from ...simulation.run_summary import summary_dict
 from ...snow.from_results import snow_dict
 from ...statistics import VarianceShares, variance_shares
-from ...track.nearest_place import distance_beside
 from ..run.time_figures import used_share_of_skis
 from .figures import FEWEST, TimedTrack, band_of, offsets
 
@@ -72,7 +72,7 @@ def median_radius(run: Run) -> float | None:
 
 def maximum_distance(run: Run, reference: Run) -> float | None:
     """The farthest that a run's path goes from that of another (m) while it lies beside it; None: nowhere."""
-    distance = distance_beside(run.place, reference.place)
+    distance = distance_from_path(run.place, reference.place)
     return float(np.nanmax(distance)) if np.isfinite(distance).any() else None
 
 

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-from .built_in import course_names
-from .course import Course, Discipline
+from .course import Course, Discipline, Gate, course_names
 from .course_file import on_slope, read_course
-from .gate import Gate
 from .moving_point import MovingPoint
 from .passages import CourseResult, Passage, passages
 from .rules import course_warnings

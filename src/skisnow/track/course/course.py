@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
+import math
 from collections import Counter
 from dataclasses import dataclass, field
+from importlib.resources import files
+from pathlib import Path
 from typing import Annotated, Final, Literal, NamedTuple, TypeAlias, get_args
 
 import numpy as np
 import numpy.typing as npt
 
-from ..._support.display import Facts, Shown, amount
+from ..._support.display import Facts, Shown, ShownFields, amount
 from ..._support.errors import ParameterError
 from ..._support.nearest import require_choice
 from ...parameters import Quantity, Word, require_declared
-from .built_in import file_of_course, name_in_catalogue
-from .gate import Gate
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 Discipline: TypeAlias = Literal["slalom", "giant-slalom"]
@@ -180,3 +181,96 @@ def _line(gate: Gate, along: FloatArray) -> GateLine:
         return GateLine(pole, along, turn * np.array([-along[1], along[0]]), gate.width)
     across = (np.array(gate.outer) - pole) / gate.width
     return GateLine(pole, turn * np.array([across[1], -across[0]]), across, gate.width)
+
+
+_FOLDER: Final = files(__package__) / "catalogue"
+
+
+def course_names() -> tuple[str, ...]:
+    """Names of the courses that come with skisnow.
+
+    Returns
+    -------
+    tuple of str
+        What `skisnow.read_course` takes beside a path.
+
+    See Also
+    --------
+    skisnow.read_course
+
+    References
+    ----------
+    The page docs/files/course.md.
+
+    Examples
+    --------
+    >>> course_names()
+    ('giant-slalom-20-gates', 'slalom-20-gates')
+    """
+    return tuple(sorted(entry.name.removesuffix(".csv") for entry in _FOLDER.iterdir() if entry.name.endswith(".csv")))
+
+
+def course_place(name: str) -> Path:
+    """Where such a course lies."""
+    return Path(str(_FOLDER / f"{name}.csv"))
+
+
+def name_in_catalogue(source: str) -> str | None:
+    """The source of a course, if it is one of these."""
+    return source if source in course_names() else None
+
+
+def file_of_course(source: str) -> str | None:
+    """The source of a course, if it is none of these."""
+    return None if source in course_names() else source
+
+
+Side: TypeAlias = Literal["left", "right"]
+Point: TypeAlias = tuple[float, float]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, repr=False)
+class Gate(ShownFields):
+    """One gate of a course, seen from above.
+
+    Attributes
+    ----------
+    name
+        As the file has it, such as its number.
+    turning
+        Place x, y (m) of the turning pole: of a panel the pole beside which the racer goes by.
+    side
+        On which side of the turning pole it is passed, seen down the course.
+    outer
+        Place (m) of the outer pole; None: there is none, and the gate is as wide as the slope.
+
+    Raises
+    ------
+    ParameterError
+        A place is not finite, both poles stand at one place, or the side is no side.
+
+    See Also
+    --------
+    skisnow.Course
+    skisnow.read_course
+    """
+
+    name: str
+    turning: Point
+    side: Side
+    outer: Point | None = None
+
+    def __post_init__(self) -> None:
+        require_choice(f"gate {self.name}: side", self.side, get_args(Side))
+        for pole, place in (("turning", self.turning), ("outer", self.outer)):
+            if place is not None and not all(math.isfinite(coordinate) for coordinate in place):
+                raise ParameterError(f"gate {self.name}: the {pole} pole stands at {place}; both must be finite, in m")
+        if self.outer is not None and not self.width > 0.0:
+            raise ParameterError(
+                f"gate {self.name}: both poles stand at {self.turning}; move one, or leave the outer out"
+            )
+
+    @property
+    def width(self) -> float:
+        """Between the poles (m); infinite without an outer pole."""
+        return math.inf if self.outer is None else math.dist(self.turning, self.outer)

@@ -16,9 +16,7 @@ from ..._support.spreadsheet_text import CsvRow, csv_rows
 from ..._support.units import DEGREE
 from ..projection import GeodeticPoint, east_north_up
 from ..slope_frame import slope_axes
-from .built_in import course_names, course_place
-from .course import Course, Discipline
-from .gate import Gate, Side
+from .course import Course, Discipline, Gate, Side, course_names, course_place
 from .gpx_course import Waypoint, read_waypoints
 
 FloatArray = npt.NDArray[np.float64]
@@ -76,16 +74,16 @@ def read_course(
     """
     name = str(path)
     path = course_place(name) if name in course_names() else Path(path)
-    said: dict[str, Any] = {
+    options: dict[str, Any] = {
         "source": name, "discipline": discipline, "fall_line_azimuth_deg": fall_line_azimuth_deg,
     }  # fmt: skip
     if (latitude_deg is None) != (longitude_deg is None):
         raise ParameterError(f"{path}: latitude and longitude of the origin go together; give both, or neither")
     try:
         if path.suffix.lower() != ".gpx":
-            return Course(gates=tuple(_gate(row) for row in _rows(path)), **said)
+            return Course(gates=tuple(_gate(row) for row in _rows(path)), **options)
         waypoints = read_waypoints(path)
-        return _geodetic_course(waypoints, latitude_deg, longitude_deg, said)
+        return _geodetic_course(waypoints, latitude_deg, longitude_deg, options)
     except ParameterError as error:
         raise error if str(error).startswith(str(path)) else ParameterError(f"{path}: {error}") from error
 
@@ -109,21 +107,21 @@ def _gate(row: CsvRow) -> Gate:
             code="missing_name",
             action=Message("Give each gate a number or a name."),
         )
-    known = [name for name in _OUTER if row.cells.get(name)]
-    if len(known) == 1:
+    outer_cells = [name for name in _OUTER if row.cells.get(name)]
+    if len(outer_cells) == 1:
         raise row.refused(
-            known[0],
+            outer_cells[0],
             Message("The other coordinate of the outer pole is missing."),
             code="missing_column",
             action=Message("Give both columns ({columns}), or neither.", columns=_OUTER),
         )
-    outer = (row.number("outer_x_m"), row.number("outer_y_m")) if known else None
+    outer = (row.number("outer_x_m"), row.number("outer_y_m")) if outer_cells else None
     place = (row.number("x_m"), row.number("y_m"))
     return Gate(name=row.cells["gate"], turning=place, side=cast("Side", side), outer=outer)
 
 
 def _geodetic_course(
-    waypoints: list[Waypoint], latitude_deg: float | None, longitude_deg: float | None, said: dict[str, Any]
+    waypoints: list[Waypoint], latitude_deg: float | None, longitude_deg: float | None, options: dict[str, Any]
 ) -> Course:
     if not waypoints:
         raise ParameterError("there is no waypoint; write one for each gate, in their order")
@@ -131,7 +129,7 @@ def _geodetic_course(
     latitude = first.latitude_deg if latitude_deg is None else latitude_deg
     longitude = first.longitude_deg if longitude_deg is None else longitude_deg
     height = 0.0 if np.isnan(first.height) else first.height
-    points = np.array([(each.latitude_deg, each.longitude_deg, height) for each in waypoints])
+    points = np.array([(waypoint.latitude_deg, waypoint.longitude_deg, height) for waypoint in waypoints])
     place = east_north_up(points, origin=GeodeticPoint(latitude, longitude, height))[:, :2]
     bends = _bends(place)
     sides, assumed = [], []
@@ -146,8 +144,8 @@ def _geodetic_course(
         if waypoint.side is None:
             assumed.append(waypoint.name)
     gates = tuple(
-        Gate(name=each.name, turning=(float(x), float(y)), side=side)
-        for each, (x, y), side in zip(waypoints, place, sides, strict=True)
+        Gate(name=waypoint.name, turning=(float(x), float(y)), side=side)
+        for waypoint, (x, y), side in zip(waypoints, place, sides, strict=True)
     )
     warnings = (
         (f"the side of {len(assumed)} gates was taken from the bends of the course: {', '.join(assumed)}",)
@@ -155,7 +153,7 @@ def _geodetic_course(
         else ()
     )
     return Course(
-        gates=gates, axes="east_north_up", latitude_deg=latitude, longitude_deg=longitude, warnings=warnings, **said
+        gates=gates, axes="east_north_up", latitude_deg=latitude, longitude_deg=longitude, warnings=warnings, **options
     )
 
 
@@ -164,7 +162,7 @@ def _bends(place: FloatArray) -> list[Side | None]:
     ways = np.diff(place, axis=0)
     angle = np.arctan2(ways[:-1, 0] * ways[1:, 1] - ways[:-1, 1] * ways[1:, 0], (ways[:-1] * ways[1:]).sum(axis=1))
     inner: list[Side | None] = [
-        None if abs(each) < SHARPEST else "right" if each > 0.0 else "left" for each in angle.tolist()
+        None if abs(bend) < SHARPEST else "right" if bend > 0.0 else "left" for bend in angle.tolist()
     ]
     other: dict[Side | None, Side | None] = {"left": "right", "right": "left", None: None}
     ends = [other[inner[0]], other[inner[-1]]] if inner else [None, None]

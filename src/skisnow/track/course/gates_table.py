@@ -5,10 +5,15 @@ from __future__ import annotations
 import csv
 import io
 import math
-from typing import Any, Final
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Final, get_args
 
+from ..._support.messages import Message
+from ..._support.spreadsheet_text import CsvRow, csv_rows
 from ..._support.user_files.json_text import json_number
-from .passages import CourseResult, Passage
+from .passages import CourseResult, GateOutcome, Passage
 
 COLUMNS: Final = (
     "gate",
@@ -46,8 +51,8 @@ def _row(passage: Passage, start: float, before: float) -> dict[str, Any]:
         passage.clearance,
         *gate.turning,
     )
-    known = [json_number(value) if isinstance(value, float) else value for value in values]
-    return dict(zip(COLUMNS, known, strict=True))
+    cells = [json_number(value) if isinstance(value, float) else value for value in values]
+    return dict(zip(COLUMNS, cells, strict=True))
 
 
 def gates_csv(result: CourseResult) -> str:
@@ -72,7 +77,9 @@ def gates_dict(result: CourseResult) -> dict[str, Any]:
 
 def time_warnings(result: CourseResult) -> tuple[str, ...]:
     """Where points are so far apart that times are not good to a hundredth of a second, in words."""
-    doubts = [each.doubt for each in result.passages if each.doubt is not None and math.isfinite(each.doubt)]
+    doubts = [
+        passage.doubt for passage in result.passages if passage.doubt is not None and math.isfinite(passage.doubt)
+    ]
     worst = max(doubts, default=0.0)
     if worst <= DOUBTFUL:
         return ()
@@ -80,3 +87,112 @@ def time_warnings(result: CourseResult) -> tuple[str, ...]:
         f"times at gates depend by up to {worst:.2g} s on the way between the track's points; for a hundredth of a "
         "second the receiver must write more often",
     )
+
+
+GATES_FILE: Final = "gates.csv"
+APART: Final = 0.05
+"""Distance (m) between turning poles of two gates that are the same."""
+GAP_COLUMNS: Final = ("gate", "outcome", "time_s", "other_outcome", "other_time_s", "gap_s", "lost_s")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class GateGap:
+    """One gate of two runs.
+
+    Attributes
+    ----------
+    gate
+        Its name.
+    outcome, other_outcome
+        What became of it, as gates.csv has it.
+    time, other_time
+        (s) from the start of each; None: not crossed.
+    gap
+        Of the first run to the other one (s), positive: it is behind; None where one did not cross it.
+    lost
+        Gap less that at the gate before which both crossed, at first less 0 (s).
+    """
+
+    gate: str
+    outcome: str
+    other_outcome: str
+    time: float | None
+    other_time: float | None
+    gap: float | None
+    lost: float | None
+
+
+def read_gate_gaps(folder: Path, other: Path) -> tuple[GateGap, ...] | None:
+    """Gaps at the gates of two folders with a gates.csv; None where one has none, or the courses are not the same.
+
+    Raises
+    ------
+    ParameterError
+        A gates.csv cannot be read.
+    """
+    tables = [_gate_rows(run / GATES_FILE) for run in (folder, other) if (run / GATES_FILE).is_file()]
+    if len(tables) < 2 or not _same_course(*tables):
+        return None
+    return compare_gates(*tables)
+
+
+def compare_gates(rows: Sequence[Mapping[str, Any]], other: Sequence[Mapping[str, Any]]) -> tuple[GateGap, ...]:
+    """Gaps at the gates of two tables of the same gates, each row with gate, outcome and time_s or None."""
+    gaps, before = [], 0.0
+    for row, other_row in zip(rows, other, strict=True):
+        time, other_time = row["time_s"], other_row["time_s"]
+        gap = None if time is None or other_time is None else time - other_time
+        gaps.append(
+            GateGap(
+                gate=row["gate"], outcome=row["outcome"], other_outcome=other_row["outcome"], time=time,
+                other_time=other_time, gap=gap, lost=None if gap is None else gap - before,
+            )
+        )  # fmt: skip
+        before = before if gap is None else gap
+    return tuple(gaps)
+
+
+def _same_course(one: list[dict[str, Any]], other: list[dict[str, Any]]) -> bool:
+    def apart(own: dict[str, Any], its: dict[str, Any]) -> float:
+        return math.hypot(own["x_m"] - its["x_m"], own["y_m"] - its["y_m"])
+
+    return len(one) == len(other) and all(apart(own, its) <= APART for own, its in zip(one, other, strict=True))
+
+
+def _gate_rows(place: Path) -> list[dict[str, Any]]:
+    columns = ("gate", "outcome", "time_s", "x_m", "y_m")
+    rows = csv_rows(place, columns, action=Message("Simulate the run again with --out."))
+    return [_gate_row(row) for row in rows]
+
+
+def _gate_row(row: CsvRow) -> dict[str, Any]:
+    if row.cells["outcome"] not in get_args(GateOutcome):
+        raise row.refused(
+            "outcome", Message("Must be one of {choices}.", choices=get_args(GateOutcome)), code="unknown_choice"
+        )
+    return {
+        **row.cells,
+        "time_s": row.number("time_s") if row.cells["time_s"] else None,
+        "x_m": row.number("x_m"),
+        "y_m": row.number("y_m"),
+    }
+
+
+def gaps_csv(gaps: Sequence[GateGap]) -> str:
+    """A row for each gate under `GAP_COLUMNS`, nothing where there is no number."""
+    stream = io.StringIO()
+    writer = csv.DictWriter(stream, GAP_COLUMNS, lineterminator="\n")
+    writer.writeheader()
+    writer.writerows(gap_rows(gaps))
+    return stream.getvalue()
+
+
+def gap_rows(gaps: Sequence[GateGap]) -> list[dict[str, Any]]:
+    """The same as values."""
+    return [
+        {
+            "gate": gap.gate, "outcome": gap.outcome, "time_s": gap.time, "other_outcome": gap.other_outcome,
+            "other_time_s": gap.other_time, "gap_s": gap.gap, "lost_s": gap.lost,
+        }
+        for gap in gaps
+    ]  # fmt: skip

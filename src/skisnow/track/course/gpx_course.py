@@ -12,7 +12,7 @@ from xml.parsers import expat
 
 from ..._support.errors import ParameterError
 from ..._support.user_files import plain_text
-from .gate import Side
+from .course import Side
 
 MOST_BYTES: Final = 1 << 24
 DEEPEST: Final = 100
@@ -34,7 +34,7 @@ class Waypoint:
 
 
 @dataclass(slots=True)
-class _Found:
+class _WaypointTexts:
     latitude: str | None
     longitude: str | None
     texts: dict[str, str] = field(default_factory=dict)
@@ -48,7 +48,7 @@ class _Reader:
     """Takes the elements in as expat meets them."""
 
     def __init__(self) -> None:
-        self.points: list[_Found] = []
+        self.points: list[_WaypointTexts] = []
         self._path: list[str] = []
         self._text: list[str] = []
 
@@ -58,7 +58,7 @@ class _Reader:
         if len(self._path) > DEEPEST:
             raise _RefusedError(f"more than {DEEPEST} elements within each other")
         if tuple(self._path) == _POINT:
-            self.points.append(_Found(attributes.get("lat"), attributes.get("lon")))
+            self.points.append(_WaypointTexts(attributes.get("lat"), attributes.get("lon")))
 
     def text(self, text: str) -> None:
         self._text.append(text)
@@ -89,16 +89,16 @@ def read_waypoints(path: str | Path) -> list[Waypoint]:
         parser.Parse(plain_text(path, most_bytes=MOST_BYTES).lstrip(), True)
     except (_RefusedError, expat.ExpatError) as error:
         raise ParameterError(f"{path} is no GPX that can be read ({error}); export it again") from error
-    return [_waypoint(path, row, found) for row, found in enumerate(reader.points, start=1)]
+    return [_waypoint(path, row, point) for row, point in enumerate(reader.points, start=1)]
 
 
-def _waypoint(path: str | Path, row: int, found: _Found) -> Waypoint:
-    name = found.texts.get("name") or str(row)
-    words = (_SIDE.search(found.texts.get(each, "")) for each in _SAYS)
+def _waypoint(path: str | Path, row: int, point: _WaypointTexts) -> Waypoint:
+    name = point.texts.get("name") or str(row)
+    words = (_SIDE.search(point.texts.get(key, "")) for key in _SAYS)
     side = next((word[1].lower() for word in words if word), None)
-    latitude = _number(path, row, "lat", found.latitude, 90.0)
-    longitude = _number(path, row, "lon", found.longitude, 180.0)
-    height = _number(path, row, "ele", found.texts.get("ele") or "nan", 1e5)
+    latitude = _number(path, row, "lat", point.latitude, 90.0)
+    longitude = _number(path, row, "lon", point.longitude, 180.0)
+    height = _number(path, row, "ele", point.texts.get("ele") or "nan", 1e5)
     return Waypoint(row, name, latitude, longitude, height, cast("Side | None", side))
 
 

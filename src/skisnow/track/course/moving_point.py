@@ -63,8 +63,8 @@ class MovingPoint:
         if len(self.time) < 2 or not np.all(np.diff(self.time) > 0.0):
             raise ParameterError("gates need two places or more at rising times; this track has fewer")
         order: Literal[1, 2] = 2 if len(self.time) > 2 else 1
-        known = np.gradient(self.place, self.time, axis=0, edge_order=order)
-        self.velocity = known if velocity is None else np.where(np.isfinite(velocity), velocity, known)
+        differences = np.gradient(self.place, self.time, axis=0, edge_order=order)
+        self.velocity = differences if velocity is None else np.where(np.isfinite(velocity), velocity, differences)
 
     def crossings(self, origin: FloatArray, along: FloatArray, across: FloatArray) -> list[Crossing]:
         """Every crossing of the line through `origin` (2,) along `across`, in their order.

@@ -7,8 +7,7 @@ from dataclasses import dataclass
 from typing import Final, Literal, TypeAlias
 
 from ..._support.display import Facts, Shown, ShownFields, amount
-from .course import Course, GateLine
-from .gate import Gate
+from .course import Course, Gate, GateLine
 from .moving_point import Crossing, MovingPoint
 
 GateOutcome: TypeAlias = Literal["passed", "straddled", "missed", "backwards", "not_reached"]
@@ -78,22 +77,22 @@ class CourseResult(Shown):
     @property
     def passed(self) -> int:
         """How many gates were passed."""
-        return sum(each.outcome == "passed" for each in self.passages)
+        return sum(passage.outcome == "passed" for passage in self.passages)
 
     @property
     def missed(self) -> tuple[str, ...]:
         """Names of the gates that were not passed."""
-        return tuple(each.gate.name for each in self.passages if each.outcome != "passed")
+        return tuple(passage.gate.name for passage in self.passages if passage.outcome != "passed")
 
     @property
     def times(self) -> tuple[float | None, ...]:
         """Time at each gate (s), None where its line was not crossed."""
-        return tuple(each.time for each in self.passages)
+        return tuple(passage.time for passage in self.passages)
 
     @property
     def fault(self) -> Passage | None:
         """The first gate that was not passed, if any."""
-        return next((each for each in self.passages if each.outcome != "passed"), None)
+        return next((passage for passage in self.passages if passage.outcome != "passed"), None)
 
     def _facts(self) -> Facts:
         first, last = self.passages[0].time, self.passages[-1].time
@@ -124,35 +123,35 @@ def passages(course: Course, middle: MovingPoint, parts: Mapping[str, MovingPoin
     climbing back (661.4.1). The line ends at the poles (661.4.1.1, 661.4.1.2); without an outer pole it goes on, as in
     a slalom with single poles (804.3). A crossing against the course does not count.
     """
-    found: list[Passage] = []
+    results: list[Passage] = []
     after = float("-inf")
     for gate, line in zip(course.gates, course.lines, strict=True):
         passage = _passage(gate, line, after, middle, parts or {"track": middle})
         after = after if passage.time is None else max(after, passage.time)
-        found.append(passage)
-    return CourseResult(course=course, passages=tuple(found), start_time=float(middle.time[0]))
+        results.append(passage)
+    return CourseResult(course=course, passages=tuple(results), start_time=float(middle.time[0]))
 
 
 def _passage(
     gate: Gate, line: GateLine, after: float, middle: MovingPoint, parts: Mapping[str, MovingPoint]
 ) -> Passage:
-    crossed = middle.crossings(line.pole, line.along, line.across)
-    near = [each for each in crossed if each.time > after and abs(each.aside) <= FARTHEST]
-    tried = [each for each in near if each.forward]
-    tried = [each for each in tried if each.time <= tried[0].time + CLIMB_BACK]
+    crossings = middle.crossings(line.pole, line.along, line.across)
+    near = [crossing for crossing in crossings if crossing.time > after and abs(crossing.aside) <= FARTHEST]
+    tried = [crossing for crossing in near if crossing.forward]
+    tried = [crossing for crossing in tried if crossing.time <= tried[0].time + CLIMB_BACK]
     if not tried:
-        backwards = any(0.0 < each.aside < line.width for each in near)
+        backwards = any(0.0 < crossing.aside < line.width for crossing in near)
         if backwards:
             return Passage(
                 gate=gate, outcome="backwards", words=f"gate {gate.name} was crossed against the course only"
             )
         return Passage(gate=gate, outcome="not_reached", words=f"gate {gate.name} was not reached")
-    judged = [_judged(gate, line, each, parts) for each in tried]
-    return next((each for each in judged if each.outcome == "passed"), judged[0])
+    results = [_judge(gate, line, crossing, parts) for crossing in tried]
+    return next((crossing for crossing in results if crossing.outcome == "passed"), results[0])
 
 
-def _judged(gate: Gate, line: GateLine, at: Crossing, parts: Mapping[str, MovingPoint]) -> Passage:
-    aside = {name: _aside(line, at, part) for name, part in parts.items()}
+def _judge(gate: Gate, line: GateLine, at: Crossing, parts: Mapping[str, MovingPoint]) -> Passage:
+    aside = {name: _lateral_position(line, at, part) for name, part in parts.items()}
     low, high = min(aside.values()), max(aside.values())
     clearance = min(low, line.width - high)
     outcome, words = _verdict(gate, line, low, high)
@@ -163,11 +162,11 @@ def _judged(gate: Gate, line: GateLine, at: Crossing, parts: Mapping[str, Moving
     )
 
 
-def _aside(line: GateLine, at: Crossing, part: MovingPoint) -> float:
+def _lateral_position(line: GateLine, at: Crossing, part: MovingPoint) -> float:
     """Where a part crossed the line, at about that time; where it did not, the middle counts."""
-    own = [each for each in part.crossings(line.pole, line.along, line.across) if each.forward]
-    own = [each for each in own if abs(each.time - at.time) <= BESIDE]
-    return min(own, key=lambda each: abs(each.time - at.time)).aside if own else at.aside
+    crossings = [crossing for crossing in part.crossings(line.pole, line.along, line.across) if crossing.forward]
+    crossings = [crossing for crossing in crossings if abs(crossing.time - at.time) <= BESIDE]
+    return min(crossings, key=lambda crossing: abs(crossing.time - at.time)).aside if crossings else at.aside
 
 
 def _verdict(gate: Gate, line: GateLine, low: float, high: float) -> tuple[GateOutcome, str]:

@@ -65,7 +65,7 @@ def _departures(course: Course, rules: Rules, drop: float | None) -> Iterator[st
         if gate.outer is not None and not low <= gate.width <= high:
             yield f"gate {gate.name} is {gate.width:.2f} m wide; {rules.article} asks for {low:g} to {high:g} m"
     for before, gate in zip(course.gates, course.gates[1:], strict=False):
-        poles = [np.array([each for each in (one.turning, one.outer) if each is not None]) for one in (before, gate)]
+        poles = [np.array([pole for pole in (one.turning, one.outer) if pole is not None]) for one in (before, gate)]
         apart = float(np.linalg.norm(poles[0][:, None] - poles[1][None], axis=2).min())
         if apart < rules.least_distance:
             yield (

@@ -2,19 +2,17 @@
 
 from __future__ import annotations
 
-from datetime import UTC, datetime
-from typing import TYPE_CHECKING
+from dataclasses import replace
+from datetime import UTC, datetime, timedelta
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
 from ..flags import FASTEST, GAP_FACTOR, point_flags
-from ..point import GEODETIC, LOCAL, MOTION
-from ..projection import GeodeticPoint, east_north_up, turned_to_origin
+from ..projection import GeodeticPoint, east_north_up, rotate_to_origin
 from ..track import Track
-from .fixed_points import fixed_points
-from .recording import Recording
-from .refusal import refusal
-from .rounded_times import spread_times
+from .recording import GEODETIC, LOCAL, MOTION, Recording, track_error
+from .times import spread_times
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -24,8 +22,10 @@ if TYPE_CHECKING:
     BoolArray = npt.NDArray[np.bool_]
     FloatArray = npt.NDArray[np.float64]
 
+    from .recording import Recording
 
-def track_of(
+
+def build_track(
     recording: Recording,
     *,
     origin: GeodeticPoint | None = None,
@@ -100,7 +100,7 @@ def _projected(
 ) -> tuple[FloatArray, FloatArray | None, GeodeticPoint | None]:
     if not recording.is_geodetic:
         if origin is not None:
-            raise refusal(
+            raise track_error(
                 "no_place_on_earth",
                 recording.name,
                 value=str(origin),
@@ -111,7 +111,7 @@ def _projected(
     at = origin or recording.default_origin or _first(recording.place[fix])
     velocity = recording.velocity
     if velocity is not None:
-        velocity = turned_to_origin(velocity, recording.place, origin=at)
+        velocity = rotate_to_origin(velocity, recording.place, origin=at)
     return east_north_up(recording.place, origin=at), velocity, at
 
 
@@ -129,7 +129,7 @@ def _frame(recording: Recording, at: GeodeticPoint | None) -> str:
 
 def _require_points(recording: Recording) -> None:
     if not len(recording.time):
-        raise refusal(
+        raise track_error(
             "empty_file",
             recording.name,
             allowed="at least one point",
@@ -137,7 +137,7 @@ def _require_points(recording: Recording) -> None:
         )
     fix = _fix(recording)
     if not np.any(fix):
-        raise refusal(
+        raise track_error(
             "no_place",
             recording.name,
             allowed="at least one point with a place and a fix",
@@ -149,18 +149,18 @@ def _require_time(recording: Recording) -> None:
     falls = np.flatnonzero(np.diff(recording.time) < 0.0)
     if len(falls):
         point = int(falls[0]) + 1
-        raise refusal(
+        raise track_error(
             "time_backwards",
             recording.name,
             place=recording.places_in_file[point],
             column="time",
-            value=_told_time(recording, point),
-            allowed=f"a time not before the one of the point before, {_told_time(recording, point - 1)}",
+            value=_time_text(recording, point),
+            allowed=f"a time not before the one of the point before, {_time_text(recording, point - 1)}",
             action="Sort the points, or split the file where another recording begins.",
         )
 
 
-def _told_time(recording: Recording, point: int) -> str:
+def _time_text(recording: Recording, point: int) -> str:
     seconds = float(recording.time[point] - recording.time[0])
     if recording.start is None:
         return f"{seconds + recording.first_time:.12g} s"
@@ -177,15 +177,16 @@ def _require_in_range(recording: Recording) -> None:
         _require_within(recording, column, recording.place[:, axis], quantity)
     for name, quantity in MOTION.items():
         values = getattr(recording, name)
-        for each in [] if values is None else [values] if values.ndim == 1 else list(values.T):
-            _require_within(recording, name, each, quantity)
+        components = [] if values is None else [values] if values.ndim == 1 else list(values.T)
+        for component in components:
+            _require_within(recording, name, component, quantity)
 
 
 def _require_within(recording: Recording, column: str, values: FloatArray, quantity: Quantity) -> None:
     outside = np.flatnonzero(quantity.outside(values))
     if len(outside):
         point = int(outside[0])
-        raise refusal(
+        raise track_error(
             "out_of_range",
             recording.name,
             place=recording.places_in_file[point],
@@ -194,3 +195,70 @@ def _require_within(recording: Recording, column: str, values: FloatArray, quant
             allowed=f"a number {quantity.allowed} {quantity.unit}",
             action="Correct the value; is it in another unit, or in another column?",
         )
+
+
+BEFORE: Final = "points before the first fix"
+AFTER: Final = "points after the last fix"
+OUT_OF_ORDER: Final = "points without a fix whose time is not between the points with a fix around them"
+_ARRAYS: Final = ("time", "place", "speed", "velocity", "place_sd", "speed_sd", "odometer", "fix", "solution",
+                  "segment", "not_finite")  # fmt: skip
+
+
+def fixed_points(recording: Recording, fix: BoolArray) -> tuple[Recording, BoolArray]:
+    """The recording from its first to its last point with a fix, and the fix of its points.
+
+    Parameters
+    ----------
+    recording
+        As read.
+    fix : (n,) bool
+        True for points with a fix; at least one is.
+    """
+    numbers = np.flatnonzero(fix)
+    first, last = int(numbers[0]), int(numbers[-1])
+    inside = np.zeros(len(fix), dtype=bool)
+    inside[first : last + 1] = True
+    ordered = fix | _between_neighbours(recording.time, fix)
+    counts = {
+        BEFORE: first,
+        AFTER: len(fix) - 1 - last,
+        OUT_OF_ORDER: int(np.count_nonzero(inside & ~ordered)),
+    }
+    left_out = dict(recording.left_out)
+    for words, count in counts.items():
+        left_out[words] = left_out.get(words, 0) + count
+    used = inside & ordered
+    return _select_points(recording, used, left_out), fix[used]
+
+
+def _between_neighbours(time: FloatArray, fix: BoolArray) -> BoolArray:
+    """True for points whose time is between those of the points with a fix before and after them."""
+    fixed_time = np.where(fix, time, np.nan)
+    numbers = np.arange(len(time))
+    before = np.maximum.accumulate(np.where(fix, numbers, -1))
+    after = np.minimum.accumulate(np.where(fix, numbers, len(time))[::-1])[::-1]
+    with np.errstate(invalid="ignore"):
+        return np.asarray(
+            (before >= 0)
+            & (after < len(time))
+            & (time >= fixed_time[np.maximum(before, 0)])
+            & (time <= fixed_time[np.minimum(after, len(time) - 1)])
+        )
+
+
+def _select_points(recording: Recording, used: BoolArray, left_out: dict[str, int]) -> Recording:
+    if used.all():
+        return replace(recording, left_out=left_out)
+    arrays: dict[str, Any] = {}
+    for name in _ARRAYS:
+        values = getattr(recording, name)
+        arrays[name] = None if values is None else values[used]
+    shift = float(recording.time[np.flatnonzero(used)[0]] - recording.time[0])
+    return replace(
+        recording,
+        **arrays,
+        places_in_file=[where for where, is_used in zip(recording.places_in_file, used, strict=True) if is_used],
+        start=None if recording.start is None else recording.start + timedelta(seconds=shift),
+        first_time=recording.first_time if recording.start is not None else recording.first_time + shift,
+        left_out=left_out,
+    )

@@ -15,8 +15,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from .recording import Recording
-from .refusal import refusal
+from .recording import Recording, track_error
 
 SEMICIRCLE: Final = 180.0 / 2**31
 """Degrees in a semicircle, the unit of FIT's latitude and longitude."""
@@ -102,7 +101,7 @@ def _files(data: bytes) -> tuple[list[bytes], int]:
 
     The header of each gives its length: bytes that a device writes after the end belong to none.
     """
-    found: list[bytes] = []
+    files: list[bytes] = []
     inside = place = 0
     while (mark := data.find(_MARK, place)) >= 0:
         begin = mark - _MARK_AT
@@ -111,10 +110,10 @@ def _files(data: bytes) -> tuple[list[bytes], int]:
         if size not in _HEADERS:
             place = mark + 1
             continue
-        found.append(data[begin : begin + length])
-        inside += len(found[-1])
+        files.append(data[begin : begin + length])
+        inside += len(files[-1])
         place = begin + length
-    return found, len(data) - inside
+    return files, len(data) - inside
 
 
 def _decode(data: bytes, name: str, records: _Records) -> None:
@@ -131,7 +130,7 @@ def _decode(data: bytes, name: str, records: _Records) -> None:
                     records.add_event(frame)
     except Exception as error:  # damaged bytes make fitdecode fail in many ways
         read = len(records.times)
-        raise refusal(
+        raise track_error(
             "unreadable_file",
             name,
             value=f"{type(error).__name__}: {error}",

@@ -16,9 +16,7 @@ from xml.parsers import expat
 import numpy as np
 
 from ..._support.spreadsheet_text import number
-from .not_finite import is_not_finite
-from .recording import Recording
-from .refusal import refusal
+from .recording import Recording, is_not_finite, track_error
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -145,13 +143,13 @@ def _points(text: str, name: str) -> list[_Point]:
 
 
 def _damaged(name: str, value: str, allowed: str, action: str) -> Exception:
-    return refusal("unreadable_file", name, value=value, allowed=allowed, action=action)
+    return track_error("unreadable_file", name, value=value, allowed=allowed, action=action)
 
 
 def _required_moment(point: _Point, name: str, place: int) -> datetime:
     moment = _moment(point.texts.get("time", ""))
     if moment is None:
-        raise refusal(
+        raise track_error(
             "not_a_time",
             name,
             place=f"point {place + 1}",
@@ -168,12 +166,12 @@ def _moment(text: str) -> datetime | None:
     >>> _moment("2022-12-27T16:51:14.5+01:00").isoformat(), _moment("2022-12-27")
     ('2022-12-27T15:51:14.500000+00:00', None)
     """
-    found = _TIME.fullmatch(text)
-    if found is None:
+    match = _TIME.fullmatch(text)
+    if match is None:
         return None
-    microsecond = int((found[7] or ".")[1:7].ljust(6, "0"))
+    microsecond = int((match[7] or ".")[1:7].ljust(6, "0"))
     try:
-        return datetime(*map(int, found.groups()[:6]), microsecond, tzinfo=_zone(found[8])).astimezone(UTC)  # type: ignore[misc, arg-type]
+        return datetime(*map(int, match.groups()[:6]), microsecond, tzinfo=_zone(match[8])).astimezone(UTC)  # type: ignore[misc, arg-type]
     except (ValueError, OverflowError):
         return None
 
@@ -203,7 +201,7 @@ def _number(text: str | None, name: str, place: int, column: str, unit: str) -> 
     """The number; NaN if the file has `nan` or `inf`, which is flagged."""
     value = math.nan if text is None else number(text)
     if math.isnan(value) and (text is None or not is_not_finite(text)):
-        raise refusal(
+        raise track_error(
             "not_a_number",
             name,
             place=f"point {place + 1}",

@@ -17,8 +17,7 @@ import numpy as np
 from ..._support.units import DEGREE
 from ..solution import Solution, solution_array
 from .nmea_sentences import SENTENCE, WRONG_CHECKSUM, sentences
-from .recording import Recording
-from .refusal import refusal
+from .recording import Recording, track_error
 
 __all__ = ["SENTENCE", "read_nmea"]
 
@@ -121,23 +120,23 @@ def read_nmea(data: bytes, name: str) -> Recording:
         No sentence GGA, GNS, GLL or RMC with a time and a right checksum, or without checksums, is in the file.
     """
     counts: dict[str, int] = {WRONG_CHECKSUM: 0, NO_TIME: 0}
-    found = _epochs(data, counts)
-    fixed = [number for number, epoch in enumerate(found) if epoch.has_fix]
+    epochs = _epochs(data, counts)
+    fixed = [number for number, epoch in enumerate(epochs) if epoch.has_fix]
     if fixed:
-        counts["times before the first fix"] = _placed_count(found[: fixed[0]])
-        found = found[fixed[0] :]
-    if not _placed_count(found):
-        raise refusal(
+        counts["times before the first fix"] = _placed_count(epochs[: fixed[0]])
+        epochs = epochs[fixed[0] :]
+    if not _placed_count(epochs):
+        raise track_error(
             "empty_file",
             name,
             value=", ".join(f"{count} {words}" for words, count in counts.items() if count),
             allowed="sentences GGA, GNS, GLL or RMC with times, and with right checksums or none",
             action="Switch these sentences on in the receiver, or copy the file again.",
         )
-    times, start = _times(found)
-    kept = [number for number, epoch in enumerate(found) if _is_placed(epoch)]
-    counts[NO_PLACE] = sum(not _is_placed(epoch) and any(kind == "GST" for _, kind in epoch.seen) for epoch in found)
-    return _recording(name, [found[number] for number in kept], times[kept], start, counts)
+    times, start = _times(epochs)
+    placed = [number for number, epoch in enumerate(epochs) if _is_placed(epoch)]
+    counts[NO_PLACE] = sum(not _is_placed(epoch) and any(kind == "GST" for _, kind in epoch.seen) for epoch in epochs)
+    return _recording(name, [epochs[number] for number in placed], times[placed], start, counts)
 
 
 def _is_placed(epoch: _Epoch) -> bool:
@@ -257,7 +256,7 @@ def _solution(message: Any) -> Solution:
     if message.msgID == "GGA":
         return QUALITIES.get(_number(message, "quality"), "")
     modes = {MODES[mode] for mode in str(getattr(message, "posMode", "")) if mode in MODES}
-    return next((each for each in ("code", "float", "fixed") if each in modes), "")
+    return next((solution for solution in ("code", "float", "fixed") if solution in modes), "")
 
 
 def _number(message: Any, name: str) -> float:
@@ -275,7 +274,7 @@ def _date(value: Any) -> date | None:
 
 def _whole_date(message: Any) -> date | None:
     try:
-        found = date(int(message.year), int(message.month), int(message.day))
+        day = date(int(message.year), int(message.month), int(message.day))
     except (AttributeError, ValueError, OverflowError):
         return None
-    return found if YEARS[0] <= found.year <= YEARS[1] else None
+    return day if YEARS[0] <= day.year <= YEARS[1] else None

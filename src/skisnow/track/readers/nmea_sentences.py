@@ -12,7 +12,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any, Final
 
-from .not_finite import NOT_FINITE_CELL
+from .recording import NOT_FINITE_CELL
 
 READ: Final = ("GGA", "GNS", "GLL", "RMC", "VTG", "GST", "ZDA")
 """Sentences that are read."""
@@ -48,9 +48,9 @@ class _Piece:
 
 def sentences(data: bytes, counts: dict[str, int]) -> Iterator[Sentence]:
     """Every sentence that is read, in the order of the file; rejected ones are added to `counts`."""
-    pieces = [_piece(found) for found in _PIECE.finditer(data)]
+    pieces = [_piece(match) for match in _PIECE.finditer(data)]
     checked = {piece.address for piece in pieces if piece.checksum is not None}
-    line_ends = [found.end() for found in _LINE_END.finditer(data)]
+    line_ends = [match.end() for match in _LINE_END.finditer(data)]
     for piece in pieces:
         reason = _rejection(piece, checked)
         if reason is None and _is_read(piece.address):
@@ -64,10 +64,10 @@ def sentences(data: bytes, counts: dict[str, int]) -> Iterator[Sentence]:
             counts[reason] = counts.get(reason, 0) + 1
 
 
-def _piece(found: re.Match[bytes]) -> _Piece:
-    content, star, rest = found[0][1:].partition(b"*")
+def _piece(match: re.Match[bytes]) -> _Piece:
+    content, star, rest = match[0][1:].partition(b"*")
     checksum = _CHECKSUM.match(rest) if star else None
-    return _Piece(found.start(), found[1], content.rstrip(), None if checksum is None else checksum[0])
+    return _Piece(match.start(), match[1], content.rstrip(), None if checksum is None else checksum[0])
 
 
 def _is_read(address: bytes) -> bool:

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from datetime import datetime
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Annotated, Final
 
 import numpy as np
 
-from ..projection import GeodeticPoint
+from ..._support.errors import FieldDataError
+from ...parameters import Quantity, own_quantities
+from ..projection import HIGHEST, GeodeticPoint
 from ..track import Axes
 
 if TYPE_CHECKING:
@@ -86,3 +89,105 @@ class Recording:
     segment: IntArray | None = None
     not_finite: BoolArray | None = None
     notes: tuple[str, ...] = ()
+
+
+FARTHEST: Final = 1e8
+"""Places, times and distances (m, s) beyond this are not those of a ski run."""
+FASTEST_NUMBER: Final = 1e4
+"""Speeds (m/s) beyond this are no speeds of anything that touches snow."""
+
+
+def _place(name: str) -> Quantity:
+    return Quantity(name, "in the frame of the file", lowest=-FARTHEST, highest=FARTHEST)
+
+
+def _velocity(name: str, meaning: str) -> Quantity:
+    return Quantity(name, meaning, lowest=-FASTEST_NUMBER, highest=FASTEST_NUMBER)
+
+
+@dataclass(frozen=True, slots=True)
+class LocalPlace:
+    """Where a point is, in metres of the file."""
+
+    x: Annotated[float, _place("x_m")]
+    y: Annotated[float, _place("y_m")]
+    z: Annotated[float, _place("z_m")]
+
+
+@dataclass(frozen=True, slots=True)
+class GeodeticPlace:
+    """Where on earth a point is."""
+
+    latitude: Annotated[float, Quantity("latitude_deg", "latitude", lowest=-90.0, highest=90.0)]
+    longitude: Annotated[float, Quantity("longitude_deg", "longitude", lowest=-180.0, highest=180.0)]
+    height: Annotated[float, Quantity("height_m", "height", lowest=-HIGHEST, highest=HIGHEST)]
+
+
+@dataclass(frozen=True, slots=True)
+class Motion:
+    """What else a device may say of a point."""
+
+    speed: Annotated[float, _velocity("speed_m_per_s", "speed")]
+    velocity: Annotated[float, _velocity("velocity_m_per_s", "part of the velocity")]
+    odometer: Annotated[float, Quantity("odometer_m", "distance so far", lowest=-FARTHEST, highest=FARTHEST)]
+    place_sd: Annotated[float, Quantity("place_sd_m", "standard deviation of a place", lowest=0.0, highest=FARTHEST)]
+    speed_sd: Annotated[
+        float, Quantity("speed_sd_m_per_s", "standard deviation of the speed", lowest=0.0, highest=FASTEST_NUMBER)
+    ]
+
+
+LOCAL: Final = own_quantities(LocalPlace)
+GEODETIC: Final = own_quantities(GeodeticPlace)
+MOTION: Final = {quantity.field: quantity for quantity in own_quantities(Motion)}
+
+
+@dataclass(frozen=True, slots=True)
+class TrackProblem:
+    """One problem, printable as one sentence.
+
+    ``place`` names where in the file: ``"row 3"`` of a text file (header: 1), ``"point 12"``, ``"byte 4711"``.
+    """
+
+    code: str
+    file: str
+    place: str | None
+    column: str | None
+    value: str | None
+    allowed: str
+    action: str
+
+    def __str__(self) -> str:
+        """Say it in one line."""
+        where = ", ".join(filter(None, (self.file, self.place, self.column and f"column {self.column}")))
+        value = "" if self.value is None else f" found {self.value!r};"
+        return f"error {self.code}: {where}:{value} allowed: {self.allowed}. {self.action}"
+
+
+def track_error(
+    code: str,
+    file: str,
+    *,
+    allowed: str,
+    action: str,
+    place: str | None = None,
+    column: str | None = None,
+    value: str | None = None,
+) -> FieldDataError:
+    """The error that refuses a file."""
+    shown = value if value is None or len(value) <= 60 else f"{value[:57]}…"
+    return FieldDataError([TrackProblem(code, file, place, column, shown, allowed, action)])
+
+
+NOT_FINITE_CELL: Final = re.compile(
+    r"[+-]?(?:nan(?:\([\w ]*\))?|inf(?:inity)?|1\.#(?:inf|ind|qnan|snan)0*)", re.IGNORECASE
+)
+"""Written by C, C++ (also of Windows), Fortran, Python and MATLAB."""
+
+
+def is_not_finite(cell: str) -> bool:
+    """True if a cell is written as a number that is not finite.
+
+    >>> [is_not_finite(cell) for cell in ("-nan(ind)", "Inf", "-1.#IND00", "nano", "1.5", "")]
+    [True, True, True, False, False, False]
+    """
+    return NOT_FINITE_CELL.fullmatch(cell.strip()) is not None

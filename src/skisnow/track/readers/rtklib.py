@@ -16,12 +16,9 @@ import numpy as np
 import numpy.typing as npt
 
 from ..._support.spreadsheet_text import number
-from ..point import FARTHEST, FASTEST_NUMBER
 from ..projection import GeodeticPoint, earth_centred, east_north_up_axes, geodetic
 from ..solution import Solution, solution_array
-from .not_finite import is_not_finite
-from .recording import Recording
-from .refusal import refusal
+from .recording import FARTHEST, FASTEST_NUMBER, Recording, is_not_finite, track_error
 
 SCALES: Final = {"GPST": "GPS", "UTC": "UTC", "JST": "JST"}
 PLACES: Final = {
@@ -50,7 +47,7 @@ class Header:
         return len(self.columns) + (4 if self.sexagesimal else 0)
 
 
-def header_of(text: str, name: str) -> Header:
+def parse_header(text: str, name: str) -> Header:
     """The header of a solution.
 
     Raises
@@ -58,15 +55,15 @@ def header_of(text: str, name: str) -> Header:
     FieldDataError
         There is none, or it does not name all three coordinates.
     """
-    found = HEADER.search(text)
-    if found is None:
-        raise refusal(
+    match = HEADER.search(text)
+    if match is None:
+        raise track_error(
             "missing_column",
             name,
             allowed="a header line such as: %  GPST  latitude(deg) longitude(deg) height(m) Q ns sdn(m) sde(m) sdu(m)",
             action="Switch the output of the header on in RTKLIB, and solve again.",
         )
-    line, first = found[0], found[2].lower()
+    line, first = match[0], match[2].lower()
     kind = next(kind for kind, names in PLACES.items() if names[0] == first)
     after = line[line.lower().index(first) :]
     unit = re.match(r"[\w-]+\((.*?)\)(.)?", after)
@@ -75,7 +72,7 @@ def header_of(text: str, name: str) -> Header:
     columns = tuple(re.sub(r"\(.*", "", cell).lower() for cell in cells)
     absent = [column for column in PLACES[kind] if column not in columns]
     if absent:
-        raise refusal(
+        raise track_error(
             "missing_column",
             name,
             column=absent[0],
@@ -84,7 +81,7 @@ def header_of(text: str, name: str) -> Header:
             action="The header line is damaged; solve again.",
         )
     sexagesimal = kind == "geodetic" and unit is not None and "'" in unit[1]
-    return Header(SCALES.get((found[1] or "").upper(), "local"), kind, sexagesimal, separator, columns)
+    return Header(SCALES.get((match[1] or "").upper(), "local"), kind, sexagesimal, separator, columns)
 
 
 FloatArray = npt.NDArray[np.float64]
@@ -126,7 +123,7 @@ def read_rtklib(text: str, name: str) -> Recording:
         The header line is missing, a row is shorter than it, or a cell is no number or time.
     """
     lines = text.split("\n")
-    header = header_of(text, name)
+    header = parse_header(text, name)
     base = _base(lines, header)
     numbered = [
         (row, line) for row, line in enumerate(lines, start=1) if line.strip() and line.lstrip()[0] not in "%+$"
@@ -158,7 +155,7 @@ def read_rtklib(text: str, name: str) -> Recording:
         speed_sd=None if velocity is None else _speed_sd(columns, header),
         fix=None if quality is None else quality > 0.0,
         not_finite=np.array(not_finite, dtype=bool),
-        solution=None if quality is None else solution_array([QUALITIES.get(each, "") for each in quality.tolist()]),
+        solution=None if quality is None else solution_array([QUALITIES.get(value, "") for value in quality.tolist()]),
         axes="east_north_up",
         axes_in_words="east, north, up in m from the base station of the solution",
         heights="above the ellipsoid" if is_ellipsoidal else "above the geoid",
@@ -172,7 +169,7 @@ def _row(line: str, header: Header, name: str, row: int) -> tuple[datetime, list
     cells = line.replace(header.separator, " ").split()
     moment = _moment(cells, header.scale)
     if moment is None:
-        raise refusal(
+        raise track_error(
             "not_a_time",
             name,
             place=f"row {row}",
@@ -183,7 +180,7 @@ def _row(line: str, header: Header, name: str, row: int) -> tuple[datetime, list
         )
     cells = cells[2:]
     if len(cells) < header.width:
-        raise refusal(
+        raise track_error(
             "too_few_cells",
             name,
             place=f"row {row}",
@@ -203,7 +200,7 @@ def _row(line: str, header: Header, name: str, row: int) -> tuple[datetime, list
         values[place] = math.nan
         is_used = place < first_column or header.columns[place - first_column] in used
         if is_used and not is_not_finite(cell):
-            raise refusal(
+            raise track_error(
                 "not_a_number",
                 name,
                 place=f"row {row}",
@@ -255,8 +252,8 @@ def _base(lines: list[str], header: Header) -> GeodeticPoint | None:
     if header.kind != "baseline":
         return None
     for line in lines:
-        found = re.match(r"%\s*ref pos\s*:\s*(.*)", line)
-        cells = found[1].replace(header.separator, " ").split() if found else []
+        match = re.match(r"%\s*ref pos\s*:\s*(.*)", line)
+        cells = match[1].replace(header.separator, " ").split() if match else []
         values = [number(cell) for cell in cells]
         if len(values) == 7:  # degrees, minutes, seconds
             values = _degrees(cells, values)

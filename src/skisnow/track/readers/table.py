@@ -7,19 +7,16 @@ import difflib
 import itertools
 import math
 import re
+import unicodedata
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
 from ..._support.spreadsheet_text import number
-from ..point import FARTHEST
-from .likely_columns import likely_columns
-from .not_finite import is_not_finite
-from .recording import Recording
-from .refusal import refusal
-from .serial_dates import times_of_numbers
-from .text import Cells, cells_of, decimal_mark_of, moment, require_width
+from .recording import FARTHEST, Recording, is_not_finite, track_error
+from .text import Cells, decimal_mark_of, moment, require_width, split_cells
+from .times import convert_serial_dates
 
 if TYPE_CHECKING:
     from datetime import datetime
@@ -28,6 +25,7 @@ if TYPE_CHECKING:
 
     BoolArray = npt.NDArray[np.bool_]
     FloatArray = npt.NDArray[np.float64]
+    from collections.abc import Sequence
 
 TIMES: Final = ("time_s", "time")
 LOCAL: Final = ("x_m", "y_m", "z_m")
@@ -51,7 +49,7 @@ def read_table(text: str, name: str) -> Recording:
         A column is missing or stands there twice, a cell that must be a number or a time is none, or a row has more
         cells than the header.
     """
-    table = _Table.of(cells_of(text, name), name)
+    table = _Table.of(split_cells(text, name), name)
     is_geodetic = table.kind()
     table.require_rows()
     time, start, note = table.time()
@@ -98,8 +96,8 @@ class _Table:
         width = len(cells.header)
         require_width(cells, name)
         rows = tuple((row + ("",) * (width - len(row)))[:width] for row in cells.rows)
-        known = [place for place, column in enumerate(cells.header) if column in COLUMNS]
-        mark = decimal_mark_of((row[place] for place in known for row in rows), cells.separator)
+        places = [place for place, column in enumerate(cells.header) if column in COLUMNS]
+        mark = decimal_mark_of((row[place] for place in places for row in rows), cells.separator)
         return cls(dataclasses.replace(cells, rows=rows), name, mark, set(), np.zeros(len(rows), dtype=bool))
 
     @property
@@ -110,7 +108,7 @@ class _Table:
         """Whether places are latitude and longitude."""
         local, geodetic = (any(column in self.header for column in form[:2]) for form in (LOCAL, GEODETIC))
         if local and geodetic:
-            raise refusal(
+            raise track_error(
                 "two_places",
                 self.name,
                 place=f"row {self.cells.header_line}",
@@ -126,11 +124,11 @@ class _Table:
 
     def _missing(self, column: str) -> Exception:
         near = difflib.get_close_matches(column, self.header, n=1, cutoff=0.6)
-        likely = likely_columns(self.header)
+        likely = columns_by_synonym(self.header)
         hint = f" Is {near[0]!r} meant to be it?" if near else ""
         if likely:
             hint = f" Likely {', '.join(f'{name} for {heading!r}' for heading, name in likely.items())}."
-        return refusal(
+        return track_error(
             "missing_column",
             self.name,
             place=f"row {self.cells.header_line}",
@@ -142,7 +140,7 @@ class _Table:
 
     def require_rows(self) -> None:
         if not self.cells.rows:
-            raise refusal(
+            raise track_error(
                 "empty_file",
                 self.name,
                 allowed="a row for each point below the header",
@@ -179,16 +177,16 @@ class _Table:
         cells = self.column(name)
         if name == "time_s" or not math.isnan(number(cells[0], self.mark)):
             seconds = self._seconds(name, cells)
-            return (seconds, None, None) if name == "time_s" else times_of_numbers(seconds)
+            return (seconds, None, None) if name == "time_s" else convert_serial_dates(seconds)
         moments = [moment(cell) for cell in cells]
-        for place, found in enumerate(moments):
-            if found is None:
+        for place, read in enumerate(moments):
+            if read is None:
                 raise self._no_time(place, name, cells[place])
-        known = [found for found in moments if found is not None]
-        for place, (one, other) in enumerate(itertools.pairwise(known)):
+        times = [read for read in moments if read is not None]
+        for place, (one, other) in enumerate(itertools.pairwise(times)):
             if (one.tzinfo is None) != (other.tzinfo is None):
                 raise self._no_time(place + 1, name, cells[place + 1], "all with a zone, or all without")
-        return np.array([(found - known[0]).total_seconds() for found in known]), known[0], None
+        return np.array([(read - times[0]).total_seconds() for read in times]), times[0], None
 
     def _seconds(self, name: str, cells: list[str]) -> FloatArray:
         values = np.array([number(cell, self.mark) for cell in cells])
@@ -198,7 +196,7 @@ class _Table:
 
     def _no_time(self, place: int, column: str, cell: str, also: str = "in every row") -> Exception:
         what = "seconds" if column == "time_s" else "seconds, or a date and time such as 2022-12-27T15:51:14.2Z,"
-        return refusal(
+        return track_error(
             "not_a_number" if column == "time_s" else "not_a_time",
             self.name,
             place=f"row {self.cells.lines[place]}",
@@ -210,7 +208,7 @@ class _Table:
 
     def _no_number(self, place: int, column: str, cell: str) -> Exception:
         mark = "a decimal comma" if self.mark == "," else "a decimal point"
-        return refusal(
+        return track_error(
             "not_a_number",
             self.name,
             place=f"row {self.cells.lines[place]}",
@@ -234,7 +232,7 @@ def _column_name(heading: str) -> str:
 def _require_header(cells: Cells, name: str) -> None:
     twice = [column for column in COLUMNS if cells.header.count(column) > 1]
     if twice:
-        raise refusal(
+        raise track_error(
             "column_twice",
             name,
             place=f"row {cells.header_line}",
@@ -242,3 +240,44 @@ def _require_header(cells: Cells, name: str) -> None:
             allowed="each column once",
             action="Rename or remove one of them.",
         )
+
+
+_METRES, _DEGREES = ("", "m"), ("", "°", "deg", "grad")
+_WORDS: Final = {
+    "time": (("zeit", "time", "t", "zeitstempel", "timestamp"), ("",)),
+    "time_s": (("zeit", "time", "t"), ("s", "sec", "sek")),
+    "x_m": (("x", "rechtswert", "east", "easting", "ost"), _METRES),
+    "y_m": (("y", "hochwert", "north", "northing", "nord"), _METRES),
+    "z_m": (("z",), _METRES),
+    "lat": (("latitude", "breite", "breitengrad"), _DEGREES),
+    "lon": (("lng", "long", "longitude", "länge", "längengrad"), _DEGREES),
+    "alt_m": (("alt", "altitude", "elevation", "höhe", "height"), _METRES),
+    "speed_m_per_s": (("speed", "v", "geschwindigkeit"), ("", "m/s")),
+}
+"""For each column the words that may stand for it, and the units in which its numbers may stay as they are."""
+_HEADING: Final = re.compile(
+    r"(?P<word>[^\W\d_]+)"
+    r"(?:[\s_]*[\[(/]\s*(?P<bracketed>[^\])]*?)\s*[\])]?|[\s_]+(?P<unit>\S+))?"
+)
+
+
+def columns_by_synonym(headings: Sequence[str]) -> dict[str, str]:
+    """Which columns the headings of a table likely stand for; one in another unit stands for none.
+
+    >>> columns_by_synonym(["Zeit [s]", "x (m)", "Y", "Geschwindigkeit [km/h]"])
+    {'Zeit [s]': 'time_s', 'x (m)': 'x_m', 'Y': 'y_m'}
+    """
+    columns: dict[str, str] = {}
+    for heading in headings:
+        column = _column(" ".join(unicodedata.normalize("NFC", heading).split()).casefold())
+        if column is not None and column not in columns.values() and column not in headings:
+            columns[heading] = column
+    return columns
+
+
+def _column(heading: str) -> str | None:
+    match = _HEADING.fullmatch(heading)
+    if match is None:
+        return None
+    unit = match["bracketed"] or match["unit"] or ""
+    return next((name for name, (words, units) in _WORDS.items() if match["word"] in words and unit in units), None)

@@ -18,7 +18,7 @@ from ..._support.spreadsheet_text import (
     most_frequent_separator,
     named_separator,
 )
-from .refusal import refusal
+from .recording import track_error
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 _HEAD: Final = 1 << 16
 
 
-def text_of(data: bytes, name: str) -> str:
+def decode_text(data: bytes, name: str) -> str:
     """Text in UTF-8, in UTF-16 with byte order mark, or else in Windows-1252, with line feeds as the only line ends.
 
     Byte order marks are removed wherever they are: joined files have several.
@@ -42,11 +42,11 @@ def text_of(data: bytes, name: str) -> str:
         raise _no_text(name, error.place) from error
 
 
-def _no_text(name: str, found: str) -> Exception:
-    return refusal(
+def _no_text(name: str, value: str) -> Exception:
+    return track_error(
         "unreadable_file",
         name,
-        value=found,
+        value=value,
         allowed="text in UTF-8, UTF-16 with byte order mark, or Windows-1252; or FIT or UBX",
         action="The file is no text and no known format of receivers; export it as CSV, GPX or FIT.",
     )
@@ -63,7 +63,7 @@ class Cells:
     separator: str
 
 
-def cells_of(text: str, name: str) -> Cells:
+def split_cells(text: str, name: str) -> Cells:
     """Cut a CSV file: comma, semicolon or tab, whichever the header has most; a first line ``sep=;`` may name it.
 
     Raises
@@ -75,7 +75,7 @@ def cells_of(text: str, name: str) -> Cells:
     named = named_separator(lines[0])
     first = 1 if named in SEPARATOR_NAMES else 0
     if not any(re.sub('[,;"]', "", line).strip() for line in lines[first:]):
-        raise refusal("empty_file", name, allowed="a header and rows", action="The file is empty.")
+        raise track_error("empty_file", name, allowed="a header and rows", action="The file is empty.")
     separator = named if first and named else most_frequent_separator(text[:_HEAD])
     reader = csv.reader(lines[first:], delimiter=separator, skipinitialspace=True, strict=True)
     numbers: list[int] = []
@@ -89,7 +89,7 @@ def cells_of(text: str, name: str) -> Cells:
                 rows.append(stripped)
             begun = first + reader.line_num + 1
     except csv.Error as error:
-        raise refusal(
+        raise track_error(
             "unreadable_file",
             name,
             place=f"row {begun}",
@@ -105,7 +105,7 @@ def _require_size(rows: list[tuple[str, ...]], lines: list[int], name: str) -> N
     """Refuse what no table of measurements has, before anything is done with it."""
     for line, row in zip(lines, rows, strict=True):
         if len(row) > MOST_COLUMNS:
-            raise refusal(
+            raise track_error(
                 "too_many_cells",
                 name,
                 place=f"row {line}",
@@ -114,7 +114,7 @@ def _require_size(rows: list[tuple[str, ...]], lines: list[int], name: str) -> N
                 action="Take out the columns that are not needed.",
             )
         if max(map(len, row)) > LONGEST_CELL:
-            raise refusal(
+            raise track_error(
                 "unreadable_file",
                 name,
                 place=f"row {line}",
@@ -135,7 +135,7 @@ def require_width(cells: Cells, name: str) -> None:
     width = len(cells.header)
     for line, row in zip(cells.lines, cells.rows, strict=True):
         if any(row[width:]):
-            raise refusal(
+            raise track_error(
                 "too_many_cells",
                 name,
                 place=f"row {line}",
@@ -163,7 +163,7 @@ def moment(cell: str) -> datetime | None:
     if len(cell) < len("2022-12-27T15:51") or not cell.isascii():
         return None
     try:
-        found = datetime.fromisoformat(cell)
-        return found if found.tzinfo is None else found.astimezone(UTC)
+        time = datetime.fromisoformat(cell)
+        return time if time.tzinfo is None else time.astimezone(UTC)
     except (ValueError, OverflowError):
         return None

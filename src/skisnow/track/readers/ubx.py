@@ -21,8 +21,7 @@ import numpy as np
 from ..._support.units import MM
 from ..solution import Solution, solution_array
 from .nmea_sentences import SENTENCE
-from .recording import Recording
-from .refusal import refusal
+from .recording import Recording, track_error
 
 SYNC: Final = b"\xb5\x62"
 LENGTHS: Final = {b"\x01\x07": (84, 92), b"\x01\x14": (36,), b"\x01\x36": (64,)}
@@ -59,7 +58,7 @@ def read_ubx(data: bytes, name: str) -> Recording:
     epochs = _epochs(data, counts)
     if not epochs:
         counted = ", ".join(f"{count} {words}" for words, count in counts.items())
-        raise refusal(
+        raise track_error(
             "empty_file",
             name,
             value=counted,
@@ -140,10 +139,10 @@ class _Checksums:
     """
 
     def __init__(self, data: bytes) -> None:
-        each = np.frombuffer(data, np.uint8)
+        values = np.frombuffer(data, np.uint8)
         at = np.arange(len(data)).astype(np.uint8)
-        self._sum = b"\0" + np.cumsum(each, dtype=np.uint8).tobytes()
-        self._moment = b"\0" + np.cumsum(at * each, dtype=np.uint8).tobytes()
+        self._sum = b"\0" + np.cumsum(values, dtype=np.uint8).tobytes()
+        self._moment = b"\0" + np.cumsum(at * values, dtype=np.uint8).tobytes()
 
     def between(self, begin: int, end: int) -> bytes:
         """The two bytes of the checksum over ``data[begin:end]``."""

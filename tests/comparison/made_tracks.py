@@ -11,7 +11,7 @@ from skisnow.track.track import Track
 FloatArray = npt.NDArray[np.float64]
 
 
-def track_of(
+def build_track(
     place: FloatArray | Sequence[Sequence[float]],
     time: FloatArray | Sequence[float] | None = None,
     *,

@@ -8,10 +8,9 @@ import numpy as np
 import pytest
 from benchmarks.track_headings import KINDS, fitted_track, row
 
-from skisnow.track.comparison import compare_tracks
-from skisnow.track.comparison_dict import comparison_dict
+from skisnow.comparison import compare_tracks, comparison_dict
 
-from .made_tracks import FloatArray, track_of
+from .made_tracks import FloatArray, build_track
 
 
 @pytest.mark.slow
@@ -36,7 +35,7 @@ def test_a_comparison_reports_the_other_heading_instead_of_an_interval() -> None
     circle: FloatArray = 15.0 * np.column_stack([np.cos(angle), np.sin(angle)])
     noise = 0.02 * np.random.default_rng(7).normal(size=(120, 2))
     found = compare_tracks(
-        track_of(circle, angle), track_of(circle[40:160] + noise, angle[40:160]), fit=("start", "heading")
+        build_track(circle, angle), build_track(circle[40:160] + noise, angle[40:160]), fit=("start", "heading")
     )
     fitted = json.loads(json.dumps(comparison_dict(found)))["fitted"]
     assert fitted["turned_error_deg"] is None

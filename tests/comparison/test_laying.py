@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 
 from skisnow._support.errors import ParameterError
-from skisnow.track.comparison import Comparison, compare_tracks
+from skisnow.comparison import Comparison, compare_tracks
 from skisnow.track.slope_frame import in_slope_frame, inclination, lay_on_slope
 from skisnow.track.track import Track
 
-from .made_tracks import FloatArray, track_of
+from .made_tracks import FloatArray, build_track
 
 ALONG = np.linspace(0.0, 50.0, 251)
 
@@ -23,7 +23,7 @@ def run_of(side: float) -> Track:
     angle = -0.6 + 0.05 * ALONG + 0.0004 * ALONG**2
     steps = 0.2 * np.column_stack([np.cos(angle), side * np.sin(angle)])
     place = np.cumsum(steps, axis=0)
-    return replace(track_of(np.column_stack([place, np.full(len(ALONG), 0.01)]), ALONG / 8.0), axes="slope")
+    return replace(build_track(np.column_stack([place, np.full(len(ALONG), 0.01)]), ALONG / 8.0), axes="slope")
 
 
 def on_map(run: Track, azimuth: float, slope: float, noise: float = 0.0) -> Track:
@@ -102,9 +102,9 @@ def test_metres_of_a_site_are_a_map_if_their_heights_fall() -> None:
 
 def test_an_arc_of_one_radius_has_an_uncertain_heading() -> None:
     angle = np.linspace(0.0, 0.8, 100)
-    arc = track_of(20.0 * np.column_stack([np.cos(angle), np.sin(angle)]), angle)
+    arc = build_track(20.0 * np.column_stack([np.cos(angle), np.sin(angle)]), angle)
     noise = 0.05 * np.random.default_rng(1).normal(size=(100, 2))
-    measured = track_of(arc.place[:, :2] + noise, angle)
+    measured = build_track(arc.place[:, :2] + noise, angle)
     found = compare_tracks(arc, measured, fit=("start", "heading"))
     assert found.fitted is not None
     assert found.fitted.turned_error is not None

@@ -8,7 +8,7 @@ import numpy.typing as npt
 import pytest
 
 from skisnow._support.errors import ParameterError
-from skisnow.track.nearest_place import Path, distance_beside
+from skisnow.comparison.nearest_place import Path, distance_from_path
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -100,8 +100,8 @@ def test_way_direction_and_what_is_beyond() -> None:
 
 def test_distance_beside_has_none_without_a_path_or_a_place() -> None:
     path = np.array([[0.0, 0.0], [np.nan, 1.0], [2.0, 0.0]])
-    assert distance_beside(np.array([[1.0, 1.0], [np.nan, 0.0]]), path) == pytest.approx([1.0, np.nan], nan_ok=True)
-    assert np.isnan(distance_beside(np.array([[1.0, 1.0]]), np.zeros((3, 2)))).all()
+    assert distance_from_path(np.array([[1.0, 1.0], [np.nan, 0.0]]), path) == pytest.approx([1.0, np.nan], nan_ok=True)
+    assert np.isnan(distance_from_path(np.array([[1.0, 1.0]]), np.zeros((3, 2)))).all()
 
 
 def test_a_path_in_one_place_is_refused() -> None:

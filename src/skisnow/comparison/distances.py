@@ -9,8 +9,9 @@ import numpy as np
 import numpy.typing as npt
 
 from .._support.display import ShownFields
+from .._support.errors import ParameterError
+from ..track.track import Track
 from .nearest_place import NearestPlaces, Path
-from .polyline import Polyline, interpolated
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -21,7 +22,7 @@ _GAUSS_WEIGHT: Final = np.array([5.0, 8.0, 5.0]) / 18.0
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
-class Apart(ShownFields):
+class OffsetSeries(ShownFields):
     """Offsets at places along the measured track; between two of them the offset changes linearly.
 
     Attributes
@@ -42,7 +43,7 @@ class Apart(ShownFields):
 
 
 @dataclass(frozen=True, slots=True)
-class Numbers:
+class DistanceStatistics:
     """Of distances along a track: the largest, where it is (arc length), mean and rms, over what arc length (m)."""
 
     max: float
@@ -52,7 +53,7 @@ class Numbers:
     compared: float
 
 
-def numbers_of(apart: Apart) -> Numbers | None:
+def distance_statistics(apart: OffsetSeries) -> DistanceStatistics | None:
     """Largest, mean and rms distance; the means are integrals over the arc length.
 
     They are exact for offsets that change linearly:     ∫|δ| ds and ∫|δ|² ds, piece by piece, divided by the arc
@@ -67,7 +68,7 @@ def numbers_of(apart: Apart) -> Numbers | None:
     first, last, weight = apart.offset[:-1][whole], apart.offset[1:][whole], weight[whole]
     square = ((first**2).sum(axis=1) + (first * last).sum(axis=1) + (last**2).sum(axis=1)) / 3.0
     largest = int(np.nanargmax(distance))
-    return Numbers(
+    return DistanceStatistics(
         max=float(distance[largest]),
         max_at=float(apart.arc_length[largest]),
         mean=float(weight @ mean_lengths(first, last)) / compared,
@@ -118,7 +119,7 @@ _ROUNDS: Final = 32
 _MOST_PLACES: Final = 4_000_000
 
 
-def nearest_apart(simulated: Path, measured: Polyline) -> Apart:
+def nearest_offsets(simulated: Path, measured: Polyline) -> OffsetSeries:
     """Offsets from places of the measured track to the nearest places of the simulated one.
 
     Places are the measured track's own points, places in equal steps between them, and more of them where the nearest
@@ -127,36 +128,38 @@ def nearest_apart(simulated: Path, measured: Polyline) -> Apart:
     """
     arc_length = np.unique(np.concatenate([measured.arc_length, np.linspace(0.0, measured.length, FEWEST_PIECES + 1)]))
     at = measured.at_arc_length(arc_length)
-    found = simulated.nearest(at)
-    offset, beyond, where = found.foot - at, found.beyond, found.where
+    nearest = simulated.nearest(at)
+    offset, beyond, where = nearest.foot - at, nearest.beyond, nearest.where
     open_ = np.flatnonzero((where[1:] != where[:-1]) | (beyond[1:] != beyond[:-1]))
     for _ in range(_ROUNDS):
         if not open_.size or len(arc_length) > _MOST_PLACES:
             break
         middle = 0.5 * (arc_length[open_] + arc_length[open_ + 1])
         at = measured.at_arc_length(middle)
-        found = simulated.nearest(at)
-        bent = _bent(offset, open_, found, at) > EXACTNESS * measured.length
-        ends = (beyond[open_] != found.beyond) | (beyond[open_ + 1] != found.beyond)
-        split = bent & ~(beyond[open_] & beyond[open_ + 1] & found.beyond)
+        nearest = simulated.nearest(at)
+        bent = _nonlinearity(offset, open_, nearest, at) > EXACTNESS * measured.length
+        ends = (beyond[open_] != nearest.beyond) | (beyond[open_ + 1] != nearest.beyond)
+        split = bent & ~(beyond[open_] & beyond[open_ + 1] & nearest.beyond)
         split = (split | ends) & (arc_length[open_ + 1] - arc_length[open_] > _END * measured.length)
         arc_length, offset = (
             np.insert(arc_length, open_ + 1, middle),
-            np.insert(offset, open_ + 1, found.foot - at, axis=0),
+            np.insert(offset, open_ + 1, nearest.foot - at, axis=0),
         )
-        beyond = np.insert(beyond, open_ + 1, found.beyond)
+        beyond = np.insert(beyond, open_ + 1, nearest.beyond)
         left = (open_ + np.arange(len(open_)))[split]
         open_ = np.sort(np.concatenate([left, left + 1]))
-    return Apart(arc_length, np.where(beyond[:, None], np.nan, offset))
+    return OffsetSeries(arc_length, np.where(beyond[:, None], np.nan, offset))
 
 
-def _bent(offset: FloatArray, first: npt.NDArray[np.intp], found: NearestPlaces, at: FloatArray) -> FloatArray:
+def _nonlinearity(
+    offset: FloatArray, first: npt.NDArray[np.intp], nearest: NearestPlaces, at: FloatArray
+) -> FloatArray:
     """How far the distance in the middle is from that of an offset that changes linearly (m)."""
     straight = 0.5 * np.linalg.norm(offset[first] + offset[first + 1], axis=1)
-    return np.abs(np.linalg.norm(found.foot - at, axis=1) - straight)
+    return np.abs(np.linalg.norm(nearest.foot - at, axis=1) - straight)
 
 
-def arc_length_apart(simulated: Polyline, measured: Polyline) -> Apart:
+def arc_length_offsets(simulated: Polyline, measured: Polyline) -> OffsetSeries:
     """Offsets between places after the same arc length from the first points, up to the shorter track's length.
 
     At the points of both tracks, so that nothing is left out between them.
@@ -164,10 +167,10 @@ def arc_length_apart(simulated: Polyline, measured: Polyline) -> Apart:
     end = min(simulated.length, measured.length)
     arc_length = np.unique(np.concatenate([simulated.arc_length, measured.arc_length, [end]]))
     arc_length = arc_length[arc_length <= end]
-    return Apart(arc_length, simulated.at_arc_length(arc_length) - measured.at_arc_length(arc_length))
+    return OffsetSeries(arc_length, simulated.at_arc_length(arc_length) - measured.at_arc_length(arc_length))
 
 
-def time_apart(simulated: Polyline, measured: Polyline, *, later: float = 0.0) -> Apart | None:
+def time_offsets(simulated: Polyline, measured: Polyline, *, later: float = 0.0) -> OffsetSeries | None:
     """Offsets between places at the same time, at the times of both tracks, while both are on their way.
 
     Parameters
@@ -192,4 +195,79 @@ def time_apart(simulated: Polyline, measured: Polyline, *, later: float = 0.0) -
     arc_length = np.concatenate([measured.arc_length[own], np.interp(other, measured.time, measured.arc_length)])
     place = np.concatenate([measured.place[own], measured.at_time(other)])
     order = np.lexsort((arc_length, time))  # several points at one time stay in their order
-    return Apart(arc_length[order], interpolated(time, clock, simulated.place)[order] - place[order])
+    return OffsetSeries(arc_length[order], interpolate(time, clock, simulated.place)[order] - place[order])
+
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Polyline(ShownFields):
+    """Straight pieces in the order of time.
+
+    Attributes
+    ----------
+    place : (n, d) m
+        d = 2 from above, or 3.
+    time : (n,) s
+        At the places.
+    arc_length : (n,) m
+        Length of the pieces up to each place.
+    """
+
+    place: FloatArray
+    time: FloatArray
+    arc_length: FloatArray
+
+    @property
+    def length(self) -> float:
+        """Of all pieces (m)."""
+        return float(self.arc_length[-1])
+
+    def at_arc_length(self, arc_length: FloatArray) -> FloatArray:
+        """Places (k, d) at ways (k,) (m)."""
+        return interpolate(arc_length, self.arc_length, self.place)
+
+    def at_time(self, time: FloatArray) -> FloatArray:
+        """Places (k, d) at times (k,) (s)."""
+        return interpolate(time, self.time, self.place)
+
+
+def polyline(place: FloatArray, time: FloatArray) -> Polyline:
+    """Join places (n, d) by straight pieces."""
+    return Polyline(place, time, arc_lengths(place))
+
+
+def arc_lengths(place: FloatArray) -> FloatArray:
+    """Length (n,) of the straight pieces through places (n, d) up to each of them (m).
+
+    >>> arc_lengths(np.array([[0.0, 0.0], [3.0, 4.0], [3.0, 5.0]]))
+    array([0., 5., 6.])
+    """
+    steps = np.linalg.norm(np.diff(place, axis=0), axis=1)
+    return np.concatenate([[0.0], np.cumsum(steps)])
+
+
+def interpolate(at: FloatArray, abscissa: FloatArray, values: FloatArray) -> FloatArray:
+    """Each column of values (n, d) over known (n,), which does not fall, linearly at (k,); (k, d)."""
+    return np.stack([np.interp(at, abscissa, column) for column in values.T], axis=1)
+
+
+def compared_points(track: Track, *, dimensions: int) -> npt.NDArray[np.bool_]:
+    """Which points are usable and have all their coordinates, (n,)."""
+    return track.usable & np.isfinite(track.place[:, :dimensions]).all(axis=1)
+
+
+def track_polyline(track: Track, *, dimensions: int) -> Polyline:
+    """The usable points of a track, joined.
+
+    Raises
+    ------
+    ParameterError
+        Fewer than two such points, or all in one place.
+    """
+    points = compared_points(track, dimensions=dimensions)
+    line = polyline(track.place[points][:, :dimensions], track.time[points])
+    if not line.length > 0.0:
+        raise ParameterError(
+            f"{track.name}: {int(points.sum())} of its {len(track)} points can be used, all in one place. A comparison "
+            "needs two points in different places; give a longer track"
+        )
+    return line

@@ -10,9 +10,9 @@ import numpy as np
 from scipy.optimize import minimize_scalar
 
 from .._support.errors import FitError
+from ..track.track import Track
 from .alignment import LEAST_SHARE, PLACES
-from .polyline import Polyline
-from .track import Track
+from .distances import Polyline
 
 TimeFrom: TypeAlias = Literal["first_point", "clock"]
 FIRST_POINTS: Final = "let time be counted from each track's first point, or fit the time"
@@ -53,7 +53,7 @@ def common_clock(simulated: Track, measured: Track, time_from: TimeFrom | None) 
     return Clock(first + (starts[1] - starts[0]).total_seconds(), "one clock, by the dates in both files")
 
 
-def lacking_time(line: Polyline, name: str) -> str | None:
+def missing_time_reason(line: Polyline, name: str) -> str | None:
     """Why there is no place for each time, or None where there is."""
     if not np.isfinite(line.time).all():
         return f"not every point of the {name} track has a time"
@@ -63,7 +63,7 @@ def lacking_time(line: Polyline, name: str) -> str | None:
 _TIMES: Final = 401
 
 
-def fitted_time(simulated: Polyline, measured: Polyline) -> float:
+def fit_time(simulated: Polyline, measured: Polyline) -> float:
     """By how much the simulated track's time is ahead of the measured one's (s): least squares at equal time.
 
     The mean square distance over the measured track's length is looked at over all times at which at least half of the
@@ -92,5 +92,5 @@ def fitted_time(simulated: Polyline, measured: Polyline) -> float:
     best = float(tried[int(np.argmin([mean_square(float(later)) for later in tried]))])
     step = (most - least) / (_TIMES - 1)
     bounds = (max(least, best - step), min(most, best + step))
-    found = minimize_scalar(mean_square, bounds=bounds, method="bounded", options={"xatol": 1e-9 * max(1.0, shorter)})
-    return float(found.x)
+    minimum = minimize_scalar(mean_square, bounds=bounds, method="bounded", options={"xatol": 1e-9 * max(1.0, shorter)})
+    return float(minimum.x)

@@ -16,9 +16,8 @@ from scipy.special import stdtrit
 
 from .._support.errors import FitError, ParameterError
 from .._support.units import CONFIDENCE, DEGREE
-from .distances import EXACTNESS
+from .distances import EXACTNESS, Polyline, polyline
 from .nearest_place import NearestPlaces, Path
-from .polyline import Polyline, polyline
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -27,7 +26,7 @@ OFFSETS: Final[tuple[Offset, ...]] = get_args(Offset)
 """What may be unknown: the place of the first point, the direction (turned about the vertical there), the time."""
 PLACES: Final = 2048
 """Equal steps of the measured track over which squares are summed: the sum stands for an integral over its length."""
-ROUGHLY: Final = 8
+COARSENING: Final = 8
 """Each beginning is followed with every so many places first, which takes so much less time, and then with all."""
 LEAST_SHARE: Final = 0.5
 """Of the places, or of the shorter time, that must stay in the comparison: a fit may not slide a track out of sight."""
@@ -35,22 +34,22 @@ HEADINGS: Final = 8
 """Directions at equal angles that a search for a heading begins with."""
 SHIFTS: Final = 17
 """Offsets in arc length that a search begins with: the measured track may begin later or end earlier."""
-FOLLOWED: Final = 6
+REFINED: Final = 6
 """Best rough answers that are followed with all places."""
 CHORDS: Final = 64
 """Chords of a track whose length counts for the overlays: noise hardly lengthens them."""
-RIVAL: Final = 2.0
+REPORTED_RIVAL: Final = 2.0
 """A second answer whose score is within this factor of the best is reported."""
-_ANOTHER: Final = 5.0 * DEGREE
+_DIFFERENT: Final = 5.0 * DEGREE
 """Answers turned by more, or that move an end of the track by more than this times its length, are two."""
 DETERMINED: Final = 1e-3
 """Directions whose singular value is below this part of the largest are left as they are, and said."""
-_BETTER: Final = 0.995
+_IMPROVEMENT: Final = 0.995
 _ROUNDS: Final = 100
 _SETTLED: Final = 1e-10
-_GOOD_ENOUGH: Final = 1e-5
+_ACCEPTED: Final = 1e-5
 """Steps (in parts of the length) that go on below this only pass single places over the ends to and fro."""
-_TO_AND_FRO: Final = 10
+_OSCILLATION: Final = 10
 """They do where one is as long as one of so many before it."""
 
 
@@ -110,7 +109,7 @@ def require_offsets(fit: Collection[str]) -> None:
         raise ParameterError(f"{wrong[0]!r} is no offset that can be fitted; {', '.join(OFFSETS)} are")
 
 
-def fitted_motion(simulated: Polyline, measured: Polyline, *, start: bool, heading: bool) -> Motion:
+def fit_motion(simulated: Polyline, measured: Polyline, *, start: bool, heading: bool) -> Motion:
     """Least squares of the nearest distance over the measured track's length.
 
     Gauss–Newton steps with the nearest places found again each time. Places beyond the ends of the simulated track take
@@ -129,35 +128,37 @@ def fitted_motion(simulated: Polyline, measured: Polyline, *, start: bool, headi
     def score(motion: Motion) -> float:
         return _score(motion, measured.length)
 
-    begins = beginnings(simulated, measured, start=start, heading=heading)
-    rough = [_settled(path, places[::ROUGHLY], each, start=start, heading=heading) for each in begins]
-    along = [each for each in rough if math.isfinite(each.rms) and _runs_along(path, places[::ROUGHLY], each)]
-    followed: list[Motion] = []
-    for each in sorted(along or rough, key=score):
-        if len(followed) < FOLLOWED and all(_is_another(each, other, simulated) for other in followed):
-            followed.append(each)
-    settled = [_settled(path, places, each, start=start, heading=heading) for each in followed]
-    answers = [each for each in settled if math.isfinite(each.rms)]
+    begins = start_motions(simulated, measured, start=start, heading=heading)
+    coarse = [_iterate(path, places[::COARSENING], motion, start=start, heading=heading) for motion in begins]
+    aligned = [
+        motion for motion in coarse if math.isfinite(motion.rms) and _same_direction(path, places[::COARSENING], motion)
+    ]
+    refined: list[Motion] = []
+    for motion in sorted(aligned or coarse, key=score):
+        if len(refined) < REFINED and all(_differ(motion, other, simulated) for other in refined):
+            refined.append(motion)
+    solutions = [_iterate(path, places, motion, start=start, heading=heading) for motion in refined]
+    answers = [motion for motion in solutions if math.isfinite(motion.rms)]
     if not answers:
         raise FitError(
             f"start and heading cannot be fitted: less than {100 * LEAST_SHARE:g} % of the measured track then has the "
             "simulated one beside it, or the steps do not settle. Look at both tracks without a fit"
         )
-    answers = [each for each in answers if _runs_along(path, places, each)] or answers
+    answers = [motion for motion in answers if _same_direction(path, places, motion)] or answers
     best = answers[0]
-    for each in answers[1:]:
-        if score(each) < _BETTER * score(best):
-            best = each
+    for motion in answers[1:]:
+        if score(motion) < _IMPROVEMENT * score(best):
+            best = motion
     if best.undetermined:
-        as_it_was = _settled(path, places, rough[0], start=start, heading=heading)
-        if as_it_was.rms <= best.rms + EXACTNESS * measured.length and not _is_another(as_it_was, best, simulated):
-            best = as_it_was  # nothing is moved along what the tracks do not determine
-    others = [each for each in answers if _is_another(each, best, simulated)]
+        unmoved = _iterate(path, places, coarse[0], start=start, heading=heading)
+        if unmoved.rms <= best.rms + EXACTNESS * measured.length and not _differ(unmoved, best, simulated):
+            best = unmoved  # nothing is moved along what the tracks do not determine
+    others = [motion for motion in answers if _differ(motion, best, simulated)]
     rival = min(others, key=score, default=None)
-    error: float | None = _turned_error(path, measured, best, start=start) if heading else 0.0
-    if rival is None or score(rival) >= RIVAL * score(best):
+    error: float | None = _heading_error(path, measured, best, start=start) if heading else 0.0
+    if rival is None or score(rival) >= REPORTED_RIVAL * score(best):
         return replace(best, turned_error=error)
-    if heading and abs(math.remainder(rival.turned - best.turned, math.tau)) > _ANOTHER:
+    if heading and abs(math.remainder(rival.turned - best.turned, math.tau)) > _DIFFERENT:
         error = None  # the likelihood has several maxima
     return replace(best, turned_error=error, rival=rival)
 
@@ -173,32 +174,32 @@ def _score(motion: Motion, length: float) -> float:
     return float((motion.rms + EXACTNESS * length) ** motion.share * length ** (1.0 - motion.share))
 
 
-def _is_another(one: Motion, other: Motion, line: Polyline) -> bool:
+def _differ(one: Motion, other: Motion, line: Polyline) -> bool:
     """Whether two answers lay the track elsewhere; along what the tracks do not tell they may differ."""
-    if abs(math.remainder(one.turned - other.turned, math.tau)) > _ANOTHER:
+    if abs(math.remainder(one.turned - other.turned, math.tau)) > _DIFFERENT:
         return True
-    ends = (each.applied(line).place[[0, -1]] for each in (one, other))
+    ends = (motion.applied(line).place[[0, -1]] for motion in (one, other))
     apart = float(np.linalg.norm(np.subtract(*ends), axis=1).max())
-    return not (one.undetermined or other.undetermined) and apart > _ANOTHER * line.length
+    return not (one.undetermined or other.undetermined) and apart > _DIFFERENT * line.length
 
 
-def _runs_along(path: Path, places: FloatArray, motion: Motion) -> bool:
+def _same_direction(path: Path, places: FloatArray, motion: Motion) -> bool:
     """Whether both tracks run the same way, on most of the measured one."""
-    local, found = _seen(path, places, motion)
+    local, places_nearby = _nearest_places(path, places, motion)
     step = np.diff(local, axis=0)
-    return float(np.sign((step * found.direction[1:]).sum(axis=1)).mean()) >= 0.0
+    return float(np.sign((step * places_nearby.direction[1:]).sum(axis=1)).mean()) >= 0.0
 
 
-def beginnings(simulated: Polyline, measured: Polyline, *, start: bool, heading: bool) -> list[Motion]:
+def start_motions(simulated: Polyline, measured: Polyline, *, start: bool, heading: bool) -> list[Motion]:
     """Motions from which a search begins."""
     lines = _chords(simulated), _chords(measured)
-    kept = LEAST_SHARE * min(line.length for line in lines)
-    shifts = np.linspace(kept - lines[1].length, lines[0].length - kept, SHIFTS).tolist() if start else []
+    overlap = LEAST_SHARE * min(line.length for line in lines)
+    shifts = np.linspace(overlap - lines[1].length, lines[0].length - overlap, SHIFTS).tolist() if start else []
     begins = [Motion(np.zeros(simulated.place.shape[1]), 0.0)]
     begins += [_overlay(lines, start=start, heading=heading, shift=float(shift)) for shift in (0.0, *shifts)]
     if heading:
         angles = np.linspace(0.0, 2.0 * math.pi, HEADINGS, endpoint=False) + begins[1].turned
-        begins += [_overlay(lines, start=start, heading=True, turned=float(each)) for each in angles[1:]]
+        begins += [_overlay(lines, start=start, heading=True, turned=float(angle)) for angle in angles[1:]]
     return begins
 
 
@@ -226,47 +227,47 @@ def _overlay(
     return Motion(centre[1] - _turn(turned, len(origin)) @ centre[0], turned)
 
 
-def _settled(path: Path, places: FloatArray, motion: Motion, *, start: bool, heading: bool) -> Motion:
+def _iterate(path: Path, places: FloatArray, motion: Motion, *, start: bool, heading: bool) -> Motion:
     """The answer from one beginning, with its rms distance (infinite without an answer) and share."""
     sizes, pace = [math.inf], 1.0
     for _ in range(_ROUNDS):
-        local, found = _seen(path, places, motion)
-        inside = ~found.beyond
+        local, nearest = _nearest_places(path, places, motion)
+        inside = ~nearest.beyond
         if inside.mean() < LEAST_SHARE:
             return replace(motion, rms=math.inf)  # a beginning may be an answer among fewer places
-        matrix, rest = _equations(path, local, found, inside, motion, start=start, heading=heading)
-        step, undetermined = _least_norm(matrix, rest)
+        matrix, rest = _equations(path, local, nearest, inside, motion, start=start, heading=heading)
+        step, undetermined = _shortest_step(matrix, rest)
         step = pace * step
         moved = step[: places.shape[1]] if start else np.zeros(places.shape[1])
         turned = float(step[-1]) / path.length if heading else 0.0
         motion = Motion(motion.moved + moved, motion.turned + turned, undetermined)
         sizes.append(float(np.linalg.norm(step)) / path.length)
-        to_and_fro = sizes[-1] >= min(sizes[:-_TO_AND_FRO], default=math.inf)
-        if sizes[-1] < _SETTLED or (sizes[-1] < _GOOD_ENOUGH and to_and_fro):
+        to_and_fro = sizes[-1] >= min(sizes[:-_OSCILLATION], default=math.inf)
+        if sizes[-1] < _SETTLED or (sizes[-1] < _ACCEPTED and to_and_fro):
             break
         pace *= 0.5 if to_and_fro else 1.0
-    if sizes[-1] > _GOOD_ENOUGH:
+    if sizes[-1] > _ACCEPTED:
         return motion
-    found = _seen(path, places, motion)[1]
-    inside = ~found.beyond
-    rms = math.sqrt(float(np.mean(found.distance[inside] ** 2))) if inside.any() else math.inf
+    nearest = _nearest_places(path, places, motion)[1]
+    inside = ~nearest.beyond
+    rms = math.sqrt(float(np.mean(nearest.distance[inside] ** 2))) if inside.any() else math.inf
     return replace(motion, turned=math.remainder(motion.turned, math.tau), rms=rms, share=float(inside.mean()))
 
 
-def _seen(path: Path, places: FloatArray, motion: Motion) -> tuple[FloatArray, NearestPlaces]:
+def _nearest_places(path: Path, places: FloatArray, motion: Motion) -> tuple[FloatArray, NearestPlaces]:
     """The measured places as the unmoved simulated track sees them, with its nearest places."""
     local = (places - path.first - motion.moved) @ _turn(motion.turned, places.shape[1]) + path.first
     return local, path.nearest(local)
 
 
 def _equations(
-    path: Path, local: FloatArray, found: NearestPlaces, inside: npt.NDArray[np.bool_], motion: Motion,
+    path: Path, local: FloatArray, nearest: NearestPlaces, inside: npt.NDArray[np.bool_], motion: Motion,
     *, start: bool, heading: bool,
 ) -> tuple[FloatArray, FloatArray]:  # fmt: skip
     """Linear equations for a step, across the simulated track: along it the nearest place gives way."""
     turn = _turn(motion.turned, local.shape[1])
     along, arm, apart = (
-        values[inside] @ turn.T for values in (found.direction, found.foot - path.first, found.foot - local)
+        values[inside] @ turn.T for values in (nearest.direction, nearest.foot - path.first, nearest.foot - local)
     )
     dimensions = local.shape[1]
     columns = [np.broadcast_to(axis, along.shape) for axis in np.eye(dimensions)] if start else []
@@ -278,7 +279,7 @@ def _equations(
     return across, -_across(apart, along).ravel()
 
 
-def _turned_error(path: Path, measured: Polyline, motion: Motion, *, start: bool) -> float:
+def _heading_error(path: Path, measured: Polyline, motion: Motion, *, start: bool) -> float:
     """Half of the 95 % interval of the heading (rad), at most π, from the errors of the measured points.
 
     The fit is linear in the errors across the path: turned = Σ gᵢ εᵢ over the points, each with the length of track
@@ -286,9 +287,9 @@ def _turned_error(path: Path, measured: Polyline, motion: Motion, *, start: bool
     the residuals of neighbouring points, the variance is σ² Σ gᵢ² (1 + ρ)/(1 - ρ): that of an autoregressive error
     whose influence changes slowly (Bartlett 1935, doi 10.2307/2342284). Student's factor.
     """
-    local, found = _seen(path, measured.place, motion)
-    inside = ~found.beyond
-    matrix, rest = _equations(path, local, found, inside, motion, start=start, heading=True)
+    local, nearest = _nearest_places(path, measured.place, motion)
+    inside = ~nearest.beyond
+    matrix, rest = _equations(path, local, nearest, inside, motion, start=start, heading=True)
     dimensions = local.shape[1]
     freedom = int(inside.sum()) * (dimensions - 1) - matrix.shape[1]
     if freedom < 1:
@@ -315,8 +316,8 @@ def _across(vectors: FloatArray, along: FloatArray) -> FloatArray:
     return vectors - (vectors * along).sum(axis=1, keepdims=True) * along
 
 
-def _least_norm(matrix: FloatArray, rest: FloatArray) -> tuple[FloatArray, int]:
+def _shortest_step(matrix: FloatArray, rest: FloatArray) -> tuple[FloatArray, int]:
     """The shortest step of least squares, and how many directions it leaves alone."""
     left, values, right = np.linalg.svd(matrix, full_matrices=False)
-    kept = values > DETERMINED * math.sqrt(matrix.shape[0])
-    return right[kept].T @ ((left.T @ rest)[kept] / values[kept]), int((~kept).sum())
+    determined = values > DETERMINED * math.sqrt(matrix.shape[0])
+    return right[determined].T @ ((left.T @ rest)[determined] / values[determined]), int((~determined).sum())

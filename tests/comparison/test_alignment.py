@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from skisnow._support.errors import FitError
-from skisnow.track.alignment import Motion, _settled, fitted_motion
-from skisnow.track.nearest_place import Path
-from skisnow.track.polyline import Polyline, polyline
-from skisnow.track.time_offset import fitted_time
+from skisnow.comparison.alignment import Motion, _iterate, fit_motion
+from skisnow.comparison.distances import Polyline, polyline
+from skisnow.comparison.nearest_place import Path
+from skisnow.comparison.time_offset import fit_time
 
 from .made_tracks import FloatArray, slalom, turned
 
@@ -26,7 +26,7 @@ def test_a_moved_copy_is_found_whatever_way_it_was_turned(angle: float, dimensio
     move = (40.0, -7.0, 2.5)
     simulated = line_of(slalom(ALONG)[:, :dimensions])
     measured = line_of(turned(slalom(ALONG), angle, move)[:, :dimensions])
-    motion = fitted_motion(simulated, measured, start=True, heading=True)
+    motion = fit_motion(simulated, measured, start=True, heading=True)
     assert motion.turned == pytest.approx(angle, abs=1e-8)
     assert motion.moved == pytest.approx(move[:dimensions], abs=1e-6)
     assert motion.applied(simulated).place == pytest.approx(measured.place, abs=1e-6)
@@ -36,9 +36,9 @@ def test_a_moved_copy_is_found_whatever_way_it_was_turned(angle: float, dimensio
 def test_only_what_is_asked_is_moved() -> None:
     simulated = line_of(slalom(ALONG))
     measured = line_of(turned(slalom(ALONG), 0.05, (1.0, 2.0, 0.0)))
-    shifted = fitted_motion(simulated, measured, start=True, heading=False)
+    shifted = fit_motion(simulated, measured, start=True, heading=False)
     assert shifted.turned == 0.0
-    swung = fitted_motion(simulated, measured, start=False, heading=True)
+    swung = fit_motion(simulated, measured, start=False, heading=True)
     assert swung.moved == pytest.approx(np.zeros(3), abs=0.0)
     assert swung.applied(simulated).place[0] == pytest.approx(simulated.place[0], abs=1e-12)
     assert swung.turned != 0.0
@@ -50,7 +50,7 @@ def test_the_answer_is_a_least_square() -> None:
     simulated = line_of(slalom(ALONG)[:, :2])
     measured = line_of(turned(slalom(ALONG), 0.1, (0.5, 0.3, 0.0))[:, :2] + 0.3 * np.sin(ALONG / 3.0)[:, None])
     measured = line_of(measured.place + 0.01 * random.normal(size=measured.place.shape))
-    motion = fitted_motion(simulated, measured, start=True, heading=True)
+    motion = fit_motion(simulated, measured, start=True, heading=True)
     places = measured.at_arc_length(np.linspace(0.0, measured.length, 2049))
 
     shown = Path(motion.applied(simulated).place).nearest(places)
@@ -75,19 +75,19 @@ def test_straight_lines_do_not_tell_how_far_along() -> None:
     """Across by 0.8 m, along by nothing: the 3 m along the lines cannot be known and stay."""
     measured = line_of(np.array([[0.0, 0.0], [50.0, 0.0]]))
     simulated = line_of(np.array([[3.0, 0.8], [53.0, 0.8]]))
-    motion = fitted_motion(simulated, measured, start=True, heading=True)
+    motion = fit_motion(simulated, measured, start=True, heading=True)
     assert motion.moved == pytest.approx([0.0, -0.8], abs=1e-8)
     assert motion.turned == pytest.approx(0.0, abs=1e-9)
     assert motion.undetermined == 1
     longer = line_of(np.array([[-30.0, 0.8], [80.0, 0.8]]))
-    assert fitted_motion(longer, measured, start=True, heading=True).moved == pytest.approx([0.0, -0.8], abs=1e-8)
+    assert fit_motion(longer, measured, start=True, heading=True).moved == pytest.approx([0.0, -0.8], abs=1e-8)
 
 
 def test_a_fit_neither_scales_nor_mirrors() -> None:
     simulated = line_of(slalom(ALONG)[:, :2])
     for other in (slalom(ALONG)[:, :2] * [1.0, -1.0], slalom(ALONG)[:, :2] * 1.05):
         measured = line_of(other)
-        moved = fitted_motion(simulated, measured, start=True, heading=True).applied(simulated)
+        moved = fit_motion(simulated, measured, start=True, heading=True).applied(simulated)
         assert moved.length == pytest.approx(simulated.length, rel=1e-12)
         assert Path(moved.place).nearest(measured.place).distance.max() > 0.2
 
@@ -95,7 +95,7 @@ def test_a_fit_neither_scales_nor_mirrors() -> None:
 def test_a_short_track_cannot_be_slid_out_of_sight() -> None:
     measured, simulated = line_of(slalom(ALONG)), line_of(slalom(ALONG)[:100] + 0.5)
     with pytest.raises(FitError, match="less than 50 % of the measured track"):
-        fitted_motion(simulated, measured, start=True, heading=True)
+        fit_motion(simulated, measured, start=True, heading=True)
 
 
 def two_thirds_turned(angle: float) -> tuple[Polyline, Polyline]:
@@ -108,7 +108,7 @@ def two_thirds_turned(angle: float) -> tuple[Polyline, Polyline]:
 @pytest.mark.parametrize("angle", [-2.6, -1.3, 0.9, 1.7, 3.0])
 def test_a_heading_is_found_where_the_measured_track_begins_later(angle: float) -> None:
     simulated, measured = two_thirds_turned(angle)
-    motion = fitted_motion(simulated, measured, start=True, heading=True)
+    motion = fit_motion(simulated, measured, start=True, heading=True)
     assert motion.turned == pytest.approx(angle, abs=0.01)
     assert motion.rms < 0.01
     assert motion.rival is None
@@ -119,7 +119,7 @@ def test_the_next_turn_of_a_slalom_is_a_rival_where_both_have_the_whole_track_be
     along = np.linspace(0.0, 36.0 * math.pi, 900)
     wave = np.column_stack([along, 5.0 * np.sin(along / 6.0)])
     noise = 0.05 * np.random.default_rng(4).normal(size=(300, 2))
-    motion = fitted_motion(line_of(wave), line_of(wave[300:600] + noise), start=True, heading=True)
+    motion = fit_motion(line_of(wave), line_of(wave[300:600] + noise), start=True, heading=True)
     assert motion.rival is not None
     apart = np.linalg.norm(motion.rival.moved - motion.moved) / (12.0 * math.pi)
     assert apart == pytest.approx(round(apart), abs=0.05)
@@ -130,7 +130,7 @@ def test_less_overlap_is_no_advantage() -> None:
     """The next turn fits 55 % of the track about as well; the place with all of it beside counts, without a rival."""
     simulated, measured = two_thirds_turned(0.9)
     noise = 0.06 * np.random.default_rng(4).normal(size=measured.place.shape)
-    motion = fitted_motion(simulated, line_of(measured.place + noise), start=True, heading=True)
+    motion = fit_motion(simulated, line_of(measured.place + noise), start=True, heading=True)
     assert motion.turned == pytest.approx(0.9, abs=0.02)
     assert motion.share > 0.95
     assert motion.rival is None
@@ -143,7 +143,7 @@ def test_the_interval_of_a_heading_grows_with_noise_and_holds_the_truth() -> Non
         for size in (0.01, 0.1):
             noise = size * np.random.default_rng(seed).normal(size=(100, 2))
             measured = turned(slalom(ALONG[::5]), 0.4, (40.0, -7.0, 0.0))[:, :2] + noise
-            motion = fitted_motion(line_of(slalom(ALONG)[:, :2]), line_of(measured), start=True, heading=True)
+            motion = fit_motion(line_of(slalom(ALONG)[:, :2]), line_of(measured), start=True, heading=True)
             assert motion.turned_error is not None
             inside.append(abs(motion.turned - 0.4) < motion.turned_error)
             errors.append(motion.turned_error)
@@ -158,7 +158,7 @@ def test_noise_that_lengthens_a_track_does_not_slide_it() -> None:
     noise = 0.05 * np.random.default_rng(1).normal(size=curve.shape)
     measured = line_of(turned(curve + noise, 2.0, (100.0, 50.0, 3.0))[400:5600])
     assert measured.length > 2.0 * 260.0
-    motion = fitted_motion(line_of(curve), measured, start=True, heading=True)
+    motion = fit_motion(line_of(curve), measured, start=True, heading=True)
     assert motion.turned == pytest.approx(2.0, abs=0.01)
     assert motion.rms < 0.1
 
@@ -167,7 +167,7 @@ def test_a_line_that_is_the_same_turned_by_half_a_turn_keeps_its_direction() -> 
     """A sine about its middle: only the way the tracks run tells the two answers apart."""
     wave = np.column_stack([ALONG, 4.0 * np.sin(ALONG / 60.0 * 4.0 * math.pi)])
     noise = 0.05 * np.random.default_rng(8).normal(size=wave.shape)
-    motion = fitted_motion(line_of(wave), line_of(wave + noise), start=True, heading=True)
+    motion = fit_motion(line_of(wave), line_of(wave + noise), start=True, heading=True)
     assert motion.turned == pytest.approx(0.0, abs=0.01)
     assert motion.rival is None
 
@@ -178,7 +178,7 @@ def test_arcs_of_one_circle_have_a_rival() -> None:
     simulated = line_of(10.0 * np.column_stack([np.cos(angle), np.sin(angle)]))
     noise = 0.05 * np.random.default_rng(2).normal(size=(300, 2))
     measured = line_of(10.0 * np.column_stack([np.cos(angle[:300] * 0.8), np.sin(angle[:300] * 0.8)]) + noise)
-    motion = fitted_motion(simulated, measured, start=True, heading=True)
+    motion = fit_motion(simulated, measured, start=True, heading=True)
     assert motion.rival is not None
     assert abs(math.remainder(motion.rival.turned - motion.turned, math.tau)) > math.radians(5.0)
     assert 0.99 * motion.rms < motion.rival.rms < 2.0 * motion.rms
@@ -188,14 +188,14 @@ def test_arcs_of_one_circle_have_a_rival() -> None:
 def test_an_answer_among_few_places_is_none_among_all_that_lie_beyond() -> None:
     path, places = Path(np.array([[0.0, 0.0], [1.0, 0.0]])), np.column_stack([np.linspace(0.0, 10.0, 21), np.zeros(21)])
     among_few = Motion(np.zeros(2), 0.0, rms=0.1)
-    assert _settled(path, places, among_few, start=True, heading=False).rms == math.inf
+    assert _iterate(path, places, among_few, start=True, heading=False).rms == math.inf
 
 
 @pytest.mark.parametrize("later", [-40.0, -0.37, 0.0, 2.2])
 def test_start_time(later: float) -> None:
     place = slalom(ALONG)
     simulated, measured = line_of(place), polyline(place, np.linspace(0.0, 6.0, 500) - later)
-    assert fitted_time(simulated, measured) == pytest.approx(later, abs=1e-6)
+    assert fit_time(simulated, measured) == pytest.approx(later, abs=1e-6)
 
 
 def test_start_time_of_a_track_that_begins_later() -> None:
@@ -203,6 +203,6 @@ def test_start_time_of_a_track_that_begins_later() -> None:
     place = slalom(ALONG)
     time = np.linspace(0.0, 6.0, 500)
     late = time >= 2.0
-    assert fitted_time(line_of(place), polyline(place[late], time[late] - 2.0)) == pytest.approx(2.0, abs=1e-6)
+    assert fit_time(line_of(place), polyline(place[late], time[late] - 2.0)) == pytest.approx(2.0, abs=1e-6)
     with pytest.raises(FitError, match="no duration"):
-        fitted_time(line_of(place), polyline(place[:2], np.zeros(2)))
+        fit_time(line_of(place), polyline(place[:2], np.zeros(2)))

@@ -1,0 +1,241 @@
+"""Result of a comparison of two tracks, and its JSON."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Final
+
+from .._support.display import Facts, Shown, amount
+from .._support.units import DEGREE
+from ..track.track import Axes
+from .alignment import Motion
+from .distances import DistanceStatistics, OffsetSeries, Polyline
+
+Json = dict[str, Any]
+SCHEMA_VERSION: Final = 1
+KINDS: Final = ("nearest", "arc_length", "time")
+"""The three distances."""
+MEANS: Final = (
+    "The mean and the root mean square are integrals over the measured track's length, shares are of the whole "
+    "measured track's length"
+)
+
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Distances(Shown):
+    """One of the three distances.
+
+    Attributes
+    ----------
+    definition
+        In words.
+    apart
+        The offsets along the measured track; None where there are none.
+    numbers
+        Largest, mean, rms (m); None where nothing can be compared.
+    reason
+        Why not.
+    """
+
+    definition: str
+    apart: OffsetSeries | None
+    numbers: DistanceStatistics | None
+    reason: str | None = None
+
+    def _facts(self) -> Facts:
+        return Facts(self.in_words)
+
+    @property
+    def in_words(self) -> str:
+        """Largest, mean and rms distance, or why there are none."""
+        if self.numbers is None:
+            return f"none: {self.reason}"
+        largest, mean, rms = (amount(value, "m") for value in (self.numbers.max, self.numbers.mean, self.numbers.rms))
+        return f"largest {largest}, mean {mean}, rms {rms}"
+
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class FittedOffsets(Shown):
+    """What was fitted, by how much the simulated track was moved, and the distances before.
+
+    Attributes
+    ----------
+    what
+        Of start, heading, time.
+    moved
+        Of its first point (m), (2,) or (3,).
+    turned
+        About the vertical through its first point (rad), positive to the left.
+    turned_error
+        Half of the 95 % interval of `turned` (rad); 0 if no heading was fitted, None if `rival` has another heading.
+    later
+        How much later (s) the simulated track's places are looked up than before the fit.
+    undetermined
+        How many directions the tracks do not tell; nothing was moved along them.
+    rms
+        Of the nearest distances that were made least (m); None where the time alone was fitted.
+    rival
+        Another move that leaves the simulated track about as near; None where there is none.
+    before
+        The comparison without the fit.
+    slope_angle
+        Inclination (rad) by which a track was laid on the map before the fit; None if none was.
+    azimuth
+        Compass direction (rad, clockwise from north) of x of the track in the slope's axes; None without a compass.
+    """
+
+    what: tuple[str, ...]
+    moved: tuple[float, ...]
+    turned: float
+    later: float
+    undetermined: int
+    rms: float | None
+    rival: Motion | None
+    before: Comparison
+    turned_error: float | None = 0.0
+    slope_angle: float | None = None
+    azimuth: float | None = None
+
+    def _facts(self) -> Facts:
+        turned = f"{amount(self.turned / DEGREE, '°')} turned, {amount(self.later, 's')} later"
+        return Facts(
+            f"{', '.join(self.what)}: moved by {', '.join(amount(value, 'm') for value in self.moved)}, {turned}"
+        )
+
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Comparison(Shown):
+    """Two tracks held against each other.
+
+    Attributes
+    ----------
+    simulated, measured
+        As they were compared: in two or three dimensions, the simulated one moved where that was fitted.
+    names
+        Of the simulated and the measured track.
+    seen
+        In words: in space, or from above and why.
+    nearest, arc_length, time
+        The three distances.
+    largest_from_simulated : m or None
+        Largest distance in the other direction, from places of the simulated track to the nearest of the measured one;
+        much larger than the other where the simulated track makes a detour.
+    axes
+        What the measured track's x and y are.
+    fitted
+        None without a fit.
+    warnings
+        Sentences.
+    in_one_frame
+        Whether the coordinates of the two mean the same; if not, the distances say nothing.
+    known_to : m
+        How exactly the places of the less exact track are known, see `skisnow.track.solution`.
+
+    See Also
+    --------
+    skisnow.compare_tracks
+    """
+
+    simulated: Polyline
+    measured: Polyline
+    names: tuple[str, str]
+    seen: str
+    nearest: Distances
+    arc_length: Distances
+    time: Distances
+    largest_from_simulated: float | None
+    axes: Axes = "file"
+    fitted: FittedOffsets | None = None
+    warnings: tuple[str, ...] = ()
+    in_one_frame: bool = True
+    known_to: float = 0.0
+
+    def _facts(self) -> Facts:
+        length = amount(self.measured.length, "m")
+        rows = (
+            ("seen", self.seen),
+            ("measured", f"{length} long"),
+            ("nearest", self.nearest.in_words),
+            ("arc length", self.arc_length.in_words),
+            ("time", self.time.in_words),
+            ("fitted", "nothing" if self.fitted is None else self.fitted._facts().title),
+            ("warnings", str(len(self.warnings))),
+        )
+        return Facts(f"of {self.names[0]!r} with {self.names[1]!r}", rows)
+
+    @property
+    def dimensions(self) -> int:
+        """2: from above, 3: in space."""
+        return self.measured.place.shape[1]
+
+
+def comparison_dict(comparison: Comparison) -> Json:
+    """Every number with its definition; null with a reason where there is none. Not rounded."""
+    fitted = comparison.fitted
+    return {
+        "schema_version": SCHEMA_VERSION,
+        **_distances_dict(comparison),
+        "simulated": {"name": comparison.names[0], "length_m": comparison.simulated.length},
+        "measured": {"name": comparison.names[1], "length_m": comparison.measured.length},
+        "dimensions": comparison.dimensions,
+        "seen": comparison.seen,
+        "means": MEANS,
+        "largest_from_simulated_m": comparison.largest_from_simulated,
+        "fitted": None if fitted is None else _fitted(fitted),
+        "in_one_frame": comparison.in_one_frame,
+        "known_to_m": comparison.known_to,
+        "warnings": list(comparison.warnings),
+    }
+
+
+def _distances_dict(comparison: Comparison) -> Json:
+    return {kind: _distances(getattr(comparison, kind), comparison.measured.length) for kind in KINDS}
+
+
+def _distances(distances: Distances, length: float) -> Json:
+    numbers = distances.numbers
+    metres = {
+        "max_m": None if numbers is None else numbers.max,
+        "mean_m": None if numbers is None else numbers.mean,
+        "rms_m": None if numbers is None else numbers.rms,
+    }
+    shares = {
+        f"{key.removesuffix('_m')}_share": None if value is None else value / length for key, value in metres.items()
+    }
+    return {
+        **metres,
+        **shares,
+        "max_at_m": numbers and numbers.max_at,
+        "compared_m": numbers.compared if numbers else 0.0,
+        "compared_share": numbers.compared / length if numbers else 0.0,
+        "definition": distances.definition,
+        "reason": distances.reason,
+    }
+
+
+def _rival(rival: Motion) -> Json:
+    return {
+        "moved_x_m": float(rival.moved[0]),
+        "moved_y_m": float(rival.moved[1]),
+        "turned_deg": rival.turned / DEGREE,
+        "rms_m": rival.rms,
+        "compared_share": rival.share,
+    }
+
+
+def _fitted(fitted: FittedOffsets) -> Json:
+    height = fitted.moved[2] if len(fitted.moved) > 2 else None
+    return {
+        "what": list(fitted.what),
+        "moved_x_m": fitted.moved[0],
+        "moved_y_m": fitted.moved[1],
+        "moved_z_m": height,
+        "turned_deg": fitted.turned / DEGREE,
+        "later_s": fitted.later,
+        "turned_error_deg": None if fitted.turned_error is None else fitted.turned_error / DEGREE,
+        "rival": None if fitted.rival is None else _rival(fitted.rival),
+        "slope_angle_deg": None if fitted.slope_angle is None else fitted.slope_angle / DEGREE,
+        "fall_line_azimuth_deg": None if fitted.azimuth is None else fitted.azimuth / DEGREE,
+        "undetermined": fitted.undetermined,
+        "before": _distances_dict(fitted.before),
+    }
