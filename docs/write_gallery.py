@@ -34,20 +34,11 @@ PICTURES: Final = DOCS / "_static" / "gallery"
 PAGES: Final = DOCS / "gallery"
 START, END = "<!-- examples -->", "<!-- end of examples -->"
 THEMES: Final = {
-    "Tests on the slope": (
-        *("one_series", "flat_or_edged", "gauge_offset", "which_law", "two_sites"),
-        *("shear_blade", "slope_of_a_relation", "machining", "groomed_or_natural", "published_snows"),
-    ),
-    "Snow that remembers": (
-        *("unloading", "pushed_by_hand", "second_in_the_groove"),
-        *("edge_lets_go", "two_angles", "own_force_law"),
-    ),
-    "A ski in snow": ("beam_on_snow", "more_waist", "sidecut_and_angle", "does_it_hold", "many_carved_turns"),
-    "Turns": (
-        *("straight_glide", "over_a_roll", "across_a_pipe", "energy_of_a_turn", "skid_to_carve"),
-        "one_leg_drawn_up",
-    ),
-    "Measured tracks": ("radius_of_a_track", "two_tracks", "track_on_a_slope", "friction_from_photo_cells"),
+    "Tests on the slope": ("one_series", "gauge_offset", "which_law", "two_sites", "shear_blade"),
+    "Snow that remembers": ("unloading", "second_in_the_groove", "own_force_law"),
+    "A ski in snow": ("more_waist", "does_it_hold"),
+    "Turns": ("across_a_pipe", "energy_of_a_turn", "skid_to_carve"),
+    "Measured tracks": ("radius_of_a_track", "two_tracks", "friction_from_photo_cells"),
 }
 STYLE: Final[dict[str, Any]] = {
     "figure.figsize": (6.4, 3.8),
