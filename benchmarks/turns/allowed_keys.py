@@ -49,6 +49,7 @@ CHOICES: Final[dict[str, tuple[Any, ...]]] = {
     "snow.penetration": ("hypoplastic", "elastic"),
     "snow.compaction_resistance": (True, False),
     "friction.acts_on": ("snow-normal", "base-normal"),
+    "friction.direction": ("vector", "along-ski"),
 }
 LAWS: Final = {
     "constant": {},

@@ -14,6 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from skisnow.contact import Runner, SnowField
+from skisnow.forces.shear import MachiningShear
 from skisnow.forces.shear.slip import strength_left
 
 FloatArray = npt.NDArray[np.float64]
@@ -233,22 +234,30 @@ class _Section:
         moves = v + np.cross(omega, push_at) + float(self.deflects @ self.rate) * self.up
         moves -= float(self.twists @ self.rate) * arm * self.r
         forwards = np.cross(self.u, n)
-        sliding = float(forwards @ moves)
+        # Coulomb's law: against the sliding velocity in the surface, or in the base's plane where it acts on its load
+        aside = self.u if snow.friction_acts_on == "snow-normal" else np.cross(self.base, forwards)
+        axes = np.array([forwards, aside / np.linalg.norm(aside)])
+        slides = axes @ moves
+        if snow.friction_direction == "along-ski":
+            slides[1] = 0.0
+        speed = float(np.linalg.norm(slides))
         by_twist = self.twist_s * moment / (1.0 - self.sine**2) * self.per_length
         resist = force * float(self.base @ forwards) + by_twist if snow.compaction_resistance else 0.0
         used = (self.anchor() - touch.edge) / snow.shear_displacement
         strength, thrust = self.strength()
         area = touch.deepest * self.share
         shear = strength * area * min(max(used, -1.0), 1.0) * self.u + thrust * area * min(abs(used), 1.0) * n
-        # Coulomb's law on what presses square on the base: snow's normal and side force together
-        pressing, aside = force, 0.0
+        # its load: what presses square on the base, snow's normal and side force together, or the snow's normal alone
+        pressing, at_edge = force, 0.0
         if snow.friction_acts_on == "base-normal":
             pressing = force * float(n @ self.r)
-            aside = max(float(shear @ self.r), -pressing)
-        mu = float(snow.friction.coefficient(abs(sliding))) if hasattr(snow.friction, "coefficient") else snow.friction
-        rub = -mu * sliding / math.hypot(sliding, snow.fade_speed)
-        push = force * n + (resist + rub * pressing) * forwards
-        shear = shear + rub * aside * forwards
+            at_edge = max(float(shear @ self.r), -pressing)
+        mu = float(snow.friction.coefficient(speed)) if hasattr(snow.friction, "coefficient") else snow.friction
+        rub = -mu * slides / math.hypot(speed, snow.fade_speed)
+        if isinstance(snow.shear, MachiningShear):  # it has a friction across of its own
+            rub[1] = 0.0
+        push = force * n + resist * forwards + pressing * rub @ axes
+        shear = shear + at_edge * rub @ axes
         wrench[:3] += push + shear
         wrench[3:] += np.cross(push_at, push) + np.cross(self.edge_at, shear)
         loads += (self.deflects * float(self.up @ (push + shear))).reshape(-1, 3)

@@ -77,6 +77,7 @@ def along(rows: FloatArray) -> FloatArray:
 class Snow(ctypes.Structure):
     _fields_ = (
         *((name, ctypes.c_double) for name in ("snow_hardness", "failure_shear_stress", "unloading_ratio")),
+        ("friction_along_ski", ctypes.c_int),
         *((f"friction_{name}", ctypes.c_double) for name in ("constant", "linear", "square", "film", "film_speed")),
         *((name, ctypes.c_double) for name in ("fade_speed", "shear_displacement")),
         ("compaction_resistance", ctypes.c_int),

@@ -40,15 +40,17 @@ def a_pose(rng: np.random.Generator, near: Pose | None = None) -> Pose:
 
 
 def _laws(seed: int, strength: float) -> dict[str, Any]:
-    """In turn every shear law of the core, strength that falls with slip and strength that does not, both loads."""
+    """In turn every shear law of the core, both strengths over slip, both loads and directions of friction."""
     with warnings.catch_warnings():  # of strengths that were never measured
         warnings.simplefilter("ignore", RangeWarning)
         cut = MachiningShear(strength / 2.0, 0.2, least_shear_plane=0.1)
         shear: tuple[ShearLaw | None, ...] = (None, AngleShear(strength, 0.266), cut)
     acts_on = "snow-normal" if seed % 4 == 3 else "base-normal"
+    direction = "along-ski" if seed % 5 == 4 else "vector"
     weakens = {"residual_ratio": 0.3, "slip_weakening": 0.4e-3} if seed % 2 else {}
     # over half a millimetre a walk of small steps both holds and slips
-    return {"shear": shear[seed % 3], "friction_acts_on": acts_on, "shear_displacement": 0.5e-3, **weakens}
+    rubs = {"friction_acts_on": acts_on, "friction_direction": direction}
+    return {"shear": shear[seed % 3], "shear_displacement": 0.5e-3, **rubs, **weakens}
 
 
 def differences(seed: int, *, steps: int) -> list[float]:

@@ -47,6 +47,7 @@ def snow_of(snow: dict[str, float], ratio: float) -> SnowField:
         snow.get("failure_shear_stress_N_per_m2", 0.0),
         ratio,
         friction=snow["friction_1"],
+        friction_direction="along-ski",  # as the cases have it
         shear_displacement=snow.get("shear_displacement_m", 5e-4),
     )
 

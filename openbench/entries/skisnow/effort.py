@@ -33,6 +33,7 @@ def snow_field(effort: Effort, snow: dict[str, float], *, ratio: float | None = 
         snow.get("failure_shear_stress_N_per_m2", 0.0),
         snow["unloading_ratio_1"] if ratio is None else ratio,
         friction=snow.get("friction_1", 0.0),
+        friction_direction="along-ski",  # as the cases have it
         shear_displacement=snow.get("shear_displacement_m", 5e-4),
         **effort.numerics,  # type: ignore[arg-type]
     )

@@ -104,7 +104,13 @@ std::shared_ptr<Snow> snow_of(const skisnow_snow& given) {
   out->unloading_ratio = given.unloading_ratio, out->shear_displacement = given.shear_displacement;
   out->edge_blend_sine = std::sin(given.edge_blend_angle);
   out->compaction_resistance = given.compaction_resistance != 0;
-  out->friction = {friction[0], friction[1], friction[2], friction[3], given.friction_film_speed, given.fade_speed};
+  out->friction = {friction[0],
+                   friction[1],
+                   friction[2],
+                   friction[3],
+                   given.friction_film_speed,
+                   given.fade_speed,
+                   given.friction_along_ski == 0};
   out->knot_area = given.knot_area, out->part_along = given.part_along, out->part_across = given.part_across;
   return out;
 }

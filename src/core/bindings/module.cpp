@@ -12,6 +12,9 @@
 #include "bindings/arrays.hpp"
 #include "contact/contact.hpp"
 
+#define SKISNOW_LANES alone
+#include "contact/force_kernels.hpp"
+
 namespace nb = nanobind;
 
 namespace skisnow {
@@ -60,7 +63,7 @@ Situation situation(int runners, const Array& position, const Array& rotation, c
 
 struct PythonLaws {
   nb::object friction, shear;  // μ of speeds (m/s); strength and thrust (Pa) of depths (m) and edge angles (rad)
-  double fade_speed;
+  FrictionLaw rule;            // how a μ from outside acts
 
   void operator()(int, Sections& s) const {
     nb::gil_scoped_acquire held;
@@ -68,18 +71,16 @@ struct PythonLaws {
     std::vector<double> speed(n), angle(n), depth(n);
     for (std::size_t i = 0; i < n; i++) {
       const bool touches = s.touches(int(i));
-      speed[i] = touches ? std::fabs(s[SLIDING][i]) : 0.0;
+      speed[i] = touches ? std::hypot(s[SLIDING][i], s[SLIDING_ASIDE][i]) : 0.0;
       angle[i] = touches ? std::asin(std::min(std::fabs(s[EDGE_SINE][i]), 1.0)) : 0.0;
       depth[i] = touches ? s[DEEPEST][i] : 0.0;
     }
     if (!friction.is_none()) {
       const auto mu = nb::cast<Array>(friction(array(speed, {n})));
       if (mu.size() != n) throw std::invalid_argument("a friction law must give one value for each speed");
-      for (std::size_t i = 0; i < n; i++) {
-        const double fade = fade_speed * fade_speed, square = s[SLIDING][i] * s[SLIDING][i] + fade;
-        s.sliding[FRICTION][i] = mu.data()[i] * s[SLIDING][i] / std::sqrt(square);
-        s.sliding[FRICTION_SLOPE][i] = mu.data()[i] * fade / (square * std::sqrt(square));
-      }
+      for (std::size_t i = 0; i < n; i++)
+        alone::Rubbing<double>(rule, s[SLIDING][i], s[SLIDING_ASIDE][i], speed[i], mu.data()[i], 0.0)
+            .store_at(s.sliding, int(i));
     }
     if (!shear.is_none()) {
       const auto found = nb::cast<Array>(shear(array(depth, {n}), array(angle, {n})));
@@ -126,8 +127,12 @@ nb::dict sections_of(const SnowContact& contact, int k) {
                                                           {"normal_force", s[FORCE]},
                                                           {"shear", s[SHEAR]},
                                                           {"push", s[PUSH]},
+                                                          {"push_across", s[PUSH_ACROSS]},
+                                                          {"push_off", s[PUSH_OFF]},
                                                           {"sliding", s[SLIDING]},
+                                                          {"sliding_aside", s[SLIDING_ASIDE]},
                                                           {"friction", s[FRICTION]},
+                                                          {"friction_aside", s[FRICTION_ASIDE]},
                                                           {"friction_load", s[FRICTION_LOAD]},
                                                           {"strength", s[EDGE_STRENGTH]},
                                                           {"shear_used", s[SHEAR_USED]}};
@@ -190,7 +195,9 @@ void bind_laws(nb::module_& m) {
       .def_rw("square", &FrictionLaw::square)
       .def_rw("film", &FrictionLaw::film)
       .def_rw("film_speed", &FrictionLaw::film_speed)
-      .def_rw("fade_speed", &FrictionLaw::fade_speed);
+      .def_rw("fade_speed", &FrictionLaw::fade_speed)
+      .def_rw("is_vector", &FrictionLaw::is_vector)
+      .def_rw("acts_across", &FrictionLaw::acts_across);
 
   nb::class_<ShearLaw>(m, "ShearLaw")
       .def(nb::init<>())
@@ -263,8 +270,8 @@ nb::tuple tangent(SnowContact& self, const Array& position, const Array& rotatio
   return nb::make_tuple(array(stiffness, {count, 6, 6}), array(damping, {count, 6, 6}));
 }
 
-void set_laws(SnowContact& self, nb::object friction, nb::object shear, double fade_speed) {
-  self.laws = PythonLaws{std::move(friction), std::move(shear), fade_speed};
+void set_laws(SnowContact& self, nb::object friction, nb::object shear, const FrictionLaw& rule) {
+  self.laws = PythonLaws{std::move(friction), std::move(shear), rule};
 }
 
 void set_penetration(SnowContact& self, const nb::object& law, const Array& bends, bool along_base_normal) {
@@ -300,7 +307,7 @@ void bind_contact(nb::module_& m) {
            [](SnowContact& self, const nb::bytes& given) {
              take_bytes(self, static_cast<const unsigned char*>(given.data()), given.size());
            })
-      .def("set_laws", &set_laws, nb::arg("friction").none(), nb::arg("shear").none(), nb::arg("fade_speed"))
+      .def("set_laws", &set_laws, nb::arg("friction").none(), nb::arg("shear").none(), nb::arg("rule"))
       .def("set_penetration", &set_penetration, nb::arg("law"), nb::arg("bends"), nb::arg("along_base_normal"));
 }
 

@@ -42,6 +42,8 @@ typedef struct skisnow_snow {
   double snow_hardness;        /* H_V (N/m^3), > 0 */
   double failure_shear_stress; /* S_f (N/m^2), >= 0 */
   double unloading_ratio;      /* k_u/H_V, >= 1 */
+  /* friction acts against the sliding velocity in the surface; 1: only by its part along the ski, and along the ski */
+  int friction_along_ski;
   /* mu = constant + linear v + square v^2 + film/(1 + v/film_speed); it fades below fade_speed (m/s) */
   double friction_constant, friction_linear, friction_square, friction_film, friction_film_speed, fade_speed;
   double shear_displacement;      /* of an edge across to its full strength (m), > 0 */

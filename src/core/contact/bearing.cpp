@@ -152,6 +152,7 @@ void Bearing::differ(const Snow& snow, const GrooveLines& lines, const Sections&
                               share * sums_[next].force,
                               share * sums_[next].moment,
                               s[FRICTION][i],
+                              s[FRICTION_ASIDE][i],
                               s[EDGE_STRENGTH][i],
                               s[EDGE_THRUST][i],
                               alone::eased<double>(snow, lines, lines.slot(s.line(i)),

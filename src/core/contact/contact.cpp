@@ -309,7 +309,7 @@ ContactPower SnowContact::power(int k, const Pose& pose, const Motion& motion) c
     const double across = velocity[0] * s[ACROSS_0][i] + velocity[1] * s[ACROSS_1][i] + velocity[2] * s[ACROSS_2][i];
     out.shear += s[SHEAR][i] * across;
     if (!rated_.empty()) out.damping += s[RATE_POWER][i];
-    out.friction -= s[FRICTION][i] * s[FRICTION_LOAD][i] * s[SLIDING][i];
+    out.friction -= (s[FRICTION][i] * s[SLIDING][i] + s[FRICTION_ASIDE][i] * s[SLIDING_ASIDE][i]) * s[FRICTION_LOAD][i];
   }
   out.normal = all - out.shear - out.friction;
   return out;

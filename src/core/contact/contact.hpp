@@ -32,7 +32,7 @@ struct ContactPower {
   double shear, friction, normal, damping;
 };
 
-// Laws from outside: they may rewrite EDGE_STRENGTH, EDGE_THRUST and FRICTION of a runner's sections before forces are
+// Laws from outside: they may rewrite strength, thrust and friction of a runner's sections before forces are
 // summed.
 using Laws = std::function<void(int runner, Sections&)>;
 

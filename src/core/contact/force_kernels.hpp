@@ -70,16 +70,47 @@ void find_beam_rates(const Motion& motion, const Base& base, int i, V& deflectio
   twist = (1.0 - z) * first[2] + z * second[3];
 }
 
-// [slide] Speed along the edge at the centre of pressure, and the law's μ.
+// The direction aside of what slides: across the edge in the surface, or where friction acts on what presses on the
+// base, in the base's plane at right angles to `along`.
+template <class V>
+Vector<V> aside_of(const Cut<V>& c, const Snow& snow) {
+  if (!snow.friction_on_base) return c.across;
+  const Vector<V> off_base{c.reach * c.twist_slope - c.rise * c.cp, c.sp, c.cp}, raw = cross(off_base, c.along);
+  return scaled(raw, 1.0 / root(dot(raw, raw)));
+}
+
+// Coulomb's friction over its load, along the edge and aside, of a base that slides with these velocities; how its
+// parts grow with them: along with along, each with the other, aside with aside.
+template <class V>
+struct Rubbing {
+  V along, aside, along_slope, skew, aside_slope;
+
+  Rubbing(const FrictionLaw& law, V ahead, V to_side, V speed, V mu, V growth) {
+    const V size = 1.0 / root(speed * speed + law.fade_speed * law.fade_speed), held = mu * size;
+    const MaskOf<V> moves = speed > 0.0;
+    const V turned = (select(moves, growth, V{}) / select(moves, speed, all<V>(1.0)) - held * size) * size;
+    const double across = law.is_vector && law.acts_across ? 1.0 : 0.0;
+    along = held * ahead, aside = across * held * to_side;
+    along_slope = held + turned * ahead * ahead;
+    skew = across * turned * ahead * to_side, aside_slope = across * (held + turned * to_side * to_side);
+  }
+
+  void store_at(Sliding& out, int i) const {
+    store(out[FRICTION] + i, along), store(out[FRICTION_ASIDE] + i, aside);
+    store(out[FRICTION_SLOPE] + i, along_slope), store(out[FRICTION_SKEW] + i, skew);
+    store(out[FRICTION_ASIDE_SLOPE] + i, aside_slope);
+  }
+};
+
+// [slide] Velocity at the centre of pressure along the edge and aside, and the law's μ.
 template <class V>
 void slide(const Motion& motion, const Pose& pose, const Snow& snow, const Base& base, const Pressures& pressure,
            Sliding& out) {
   const BootMotion m(motion, pose);
   const FrictionLaw& law = snow.friction;
-  const double fade = law.fade_speed * law.fade_speed;
   for (int i = 0; i < base.count(); i += WIDTH<V>) {
     if (!any(load<V>(base[SHARE] + i) > 0.0)) {  // beyond tip and tail
-      for (const SlidingField field : {SLIDING, FRICTION, FRICTION_SLOPE}) store(out[field] + i, V{});
+      for (int field = 0; field < SLIDING_FIELDS; field++) store(out[SlidingField(field)] + i, V{});
       continue;
     }
     const Cut<V> c = Cut<V>::stored(base, i);
@@ -90,30 +121,31 @@ void slide(const Motion& motion, const Pose& pose, const Snow& snow, const Base&
     const Vector<V> velocity{m.v[0] + m.o[1] * centre.at.z - m.o[2] * centre.at.y,
                              m.v[1] + m.o[2] * centre.at.x - m.o[0] * centre.at.z - c.sp * turning,
                              m.v[2] + m.o[0] * centre.at.y - m.o[1] * centre.at.x + deflecting - c.cp * turning};
-    const V sliding = dot(velocity, c.along), speed = absolute(sliding);
-    const V film = 1.0 / (1.0 + speed / law.film_speed), size = 1.0 / root(sliding * sliding + fade);
+    const Vector<V> aside = aside_of(c, snow);
+    const V ahead = dot(velocity, c.along), to_side = law.is_vector ? dot(velocity, aside) : V{};
+    const V speed = root(ahead * ahead + to_side * to_side), film = 1.0 / (1.0 + speed / law.film_speed);
     const V of_law = law.constant + speed * (law.linear + law.square * speed) + law.film * film;
     const V mu = maximum(of_law, V{});  // friction never drives the ski
     const V growth_of_law = law.linear + 2.0 * law.square * speed - law.film / law.film_speed * film * film;
     const V growth = select(of_law > 0.0, growth_of_law, V{});
-    store(out[SLIDING] + i, sliding);
-    store(out[FRICTION] + i, mu * sliding * size);
-    store(out[FRICTION_SLOPE] + i, (growth * speed + mu * fade * size * size) * size);
+    store(out[SLIDING] + i, ahead), store(out[SLIDING_ASIDE] + i, to_side);
+    store(out[ASIDE_0] + i, aside.x), store(out[ASIDE_1] + i, aside.y), store(out[ASIDE_2] + i, aside.z);
+    Rubbing<V>(law, ahead, to_side, speed, mu, growth).store_at(out, i);
   }
 }
 
-// The loads on a section: the snow's force and its moment about the edge, μ with its sign, shear strength, thrust and
-// the share of the displacement in use.
+// The loads on a section: the snow's force and its moment about the edge, μ along and aside with their signs, shear
+// strength, thrust and the share of the displacement in use.
 template <class V>
 struct Acting {
-  V share, force, moment, friction, strength, thrust, used;
+  V share, force, moment, friction, friction_aside, strength, thrust, used;
 };
 
 // The forces of one section.
 template <class V>
 struct Pushed {
   static constexpr int PARTS = 8;
-  V shear, along, load;
+  V shear, along, load, across, off;
   V parts[PARTS];  // force and moment about the boot in the ski's axes; force and moment on the beam
 
   Pushed(const Cut<V>& c, const Acting<V>& by, const Snow& snow) {
@@ -138,11 +170,16 @@ struct Pushed {
     const V at_centre = select(wet, resistance - by.friction * pressing, none);
     const V at_edge = select(wet, -by.friction * aside, none);
     along = at_centre + at_edge;
-    const Vector<V> a{by.force * n.x + at_centre * c.along.x, by.force * n.y + at_centre * c.along.y,
-                      by.force * n.z + at_centre * c.along.z};
-    const Vector<V> z{shear * c.across.x + thrust * n.x + at_edge * c.along.x,
-                      shear * c.across.y + thrust * n.y + at_edge * c.along.y,
-                      shear * c.across.z + thrust * n.z + at_edge * c.along.z};
+    const Vector<V> to_side = aside_of(c, snow);
+    const V aside_at_centre = -by.friction_aside * pressing, aside_at_edge = -by.friction_aside * aside;
+    const V rubs_aside = select(wet, aside_at_centre + aside_at_edge, none);
+    across = rubs_aside * dot(to_side, c.across), off = rubs_aside * dot(to_side, n);
+    const Vector<V> a{by.force * n.x + at_centre * c.along.x + aside_at_centre * to_side.x,
+                      by.force * n.y + at_centre * c.along.y + aside_at_centre * to_side.y,
+                      by.force * n.z + at_centre * c.along.z + aside_at_centre * to_side.z};
+    const Vector<V> z{shear * c.across.x + thrust * n.x + at_edge * c.along.x + aside_at_edge * to_side.x,
+                      shear * c.across.y + thrust * n.y + at_edge * c.along.y + aside_at_edge * to_side.y,
+                      shear * c.across.z + thrust * n.z + at_edge * c.along.z + aside_at_edge * to_side.z};
     const Vector<V> moment = cross(centre.at, a), edge_moment = cross({c.station, c.edge_left, c.edge_up}, z);
     const V turning = -centre.arm * (c.sp * a.y + c.cp * a.z) - c.reach * (c.sp * z.y + c.cp * z.z);
     const V all_parts[PARTS] = {
@@ -172,14 +209,16 @@ void push(const Snow& snow, const Base& base, const Pressures& pressure, const E
       for (int field = 0; field < FORCE_FIELDS; field++) store(forces[ForceField(field)] + i, V{});
       continue;
     }
-    const Acting<V> by{load<V>(base[SHARE] + i),       load<V>(pressure[FORCE] + i),     load<V>(pressure[MOMENT] + i),
-                       load<V>(sliding[FRICTION] + i), load<V>(edge[EDGE_STRENGTH] + i), load<V>(edge[EDGE_THRUST] + i),
-                       load<V>(edge[SHEAR_USED] + i)};
+    const Acting<V> by{
+        load<V>(base[SHARE] + i),       load<V>(pressure[FORCE] + i),         load<V>(pressure[MOMENT] + i),
+        load<V>(sliding[FRICTION] + i), load<V>(sliding[FRICTION_ASIDE] + i), load<V>(edge[EDGE_STRENGTH] + i),
+        load<V>(edge[EDGE_THRUST] + i), load<V>(edge[SHEAR_USED] + i)};
     const Pushed<V> pushed(Cut<V>::stored(base, i), by, snow);
     for (int k = 0; k < Pushed<V>::PARTS; k++) store(forces[ForceField(FORCE_0 + k)] + i, pushed.parts[k]);
     for (int k = 0; k < 6; k++) sums[k].add(i % BLOCK, pushed.parts[k]);
     store(forces[SHEAR] + i, pushed.shear);
     store(forces[PUSH] + i, pushed.along);
+    store(forces[PUSH_ACROSS] + i, pushed.across), store(forces[PUSH_OFF] + i, pushed.off);
     store(forces[FRICTION_LOAD] + i, pushed.load);
   }
   for (int a = 0; a < 3; a++) out.force[a] = sums[a].total(), out.moment[a] = sums[a + 3].total();
@@ -198,7 +237,8 @@ void differ(const Snow& snow, const GrooveLines& lines, const Sections& s, doubl
     const Cut<V> base(s.base, i), here = Cut<V>::stored(s.base, i);
     const PressedGrowth<V> growth(s.pressure, i);
     Acting<V> by;
-    by.share = load<V>(s[SHARE] + i), by.friction = load<V>(s[FRICTION] + i);
+    by.share = load<V>(s[SHARE] + i);
+    by.friction = load<V>(s[FRICTION] + i), by.friction_aside = load<V>(s[FRICTION_ASIDE] + i);
     by.strength = load<V>(s[EDGE_STRENGTH] + i), by.thrust = load<V>(s[EDGE_THRUST] + i);
     for (int change = 0; change < CHANGES; change++) {
       const int sides = is_level && change != SectionDifferences::OFF ? 2 : 1;

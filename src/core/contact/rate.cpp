@@ -195,6 +195,7 @@ Acting<double> acting(const Snow& snow, const GrooveLines& lines, const Sections
           share * sums.force,
           share * sums.moment,
           s[FRICTION][i],
+          s[FRICTION_ASIDE][i],
           s[EDGE_STRENGTH][i],
           s[EDGE_THRUST][i],
           alone::eased<double>(snow, lines, slot, alone::shear_used(snow, lines, slot, c), s[EDGE_STRENGTH][i],

@@ -51,14 +51,20 @@ enum PressureField {
 // and the part of it by which the edge was eased.
 enum EdgeField { STRENGTH_LEFT, EDGE_STRENGTH, EDGE_THRUST, SHEAR_USED, SHEAR_EASED, EDGE_FIELDS };
 
-// Sliding along the edge (slide, or a law from outside): velocity of the base at the centre of pressure (m/s), μ with
-// its sign, and its growth with that velocity (s/m).
-enum SlidingField { SLIDING, FRICTION, FRICTION_SLOPE, SLIDING_FIELDS };
+// Sliding (slide, or a law from outside), along the edge and aside: velocity of the base at the centre of pressure (m/s),
+// μ in parts, each with the sign of its velocity, and how they grow with these velocities (s/m).
+enum SlidingField {
+  SLIDING, SLIDING_ASIDE, FRICTION, FRICTION_ASIDE,
+  FRICTION_SLOPE, FRICTION_SKEW, FRICTION_ASIDE_SLOPE,  // along by along, each by the other, aside by aside
+  ASIDE_0, ASIDE_1, ASIDE_2,                            // the direction aside, in the ski's axes
+  SLIDING_FIELDS
+};
 
-// The forces of each section (push): shear across the edge, the force along it, the load that friction acts on (N);
-// force and moment about the boot in the ski's axes; force and moment on the beam.
+// The forces of each section (push): shear across the edge, the force along it, that of friction across it in the
+// surface and off the surface, the load that friction acts on (N); force and moment about the boot in the ski's axes;
+// force and moment on the beam.
 enum ForceField {
-  SHEAR, PUSH, FRICTION_LOAD,
+  SHEAR, PUSH, PUSH_ACROSS, PUSH_OFF, FRICTION_LOAD,
   FORCE_0, FORCE_1, FORCE_2, MOMENT_0, MOMENT_1, MOMENT_2, BEAM_FORCE, BEAM_MOMENT,
   FORCE_FIELDS
 };

@@ -15,31 +15,36 @@ struct EightSections {
   Eight left[BLOCK], off[BLOCK];
   // How the six unknowns of the section's element move the beam there, and what loads there do to them.
   Eight deflection[BLOCK], twist[BLOCK];
-  // [friction damping] A force of 1 along the edge on the clamp, and on the beam there; growth of friction with the
-  // sliding speed.
-  Eight along[BLOCK], lifted, twisted, rate;
+  // [friction damping] A force of 1 along the edge, and one aside, on the clamp, and on the beam there; growth of
+  // friction with the sliding speeds: along by along, each by the other, aside by aside.
+  Eight along[BLOCK], aside[BLOCK], lifted[2], twisted[2], rate[3];
 
   EightSections(const Sections& s, int i, double damping) {
     const auto column = [&](auto field) { return load<Eight>(s[field] + i); };
-    const Eight none{}, one = none + 1.0, station = column(STATION), aside = column(EDGE_LEFT), up = column(EDGE_UP);
+    const Eight none{}, one = none + 1.0, station = column(STATION), to_left = column(EDGE_LEFT), up = column(EDGE_UP);
     const Eight reach = column(EDGE_REACH), sp = column(TWIST_SINE), cp = column(TWIST_COSINE);
     const Eight twisting = reach * column(TWIST_SLOPE), outwards = column(FLARE) * reach / column(HALF_WIDTH);
     const Eight out = outwards * cp - twisting * sp, rise = column(BASE_RISE) - outwards * sp - twisting * cp;
     const Eight z = column(IN_ELEMENT), h = column(ELEMENT_LENGTH), y = 1.0 - z;
-    fill(left, {-out, one, none, -column(BASE_HEIGHT), -out * up, station + out * aside});
-    fill(off, {-rise, none, one, none, -station - rise * up, rise * aside});
+    fill(left, {-out, one, none, -column(BASE_HEIGHT), -out * up, station + out * to_left});
+    fill(off, {-rise, none, one, none, -station - rise * up, rise * to_left});
     fill(deflection, {y * y * (1.0 + 2.0 * z), h * z * y * y, none, z * z * (3.0 - 2.0 * z), -h * z * z * y, none});
     fill(twist, {none, none, y, none, none, z});
     const Eight force = column(FORCE), fall = column(DEPTH_FALL);
     const auto presses = force > 0.0;
     const Eight to_centre = select(presses, column(MOMENT) / select(presses, force, one), none);
     const Eight at[3] = {station + to_centre * (column(LINE_LEFT_0) - fall * column(LINE_NORMAL_0)),
-                         aside + to_centre * (column(LINE_LEFT_1) - fall * column(LINE_NORMAL_1)),
+                         to_left + to_centre * (column(LINE_LEFT_1) - fall * column(LINE_NORMAL_1)),
                          up + to_centre * (column(LINE_LEFT_2) - fall * column(LINE_NORMAL_2))};
-    const Eight t0 = column(ALONG_0), t1 = column(ALONG_1), t2 = column(ALONG_2);
-    fill(along, {t0, t1, t2, at[1] * t2 - at[2] * t1, at[2] * t0 - at[0] * t2, at[0] * t1 - at[1] * t0});
-    lifted = t2, twisted = -(reach + to_centre * column(BASE_WIDENING)) * (sp * t1 + cp * t2);
-    rate = select(presses, damping * column(FRICTION_LOAD) * column(FRICTION_SLOPE), none);
+    const auto pushed = [&](Eight(&rows)[BLOCK], int way, const Eight& t0, const Eight& t1, const Eight& t2) {
+      fill(rows, {t0, t1, t2, at[1] * t2 - at[2] * t1, at[2] * t0 - at[0] * t2, at[0] * t1 - at[1] * t0});
+      lifted[way] = t2, twisted[way] = -(reach + to_centre * column(BASE_WIDENING)) * (sp * t1 + cp * t2);
+    };
+    pushed(along, 0, column(ALONG_0), column(ALONG_1), column(ALONG_2));
+    pushed(aside, 1, column(ASIDE_0), column(ASIDE_1), column(ASIDE_2));
+    const Eight weight = select(presses, damping * column(FRICTION_LOAD), none);
+    rate[0] = weight * column(FRICTION_SLOPE), rate[1] = weight * column(FRICTION_SKEW);
+    rate[2] = weight * column(FRICTION_ASIDE_SLOPE);
   }
 
  private:
@@ -73,21 +78,30 @@ inline void add_section(const EightDifferences& minus, const EightSections& at, 
                         Eight (&clamp)[BODY], RunnerTangent& out) {
   constexpr int LEFT = SectionDifferences::LEFT, OFF = SectionDifferences::OFF, TWIST = SectionDifferences::TWIST;
   const Eight rolls{0.0, 0.0, 0.0, -1.0, 0.0, 0.0};  // a rotation of the clamp about the ski's axis is minus a twist
-  const Eight &along = at.along[lane], rubs = at.rate[lane] * along;
+  const Eight &along = at.along[lane], &aside = at.aside[lane];
+  const double ahead = at.rate[0][lane], skew = at.rate[1][lane], across = at.rate[2][lane];
+  const Eight rubs = ahead * along + skew * aside, rubs_aside = skew * along + across * aside;
   const auto by_clamp = [&](int k) {
     return minus.by[LEFT][k][lane] * at.left[lane] + minus.by[OFF][k][lane] * at.off[lane] +
            minus.by[TWIST][k][lane] * rolls;
   };
-  for (int r = 0; r < BODY; r++) clamp[r] += by_clamp(r) + along[r] * rubs;
+  for (int r = 0; r < BODY; r++) clamp[r] += by_clamp(r) + along[r] * rubs + aside[r] * rubs_aside;
   if (!bends) return;
-  const double lifted = at.lifted[lane], twisted = at.twisted[lane];
+  const double lifted = at.lifted[0][lane], twisted = at.twisted[0][lane];
+  const double lifted_aside = at.lifted[1][lane], twisted_aside = at.twisted[1][lane];
   const Eight &deflection = at.deflection[lane], &twist = at.twist[lane];
-  const Eight rub = at.rate[lane] * (lifted * deflection + twisted * twist);
-  const Eight force_by_clamp = by_clamp(6) + lifted * rubs, moment_by_clamp = by_clamp(7) + twisted * rubs;
-  const Eight clamp_by_lift = minus.clamp_by_off[lane] + lifted * rubs;
-  const Eight clamp_by_twist = minus.clamp_by_twist[lane] + twisted * rubs;
-  const Eight force = minus.by[OFF][6][lane] * deflection + minus.by[TWIST][6][lane] * twist + lifted * rub;
-  const Eight moment = minus.by[OFF][7][lane] * deflection + minus.by[TWIST][7][lane] * twist + twisted * rub;
+  const Eight slides = lifted * deflection + twisted * twist,
+              slides_aside = lifted_aside * deflection + twisted_aside * twist;
+  const Eight rub = ahead * slides + skew * slides_aside, rub_aside = skew * slides + across * slides_aside;
+  const Eight lifts = lifted * rubs + lifted_aside * rubs_aside,
+              twists_it = twisted * rubs + twisted_aside * rubs_aside;
+  const Eight force_by_clamp = by_clamp(6) + lifts, moment_by_clamp = by_clamp(7) + twists_it;
+  const Eight clamp_by_lift = minus.clamp_by_off[lane] + lifts;
+  const Eight clamp_by_twist = minus.clamp_by_twist[lane] + twists_it;
+  const Eight force =
+      minus.by[OFF][6][lane] * deflection + minus.by[TWIST][6][lane] * twist + lifted * rub + lifted_aside * rub_aside;
+  const Eight moment = minus.by[OFF][7][lane] * deflection + minus.by[TWIST][7][lane] * twist + twisted * rub +
+                       twisted_aside * rub_aside;
   double* by_beam = out.body_by_beam.data() + BORDER_ROW * first;
   double* of_beam = out.beam_by_body.data() + BORDER_ROW * first;
   double* band = out.beam.data() + BAND_ROW * first + HALF_BAND;

@@ -48,7 +48,8 @@ void put_snow(const Snow& snow, Fields& out) {
   out.put("snow.edge_blend_sine", snow.edge_blend_sine);
   out.put("snow.compaction_resistance", snow.compaction_resistance ? 1.0 : 0.0);
   const FrictionLaw& mu = snow.friction;
-  out.put("snow.friction", std::vector{mu.constant, mu.linear, mu.square, mu.film, mu.film_speed, mu.fade_speed});
+  out.put("snow.friction", std::vector{mu.constant, mu.linear, mu.square, mu.film, mu.film_speed, mu.fade_speed,
+                                       mu.is_vector ? 1.0 : 0.0, mu.acts_across ? 1.0 : 0.0});
   out.put("snow.friction_on_base", snow.friction_on_base ? 1.0 : 0.0);
   const ShearLaw& shear = snow.shear;
   out.put("snow.shear", std::vector{shear.decrease, shear.cuts ? 1.0 : 0.0, shear.friction_angle, shear.least_plane,
@@ -69,8 +70,8 @@ std::shared_ptr<Snow> snow_of(const Fields& data) {
   out->shear_displacement = data.number("snow.shear_displacement");
   out->edge_blend_sine = data.number("snow.edge_blend_sine");
   out->compaction_resistance = data.number("snow.compaction_resistance") != 0.0;
-  const auto& mu = data.at("snow.friction", 6);
-  out->friction = {mu[0], mu[1], mu[2], mu[3], mu[4], mu[5]};
+  const auto& mu = data.at("snow.friction", 8);
+  out->friction = {mu[0], mu[1], mu[2], mu[3], mu[4], mu[5], mu[6] != 0.0, mu[7] != 0.0};
   out->friction_on_base = data.number("snow.friction_on_base") != 0.0;
   const auto& shear = data.at("snow.shear", 6);
   out->shear = {shear[0], shear[1] != 0.0, shear[2], shear[3], shear[4], shear[5]};

@@ -11,6 +11,8 @@ namespace skisnow {
 struct FrictionLaw {
   double constant = 0.0, linear = 0.0, square = 0.0, film = 0.0, film_speed = 1.0;
   double fade_speed = 0.01;  // below it the friction fades to zero
+  bool is_vector = true;     // against the sliding velocity; else by its part along the ski alone, and along the ski
+  bool acts_across = true;   // its part across the ski; else the shear law has that
 };
 
 // Strength of an edge over that of the snow's line, by its angle ϑ and by how far it has slipped there.

@@ -29,6 +29,8 @@ class FrictionLaw:
     film: float
     film_speed: float
     fade_speed: float
+    is_vector: bool
+    acts_across: bool
 
 class ShearLaw:
     decrease: float
@@ -91,7 +93,7 @@ class Contact:
         self,
         friction: Callable[[FloatArray], FloatArray] | None,
         shear: Callable[[FloatArray, FloatArray], FloatArray] | None,
-        fade_speed: float,
+        rule: FrictionLaw,
     ) -> None: ...
     def set_penetration(self, law: PenetrationLaw, bends: FloatArray, along_base_normal: bool) -> None: ...
 

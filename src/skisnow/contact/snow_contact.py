@@ -62,10 +62,12 @@ class Sections(Shown):
         Position from the boot, and the length of runner of the section (m).
     depth, edge_sine, edge_place
         Depth of the deeper edge (m, < 0 above the snow), sine of the edge angle, place of the edge on its line (m).
-    normal_force, shear, push
-        Forces of the pressure, of the edge across, and along the edge (N).
-    sliding, friction, friction_load
-        Speed along the edge (m/s), μ with the sign of the sliding, and the load that it acts on (N).
+    normal_force, shear, push, push_across, push_off
+        Forces of the pressure, of the edge across, along the edge, and of friction across it in the surface and off the
+        surface (N).
+    sliding, sliding_aside, friction, friction_aside, friction_load
+        Velocity along the edge and aside (m/s), the parts of μ with the signs of these, and the load that they act on
+        (N). Aside is across the edge in the surface, or at right angles to it in the base's plane.
     strength, shear_used
         S_f (N/m²), and the share of the displacement to full strength in use (beyond ±1: slips).
     """
@@ -78,16 +80,21 @@ class Sections(Shown):
     normal_force: FloatArray
     shear: FloatArray
     push: FloatArray
+    push_across: FloatArray
+    push_off: FloatArray
     sliding: FloatArray
+    sliding_aside: FloatArray
     friction: FloatArray
+    friction_aside: FloatArray
     friction_load: FloatArray
     strength: FloatArray
     shear_used: FloatArray
 
     def _facts(self) -> Facts:
         units = dict.fromkeys(("position_along_ski", "length", "depth", "edge_place"), "m")
-        units |= dict.fromkeys(("normal_force", "shear", "push", "friction_load"), "N") | {
+        units |= dict.fromkeys(("normal_force", "shear", "push", "push_across", "push_off", "friction_load"), "N") | {
             "sliding": "m/s",
+            "sliding_aside": "m/s",
             "strength": "N/m²",
         }
         return field_facts(self, units)
@@ -142,7 +149,7 @@ class SnowContact(Shown):
         self._shear = None if shear is None else AskedStrength(shear)
         if friction is not None or shear is not None:
             called = None if friction is None else AskedFriction(friction)
-            self.compiled.set_laws(called, self._shear, snow.fade_speed)
+            self.compiled.set_laws(called, self._shear, snow.compiled.friction)
         if snow.penetration is not None:
             law = snow.penetration
             self.compiled.set_penetration(AskedPressure(law), np.array(law.bends, float), law.along_base_normal)

@@ -14,7 +14,7 @@ from .._support.errors import ParameterError
 from .._support.units import N_PER_MM2, N_PER_MM3
 from ..compiled import core
 from ..forces.friction import ConstantFriction, FrictionLaw, LinearFriction, QuadraticFriction, WaterFilmFriction
-from ..forces.friction.load import ActsOn
+from ..forces.friction.load import ActsOn, Direction
 from ..forces.penetration import PointLaw
 from ..forces.penetration.rate import DAMPING, DELAYED_SHARE, DELAYED_SPACING, RETARDATION_TIME
 from ..forces.shear import AngleShear, ConstantShear, DensityShear, MachiningShear, NaturalDensityShear, ShearLaw
@@ -57,6 +57,10 @@ class SnowField(Shown):
     friction_acts_on
         Load that μ acts on: the pressure along the snow's normal, or what presses square on the base, side force
         included.
+    friction_direction
+        ``vector``: against the sliding velocity, in the surface, or where μ acts on what presses on the base, in the
+        base's plane; ``along-ski``: μ times the load along the ski, at any slip angle. `MachiningShear` has a friction
+        across the ski of its own: with it the vector's part across the ski is left out.
     residual_ratio, slip_weakening
         Share of the strength that is left where an edge has slipped, 0 to 1, and the slip (m) over which it is reached.
     penetration
@@ -91,6 +95,7 @@ class SnowField(Shown):
     unloading_ratio: float
     friction: FrictionLaw | float = 0.0
     friction_acts_on: ActsOn = "snow-normal"
+    friction_direction: Direction = "vector"
     shear: ShearLaw | None = None
     strength_share: float | Grid = 1.0
     residual_ratio: float = RESIDUAL_RATIO
@@ -131,10 +136,9 @@ class SnowField(Shown):
         _require("residual_ratio", self.residual_ratio, minimum=0.0)
         if self.residual_ratio > 1.0:
             raise ParameterError(f"SnowField: residual_ratio is {self.residual_ratio!r}; it must be at most 1")
-        if self.friction_acts_on not in get_args(ActsOn):
-            raise ParameterError(
-                f"SnowField: friction_acts_on is {self.friction_acts_on!r}; it must be {' or '.join(get_args(ActsOn))}"
-            )
+        for name, choices in (("friction_acts_on", get_args(ActsOn)), ("friction_direction", get_args(Direction))):
+            if getattr(self, name) not in choices:
+                raise ParameterError(f"SnowField: {name} is {getattr(self, name)!r}; it must be {' or '.join(choices)}")
         for name in (
             "slip_weakening",
             "shear_displacement",
@@ -201,6 +205,8 @@ class SnowField(Shown):
         """Coefficients of μ = c₀ + c₁ v + c₂ v² + a/(1 + v/v₀), which the laws of `forces.friction` are."""
         law, out = self.friction, core.FrictionLaw()
         out.fade_speed = self.fade_speed
+        out.is_vector = self.friction_direction == "vector"
+        out.acts_across = not isinstance(self.shear, MachiningShear)
         if isinstance(law, ConstantFriction):
             out.constant = law.friction_coefficient
         elif isinstance(law, LinearFriction):

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Annotated, Final, Literal, TypeAlias, get_args
 
-from ..forces.friction.load import ActsOn
+from ..forces.friction.load import ActsOn, Direction
 from ..forces.penetration.rate import DAMPING, DELAYED_SHARE, RETARDATION_TIME
 from ..forces.shear.displacement import SHEAR_DISPLACEMENT
 from ..parameters import Condition, Quantity, Search, Section, Word, declared_text, require_declared
@@ -44,8 +44,8 @@ class Contact:
         u_y > 0 (m).
     damping, delayed_share, retardation_time
         c ≥ 0 (N s/m³) of the snow's answer to the rate of depth; H_V/H₂ ≥ 0 and c₂/H₂ > 0 (s) of its delayed depth.
-    friction, friction_by_speed, friction_acts_on
-        μ = μ_0 + μ_1 v: μ_0 ≥ 0, and μ_1 (s/m); and what it is multiplied with.
+    friction, friction_by_speed, friction_acts_on, friction_direction
+        μ = μ_0 + μ_1 v: μ_0 ≥ 0, and μ_1 (s/m); what it is multiplied with, and where the product points.
 
     See Also
     --------
@@ -174,6 +174,15 @@ class Contact:
             origin="choice: it does not hang on how the side force spreads along the edge, which nobody measured",
         ),
     ] = "snow-normal"
+    friction_direction: Annotated[
+        Direction,
+        Quantity(
+            "friction.direction",
+            "against the sliding velocity, or along the ski at any slip angle",
+            label="direction of friction",
+            origin="Coulomb's law; the paper's turns had friction along the ski",
+        ),
+    ] = "vector"
     snow_map: Annotated[
         SnowMap | None,
         Word(

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
-from typing import Any, Final, TypeAlias
+from typing import TYPE_CHECKING, Any, Final, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
@@ -16,6 +16,9 @@ from .moving_boots import BootHistory
 from .run import GIVEN, LOST, STORED, Outcome, SkiHistory
 from .run_setup import Setup
 from .snow_forces import AlongEdge, snow_forces, thrust_per_length
+
+if TYPE_CHECKING:
+    from ..contact.snow_contact import Sections
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 
@@ -40,7 +43,8 @@ class Moment:
     along
         Depth of the edge (m), force and shear per length (N/m) at the nodes, for each ski (3, m).
     push
-        Force of the snow along the edge of each ski, forward positive (N), (skis,).
+        Forces of the snow on each ski along the edge, forward positive; of friction across it, and off the surface (N),
+        (skis, 3).
     dofs
         Of the beams at the free nodes (skis, n): deflection (m), its slope and twist (rad).
     body
@@ -55,7 +59,7 @@ class Moment:
     velocity: FloatArray
     energies: tuple[float, ...]
     along: tuple[FloatArray, ...]
-    push: tuple[float, ...]
+    push: tuple[tuple[float, float, float], ...]
     dofs: FloatArray
     body: tuple[FloatArray, FloatArray]
     boots: FloatArray
@@ -93,7 +97,7 @@ class Record:
         setup, dynamics = self.setup, self.setup.dynamics
         skis = range(len(dynamics.body.skis))
         along = tuple(dynamics.along(k) for k in skis)
-        push = tuple(float(dynamics.contact.sections(k).push.sum()) for k in skis)
+        push = tuple(_push(dynamics.contact.sections(k)) for k in skis)
         return Moment(
             dynamics.time, setup.place, setup.attitude, setup.velocity, self._energies(), along, push,
             dynamics.beam_dofs,
@@ -216,6 +220,10 @@ def _at_boot(node: FloatArray, values: FloatArray) -> FloatArray:
     i = min(int(np.count_nonzero(node > 0.0)), len(node) - 1) - 1
     f = node[i] / (node[i] - node[i + 1])
     return np.asarray(values[..., i] + f * (values[..., i + 1] - values[..., i]))
+
+
+def _push(ski: Sections) -> tuple[float, float, float]:
+    return float(ski.push.sum()), float(ski.push_across.sum()), float(ski.push_off.sum())
 
 
 def _arc(one: Moment, other: Moment) -> float:

@@ -306,6 +306,7 @@ def _snow(scenario: Scenario, laws: Laws) -> SnowField:
         unloading_ratio=contact.unloading_ratio,
         friction=laws.friction or friction,
         friction_acts_on=contact.friction_acts_on,
+        friction_direction=contact.friction_direction,
         shear=laws.shear
         or (None if carries_side_force else scenario.shear.of(contact.snow.failure_shear_stress or 0.0)),
         strength_share=_strength_share(over_place),

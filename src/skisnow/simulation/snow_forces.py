@@ -33,7 +33,8 @@ class AlongEdge:
     bending, twist
         Deflection of the base (m), growth of the edge angle (rad).
     push
-        Force along the edge of each ski, forward positive: friction and compaction resistance (N), (n, 2).
+        Forces on each ski along the edge, forward positive: friction and compaction resistance; of friction across the
+        edge, to the left; of friction off the surface (N), (n, 2, 3).
     """
 
     station: FloatArray
@@ -59,17 +60,19 @@ def snow_forces(along: AlongEdge, boots: BootHistory, *, normal: FloatArray, ski
 
     Notes
     -----
-    At each station the shear is perpendicular to the edge line of the bent ski, and the push is along it. Both are in
-    the snow's surface. The three parts are summed over the stations with the lengths of the nodes.
+    At each station the shear is perpendicular to the edge line of the bent ski; the push is along it, and across it as
+    the load is. Both are in the snow's surface, but for the friction of a tilted base across the ski. The three parts
+    are summed over the stations with the lengths of the nodes.
     """
     forward, left = _edge_direction(along, boots, normal, ski)
     length = node_lengths(along.station)
     sheared, loaded = along.shear * length, along.force * length
-    push = along.push / np.maximum(loaded.sum(axis=2), 1e-9)
-    ahead = (push[..., None] * forward * loaded - left * sheared).sum(axis=2)
-    aside = (push[..., None] * left * loaded + forward * sheared).sum(axis=2)
+    push = along.push / np.maximum(loaded.sum(axis=2), 1e-9)[..., None]
+    sheared = sheared + push[..., 1, None] * loaded
+    ahead = (push[..., 0, None] * forward * loaded - left * sheared).sum(axis=2)
+    aside = (push[..., 0, None] * left * loaded + forward * sheared).sum(axis=2)
     axes = _surface_axes(boots, normal)
-    parts = zip((loaded.sum(axis=2), ahead, aside), (normal, *axes), strict=True)
+    parts = zip((loaded.sum(axis=2) + along.push[..., 2], ahead, aside), (normal, *axes), strict=True)
     return np.asarray(sum(size[..., None] * axis for size, axis in parts))
 
 

@@ -1,4 +1,7 @@
-"""A sledge set down across a slope: it holds while S_f ∫ e ds of both edges exceeds m g sin α, and slides beyond."""
+"""A sledge set down across a slope: it holds while S_f ∫ e ds of both edges exceeds m g sin α.
+
+Beyond it slides, braked by μ N as well.
+"""
 
 from __future__ import annotations
 
@@ -14,7 +17,7 @@ from skisnow.simulation.simulated_run import simulate
 
 from .sledges import GRAVITY, rigid_ski, scenario, total_mass
 
-SLOPE_DEG, LENGTH, HARDNESS = 10.0, 1.6, 0.2
+SLOPE_DEG, LENGTH, HARDNESS, FRICTION = 10.0, 1.6, 0.2, 0.05
 
 
 def across(*, strength: float, duration: float, heading_deg: float = 90.0, edge_deg: float = 20.0) -> Run:
@@ -28,7 +31,7 @@ def across(*, strength: float, duration: float, heading_deg: float = 90.0, edge_
             edge_deg=edge_deg,
             heading_deg=heading_deg,
             strength=strength,
-            friction=0.05,
+            friction=FRICTION,
             centre_height=0.05,
             duration=duration,
             solver=solver,
@@ -58,11 +61,12 @@ def test_holds_below_the_limit(share: float) -> None:
 
 @pytest.mark.parametrize("share", [1.03, 1.1])
 def test_slips_above_the_limit(share: float) -> None:
-    """Downhill, ever faster, about as fast as what is lacking allows: (1 - 1/share) g sin α t²/2."""
-    run = across(strength=sufficient_strength() / share, duration=3.0)
-    assert run.place[-1, 0] > 0.2
+    """Downhill, ever faster, about as fast as what is lacking allows: (1 - 1/share) g (sin α - μ cos α) t²/2."""
+    slope = math.radians(SLOPE_DEG)
+    left = math.sin(slope) - FRICTION * math.cos(slope)
+    run = across(strength=sufficient_strength() * left / math.sin(slope) / share, duration=3.0)
+    free = (1.0 - 1.0 / share) * GRAVITY * left * 3.0**2 / 2.0
     assert np.all(np.diff(run.place[5:, 0]) > 0.0)
-    free = (1.0 - 1.0 / share) * GRAVITY * math.sin(math.radians(SLOPE_DEG)) * 3.0**2 / 2.0
     assert 0.5 * free < run.place[-1, 0] < 2.5 * free
 
 

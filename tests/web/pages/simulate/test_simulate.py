@@ -71,7 +71,7 @@ EXPERT_OF_A_SLEDGE = {
         "Law of penetration", "Pushing the groove brakes", "Shear displacement u_y (mm)",
         "Damping of the snow c (N s/mm³)", "Delayed share H_V/H_2", "Retardation time c_2/H_2 (ms)",
     ],
-    "Friction": ["Friction that grows with speed μ_1 (s/m)", "Friction acts on"],
+    "Friction": ["Friction that grows with speed μ_1 (s/m)", "Friction acts on", "Direction of friction"],
     "Air drag": ["Density of the air ρ (kg/m³)", "Height of the centre of pressure (m)"],
     "Sledge": [
         "Moments of inertia I (kg m²)", "Height of the centre of mass (m)", "Centre of mass ahead of the boots (m)",
