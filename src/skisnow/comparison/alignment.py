@@ -23,57 +23,57 @@ FloatArray = npt.NDArray[np.float64]
 
 Offset: TypeAlias = Literal["start", "heading", "time"]
 OFFSETS: Final[tuple[Offset, ...]] = get_args(Offset)
-"""What may be unknown: the place of the first point, the direction (turned about the vertical there), the time."""
+"""Unknown offsets: place of the first point, direction (rotation about the vertical there), time."""
 PLACES: Final = 2048
-"""Equal steps of the measured track over which squares are summed: the sum stands for an integral over its length."""
+"""Number of equal steps of the measured track in sums of squares, which approximate integrals over its length."""
 COARSENING: Final = 8
-"""Each beginning is followed with every so many places first, which takes so much less time, and then with all."""
+"""Step between the places used in the first iterations from each start, which makes them faster by this factor."""
 LEAST_SHARE: Final = 0.5
-"""Of the places, or of the shorter time, that must stay in the comparison: a fit may not slide a track out of sight."""
+"""Smallest share of the places, or of the shorter time, that must be compared, so that a fit cannot separate tracks."""
 HEADINGS: Final = 8
-"""Directions at equal angles that a search for a heading begins with."""
+"""Number of equally spaced headings with which a search for a heading begins."""
 SHIFTS: Final = 17
-"""Offsets in arc length that a search begins with: the measured track may begin later or end earlier."""
+"""Number of offsets in arc length with which a search begins: the measured track can begin later or end earlier."""
 REFINED: Final = 6
-"""Best rough answers that are followed with all places."""
+"""Number of the best coarse solutions that are refined with all places."""
 CHORDS: Final = 64
-"""Chords of a track whose length counts for the overlays: noise hardly lengthens them."""
+"""Number of chords of a track for the overlays; noise hardly changes their length."""
 REPORTED_RIVAL: Final = 2.0
-"""A second answer whose score is within this factor of the best is reported."""
+"""A second solution whose score is within this factor of the best is reported."""
 _DIFFERENT: Final = 5.0 * DEGREE
-"""Answers turned by more, or that move an end of the track by more than this times its length, are two."""
+"""Two solutions differ if their headings differ by more, or an end of the track by more than this times its length."""
 DETERMINED: Final = 1e-3
-"""Directions whose singular value is below this part of the largest are left as they are, and said."""
+"""Smallest singular value of a determined direction, relative to the largest."""
 _IMPROVEMENT: Final = 0.995
 _ROUNDS: Final = 100
 _SETTLED: Final = 1e-10
 _ACCEPTED: Final = 1e-5
-"""Steps (in parts of the length) that go on below this only pass single places over the ends to and fro."""
+"""Largest step (relative to the length) of a search that only moves single places over the ends back and forth."""
 _OSCILLATION: Final = 10
-"""They do where one is as long as one of so many before it."""
+"""A step that is not shorter than one this many steps before indicates an oscillation."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Motion:
-    """How the simulated track is moved onto the measured one.
+    """Rigid motion of the simulated track onto the measured one.
 
     Attributes
     ----------
     moved : (d,) m
-        Of its first point.
+        Displacement of its first point.
     turned
-        About the vertical through its first point (rad), positive to the left.
+        Rotation (rad) about the vertical through its first point, positive to the left.
     undetermined
-        How many directions the tracks do not tell, such as along two straight lines; nothing was moved along them.
+        Number of undetermined directions, such as along two straight lines; the track is not moved along them.
     rms
         Root mean square of the remaining nearest distances (m); infinite if the steps do not settle.
     share
-        Share of the measured track that has the simulated one beside it.
+        Share of the measured track that is compared.
     turned_error
         Half of the 95 % interval of `turned` (rad), at most π; 0 if no heading was fitted, None if `rival` has another
         heading.
     rival
-        The best answer elsewhere, if it is about as good.
+        The best different solution, if it is about as good.
     """
 
     moved: FloatArray
@@ -85,7 +85,7 @@ class Motion:
     rival: Motion | None = None
 
     def applied(self, line: Polyline) -> Polyline:
-        """The whole track, moved."""
+        """The track after the motion."""
         start = line.place[0]
         return polyline((line.place - start) @ _turn(self.turned, len(start)).T + start + self.moved, line.time)
 
@@ -97,12 +97,12 @@ def _turn(angle: float, dimensions: int) -> FloatArray:
 
 
 def require_offsets(fit: Collection[str]) -> None:
-    """Refuse what is none of `OFFSETS`.
+    """Check that all offsets are among `OFFSETS`.
 
     Raises
     ------
     ParameterError
-        Names them.
+        An offset is unknown.
     """
     wrong = [word for word in fit if word not in OFFSETS]
     if wrong:
@@ -110,17 +110,17 @@ def require_offsets(fit: Collection[str]) -> None:
 
 
 def fit_motion(simulated: Polyline, measured: Polyline, *, start: bool, heading: bool) -> Motion:
-    """Least squares of the nearest distance over the measured track's length.
+    """Motion that minimises the mean square of the nearest distance over the measured track's length.
 
-    Gauss–Newton steps with the nearest places found again each time. Places beyond the ends of the simulated track take
-    no part in a step. The search begins with the tracks as they are, with overlays at `SHIFTS` offsets in arc length
-    and, for a heading, in `HEADINGS` directions. The answer with the lowest `_score` counts; one in which the tracks
-    run in opposite directions counts only if there is no other.
+    Gauss–Newton steps with new nearest places after each step. Places beyond the ends of the simulated track are
+    ignored in a step. The search begins with the unmoved tracks, with overlays at `SHIFTS` offsets in arc length and,
+    for a heading, in `HEADINGS` directions. The solution has the lowest `_score`. Solutions in which the tracks run in
+    opposite directions are used only if there is no other.
 
     Raises
     ------
     FitError
-        No beginning leads to an answer in which half of the measured track has the simulated one beside it.
+        No start leads to a solution in which half of the measured track is compared.
     """
     path = Path(simulated.place)
     places = measured.at_arc_length(np.linspace(0.0, measured.length, PLACES + 1))
@@ -164,10 +164,10 @@ def fit_motion(simulated: Polyline, measured: Polyline, *, start: bool, heading:
 
 
 def _score(motion: Motion, length: float) -> float:
-    """Geometric mean distance (m) over the whole measured track; less is better.
+    """Geometric mean distance (m) over the whole measured track; lower is better.
 
-    A place without the simulated track beside it counts as one length of the track away. This is the likelihood of
-    normal distances where both run, and of any place along the track elsewhere.
+    Places that are not compared count with the length of the track. This is the likelihood of normally distributed
+    distances where both tracks run, and of a uniform distribution over the track elsewhere.
     """
     if not math.isfinite(motion.rms):
         return math.inf
@@ -175,7 +175,7 @@ def _score(motion: Motion, length: float) -> float:
 
 
 def _differ(one: Motion, other: Motion, line: Polyline) -> bool:
-    """Whether two answers lay the track elsewhere; along what the tracks do not tell they may differ."""
+    """True if two solutions put the track at different places; undetermined directions are ignored."""
     if abs(math.remainder(one.turned - other.turned, math.tau)) > _DIFFERENT:
         return True
     ends = (motion.applied(line).place[[0, -1]] for motion in (one, other))
@@ -184,7 +184,7 @@ def _differ(one: Motion, other: Motion, line: Polyline) -> bool:
 
 
 def _same_direction(path: Path, places: FloatArray, motion: Motion) -> bool:
-    """Whether both tracks run the same way, on most of the measured one."""
+    """True if both tracks run in the same direction on most of the measured one."""
     local, places_nearby = _nearest_places(path, places, motion)
     step = np.diff(local, axis=0)
     return float(np.sign((step * places_nearby.direction[1:]).sum(axis=1)).mean()) >= 0.0
@@ -204,7 +204,7 @@ def start_motions(simulated: Polyline, measured: Polyline, *, start: bool, headi
 
 
 def _chords(line: Polyline) -> Polyline:
-    """The line through places at equal shares of the length."""
+    """Line through places at equal steps of arc length."""
     at = np.linspace(0.0, line.length, CHORDS + 1)
     return polyline(line.at_arc_length(at), np.interp(at, line.arc_length, line.time))
 
@@ -212,7 +212,7 @@ def _chords(line: Polyline) -> Polyline:
 def _overlay(
     lines: tuple[Polyline, Polyline], *, start: bool, heading: bool, turned: float | None = None, shift: float = 0.0
 ) -> Motion:
-    """Turned and moved so that places at equal arc length are as near as they can be (Kabsch, about the vertical).
+    """Motion that minimises the distances of places at equal arc length (Kabsch, about the vertical).
 
     With an angle (rad), the heading is that angle. The measured track begins ``shift`` (m) after the simulated one.
     """
@@ -228,7 +228,7 @@ def _overlay(
 
 
 def _iterate(path: Path, places: FloatArray, motion: Motion, *, start: bool, heading: bool) -> Motion:
-    """The answer from one beginning, with its rms distance (infinite without an answer) and share."""
+    """Solution from one start, with its rms distance (infinite if the steps do not converge) and share."""
     sizes, pace = [math.inf], 1.0
     for _ in range(_ROUNDS):
         local, nearest = _nearest_places(path, places, motion)
@@ -255,7 +255,7 @@ def _iterate(path: Path, places: FloatArray, motion: Motion, *, start: bool, hea
 
 
 def _nearest_places(path: Path, places: FloatArray, motion: Motion) -> tuple[FloatArray, NearestPlaces]:
-    """The measured places as the unmoved simulated track sees them, with its nearest places."""
+    """Measured places in the frame of the unmoved simulated track, and its nearest places."""
     local = (places - path.first - motion.moved) @ _turn(motion.turned, places.shape[1]) + path.first
     return local, path.nearest(local)
 
@@ -264,7 +264,7 @@ def _equations(
     path: Path, local: FloatArray, nearest: NearestPlaces, inside: npt.NDArray[np.bool_], motion: Motion,
     *, start: bool, heading: bool,
 ) -> tuple[FloatArray, FloatArray]:  # fmt: skip
-    """Linear equations for a step, across the simulated track: along it the nearest place gives way."""
+    """Matrix and right side of the linear equations for a step; only offsets across the simulated track count."""
     turn = _turn(motion.turned, local.shape[1])
     along, arm, apart = (
         values[inside] @ turn.T for values in (nearest.direction, nearest.foot - path.first, nearest.foot - local)
@@ -282,10 +282,10 @@ def _equations(
 def _heading_error(path: Path, measured: Polyline, motion: Motion, *, start: bool) -> float:
     """Half of the 95 % interval of the heading (rad), at most π, from the errors of the measured points.
 
-    The fit is linear in the errors across the path: turned = Σ gᵢ εᵢ over the points, each with the length of track
-    that it stands for as its weight. With equal variances σ² = Σ r²/(n (d - 1) - parameters) and the correlation ρ of
-    the residuals of neighbouring points, the variance is σ² Σ gᵢ² (1 + ρ)/(1 - ρ): that of an autoregressive error
-    whose influence changes slowly (Bartlett 1935, doi 10.2307/2342284). Student's factor.
+    The fit is linear in the errors across the path: turned = Σ gᵢ εᵢ over the points, each weighted by its share of the
+    length. With equal variances σ² = Σ r²/(n (d - 1) - parameters) and the correlation ρ of the residuals of
+    neighbouring points, the variance is σ² Σ gᵢ² (1 + ρ)/(1 - ρ): that of an autoregressive error whose influence
+    changes slowly (Bartlett 1935, doi 10.2307/2342284). The interval uses Student's t.
     """
     local, nearest = _nearest_places(path, measured.place, motion)
     inside = ~nearest.beyond
@@ -317,7 +317,7 @@ def _across(vectors: FloatArray, along: FloatArray) -> FloatArray:
 
 
 def _shortest_step(matrix: FloatArray, rest: FloatArray) -> tuple[FloatArray, int]:
-    """The shortest step of least squares, and how many directions it leaves alone."""
+    """Shortest least-squares step, and the number of undetermined directions."""
     left, values, right = np.linalg.svd(matrix, full_matrices=False)
     determined = values > DETERMINED * math.sqrt(matrix.shape[0])
     return right[determined].T @ ((left.T @ rest)[determined] / values[determined]), int((~determined).sum())

@@ -1,4 +1,4 @@
-"""A simulated track held against a measured one: distances by nearest place, at equal arc length, at equal time."""
+"""Comparison of a simulated track with a measured one, with unknown start, heading and time if requested."""
 
 from __future__ import annotations
 
@@ -31,12 +31,12 @@ from .result import Comparison, Distances, FittedOffsets
 from .time_offset import FIRST_POINTS, Clock, TimeFrom, common_clock, fit_time, missing_time_reason
 
 FARTHEST: Final = 1000.0
-"""Tracks that are nowhere nearer to each other (m) are not of one slope."""
+"""Largest distance (m) between the tracks; beyond it they are from different slopes."""
 _PLACED: Final = frozenset({"start", "heading"})
 SOLUTION_SD: Final = {"fixed": 0.02, "float": 0.3, "code": 3.0}
 """Standard deviation (m) of a place by kind of solution (modelling assumption: orders of magnitude)."""
 MOST_COMPARED: Final = 0.9
-"""Share of the measured track below which it is said that not all of it was compared."""
+"""Compared share of the measured track below which a warning is given."""
 REPORTED_ERROR: Final = 2.0 * DEGREE
 """Half of the 95 % interval of a fitted heading above which a warning says so."""
 DEFINITIONS: Final = {
@@ -46,7 +46,7 @@ DEFINITIONS: Final = {
     "the length of the shorter",
     "time": "between the places where both are at the same time, counted from {origin}, while both are on their way",
 }
-"""What each distance is between."""
+"""Definition of each distance."""
 
 
 def compare_tracks(
@@ -59,25 +59,25 @@ def compare_tracks(
     known_to: float | None = None,
     slope_angle: float | None = None,
 ) -> Comparison:
-    """Hold a simulated track against a measured one.
+    """Compare a simulated track with a measured one.
 
     Parameters
     ----------
     simulated, measured
-        In one frame; two in degrees are compared from the measured one's origin. Points that `Track.usable` leaves out
-        are left out, and counted in a warning.
+        Tracks in the same frame; two tracks in degrees are compared from the measured one's origin. Points that
+        `Track.usable` excludes are ignored and counted in a warning.
     fit
-        Of "start", "heading" and "time": unknown offsets of the simulated track that are fitted. Empty: none.
+        Unknown offsets of the simulated track that are fitted: "start", "heading", "time" (default: none).
     time_from
-        Where equal time is counted from. "clock": the dates of the files, or their seconds where neither has a date;
-        "first_point": each track's own. None: the clock, but the first points where only one of them has a date.
+        Zero of equal time. "clock": the dates of the files, or their seconds if neither has a date; "first_point": the
+        first point of each track (default: the clock, or first points if only one track has a date).
     from_above
-        Without the heights, even where both tracks have them. Where one lacks heights it is so anyway.
+        True to ignore heights (default: heights are used if both tracks have them).
     known_to
-        How exactly places are known (m), 0 or more; None: `skisnow.track.solution` says it of each.
+        Accuracy of the places (m), at least 0 (default: the less accurate of both by `place_accuracy`).
     slope_angle : rad
-        Inclination of the slope that one track's x and y are on, if start and heading are fitted to a track on a map.
-        None: that of the run, else that of the other track's heights.
+        Inclination of the slope of one track's x and y, if start and heading are fitted to a track on a map (default:
+        that of the run, else that of the other track's heights).
 
     Returns
     -------
@@ -87,14 +87,14 @@ def compare_tracks(
     Raises
     ------
     ParameterError
-        A track has no two places, the tracks are nowhere within 1 km, or a word is not one of those above.
+        A track has fewer than two places, the tracks are nowhere within 1 km, or an option is unknown.
     FitError
         The offsets cannot be fitted.
 
     See Also
     --------
     skisnow.read_track : a measured track.
-    skisnow.track_summary : what one track says by itself.
+    skisnow.track_summary : distance, speed, runs and turns of one track.
 
     References
     ----------
@@ -247,13 +247,13 @@ def _frames_sentence(simulated: Track, measured: Track) -> str:
 
 
 def _azimuth(fitted: FittedOffsets, measured: Track) -> float:
-    """Compass direction (rad) of x of the track that has no compass."""
+    """Compass direction (rad) of x of the track that is not in east, north, up."""
     turned = fitted.turned if measured.axes == "east_north_up" else -fitted.turned
     return (0.5 * math.pi - turned) % math.tau
 
 
 def _direction_sentence(fitted: FittedOffsets, laid: LaidTracks, simulated: Track, measured: Track) -> str:
-    """Direction of x of the track in the slope's axes, and the inclination by which it was laid on the map."""
+    """Sentence on the direction of x of the track in the slope's axes, and on the inclination of the slope."""
     name = (simulated if measured.axes == "east_north_up" else measured).name
     slope = "from above" if not laid.angle else f"on a slope of {laid.angle / DEGREE:.1f}° ({laid.source})"
     azimuth = (fitted.azimuth or 0.0) / DEGREE
@@ -279,7 +279,7 @@ def _coverage_warnings(comparison: Comparison) -> list[str]:
 
 
 def _ambiguity_warnings(comparison: Comparison) -> list[str]:
-    """Warnings of a heading that the tracks hardly determine, and of another place at which they are about as near."""
+    """Warnings of a poorly determined heading, and of another place that fits about as well."""
     fitted, warnings = comparison.fitted, []
     if fitted is None:
         return []

@@ -1,4 +1,4 @@
-"""Distances between two tracks: nearest place, equal arc length, equal time; their largest, mean and rms length."""
+"""Offsets between two tracks by nearest place, at equal arc length and at equal time, and their statistics."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ class OffsetSeries(ShownFields):
     arc_length : (k,) m
         Length of the measured track up to the place, not falling.
     offset : (k, d) m
-        From the measured to the simulated track; NaN where there is none.
+        From the measured to the simulated track; NaN if missing.
     """
 
     arc_length: FloatArray
@@ -38,13 +38,13 @@ class OffsetSeries(ShownFields):
 
     @property
     def distance(self) -> FloatArray:
-        """Length of the offsets, (k,) (m); NaN where there is none."""
+        """Length of the offsets, (k,) (m); NaN if missing."""
         return np.linalg.norm(self.offset, axis=1)
 
 
 @dataclass(frozen=True, slots=True)
 class DistanceStatistics:
-    """Of distances along a track: the largest, where it is (arc length), mean and rms, over what arc length (m)."""
+    """Statistics (m) of distances along a track: largest, its arc length, mean, rms, and compared arc length."""
 
     max: float
     max_at: float
@@ -56,8 +56,8 @@ class DistanceStatistics:
 def distance_statistics(apart: OffsetSeries) -> DistanceStatistics | None:
     """Largest, mean and rms distance; the means are integrals over the arc length.
 
-    They are exact for offsets that change linearly:     ∫|δ| ds and ∫|δ|² ds, piece by piece, divided by the arc
-    length. None where nothing was compared.
+    They are exact for offsets that change linearly: ∫|δ| ds and ∫|δ|² ds, piece by piece, divided by the arc length.
+    None if nothing was compared.
     """
     distance = apart.distance
     whole = np.isfinite(distance[:-1]) & np.isfinite(distance[1:])
@@ -110,11 +110,11 @@ def _area(x: FloatArray, h: FloatArray) -> FloatArray:
 BoolArray = npt.NDArray[np.bool_]
 
 FEWEST_PIECES: Final = 2048
-"""Into which the measured track is cut at least, in equal lengths, before the nearest places are asked for."""
+"""Minimum number of equal pieces of the measured track for which nearest places are computed."""
 EXACTNESS: Final = 1e-7
-"""Of the distance between two asked places, in parts of the measured track's length."""
+"""Accuracy of the distance between two computed places, relative to the measured track's length."""
 _END: Final = 1e-9
-"""Where the simulated track's end is passed, in the same parts."""
+"""Accuracy of the place at which the simulated track ends, relative to the measured track's length."""
 _ROUNDS: Final = 32
 _MOST_PLACES: Final = 4_000_000
 
@@ -122,9 +122,9 @@ _MOST_PLACES: Final = 4_000_000
 def nearest_offsets(simulated: Path, measured: Polyline) -> OffsetSeries:
     """Offsets from places of the measured track to the nearest places of the simulated one.
 
-    Places are the measured track's own points, places in equal steps between them, and more of them where the nearest
-    place passes from one piece of the simulated track to another, halved until the distance there is linear within
-    `EXACTNESS`. What is beyond an end of the simulated track has no offset.
+    Places are the points of the measured track and equal steps between them. Where the nearest place changes from one
+    piece of the simulated track to another, steps are halved until the distance is linear within `EXACTNESS`. Places
+    beyond an end of the simulated track have no offset.
     """
     arc_length = np.unique(np.concatenate([measured.arc_length, np.linspace(0.0, measured.length, FEWEST_PIECES + 1)]))
     at = measured.at_arc_length(arc_length)
@@ -154,7 +154,7 @@ def nearest_offsets(simulated: Path, measured: Polyline) -> OffsetSeries:
 def _nonlinearity(
     offset: FloatArray, first: npt.NDArray[np.intp], nearest: NearestPlaces, at: FloatArray
 ) -> FloatArray:
-    """How far the distance in the middle is from that of an offset that changes linearly (m)."""
+    """Difference (m) between the distance in the middle and that of an offset that changes linearly."""
     straight = 0.5 * np.linalg.norm(offset[first] + offset[first + 1], axis=1)
     return np.abs(np.linalg.norm(nearest.foot - at, axis=1) - straight)
 
@@ -162,7 +162,7 @@ def _nonlinearity(
 def arc_length_offsets(simulated: Polyline, measured: Polyline) -> OffsetSeries:
     """Offsets between places after the same arc length from the first points, up to the shorter track's length.
 
-    At the points of both tracks, so that nothing is left out between them.
+    They are computed at the points of both tracks, between which they change linearly.
     """
     end = min(simulated.length, measured.length)
     arc_length = np.unique(np.concatenate([simulated.arc_length, measured.arc_length, [end]]))
@@ -176,14 +176,14 @@ def time_offsets(simulated: Polyline, measured: Polyline, *, later: float = 0.0)
     Parameters
     ----------
     simulated, measured
-        With times that do not fall.
+        Tracks with times that do not fall.
     later
-        The simulated track's time is the measured one's and this (s).
+        Time of the simulated track minus that of the measured one (s).
 
     Returns
     -------
     Apart or None
-        None where they have no moment in common.
+        None if their times do not overlap.
     """
     clock = simulated.time - later
     begin, end = max(clock[0], measured.time[0]), min(clock[-1], measured.time[-1])
@@ -205,9 +205,9 @@ class Polyline(ShownFields):
     Attributes
     ----------
     place : (n, d) m
-        d = 2 from above, or 3.
+        Places; d = 2 from above, or 3.
     time : (n,) s
-        At the places.
+        Times of the places.
     arc_length : (n,) m
         Length of the pieces up to each place.
     """
@@ -218,11 +218,11 @@ class Polyline(ShownFields):
 
     @property
     def length(self) -> float:
-        """Of all pieces (m)."""
+        """Length of all pieces (m)."""
         return float(self.arc_length[-1])
 
     def at_arc_length(self, arc_length: FloatArray) -> FloatArray:
-        """Places (k, d) at ways (k,) (m)."""
+        """Places (k, d) at arc lengths (k,) (m)."""
         return interpolate(arc_length, self.arc_length, self.place)
 
     def at_time(self, time: FloatArray) -> FloatArray:
@@ -246,12 +246,12 @@ def arc_lengths(place: FloatArray) -> FloatArray:
 
 
 def interpolate(at: FloatArray, abscissa: FloatArray, values: FloatArray) -> FloatArray:
-    """Each column of values (n, d) over known (n,), which does not fall, linearly at (k,); (k, d)."""
+    """Linear interpolation (k, d) of the columns of values (n, d) over a rising abscissa (n,) at (k,)."""
     return np.stack([np.interp(at, abscissa, column) for column in values.T], axis=1)
 
 
 def compared_points(track: Track, *, dimensions: int) -> npt.NDArray[np.bool_]:
-    """Which points are usable and have all their coordinates, (n,)."""
+    """True (n,) for points that are usable and have all coordinates."""
     return track.usable & np.isfinite(track.place[:, :dimensions]).all(axis=1)
 
 

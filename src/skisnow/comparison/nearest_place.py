@@ -1,4 +1,4 @@
-"""The nearest place on a path of straight pieces: between its points too, and with a word on who is beyond its ends."""
+"""Nearest places on a path of straight pieces, and whether a point is beyond the ends of the path."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ IntArray = npt.NDArray[np.intp]
 BoolArray = npt.NDArray[np.bool_]
 
 BESIDE_END: Final = 0.01
-"""A place counts as beside an end while it is ahead of it by no more than this share of its distance (0.6°).
+"""A point counts as beside an end if it is ahead of it by at most this share of its distance (0.6°).
 
-The last straight piece of a path is never quite the path's direction at its end; the distance is larger by at most
-5 parts in 100 000 for it.
+The direction of the last piece is not exactly the path's direction at its end. The tolerance increases the distance by
+at most 5 parts in 100 000.
 """
 _LONGEST: Final = 2.0
 """Longest piece between two nodes, in mean lengths of the pieces."""
@@ -34,22 +34,22 @@ _ROUNDING: Final = 1e-12
 
 @dataclass(frozen=True, slots=True, eq=False)
 class NearestPlaces:
-    """Of n asked points.
+    """Nearest places of n points.
 
     Attributes
     ----------
     foot : (n, d) m
         The nearest place on the path.
     distance : (n,) m
-        To it.
+        Distance to it.
     arc_length : (n,) m
         Length of the path up to it.
     direction : (n, d)
         Unit vector of the path there.
     where : (n,)
-        A number for each straight piece and each point of the path: the same for places on one of them.
+        Number of the straight piece or point of the path on which the nearest place is.
     beyond : (n,) bool
-        The nearest place is an end of the path, and the point is ahead of that end, outwards.
+        True if the nearest place is an end of the path and the point is ahead of that end.
     """
 
     foot: FloatArray
@@ -118,12 +118,12 @@ class PieceTree:
 
 
 class Path:
-    """Straight pieces through points, ready to be asked for nearest places.
+    """Path of straight pieces through points, with a search for nearest places.
 
     Parameters
     ----------
     points : (m, d) m
-        In their order, d = 2 or 3, all finite, at least two of them in different places.
+        Points in their order, d = 2 or 3, all finite, at least two different ones.
 
     Raises
     ------
@@ -149,11 +149,11 @@ class Path:
 
     @property
     def length(self) -> float:
-        """Of all pieces (m)."""
+        """Length of all pieces (m)."""
         return float(self._arc_length[-1])
 
     def nearest(self, points: FloatArray) -> NearestPlaces:
-        """The nearest places to points (n, d): the true ones, on the pieces and not only among their ends."""
+        """Nearest places on the pieces for points (n, d)."""
         piece = self._tree.nearest(points)
         start, along = self._start[piece], self._along[piece]
         raw = ((points - start) * along).sum(axis=1) / self._squared[piece]
@@ -175,8 +175,7 @@ class Path:
 def distance_from_path(points: FloatArray, path: FloatArray) -> FloatArray:
     """Distance (n,) of points (n, d) to the nearest place of a path through (m, d) (m).
 
-    NaN where there is none: ahead of the path's ends, at points that are not finite, and everywhere where the path is
-    all in one place.
+    NaN for points ahead of the path's ends or not finite, and for all points if the path has only one place.
 
     >>> path = np.array([[0.0, 0.0, 0.0], [2.0, 0.0, 0.0]])
     >>> distance_from_path(np.array([[1.0, 2.0, 0.0], [2.0, 3.0, 0.0], [5.0, 3.0, 0.0]]), path)

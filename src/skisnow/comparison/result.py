@@ -23,18 +23,18 @@ MEANS: Final = (
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Distances(Shown):
-    """One of the three distances.
+    """Distances by one of the three definitions.
 
     Attributes
     ----------
     definition
-        In words.
+        Definition in words.
     apart
-        The offsets along the measured track; None where there are none.
+        Offsets along the measured track; None if they cannot be computed.
     numbers
-        Largest, mean, rms (m); None where nothing can be compared.
+        Largest, mean and rms distance (m); None if nothing can be compared.
     reason
-        Why not.
+        Reason for missing numbers.
     """
 
     definition: str
@@ -47,7 +47,7 @@ class Distances(Shown):
 
     @property
     def in_words(self) -> str:
-        """Largest, mean and rms distance, or why there are none."""
+        """Largest, mean and rms distance, or the reason why they are missing."""
         if self.numbers is None:
             return f"none: {self.reason}"
         largest, mean, rms = (amount(value, "m") for value in (self.numbers.max, self.numbers.mean, self.numbers.rms))
@@ -56,30 +56,30 @@ class Distances(Shown):
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class FittedOffsets(Shown):
-    """What was fitted, by how much the simulated track was moved, and the distances before.
+    """Fitted offsets of the simulated track, and the comparison without them.
 
     Attributes
     ----------
     what
-        Of start, heading, time.
+        Names of the fitted offsets: start, heading, time.
     moved
-        Of its first point (m), (2,) or (3,).
+        Displacement (m) of the first point, (2,) or (3,).
     turned
-        About the vertical through its first point (rad), positive to the left.
+        Rotation (rad) about the vertical through the first point, positive to the left.
     turned_error
         Half of the 95 % interval of `turned` (rad); 0 if no heading was fitted, None if `rival` has another heading.
     later
-        How much later (s) the simulated track's places are looked up than before the fit.
+        Fitted change (s) of the simulated track's time relative to the measured one's.
     undetermined
-        How many directions the tracks do not tell; nothing was moved along them.
+        Number of undetermined directions; the track was not moved along them.
     rms
-        Of the nearest distances that were made least (m); None where the time alone was fitted.
+        Root mean square (m) of the minimised nearest distances; None if only the time was fitted.
     rival
-        Another move that leaves the simulated track about as near; None where there is none.
+        Another motion that fits about as well; None if there is no such motion.
     before
-        The comparison without the fit.
+        Comparison without the fit.
     slope_angle
-        Inclination (rad) by which a track was laid on the map before the fit; None if none was.
+        Inclination (rad) by which a track was rotated onto the map before the fit; None if it was not.
     azimuth
         Compass direction (rad, clockwise from north) of x of the track in the slope's axes; None without a compass.
     """
@@ -105,31 +105,31 @@ class FittedOffsets(Shown):
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Comparison(Shown):
-    """Two tracks held against each other.
+    """Comparison of two tracks.
 
     Attributes
     ----------
     simulated, measured
-        As they were compared: in two or three dimensions, the simulated one moved where that was fitted.
+        The compared lines in two or three dimensions, the simulated one after a fitted motion.
     names
-        Of the simulated and the measured track.
+        Names of the simulated and the measured track.
     seen
-        In words: in space, or from above and why.
+        Description of the dimensions: in space, or from above with the reason.
     nearest, arc_length, time
         The three distances.
     largest_from_simulated : m or None
         Largest distance in the other direction, from places of the simulated track to the nearest of the measured one;
-        much larger than the other where the simulated track makes a detour.
+        it is much larger than the other if the simulated track makes a detour.
     axes
-        What the measured track's x and y are.
+        Axes of the measured track.
     fitted
-        None without a fit.
+        Fitted offsets; None without a fit.
     warnings
         Sentences.
     in_one_frame
-        Whether the coordinates of the two mean the same; if not, the distances say nothing.
+        True if both tracks have the same frame; otherwise the distances are meaningless.
     known_to : m
-        How exactly the places of the less exact track are known, see `skisnow.track.solution`.
+        Accuracy of the places of the less accurate track.
 
     See Also
     --------
@@ -170,7 +170,7 @@ class Comparison(Shown):
 
 
 def comparison_dict(comparison: Comparison) -> Json:
-    """Every number with its definition; null with a reason where there is none. Not rounded."""
+    """JSON of ``skisnow compare --json``: unrounded numbers with their definitions; null with a reason if missing."""
     fitted = comparison.fitted
     return {
         "schema_version": SCHEMA_VERSION,

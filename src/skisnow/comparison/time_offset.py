@@ -25,11 +25,11 @@ class Clock:
     Attributes
     ----------
     ahead
-        The simulated track's time less the measured one's at one moment (s).
+        Time of the simulated track minus that of the measured one (s).
     origin
-        In words: what time counts from.
+        Description of the zero of time.
     reason
-        Why there is no such clock.
+        Reason why the tracks have no common clock (default: they have one).
     """
 
     ahead: float
@@ -38,7 +38,7 @@ class Clock:
 
 
 def common_clock(simulated: Track, measured: Track, time_from: TimeFrom | None) -> Clock:
-    """The clock for both tracks; None: the files' own, but first points where only one has a date."""
+    """Clock for both tracks; `time_from` None: that of the files, or first points if only one has a date."""
     starts = (simulated.start, measured.start)
     first = float(simulated.time[0] - measured.time[0]) if len(simulated) and len(measured) else 0.0
     if time_from == "first_point" or (time_from is None and starts.count(None) == 1):
@@ -54,7 +54,7 @@ def common_clock(simulated: Track, measured: Track, time_from: TimeFrom | None) 
 
 
 def missing_time_reason(line: Polyline, name: str) -> str | None:
-    """Why there is no place for each time, or None where there is."""
+    """Reason why a track has no place at each time, or None if it has."""
     if not np.isfinite(line.time).all():
         return f"not every point of the {name} track has a time"
     return f"the {name} track's time runs backwards" if (np.diff(line.time) < 0.0).any() else None
@@ -64,10 +64,10 @@ _TIMES: Final = 401
 
 
 def fit_time(simulated: Polyline, measured: Polyline) -> float:
-    """By how much the simulated track's time is ahead of the measured one's (s): least squares at equal time.
+    """Time of the simulated track minus that of the measured one (s), by least squares of distances at equal time.
 
-    The mean square distance over the measured track's length is looked at over all times at which at least half of the
-    shorter track has a moment in common with the other, then minimised from the best of them.
+    The mean square distance over the measured track's length is computed for all offsets at which at least half of the
+    shorter track overlaps with the other, and then minimised from the best of them.
 
     Raises
     ------

@@ -1,1 +1,1 @@
-"""Tracks: where something was on a slope, read from files, looked at and held against each other."""
+"""Tracks of receivers and simulated runs: reading, quality flags, motion, turns, runs, courses."""

@@ -1,4 +1,4 @@
-"""Way, speed, heading, curvature and turn radius along a track, with standard errors."""
+"""Arc length, speed, heading, curvature and turn radius along a track, with standard errors."""
 
 from __future__ import annotations
 
@@ -22,12 +22,11 @@ SpeedSource: TypeAlias = Literal["recorded", "fitted"]
 ArcLengthSource: TypeAlias = Literal["odometer", "recorded speed", "places"]
 
 LEAST_SPEED: Final = 1.0
-"""Speed (m/s) below which a heading is not asked for. Modelling assumption: slower than walking; places wander at
-rest."""
+"""Smallest speed (m/s) with a heading (modelling assumption: slower than walking; places drift at rest)."""
 CERTAIN: Final = 3.0
-"""A heading needs a speed of so many of its standard errors."""
+"""Smallest speed with a heading, in standard errors of the speed."""
 LONGEST_HOLE: Final = 1.5
-"""Time (s) between recorded speeds over which they are interpolated. Modelling assumption: the shortest of turns."""
+"""Longest time (s) between recorded speeds that is interpolated (modelling assumption: the shortest turns)."""
 INTERVAL_FACTOR: Final = float(norm.ppf(0.5 + CONFIDENCE / 2.0))
 """Standard errors on each side of a 95 % interval."""
 
@@ -39,23 +38,23 @@ class TrackMotion(ShownFields):
     Attributes
     ----------
     time : (n,) s
-        Of the track.
+        Times of the points.
     arc_length : (n,) m
-        Along the track from its first point.
+        Length of the track from its first point.
     speed : (n,) m/s
-        As recorded; if it was not, of the estimated path.
+        Recorded speed, otherwise the speed of the estimated path.
     heading, heading_sd : (n,) rad
-        From the frame's first axis, positive towards its second, without jumps; NaN at rest.
+        Angle from the frame's first axis, positive towards the second, without jumps; NaN at rest.
     curvature, curvature_sd : (n,) 1/m
         Positive to the left.
     turn_radius, turn_radius_sd : (n,) m
         1 / curvature with its sign; the standard error is that of small errors, infinite where the curvature is 0.
     smoothed
-        Places, velocities and accelerations behind them, with noise and resolution.
+        Smoothed places, velocities and accelerations, with noise and resolution.
     speed_source, arc_length_source
-        Where most of the speed, and where the arc length comes from.
+        Source of most of the speeds, and of the arc length.
     path
-        Estimate of speed and length from places, for a track without recorded speeds; else None.
+        Estimate of speed and length from places, for a track without recorded speeds; otherwise None.
     """
 
     time: FloatArray
@@ -73,12 +72,12 @@ class TrackMotion(ShownFields):
     path: PathEstimate | None = None
 
     def curvature_interval(self) -> tuple[FloatArray, FloatArray]:
-        """Ends (n,), (n,) of the 95 % intervals of the curvature (1/m), from the noise alone."""
+        """Ends (n,), (n,) of the 95 % intervals of the curvature (1/m) due to noise."""
         half = INTERVAL_FACTOR * self.curvature_sd
         return self.curvature - half, self.curvature + half
 
     def turn_radius_interval(self) -> tuple[FloatArray, FloatArray]:
-        """Least and greatest |turn radius| (n,), (n,) (m) of the 95 % interval; infinite where it may be straight."""
+        """Minimum and maximum |turn radius| (n,), (n,) (m) of the 95 % interval; infinite if it can be straight."""
         low, high = self.curvature_interval()
         most = np.maximum(np.abs(low), np.abs(high))
         least = np.where(low * high <= 0.0, 0.0, np.minimum(np.abs(low), np.abs(high)))
@@ -87,7 +86,7 @@ class TrackMotion(ShownFields):
 
 
 def track_motion(track: Track, *, window: float | None = None, place_noise: float | None = None) -> TrackMotion:
-    """Smooth a track and look along it.
+    """Smooth a track and compute its motion.
 
     Parameters
     ----------
@@ -102,8 +101,8 @@ def track_motion(track: Track, *, window: float | None = None, place_noise: floa
     Notes
     -----
     With x', y' and x'', y'' of the local cubics:  φ = atan2(y', x'),  κ = (x' y'' − y' x'') / (x'² + y'²)^(3/2).
-    Errors are propagated to first order. Smoothing makes curvature less, never more, in turns of constant direction:
-    by how much stands in ``smoothed.resolution``; the standard errors do not contain it.
+    Errors are propagated to first order. Smoothing decreases the curvature of turns in a constant direction;
+    ``smoothed.resolution`` gives by how much. The standard errors do not include this.
     """
     smoothed = smooth_track(track, window=window, place_noise=place_noise)
     fitted = np.linalg.norm(smoothed.velocity, axis=1)
@@ -129,7 +128,7 @@ def _path(track: Track, smoothed: SmoothedTrack) -> PathEstimate | None:
 
 
 def _recorded_speed(track: Track) -> tuple[FloatArray, SpeedSource]:
-    """The recorded speed, else that of the recorded velocity, else NaN; whether most of the speeds are recorded.
+    """Speed (n,) recorded or from the recorded velocity, otherwise NaN; and the source of most speeds.
 
     Speeds recorded less often than places are interpolated over at most `LONGEST_HOLE`.
     """
@@ -160,7 +159,7 @@ def _arc_length(
     speed_source: SpeedSource,
     path: PathEstimate | None,
 ) -> tuple[FloatArray, ArcLengthSource]:
-    """The device's own distance, else the integral of a recorded speed, else the length of the estimated path."""
+    """Arc length (n,) by the odometer, else by the recorded speed, else of the estimated path; and its source."""
     if track.odometer is not None and np.count_nonzero(np.isfinite(track.odometer)) >= 2:
         return odometer_arc_length(track), "odometer"
     if speed_source == "recorded":
@@ -171,7 +170,7 @@ def _arc_length(
 
 
 def odometer_arc_length(track: Track) -> FloatArray:
-    """The device's own distance (n,) (m), its gaps filled evenly in time; it may begin above 0."""
+    """Distance (n,) (m) of the device's odometer, interpolated in time over gaps; it can begin above 0."""
     assert track.odometer is not None
     recorded = np.isfinite(track.odometer)
     time = np.maximum.accumulate(track.time)
@@ -237,14 +236,14 @@ def running_mean(time: FloatArray, values: FloatArray, window: float, segment: I
 
 
 def _moving(smoothed: SmoothedTrack, fitted: FloatArray) -> npt.NDArray[np.bool_]:
-    """Where the track moves fast enough to have a heading."""
+    """True (n,) for points that move fast enough to have a heading."""
     error = np.sqrt(smoothed.covariance[:, 1, 1])
     with np.errstate(invalid="ignore"):
         return (fitted >= LEAST_SPEED) & (fitted >= CERTAIN * error)
 
 
 def _heading(smoothed: SmoothedTrack, fitted: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Direction of the velocity, continued without jumps over places where it is unknown; its standard error."""
+    """Direction of the velocity (n,) without jumps of 2π, and its standard error; NaN at rest."""
     moving = _moving(smoothed, fitted)
     heading, error = np.full(len(fitted), np.nan), np.full(len(fitted), np.nan)
     heading[moving] = np.unwrap(np.arctan2(smoothed.velocity[moving, 1], smoothed.velocity[moving, 0]))

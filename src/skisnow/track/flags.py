@@ -1,6 +1,6 @@
-"""The quality flags that points of a track may carry: codes, sentences, and how they are found.
+"""Quality flags of the points of a track: codes, sentences, and the computation of the flags.
 
-A flag changes nothing: the point stays where the file has it. `Track.usable` leaves out points whose flag excludes.
+Flagged points stay in the track. `Track.usable` excludes those whose flag excludes.
 """
 
 from __future__ import annotations
@@ -27,15 +27,15 @@ if TYPE_CHECKING:
 FASTEST: Final = 75.0
 """Speed (m/s) above which a step is impossible: the fastest run ever skied had 71 m/s (modelling assumption)."""
 GAP_FACTOR: Final = 5.0
-"""A pause of more than so many usual intervals is a gap (modelling assumption)."""
+"""Shortest gap, in median intervals between points."""
 
 _CONTINUED: Final = 1.5
-"""Usual intervals up to which a segment continues the one before."""
+"""Longest pause, in median intervals, after which a segment continues the one before."""
 
 
 @dataclass(frozen=True, slots=True)
 class PointFlag:
-    """A quality flag: its code, the sentence that explains it, and whether `Track.usable` leaves the point out."""
+    """A quality flag: its code, the sentence that explains it, and True if `Track.usable` excludes the point."""
 
     code: str
     sentence: str
@@ -82,19 +82,19 @@ def point_flags(
     Parameters
     ----------
     time : (n,) s
-        Never falling.
+        Times that never fall.
     place : (n, 3) m
-        NaN where there is none.
+        Places; NaN if missing.
     fix : (n,) bool
-        Whether the receiver had a fix.
+        True if the receiver had a fix.
     negative_speed : (n,) bool
-        Whether the recorded speed was below zero.
+        True if the recorded speed was below zero.
     fastest : m/s
         Horizontal speed above which a step is impossible.
     gap_factor
         A time step longer than this many medians of the steps above zero is a gap; the point after it is flagged.
     solution : (n,) or None
-        How the receiver came to each place, as in `Track`.
+        Kind of solution of each place, as in `Track`.
     segment : (n,) or None
         Number of the segment of each point. A segment that continues the one before, at most 1.5 usual intervals later
         and at a possible speed, is not flagged: some programs begin a segment for each lap.
@@ -151,7 +151,7 @@ def _segment_starts(
 
 
 def _impossible_points(time: FloatArray, place: FloatArray, fastest: float) -> tuple[list[int], list[int]]:
-    """Numbers of the points that jump out and back, and of those reached at an impossible speed for good."""
+    """Numbers of the points that jump out and back, and of the other points reached at an impossible speed."""
     lengths = np.hypot(*np.diff(place, axis=0).T)
     fast = lengths > fastest * np.diff(time)
     last = len(time) - 1
@@ -166,7 +166,7 @@ def _impossible_points(time: FloatArray, place: FloatArray, fastest: float) -> t
 
 
 def _jumps(time: FloatArray, place: FloatArray, lengths: FloatArray, fastest: float) -> list[int]:
-    """Inner points over which the distance is impossible, and past them possible and less than half as long."""
+    """Inner points with an impossible path through them and a possible path past them of less than half the length."""
     over = lengths[:-1] + lengths[1:]
     past = np.hypot(*(place[2:] - place[:-2]).T)
     most = fastest * (time[2:] - time[:-2])

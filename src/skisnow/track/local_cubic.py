@@ -1,7 +1,7 @@
 """Local cubic least squares: place, velocity and acceleration at each point from the points in a window of time.
 
-The Savitzky-Golay filter (1964, doi 10.1021/ac60214a047) without its even spacing: every window is fitted by
-weighted least squares at its own times, to places and, where they were recorded, to velocities.
+This is the Savitzky-Golay filter (1964, doi 10.1021/ac60214a047) for uneven spacing: every window is fitted by weighted
+least squares at its times, to places and to recorded velocities.
 """
 
 from __future__ import annotations
@@ -19,20 +19,20 @@ IntArray = npt.NDArray[np.int64]
 TERMS: Final = 4
 """Coefficients of a cubic."""
 FEWEST_POINTS: Final = 6
-"""In a window; four determine the cubic, two say how well it fits."""
+"""Minimum number of points in a window: four for the cubic, and two for its scatter."""
 _RIDGE: Final = 1e-13
-"""Added to a matrix of normal equations, as a share of its trace; the least eigenvalue of a good one is above 10⁻³."""
+"""Share of its trace that is added to a matrix of normal equations; regular ones have eigenvalues above 10⁻³."""
 _CENTRES_APART: Final = 0.05
-"""Length of the pieces of time that share one fit, in halves of a window."""
+"""Length of the intervals of time that share one fit, in half windows."""
 _CROWDED: Final = 80
-"""Points in a window from which on they do."""
+"""Number of points in a window above which neighbouring points share a fit."""
 _CHUNK: Final = 8192
-"""Points at a time: their moments stay in the processor's cache."""
+"""Number of points that are processed together, so that their moments stay in the cache."""
 
 
 @dataclass(frozen=True, slots=True)
 class WeightedValues:
-    """What is fitted: values (n, d) with weights (n,); a weight of 0 leaves the point out, whatever its value."""
+    """Values (n, d) with weights (n,); a point with weight 0 is not fitted."""
 
     values: FloatArray
     weight: FloatArray
@@ -45,13 +45,13 @@ class LocalCubic:
     Attributes
     ----------
     coefficients : (n, 4, d)
-        Of τ⁰ to τ³, that of τ⁰ counted from the point's own value; NaN where a window has too few points.
+        Coefficients of τ⁰ to τ³, that of τ⁰ relative to the point's value; NaN if a window has too few points.
     covariance : (n, 4, 4)
-        Of the coefficients of one coordinate for a variance of 1 / weight.
+        Covariance of the coefficients of one coordinate, for values with the variance 1/weight.
     place_misfit, rate_misfit : (n,)
-        Weighted sums of squared residuals over all coordinates, of places and of velocities.
+        Weighted sums of squared residuals of places and of velocities, over all coordinates.
     place_count, rate_count : (n,)
-        Points with a weight in the window.
+        Number of points in the window with a weight above 0.
     """
 
     coefficients: FloatArray
@@ -69,7 +69,7 @@ def local_cubic(
     place: WeightedValues,
     rate: WeightedValues | None,
 ) -> LocalCubic:
-    """Fit every window; where points are dense, one for several points, a fortieth of a window apart at most.
+    """Fit every window. If points are dense, neighbours within 1/40 of a window share a fit.
 
     Parameters
     ----------
@@ -96,9 +96,9 @@ def local_cubic(
 
 
 def _centres(time: FloatArray, windows: tuple[IntArray, IntArray], half: float) -> tuple[IntArray, IntArray]:
-    """For each point the number of its centre, and the centres: points of their own, or one for each piece of time.
+    """Number (n,) of the centre of each point, and the points that are centres (m,).
 
-    Points of different windows at a gap or an end never share a centre: there one piece of time holds both.
+    A dense interval of time has one centre. Points whose windows differ at a gap or an end do not share one.
     """
     first, last = windows
     cell = np.floor((time - time[0]) / (_CENTRES_APART * half))
@@ -114,7 +114,7 @@ def _centres(time: FloatArray, windows: tuple[IntArray, IntArray], half: float) 
 def _shift_fits(
     fits: LocalCubic, scale: tuple[FloatArray, float], centres: IntArray, centre_of: IntArray, values: FloatArray
 ) -> LocalCubic:
-    """The fits about each point in place of those about the centres: the same cubics in another variable."""
+    """Fits about each point from the fits about the centres: the same cubics in a shifted variable."""
     time, half = scale
     tau = (time - time[centres][centre_of]) / half
     shift = np.zeros((len(time), TERMS, TERMS))
@@ -135,7 +135,7 @@ def _shift_fits(
 
 
 class _Moments:
-    """Sums over windows: weights times powers of τ, and these times values and rates, relative to the point's own."""
+    """Sums over windows of weights times powers of τ, and of these times values (relative to the point) and rates."""
 
     def __init__(self, count: int, coordinates: int) -> None:
         self.place = np.zeros((2 * TERMS - 1, count))
@@ -155,7 +155,7 @@ class _Moments:
         place: WeightedValues,
         rate: WeightedValues | None,
     ) -> None:
-        """Add the point that lies ``offset`` after each point, where that is in its window."""
+        """Add the point with the number ``offset`` above each point if it is in its window."""
         point, first, last, offset = where
         other = np.clip(point + offset, 0, len(time) - 1)
         inside = (point + offset >= first) & (point + offset < last)
@@ -185,7 +185,7 @@ def _add_powers(
 
 
 def _solve(sums: _Moments, half: float) -> tuple[npt.NDArray[np.generic], ...]:
-    """Solve the normal equations; the parts of a LocalCubic."""
+    """Solve the normal equations; return the fields of a LocalCubic."""
     order = np.arange(TERMS)
     of_place = np.moveaxis(sums.place[order[:, None] + order], -1, 0)
     of_rate = np.zeros_like(of_place)
@@ -210,7 +210,7 @@ def _solve(sums: _Moments, half: float) -> tuple[npt.NDArray[np.generic], ...]:
 
 
 def _inverse(normal: FloatArray) -> FloatArray:
-    """Of each matrix; one that is singular gets huge variances in place of an error."""
+    """Inverse of each matrix (n, 4, 4); a singular one gets huge variances instead of an error."""
     ridge = _RIDGE * np.trace(normal, axis1=1, axis2=2)
     return np.linalg.inv(normal + ridge[:, None, None] * np.eye(TERMS))
 

@@ -1,8 +1,8 @@
-"""Parameters of the motion model that a track supports, with weights: integrated over, not only optimised.
+"""Weighted parameters of the motion model, from the posterior distribution given a track.
 
-The evidence of the parameters is maximised for each of several accelerations, and its curvature there gives the points
-that stand for the distribution (Rue, Martino and Chopin 2009, doi 10.1111/j.1467-9868.2008.00700.x). One acceleration
-is nearly 0 and has half of the prior probability: at constant speed, noise must not look like a highest speed.
+The evidence of the parameters is maximised for each of several accelerations. Its curvature there gives points that
+represent the distribution (Rue, Martino and Chopin 2009, doi 10.1111/j.1467-9868.2008.00700.x). One acceleration is
+nearly 0 and has half of the prior probability: noise at constant speed must not increase the maximum speed.
 """
 
 from __future__ import annotations
@@ -52,7 +52,7 @@ class WeightedParameters(NamedTuple):
 
 @dataclass(slots=True)
 class _Optimum:
-    """The best logarithms for one acceleration, the value there, the path, and the root of the covariance."""
+    """Optimal logarithms for one acceleration, log density, path, and a root of the covariance."""
 
     logs: FloatArray
     value: float
@@ -125,7 +125,7 @@ class _Search:
 
 
 def likely_parameters(model: PathModel) -> list[WeightedParameters]:
-    """Points that stand for the posterior distribution of the parameters.
+    """Weighted points that represent the posterior distribution of the parameters.
 
     Parameters
     ----------

@@ -33,7 +33,7 @@ FLATTENING: Final = 1.0 / 298.257223563
 _ECCENTRICITY2: Final = FLATTENING * (2.0 - FLATTENING)
 _ROUNDS: Final = 5  # each gains five digits or more from 6400 km off to 10,000 km above the ellipsoid
 HIGHEST: Final = 1e5
-"""Heights (m) beyond this are not of this earth's ski slopes."""
+"""Largest height (m) of a point, far above all ski slopes."""
 
 
 @dataclass(frozen=True, slots=True, repr=False)
@@ -69,7 +69,7 @@ class GeodeticPoint(Shown):
                 raise ParameterError(f"{name} of an origin is {value:g}; it must be from {-limit:g} to {limit:g}")
 
     def __str__(self) -> str:
-        """Say where, to 0.1 mm."""
+        """Coordinates to 0.1 mm."""
         return f"latitude {self.latitude_deg:.12g}°, longitude {self.longitude_deg:.12g}°, height {self.height:.9g} m"
 
 
@@ -143,7 +143,7 @@ def east_north_up(points: FloatArray, *, origin: GeodeticPoint) -> FloatArray:
         Latitude (°), longitude (°), height (m). Where the height is NaN the point is projected at the origin's height,
         and up is NaN: 100 m of height change east and north by 16 parts in a million.
     origin
-        Where the plane touches.
+        Point at which the plane touches the ellipsoid.
     """
     points = np.asarray(points, float)
     missing = np.isnan(points[:, 2])
@@ -172,10 +172,10 @@ def place_from_origin(place: FloatArray, before: GeodeticPoint, after: GeodeticP
 
 
 def rotate_to_origin(vectors: FloatArray, points: FloatArray, *, origin: GeodeticPoint) -> FloatArray:
-    """Vectors (n, 3) east, north, up at their own points (n, 3) as east, north, up at the origin.
+    """Rotate vectors (n, 3) from east, north, up at points (n, 3) to east, north, up at the origin.
 
-    A vector without vertical part (NaN) is turned as if it had none; its vertical part stays NaN. The axes of two
-    points 1 km apart differ by 0.009°, so that nothing of the unknown part matters.
+    A missing vertical component (NaN) counts as 0 and stays NaN. The axes of two points 1 km apart differ by 0.009°, so
+    the missing component is negligible.
     """
     own = east_north_up_axes(points[:, 0], points[:, 1])
     here = east_north_up_axes(origin.latitude_deg, origin.longitude_deg)

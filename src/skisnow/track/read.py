@@ -1,4 +1,4 @@
-"""A track from a file of any format that is known; which one is recognised by its content."""
+"""Reader of tracks from files of all formats, which are recognised by their content."""
 
 from __future__ import annotations
 
@@ -53,10 +53,10 @@ def read_track(
     path
         The file.
     origin
-        Where the plane of projection touches the earth and x, y, z are zero; left out, the first point with a fix, or
-        the origin that the file itself names.
+        Point at which the plane of projection touches the earth and x, y, z are zero (default: the origin in the file,
+        else the first point with a fix).
     kind
-        The format; left out, it is recognised by the content, and by the file's ending where the content does not say.
+        Format of the file (default: recognised by its content, else by its ending).
     fastest : m/s
         Horizontal speed above which a step between points is flagged as impossible.
     gap_factor
@@ -71,16 +71,16 @@ def read_track(
     Raises
     ------
     FieldDataError
-        The file cannot be read, is empty or damaged, has a value that cannot be, no place at all, or times that run
-        backwards: with file, row, column, value, what is allowed and what to do.
+        The file cannot be read, is empty or damaged, has an impossible value, no place at all, or times that run
+        backwards. The error names file, row, column, value, allowed values and a remedy.
     ParameterError
-        ``fastest`` or ``gap_factor`` is not above zero, or ``kind`` is no format.
+        ``fastest`` or ``gap_factor`` is not above zero, or ``kind`` is not a format.
 
     See Also
     --------
-    skisnow.track_summary : what it says.
-    skisnow.in_slope_frame : onto the slope.
-    skisnow.compare_tracks : beside a simulated one.
+    skisnow.track_summary : distance, speed, runs and turns of a track.
+    skisnow.in_slope_frame : a track in the axes of a slope.
+    skisnow.compare_tracks : distances to a simulated track.
 
     References
     ----------
@@ -98,7 +98,7 @@ def read_track(
 
 
 def recognise_format(data: bytes, suffix: str) -> TrackFormat:
-    """The format of a file by its content; by its ending where the content is of none; else CSV.
+    """Format of a file by its content, else by its ending, else CSV.
 
     >>> recognise_format(b"time_s,x_m,y_m", ".txt"), recognise_format(b"$GPGGA,120000.00,", ".log")
     ('csv', 'nmea')
@@ -123,12 +123,12 @@ def _guess_format(data: bytes, suffix: str) -> TrackFormat:
 
 def _bytes(path: Path) -> bytes:
     try:
-        # a pipe would be waited for, a folder cannot be read
+        # reading a pipe would block, and a folder cannot be read
         data = path.read_bytes() if stat.S_ISREG(path.stat().st_mode) else None
     except OSError as error:
         raise _unreadable(path, error.strerror or str(error)) from error
     if data is None:
-        raise _unreadable(path, "it is no plain file")
+        raise _unreadable(path, "it is not a plain file")
     if not data.strip():
         raise track_error(
             "empty_file",

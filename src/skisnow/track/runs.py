@@ -23,7 +23,7 @@ height."""
 HEIGHT_WINDOW: Final = 15.0
 """Length (s) of the running mean over the height that finds tops and bottoms (modelling assumption)."""
 STANDING: Final = 1.0
-"""Speed (m/s) below which someone stands or shuffles (modelling assumption)."""
+"""Speed (m/s) below which a skier counts as standing (modelling assumption)."""
 LONGEST_STOP: Final = 30.0
 """Without heights, a stop (s) after which another run begins (modelling assumption)."""
 LEAST_DISTANCE: Final = 10.0
@@ -55,7 +55,7 @@ class Stretch:
     distance_interval, max_speed_interval
         Ends of the 95 % intervals; None for what the device recorded.
     gaps
-        How many gaps lie inside.
+        Number of gaps inside.
     """
 
     first: int
@@ -72,7 +72,7 @@ class Stretch:
 
 @dataclass(frozen=True, slots=True, repr=False)
 class Day(ShownFields):
-    """Runs and lifts in the order of time; what they were split by; in words what is unknown."""
+    """Runs and lifts in the order of time, the method of the split, and remarks on unknown quantities."""
 
     runs: tuple[Stretch, ...]
     lifts: tuple[Stretch, ...]
@@ -88,7 +88,7 @@ def split_day(track: Track, motion: TrackMotion) -> Day:
     track
         The track; its third axis is the height unless its axes are those of a slope.
     motion
-        Of the track.
+        Motion of the track.
 
     Notes
     -----
@@ -121,7 +121,7 @@ def split_day(track: Track, motion: TrackMotion) -> Day:
 
 
 def height_or_reason(track: Track, motion: TrackMotion) -> tuple[FloatArray | None, tuple[str, ...]]:
-    """Height (n,) (m) with its holes filled evenly, or None; and in words why there is none."""
+    """Height (n,) (m), interpolated over holes; or None with a sentence that explains why it is unknown."""
     recorded = np.isfinite(track.place[:, 2])
     if track.axes == "slope":
         return None, ("The track's third axis is that of the slope, not the height: descents are unknown.",)
@@ -147,7 +147,7 @@ def _coasting_height(motion: TrackMotion, foot: int) -> float:
 
 
 def _areas_between(ascents: list[tuple[int, int]], count: int) -> Iterator[tuple[int, int]]:
-    """First and last point of what lies before, between and after the ascents."""
+    """First and last point of the areas before, between and after the ascents."""
     begin = 0
     for low, high in ascents:
         yield begin, low
@@ -167,7 +167,7 @@ def _climb(smooth: FloatArray, low: int, high: int) -> tuple[int, int]:
 def _descent(
     motion: TrackMotion, smooth: FloatArray, corners: list[int], area: tuple[int, int]
 ) -> tuple[int, int] | None:
-    """First and last point of the run in an area between lifts; None where nothing descends."""
+    """First and last point of the run in an area between lifts; None without a descent."""
     inside = [corner for corner in corners if area[0] <= corner <= area[1]]
     falls = [(high, low) for high, low in pairwise(inside) if smooth[high] - smooth[low] >= LEAST_HEIGHT]
     if not falls:
@@ -234,7 +234,7 @@ def max_speed(track: Track, motion: TrackMotion, inside: slice) -> tuple[float |
 
 
 def _is_run(stretch: Stretch) -> bool:
-    """A height that wanders while someone stands is none: the distance travelled is longer than it is deep."""
+    """True for a run: long enough, and longer than its descent (a height that drifts at rest is not a descent)."""
     return stretch.distance >= max(LEAST_DISTANCE, stretch.descent or 0.0)
 
 

@@ -65,15 +65,15 @@ def in_slope_frame(
         Inclination of a plane slope, from 0 to 75°. None for a measured profile: x is then the horizontal distance down
         the fall line and z the height, as on a profile of a scenario.
     origin : (3,) m
-        Where x, y, z are zero, in the track's frame; left out, the track's own origin.
+        Point with x = y = z = 0, in the track's frame (default: the track's origin).
     missing_height
-        What to do where the height is missing: "nan" gives x and z as NaN on an inclined plane, for they cannot be
-        known; "on_slope" takes the point, and the vertical part of a velocity, to lie in the slope's surface.
+        Treatment of points without height: "nan" gives NaN for x and z on an inclined plane; "on_slope" puts the point,
+        and the velocity, in the slope's surface.
 
     Returns
     -------
     Track
-        Standard deviations are turned as if the errors of east, north and up did not depend on each other.
+        Standard deviations are rotated as if the errors of east, north and up were independent.
 
     Raises
     ------
@@ -106,7 +106,7 @@ def in_slope_frame(
 
 
 def _rotate(vectors: FloatArray, axes: FloatArray, missing_height: str) -> FloatArray:
-    """Components along the axes; a missing vertical part spoils only what it takes part in."""
+    """Components along the axes; a missing vertical component gives NaN only where it contributes."""
     horizontal = vectors[:, :2]
     vertical = vectors[:, 2]
     if missing_height == "on_slope":  # in the surface z = 0: up = -(z_east east + z_north north)/z_up
@@ -205,16 +205,16 @@ def inclination(track: Track) -> Inclination | None:
 
 
 class LaidTracks(NamedTuple):
-    """Two tracks after one of them was laid on the map.
+    """Two tracks in a common horizontal map, after one of them was rotated onto it.
 
     Attributes
     ----------
     simulated, measured
         The tracks.
     angle : rad or None
-        Inclination by which one was laid; None if it is unknown or was not needed.
+        Inclination by which one was rotated; None if it is unknown or was not needed.
     source
-        Where the inclination is from, in words.
+        Source of the inclination, in words.
     warnings
         Sentences on inclinations that disagree, or are unknown.
     """

@@ -1,4 +1,4 @@
-"""A smoothed track: place, velocity and acceleration with their standard errors, and what the smoothing resolves."""
+"""Smoothed tracks: place, velocity and acceleration with standard errors, and the resolution of the smoothing."""
 
 from __future__ import annotations
 
@@ -23,35 +23,36 @@ IntArray = npt.NDArray[np.int64]
 SHORTEST_WINDOW: Final = 0.8
 """Default length (s) of the window where points are dense. Modelling assumption: a slalom turn takes 0.8 to 1 s."""
 MOST_IN_WINDOW: Final = 10_000
-"""Points of a window, as a receiver of 12 kHz has them; far more than any."""
+"""Maximum number of points in a window; more than any receiver records."""
 POINTS_IN_WINDOW: Final = 8.0
 """Default length of the window in intervals between points, where that is longer. Modelling assumption: five points
 to spare."""
 _SURPRISING: Final = 0.999
-"""A window that scatters more than noise does in all but this share of cases is taken at its own scatter."""
+"""Probability of the scatter of a window, given the noise, above which its own scatter is used instead."""
 _LOWEST_PLACE_NOISE: Final = 1e-9
-"""Noise (m) of a track without any: rounding must not be taken for a signal."""
+"""Smallest noise (m), so that rounding errors of a track without noise are not a signal."""
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class SmoothedTrack(ShownFields):
-    """The track in the plane of its frame as locally fitted cubics, one about each point.
+    """A track in the plane of its frame as locally fitted cubics, one around each point.
 
     Attributes
     ----------
     place, velocity, acceleration : (n, 2)
         m, m/s, m/s²; NaN where a window has fewer than six usable points.
     covariance : (n, 3, 3)
-        Of place, velocity and acceleration of one coordinate; both have the same and do not depend on each other.
+        Covariance of place, velocity and acceleration of one coordinate; both coordinates have the same one and are
+        independent.
     part : (n,)
-        Number of the stretch without a gap that a point belongs to.
+        Number of the stretch without a gap of each point.
     usable : (n,)
-        Points that took part in the fits.
+        Points that were fitted.
     place_noise, speed_noise
-        Standard deviation of a coordinate (m) and of a recorded velocity's component (m/s) about the fits: what is not
-        smooth. A drift slower than the window is not in it. ``speed_noise`` is None without recorded velocities.
+        Standard deviation of a coordinate (m) and of a component of the recorded velocity (m/s) about the fits, without
+        drifts slower than the window; None if no velocities were recorded.
     resolution
-        Length of the window, and what it lets pass.
+        Length of the window, and its transfer function.
     """
 
     place: FloatArray
@@ -84,9 +85,9 @@ def smooth_track(track: Track, *, window: float | None = None, place_noise: floa
 
     Notes
     -----
-    Where the track states a standard deviation for each point, points are weighted by it; the size of the noise still
-    comes from the scatter, because a receiver's statement holds for the whole error, of which most drifts slowly and
-    bends nothing. Windows are moved inwards at the ends of a part, so that they keep their length.
+    If the track states a standard deviation for each point, it gives the weights. The size of the noise is estimated
+    from the scatter, because most of the stated error is a slow drift that does not bend the path. Windows are moved
+    inwards at the ends of a part, so that they keep their length.
     """
     _require_positive("window", "s", window)
     _require_positive("place_noise", "m", place_noise)
@@ -113,7 +114,7 @@ def smooth_track(track: Track, *, window: float | None = None, place_noise: floa
 
 
 def usable_points(track: Track) -> BoolArray:
-    """Points that can be smoothed: usable ones with a time of their own."""
+    """Points (n,) bool that can be smoothed: usable, and later than all points before."""
     usable = track.usable & np.isfinite(track.time)
     latest = np.maximum.accumulate(np.where(usable, track.time, -np.inf))
     usable[1:] &= track.time[1:] > latest[:-1]
@@ -128,8 +129,8 @@ def parts(track: Track, usable: BoolArray) -> IntArray:
     track
         The track.
     usable
-        Points that count; the others take the number of the point before. Where they leave out more than a gap's time,
-        that is a gap too.
+        Points that count; the others get the number of the point before. A time without usable points that is as long
+        as a gap is a gap, too.
     """
     begins = np.zeros(len(track), dtype=bool)
     for code in ("gap", "impossible_step", "new_segment"):
@@ -170,11 +171,11 @@ def _require_sparse(track: Track, windows: tuple[IntArray, IntArray], length: fl
 
 def _require_positive(name: str, unit: str, value: float | None) -> None:
     if value is not None and not (np.isfinite(value) and value > 0.0):
-        raise ParameterError(f"{name} = {value:g} {unit} is no smoothing; give a number above 0, or leave it out")
+        raise ParameterError(f"{name} is {value:g} {unit}. Allowed: above 0")
 
 
 def _places(track: Track, usable: BoolArray) -> WeightedValues:
-    """Places with weights relative to the median one, as far as the track states standard deviations."""
+    """Places with weights relative to the median, from the stated standard deviations if there are any."""
     weight = usable.astype(float)
     if track.place_sd is not None:
         stated = np.sqrt(np.mean(track.place_sd[:, :2] ** 2, axis=1))
@@ -199,7 +200,7 @@ def _rates(track: Track, usable: BoolArray) -> WeightedValues | None:
 
 
 def fill_rows(values: FloatArray, is_known: BoolArray) -> FloatArray:
-    """Each unknown row (of n, d) as the last known one; those before the first known one as that one."""
+    """Copy of `values` (n, d) in which each unknown row is replaced by the last known one (at the start the next)."""
     last = np.maximum.accumulate(np.where(is_known, np.arange(len(values)), -1))
     return values[np.where(last < 0, int(np.argmax(is_known)), last)]
 
@@ -211,7 +212,7 @@ def _noises(
     place: WeightedValues,
     rate: WeightedValues | None,
 ) -> tuple[float, float | None]:
-    """Noise of places about cubics through them alone, and of velocities about cubics through them alone."""
+    """Standard deviation (m) of places about cubics through the places, and (m/s) of velocities likewise."""
     fits = local_cubic(time, windows, half, place, None)
     place_noise = max(_noise(fits.place_misfit, fits.place_count - TERMS), _LOWEST_PLACE_NOISE)
     if rate is None:
@@ -221,7 +222,7 @@ def _noises(
 
 
 def _noise(misfit: FloatArray, freedom: IntArray) -> float:
-    """Standard deviation from the windows' scatter: their median, so that single windows do not decide."""
+    """Standard deviation from the median scatter of the windows, which is robust against single windows."""
     usable = np.isfinite(misfit) & (freedom > 0)
     if not usable.any():
         return 0.0
@@ -247,7 +248,7 @@ def _build_smoothed_track(
 
 
 def _excess(fits: LocalCubic) -> FloatArray:
-    """By how much the scatter of a window exceeds the noise, where chance does not explain it; 1 elsewhere."""
+    """Factor (n,) by which the variance of a window exceeds the noise, if significant; otherwise 1."""
     degrees = 2.0 * (fits.place_count + fits.rate_count - TERMS)
     scatter = (fits.place_misfit + fits.rate_misfit) / np.maximum(degrees, 1.0)
     limit = chi2.ppf(_SURPRISING, np.maximum(degrees, 1.0)) / np.maximum(degrees, 1.0)

@@ -1,7 +1,7 @@
-"""How a receiver came to a place: by the carrier's phase with whole cycles, without them, or by the code alone.
+"""Kinds of solutions of satellite receivers: carrier phase with fixed cycles, with float cycles, or code only.
 
-Real-time and post-processed kinematics (RTK, PPK) count cycles of the carrier. Once their number is fixed to whole ones
-a place is right to centimetres; while it is not ("float") to decimetres, and it wanders; by the code to metres.
+Real-time and post-processed kinematics (RTK, PPK) count cycles of the carrier. With their number fixed to integers a
+place is accurate to centimetres, with a float number to decimetres with a drift, and by the code to metres.
 """
 
 from __future__ import annotations
@@ -13,14 +13,14 @@ import numpy as np
 import numpy.typing as npt
 
 Solution: TypeAlias = Literal["", "fixed", "float", "code"]
-"""Of a point; empty where the file does not say, or there is no fix."""
+"""Kind of solution of a point; empty if unknown, or without a fix."""
 SOLUTIONS: Final[tuple[Solution, ...]] = get_args(Solution)[1:]
-"""From the most exact to the least."""
+"""Kinds of solutions, the most accurate first."""
 SolutionArray: TypeAlias = npt.NDArray[np.str_]
 
 
 def solution_array(solutions: Sequence[Solution]) -> SolutionArray | None:
-    """One entry for each point; None where the file says of none.
+    """Kinds of solutions of all points (n,); None if all are unknown.
 
     >>> solution_array(["fixed", ""]), solution_array(["", ""])
     (array(['fixed', ''], dtype='<U5'), None)
@@ -29,7 +29,7 @@ def solution_array(solutions: Sequence[Solution]) -> SolutionArray | None:
 
 
 def solution_counts(solution: SolutionArray | None) -> dict[str, int] | None:
-    """How many points have each; None where nothing is known, or all are by the code.
+    """Number of points by kind of solution; None if all are unknown or code solutions.
 
     >>> solution_counts(np.array(["fixed", "float", "fixed"]))
     {'fixed': 2, 'float': 1}
@@ -43,7 +43,7 @@ def solution_counts(solution: SolutionArray | None) -> dict[str, int] | None:
 def solution_flags(solution: SolutionArray | None, count: int) -> dict[str, npt.NDArray[np.bool_]]:
     """The flags ``float_solution`` and ``code_solution``, each (count,) bool.
 
-    The second only where other points are by the phase: a receiver that never is says nothing by it.
+    Code solutions are flagged only if other points of the track are phase solutions.
     """
     none = np.zeros(count, bool)
     if solution is None:
@@ -53,7 +53,7 @@ def solution_flags(solution: SolutionArray | None, count: int) -> dict[str, npt.
 
 
 def inexact_sentence(name: str, solution: SolutionArray | None) -> str | None:
-    """A warning where a track has exact points and others; None where it has not.
+    """Warning if only some points of a track are fixed solutions, otherwise None.
 
     >>> inexact_sentence("a.ubx", np.array(["fixed", "float", "code", "fixed"]))
     'a.ubx: of 4 points 1 float (decimetres off) and 1 by the code alone (metres off); the others are fixed'

@@ -1,4 +1,4 @@
-"""What a track says: points, flags, distance, speed, runs and turns, and the same as JSON values."""
+"""Summary of a track: points, flags, distance, speed, runs and turns, also as JSON."""
 
 from __future__ import annotations
 
@@ -21,14 +21,14 @@ from .turns import Turn, find_turns
 
 SCHEMA_VERSION: Final = 1
 _APART: Final = 0.03
-"""Share by which two distances of one track may differ before it is said."""
+"""Relative difference of two distances of a track above which a remark is given."""
 
 Json = dict[str, Any]
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class TrackSummary(Shown):
-    """A track with everything that was found out about it.
+    """A track with its motion, runs, turns, distances and speeds.
 
     Attributes
     ----------
@@ -46,7 +46,7 @@ class TrackSummary(Shown):
     horizontal_distance
         Length of the path seen from above (m), with its 95 % interval; None with recorded speeds.
     remarks
-        What is unknown, and what is doubtful, in words.
+        Sentences on unknown and doubtful quantities.
 
     See Also
     --------
@@ -78,21 +78,21 @@ class TrackSummary(Shown):
 
 
 def track_summary(track: Track, *, window: float | None = None, place_noise: float | None = None) -> TrackSummary:
-    """Look at a whole track.
+    """Summarise a track.
 
     Parameters
     ----------
     track
         At least six usable points.
     window
-        Length of the smoothing's window (s); None: eight intervals between points, at least 0.8 s.
+        Length of the smoothing's window (s) (default: eight intervals between points, at least 0.8 s).
     place_noise
-        Standard deviation of a coordinate (m); None: from the scatter about the smoothed track.
+        Standard deviation of a coordinate (m) (default: from the scatter about the smoothed track).
 
     Returns
     -------
     TrackSummary
-        Distance, speed, runs, lifts, turns, each with how sure it is.
+        Distance, speed, runs, lifts and turns, with their uncertainties.
 
     Raises
     ------
@@ -146,7 +146,7 @@ def _distances(track: Track, motion: TrackMotion) -> dict[str, float]:
 
 
 def _reading_remarks(track: Track) -> tuple[str, ...]:
-    """How the file was read, and what of it is not used."""
+    """Remarks on how the file was read, and on records that are not used."""
     return (*track.notes, *(f"Not used: {count} {words}." for words, count in track.left_out.items()))
 
 
@@ -214,7 +214,7 @@ def summary_dict(summary: TrackSummary) -> Json:
 
 
 def half_wavelength(summary: TrackSummary) -> float | None:
-    """Length (m) of a swing of which half passes the smoothing, at the median speed in runs; None without runs."""
+    """Length (m) of a curvature oscillation of which the smoothing leaves half; None without runs."""
     speeds = [summary.motion.speed[run.first : run.last + 1] for run in summary.day.runs]
     speed = np.concatenate(speeds) if speeds else np.empty(0)
     speed = speed[np.isfinite(speed)]

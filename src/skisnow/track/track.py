@@ -1,4 +1,4 @@
-"""A track: where something was, when, and how well that is known."""
+"""Tracks: places at times, with accuracies and quality flags."""
 
 from __future__ import annotations
 
@@ -22,46 +22,46 @@ Axes: TypeAlias = Literal["file", "east_north_up", "slope"]
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Track(Shown):
-    """Points in the order of their file; nothing is left out, what is doubtful is flagged.
+    """Points in the order of their file; doubtful points stay and are flagged.
 
     Attributes
     ----------
     name
-        For messages and figures: the file's name, or what the user called it.
+        Name for messages and figures (default: the name of the file).
     time : (n,) s
-        From the first point, on the file's own time scale.
+        Time from the first point, on the time scale of the file.
     place : (n, 3) m
-        In the track's frame; the height is NaN where it was not recorded, all three where no place was.
+        Places in the track's frame; NaN for a missing height or place.
     speed : (n,) m/s
-        As recorded; NaN where it was not.
+        Recorded speed; NaN if missing.
     velocity : (n, 3) m/s or None
-        As recorded, in the track's frame; NaN where it was not (a course over ground has no vertical part).
+        Recorded velocity in the track's frame; NaN if missing (a course over ground has no vertical component).
     place_sd : (n, 3) m or None
-        Standard deviation of each coordinate as the receiver states it, NaN where it does not.
+        Standard deviation of each coordinate stated by the receiver; NaN if missing.
     speed_sd : (n,) m/s or None
-        Standard deviation of the speed as the receiver states it.
+        Standard deviation of the speed stated by the receiver.
     solution : (n,) of "fixed", "float", "code", "", or None
-        How the receiver came to each place, see `skisnow.track.solution`; None where the file does not say.
+        Kind of solution of each place, see `skisnow.track.solution`; None if unknown.
     odometer : (n,) m or None
-        The device's own distance.
+        Distance recorded by the device.
     start : datetime or None
-        Of the first point, where the file has a date; with a zone where the file has one.
+        Date and time of the first point, with the zone of the file; None without a date.
     time_scale
         ``"UTC"``, ``"GPS"``, ``"JST"``, ``"local"`` (of the file, without a date or zone).
     frame
-        In words: the slope's axes, or the local projection with its origin.
+        Description of the axes: those of a slope, or the local projection with its origin.
     flags
-        CODE to (n,) bool: which points carry the quality flag. Flagged points stay.
+        Code of each quality flag to (n,) bool: True for flagged points.
     axes
-        What x, y and z are: ``"file"`` (the file's own local metres), ``"east_north_up"``, or ``"slope"``.
+        Meaning of x, y and z: ``"file"`` (local metres of the file), ``"east_north_up"``, or ``"slope"``.
     slope_angle : rad or None
         Inclination of the plane of x and y, if the axes are those of a slope; 0 if z is vertical; None if unknown.
     origin
-        Where the axes begin on the ellipsoid; None where the file says only local metres.
+        Origin of the axes on the ellipsoid; None for local metres.
     first_time : s
-        What the file itself calls the time of the first point where its times are seconds, else 0.
+        Time of the first point in the file if its times are in seconds, otherwise 0.
     speed_kind
-        In words: whether the speed is along the path, over the ground, or unknown.
+        Description of the speed: along the path, over the ground, or unknown.
     further_columns
         Columns of the file that were not read, by name.
     left_out
@@ -115,7 +115,7 @@ class Track(Shown):
 
     @property
     def flagged(self) -> dict[str, int]:
-        """How many points carry each flag, flags without any left out."""
+        """Number of points with each flag, without flags of no point."""
         return {code: int(np.sum(where)) for code, where in self.flags.items() if np.any(where)}
 
     def at_origin(self, origin: GeodeticPoint) -> Track:

@@ -1,4 +1,4 @@
-"""Turns of a track and the switch points between them: where the curvature changes its sign, beyond doubt."""
+"""Turns of a track, and the switch points at which the curvature significantly changes its sign."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
 
 SIGNIFICANCE: Final = 3.0
-"""Standard errors by which a curvature differs from 0 where it counts as that of a turn (modelling assumption)."""
+"""Smallest curvature of a turn, in its standard errors (modelling assumption)."""
 STRAIGHT: Final = 500.0
-"""Radius (m) beyond which a path is straight, however exact it is known (modelling assumption)."""
+"""Radius (m) above which a path counts as straight (modelling assumption)."""
 LEAST_ANGLE: Final = 10.0 * DEGREE
-"""Turned angle (rad) that makes a turn (modelling assumption)."""
+"""Smallest turned angle (rad) of a turn (modelling assumption)."""
 LONGEST_STRAIGHT: Final = 2.0
-"""A straight stretch (s) after which a turn has ended, at least two lengths of the smoothing's window (assumption)."""
+"""Longest straight stretch (s) inside a turn, or two lengths of the smoothing's window if longer (assumption)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,16 +41,16 @@ class Turn:
     least_radius : m
         1 / the largest curvature of the smoothed track; above 0.
     least_radius_interval
-        Least and greatest value (m) of its 95 % interval, from the noise alone.
+        Minimum and maximum (m) of its 95 % interval due to noise.
     least_radius_time
-        When (s).
+        Time of the largest curvature (s).
     mean_radius
         Length over turned angle (m).
     length
         m, along the track.
     share_passed
-        Share of the curvature that the smoothing leaves of half a sine as long as the turn: the true minimum radius is
-        about ``share_passed`` times the given one.
+        Share of the amplitude that the smoothing leaves of a curvature shaped as half a sine over the turn: the true
+        minimum radius is about ``share_passed`` times the given one.
     """
 
     start: float
@@ -68,7 +68,7 @@ class Turn:
 
 @dataclass(frozen=True, slots=True)
 class _Piece:
-    """Points from ``first`` to ``last``, the outermost ones of surely one sign; ``sign`` is 1 left, −1 right."""
+    """Points from ``first`` to ``last`` whose curvature significantly has the same sign: 1 left, −1 right."""
 
     first: int
     last: int
@@ -83,12 +83,12 @@ def find_turns(
     Parameters
     ----------
     motion
-        Of the track.
+        Motion of the track.
     first, last
-        Numbers of the first and the last point; left out, the whole track.
+        Numbers of the first and the last point (default: the whole track).
     least_angle
-        Turned angle (rad) that makes a turn. Pieces that turn less are left out, and two turns to one side with only
-        such a piece between them are one.
+        Smallest turned angle (rad) of a turn. Pieces that turn less are omitted, and two turns to the same side with
+        only such a piece between them are merged.
 
     Notes
     -----
@@ -110,14 +110,14 @@ def find_turns(
 
 
 def _signs(motion: TrackMotion) -> npt.NDArray[np.int8]:
-    """1 where the track surely turns left, −1 where right, 0 elsewhere."""
+    """1 for points that significantly turn left, −1 for right, 0 for others."""
     with np.errstate(invalid="ignore"):
         sure = np.abs(motion.curvature) > np.maximum(SIGNIFICANCE * motion.curvature_sd, 1.0 / STRAIGHT)
     return np.where(sure & motion.smoothed.usable, np.sign(np.nan_to_num(motion.curvature)), 0).astype(np.int8)
 
 
 def _pieces(motion: TrackMotion, first: int, last: int, patience: float) -> Iterator[_Piece]:
-    """Stretches of one sure sign."""
+    """Stretches with a significant curvature of the same sign."""
     signs = _signs(motion)[first : last + 1]
     sure = np.flatnonzero(signs) + first
     if not len(sure):
@@ -136,7 +136,7 @@ def _pieces(motion: TrackMotion, first: int, last: int, patience: float) -> Iter
 
 
 def _merge_pieces(motion: TrackMotion, pieces: list[_Piece], least_angle: float, patience: float) -> list[_Piece]:
-    """Without pieces that turn too little; neighbours to one side become one where only such a piece lay between."""
+    """Remove pieces that turn too little, and merge neighbours to the same side with only such a piece between them."""
     merged: list[_Piece] = []
     for piece in pieces:
         if merged and merged[-1].sign == piece.sign and _join(motion, merged[-1], piece, patience):
@@ -147,7 +147,7 @@ def _merge_pieces(motion: TrackMotion, pieces: list[_Piece], least_angle: float,
 
 
 def _join(motion: TrackMotion, one: _Piece, other: _Piece, patience: float) -> bool:
-    """Whether nothing but a short stretch in motion lies between two pieces."""
+    """True if two pieces are separated only by a short stretch in motion."""
     between = slice(one.last, other.first + 1)
     moving = np.isfinite(motion.curvature[between]) | ~motion.smoothed.usable[between]
     together = motion.smoothed.part[one.last] == motion.smoothed.part[other.first]
@@ -155,7 +155,7 @@ def _join(motion: TrackMotion, one: _Piece, other: _Piece, patience: float) -> b
 
 
 def _switch_time(motion: TrackMotion, before: int, after: int) -> float:
-    """When the line through the curvatures from one turn's last sure point to the next one's first passes 0 (s)."""
+    """Time (s) at which a line fitted to the curvatures between the end of a turn and the next one passes 0."""
     time, curvature = motion.time[before : after + 1], motion.curvature[before : after + 1]
     finite = np.isfinite(curvature)
     slope, value = np.polyfit(time[finite] - time[0], curvature[finite], 1)
@@ -187,7 +187,7 @@ def _turn(motion: TrackMotion, piece: _Piece, start: float, end: float) -> Turn:
 
 
 def _sharpest(motion: TrackMotion, piece: _Piece) -> int:
-    """Number of the point of the largest curvature, of those that are known about as well as the others."""
+    """Number of the point with the largest curvature, without points whose standard error is unusually large."""
     inside = np.arange(piece.first, piece.last + 1)
     points = inside[np.isfinite(motion.curvature[inside])]
     error = motion.curvature_sd[points]

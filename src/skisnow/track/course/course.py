@@ -23,14 +23,13 @@ CourseAxes: TypeAlias = Literal["metres", "east_north_up"]
 
 FEWEST_GATES: Final = 2
 FARTHEST: Final = 1e8
-"""Coordinate (m) beyond which no gate stands, in any map system."""
-"""The direction of a course comes from its gates."""
+"""Largest coordinate (m) of a gate in any map system."""
 AGAINST: Final = -0.5
-"""Cosine of the angle between a gate's own direction and the course's, below which its side is the wrong one."""
+"""Cosine of the angle between the directions of a gate and of the course below which its side is wrong."""
 
 
 class GateLine(NamedTuple):
-    """Of a gate: its turning pole (m), unit vectors down the course and to the side that is passed, its width (m)."""
+    """Line of a gate: turning pole (m), unit vectors down the course and towards the passed side, width (m)."""
 
     pole: FloatArray
     along: FloatArray
@@ -45,23 +44,23 @@ class Course(Shown):
     Attributes
     ----------
     gates
-        Two or more.
+        At least two gates.
     source
-        Where they come from, in words.
+        Name of the course or of its file.
     discipline
-        Whose rules are looked at; None: no rules.
+        Discipline whose rules are checked; None: no rules.
     latitude_deg, longitude_deg, fall_line_azimuth_deg
-        Where a scenario's x = y = 0 lies and where its x points, for gates in degrees.
+        Place of the scenario's x = y = 0 and direction of its x, for gates in degrees.
     axes
-        "metres": the file's own, or a scenario's; "east_north_up": from `latitude_deg` and `longitude_deg`.
+        "metres": those of the file or a scenario; "east_north_up": from `latitude_deg` and `longitude_deg`.
     warnings
-        What the reader had to assume, in words.
+        Sentences on the reader's assumptions.
 
     Raises
     ------
     ParameterError
-        There are fewer than two gates, two neighbours stand at one place, two have one name, or a gate's outer pole
-        stands on the other side than the one that is passed.
+        There are fewer than two gates, two neighbours have the same place, two have the same name, or a gate's outer
+        pole is on the wrong side.
 
     See Also
     --------
@@ -151,7 +150,7 @@ class Course(Shown):
 
     @property
     def lines(self) -> tuple[GateLine, ...]:
-        """The line of each gate: from the turning pole to the outer one, else square to the course at the pole."""
+        """Line of each gate: from the turning pole to the outer one, else perpendicular to the course at the pole."""
         return tuple(_line(gate, along) for gate, along in zip(self.gates, self._chords(), strict=True))
 
     def _chords(self) -> FloatArray:
@@ -166,7 +165,7 @@ class Course(Shown):
 
     @property
     def length(self) -> float:
-        """From pole to pole (m)."""
+        """Length from pole to pole (m)."""
         return float(np.linalg.norm(np.diff([gate.turning for gate in self.gates], axis=0), axis=1).sum())
 
     def _facts(self) -> Facts:
@@ -192,7 +191,7 @@ def course_names() -> tuple[str, ...]:
     Returns
     -------
     tuple of str
-        What `skisnow.read_course` takes beside a path.
+        Names that `skisnow.read_course` accepts instead of a path.
 
     See Also
     --------
@@ -211,17 +210,17 @@ def course_names() -> tuple[str, ...]:
 
 
 def course_place(name: str) -> Path:
-    """Where such a course lies."""
+    """Path of the file of a built-in course."""
     return Path(str(_FOLDER / f"{name}.csv"))
 
 
 def name_in_catalogue(source: str) -> str | None:
-    """The source of a course, if it is one of these."""
+    """The source of a course if it is built in, otherwise None."""
     return source if source in course_names() else None
 
 
 def file_of_course(source: str) -> str | None:
-    """The source of a course, if it is none of these."""
+    """The source of a course if it is a file, otherwise None."""
     return None if source in course_names() else source
 
 
@@ -236,18 +235,18 @@ class Gate(ShownFields):
     Attributes
     ----------
     name
-        As the file has it, such as its number.
+        Name in the file, such as its number.
     turning
-        Place x, y (m) of the turning pole: of a panel the pole beside which the racer goes by.
+        Place x, y (m) of the turning pole; for a panel, its pole on the racer's side.
     side
-        On which side of the turning pole it is passed, seen down the course.
+        Side of the turning pole on which it is passed, seen down the course.
     outer
-        Place (m) of the outer pole; None: there is none, and the gate is as wide as the slope.
+        Place (m) of the outer pole; None for a single pole: the gate is as wide as the slope.
 
     Raises
     ------
     ParameterError
-        A place is not finite, both poles stand at one place, or the side is no side.
+        A place is not finite, both poles have the same place, or the side is unknown.
 
     See Also
     --------
@@ -272,5 +271,5 @@ class Gate(ShownFields):
 
     @property
     def width(self) -> float:
-        """Between the poles (m); infinite without an outer pole."""
+        """Distance between the poles (m); infinite without an outer pole."""
         return math.inf if self.outer is None else math.dist(self.turning, self.outer)

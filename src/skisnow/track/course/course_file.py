@@ -1,4 +1,4 @@
-"""A course from its file: CSV in metres, or GPX in degrees."""
+"""Reader of courses: CSV in metres, or GPX in degrees; and courses in the axes of a slope."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from .gpx_course import Waypoint, read_waypoints
 FloatArray = npt.NDArray[np.float64]
 
 SHARPEST: Final = 0.05
-"""Bend (rad) of the line from pole to pole below which it does not tell a gate's side."""
+"""Smallest bend (rad) of the line from pole to pole that determines a gate's side."""
 _COLUMNS: Final = ("gate", "x_m", "y_m", "side")
 _OUTER: Final = ("outer_x_m", "outer_y_m")
 _ACTION: Final = Message(
@@ -48,25 +48,25 @@ def read_course(
         ``x_m``, ``y_m``, ``side``, and where the outer poles are known ``outer_x_m``, ``outer_y_m``; or GPX with one
         waypoint for each gate, in their order, whose type, symbol, comment, description or name says left or right.
     discipline
-        Whose rules `course_warnings` looks at.
+        Discipline whose rules `course_warnings` checks.
     latitude_deg, longitude_deg
-        Where x and y of a GPX's gates are counted from; left out: its first waypoint.
+        Origin of x and y for gates of a GPX file (default: its first waypoint).
     fall_line_azimuth_deg
-        Kept for `on_slope`.
+        Compass direction in which the slope falls, for `on_slope`.
 
     Returns
     -------
     Course
-        In the file's metres, or in metres east and north of the origin.
+        Course in the file's metres, or in metres east and north of the origin.
 
     Raises
     ------
     ParameterError
-        The file cannot be read, or is no course; file, row, column and value are named.
+        The file cannot be read, or is not a course; file, row, column and value are named.
 
     See Also
     --------
-    skisnow.time_gates : who passed them, and when.
+    skisnow.time_gates : times at the gates.
 
     References
     ----------
@@ -158,7 +158,7 @@ def _geodetic_course(
 
 
 def _bends(place: FloatArray) -> list[Side | None]:
-    """The outside of each bend of the line from pole to pole, where a turning pole is passed; at an end the other."""
+    """Passed side of each gate, from the bends of the line from pole to pole; None if it is too straight."""
     ways = np.diff(place, axis=0)
     angle = np.arctan2(ways[:-1, 0] * ways[1:, 1] - ways[:-1, 1] * ways[1:, 0], (ways[:-1] * ways[1:]).sum(axis=1))
     inner: list[Side | None] = [
@@ -170,19 +170,19 @@ def _bends(place: FloatArray) -> list[Side | None]:
 
 
 def on_slope(course: Course, *, slope_angle: float | None) -> Course:
-    """A course in a scenario's x and y.
+    """Convert a course to a scenario's x and y.
 
     Parameters
     ----------
     course
-        In metres it stays as it is; in east and north it is turned by its `fall_line_azimuth_deg`.
+        A course in metres stays; one in east and north is rotated by its `fall_line_azimuth_deg`.
     slope_angle
         Inclination of a plane slope (rad), whose x goes down the incline; None: x is horizontal.
 
     Raises
     ------
     ParameterError
-        It is in degrees, and nothing says where x points.
+        The course is in degrees, and the direction of x is unknown.
     """
     if course.axes == "metres":
         return course

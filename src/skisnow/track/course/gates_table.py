@@ -1,4 +1,4 @@
-"""gates.csv, and the same as JSON values: a row for each gate."""
+"""gates.csv and its JSON with a row for each gate, and gaps in time between two runs through the same gates."""
 
 from __future__ import annotations
 
@@ -27,11 +27,11 @@ COLUMNS: Final = (
     "y_m",
 )
 DOUBTFUL: Final = 0.005
-"""Doubt (s) of a time beyond which it is not good to a hundredth of a second."""
+"""Uncertainty (s) of a time at a gate above which a warning is given: hundredths of a second are then unknown."""
 
 
 def gate_rows(result: CourseResult) -> list[dict[str, Any]]:
-    """Rows under `COLUMNS`; times count from the track's first point, what does not exist is None."""
+    """Rows with `COLUMNS`; times count from the track's first point; None for missing values."""
     rows, before = [], result.start_time
     for passage in result.passages:
         rows.append(_row(passage, result.start_time, before))
@@ -56,7 +56,7 @@ def _row(passage: Passage, start: float, before: float) -> dict[str, Any]:
 
 
 def gates_csv(result: CourseResult) -> str:
-    """The table as text: numbers with all their digits, nothing where there is none."""
+    """gates.csv as text: numbers with all digits, empty cells for missing values."""
     stream = io.StringIO()
     writer = csv.DictWriter(stream, COLUMNS, lineterminator="\n")
     writer.writeheader()
@@ -76,7 +76,7 @@ def gates_dict(result: CourseResult) -> dict[str, Any]:
 
 
 def time_warnings(result: CourseResult) -> tuple[str, ...]:
-    """Where points are so far apart that times are not good to a hundredth of a second, in words."""
+    """Warning if points are too far apart for times accurate to a hundredth of a second."""
     doubts = [
         passage.doubt for passage in result.passages if passage.doubt is not None and math.isfinite(passage.doubt)
     ]
@@ -102,15 +102,15 @@ class GateGap:
     Attributes
     ----------
     gate
-        Its name.
+        Name of the gate.
     outcome, other_outcome
-        What became of it, as gates.csv has it.
+        Outcome of each run, as in gates.csv.
     time, other_time
-        (s) from the start of each; None: not crossed.
+        Time (s) from the start of each run; None if not crossed.
     gap
-        Of the first run to the other one (s), positive: it is behind; None where one did not cross it.
+        Time (s) by which the first run is behind the other one; None if one did not cross the gate.
     lost
-        Gap less that at the gate before which both crossed, at first less 0 (s).
+        Change (s) of the gap since the last gate that both crossed.
     """
 
     gate: str
@@ -123,7 +123,7 @@ class GateGap:
 
 
 def read_gate_gaps(folder: Path, other: Path) -> tuple[GateGap, ...] | None:
-    """Gaps at the gates of two folders with a gates.csv; None where one has none, or the courses are not the same.
+    """Gaps at the gates of two folders with a gates.csv; None if one is missing, or the courses differ.
 
     Raises
     ------
@@ -179,7 +179,7 @@ def _gate_row(row: CsvRow) -> dict[str, Any]:
 
 
 def gaps_csv(gaps: Sequence[GateGap]) -> str:
-    """A row for each gate under `GAP_COLUMNS`, nothing where there is no number."""
+    """Table with a row for each gate and `GAP_COLUMNS` as text; empty cells for missing values."""
     stream = io.StringIO()
     writer = csv.DictWriter(stream, GAP_COLUMNS, lineterminator="\n")
     writer.writeheader()
@@ -188,7 +188,7 @@ def gaps_csv(gaps: Sequence[GateGap]) -> str:
 
 
 def gap_rows(gaps: Sequence[GateGap]) -> list[dict[str, Any]]:
-    """The same as values."""
+    """Rows with `GAP_COLUMNS`; None for missing values."""
     return [
         {
             "gate": gap.gate, "outcome": gap.outcome, "time_s": gap.time, "other_outcome": gap.other_outcome,

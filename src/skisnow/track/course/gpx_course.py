@@ -23,7 +23,7 @@ _SIDE: Final = re.compile(r"\b(left|right)\b", re.IGNORECASE)
 
 @dataclass(frozen=True, slots=True)
 class Waypoint:
-    """One of them: its number in the file, name, latitude and longitude (°, WGS84), height (m; NaN), and its side."""
+    """A waypoint: number in the file, name, latitude and longitude (°, WGS84), height (m; NaN), passed side."""
 
     row: int
     name: str
@@ -41,11 +41,11 @@ class _WaypointTexts:
 
 
 class _RefusedError(Exception):
-    """What no course has."""
+    """The file has something that no course has."""
 
 
 class _Reader:
-    """Takes the elements in as expat meets them."""
+    """Handler of the elements from expat that collects the waypoints."""
 
     def __init__(self) -> None:
         self.points: list[_WaypointTexts] = []
@@ -74,12 +74,12 @@ class _Reader:
 
 
 def read_waypoints(path: str | Path) -> list[Waypoint]:
-    """Read them.
+    """Read the waypoints of a GPX file.
 
     Raises
     ------
     ParameterError
-        The file cannot be read, is no GPX, or a waypoint has no place on the earth.
+        The file cannot be read, is not GPX, or a waypoint has no place on the earth.
     """
     reader, parser = _Reader(), expat.ParserCreate(namespace_separator="}")
     parser.buffer_text = True

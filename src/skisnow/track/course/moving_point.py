@@ -16,7 +16,7 @@ from .course import Course
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 
 HALVINGS: Final = 60
-"""Of the interval between two points, until the time of a crossing has all its digits."""
+"""Number of bisections of the interval between two points, for a time of a crossing accurate to rounding."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,16 +26,15 @@ class Crossing:
     Attributes
     ----------
     time
-        (s) of the points' own clock.
+        Time (s) on the points' clock.
     aside
-        How far from the line's origin, along the line (m).
+        Position (m) along the line, from its origin.
     speed
-        In the plane (m/s).
+        Speed (m/s) in the plane.
     forward
-        Whether it goes along the asked direction, or against it.
+        True if it crosses in the given direction, False if against it.
     doubt
-        By how much the time differs from that of a straight way between the two points (s): what is not known between
-        them.
+        Difference (s) from the time of a straight path between the two points, as the uncertainty.
     """
 
     time: float
@@ -46,7 +45,7 @@ class Crossing:
 
 
 class MovingPoint:
-    """A point that moves in a plane: places at times, and between them cubics with the velocities that they tell.
+    """A point that moves in a plane: places at times, interpolated by cubics with its velocities.
 
     Parameters
     ----------
@@ -55,7 +54,7 @@ class MovingPoint:
     place
         (n, 2) (m).
     velocity
-        (n, 2) (m/s); None: by differences of second order, which a constant acceleration makes exact.
+        (n, 2) (m/s) (default: differences of second order, exact for a constant acceleration).
     """
 
     def __init__(self, time: FloatArray, place: FloatArray, velocity: FloatArray | None = None) -> None:
@@ -113,12 +112,12 @@ def _reached(first: float, last: float, rate: float, last_rate: float) -> float:
 
 
 def track_point(track: Track, course: Course) -> MovingPoint:
-    """Its usable places from above, at rising times, from the course's origin.
+    """Moving point of a track: its usable horizontal places at rising times, from the course's origin.
 
     Raises
     ------
     ParameterError
-        It is in other axes than the course, or has fewer than two usable places.
+        The axes of the track differ from those of the course, or it has fewer than two usable places.
     """
     degrees = track.axes == "east_north_up"
     if degrees != (course.axes == "east_north_up"):

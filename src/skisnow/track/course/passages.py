@@ -13,16 +13,16 @@ from .moving_point import Crossing, MovingPoint
 GateOutcome: TypeAlias = Literal["passed", "straddled", "missed", "backwards", "not_reached"]
 
 FARTHEST: Final = 50.0
-"""Distance (m) beside a turning pole beyond which a track that crosses the gate's line is somewhere else."""
+"""Largest distance (m) from the turning pole at which a crossing of the gate's line counts."""
 CLIMB_BACK: Final = 120.0
-"""Time (s) after a gate was missed within which it may still be passed (modelling assumption)."""
+"""Longest time (s) after a missed gate within which it can still be passed (modelling assumption)."""
 BESIDE: Final = 2.0
 """Time (s) between the crossings of the parts of one racer."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class Passage(ShownFields):
-    """What became of one gate.
+    """Outcome of one gate.
 
     Attributes
     ----------
@@ -32,15 +32,15 @@ class Passage(ShownFields):
         "passed": feet and ski tips crossed the gate's line between the poles; "straddled": with a pole between them;
         "missed": beside it; "backwards": against the course only; "not_reached".
     words
-        The same as a sentence.
+        The outcome as a sentence.
     time
-        (s) when the middle crossed the line, of the track's own clock; None where it did not.
+        Time (s), on the track's clock, at which the middle crossed the line; None if it did not.
     speed
-        (m/s) then, seen from above.
+        Horizontal speed (m/s) at that time.
     clearance
-        From the nearer pole to the foot or tip that came nearest to it (m), below 0 beside the gate.
+        Smallest distance (m) of a foot or tip from a pole on the line; below 0 outside of the gate.
     doubt
-        What the time depends on how the points are joined (s).
+        Uncertainty (s) of the time due to the unknown path between points.
     """
 
     gate: Gate
@@ -54,7 +54,7 @@ class Passage(ShownFields):
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False, eq=False)
 class CourseResult(Shown):
-    """A course and what became of each of its gates.
+    """A course and the outcome of each gate.
 
     Attributes
     ----------
@@ -63,7 +63,7 @@ class CourseResult(Shown):
     passages
         One for each gate, in their order.
     start_time
-        (s) of the track's first point: what times are counted from.
+        Time (s) of the track's first point, from which times are counted.
 
     See Also
     --------
@@ -76,7 +76,7 @@ class CourseResult(Shown):
 
     @property
     def passed(self) -> int:
-        """How many gates were passed."""
+        """Number of gates that were passed."""
         return sum(passage.outcome == "passed" for passage in self.passages)
 
     @property
@@ -105,23 +105,23 @@ class CourseResult(Shown):
 
 
 def passages(course: Course, middle: MovingPoint, parts: Mapping[str, MovingPoint]) -> CourseResult:
-    """What became of each gate.
+    """Determine the outcome of each gate.
 
     Parameters
     ----------
     course
-        In the coordinates of the points.
+        Course in the coordinates of the points.
     middle
-        The point whose crossing is the time at a gate.
+        Point whose crossing is the time at a gate.
     parts
-        By name, what must cross the line between the poles: both feet and both ski tips (FIS ICR 661.4.1). Without
-        them the middle alone.
+        Points that must cross the line between the poles, by name: both feet and both ski tips (FIS ICR 661.4.1).
+        Empty: only the middle must cross it.
 
     Notes
     -----
-    Gates are passed in their order. After a crossing beside its poles a gate may still be passed within two minutes, by
-    climbing back (661.4.1). The line ends at the poles (661.4.1.1, 661.4.1.2); without an outer pole it goes on, as in
-    a slalom with single poles (804.3). A crossing against the course does not count.
+    Gates are passed in their order. After a crossing outside of its poles a gate can still be passed within two minutes
+    by climbing back (661.4.1). The line ends at the poles (661.4.1.1, 661.4.1.2); without an outer pole it is
+    unlimited, as in a slalom with single poles (804.3). A crossing against the course does not count.
     """
     results: list[Passage] = []
     after = float("-inf")
@@ -163,7 +163,7 @@ def _judge(gate: Gate, line: GateLine, at: Crossing, parts: Mapping[str, MovingP
 
 
 def _lateral_position(line: GateLine, at: Crossing, part: MovingPoint) -> float:
-    """Where a part crossed the line, at about that time; where it did not, the middle counts."""
+    """Position (m) along the line at which a part crossed it at about that time; that of the middle if it did not."""
     crossings = [crossing for crossing in part.crossings(line.pole, line.along, line.across) if crossing.forward]
     crossings = [crossing for crossing in crossings if abs(crossing.time - at.time) <= BESIDE]
     return min(crossings, key=lambda crossing: abs(crossing.time - at.time)).aside if crossings else at.aside

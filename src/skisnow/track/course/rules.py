@@ -18,13 +18,13 @@ class Rules:
     Attributes
     ----------
     article
-        Of the International Ski Competition Rules (ICR), book IV.
+        Article of the International Ski Competition Rules (ICR), book IV.
     width
-        Least and greatest width of a gate (m).
+        Minimum and maximum width of a gate (m).
     least_distance
-        Between the nearest poles of successive gates (m).
+        Minimum distance between the nearest poles of successive gates (m).
     turns_per_drop
-        Least and greatest number of changes of direction for each metre of drop.
+        Minimum and maximum number of changes of direction per metre of drop.
     """
 
     article: str
@@ -37,18 +37,18 @@ RULES: Final[dict[Discipline, Rules | None]] = {
     "giant-slalom": Rules(article="FIS ICR 901.2", width=(4.0, 8.0), least_distance=10.0, turns_per_drop=(0.11, 0.15)),
     "slalom": None,
 }
-"""By discipline. None: no text that could be cited was at hand, nothing is checked."""
+"""Rules by discipline; None: nothing is checked, because no citable text was available."""
 
 
 def course_warnings(course: Course, *, drop: float | None = None) -> tuple[str, ...]:
-    """Where a course departs from the rules of its discipline, in words: a training course may.
+    """Sentences on departures of a course from the rules of its discipline, which are allowed for training.
 
     Parameters
     ----------
     course
-        With the discipline whose rules count.
+        Course with its discipline.
     drop
-        Difference in height from the first gate to the last (m); None: not known.
+        Difference in height from the first gate to the last (m); None if unknown.
 
     Notes
     -----

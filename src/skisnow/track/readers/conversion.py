@@ -1,4 +1,4 @@
-"""From a recording to a track: checked, projected about its origin, flagged."""
+"""Conversion of a recording to a track: validation, selection of points with a fix, projection, flags."""
 
 from __future__ import annotations
 
@@ -32,13 +32,13 @@ def build_track(
     fastest: float = FASTEST,
     gap_factor: float = GAP_FACTOR,
 ) -> Track:
-    """The track of a recording: checked, projected about its origin, flagged.
+    """Convert a recording to a track: validate it, project it about its origin, and compute flags.
 
     Raises
     ------
     FieldDataError
         There is no point, no point has a place, times run backwards, a number is out of range, or an origin is given
-        for a file that says nothing of where on earth it is.
+        for a file in local metres.
     """
     _require_points(recording)
     recording, fix = fixed_points(recording, _fix(recording))
@@ -87,7 +87,7 @@ def build_track(
 
 
 def _fix(recording: Recording) -> BoolArray:
-    """Where there is a place: latitude and longitude that are both exactly 0 are what devices write without one."""
+    """True (n,) for points with a place; devices write latitude 0 and longitude 0 without one."""
     horizontal = recording.place[:, :2]
     fix = np.asarray(np.isfinite(horizontal).all(axis=1))
     if recording.is_geodetic:
@@ -116,7 +116,7 @@ def _projected(
 
 
 def _first(points: FloatArray) -> GeodeticPoint:
-    """The first point; at the first height there is, where its own is missing."""
+    """First point; if its height is missing, with the first recorded height."""
     heights = points[np.isfinite(points[:, 2]), 2]
     return GeodeticPoint(float(points[0, 0]), float(points[0, 1]), float(heights[0]) if len(heights) else 0.0)
 
@@ -170,7 +170,7 @@ def _time_text(recording: Recording, point: int) -> str:
 
 
 def _require_in_range(recording: Recording) -> None:
-    """Refuse numbers that are in no unit a ski run's; they would be nonsense on the way, or overflow."""
+    """Reject numbers that are impossible for a ski run in any unit; they could overflow."""
     places = GEODETIC if recording.is_geodetic else LOCAL
     for axis, quantity in enumerate(places):
         column = recording.columns.get("xyz"[axis], quantity.field)

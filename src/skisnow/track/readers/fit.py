@@ -1,9 +1,8 @@
 """Tracks in FIT, the files of sports watches, read with fitdecode: the messages ``record``.
 
-Heights of FIT are above mean sea level as the watch has it, often barometric. ``gps_accuracy``, in whole metres, is
-taken as √(σ_east² + σ_north²), each with half of the variance (modelling assumption; the profile names it and its
-unit and says no
-more); 0 says nothing.
+Heights of FIT are above mean sea level according to the watch, often barometric. ``gps_accuracy``, in whole metres, is
+used as √(σ_east² + σ_north²), each with half of the variance (modelling assumption: the profile only gives its name and
+unit); 0 means unknown.
 """
 
 from __future__ import annotations
@@ -66,7 +65,7 @@ def read_fit(data: bytes, name: str) -> Recording:
     Raises
     ------
     FieldDataError
-        The file is no FIT, ends too early, or its checksum is wrong.
+        The file is not a FIT file, ends too early, or its checksum is wrong.
     """
     records = _Records()
     files, extra = _files(data)

@@ -1,7 +1,7 @@
-"""Tracks in GPX 1.0 and 1.1; speed as GPX 1.0 has it, or in an extension named ``speed``.
+"""Tracks in GPX 1.0 and 1.1, with speeds of GPX 1.0 or of an extension named ``speed``.
 
-One pass with expat, without a tree: nesting and number of elements are limited, and a file that declares entities is
-refused. Heights of GPX are above mean sea level. Routes and waypoints are not read.
+The file is read in one pass with expat, without a tree. Nesting and number of elements are limited, and a file that
+declares entities is rejected. Heights of GPX are above mean sea level. Routes and waypoints are not read.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ _TIME: Final = re.compile(
 
 
 class _TooMuchError(Exception):
-    """What no recorded track has: ``value`` was found, ``allowed`` says what may be."""
+    """The file has something that no recorded track has: ``value`` instead of ``allowed``."""
 
     def __init__(self, value: str, allowed: str) -> None:
         super().__init__(value)
@@ -52,7 +52,7 @@ class _Point:
 
 
 class _Reader:
-    """Takes the elements in as expat meets them, and keeps the points."""
+    """Handler of the elements from expat that collects the points."""
 
     def __init__(self) -> None:
         self.points: list[_Point] = []
@@ -91,7 +91,7 @@ class _Reader:
         raise _TooMuchError(f"the declaration of an entity, {name}", "a file without them")
 
     def _key(self) -> str | None:
-        """Under which name the text of the present element is kept: a point's own, or a speed in its extensions."""
+        """Key under which the text of the current element is stored: that of a point, or a speed in its extensions."""
         path = self._path
         if len(path) < 5 or tuple(path[:4]) != _POINT:
             return None
@@ -106,7 +106,7 @@ def read_gpx(text: str, name: str) -> Recording:
     Raises
     ------
     FieldDataError
-        The file is no GPX, or a point has no time, or a place, height or speed that is no number.
+        The file is not GPX, a point has no time, or a place, height or speed is not a number.
     """
     points = _points(text, name)
     moments = [_required_moment(point, name, place) for place, point in enumerate(points)]
@@ -155,7 +155,7 @@ def _required_moment(point: _Point, name: str, place: int) -> datetime:
             place=f"point {place + 1}",
             column="time",
             allowed="a time such as 2022-12-27T15:51:14Z in every point",
-            action="The point has no time, or one that cannot be read. A drawn route is no recorded track.",
+            action="The point has no readable time. A drawn route is not a recorded track.",
         )
     return moment
 

@@ -1,7 +1,7 @@
 """Tracks in NMEA 0183: sentences GGA, GNS, GLL, RMC, VTG, GST, ZDA of any talker.
 
 Sentences with one time of day make one point, whatever their talker. A time of day that falls by more than half a day
-begins the next day. Dates count from the first point with a fix: before it receivers send dates of their own. Heights
+begins the next day. Dates count from the first point with a fix: before it receivers send arbitrary dates. Heights
 are above the ellipsoid if every point with a height has the geoid's separation, otherwise above mean sea level.
 """
 
@@ -26,11 +26,11 @@ KNOT: Final = 1852.0 / 3600.0
 KM_PER_H: Final = 1.0 / 3.6
 """m/s in a km/h."""
 QUALITIES: Final[dict[float, Solution]] = {1.0: "code", 2.0: "code", 3.0: "code", 4.0: "fixed", 5.0: "float"}
-"""Of GGA; others are dead reckoning, typed in, or simulated."""
+"""Kind of solution by the quality in GGA; others are dead reckoning, manual input, or simulated."""
 MODES: Final[dict[str, Solution]] = {"A": "code", "D": "code", "P": "code", "R": "fixed", "F": "float"}
-"""Of GNS, a letter for each satellite system."""
+"""Kind of solution by the mode in GNS, a letter for each satellite system."""
 YEARS: Final = (1900, 2200)
-"""Of a date that a receiver may send; others are damage."""
+"""First and last year of a valid date; others are damage."""
 PLACES: Final = ("GGA", "GNS", "RMC", "GLL")
 """Sentences with a place, the best first: GGA and GNS have heights, GLL has neither height nor date."""
 NO_TIME: Final = "sentences without a time"
@@ -184,7 +184,7 @@ def _epochs(data: bytes, counts: dict[str, int]) -> list[_Epoch]:
     for sentence in sentences(data, counts):
         message = sentence.message
         at = getattr(message, "time", "")
-        if message.msgID == "VTG" and epochs:  # has no time of its own
+        if message.msgID == "VTG" and epochs:  # has no time
             epoch = epochs[-1]
         elif isinstance(at, time):
             epoch = _epoch_at(epochs, at, message, sentence.row)
@@ -252,7 +252,7 @@ def _has_fix(message: Any) -> bool:
 
 
 def _solution(message: Any) -> Solution:
-    """Of GGA by its quality; of GNS by its modes, of several systems the least exact."""
+    """Kind of solution: of GGA by its quality; of GNS by its modes, that of the least accurate system."""
     if message.msgID == "GGA":
         return QUALITIES.get(_number(message, "quality"), "")
     modes = {MODES[mode] for mode in str(getattr(message, "posMode", "")) if mode in MODES}

@@ -38,7 +38,7 @@ class Sentence:
 
 @dataclass(frozen=True, slots=True)
 class _Piece:
-    """A sentence as written; the checksum is None where it is missing or cut."""
+    """A sentence as written; the checksum is None if missing or incomplete."""
 
     begin: int
     address: bytes
@@ -98,5 +98,5 @@ def _decode(content: str) -> Any:
 
     try:
         return NMEAReader.parse(f"${content}*{calc_checksum(content)}".encode("ascii"))
-    except Exception:  # cells that are no numbers make pynmeagps fail in many ways
+    except Exception:  # pynmeagps fails in many ways for cells that are not numbers
         return None

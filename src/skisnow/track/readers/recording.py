@@ -34,9 +34,9 @@ class Recording:
     name
         The file's name.
     places_in_file
-        Where each point stands, for messages: ``"row 12"``.
+        Place of each point in the file, for messages: ``"row 12"``.
     time : (n,) s
-        On any zero; ``start`` belongs to the first.
+        Times with any zero; ``start`` belongs to the first.
     place : (n, 3)
         Latitude (°), longitude (°), height (m) where ``is_geodetic``, else x, y, z in m.
     velocity : (n, 3) m/s or None
@@ -44,17 +44,17 @@ class Recording:
     place_sd : (n, 3) m or None
         East, north, up at the point itself, or along x, y, z.
     fix : (n,) bool or None
-        Whether the receiver had a fix, where the file says so.
+        True if the receiver had a fix; None if unknown.
     solution : (n,) or None
-        As in `Track`; what it says of points without a fix does not count.
+        As in `Track`; values of points without a fix are ignored.
     axes_in_words
-        Of places that are not geodetic.
+        Description of the axes of places that are not geodetic.
     heights
-        In words: above what.
+        Description of the reference of the heights.
     default_origin
-        Where the file itself names an origin.
+        Origin that the file names.
     columns
-        The file's own names of ``x``, ``y``, ``z``, for messages.
+        Names of ``x``, ``y``, ``z`` in the file, for messages.
     segment : (n,) or None
         Number of the segment of each point, if the file separates segments.
     not_finite : (n,) bool or None
@@ -92,9 +92,9 @@ class Recording:
 
 
 FARTHEST: Final = 1e8
-"""Places, times and distances (m, s) beyond this are not those of a ski run."""
+"""Largest place, time and distance (m, s), far beyond those of a ski run."""
 FASTEST_NUMBER: Final = 1e4
-"""Speeds (m/s) beyond this are no speeds of anything that touches snow."""
+"""Largest speed (m/s), far beyond that of anything on snow."""
 
 
 def _place(name: str) -> Quantity:
@@ -107,7 +107,7 @@ def _velocity(name: str, meaning: str) -> Quantity:
 
 @dataclass(frozen=True, slots=True)
 class LocalPlace:
-    """Where a point is, in metres of the file."""
+    """Place of a point in local metres of the file."""
 
     x: Annotated[float, _place("x_m")]
     y: Annotated[float, _place("y_m")]
@@ -116,7 +116,7 @@ class LocalPlace:
 
 @dataclass(frozen=True, slots=True)
 class GeodeticPlace:
-    """Where on earth a point is."""
+    """Place of a point on the earth."""
 
     latitude: Annotated[float, Quantity("latitude_deg", "latitude", lowest=-90.0, highest=90.0)]
     longitude: Annotated[float, Quantity("longitude_deg", "longitude", lowest=-180.0, highest=180.0)]
@@ -125,7 +125,7 @@ class GeodeticPlace:
 
 @dataclass(frozen=True, slots=True)
 class Motion:
-    """What else a device may say of a point."""
+    """Other quantities of a point that devices record."""
 
     speed: Annotated[float, _velocity("speed_m_per_s", "speed")]
     velocity: Annotated[float, _velocity("velocity_m_per_s", "part of the velocity")]
@@ -143,9 +143,9 @@ MOTION: Final = {quantity.field: quantity for quantity in own_quantities(Motion)
 
 @dataclass(frozen=True, slots=True)
 class TrackProblem:
-    """One problem, printable as one sentence.
+    """A problem in a file with a track, printable as one sentence.
 
-    ``place`` names where in the file: ``"row 3"`` of a text file (header: 1), ``"point 12"``, ``"byte 4711"``.
+    ``place`` is the place in the file: ``"row 3"`` of a text file (header: 1), ``"point 12"``, ``"byte 4711"``.
     """
 
     code: str
@@ -157,7 +157,7 @@ class TrackProblem:
     action: str
 
     def __str__(self) -> str:
-        """Say it in one line."""
+        """The problem in one line."""
         where = ", ".join(filter(None, (self.file, self.place, self.column and f"column {self.column}")))
         value = "" if self.value is None else f" found {self.value!r};"
         return f"error {self.code}: {where}:{value} allowed: {self.allowed}. {self.action}"
@@ -173,7 +173,7 @@ def track_error(
     column: str | None = None,
     value: str | None = None,
 ) -> FieldDataError:
-    """The error that refuses a file."""
+    """Error with one problem, which rejects the file."""
     shown = value if value is None or len(value) <= 60 else f"{value[:57]}…"
     return FieldDataError([TrackProblem(code, file, place, column, shown, allowed, action)])
 

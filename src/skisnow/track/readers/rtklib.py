@@ -1,7 +1,7 @@
 """Tracks in RTKLIB's solution files ``.pos``: latitude, longitude, height; earth-centred; or east, north, up of a base.
 
-The header line names the columns, their separator, and the time scale: GPST, UTC or JST. It must be there. Heights are
-as RTKLIB was told to give them: above the ellipsoid unless the header says geodetic.
+The header line names the columns, their separator, and the time scale: GPST, UTC or JST. It is required. Heights are
+above the ellipsoid unless the header contains "geodetic".
 """
 
 from __future__ import annotations
@@ -43,17 +43,17 @@ class Header:
 
     @property
     def width(self) -> int:
-        """Numbers in a row behind the time: an angle in degrees, minutes and seconds takes three."""
+        """Number of cells in a row after the time; an angle in degrees, minutes and seconds has three."""
         return len(self.columns) + (4 if self.sexagesimal else 0)
 
 
 def parse_header(text: str, name: str) -> Header:
-    """The header of a solution.
+    """Find and parse the header of a solution.
 
     Raises
     ------
     FieldDataError
-        There is none, or it does not name all three coordinates.
+        The header is missing, or does not name all three coordinates.
     """
     match = HEADER.search(text)
     if match is None:
@@ -87,10 +87,10 @@ def parse_header(text: str, name: str) -> Header:
 FloatArray = npt.NDArray[np.float64]
 
 LARGEST: Final = 1e12
-"""In any column: squares of what is larger overflow."""
+"""Largest number in any column; squares of larger ones could overflow."""
 ZONES: Final = {"UTC": UTC, "JST": timezone(timedelta(hours=9))}
 GPS_BEGIN: Final = datetime(1980, 1, 6)
-"""Of the weeks that RTKLIB counts; GPS time itself has no zone."""
+"""Beginning of the weeks that RTKLIB counts; GPS time has no zone."""
 DEVIATIONS: Final = {
     "geodetic": ("sde", "sdn", "sdu"),
     "earth_centred": ("sdx", "sdy", "sdz"),
@@ -99,14 +99,14 @@ DEVIATIONS: Final = {
 QUALITIES: Final[dict[float, Solution]] = {
     1.0: "fixed", 2.0: "float", 3.0: "code", 4.0: "code", 5.0: "code", 6.0: "float",
 }  # fmt: skip
-"""Of the column Q: fix, float, SBAS, DGPS, single, PPP (by the phase, without whole cycles)."""
+"""Kind of solution by the column Q: fix, float, SBAS, DGPS, single, PPP (by the phase, with float cycles)."""
 SPEED_DEVIATIONS: Final = {
     "geodetic": (("sdve", "sdvn", "sdvu"), ("sdvne", "sdvun", "sdveu")),
     "earth_centred": (("sdvx", "sdvy", "sdvz"), ("sdvxy", "sdvyz", "sdvzx")),
     "baseline": (("sdve", "sdvn", "sdvu"), ("sdvne", "sdvun", "sdveu")),
 }
-"""Of the velocity's parts, and roots of covariances, with their signs: first and second part, second and third, third
-and first."""
+"""Columns of the standard deviations of the velocity's components, and of the signed roots of their covariances: first
+with second, second with third, third with first."""
 VELOCITIES: Final = {
     "geodetic": ("ve", "vn", "vu"),
     "earth_centred": ("vx", "vy", "vz"),
@@ -120,7 +120,7 @@ def read_rtklib(text: str, name: str) -> Recording:
     Raises
     ------
     FieldDataError
-        The header line is missing, a row is shorter than it, or a cell is no number or time.
+        The header line is missing, a row is shorter than it, or a cell is not a number or time.
     """
     lines = text.split("\n")
     header = parse_header(text, name)
@@ -220,7 +220,7 @@ def _used_columns(kind: str) -> frozenset[str]:
 
 
 def _degrees(cells: list[str], values: list[float]) -> list[float]:
-    """Degrees, minutes, seconds of latitude and longitude to degrees; a minus in front counts for all three."""
+    """Convert degrees, minutes, seconds of latitude and longitude to degrees; a leading minus applies to all three."""
     angles = []
     for begin in (0, 3):
         degrees, minutes, seconds = values[begin : begin + 3]
@@ -248,7 +248,7 @@ def _moment(cells: list[str], scale: str) -> datetime | None:
 
 
 def _base(lines: list[str], header: Header) -> GeodeticPoint | None:
-    """The base station, where a baseline's file names one that stands on earth."""
+    """Base station of a baseline solution if the file names a valid one."""
     if header.kind != "baseline":
         return None
     for line in lines:
@@ -309,7 +309,7 @@ def _deviations(columns: dict[str, FloatArray], header: Header, place: FloatArra
 
 
 def _speed_sd(columns: dict[str, FloatArray], header: Header) -> FloatArray | None:
-    """Of the component along the velocity; at rest the largest of the three; NaN where it is no speed's."""
+    """Standard deviation (n,) of the component along the velocity; at rest the largest of three; NaN if impossible."""
     names, roots = SPEED_DEVIATIONS[header.kind]
     velocity, deviations = _vectors(columns, VELOCITIES[header.kind]), _vectors(columns, names)
     if velocity is None or deviations is None:

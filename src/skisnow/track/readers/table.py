@@ -1,4 +1,4 @@
-"""Tracks in CSV: local metres, or latitude and longitude; a row a point."""
+"""Tracks in CSV with one row for each point, in local metres or in latitude and longitude."""
 
 from __future__ import annotations
 
@@ -46,8 +46,7 @@ def read_table(text: str, name: str) -> Recording:
     Raises
     ------
     FieldDataError
-        A column is missing or stands there twice, a cell that must be a number or a time is none, or a row has more
-        cells than the header.
+        A column is missing or repeated, a cell is not a number or a time, or a row has more cells than the header.
     """
     table = _Table.of(split_cells(text, name), name)
     is_geodetic = table.kind()
@@ -90,7 +89,7 @@ class _Table:
 
     @classmethod
     def of(cls, cells: Cells, name: str) -> _Table:
-        """A table whose rows are as long as its header; the case of known headings does not matter."""
+        """Build a table with rows as long as its header; the case of known headings is ignored."""
         cells = dataclasses.replace(cells, header=tuple(map(_column_name, cells.header)))
         _require_header(cells, name)
         width = len(cells.header)
@@ -105,7 +104,7 @@ class _Table:
         return self.cells.header
 
     def kind(self) -> bool:
-        """Whether places are latitude and longitude."""
+        """True if places are latitude and longitude, False if they are local metres."""
         local, geodetic = (any(column in self.header for column in form[:2]) for form in (LOCAL, GEODETIC))
         if local and geodetic:
             raise track_error(
@@ -153,7 +152,7 @@ class _Table:
         return [row[place] for row in self.cells.rows]
 
     def numbers(self, name: str) -> FloatArray:
-        """A column of numbers, NaN if a cell is blank or, which is flagged, `nan` or `inf`."""
+        """Column of numbers (n,); NaN for blank cells, and for `nan` and `inf`, which are flagged."""
         cells = self.column(name)
         values = np.array([number(cell, self.mark) for cell in cells])
         for place in np.flatnonzero(np.isnan(values)).tolist():
@@ -254,7 +253,7 @@ _WORDS: Final = {
     "alt_m": (("alt", "altitude", "elevation", "höhe", "height"), _METRES),
     "speed_m_per_s": (("speed", "v", "geschwindigkeit"), ("", "m/s")),
 }
-"""For each column the words that may stand for it, and the units in which its numbers may stay as they are."""
+"""Synonyms of each column in headings of other programs, and the units that need no conversion."""
 _HEADING: Final = re.compile(
     r"(?P<word>[^\W\d_]+)"
     r"(?:[\s_]*[\[(/]\s*(?P<bracketed>[^\])]*?)\s*[\])]?|[\s_]+(?P<unit>\S+))?"
@@ -262,7 +261,7 @@ _HEADING: Final = re.compile(
 
 
 def columns_by_synonym(headings: Sequence[str]) -> dict[str, str]:
-    """Which columns the headings of a table likely stand for; one in another unit stands for none.
+    """Columns by headings that are synonyms; a heading with a different unit is not included.
 
     >>> columns_by_synonym(["Zeit [s]", "x (m)", "Y", "Geschwindigkeit [km/h]"])
     {'Zeit [s]': 'time_s', 'x (m)': 'x_m', 'Y': 'y_m'}

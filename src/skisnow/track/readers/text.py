@@ -1,4 +1,4 @@
-"""Bytes of a file to text, a table's cells, and cells to times."""
+"""Text and tables in files of tracks: decoding, separation into cells, times."""
 
 from __future__ import annotations
 
@@ -27,14 +27,14 @@ _HEAD: Final = 1 << 16
 
 
 def decode_text(data: bytes, name: str) -> str:
-    """Text in UTF-8, in UTF-16 with byte order mark, or else in Windows-1252, with line feeds as the only line ends.
+    """Decode UTF-8, UTF-16 with byte order mark, or Windows-1252; all line ends become line feeds.
 
-    Byte order marks are removed wherever they are: joined files have several.
+    All byte order marks are removed: concatenated files have several.
 
     Raises
     ------
     FieldDataError
-        The bytes are no text.
+        The bytes are not text.
     """
     try:
         return "\n".join(decoded(data).text.replace("\ufeff", "").splitlines())
@@ -48,13 +48,13 @@ def _no_text(name: str, value: str) -> Exception:
         name,
         value=value,
         allowed="text in UTF-8, UTF-16 with byte order mark, or Windows-1252; or FIT or UBX",
-        action="The file is no text and no known format of receivers; export it as CSV, GPX or FIT.",
+        action="The file is neither text nor a known format of receivers; export it as CSV, GPX or FIT.",
     )
 
 
 @dataclass(frozen=True, slots=True)
 class Cells:
-    """A table cut into cells: the header, and rows with the line of the file in which each begins."""
+    """Cells of a table: the header, and rows with the line of the file at which each begins."""
 
     header: tuple[str, ...]
     header_line: int
@@ -64,7 +64,7 @@ class Cells:
 
 
 def split_cells(text: str, name: str) -> Cells:
-    """Cut a CSV file: comma, semicolon or tab, whichever the header has most; a first line ``sep=;`` may name it.
+    """Split a CSV file into cells by the most frequent of comma, semicolon and tab, or by a first line ``sep=;``.
 
     Raises
     ------
@@ -102,7 +102,7 @@ def split_cells(text: str, name: str) -> Cells:
 
 
 def _require_size(rows: list[tuple[str, ...]], lines: list[int], name: str) -> None:
-    """Refuse what no table of measurements has, before anything is done with it."""
+    """Reject tables with too many columns or too long cells before they are processed."""
     for line, row in zip(lines, rows, strict=True):
         if len(row) > MOST_COLUMNS:
             raise track_error(
@@ -125,12 +125,12 @@ def _require_size(rows: list[tuple[str, ...]], lines: list[int], name: str) -> N
 
 
 def require_width(cells: Cells, name: str) -> None:
-    """Refuse a row that has more cells than the header.
+    """Reject a row with more cells than the header, such as with decimal commas in a file separated by commas.
 
     Raises
     ------
     FieldDataError
-        It has, as a decimal comma in a file separated by commas makes it.
+        A row has more cells than the header.
     """
     width = len(cells.header)
     for line, row in zip(cells.lines, cells.rows, strict=True):
@@ -146,7 +146,7 @@ def require_width(cells: Cells, name: str) -> None:
 
 
 def decimal_mark_of(cells: Iterable[str], separator: str) -> str:
-    """The decimal mark of a file: a comma where it does not separate and as many numbers have one as have a point.
+    """Decimal mark of a file: a comma if it is not the separator and at least as frequent as the point in numbers.
 
     >>> decimal_mark_of(["1", "2,5", "1.5"], ";"), decimal_mark_of(["1", "2"], ";")
     (',', '.')
@@ -155,7 +155,7 @@ def decimal_mark_of(cells: Iterable[str], separator: str) -> str:
 
 
 def moment(cell: str) -> datetime | None:
-    """The date and time in a cell after ISO 8601, in UTC where it has a zone; None where it is none.
+    """Date and time in a cell by ISO 8601, converted to UTC if it has a zone; None if it is not a date and time.
 
     >>> moment("2022-12-27T16:51:14.5+01:00").isoformat()
     '2022-12-27T15:51:14.500000+00:00'

@@ -1,4 +1,4 @@
-"""Times of points whose time stamps are coarser than the points: several points share each stamp.
+"""Times of points: time stamps shared by several points, and serial numbers of spreadsheets.
 
 Devices that record at 5 to 25 Hz write whole seconds or tenths of a second in some formats. The points of one stamp
 are spread over the time until the next one. Points that were recorded twice also share a stamp: there the place does
@@ -21,9 +21,9 @@ if TYPE_CHECKING:
 
 
 LEAST_SHARE: Final = 0.3
-"""Share of points that do not begin a stamp, from which stamps are taken as rounded (modelling assumption)."""
+"""Smallest share of points that do not begin a stamp in a file with rounded stamps (modelling assumption)."""
 LEAST_ADVANCE: Final = 0.5
-"""Share of the path within stamps, relative to an even motion, from which the points advance (modelling assumption)."""
+"""Smallest share of the path within stamps, relative to an even motion, of advancing points (modelling assumption)."""
 _EVEN: Final = 1.01
 """Steps between stamps up to this many units count as one unit: no stamp is missing."""
 

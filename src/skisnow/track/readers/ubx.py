@@ -1,11 +1,9 @@
 """Tracks in UBX, the binary messages of u-blox receivers: NAV-PVT, NAV-HPPOSLLH, NAV-COV, decoded with pyubx2.
 
-NAV-PVT makes a point. Where NAV-HPPOSLLH of the same time of week is there, the place is that: to 0.1 mm, not 1 cm.
-Where NAV-COV is there, the standard deviations are the roots of its variances. Frames are found by their two sync bytes
-and their checksum, so that a damaged one costs itself alone. Heights are those above the ellipsoid. ``hAcc`` is taken
-as √(σ_east² + σ_north²), each with half of the variance (modelling assumption; u-blox's manual calls it an estimate
-of the horizontal
-accuracy and says no more).
+Each NAV-PVT gives a point. A NAV-HPPOSLLH of the same time of week replaces its place: to 0.1 mm instead of 1 cm. A
+NAV-COV gives its standard deviations. Frames are recognised by their two sync bytes and their checksum, so a damaged
+frame does not affect others. Heights are above the ellipsoid. ``hAcc`` is used as √(σ_east² + σ_north²), each with half
+of the variance (modelling assumption: u-blox's manual only calls it an estimate of the horizontal accuracy).
 """
 
 from __future__ import annotations
@@ -25,19 +23,19 @@ from .recording import Recording, track_error
 
 SYNC: Final = b"\xb5\x62"
 LENGTHS: Final = {b"\x01\x07": (84, 92), b"\x01\x14": (36,), b"\x01\x36": (64,)}
-"""Of NAV-PVT, NAV-HPPOSLLH, NAV-COV in bytes; NAV-PVT has 84 of u-blox 7, 92 of all later; a request has none."""
+"""Lengths in bytes of NAV-PVT (84: u-blox 7, 92: later), NAV-HPPOSLLH and NAV-COV; a request has the length 0."""
 _HEAD, _CHECKSUM = 6, 2
 _DAMAGED: Final = "messages with a wrong checksum or cut short"
 _NO_TIME: Final = "messages without a valid time"
 _COUNTS: Final = (_DAMAGED, _NO_TIME)
 _NO_FIX: Final = (0, 5)  # none; time only
 CARRIER_SOLUTIONS: Final[dict[int, Solution]] = {0: "code", 1: "float", 2: "fixed"}
-"""Of ``carrSoln``."""
+"""Kind of solution by ``carrSoln``."""
 
 
 @dataclass(eq=False)
 class _Epoch:
-    """A NAV-PVT, and what belongs to it."""
+    """A NAV-PVT with its offset in the file, its time, and the other messages of the same time of week."""
 
     offset: int
     moment: datetime
@@ -47,7 +45,7 @@ class _Epoch:
 
 
 def read_ubx(data: bytes, name: str) -> Recording:
-    """The recording in the NAV-PVT messages of a file; other messages are left alone.
+    """Read the messages NAV-PVT of a file, with NAV-HPPOSLLH and NAV-COV; other messages are ignored.
 
     Raises
     ------
@@ -116,7 +114,7 @@ def _epochs(data: bytes, counts: dict[str, int]) -> list[_Epoch]:
 
 
 def _messages(data: bytes, counts: dict[str, int]) -> Iterator[tuple[int, Any]]:
-    """Every message that is read with its offset; counts frames that are damaged."""
+    """Each message that is read, with its offset; damaged frames are added to `counts`."""
     from pyubx2 import VALNONE, UBXReader
 
     sums = _Checksums(data)
@@ -133,9 +131,9 @@ def _messages(data: bytes, counts: dict[str, int]) -> Iterator[tuple[int, Any]]:
 
 
 class _Checksums:
-    """Checksums of any piece of a file in a constant time each, so that sync bytes by the thousand cost one pass.
+    """Checksums of any slice of a file in constant time, from running sums, so that many sync bytes stay cheap.
 
-    Of the bytes dᵢ from b to e, u-blox's sums modulo 256 are A = Σ dᵢ and B = Σ (e - i) dᵢ: from running sums.
+    u-blox's sums of the bytes dᵢ from b to e are A = Σ dᵢ and B = Σ (e - i) dᵢ, modulo 256.
     """
 
     def __init__(self, data: bytes) -> None:
@@ -163,7 +161,7 @@ def _moment(message: Any) -> datetime | None:
 
 
 def _solution(message: Any) -> Solution:
-    """u-blox 7 has no word for it: all its places are by the code."""
+    """Kind of solution; u-blox 7 does not state it and gives code solutions only."""
     return CARRIER_SOLUTIONS.get(int(getattr(message, "carrSoln", 0)), "")
 
 
@@ -196,7 +194,7 @@ def _place_sd(place: Any, covariance: Any) -> tuple[float, float, float]:
 
 
 def _speed_sd(message: Any, covariance: Any, velocity: tuple[float, float, float]) -> float:
-    """Of the component along the velocity (m/s); at rest, and without NAV-COV, the receiver's ``sAcc``."""
+    """Standard deviation (m/s) of the component along the velocity; at rest or without NAV-COV ``sAcc``."""
     speed = math.hypot(*velocity)
     if covariance is None or not covariance.velCovValid or speed == 0.0:
         return float(message.sAcc * MM)
