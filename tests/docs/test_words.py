@@ -12,7 +12,7 @@ SEARCHED = (
     ("internal variable", "methods/contact.md"),
     ("internal variable", "methods/simulated-turn.md"),
     ("internal variable", "methods/rate.md"),
-    ("internal variable", "decisions/grooves.md"),
+    ("internal variable", "decisions.md"),
     ("return mapping", "methods/contact.md"),
     ("return mapping", "methods/dynamics.md"),
     ("return mapping", "methods/shear-displacement.md"),
@@ -26,8 +26,8 @@ SEARCHED = (
     ("Kelvin–Voigt", "methods/dynamics.md"),
     ("Schur complement", "methods/dynamics.md"),
     ("Savitzky-Golay", "methods/tracks.md"),
-    ("Rosenbrock method", "decisions/time-steps.md"),
-    ("event sourcing", "decisions/lab.md"),
+    ("Rosenbrock method", "decisions.md"),
+    ("event sourcing", "decisions.md"),
 )
 
 

@@ -198,7 +198,7 @@ def _of_batch_system(system: str, given: object, wait: float, tls: Mapping[str, 
                 ),
                 code="missing_key",
             )
-    # one process for each core: see docs/decisions/studies.md
+    # one process for each core: see docs/decisions.md
     return SchedulerFile(None, wait, tls, system, {"processes": options["cores"], **options}, jobs)
 
 
