@@ -149,10 +149,11 @@ class _Section:
         gap = float(to_line @ ahead / (self.x @ ahead))
         blend = math.sin(whole.snow.edge_blend_angle)
         down = _edge_side(-(across @ n) / blend)
-        s = gap
-        for _ in range(2):
-            half, height = (float(np.interp(s, whole.table, column)) for column in whole.columns[:2])
-            s = gap - (down * half * float(across @ ahead) + height * float(up @ ahead)) / float(self.x @ ahead)
+        half, height, flare, slope = (float(np.interp(gap, whole.table, column)) for column in whole.columns)
+        s, aside, above = gap, float(across @ ahead), float(up @ ahead)
+        for _ in range(2):  # the shape is that at `gap` and its slopes
+            edge, base = half + flare * (s - gap), height + slope * (s - gap)
+            s = gap - (down * edge * aside + base * above) / float(self.x @ ahead)
         tail, tip = whole.runner.tail, whole.runner.tip
         self.station = s
         s = min(max(s, tail), tip)

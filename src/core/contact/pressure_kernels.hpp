@@ -29,7 +29,7 @@ struct Pressure {
 
   // [press_piece] A straight piece of ground from a to b (within the wet base), its lift there `lift + slope x`; `old`:
   // where it is ground from before the step.
-  void add(V a, V b, V lift, V slope, MaskOf<V> old) {
+  SKISNOW_INLINE void add(V a, V b, V lift, V slope, MaskOf<V> old) {
     if (!any(a < b)) return;
     const auto [c, d, u, v] = pressed_part(a, b, depth, fall, lift, slope, hardness, excess, THIN);
     if (growth != nullptr) grow(a, b, lift, slope, u, v, old);
@@ -98,7 +98,7 @@ V inside(V x, V low, V high) {
 // Add a piece of ground between two places, over the base by `lift` at the edge and `rise` more for each metre; over
 // the cut the deeper of both.
 template <class V>
-void add_piece(const CutGround<V>& cut, V low, V high, V lift, V rise, Pressure<V>& out) {
+SKISNOW_INLINE void add_piece(const CutGround<V>& cut, V low, V high, V lift, V rise, Pressure<V>& out) {
   const MaskOf<V> old = low == low;
   if (!any((cut.from < high) & (cut.to > low) & (cut.from < cut.to))) {
     out.add(low, high, lift, rise, old);
@@ -110,15 +110,16 @@ void add_piece(const CutGround<V>& cut, V low, V high, V lift, V rise, Pressure<
   meet = inside(meet, first, last);
   const V at_first = 0.5 * (first + meet), at_last = 0.5 * (meet + last);
   const MaskOf<V> old_first = lift + apart * at_first > 0.0, old_last = lift + apart * at_last > 0.0;
-  out.add(low, first, lift, rise, old);
-  out.add(first, meet, select(old_first, lift, V{}), select(old_first, rise, cut_rise), old_first);
-  out.add(meet, last, select(old_last, lift, V{}), select(old_last, rise, cut_rise), old_last);
-  out.add(last, high, lift, rise, old);
+  const MaskOf<V> is_old[] = {old, old_first, old_last, old};
+  const V ends[] = {low, first, meet, last, high};
+  for (int part = 0; part < 4; part++)
+    out.add(ends[part], ends[part + 1], select(is_old[part], lift, V{}), select(is_old[part], rise, cut_rise),
+            is_old[part]);
 }
 
 // [press_line] Pressure of the ground's pieces; what was cut within the step counts where it lies deeper.
 template <class V>
-void add_ground(const GrooveLines& lines, int j, V edge, V wet_from, V wet_to, const CutGround<V>& cut,
+SKISNOW_INLINE void add_ground(const GrooveLines& lines, int j, V edge, V wet_from, V wet_to, const CutGround<V>& cut,
                 Pressure<V>& out) {
   int most = 0;
   for (int lane = 0; lane < WIDTH<V>; lane++) most = std::max<int>(most, lines.knots[std::size_t(j + lane)]);

@@ -37,8 +37,8 @@ inline void look_up_shape(const Runner& runner, V place, V (&out)[ROW]) {
 }
 
 // [take_lines, cross_axis, cross_edge] Lines in the ski's axes, and the station at which the ski's deeper edge passes
-// each of them: from the crossing of the straight axis two fixed-point steps, whose error falls with the sidecut's
-// slope.
+// each of them: from the crossing of the straight axis two fixed-point steps, of which the second takes the slopes of
+// width and height instead of another row. The error falls with the sidecut's slope.
 template <class V>
 void cross_lines(const Runner& runner, const Pose& pose, const Snow& snow, const GrooveLines& lines, Base& s) {
   const auto& R = pose.rotation;
@@ -61,13 +61,10 @@ void cross_lines(const Runner& runner, const Pose& pose, const Snow& snow, const
     store3(s, LINE_LEFT_0, i, cross(normal, ahead));
     const V forwards = 1.0 / ahead.x, crossing = from.x + (from.y * ahead.y + from.z * ahead.z) * forwards;
     const V toward_edge = edge_side_of<V>(-normal.y * per_blend) * ahead.y * forwards, upward = ahead.z * forwards;
-    V station = crossing;
-    for (int step = 0; step < 2; step++) {
-      V shape[ROW];
-      look_up_shape<V>(runner, table_place(runner, station), shape);
-      station = crossing - toward_edge * shape[0] - upward * shape[2];
-    }
-    store(s[STATION] + i, station);
+    V shape[ROW];
+    look_up_shape<V>(runner, table_place(runner, crossing), shape);
+    const V off = -toward_edge * shape[0] - upward * shape[2];
+    store(s[STATION] + i, crossing + off - (toward_edge * shape[1] + upward * shape[3]) * off);
   });
 }
 
@@ -120,7 +117,7 @@ struct BentBase {
   V element, length, in_element;    // element of the beam, its length, place in it from the front
   V sine{}, cosine, twist_slope{};  // sine, cosine and slope of the twist
 
-  BentBase(const Runner& runner, const Pose& pose, V station) : cosine(all<V>(1.0)) {
+  SKISNOW_INLINE BentBase(const Runner& runner, const Pose& pose, V station) : cosine(all<V>(1.0)) {
     const V place = table_place(runner, station);
     const bool bends = !pose.beam.empty();
     look_up_shape<V>(runner, place, shape);
@@ -142,7 +139,7 @@ struct BentBase {
 
  private:
   // [bend] By Hermite's cubics; sine and cosine of the twist by series whose next terms are below 1e-9 at 0.3 rad.
-  void bend(const Row* front, const Row* rear, V per_length) {
+  SKISNOW_INLINE void bend(const Row* front, const Row* rear, V per_length) {
     V first[ROW], second[ROW];
     transpose<V>(front, first), transpose<V>(rear, second);
     const V &w = first[0], &a = first[1], &t = first[2], &v = second[1], &b = second[2], &u = second[3];
@@ -243,7 +240,8 @@ struct Cut {
   // [wet_base] Where on the line the base is in the snow.
   void find_wet() {
     widening = cp * left.y - sp * left.z + fall * sine;
-    const V right_end = -(half + reach) / widening, left_end = (half - reach) / widening;
+    const V per_widening = 1.0 / widening;
+    const V right_end = -(half + reach) * per_widening, left_end = (half - reach) * per_widening;
     const V down = select(absolute(fall) > LEVEL, fall, all<V>(LEVEL)), water = -edge_depth / down;
     wet_from = select(down > 0.0, maximum(right_end, water), right_end);
     wet_to = select(down > 0.0, left_end, minimum(left_end, water));

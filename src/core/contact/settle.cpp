@@ -18,6 +18,23 @@ double interpolated(const std::vector<std::pair<double, double>>& table, double 
   return before->second + (at - before->first) / (after->first - before->first) * (after->second - before->second);
 }
 
+constexpr double MOST_UNEVEN = 0.25;  // share of the spacing, between neighbours
+
+// Whether lines have come to lie unevenly under the straight axis of a ski.
+bool is_uneven(const Base& s, const GrooveLines& lines) {
+  const auto station = [&](std::int64_t n) {
+    const int i = s.index(n);
+    return s[FROM_BOOT_0][i] - s[FROM_BOOT_1][i] * s[LINE_LEFT_0][i] / s[LINE_LEFT_1][i];
+  };
+  double before = station(lines.first), worst = 0.0;
+  for (std::int64_t n = lines.first + 1; n < lines.end; n++) {
+    const double here = station(n);
+    worst = std::max(worst, std::fabs(here - before - lines.spacing()));
+    before = here;
+  }
+  return worst > MOST_UNEVEN * lines.spacing();
+}
+
 }  // namespace
 
 // The end of a step, for which the sections stand, enters the history; lines that the ski has left are dropped.
@@ -27,7 +44,7 @@ void SnowContact::settle_history(int k, const Pose& pose) {
   remember(k, lines, strength_varies());
   if (strength_varies()) hold_strength(k, lines);
   count_energy(k, lines);
-  if (lines.is_uneven(pose, *snow_)) lay_anew(k, pose);
+  if (lines.count() > 0 && (is_uneven(sections(k).base, lines) || lines.is_left(pose, *snow_))) lay_anew(k, pose);
   follow_snow(k, lines);
   lines.drop_left(runner(k), pose, &snow_->archive, state_.strips[std::size_t(k)]);
 }

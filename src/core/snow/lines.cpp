@@ -10,7 +10,6 @@ namespace {
 constexpr double MARGIN = 0.12;      // (m) before tip and behind tail in which lines are laid: more than a step's way
 constexpr double EDGE_ASIDE = 0.04;  // half a ski's width (m), about: where an edge will cross; no accuracy hangs on it
 constexpr int NEWTON_STEPS = 3;      // to the place on a curved surface
-constexpr double MOST_UNEVEN = 0.25;  // share of the spacing, between neighbours
 constexpr double MOST_TURN = 0.3;     // (rad) between a line's direction ahead and the ski
 constexpr double MOST_OFF = 2e-4;     // (m) between a line and the surface under the ski
 constexpr double FURTHER = 0.03;      // (m) beyond what is needed, over which older tracks are searched for
@@ -268,17 +267,9 @@ void GrooveLines::lay_ahead(const Runner& runner, const Pose& pose, const Snow& 
   while (at > runner.tail - MARGIN && count() < most) lay(--first, pose, at -= spacing_, snow);
 }
 
-bool GrooveLines::is_uneven(const Pose& pose, const Snow& snow) const {
-  if (count() == 0) return false;
+bool GrooveLines::is_left(const Pose& pose, const Snow& snow) const {
   const Vector3 there = get(*this, AHEAD_X, slot(first)), ahead = ahead_on(get(*this, NORMAL_X, slot(first)), pose);
-  if (dot(there, ahead) < std::cos(MOST_TURN)) return true;
-  double before = station(first, pose);
-  for (std::int64_t n = first + 1; n < end; n++) {
-    const double here = station(n, pose);
-    if (std::fabs(here - before - spacing_) > MOST_UNEVEN * spacing_) return true;
-    before = here;
-  }
-  return is_off_surface(slot((first + end) / 2), pose, snow);
+  return dot(there, ahead) < std::cos(MOST_TURN) || is_off_surface(slot((first + end) / 2), pose, snow);
 }
 
 // Whether the surface under the ski is not that of a line any more, because the ski has gone aside on it.

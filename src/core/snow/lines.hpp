@@ -87,8 +87,8 @@ class GrooveLines {
   // runner in the archive.
   void drop_left(const Runner& runner, const Pose& pose, Archive* archive, int strip);
 
-  // Whether they have come to lie unevenly, the ski has turned away from them, or the surface is another one there.
-  bool is_uneven(const Pose& pose, const Snow& snow) const;
+  // Whether the ski has turned away from them, or the surface is another one there.
+  bool is_left(const Pose& pose, const Snow& snow) const;
   void leave_all(Archive& archive, int strip);
   // Take hardness and strength of a place (m) across a line; its ground stays as it is.
   void follow_snow(int slot, double place, const Snow& snow);
