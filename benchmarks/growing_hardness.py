@@ -11,9 +11,9 @@ from itertools import product
 
 import numpy as np
 
-from skisnow.estimation.hardness import DEFINITIONS, ReadingUncertainty, hardness_at_largest_load
+from skisnow.estimation.hardness import DEFINITIONS, hardness_at_largest_load
 from skisnow.estimation.layering import growing_hardness, site_growth
-from skisnow.estimation.readings import Readings
+from skisnow.estimation.readings import Readings, ReadingUncertainty
 from skisnow.geometry import SkiPiece
 
 LOADS = np.linspace(12.0, 492.0, 7)

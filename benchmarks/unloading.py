@@ -15,9 +15,9 @@ import numpy as np
 from skisnow._support.units import MM
 from skisnow.campaign import ReferenceNoise, reference_campaign
 from skisnow.campaign.reference import design
-from skisnow.estimation.hardness import DEFINITIONS, ReadingUncertainty, hardness
 from skisnow.estimation.readings import readings_of
-from skisnow.estimation.unloading import site_unloading, unloading
+from skisnow.estimation.series_estimates import series_estimates
+from skisnow.estimation.unloading import site_unloading
 
 CASES = {
     "all stated errors": ReferenceNoise(),
@@ -36,9 +36,7 @@ def series_and_sites(seed: int, noise: ReferenceNoise) -> tuple[dict[str, list[n
     drawn = reference_campaign(seed, noise=noise)
     campaign, tests = drawn.campaign(), drawn.penetration
     readings = readings_of(tests, campaign.tools, geometry="extended")
-    uncertainty = ReadingUncertainty(campaign.depth_uncertainty or 0.0, campaign.load_uncertainty or 0.0)
-    value = hardness(readings, DEFINITIONS["H_V"], uncertainty)
-    found = unloading(tests, readings, value, uncertainty, np.zeros(len(tests), dtype=bool))
+    found = series_estimates(campaign, tests, readings).unloading
     truth = 1.0 / drawn.unloading_ratio
     low, high = found.rebound_ratio_interval.T
     series = np.stack((found.rebound_ratio / truth - 1.0, (low <= truth) & (truth <= high), found.is_unresolved))

@@ -45,13 +45,14 @@ def make_campaign(tmp_path: Path) -> MakeCampaign:
         moment: float = 0.0,
         arm: float = 0.0,
         extra: str = "",
+        top: str = "",
         further: dict[str, str] | None = None,
         columns: str = "",
         shear_columns: str = "",
     ) -> Campaign:
         folder = tmp_path / "campaign"
         folder.mkdir(exist_ok=True)
-        toml = CAMPAIGN_TOML.format(gauge=gauge, load=load, moment=moment, arm=arm) + extra
+        toml = top + CAMPAIGN_TOML.format(gauge=gauge, load=load, moment=moment, arm=arm) + extra
         (folder / "campaign.toml").write_text(toml, encoding="utf-8")
         heads = {
             "penetration.csv": ("experiment,site,tool,edge_angle_deg,load_N,depth_mm" + columns, penetration),

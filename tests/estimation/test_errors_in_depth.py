@@ -7,10 +7,10 @@ import numpy as np
 import odrpack
 import pytest
 
+from skisnow.estimation.campaign_model import fit_campaign
 from skisnow.estimation.errors_in_depth import FittedHardness, _weights, fit_models_with_depth_errors, fitted_hardness
-from skisnow.estimation.hardness import DEFINITIONS, ReadingUncertainty, hardness_at_largest_load
-from skisnow.estimation.readings import Readings
-from skisnow.estimation.seating import seating
+from skisnow.estimation.hardness import DEFINITIONS, hardness_at_largest_load
+from skisnow.estimation.readings import Readings, ReadingUncertainty
 from skisnow.geometry import SkiPiece
 
 TOOL = SkiPiece(0.2, 0.062)
@@ -32,7 +32,7 @@ def series(depth: np.ndarray, angle: np.ndarray, load: np.ndarray) -> Readings:
 
 def fitted(readings: Readings, uncertainty: ReadingUncertainty) -> FittedHardness:
     H = hardness_at_largest_load(readings, DEFINITIONS["H_V"])
-    return fitted_hardness(readings, seating(readings, H, uncertainty), uncertainty)
+    return fitted_hardness(readings, fit_campaign(readings, H, uncertainty))
 
 
 def test_exact_series_with_an_offset_give_back_the_hardness_and_b_one() -> None:
@@ -44,21 +44,22 @@ def test_exact_series_with_an_offset_give_back_the_hardness_and_b_one() -> None:
     found = fitted(series(np.maximum(depth, 0), angle, LOADS), ReadingUncertainty(1e-6))
     touching = depth.min(axis=1) > 0
     assert touching.sum() >= 9
-    np.testing.assert_allclose(found.value["H_V"][touching], H[touching], rtol=1e-5)
-    np.testing.assert_allclose(found.offset[touching], offset[touching], rtol=1e-4)
+    # the weak priors of the model take a little: a hundredth of H_V, and of a typical offset
+    np.testing.assert_allclose(found.value["H_V"][touching], H[touching], rtol=0.01)
+    np.testing.assert_allclose(found.offset[touching], offset[touching], atol=2e-6)
     rows, _ = fit_models_with_depth_errors(found.of(touching), ReadingUncertainty(1e-6))
     constant = next(row for row in rows if row.model.id == "H_V:a=none,b=constant")
-    assert constant.b0 == pytest.approx(1.0, abs=1e-5)
-    assert constant.rmse < 1e-3 * LOADS.max()
+    assert constant.b0 == pytest.approx(1.0, abs=1e-3)
+    assert constant.rmse < 1e-2 * LOADS.max()
 
 
-def test_three_readings_are_too_few_for_an_offset() -> None:
-    depth = TOOL.depth_at_volume(LOADS[4:] / 1e9, math.radians(45)) + 1e-4
+def test_one_reading_in_contact_leaves_the_depths_and_has_no_interval() -> None:
+    depth = np.array([0.0, 0.0, float(TOOL.depth_at_volume(LOADS[6] / 1e9, math.radians(45)))])
     found = fitted(series(depth[None, :], np.array([math.radians(45)]), LOADS[4:]), ReadingUncertainty(1e-6))
     assert found.offset.tolist() == [0.0]
     np.testing.assert_array_equal(found.readings.penetration_depth, depth)
-    # the offset makes the snow look softer
-    assert found.value["H_V"][0] < 0.98e9
+    assert found.value["H_V"][0] == pytest.approx(1e9)
+    assert np.isnan(found.interval).all()
 
 
 def test_effective_variance_agrees_with_orthogonal_distance_regression() -> None:

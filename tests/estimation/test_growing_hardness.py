@@ -10,8 +10,9 @@ from benchmarks.growing_hardness import ANGLE, TOOL, growing
 
 import skisnow
 from skisnow.campaign import reference_campaign
-from skisnow.estimation.hardness import DEFINITIONS, ReadingUncertainty, hardness_at_largest_load
+from skisnow.estimation.hardness import DEFINITIONS, hardness_at_largest_load
 from skisnow.estimation.layering import growing_hardness, second_moment, site_growth
+from skisnow.estimation.readings import ReadingUncertainty
 
 from .conftest import MakeCampaign
 from .test_errors_in_depth import series

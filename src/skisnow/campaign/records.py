@@ -319,6 +319,8 @@ class Campaign(Shown):
         Step of the depth gauge (m), or None where the campaign does not say.
     load_uncertainty, moment_uncertainty, lever_arm_uncertainty
         Standard uncertainties (N, N m, m); None where left out, which counts as 0.
+    seating
+        Standard deviation of the depth zero from series to series (m); None where not stated.
     load_steps
         The campaign's own discs (N), for entry; may be empty.
     tools, plates
@@ -368,6 +370,7 @@ class Campaign(Shown):
     corrections: tuple[AppliedCorrection, ...] = ()
     unread_files: tuple[str, ...] = ()
     pole_stiffness: float | None = None
+    seating: float | None = None
     places: Mapping[str, str] = field(default_factory=dict)
     snow_micro_pen: SnowMicroPenRecordings | None = None
     weather: CampaignWeather | None = None

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from datetime import UTC, datetime
 from functools import cached_property
 from pathlib import Path
@@ -18,7 +18,6 @@ from ..campaign.records import Campaign
 from ..snow import SnowProperties
 from .comparisons import Comparison, OwnValue, compare_with_published, own_mean
 from .errors_in_depth import fit_models_with_depth_errors, fitted_hardness
-from .hardness import DEFINITIONS, ReadingUncertainty, hardness
 from .layering import growing_hardness, site_growth
 from .model_choice import bootstrap_intervals, compare_nested_rows
 from .models import Model, fit_models, select_model, why_no_choice
@@ -36,10 +35,12 @@ from .readings import readings_of
 from .regressions import Regression, Source, fit_warnings, regressions
 from .screening import screened_penetration, screened_shear
 from .seating import seating
+from .series_estimates import reading_uncertainty
 from .shear import shear_displacement, shear_stress, site_displacement
 from .sites import SiteComparison, SiteMean, compare_sites, site_means, site_snow
 from .snow_micro_pen import SnowMicroPenAnalysis, evaluate_recordings
-from .unloading import NOT_FALLING, site_unloading, unloading
+from .unloading import site_unloading
+from .volume_factor import volume_factor
 from .weather import WeatherAtTests, weather_at_tests
 
 if TYPE_CHECKING:
@@ -256,45 +257,46 @@ def _penetration(
 ) -> PenetrationAnalysis | None:
     if campaign.penetration is None:
         return None
-    screened = screened_penetration(campaign, geometry=geometry)
     readings = readings_of(campaign.penetration, campaign.tools, geometry=geometry)
-    uncertainty = ReadingUncertainty(campaign.depth_uncertainty or 0.0, campaign.load_uncertainty or 0.0)
+    uncertainty = reading_uncertainty(campaign)
     _report(progress, f"hardness of {readings.n_series} penetration experiments")
-    found = {symbol: hardness(readings, definition, uncertainty) for symbol, definition in DEFINITIONS.items()}
-    back = unloading(campaign.penetration, readings, found["H_V"], uncertainty, screened.flags[NOT_FALLING])
-    back_by_site = site_unloading(back, screened.used, campaign.penetration.site)
+    screened = screened_penetration(campaign, geometry=geometry)
+    estimates = screened.estimates
+    if estimates is None:
+        return None
+    found, model, sites = estimates.hardness, estimates.model, campaign.penetration.site
     growing = growing_hardness(readings, found["H_V"].value, uncertainty)
-    growth_by_site = site_growth(growing, screened.used, campaign.penetration.site)
-    offsets = seating(readings, found["H_V"].value, uncertainty)
-    fitted = fitted_hardness(readings, offsets, uncertainty)
+    fitted = fitted_hardness(readings, model)
+    of_series = PenetrationAnalysis(
+        screened=screened,
+        readings=readings,
+        model=model,
+        hardness=found,
+        seating=seating(readings, model),
+        fitted=fitted,
+        growing=growing,
+        site_growth=site_growth(growing, screened.used, sites),
+        unloading=estimates.unloading,
+        site_unloading=site_unloading(estimates.unloading, screened.used, sites),
+    )
     if not screened.used.any():
-        return PenetrationAnalysis(
-            screened, readings, found, offsets, fitted, growing, (), back, back_by_site, None, (), None, None
-        )
+        return of_series
 
     used = readings.of(screened.used)
     _report(progress, f"model table over {used.n} readings")
     by_last = {symbol: H.value[screened.used] for symbol, H in found.items()}
     fits = fit_models(used, by_last)
     intervals = bootstrap_intervals(used, by_last, rng, n_resamples=n_resamples, progress=progress)
-    fitted_used = fitted.of(screened.used)
-    depth_fits, _ = fit_models_with_depth_errors(fitted_used, uncertainty)
+    depth_fits, _ = fit_models_with_depth_errors(fitted.of(screened.used), uncertainty)
     no_choice = why_no_choice(used)
     selected = None if no_choice else select_model(fits)
-    return PenetrationAnalysis(
-        screened=screened,
-        readings=readings,
-        hardness=found,
-        seating=offsets,
-        fitted=fitted,
-        growing=growing,
-        site_growth=growth_by_site,
-        unloading=back,
-        site_unloading=back_by_site,
+    return replace(
+        of_series,
         table=ModelTable(fits, intervals),
         nested=compare_nested_rows(fits),
         selected=selected,
         errors_in_depth=ModelTable(depth_fits, {}),  # no intervals: a bootstrap covers b in 7 to 90 % of campaigns
+        volume_factor=volume_factor(used, by_last["H_V"], model.of(screened.used)),
         warnings=(*filter(None, (no_choice,)), *fit_warnings(fits, selected, used.load)),
     )
 

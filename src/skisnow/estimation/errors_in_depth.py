@@ -1,7 +1,7 @@
 """The model table with the error where it is: in depth as well as in load.
 
 The paper's fit takes H of each series from its last reading, as if that were exact, and puts all error into the load.
-Here H_V of each series is fitted to all its readings together with the offset of its depth zero (`seating`), with
+Here H_V of each series comes from all its readings, together with the offset of its depth zero (`campaign_model`), with
 errors in depth and load. H_e and H_A come from all readings likewise, at the depths less the offset. The rows are then
 fitted to these depths, each reading weighed by its effective variance (Orear 1982),
 
@@ -26,20 +26,16 @@ import numpy.typing as npt
 from .._support.display import ShownFields
 from ..statistics.bounded import condensed, non_negative_fits
 from .hardness import DEFINITIONS, hardness_of_all_readings
-from .layering import layering
 from .models import MODELS, EndBasis, Model, ModelFit, end_basis, end_columns, fit_model
 
 if TYPE_CHECKING:
-    from .hardness import ReadingUncertainty
-    from .readings import Readings
-    from .seating import Seating
+    from .campaign_model import CampaignModel
+    from .readings import Readings, ReadingUncertainty
 
 FloatArray = npt.NDArray[np.float64]
 BoolArray = npt.NDArray[np.bool_]
 
 
-FEWEST_READINGS: Final = 4
-"""A series needs so many readings for its offset to be fitted: two parameters, and two degrees of freedom left."""
 _EXACT_SHARE: Final = 1e-6
 """Of the median variance of a reading; none is taken to be smaller (modelling assumption)."""
 _BLOCK: Final = 8192
@@ -55,11 +51,11 @@ class FittedHardness(ShownFields):
     readings
         The readings at the depths less the offset of their series.
     offset
-        δ (m) that was taken off; 0 where too few readings, or no answer, leave it unknown.
+        δ (m) that was subtracted; 0 where the model has no estimate.
     value
         H by definition (SI).
     interval
-        (m, 2), 95 %, of H_V (N/m³); with an offset it allows for layered snow too.
+        (m, 2), 95 %, of H_V (N/m³).
     scatter
         Relative scatter s of each series about F = H_V V.
     """
@@ -77,25 +73,17 @@ class FittedHardness(ShownFields):
         return FittedHardness(readings, self.offset[chosen], value, self.interval[chosen], self.scatter[chosen])
 
 
-def fitted_hardness(readings: Readings, seated: Seating, uncertainty: ReadingUncertainty) -> FittedHardness:
-    """Fit the hardness of each series to all its readings, the offset of its depth zero taken off where it is known."""
-    enough = (readings.sums(np.ones(readings.n)) >= FEWEST_READINGS) & np.isfinite(seated.offset)
-    offset = np.where(enough, seated.offset, 0.0)
+def fitted_hardness(readings: Readings, model: CampaignModel) -> FittedHardness:
+    """H_V of each series by the campaign's model, H_e and H_A from all readings at the depths less the offset."""
+    offset = np.nan_to_num(model.offset)
     moved = readings.less_offset(offset)
-    found = {
-        symbol: hardness_of_all_readings(moved, definition, uncertainty) for symbol, definition in DEFINITIONS.items()
+    estimates = {
+        symbol: hardness_of_all_readings(moved, definition, model.uncertainty)
+        for symbol, definition in DEFINITIONS.items()
     }
-    value = {symbol: H.value for symbol, H in found.items()}
-    value["H_V"] = np.where(enough, seated.hardness, value["H_V"])
-    interval = np.where(enough[:, None], _with_layering(readings, seated, uncertainty), found["H_V"].interval)
-    return FittedHardness(moved, offset, value, interval, found["H_V"].scatter)
-
-
-def _with_layering(readings: Readings, seated: Seating, uncertainty: ReadingUncertainty) -> FloatArray:
-    """Hull of the interval for even snow and that for layered snow; NaN where one of them is not known."""
-    other = layering(readings, seated.hardness, seated.offset, uncertainty).hardness_interval
-    low, high = np.minimum(seated.hardness_interval, other)[:, 0], np.maximum(seated.hardness_interval, other)[:, 1]
-    return np.stack((low, high), axis=-1)
+    value = {symbol: H for symbol, (H, _) in estimates.items()}
+    value["H_V"] = np.where(np.isfinite(model.log_hardness), model.hardness, value["H_V"])
+    return FittedHardness(moved, offset, value, model.hardness_interval, estimates["H_V"][1])
 
 
 def pooled_scatter(scatter: FloatArray) -> float:

@@ -3,15 +3,13 @@
 The three rival definitions share one form, H = F / M with a measure M of the contact: the depth e, the projected area A
 or the displaced volume V. A further definition is one more entry in ``DEFINITIONS``.
 
-Error model of a reading, used throughout this package: its departure from the law, ln F - ln(H M), has the variance
+The interval of Eqn 1 has the spreads of the whole campaign (`campaign_model`). With k_M = d ln M/d ln e the variance of
+ln H is
 
-    s² + (u_F / F)² + (k u_e / e)²,     k = d ln M / d ln e,
+    (k_M/k_V)² s² + (u_F/F₇)² + (k_M/e₇)² (u_e² + τ²)
 
-with u_F the standard uncertainty of the load, u_e = (gauge step)/√12 that of the depth, and s the relative scatter of
-the snow, estimated from the series' own load steps (Paule and Mandel 1982). Intervals use Student's t with the degrees
-of freedom of s (assumption): the effective degrees of the GUM (JCGM 100:2008, G.4) take s = 0 for certain where the
-estimate happens to be 0, and then covered the truth in as few as 90 % of simulated series; this form covers it in
-92-96 %, and in more where the gauge alone limits.
+with the relative scatter s of the force, the seating τ, and the standard uncertainties u_F of the load and u_e = (gauge
+step)/√12 of the depth. Student's factor has the degrees of freedom of s: τ² contains the offset of the series itself.
 """
 
 from __future__ import annotations
@@ -23,13 +21,14 @@ import numpy as np
 import numpy.typing as npt
 
 from .._support.display import ShownFields
-from .._support.units import CONFIDENCE, N_PER_MM, N_PER_MM2, N_PER_MM3
-from ..statistics.combined_uncertainty import expanded_factor
+from .._support.units import N_PER_MM, N_PER_MM2, N_PER_MM3
+from .campaign_model import Parts
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from .readings import Readings
+    from .campaign_model import CampaignModel
+    from .readings import Readings, ReadingUncertainty
 
 FloatArray = npt.NDArray[np.float64]
 BoolArray = npt.NDArray[np.bool_]
@@ -78,14 +77,6 @@ DEFINITIONS: Final = {
 }
 
 
-@dataclass(frozen=True, slots=True)
-class ReadingUncertainty:
-    """Standard uncertainties of one reading: depth u_e (m) and load u_F (N); 0 where unknown."""
-
-    depth: float = 0.0
-    load: float = 0.0
-
-
 @dataclass(frozen=True, slots=True, repr=False)
 class Hardness(ShownFields):
     """Hardness of m series by one definition, in SI; NaN where it does not exist.
@@ -95,15 +86,11 @@ class Hardness(ShownFields):
     value
         H.
     interval
-        (m, 2), 95 %; carries gauge, load and scatter over the load steps. NaN where too few readings in contact leave
-        the scatter unknown.
-    scatter
-        Relative scatter s of the readings that the interval knows it from.
+        (m, 2), 95 %; contains gauge, load, seating and scatter. NaN with fewer than two readings in contact.
     """
 
     value: FloatArray
     interval: FloatArray
-    scatter: FloatArray
 
 
 def hardness_at_largest_load(readings: Readings, definition: HardnessDefinition) -> FloatArray:
@@ -112,28 +99,33 @@ def hardness_at_largest_load(readings: Readings, definition: HardnessDefinition)
     return np.divide(F, M, out=np.full(F.shape, np.nan), where=M > 0)
 
 
-def hardness(readings: Readings, definition: HardnessDefinition, uncertainty: ReadingUncertainty) -> Hardness:
-    """Hardness of each series from the reading under its largest load (Eqn 1).
-
-    The scatter is that of the *other* readings, so that it is independent of the one judged: n - 2 degrees of freedom.
-    """
-    logs, known, others = _log_ratios(readings, definition, uncertainty)
-    others[readings.largest] = False
+def hardness(readings: Readings, definition: HardnessDefinition, model: CampaignModel) -> Hardness:
+    """Hardness of each series from the reading under its largest load (Eqn 1)."""
     value = hardness_at_largest_load(readings, definition)
-    scatter2 = scatter_variance(readings, logs, known, others)
-    variance, dof = scatter2 + known[readings.largest], readings.sums(others.astype(float)) - 1.0
-    return Hardness(value, _log_interval(np.log(value), variance, dof), np.sqrt(scatter2))
+    last, uncertainty = readings.largest, model.uncertainty
+    scatter2, seating2 = (spread[model.group] for spread in (model.spreads.scatter2, model.spreads.seating2))
+    with np.errstate(all="ignore"):  # no contact, no hardness
+        per_depth = definition.growth(readings)[last] / definition.measure(readings)[last]
+        of_volume = readings.contact_area[last] / readings.displaced_volume[last]
+        own = (per_depth / of_volume) ** 2 * scatter2
+        known = (uncertainty.load / readings.load[last]) ** 2 + per_depth**2 * (uncertainty.depth**2 + seating2)
+        nothing = np.zeros_like(own)
+        half = model.factor(Parts(own + known, nothing, nothing, own), model.group) * np.sqrt(own + known)
+        half = np.where(np.isfinite(model.log_hardness), half, np.nan)
+        return Hardness(value, value[:, None] * np.exp(half[:, None] * np.array([-1.0, 1.0])))
 
 
 def hardness_of_all_readings(
     readings: Readings, definition: HardnessDefinition, uncertainty: ReadingUncertainty
-) -> Hardness:
-    """Hardness of each series from all its readings, with errors in depth and load: n - 1 degrees of freedom."""
+) -> tuple[FloatArray, FloatArray]:
+    """Hardness of each series from all its readings in contact, and their relative scatter s about F = H M.
+
+    The variance of ln(F/M) is s² + (u_F/F)² + (k_M u_e/e)².
+    """
     logs, known, touching = _log_ratios(readings, definition, uncertainty)
     scatter2 = scatter_variance(readings, logs, known, touching)
-    mean, variance = _weighted_mean(readings, logs, scatter2[readings.series] + known, touching)
-    interval = _log_interval(mean, variance, readings.sums(touching.astype(float)) - 1.0)
-    return Hardness(np.exp(mean), interval, np.sqrt(scatter2))
+    mean = _weighted_mean(readings, logs, scatter2[readings.series] + known, touching)
+    return np.exp(mean), np.sqrt(scatter2)
 
 
 def _log_ratios(
@@ -146,16 +138,13 @@ def _log_ratios(
     return logs, known_variance(readings, definition, uncertainty), touching
 
 
-def _weighted_mean(
-    readings: Readings, logs: FloatArray, variance: FloatArray, touching: BoolArray
-) -> tuple[FloatArray, FloatArray]:
-    """Mean of each series weighted by 1/variance, and its variance; without any variance all readings count alike."""
+def _weighted_mean(readings: Readings, logs: FloatArray, variance: FloatArray, touching: BoolArray) -> FloatArray:
+    """Mean of each series weighted by 1/variance; without any variance all readings have the same weight."""
     weight = np.where(touching, _reciprocal(variance), 0.0)
     exact = readings.sums(weight) == 0.0
     weight = np.where(touching & exact[readings.series], 1.0, weight)
     with np.errstate(invalid="ignore", divide="ignore"):
-        total = readings.sums(weight)
-        return readings.sums(weight * logs) / total, np.where(exact, 0.0, 1.0 / total)
+        return readings.sums(weight * logs) / readings.sums(weight)
 
 
 def known_variance(readings: Readings, definition: HardnessDefinition, uncertainty: ReadingUncertainty) -> FloatArray:
@@ -200,10 +189,3 @@ def scatter_variance(readings: Readings, logs: FloatArray, known: FloatArray, to
 
 def _reciprocal(variance: FloatArray) -> FloatArray:
     return np.divide(1.0, variance, out=np.zeros_like(variance), where=variance > 0)
-
-
-def _log_interval(log_value: FloatArray, variance: FloatArray, dof: FloatArray) -> FloatArray:
-    """Interval of exp(log_value) by Student's t; NaN without a degree of freedom."""
-    with np.errstate(invalid="ignore"):
-        half = expanded_factor(np.where(dof >= 1.0, dof, np.nan), CONFIDENCE) * np.sqrt(variance)
-        return np.exp(np.stack((log_value - half, log_value + half), axis=-1))

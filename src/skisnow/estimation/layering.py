@@ -1,9 +1,9 @@
 """Hardness that changes with depth: test of a series for layering, and a linear profile fitted to each series.
 
 A series whose snow grows harder or softer below follows, near enough, F = H_V V₇ (V/V₇)^(1 + κ/2), with V₇ = F₇/H_V at
-the largest load and κ = 0 for F = H_V V. κ is fitted together with H_V and the offset δ of the depth zero (`seating`).
-Both bend the curve, so seven readings leave much of κ open: that belongs into the interval of H_V. The whole module is
-our modelling assumption.
+the largest load and κ = 0 for F = H_V V. κ is fitted together with H_V and the offset δ of the depth zero. Both bend
+the curve, so seven readings leave much of κ open. `campaign_model` has the same law with spreads of the whole campaign;
+here each series is tested for itself. The whole module is our modelling assumption.
 
 Linear profile: the pressure is p = H_0 ε (1 + γ ε/e₇) with the hardness H_0 at the surface, (1 + γ) times as much at
 the depth e₇ of the largest load, and γ = 0 for F = H_V V. Over the tool
@@ -31,8 +31,7 @@ from .comparisons import own_mean
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from .hardness import ReadingUncertainty
-    from .readings import Readings
+    from .readings import Readings, ReadingUncertainty
 
 
 FloatArray = npt.NDArray[np.float64]
@@ -64,15 +63,12 @@ class Layering:
     ----------
     load_exponent, load_exponent_error
         g of V ~ F^g, 1 for even snow, and its standard error; κ = 2/g - 2.
-    hardness_interval
-        95 % interval (m, 2) of H_V (N/m³).
     degrees_of_freedom
-        Of both.
+        Of the standard error.
     """
 
     load_exponent: FloatArray
     load_exponent_error: FloatArray
-    hardness_interval: FloatArray
     degrees_of_freedom: FloatArray
 
 
@@ -83,28 +79,21 @@ def layered(readings: Readings, hardness: FloatArray, uncertainty: ReadingUncert
     found = np.zeros(readings.n_series, dtype=np.bool_)
     if not known.any():
         return found
-    fit = layering(readings.of(known), hardness[known], np.zeros(int(known.sum())), uncertainty, offset_sd=SEATING_SD)
+    fit = layering(readings.of(known), hardness[known], uncertainty)
     with np.errstate(invalid="ignore"):
         far = expanded_factor(fit.degrees_of_freedom, SHOWS) * fit.load_exponent_error
         found[known] = np.abs(fit.load_exponent - 1.0) > far
     return found
 
 
-def layering(
-    readings: Readings,
-    hardness: FloatArray,
-    offset: FloatArray,
-    uncertainty: ReadingUncertainty,
-    *,
-    offset_sd: float = np.inf,
-) -> Layering:
+def layering(readings: Readings, hardness: FloatArray, uncertainty: ReadingUncertainty) -> Layering:
     """Fit e = ê(V) + δ, ln V = ln V₇ + g ln(F/F₇), g = 1/(1 + κ/2), to each series by weighted Gauss-Newton.
 
-    From ``hardness`` (N/m³), g = 1 and ``offset`` (m). Error model and weights are those of `seating`. A finite
-    ``offset_sd`` (m) is the prior of δ about 0.
+    From ``hardness`` (N/m³), g = 1 and δ = 0. The variance of a reading is u_e² + (dê/dln V)² (s² + (g u_F/F)²) with s
+    of the series itself. The prior of δ is normal about 0 with `SEATING_SD`.
     """
-    fit = _Fit(readings, uncertainty, offset_sd)
-    b = np.stack((np.log(hardness), np.ones(readings.n_series), np.where(np.isfinite(offset), offset, 0.0)))
+    fit = _Fit(readings, uncertainty)
+    b = np.stack((np.log(hardness), np.ones(readings.n_series), np.zeros(readings.n_series)))
     scatter2 = np.full(readings.n_series, 1e-4)
     step = np.full_like(b, np.inf)
     with np.errstate(all="ignore"):  # series without a solution run through as NaN and are separated at the end
@@ -119,24 +108,18 @@ def layering(
         _, variance = fit.step(b, scatter2)
         error = np.where(np.abs(step[:2]).max(axis=0) < 1e-4, np.sqrt(variance), np.nan)
         dof = np.where(fit.dof >= 1.0, fit.dof, np.nan)
-        half = expanded_factor(dof, CONFIDENCE) * error[0]
-        return Layering(
-            load_exponent=b[1],
-            load_exponent_error=error[1],
-            hardness_interval=np.exp(np.stack((b[0] - half, b[0] + half), axis=-1)),
-            degrees_of_freedom=dof,
-        )
+        return Layering(load_exponent=b[1], load_exponent_error=error[1], degrees_of_freedom=dof)
 
 
 class _Fit:
     """The linearised fit of (ln H_V, g, δ), all series at once."""
 
-    def __init__(self, readings: Readings, uncertainty: ReadingUncertainty, offset_sd: float) -> None:
+    def __init__(self, readings: Readings, uncertainty: ReadingUncertainty) -> None:
         self._readings, self._uncertainty = readings, uncertainty
         self._largest = np.log(readings.load[readings.largest])
         self._log_share = np.log(readings.load) - self._largest[readings.series]
-        self._prior = offset_sd**-2
-        self.dof = readings.sums(np.ones(readings.n)) - (2.0 if np.isfinite(offset_sd) else 3.0)
+        self._prior = SEATING_SD**-2
+        self.dof = readings.sums(np.ones(readings.n)) - 2.0  # the prior determines δ
 
     def _line(self, b: FloatArray, scatter2: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Residual, dê/d ln V and weight of each reading."""
@@ -162,7 +145,7 @@ class _Fit:
         return np.einsum("mik,km->im", inverse, gain), np.einsum("mii->im", inverse)
 
     def scatter_step(self, b: FloatArray, scatter2: FloatArray) -> FloatArray:
-        """One Newton step on 1/Q towards Q = Σ r²/σ² = degrees of freedom, as in `seating`."""
+        """One Newton step on 1/Q towards Q = Σ r²/σ² = degrees of freedom (Paule and Mandel 1982)."""
         residual, slope, weight = self._line(b, scatter2)
         Q = self._readings.sums(weight * residual**2) + self._prior * b[2] ** 2
         fall = self._readings.sums((weight * residual * slope) ** 2)
@@ -215,7 +198,7 @@ class SiteGrowth:
 def growing_hardness(readings: Readings, hardness: FloatArray, uncertainty: ReadingUncertainty) -> GrowingHardness:
     """Fit (ln H, γ, δ) to each series by weighted Gauss-Newton, from ``hardness`` (N/m³) and even snow.
 
-    Error model and weights are those of `seating`.
+    Error model and weights are those of `layering`.
     """
     m = readings.n_series
     H_0, growth, error, dof = (np.full(m, np.nan) for _ in range(4))
@@ -300,7 +283,7 @@ class _GrowthFit:
         dof = sums(np.ones(self._readings.n)) - 2.0  # δ is held by its prior
         Q = sums(weight * residual**2) + self._prior * self._b[2] ** 2
         fall = sums((weight * residual * slope) ** 2)
-        scatter2 = self._scatter2 + (Q / dof - 1.0) * Q / fall  # Newton on 1/Q towards Q = dof, as in `seating`
+        scatter2 = self._scatter2 + (Q / dof - 1.0) * Q / fall  # Newton on 1/Q towards Q = dof
         scatter2 = np.clip(np.where(fall > 0, scatter2, 0.0), 1e-12, 10.0)
         scatter2 = np.sqrt(scatter2 * self._scatter2)  # half a step on logarithms: whole ones oscillate
         drift = np.abs(scatter2 - self._scatter2) / (scatter2 + _LITTLE_SCATTER)

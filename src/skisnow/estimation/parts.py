@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .._support.display import Facts, Shown, amount, field_facts
+from .campaign_model import CampaignModel
 from .errors_in_depth import FittedHardness
 from .hardness import Hardness
 from .layering import GrowingHardness, SiteGrowth
@@ -18,6 +19,7 @@ from .screening import Screened
 from .seating import Seating
 from .shear import ShearDisplacement, ShearStress, SiteDisplacement
 from .unloading import SiteUnloading, Unloading
+from .volume_factor import VolumeFactor
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -38,14 +40,16 @@ class ModelTable(Shown):
 class PenetrationAnalysis(Shown):
     """Results of the penetration experiments; arrays run over all m experiments, the table over the used ones.
 
-    ``hardness`` holds each definition by its symbol, ``fitted`` what all readings of a series say, ``growing`` what
-    they say of a hardness that grows with depth, ``unloading`` what those say that were read while discs were taken
-    off. ``table``, ``errors_in_depth`` and ``selected`` are None where no experiment is used, ``selected`` also with
-    too few series; ``warnings`` say so, and hold those of `fit_warnings`.
+    ``model`` is the campaign's model, ``hardness`` Eqn 1 of each definition by its symbol, ``fitted`` the hardness from
+    all readings of a series, ``growing`` a hardness that grows with depth, ``unloading`` the estimates from readings
+    while discs were taken off. ``table``, ``errors_in_depth``, ``volume_factor`` and ``selected`` are None where no
+    experiment is used, ``selected`` also with too few series; ``warnings`` report this, and contain those of
+    `fit_warnings`.
     """
 
     screened: Screened
     readings: Readings
+    model: CampaignModel
     hardness: dict[str, Hardness]
     seating: Seating
     fitted: FittedHardness
@@ -53,10 +57,11 @@ class PenetrationAnalysis(Shown):
     site_growth: tuple[SiteGrowth, ...]
     unloading: Unloading
     site_unloading: tuple[SiteUnloading, ...]
-    table: ModelTable | None
-    nested: tuple[NestedRows, ...]
-    selected: ModelFit | None
-    errors_in_depth: ModelTable | None
+    table: ModelTable | None = None
+    nested: tuple[NestedRows, ...] = ()
+    selected: ModelFit | None = None
+    errors_in_depth: ModelTable | None = None
+    volume_factor: VolumeFactor | None = None
     warnings: tuple[str, ...] = ()
 
     def _facts(self) -> Facts:

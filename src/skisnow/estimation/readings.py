@@ -26,6 +26,14 @@ _FEW_ANGLES = 16
 """Readings at up to so many angles are gone through angle by angle: each has one sine and one tangent."""
 
 
+@dataclass(frozen=True, slots=True)
+class ReadingUncertainty:
+    """Standard uncertainties of one reading: depth u_e (m) and load u_F (N); 0 where unknown."""
+
+    depth: float = 0.0
+    load: float = 0.0
+
+
 @dataclass(frozen=True, repr=False)
 class Readings(ShownFields):
     """n readings of m series in SI, series after series, each in the order of loading.

@@ -9,23 +9,21 @@ import numpy as np
 import numpy.typing as npt
 
 from .._support.units import MM, MM2, MM3, N_PER_MM2, N_PER_MM3
-from .hardness import DEFINITIONS, ReadingUncertainty, hardness, hardness_at_largest_load
+from .hardness import DEFINITIONS, hardness_at_largest_load
 from .models import MODELS
 from .readings import readings_of
 from .screening import screened_both
 from .shear import shear_displacement, shear_stress
-from .unloading import NOT_FALLING, unloading
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
     from ..campaign.records import Campaign, PenetrationTests, ShearTests
     from ..geometry import GeometryForm
-    from .hardness import Hardness
+    from .campaign_model import CampaignModel
     from .model_choice import NestedRows
     from .models import Model, ModelFit
     from .parts import ModelTable, PenetrationAnalysis
     from .screening import Screened
+    from .series_estimates import SeriesEstimates
     from .shear import ShearDisplacement, ShearStress
     from .unloading import Unloading
 
@@ -55,12 +53,8 @@ def experiment_results(
     """
     penetration, shear = [], []
     pressed, cut = screened or screened_both(campaign, geometry=geometry)
-    if (tests := campaign.penetration) is not None:
-        readings = readings_of(tests, campaign.tools, geometry=geometry)
-        uncertainty = ReadingUncertainty(campaign.depth_uncertainty or 0.0, campaign.load_uncertainty or 0.0)
-        found = {symbol: hardness(readings, definition, uncertainty) for symbol, definition in DEFINITIONS.items()}
-        back = unloading(tests, readings, found["H_V"], uncertainty, pressed.flags[NOT_FALLING])
-        penetration = penetration_experiments(tests, pressed, found, back)
+    if (tests := campaign.penetration) is not None and pressed.estimates is not None:
+        penetration = penetration_experiments(tests, pressed, pressed.estimates)
     if (sheared := campaign.shear) is not None:
         shear = shear_experiments(sheared, cut, shear_stress(campaign, sheared), shear_displacement(campaign, sheared))
     answer: Json = without_nan({"penetration": {"experiments": penetration}, "shear": {"experiments": shear}})
@@ -110,7 +104,7 @@ def finite_or_none(values: FloatArray) -> list[Any]:
 
 
 def penetration_experiments(
-    tests: PenetrationTests, screened: Screened, hardness: Mapping[str, Hardness], unloading: Unloading
+    tests: PenetrationTests, screened: Screened, estimates: SeriesEstimates | PenetrationAnalysis
 ) -> list[Json]:
     """The rows ``penetration.experiments``: of each series what it was, its flags, its hardness, its unloading."""
     columns: dict[str, list[Any]] = {
@@ -119,14 +113,17 @@ def penetration_experiments(
         "tool": list(tests.tool),
         "edge_angle_deg": whole_degrees(tests.edge_angle),
         "n_loads": np.diff(tests.first).tolist(),
+        "n_zero": estimates.model.n_zero.tolist(),
         "used": screened.used.tolist(),
         "flags": screened.codes(),
     }
     for symbol, definition in DEFINITIONS.items():
-        columns[definition.key] = finite_or_none(hardness[symbol].value / definition.si)
+        columns[definition.key] = finite_or_none(estimates.hardness[symbol].value / definition.si)
     for symbol, definition in DEFINITIONS.items():
-        columns[f"{symbol}_interval_{definition.unit_key}"] = finite_or_none(hardness[symbol].interval / definition.si)
-    return column_rows(columns | _unloading_columns(unloading))
+        columns[f"{symbol}_interval_{definition.unit_key}"] = finite_or_none(
+            estimates.hardness[symbol].interval / definition.si
+        )
+    return column_rows(columns | _unloading_columns(estimates.unloading))
 
 
 def _unloading_columns(found: Unloading) -> dict[str, list[Any]]:
@@ -138,6 +135,41 @@ def _unloading_columns(found: Unloading) -> dict[str, list[Any]]:
         "rebound_ratio_interval": finite_or_none(found.rebound_ratio_interval),
         "k_u_N_per_mm3": finite_or_none(found.unloading_stiffness / N_PER_MM3),
         "k_u_interval_N_per_mm3": finite_or_none(found.unloading_stiffness_interval / N_PER_MM3),
+    }
+
+
+def campaign_model_results(model: CampaignModel, unloading: Unloading) -> Json:
+    """``penetration.campaign_model``: spreads with degrees of freedom by group, priors, and readings left out."""
+    spreads, freedom, priors = model.spreads, model.freedom, model.priors
+    n_series = np.bincount(model.group[model.counts], minlength=len(model.group_names))
+    columns = {
+        "group": list(model.group_names),
+        "n_series": n_series.tolist(),
+        "seating_mm": finite_or_none(np.sqrt(spreads.seating2) / MM),
+        "seating_degrees_of_freedom": finite_or_none(freedom.seating),
+        "mean_exponent": finite_or_none(spreads.mean_exponent),
+        "layering": finite_or_none(np.sqrt(spreads.layering2)),
+        "layering_degrees_of_freedom": finite_or_none(freedom.layering),
+        "relative_scatter": finite_or_none(np.sqrt(spreads.scatter2)),
+        "scatter_degrees_of_freedom": finite_or_none(freedom.scatter),
+        "rebound_scatter": finite_or_none(unloading.rebound_scatter),
+        "rebound_degrees_of_freedom": finite_or_none(unloading.rebound_freedom),
+    }
+    return {
+        "grouped_by": model.grouped_by,
+        "groups": column_rows(columns),
+        "n_zero": int(model.n_zero.sum()),
+        "priors": {
+            "seating_mm": priors.seating / MM,
+            "seating_series": priors.seating_series,
+            "layering": priors.layering,
+            "layering_series": priors.layering_series,
+            "mean_exponent": 1.0,
+            "mean_exponent_sd": priors.mean_layering,
+            "relative_scatter": priors.scatter,
+            "rebound_scatter": priors.rebound,
+            "scatter_readings": priors.readings,
+        },
     }
 
 

@@ -17,6 +17,7 @@ import orjson
 
 from .._support.units import DEGREE, MM, N_PER_MM3
 from .result_rows import (
+    campaign_model_results,
     column_rows,
     finite_or_none,
     model_rows,
@@ -38,6 +39,7 @@ if TYPE_CHECKING:
     from .regressions import Regression
     from .sites import SiteMean
     from .unloading import SiteUnloading
+    from .volume_factor import VolumeFactor
 
 FloatArray = npt.NDArray[np.float64]
 Json: TypeAlias = dict[str, Any]
@@ -126,17 +128,21 @@ def _penetration(analysis: Analysis) -> Json:
             "tests": [],
             "selected": None,
             "warnings": [],
+            "volume_factor": None,
+            "campaign_model": None,
             "seating": [],
             "errors_in_depth": {"models": model_rows(None), "experiments": []},
             "unloading": [],
             "growing_hardness": {"experiments": [], "sites": []},
         }
     return {
-        "experiments": penetration_experiments(tests, found.screened, found.hardness, found.unloading),
+        "experiments": penetration_experiments(tests, found.screened, found),
         "models": model_rows(found.table),
         "tests": [nested_row(row) for row in found.nested],
         "selected": selected_model(found),
         "warnings": list(found.warnings),
+        "volume_factor": _volume_factor(found.volume_factor),
+        "campaign_model": campaign_model_results(found.model, found.unloading),
         "seating": _seating(tests.experiment, found),
         "errors_in_depth": {
             "models": model_rows(found.errors_in_depth),
@@ -162,6 +168,18 @@ def _penetration(analysis: Analysis) -> Json:
                 for row in found.site_growth
             ],
         },
+    }
+
+
+def _volume_factor(found: VolumeFactor | None) -> Json | None:
+    if found is None:
+        return None
+    return {
+        "n_series": found.n,
+        "b_raw": found.raw,
+        "b_raw_expected": found.expected_raw,
+        "b": found.value,
+        "b_interval": [found.low, found.high],
     }
 
 

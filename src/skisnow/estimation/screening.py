@@ -13,11 +13,12 @@ from .._support.content import numbered
 from .._support.display import ShownFields
 from .._support.units import N_PER_MM3
 from ..campaign.screening import flag_problems, screen_penetration, screen_shear
-from .hardness import DEFINITIONS, ReadingUncertainty, hardness, hardness_at_largest_load
+from .hardness import DEFINITIONS, hardness_at_largest_load
 from .layering import layered
 from .readings import readings_of
+from .series_estimates import SeriesEstimates, reading_uncertainty, series_estimates
 from .shear import shear_stress
-from .unloading import NOT_FALLING, unloading
+from .unloading import NOT_FALLING
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -38,10 +39,14 @@ NORMAL_MAD: Final = 1.4826
 
 @dataclass(frozen=True, slots=True, repr=False)
 class Screened(ShownFields):
-    """Quality flags of each experiment by code, and which experiments are used (masks over the experiments)."""
+    """Quality flags of each experiment by code, and which experiments are used (masks over the experiments).
+
+    ``estimates`` of the penetration series, whose spreads come from the used ones.
+    """
 
     flags: Mapping[str, BoolArray]
     used: BoolArray
+    estimates: SeriesEstimates | None = None
 
     def codes(self) -> list[list[str]]:
         """Codes of the flags of each experiment, in the order of `QUALITY_FLAGS`."""
@@ -61,14 +66,13 @@ def screened_penetration(campaign: Campaign, *, geometry: GeometryForm) -> Scree
     readings = readings_of(tests, campaign.tools, geometry=geometry)
     H_V = hardness_at_largest_load(readings, DEFINITIONS["H_V"])
     used = _used(flags, campaign, len(tests)) & np.isfinite(H_V)
-    flags["layered"] = layered(readings, np.where(used, H_V, np.nan), _uncertainty(campaign))
-    used = _used(flags, campaign, len(tests)) & np.isfinite(H_V)
-    found = hardness(readings, DEFINITIONS["H_V"], _uncertainty(campaign))
-    back = unloading(tests, readings, found, _uncertainty(campaign), flags[NOT_FALLING])
-    flags["rebound_unresolved"] = back.is_unresolved
+    flags["layered"] = layered(readings, np.where(used, H_V, np.nan), reading_uncertainty(campaign))
     used = _used(flags, campaign, len(tests)) & np.isfinite(H_V)
     flags["hardness_outlier"] = hardness_outliers(H_V, used, tests.site)
-    return Screened(flags, _used(flags, campaign, len(tests)) & np.isfinite(H_V))
+    used = _used(flags, campaign, len(tests)) & np.isfinite(H_V)
+    estimates = series_estimates(campaign, tests, readings, counts=used, not_falling=flags[NOT_FALLING])
+    flags["rebound_unresolved"] = estimates.unloading.is_unresolved
+    return Screened(flags, _used(flags, campaign, len(tests)) & np.isfinite(H_V), estimates)
 
 
 def screened_shear(campaign: Campaign) -> Screened:
@@ -123,10 +127,6 @@ def quality_flags(
         replace(problem, value=values[problem.experiment or ""]) if problem.code == "hardness_outlier" else problem
         for problem in problems
     ]
-
-
-def _uncertainty(campaign: Campaign) -> ReadingUncertainty:
-    return ReadingUncertainty(campaign.depth_uncertainty or 0.0, campaign.load_uncertainty or 0.0)
 
 
 def _used(flags: Mapping[str, BoolArray], campaign: Campaign, count: int) -> BoolArray:

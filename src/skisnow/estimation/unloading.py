@@ -8,26 +8,27 @@ the depth e_m - κ d of the loading, κ = k_u/H_V, whatever its shape:
 
 A flat tool falls along a straight line, an edged one along (1 - κ d/e_m)². The law is linear in the rebound ratio
 s = H_V/k_u: the depth is e = e_0 - s g with g = e_m - ê(V_m F/F_m). Each series is fitted in (e_0, s) with its reading
-under the largest load among the others. The variance of a depth is
+under the largest load among the others, at depths less its offset δ of the depth zero (`campaign_model`). The variance
+of a depth is
 
-    u_e² + (s dê/dF u_F)² + σ² d²
+    u_e² + (s dê/dF u_F)² + r² d²
 
-with gauge and load as in `hardness` and the relative scatter σ of the rebound from the series itself (Paule and Mandel
-1982). Intervals of k_u/H_V are the reciprocals of those of s. The whole module is our modelling assumption: the paper
-names the steepness and prints neither method nor value.
+with gauge and load as in `hardness` and the relative scatter r of the rebound, which all series of a group share (Paule
+and Mandel 1982, with a weak prior). The variance of s is that of the line plus (ds/dδ)² (variance of δ + u_e²): an
+offset δ changes g in proportion to δ/e_m. Intervals of k_u/H_V are the reciprocals of those of s. The whole module is
+our modelling assumption: the paper names the steepness and prints neither method nor value.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
 from .._support.display import ShownFields
-from .._support.units import CONFIDENCE
-from ..statistics.combined_uncertainty import expanded_factor, random_effects_mean
+from ..statistics.combined_uncertainty import random_effects_mean
 from .comparisons import own_mean
 from .readings import Readings
 
@@ -35,7 +36,8 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from ..campaign.records import PenetrationTests, UnloadingReadings
-    from .hardness import Hardness, ReadingUncertainty
+    from .campaign_model import CampaignModel
+    from .hardness import Hardness
 
 FloatArray = npt.NDArray[np.float64]
 BoolArray = npt.NDArray[np.bool_]
@@ -47,8 +49,10 @@ _FITTED: Final = 2
 """e_0 and s."""
 _ROUNDING: Final = 1e-9
 """Relative error of a depth that stands for none: rounding of double precision."""
-_ITERATIONS: Final = 50
-_SETTLED: Final = 1e-6
+_ITERATIONS: Final = 60
+_SETTLED: Final = 1e-4
+_LARGEST_SHARE: Final = 0.9
+"""Of the largest depth that an offset can be."""
 
 
 @dataclass(frozen=True, slots=True, repr=False)
@@ -66,6 +70,11 @@ class Unloading(ShownFields):
         k_u/H_V and its 95 % interval (m, 2); the interval is NaN where that of s reaches 0.
     unloading_stiffness, unloading_stiffness_interval
         k_u (N/m³) with H_V of Eqn 1, and its 95 % interval (m, 2).
+    below_step
+        Mask of the series that came back by less than one step of the gauge. Rounding is no independent error there, so
+        the interval of s is the bound that one step allows, and k_u/H_V has no upper end.
+    rebound_scatter, rebound_freedom
+        r, the relative scatter of the rebound, and its degrees of freedom, by group of the model; NaN if not unloaded.
     """
 
     n_readings: IntArray
@@ -76,6 +85,9 @@ class Unloading(ShownFields):
     unloading_ratio_interval: FloatArray
     unloading_stiffness: FloatArray
     unloading_stiffness_interval: FloatArray
+    below_step: BoolArray
+    rebound_scatter: FloatArray
+    rebound_freedom: FloatArray
 
     @property
     def is_unresolved(self) -> BoolArray:
@@ -116,7 +128,7 @@ class SiteUnloading:
 
 
 def unloading(
-    tests: PenetrationTests, readings: Readings, hardness: Hardness, uncertainty: ReadingUncertainty, bad: BoolArray
+    tests: PenetrationTests, readings: Readings, hardness: Hardness, model: CampaignModel, bad: BoolArray
 ) -> Unloading:
     """Fit the unloading of every series.
 
@@ -129,17 +141,20 @@ def unloading(
         another reading under it.
     hardness
         H_V of each series.
-    uncertainty
-        Of a reading.
+    model
+        Of the campaign, for the depth zeros.
     bad
-        Mask over the series: those that are left out, because their loads do not fall.
+        Mask over the series: those that are omitted, because their loads do not fall.
     """
     m, back = len(tests), tests.unloading
-    chosen = np.zeros(m, dtype=np.bool_) if back is None else (back.count > 0) & ~bad & np.isfinite(hardness.value)
-    s, error, dof = np.full((3, m), np.nan)
+    chosen = np.zeros(m, dtype=np.bool_) if back is None else (back.count > 0) & ~bad & np.isfinite(model.offset)
+    s, error, half, bound = np.full((4, m), np.nan)
+    scatter, freedom = np.full((2, len(model.spreads.scatter2)), np.nan)
     if back is not None and chosen.any():
-        s[chosen], error[chosen], dof[chosen] = _fit(_unloading_branch(readings, back, chosen), uncertainty)
-    half = expanded_factor(np.where(dof >= 1.0, dof, np.nan), CONFIDENCE) * error
+        fit = _fit(_unloading_branch(readings, back, chosen), model, chosen)
+        s[chosen], error[chosen], half[chosen], bound[chosen], scatter, freedom = fit
+    below_step = np.abs(s) < bound
+    half = np.where(below_step & np.isfinite(half), bound, half)
     ends = np.stack((s - half, s + half), axis=-1)
     ratio, ratio_ends = _reciprocal(s, ends)
     return Unloading(
@@ -151,6 +166,9 @@ def unloading(
         unloading_ratio_interval=ratio_ends,
         unloading_stiffness=ratio * hardness.value,
         unloading_stiffness_interval=_of_product((ratio, ratio_ends), (hardness.value, hardness.interval)),
+        below_step=below_step,
+        rebound_scatter=scatter,
+        rebound_freedom=freedom,
     )
 
 
@@ -173,48 +191,93 @@ def _unloading_branch(readings: Readings, back: UnloadingReadings, chosen: BoolA
     )
 
 
-def _fit(branch: Readings, uncertainty: ReadingUncertainty) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """S of each series, its standard error, and the degrees of freedom."""
-    top = branch.largest[branch.series]
-    volume = branch.displaced_volume[top] * branch.load / branch.load[top]
+class _Branch(NamedTuple):
+    """The law e = e_0 - s g at depths less the offset: g, dg/dδ, known variance, and d² of each reading (m, m²)."""
+
+    g: FloatArray
+    g_by_offset: FloatArray
+    known: FloatArray
+    rebound2: FloatArray
+
+
+def _fit(branch: Readings, model: CampaignModel, chosen: BoolArray) -> tuple[FloatArray, ...]:
+    """Rebound ratio s, its error, half of its 95 % interval, s of a gauge step, by series; r, its freedom by group."""
+    series, group = branch.series, model.group[chosen]
+    law = _law(
+        branch, np.minimum(model.offset[chosen], _LARGEST_SHARE * branch.penetration_depth[branch.largest]), model
+    )
+    scatter2, freedom = _scatter(branch, law, model, group, model.counts[chosen])
+    of_rebound = scatter2[group][series] * law.rebound2
+    weight = 1.0 / (law.known + of_rebound)
+    s, spread, residual = _line(branch, law.g, weight)
+    dg = _centred(branch, law.g, weight)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        own = branch.sums((weight * dg) ** 2 * of_rebound) / spread**2
+        changed = weight * _centred(branch, law.g_by_offset, weight)
+        by_offset2 = (branch.sums(changed * (residual + s[series] * dg)) / spread) ** 2
+        offset = model.parts(2).of(chosen).times(by_offset2)
+        gauge = by_offset2 * model.uncertainty.depth**2
+        parts = offset._replace(variance=1.0 / spread + offset.variance + gauge)
+        error = np.where(branch.sums(np.ones(branch.n)) > _FITTED, np.sqrt(parts.variance), np.nan)
+        half = model.factor(parts, group, (own, freedom[group])) * error
+    step = 12.0**0.5 * model.uncertainty.depth
+    return s, error, half, step / np.maximum.reduceat(law.g, branch.first[:-1]), np.sqrt(scatter2), freedom
+
+
+def _law(branch: Readings, offset: FloatArray, model: CampaignModel) -> _Branch:
+    top, series, uncertainty = branch.largest[branch.series], branch.series, model.uncertainty
+    deepest = (branch.penetration_depth - offset[series])[top]
+    share = branch.load / branch.load[top]
+    volume = branch.volume_at_depth(deepest) * share
     loading_depth = branch.depth_at_volume(volume)
-    g = branch.penetration_depth[top] - loading_depth
-    per_newton = np.divide(volume, branch.area_at_depth(loading_depth) * branch.load)  # dê/dF = V/(A F)
+    area = branch.area_at_depth(loading_depth)
+    g = deepest - loading_depth
+    per_newton = np.divide(volume, area * branch.load)  # dê/dF = V/(A F)
+    g_by_offset = np.divide(branch.area_at_depth(deepest) * share, area) - 1.0
     s, _, _ = _line(branch, g, np.ones(branch.n))
-    s = np.clip(s, 0.0, 1.0)
-    known = uncertainty.depth**2 + (s[branch.series] * per_newton * uncertainty.load) ** 2
-    floor = (_ROUNDING * branch.penetration_depth[top]) ** 2  # a series without any error keeps finite weights
-    dof = branch.sums(np.ones(branch.n)) - _FITTED
-    scatter2 = _scatter_variance(branch, g, known + floor, (s[branch.series] * g) ** 2, dof)
-    s, spread, _ = _line(branch, g, 1.0 / (known + floor + scatter2[branch.series] * (s[branch.series] * g) ** 2))
-    with np.errstate(invalid="ignore", divide="ignore"):
-        return s, np.where(dof >= 1.0, np.sqrt(1.0 / spread), np.nan), dof
+    s = np.clip(s, 0.0, 1.0)[series]
+    floor = (_ROUNDING * deepest) ** 2  # a series without any error keeps finite weights
+    return _Branch(
+        g, g_by_offset, uncertainty.depth**2 + (s * per_newton * uncertainty.load) ** 2 + floor, (s * g) ** 2
+    )
 
 
-def _scatter_variance(
-    branch: Readings, g: FloatArray, known: FloatArray, per_scatter: FloatArray, dof: FloatArray
-) -> FloatArray:
-    """σ² ≥ 0 of the rebound of each series: Σ r²/(known + σ² d²) = n - 2 (Paule and Mandel 1982)."""
-    scatter2 = np.zeros(branch.n_series)
-    with np.errstate(invalid="ignore", divide="ignore"):
-        for _ in range(_ITERATIONS):
-            weight = 1.0 / (known + scatter2[branch.series] * per_scatter)
-            _, _, residual = _line(branch, g, weight)
-            Q = branch.sums(weight * residual**2)
-            fall = branch.sums((weight * residual) ** 2 * per_scatter)
-            moved = np.where((fall > 0) & (dof >= 1.0), np.maximum(scatter2 + (Q / dof - 1.0) * Q / fall, 0.0), 0.0)
-            settled = np.abs(moved - scatter2) <= _SETTLED * moved
-            scatter2 = moved
-            if settled.all():
-                break
-    return scatter2
+def _scatter(
+    branch: Readings, law: _Branch, model: CampaignModel, group: IntArray, counts: BoolArray
+) -> tuple[FloatArray, FloatArray]:
+    """r² of the rebound of each group and its degrees of freedom: Σ w r_j² + ν₀ r₀²/r² = n - 2 m + ν₀."""
+    n_groups, priors = len(model.spreads.scatter2), model.priors
+
+    def total(values: FloatArray) -> FloatArray:
+        counted = np.where(counts & np.isfinite(values), values, 0.0)
+        return np.bincount(group, weights=counted, minlength=n_groups).astype(float)
+
+    n = branch.sums(np.ones(branch.n))
+    free, readings = total(np.maximum(n - _FITTED, 0.0)), total(branch.sums((law.rebound2 > 0).astype(float)))
+    scatter2 = np.full(n_groups, priors.rebound**2)
+    for _ in range(_ITERATIONS):
+        weight = 1.0 / (law.known + scatter2[group][branch.series] * law.rebound2)
+        _, _, residual = _line(branch, law.g, weight)
+        prior = priors.readings * priors.rebound**2 / scatter2
+        Q = total(branch.sums(weight * residual**2)) + prior
+        fall = total(branch.sums((weight * residual) ** 2 * law.rebound2)) + prior / scatter2
+        moved = np.maximum(scatter2 + (Q / (free + priors.readings) - 1.0) * Q / fall, 0.2 * scatter2)
+        settled = np.abs(moved - scatter2) <= _SETTLED * moved
+        scatter2 = moved
+        if settled.all():
+            break
+    share = scatter2[group][branch.series] * law.rebound2 * weight
+    return scatter2, priors.readings + total(branch.sums(share**2)) * free / np.maximum(readings, 1.0)
+
+
+def _centred(branch: Readings, values: FloatArray, weight: FloatArray) -> FloatArray:
+    """Values less the weighted mean of their series."""
+    return values - (branch.sums(weight * values) / branch.sums(weight))[branch.series]
 
 
 def _line(branch: Readings, g: FloatArray, weight: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Slope of e = e_0 - s g by weighted least squares, Σ w (g - ḡ)² of each series, and the residuals."""
-    total = branch.sums(weight)
-    dg = g - (branch.sums(weight * g) / total)[branch.series]
-    de = branch.penetration_depth - (branch.sums(weight * branch.penetration_depth) / total)[branch.series]
+    dg, de = (_centred(branch, values, weight) for values in (g, branch.penetration_depth))
     spread = branch.sums(weight * dg**2)
     with np.errstate(invalid="ignore", divide="ignore"):
         s = -branch.sums(weight * dg * de) / spread

@@ -305,6 +305,7 @@ def _campaign(contents: _Contents, described: CampaignFile) -> Campaign:
         folder=contents.folder,
         gauge_resolution=described.gauge_resolution,
         load_uncertainty=described.load_uncertainty,
+        seating=described.seating,
         moment_uncertainty=described.moment_uncertainty,
         lever_arm_uncertainty=described.lever_arm_uncertainty,
         load_steps=described.load_steps,

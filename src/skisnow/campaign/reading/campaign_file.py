@@ -66,6 +66,17 @@ class CampaignFile:
             lowest=0.0,
         ),
     ] = None
+    seating: Annotated[
+        float | None,
+        Quantity(
+            "seating_mm",
+            "standard deviation of the depth zero from series to series, where it is known, for example from repeated "
+            "seating on a plate; optional: 0.05 mm, which the series of the campaign correct",
+            lowest=0.0,
+            above=True,
+            usual=(0.001, 1.0),
+        ),
+    ] = None
     moment_uncertainty: Annotated[
         float | None, Quantity("moment_uncertainty_Nm", "standard uncertainty of a moment", lowest=0.0)
     ] = None
@@ -130,6 +141,7 @@ def read_campaign_file(text: str, found: list[Problem]) -> CampaignFile | None:
         observers=top.texts("observers"),
         gauge_resolution=_length(top, CAMPAIGN_KEYS["gauge_resolution_mm"]),
         load_uncertainty=top.number(CAMPAIGN_KEYS["load_uncertainty_N"]),
+        seating=_length(top, CAMPAIGN_KEYS["seating_mm"]),
         moment_uncertainty=top.number(CAMPAIGN_KEYS["moment_uncertainty_Nm"]),
         lever_arm_uncertainty=_length(top, CAMPAIGN_KEYS["lever_arm_uncertainty_mm"]),
         pole_stiffness=_stiffness(top),
