@@ -16,7 +16,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any, Final
+from typing import Any, Final, TypeAlias
 
 from .._support.display import ShownFields
 from .._support.errors import ParameterError
@@ -45,6 +45,10 @@ ALTERNATIVES: Final = {"ski.name": "ski", "ski.file": "ski", "course.name": "cou
 
 CONDITIONS: Final = {name: key.condition for name, key in SCENARIO_KEYS.items() if key.condition is not None}
 """Values of other keys without which a key has no effect."""
+
+
+Provider: TypeAlias = tuple[int, str]
+"""Number of a layer, and its key that gives a quantity."""
 
 
 class ContradictionError(ParameterError):
@@ -151,9 +155,9 @@ def resolve(given: ScenarioInput, sources: Sources) -> Resolution:
     ParameterError
         A named snow or a snow map cannot be read.
     """
-    providers: dict[str, tuple[int, str]] = {}
+    providers: dict[str, Provider] = {}
     latest: dict[str, int] = {}
-    snows: dict[str, SnowProperties | SnowMap] = {}
+    snows: dict[Provider, SnowProperties | SnowMap] = {}
     files: dict[str, Path] = {}
     for number, layer in enumerate(given.layers):
         for name in layer.values:
@@ -161,36 +165,58 @@ def resolve(given: ScenarioInput, sources: Sources) -> Resolution:
             if name in PATH_KEYS:
                 files[name] = layer.folder / str(layer.values[name])
         values = {name: value for name, value in given.values.items() if latest.get(name, number + 1) <= number}
-        snows |= _read_snows(layer, values, files, sources)
-        for quantity, names in _providers_by_quantity(layer, snows).items():
+        replaced = "snow.results" not in values or providers.get(H_V, (-1, ""))[0] > latest["snow.results"]
+        if "snow.site" in layer.values and replaced:
+            raise ContradictionError(("snow.site", H_V), "snow.site goes with snow.results. Change one of them")
+        layer_snows = _read_snows(layer, values, files, sources)
+        snows |= {(number, name): snow for name, snow in layer_snows.items()}
+        for quantity, names in _providers_by_quantity(layer, layer_snows).items():
             providers[quantity] = (number, _strongest(quantity, names, layer))
-    counting = {name for _, name in providers.values()}
+    snow_provider, measured = _named_snow(providers, snows)
+    counting = {name for _, name in providers.values() if name not in NAMED_SNOWS} | {snow_provider[1]}
     values = {name: value for name, value in given.values.items() if name in counting or not _replaceable(name)}
     if UNLOADING in counting and values[UNLOADING] != 1.0 and values.get("snow.penetration") == "elastic":
         del values["snow.penetration"]  # the number comes from a later layer, else the two contradict each other
-    values = dict(_with_effect(values, latest, providers))
-    _require_unmapped(providers, snows, latest)
-    snow = next((snows[name] for name in NAMED_SNOWS if name in values), None)
-    snow_map = snows["snow.map_file"] if "snow.map_file" in values else None
+    values = dict(_with_effect(values, latest, providers)) | measured
+    map_provider = (latest.get("snow.map_file", -1), "snow.map_file")
+    _require_unmapped(map_provider, providers, snows)
+    snow = snows.get(snow_provider)
+    snow_map = snows[map_provider] if "snow.map_file" in values else None
     assert not isinstance(snow, SnowMap)
     assert not isinstance(snow_map, SnowProperties)
     return Resolution(values, {name: path for name, path in files.items() if name in values}, snow, snow_map)
 
 
+def _named_snow(
+    providers: Mapping[str, Provider], snows: Mapping[Provider, SnowProperties | SnowMap]
+) -> tuple[Provider, dict[str, InputValue]]:
+    """Key of the named snow that counts, and k_u/H_V and u_y that snows of earlier layers have measured."""
+    named = {quantity: providers[quantity] for quantity in OVERRIDES_NAMED_SNOW if quantity in providers}
+    named = {quantity: provider for quantity, provider in named.items() if provider[1] in NAMED_SNOWS}
+    main = next(iter(named.values()), (-1, ""))
+    measured: dict[str, InputValue] = {}
+    for quantity, provider in named.items():
+        snow = snows[provider]
+        if provider != main and isinstance(snow, SnowProperties):
+            number = {UNLOADING: snow.unloading_ratio, DISPLACEMENT: snow.shear_displacement}[quantity]
+            measured |= {} if number is None else {quantity: SCENARIO_KEYS[quantity].in_unit(number)}
+    return main, measured
+
+
 def _require_unmapped(
-    providers: Mapping[str, tuple[int, str]], snows: Mapping[str, SnowProperties | SnowMap], latest: Mapping[str, int]
+    map_provider: Provider, providers: Mapping[str, Provider], snows: Mapping[Provider, SnowProperties | SnowMap]
 ) -> None:
     """Reject a number in a layer above the snow map that gives the same quantity over the place."""
-    for quantity in _quantities("snow.map_file", "", snows, Layer({})) if "snow.map_file" in snows else ():
-        number, name = providers[quantity]
-        if name == quantity and number > latest["snow.map_file"]:
-            raise _contradiction("snow.map_file", quantity, quantity)
+    number, name = map_provider
+    for quantity in _quantities(name, "", {name: snows[map_provider]}, Layer({})) if map_provider in snows else ():
+        if providers[quantity][1] == quantity and providers[quantity][0] > number:
+            raise _contradiction(name, quantity, quantity)
 
 
 def _read_snows(
     layer: Layer, values: Mapping[str, InputValue], files: Mapping[str, Path], sources: Sources
 ) -> dict[str, SnowProperties | SnowMap]:
-    """Named snow and snow map that a layer introduces; a new site is a new snow."""
+    """Named snow and snow map of a layer, by key; a new site of the same results is a new snow."""
     snows: dict[str, SnowProperties | SnowMap] = {}
     if "snow.results" in layer.values or ("snow.site" in layer.values and "snow.results" in values):
         words = {"results": str(files["snow.results"]), "site": values.get("snow.site")}
@@ -205,7 +231,7 @@ def _read_snows(
 def _providers_by_quantity(layer: Layer, snows: Mapping[str, SnowProperties | SnowMap]) -> dict[str, list[str]]:
     """Keys of a layer by the quantity that they give."""
     providers: dict[str, list[str]] = {}
-    for name, value in layer.values.items():
+    for name, value in {**layer.values, **dict.fromkeys(snows.keys() - layer.values.keys(), "")}.items():
         for quantity in _quantities(name, value, snows, layer):
             providers.setdefault(quantity, []).append(name)
     return providers
@@ -240,9 +266,10 @@ def _replaceable(name: str) -> bool:
 def _strongest(quantity: str, names: list[str], layer: Layer) -> str:
     """The key that counts among those of one layer for one quantity."""
     others = [name for name in names if name not in NAMED_SNOWS]
-    if len(names) == 1 or (len(others) == 1 and others[0] in OVERRIDES_NAMED_SNOW.get(quantity, ())):
+    beside_one_snow = len(names) == 2 and len(others) == 1  # two named snows contradict each other also below a map
+    if len(names) == 1 or (beside_one_snow and others[0] in OVERRIDES_NAMED_SNOW.get(quantity, ())):
         return (others or names)[0]
-    first, second = names[:2]
+    first, second = sorted(names, key=lambda name: name not in NAMED_SNOWS)[:2] if len(names) > 2 else names
     if quantity == UNLOADING:
         ratio = layer.values[UNLOADING]
         raise ContradictionError(
@@ -257,20 +284,17 @@ def _contradiction(first: str, second: str, quantity: str) -> ContradictionError
 
 
 def _with_effect(
-    values: Mapping[str, InputValue], latest: Mapping[str, int], providers: Mapping[str, tuple[int, str]]
+    values: Mapping[str, InputValue], latest: Mapping[str, int], providers: Mapping[str, Provider]
 ) -> Iterator[tuple[str, InputValue]]:
     """Values without the keys that a later layer left without effect."""
     for name, value in values.items():
         condition = CONDITIONS.get(name)
-        if condition is not None:
-            main, words = condition.key, condition.in_words
-            effective = condition.holds(values.get(main, SCENARIO_KEYS[main].default))
-        elif name == "snow.site" and "snow.results" not in values:
-            main, words = H_V, "snow.results"
-            effective = providers.get(H_V, (-1, ""))[1] == words
-        else:
-            effective = True
-        if effective:
+        if condition is None:
+            if name != "snow.site" or "snow.results" in values:
+                yield name, value
+            continue
+        main = condition.key
+        if condition.holds(values.get(main, SCENARIO_KEYS[main].default)):
             yield name, value
-        elif latest.get(main, -1) <= latest[name] and providers.get(main, (-1, ""))[0] <= latest[name]:
-            raise ContradictionError((name, main), f"{name} goes with {words}. Change one of them")
+        elif max(latest.get(main, -1), providers.get(main, (-1, ""))[0]) <= latest[name]:
+            raise ContradictionError((name, main), f"{name} goes with {condition.in_words}. Change one of them")
