@@ -19,6 +19,10 @@ from skisnow.ski import ski_named
 from skisnow.ski.editing import SkiEdit, edit_stations
 
 
+def limits(scenario: Scenario) -> dict[str, str]:
+    return model_limits(scenario.sledge.edge_angle, scenario.ski, controlled=scenario.controlled)
+
+
 def turn(**changes: object) -> Scenario:
     return load_scenario("carved-46m", changes={"run.duration_s": 0.05} | changes)
 
@@ -28,7 +32,7 @@ def turn(**changes: object) -> Scenario:
 )
 def test_an_edge_angle_between_0_and_3_degrees_is_warned_of(edge_angle: float, warned: bool) -> None:
     nearly_flat = turn(**{"sledge.edge_angle_deg": edge_angle})
-    assert ("nearly_flat_ski" in model_limits(nearly_flat)) == warned
+    assert ("nearly_flat_ski" in limits(nearly_flat)) == warned
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always", ModelLimitWarning)
         simulate(nearly_flat)
@@ -37,18 +41,18 @@ def test_an_edge_angle_between_0_and_3_degrees_is_warned_of(edge_angle: float, w
 
 
 def test_a_skier_sets_its_edges_itself() -> None:
-    assert model_limits(load_scenario("skier-10deg")) == {}
+    assert limits(load_scenario("skier-10deg")) == {}
 
 
 def test_a_base_bevel_is_warned_of() -> None:
     ground = replace(ski_named("giant-slalom"), base_bevel=1.0 * DEGREE, edge_width=0.002)
-    assert list(model_limits(turn().with_(ski=ground))) == ["base_bevel_ignored"]
+    assert list(limits(turn().with_(ski=ground))) == ["base_bevel_ignored"]
 
 
 def test_the_terminal_and_the_report_have_the_warning(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     settings = ["--set", "sledge.edge_angle_deg=1", "--set", "run.duration_s=0.05"]
     main(["simulate", "carved-46m", *settings, "--out", str(tmp_path)])
-    (text,) = model_limits(turn(**{"sledge.edge_angle_deg": 1.0})).values()
+    (text,) = limits(turn(**{"sledge.edge_angle_deg": 1.0})).values()
     assert capsys.readouterr().err.count(text) == 1
     assert text in json.loads((tmp_path / "summary.json").read_text(encoding="utf-8"))["warnings"]
     assert text in (tmp_path / "report.html").read_text(encoding="utf-8")

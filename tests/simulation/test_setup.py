@@ -63,7 +63,7 @@ def test_a_run_begins_where_its_sledge_stands(
         "computed_run": lambda _setup, _record, said, _wall: said,
         "replace": lambda said, **_: said,
         "why_no_start": lambda _: "cannot stand",
-        "model_limits": lambda _: {},
+        "model_limits": lambda *_, **__: {},
         "_warn_of_zero_friction": lambda _: None,
     }
     for name, fake in fakes.items():

@@ -14,7 +14,6 @@ from ..parameters import Word, changed, made, meant, nearest, values_of
 from ..ski import Ski, read_ski, ski_names
 from ..ski.sources import Sources
 from ..snow import SnowProperties, published_snow
-from ..snow.mean_snow import without_measured
 from ..snow.properties import require_stress
 from ..track.course import Course, course_names, read_course
 from .boots import Boots, read_boots
@@ -125,7 +124,7 @@ def _ski(resolution: Resolution, sources: Sources) -> tuple[Ski, tuple[str, ...]
 def _contact(resolution: Resolution) -> Contact:
     values = resolution.values
     ratio = ELASTIC if values.get("snow.penetration") == "elastic" else values.get(UNLOADING)
-    snow = without_measured(_snow(resolution), unloading=ratio is not None, displacement=DISPLACEMENT in values)
+    snow = _snow(resolution).without_measured(unloading=ratio is not None, displacement=DISPLACEMENT in values)
     if ratio is None and snow.unloading_ratio is None:
         reason = f"; {snow.source} has none that was measured" if resolution.snow else ""
         raise ParameterError(f"{UNLOADING} is missing: {SCENARIO_KEYS[UNLOADING].meaning}{reason}. Give it")
@@ -189,7 +188,7 @@ def changed_scenario(scenario: Scenario, changes: Mapping[str, object]) -> Scena
     _require_changeable(scenario, numbers)
     _require_effect(scenario, numbers)
     measured = {"unloading": UNLOADING in numbers, "displacement": DISPLACEMENT in numbers}
-    snow = with_numbers(without_measured(scenario.contact.snow, **measured), _in_range(numbers))
+    snow = with_numbers(scenario.contact.snow.without_measured(**measured), _in_range(numbers))
     if snow is not scenario.contact.snow:
         scenario = replace(scenario, contact=replace(scenario.contact, snow=snow))
     return changed(scenario, numbers)

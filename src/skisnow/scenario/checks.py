@@ -11,7 +11,6 @@ from .terrain import reach_of
 
 if TYPE_CHECKING:
     from ..ski import Ski
-    from .contact import Contact
     from .run_settings import Start
     from .shear import Shear
     from .skier import Skier
@@ -21,13 +20,13 @@ if TYPE_CHECKING:
 
 def require_sound(
     slope: Slope,
-    contact: Contact,
     sledge: RigidSledge,
     ski: Ski,
     *,
     clamp_length: float,
     start: Start,
     shear: Shear,
+    friction: float,
 ) -> None:
     """Refuse parts that do not go together.
 
@@ -36,7 +35,7 @@ def require_sound(
     ParameterError
         The first thing that is wrong: what it is, what is allowed, what to do.
     """
-    for complaint in _together(slope, contact, sledge, ski, clamp_length, start, shear):
+    for complaint in _together(slope, sledge, ski, clamp_length, start, shear, friction):
         raise ParameterError(complaint)
 
 
@@ -68,12 +67,12 @@ def require_skier(skier: Skier | None, sledge: RigidSledge, *, has_boots: bool, 
 
 def _together(
     slope: Slope,
-    contact: Contact,
     sledge: RigidSledge,
     ski: Ski,
     clamp_length: float,
     start: Start,
     shear: Shear,
+    friction: float,
 ) -> Iterator[str]:
     width = float(ski.width.max())
     if sledge.stance_width < width * (1.0 - 1e-9):  # the width of a ski file is rounded on its way to metres
@@ -87,7 +86,6 @@ def _together(
             f"the clamp length is {clamp_length:g} m; the ski {ski.name} allows less than {most:.3g} m. Write "
             "0 for a binding that bends with the ski"
         )
-    friction = contact.friction + contact.friction_by_speed * start.speed
     if friction < 0.0:
         yield f"the friction at the start's speed, μ_0 + μ_1 v, is {friction:.3g}; below 0 it would drive the ski"
     if abs(sledge.edge_angle) < shear.least_edge_angle:

@@ -22,13 +22,14 @@ from .slope import Plane
 from .terrain import heights_of
 
 if TYPE_CHECKING:
+    from ..ski import Ski
     from .scenario import Scenario
 
 
 def implausible_values(scenario: Scenario) -> tuple[str, ...]:
     """Warnings about a scenario, none of which stops it."""
     return (
-        *model_limits(scenario).values(),
+        *model_limits(scenario.sledge.edge_angle, scenario.ski, controlled=scenario.controlled).values(),
         *_like_radians(scenario),
         *_like_another_unit(scenario),
         *_outside_ranges(scenario),
@@ -105,17 +106,20 @@ FLAT: Final = 3.0 * DEGREE
 """Edge angle (rad) from which the shear acts at one edge; below it the run ends at a wrong place."""
 
 
-def model_limits(scenario: Scenario) -> dict[str, str]:
+def model_limits(edge_angle: float, ski: Ski, *, controlled: bool) -> dict[str, str]:
     """Warnings by code: `nearly_flat_ski`, `base_bevel_ignored`.
 
     Parameters
     ----------
-    scenario
-        Of a run.
+    edge_angle
+        Edge angle of the sledge (rad).
+    ski
+        The ski.
+    controlled
+        True if a skier or a table moves the boots.
     """
     limits = {}
-    edge_angle, ski = scenario.sledge.edge_angle, scenario.ski
-    if scenario.skier is None and scenario.boots is None and 0.0 < abs(edge_angle) < FLAT:
+    if not controlled and 0.0 < abs(edge_angle) < FLAT:
         limits["nearly_flat_ski"] = (
             f"sledge.edge_angle_deg is {math.degrees(edge_angle):.4g}: between 0 and 3 degrees the run ends at a wrong "
             "place. The model moves the shear from one edge across the base to the other, so that the ski can turn to "

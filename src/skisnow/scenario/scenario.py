@@ -210,12 +210,12 @@ class Scenario(Shown):
             object.__setattr__(self, "ski", self.ski.camber_rounded(self.camber_rounding))
         require_sound(
             self.slope,
-            self.contact,
             self.sledge,
             self.ski,
             clamp_length=self.clamp_length,
             start=self.start,
             shear=self.shear,
+            friction=self.contact.friction + self.contact.friction_by_speed * self.start.speed,
         )
         if self.course is not None and self.course.axes != "metres":
             object.__setattr__(self, "course", course_on_slope(self.course, self.slope))
@@ -247,6 +247,11 @@ class Scenario(Shown):
         from .building import changed_scenario
 
         return changed_scenario(self, changes)
+
+    @property
+    def controlled(self) -> bool:
+        """True if a skier or a table moves the boots."""
+        return self.skier is not None or self.boots is not None
 
     @property
     def flexing_ski(self) -> Ski:

@@ -77,15 +77,6 @@ def with_measured_displacement(snow: SnowProperties, displacement_mm: float, end
     return replace(snow, shear_displacement=displacement_mm * MM, shear_displacement_interval=interval)
 
 
-def without_measured(snow: SnowProperties, *, unloading: bool = False, displacement: bool = False) -> SnowProperties:
-    """The snow without what was measured of k_u/H_V or u_y, where a scenario has a number of its own for it."""
-    if unloading and snow.unloading_ratio_interval is not None:
-        snow = replace(snow, unloading_ratio=None, unloading_ratio_interval=None)
-    if displacement and snow.shear_displacement is not None:
-        snow = replace(snow, shear_displacement=None, shear_displacement_interval=None)
-    return snow
-
-
 def site_named(site: str | None, sites: Iterable[str]) -> str | None:
     """A campaign's own name of a site: "C" is its "site C" where it has no "C".
 

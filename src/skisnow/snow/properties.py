@@ -112,6 +112,15 @@ class SnowProperties(Shown):
         way = "" if self.shear_displacement is None else f", u_y {way}"
         return f"H_V {hardness}, S_f {stress}{ratio}{way}: {self.source}"
 
+    def without_measured(self, *, unloading: bool = False, displacement: bool = False) -> SnowProperties:
+        """The snow without its measured k_u/H_V or u_y, which a scenario's number replaces."""
+        changes: dict[str, None] = {}
+        if unloading and self.unloading_ratio_interval is not None:
+            changes |= {"unloading_ratio": None, "unloading_ratio_interval": None}
+        if displacement and self.shear_displacement is not None:
+            changes |= {"shear_displacement": None, "shear_displacement_interval": None}
+        return replace(self, **changes) if changes else self  # type: ignore[arg-type]
+
     def _facts(self) -> Facts:
         return Facts(self.in_words)
 

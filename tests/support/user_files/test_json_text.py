@@ -7,7 +7,7 @@ import json
 import pytest
 
 from skisnow._support.user_files import GivenError, json_value
-from skisnow._support.user_files.sound_values import DEEPEST
+from skisnow._support.user_files.text_files import DEEPEST
 from tests.coded import Coded, coded, raises
 
 

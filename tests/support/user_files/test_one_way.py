@@ -9,7 +9,7 @@ import skisnow
 
 READERS = re.compile(r"\b(tomllib|json|orjson)\.loads?\(|\bfrom (tomllib|json|orjson) import|JSONDecoder")
 ITS_OWN = {
-    Path("_support/user_files/toml_text.py"),
+    Path("_support/user_files/text_files.py"),
     Path("_support/user_files/json_text.py"),
 }
 

@@ -7,7 +7,7 @@ import math
 import pytest
 
 from skisnow._support.user_files import GivenError, workbook
-from skisnow._support.user_files.sound_values import (
+from skisnow._support.user_files.text_files import (
     DEEPEST,
     LARGEST_WHOLE,
     LONGEST_KEY,

@@ -8,8 +8,7 @@ import tracemalloc
 import pytest
 
 from skisnow._support.user_files import GivenError, toml_values
-from skisnow._support.user_files.sound_values import DEEPEST, LONGEST_KEY, LONGEST_TEXT
-from skisnow._support.user_files.toml_text import MOST_DOTS, MOST_TOML_BYTES
+from skisnow._support.user_files.text_files import DEEPEST, LONGEST_KEY, LONGEST_TEXT, MOST_DOTS, MOST_TOML_BYTES
 from tests.coded import Coded, coded, raises
 
 SOUND = '''# a.b.c.d "

@@ -4,8 +4,16 @@ All TOML and JSON of users is read here and nowhere else: campaigns, scenarios, 
 """
 
 from .json_text import MOST_JSON_BYTES, json_value, own_json, read_json, read_record
-from .plain_file import GivenError, is_file, natural_number, plain_bytes, plain_text
-from .toml_text import MOST_TOML_BYTES, read_toml, toml_values
+from .text_files import (
+    MOST_TOML_BYTES,
+    GivenError,
+    is_file,
+    natural_number,
+    plain_bytes,
+    plain_text,
+    read_toml,
+    toml_values,
+)
 from .workbook import workbook_sheets
 from .xml_tree import Element, xml_tree
 

@@ -11,8 +11,7 @@ from types import NoneType, UnionType
 from typing import TYPE_CHECKING, Any, Final, Literal, TypeVar, get_args, get_origin, get_type_hints
 
 from ..messages import Message
-from .plain_file import GivenError, plain_text
-from .sound_values import LARGEST_WHOLE, require_sound, shown, too_deep
+from .text_files import LARGEST_WHOLE, GivenError, plain_text, require_sound, shown, too_deep
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any, Final, TypeAlias
 from xml.parsers import expat
 
 from ..messages import Message
-from .plain_file import GivenError
+from .text_files import GivenError
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable

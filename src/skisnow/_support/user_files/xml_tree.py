@@ -8,7 +8,7 @@ from typing import Final
 from xml.parsers import expat
 
 from ..messages import Message
-from .plain_file import GivenError
+from .text_files import GivenError
 
 DEEPEST: Final = 60
 MOST_ELEMENTS: Final = 500_000

@@ -244,7 +244,9 @@ def outcome_sentences(run: Run) -> list[Markup]:
     )  # fmt: skip
     deepest = float(np.nanmax(run.skis.edge_depth)) / MM
     sentences.append(prose("Deepest place of an edge in the snow: {deepest} mm.", deepest=_number(deepest)))
-    sentences += [prose("Warning: {text}.", text=each) for each in model_limits(run.scenario).values()]
+    scenario = run.scenario
+    limits = model_limits(scenario.sledge.edge_angle, scenario.ski, controlled=scenario.controlled)
+    sentences += [prose("Warning: {text}.", text=each) for each in limits.values()]
     return sentences + _balance(run)
 
 

@@ -1,0 +1,350 @@
+"""The bytes and the text of a plain file: neither a pipe that is waited for, nor a device without end."""
+
+from __future__ import annotations
+
+import math
+import re
+import stat
+import tomllib
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final, TypeAlias
+
+from ..errors import ParameterError
+from ..messages import Message
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+
+def plain_bytes(path: str | Path, *, most_bytes: int) -> bytes:
+    """Read a file.
+
+    Raises
+    ------
+    GivenError
+        It is not there, may not be read, is no plain file, or has more bytes; or no file can have such a name.
+    """
+    try:
+        if not stat.S_ISREG((place := Path(path)).stat().st_mode):
+            if place.is_dir():
+                problem = Message("{path} cannot be read: it is a folder. Check the path.", path=path)
+            else:
+                problem = Message(
+                    "{path} cannot be read: it is a pipe, a device or the like, no plain file. Check the path.",
+                    path=path,
+                )
+            raise GivenError(problem, code="cannot_read")
+        with place.open("rb") as stream:
+            data = stream.read(most_bytes + 1)
+    except GivenError:
+        raise
+    except OSError as error:
+        raise GivenError(
+            Message("{path} cannot be read: {reason}. Check the path.", path=path, reason=error.strerror or error),
+            code="cannot_read",
+        ) from error
+    except UnicodeEncodeError as error:
+        raise GivenError(
+            Message("{path!r} cannot be read: its name is no valid text. Correct it.", path=path), code="cannot_read"
+        ) from error
+    except ValueError as error:  # the system's paths end at a NUL character
+        raise GivenError(
+            Message("{path!r} is no path: it has a NUL character. Correct it.", path=path), code="invalid_character"
+        ) from error
+    if len(data) > most_bytes:
+        raise GivenError(
+            Message(
+                "{path} is too large: at most {limit:g} MiB are read of such a file.",
+                path=path,
+                limit=most_bytes / 2**20,
+            ),
+            code="too_large",
+        )
+    return data
+
+
+def is_file(path: str | Path) -> bool:
+    """Whether there is a file of such a name; no error where none can have it."""
+    try:
+        return Path(path).is_file()
+    except (OSError, ValueError):
+        return False
+
+
+def plain_text(path: str | Path, *, most_bytes: int) -> str:
+    """Read a file as UTF-8 text, with or without byte order mark; lines end with a line feed, however they did.
+
+    Raises
+    ------
+    GivenError
+        As in `plain_bytes`, or it is no UTF-8 text.
+    """
+    data = plain_bytes(path, most_bytes=most_bytes)
+    try:
+        text = data.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        raise GivenError(
+            Message(
+                "{path} is not UTF-8 text ({reason}, byte {byte}). Save it as UTF-8.",
+                path=path,
+                reason=error.reason,
+                byte=error.start + 1,
+            ),
+            code="not_text",
+        ) from error
+    return text.replace("\r\n", "\n").replace("\r", "\n")
+
+
+class GivenError(ParameterError):
+    """A file, or a text in its stead, cannot be read.
+
+    Parameters
+    ----------
+    what
+        Problem and what is allowed, without the file.
+    code
+        As in `skisnow.SkisnowError`.
+    line
+        Line of the file, where one can be named.
+    title
+        The file, or another name of the text; empty until it is known.
+    sentence
+        The whole message, if it is not made of the others.
+    """
+
+    def __init__(
+        self, what: str, *, code: str = "", line: int | None = None, title: str = "", sentence: str = ""
+    ) -> None:
+        super().__init__(sentence or _placed(what, line, title), code=code)
+        self.what, self.line = what, line
+
+    def of(self, title: str) -> GivenError:
+        """The same error of a file."""
+        return GivenError(self.what, code=self.code, line=self.line, title=title)
+
+
+def _placed(what: str, line: int | None, title: str) -> str:
+    if line and title:
+        return Message("{file}, line {line}: {problem}", file=title, line=line, problem=what)
+    if line:
+        return Message("line {line}: {problem}", line=line, problem=what)
+    return Message("{file}: {problem}", file=title, problem=what) if title else what
+
+
+MOST_DIGITS: Final = 18
+"""Of a number that fits into 64 bits. Python itself rejects texts of more than 4,300 digits with a ValueError."""
+
+
+def natural_number(text: str) -> int | None:
+    """Whole number of 0 or more; None if the text is anything else than 1 to 18 decimal digits.
+
+    >>> natural_number("42"), natural_number("-1"), natural_number("9" * 5000)
+    (42, None, None)
+    """
+    return int(text) if len(text) <= MOST_DIGITS and text.isdecimal() else None
+
+
+DEEPEST: Final = 32
+"""Tables and lists within one another; the program's own files have six at most."""
+
+LONGEST_KEY: Final = 200
+LONGEST_TEXT: Final = 100_000
+LARGEST_WHOLE: Final = 2**63 - 1
+"""TOML's; others programs that read JSON stop earlier."""
+
+Place: TypeAlias = tuple[str | int, ...]
+
+
+def require_sound(value: object, *, infinite: bool, place: Place = ()) -> None:
+    """Refuse what no reader can work with.
+
+    Parameters
+    ----------
+    value
+        As TOML or JSON gave it.
+    infinite
+        Whether a number may be infinite or NaN, as TOML allows when it is written so.
+    place
+        Keys and numbers that lead to the value.
+
+    Raises
+    ------
+    GivenError
+        Nesting, a key, a text or a number is beyond the limits, or a text has a NUL character or half a letter.
+    """
+    if isinstance(value, str):
+        _require_text(value, place, LONGEST_TEXT)
+    elif isinstance(value, int):
+        if not -LARGEST_WHOLE - 1 <= value <= LARGEST_WHOLE:
+            problem = Message(
+                "{place} is beyond the whole numbers, ±{largest}. Write it with a decimal point.",
+                place=named(place),
+                largest=LARGEST_WHOLE,
+            )
+            raise GivenError(problem, code="number_too_large")
+    elif isinstance(value, float):
+        if not infinite and not math.isfinite(value):
+            raise GivenError(
+                Message("{place} is beyond the numbers, ±1.8e308. Correct it.", place=named(place)),
+                code="number_too_large",
+            )
+    elif isinstance(value, dict | list):
+        if len(place) >= DEEPEST:
+            raise too_deep()
+        if isinstance(value, dict):
+            for key in value:
+                _require_text(key, (*place, key), LONGEST_KEY)
+        pairs = value.items() if isinstance(value, dict) else enumerate(value, start=1)
+        for key, inner in pairs:
+            require_sound(inner, infinite=infinite, place=(*place, key))
+
+
+def too_deep(line: int | None = None) -> GivenError:
+    """The error for brackets within brackets within brackets."""
+    return GivenError(
+        Message("brackets are nested more than {deepest} deep. Take some out.", deepest=DEEPEST),
+        line=line,
+        code="nested_too_deep",
+    )
+
+
+def _require_text(text: str, place: Place, longest: int) -> None:
+    if len(text) > longest:
+        raise GivenError(
+            Message(
+                "{place} has {count} characters; allowed are {longest}. Shorten it.",
+                place=named(place),
+                count=len(text),
+                longest=longest,
+            ),
+            code="text_too_long",
+        )
+    if text.isascii():
+        sound = "\0" not in text
+    else:
+        sound = not any(letter == "\0" or "\ud800" <= letter <= "\udfff" for letter in text)
+    if not sound:
+        raise GivenError(
+            Message("{place} has a NUL character or half a letter, which no text has. Remove it.", place=named(place)),
+            code="invalid_character",
+        )
+
+
+def named(place: Place) -> str:
+    """A place for a message.
+
+    >>> named(("tool", 2, "name")), named(())
+    ('tool[2].name', 'the value')
+    """
+    text = "".join(f"[{part}]" if isinstance(part, int) else f".{shown(part)}" for part in place)
+    return text.removeprefix(".") or Message("the value")
+
+
+def shown(text: str, limit: int = 60) -> str:
+    """A text within a message: short, and nothing that does not print."""
+    plain = "".join(letter if letter.isprintable() else "?" for letter in text[: limit + 1])
+    return plain if len(plain) <= limit else plain[:limit] + "…"
+
+
+MOST_TOML_BYTES: Final = 1 << 20
+MOST_DOTS: Final = 16
+
+_TOKENS: Final = re.compile(
+    r'"""(?s:\\.|[^\\])*?(?:"{3,5}|\Z)'
+    r"|'''(?s:.)*?(?:'{3,5}|\Z)"
+    r'|"(?:[^"\\\n]|\\.)*+"?'
+    r"|'[^'\n]*+'?"
+    r"|\#[^\n]*+"
+    r"|[\[\]{}=,\n]"
+    r"|[\w+.:-]+"
+)
+
+
+def read_toml(path: str | Path) -> dict[str, Any]:
+    """Read a TOML file in UTF-8.
+
+    Raises
+    ------
+    GivenError
+        As in `plain_text` and `toml_values`.
+    """
+    return toml_values(plain_text(path, most_bytes=MOST_TOML_BYTES), title=str(path))
+
+
+def toml_values(text: str, *, title: str = "") -> dict[str, Any]:
+    """The keys and values of a TOML text.
+
+    Parameters
+    ----------
+    text
+        With line feeds at the ends of lines.
+    title
+        What it is called by in messages.
+
+    Raises
+    ------
+    GivenError
+        It is no TOML, or beyond a limit: size, nesting, dots in a key, digits of a number, length of a text; or a text
+        has a character that none can have.
+    """
+    try:
+        if len(text) > MOST_TOML_BYTES:
+            raise GivenError(
+                Message(
+                    "the text has {count} characters; allowed are {longest}.",
+                    count=len(text),
+                    longest=MOST_TOML_BYTES,
+                ),
+                code="too_large",
+            )
+        _require_short(text)
+        values = tomllib.loads(text)
+        require_sound(values, infinite=True)
+    except GivenError as error:
+        raise error.of(title) from None
+    except RecursionError:
+        raise too_deep().of(title) from None
+    except ValueError as error:  # TOMLDecodeError, and dates that there are not
+        line = re.search(r"at line (\d+)", str(error))
+        sentence = (
+            Message("{file} is not TOML: {reason}. Correct that place.", file=title, reason=str(error))
+            if title
+            else Message("This is not TOML: {reason}. Correct that place.", reason=str(error))
+        )
+        raise GivenError(str(error), code="not_toml", line=int(line[1]) if line else None, sentence=sentence) from error
+    return values
+
+
+def _require_short(text: str) -> None:
+    """Look at brackets, words and dots before the parser, whose memory grows with the square of a key's dots."""
+    depth = dots = 0
+    for token in _TOKENS.finditer(text):
+        word = token[0]
+        first = word[0]
+        if first in "[{":
+            depth += 1
+            if depth > DEEPEST:
+                raise too_deep(_line(text, token))
+        elif first in "]}":
+            depth -= 1
+        if first in "[]{}=,\n":
+            dots = 0
+        elif first not in "\"'#":
+            dots += word.count(".")
+            if dots > MOST_DOTS:
+                raise GivenError(
+                    Message("a key has more than {count} dots. Shorten it.", count=MOST_DOTS),
+                    line=_line(text, token),
+                    code="key_too_long",
+                )
+            if len(word) > LONGEST_KEY:
+                problem = Message(
+                    "A number or key has {count} characters; allowed are {longest}. Shorten it.",
+                    count=len(word),
+                    longest=LONGEST_KEY,
+                )
+                raise GivenError(problem, code="key_too_long", line=_line(text, token))
+
+
+def _line(text: str, token: re.Match[str]) -> int:
+    return text.count("\n", 0, token.start()) + 1
