@@ -292,7 +292,7 @@ def csv_rows(
 
 
 def _rows(
-    path: Path, lines: Iterator[list[str]], columns: Sequence[str], further: Sequence[str], action: str, mark: str
+    path: Path, lines: Iterator[list[str]], columns: Sequence[str], further: Sequence[str], action: Message, mark: str
 ) -> Iterator[CsvRow]:
     head = column_names(next(lines, []), (*columns, *further))
     missing = [name for name in columns if name not in head]
