@@ -69,7 +69,8 @@ def test_a_run_begins_where_its_sledge_stands(
     for name, fake in fakes.items():
         monkeypatch.setattr(simulated_run, name, fake)
     try:
-        found = cast("Any", simulated_run.simulate)(None)
+        scenario = SimpleNamespace(sledge=SimpleNamespace(edge_angle=0.0), ski=None, controlled=True)
+        found = cast("Any", simulated_run.simulate)(scenario)
     except SolverError as error:
         found = str(error)
     assert found == outcome
