@@ -18,6 +18,7 @@ from skisnow.carving.equilibrium import rest
 from skisnow.carving.question import carve_question
 from skisnow.carving.result import Equilibrium
 from skisnow.snow import SnowProperties
+from tests.coded import raises
 
 SNOW = SnowProperties(2e8, 5e5, source="given as numbers")
 NUMBERS: dict[str, object] = {"H_V_N_per_mm3": 0.2, "S_f_N_per_mm2": 0.5}
@@ -65,7 +66,7 @@ def test_the_unloading_ratio_of_the_snow_is_taken_where_none_is_given() -> None:
     assert is_same(carve(ski, snow, **asked), known)
     assert is_same(carve(ski, snow, unloading_ratio=10.0, **asked), plain)
     assert not is_same(plain, known)
-    with pytest.raises(ParameterError, match=r"unloading_ratio is missing, and the snow \(given as numbers\) has none"):
+    with raises(ParameterError, "missing", source="given as numbers"):
         carve(ski, SNOW, **asked)
 
 
@@ -108,7 +109,7 @@ def test_the_inputs_of_a_named_snow_are_its_numbers() -> None:
     assert told["S_f_N_per_mm2"] == pytest.approx((snow.failure_shear_stress or 0.0) / 1e6, rel=1e-12)
     assert told["unloading_ratio"] == 10.0
     assert answer_dict(answered(carve_question({**asked, "at_rest": True})))["inputs"]["unloading_ratio"] is None
-    with pytest.raises(ParameterError, match="S_f_N_per_mm2 cannot stand beside this snow"):
+    with raises(ParameterError, "contradiction"):
         answered(carve_question({**asked, "unloading_ratio": 10.0, "S_f_N_per_mm2": 0.3}))
 
 

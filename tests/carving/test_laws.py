@@ -21,6 +21,7 @@ from skisnow.forces.penetration import (
     VolumeWithAnglePoint,
 )
 from skisnow.forces.shear import AngleShear, ConstantShear, DensityShear, MachiningShear
+from tests.coded import Coded, coded, raises
 
 from .laws import Deepening, Power, Pushing
 from .synthetic import rigid_ski, snow
@@ -164,7 +165,7 @@ def test_a_law_stands_in_for_s_f() -> None:
     known = carve(read_ski("slalom"), snow(0.2, 0.108), **CASE, unloading_ratio=10.0)
     assert found.side_force_limit == pytest.approx(known.side_force_limit, rel=1e-12)
     assert carve(read_ski("slalom"), bare, **CASE, penetration=FEDEROLF).side_force_limit is not None
-    with pytest.raises(ParameterError, match="no failure shear stress S_f"):
+    with raises(ParameterError, "no_data"):
         carve(read_ski("slalom"), bare, **CASE, penetration=HypoplasticPoint(0.2e9, 10.0))
 
 
@@ -181,24 +182,24 @@ class Fades(Power):
 @pytest.mark.parametrize(
     ("given", "words"),
     [
-        ({"penetration": MeanPressureLaw(0.034e9, 0.35e6)}, "a law for the force of a whole tool; it must be a law of"),
-        ({"penetration": 0.2e9}, "penetration is 200000000.0, no law of a place"),
-        ({"penetration": HypoplasticPoint}, "no law of a place"),
-        ({"penetration": HypoplasticPoint(0.2e9, math.inf)}, "lets go at once when the depth shrinks"),
-        ({"penetration": Power(0.0, 1.0)}, "no finite pressure above 0"),
-        ({"penetration": Fades(1e9, 1.0, 2.0)}, "gives no finite answer at a depth of .* mm, and no equilibrium"),
-        ({"penetration": FEDEROLF, "shear": ConstantShear(0.2e6)}, "holds the edge across by itself; leave the shear"),
-        ({"penetration": FEDEROLF, "unloading_ratio": 10.0}, "unloading_ratio is 10.0 beside a penetration law"),
-        ({"shear": 0.2e6, "unloading_ratio": 10.0}, "shear is 200000.0; it must be a shear law"),
-        ({"shear": FEDEROLF, "unloading_ratio": 10.0}, "it must be a shear law"),
-        ({"shear": MachiningShear(0.1e6, 0.1), "unloading_ratio": 10.0}, "would bear 1.22 of the load by itself"),
-        ({"shear": Pushing(0.1e6, 1e-3), "unloading_ratio": 10.0}, "would bear 0.3 of the load by itself"),
-        ({"shear": Deepening(-0.1e6, 1e-3), "unloading_ratio": 10.0}, "no finite strength above 0 at 45 degrees"),
-        ({"shear": NotFinite(0.1e6, 1e-3), "unloading_ratio": 10.0}, "gives no finite strength at an edge angle of"),
+        ({"penetration": MeanPressureLaw(0.034e9, 0.35e6)}, "wrong_kind"),
+        ({"penetration": 0.2e9}, "wrong_kind"),
+        ({"penetration": HypoplasticPoint}, "wrong_kind"),
+        ({"penetration": HypoplasticPoint(0.2e9, math.inf)}, "out_of_range"),
+        ({"penetration": Power(0.0, 1.0)}, "invalid_law"),
+        ({"penetration": Fades(1e9, 1.0, 2.0)}, "no_equilibrium"),
+        ({"penetration": FEDEROLF, "shear": ConstantShear(0.2e6)}, "contradiction"),
+        ({"penetration": FEDEROLF, "unloading_ratio": 10.0}, coded("contradiction", given=10.0)),
+        ({"shear": 0.2e6, "unloading_ratio": 10.0}, coded("wrong_kind", shear=200000.0)),
+        ({"shear": FEDEROLF, "unloading_ratio": 10.0}, "wrong_kind"),
+        ({"shear": MachiningShear(0.1e6, 0.1), "unloading_ratio": 10.0}, "contradiction"),
+        ({"shear": Pushing(0.1e6, 1e-3), "unloading_ratio": 10.0}, coded("contradiction", share=0.29999999999999993)),
+        ({"shear": Deepening(-0.1e6, 1e-3), "unloading_ratio": 10.0}, coded("invalid_law", degrees=45.0)),
+        ({"shear": NotFinite(0.1e6, 1e-3), "unloading_ratio": 10.0}, "no_equilibrium"),
     ],
 )
-def test_what_is_refused(given: dict[str, Any], words: str) -> None:
-    with pytest.raises(ParameterError, match=words):
+def test_what_is_refused(given: dict[str, Any], words: str | Coded) -> None:
+    with raises(ParameterError, words):
         carve(read_ski("slalom"), snow(0.2), **CASE, **given)
 
 

@@ -9,20 +9,21 @@ import pytest
 
 from skisnow import carve, published_snow, read_ski
 from skisnow._support.errors import ParameterError
+from tests.coded import Coded, coded, raises
 
 
 @pytest.mark.parametrize(
     ("asked", "told"),
     [
-        ({"moment": math.nan}, "moment is nan N m; it must be finite"),
-        ({"moment": math.inf}, "moment is inf N m; it must be finite"),
-        ({"load": 0.0}, "load is 0.0 N; it must be a finite force above 0"),
-        ({"load": math.inf}, "load is inf N"),
-        ({"unloading_ratio": 0.99}, "k_u/H_V must be 1"),
-        ({"edge_angle": -0.01}, "it must be from 0 to"),
+        ({"moment": math.nan}, "not_a_number"),
+        ({"moment": math.inf}, coded("not_a_number", moment=float("inf"))),
+        ({"load": 0.0}, coded("out_of_range", load=0.0)),
+        ({"load": math.inf}, coded("out_of_range", load=float("inf"))),
+        ({"unloading_ratio": 0.99}, "out_of_range"),
+        ({"edge_angle": -0.01}, "out_of_range"),
     ],
 )
-def test_numbers_that_no_turn_has(asked: dict[str, float], told: str) -> None:
+def test_numbers_that_no_turn_has(asked: dict[str, float], told: str | Coded) -> None:
     sound: dict[str, Any] = {"edge_angle": 0.5, "load": 800.0, "unloading_ratio": 10.0}
-    with pytest.raises(ParameterError, match=told):
+    with raises(ParameterError, told):
         carve(read_ski("slalom"), published_snow("race-piste"), **sound | asked)

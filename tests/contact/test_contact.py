@@ -18,6 +18,7 @@ from skisnow.contact import Runner, SnowContact, SnowField
 from skisnow.forces.friction import ConstantFriction, FrictionLaw, LinearFriction, QuadraticFriction, WaterFilmFriction
 from skisnow.forces.shear import AngleShear, MachiningShear, ShearLaw
 from skisnow.geometry.surfaces import Grid
+from tests.coded import Coded, coded, raises
 
 from .conftest import edged, straight
 
@@ -74,11 +75,11 @@ def test_a_state_whose_tracks_are_forgotten_is_refused() -> None:
     go(1.0, 3.0)
     late = contact.state()
     contact.restore(early)
-    with pytest.raises(ParameterError, match="tracks of this state were forgotten"):
+    with raises(ParameterError, "invalid"):
         contact.restore(late)
     go(1.0, 3.5)
     before = contact.tracks()
-    with pytest.raises(ParameterError, match="tracks of this state were forgotten"):
+    with raises(ParameterError, "invalid"):
         contact.restore(late)  # as many tracks, and more, but others
     assert np.array_equal(contact.tracks(), before)
     contact.restore(early)
@@ -237,24 +238,24 @@ def test_shear_laws_give_strength_and_thrust(law: ShearLaw) -> None:
 def test_machining_below_its_friction_angle_is_refused() -> None:
     law = MachiningShear(1e5, 1.0)
     contact = SnowContact(SnowField(H, 0.0, 10.0, shear=law), [SKI])
-    with pytest.raises(ParameterError, match=r"MachiningShear.*no finite strength at an edge angle of 3[34]"):
+    with raises(ParameterError, "invalid_law"):
         contact.force(*carving(0), SPEED, 0.0)
 
 
 @pytest.mark.parametrize(
     ("change", "words"),
     [
-        ({"snow_hardness": 0.0}, "snow_hardness is 0.0; it must be finite and above 0"),
-        ({"snow_hardness": math.nan}, "snow_hardness is nan"),
-        ({"unloading_ratio": 0.9}, "unloading_ratio is 0.9; it must be finite and at least 1"),
-        ({"failure_shear_stress": -1.0}, "failure_shear_stress is -1.0"),
-        ({"shear_displacement": 0.0}, "shear_displacement is 0.0"),
-        ({"friction": -0.1}, "friction is -0.1"),
+        ({"snow_hardness": 0.0}, coded("not_a_number", name="snow_hardness", value=0.0, allowed="above 0")),
+        ({"snow_hardness": math.nan}, coded("not_a_number", name="snow_hardness")),
+        ({"unloading_ratio": 0.9}, coded("not_a_number", name="unloading_ratio", value=0.9, allowed="at least 1")),
+        ({"failure_shear_stress": -1.0}, coded("not_a_number", name="failure_shear_stress", value=-1.0)),
+        ({"shear_displacement": 0.0}, coded("not_a_number", name="shear_displacement", value=0.0)),
+        ({"friction": -0.1}, coded("not_a_number", name="friction", value=-0.1)),
     ],
 )
-def test_snow_that_cannot_be_is_refused(change: dict[str, float], words: str) -> None:
+def test_snow_that_cannot_be_is_refused(change: dict[str, float], words: str | Coded) -> None:
     given: dict[str, Any] = {"snow_hardness": H, "failure_shear_stress": S, "unloading_ratio": 10.0, **change}
-    with pytest.raises(ParameterError, match=words):
+    with raises(ParameterError, words):
         SnowField(**given)
 
 
@@ -270,11 +271,11 @@ def test_poses_that_cannot_be_are_refused() -> None:
     ):
         with pytest.raises(ParameterError, match=words):
             contact.force(*bad)
-    with pytest.raises(ParameterError, match="needs one runner or more"):
+    with raises(ParameterError, "missing"):
         SnowContact(SnowField(H, S, 10.0), [])
-    with pytest.raises(ParameterError, match="beam_dofs has 2 entries for 1 runners"):
+    with raises(ParameterError, "wrong_shape", name="beam_dofs", n_beams=2, n_runners=1):
         contact.force(position, rotation, SPEED, 0.0, beam_dofs=[np.zeros((2, 3))] * 2)
-    with pytest.raises(ParameterError, match="must fall from tip to tail"):
+    with raises(ParameterError, "not_falling"):
         Runner(np.array([-1.0, 1.0]), np.ones(2), np.zeros(2))
-    with pytest.raises(ParameterError, match="instruction_set is 'sse'"):
+    with raises(ParameterError, "unknown_name", instruction_set="sse"):
         SnowContact(SnowField(H, S, 10.0), [SKI], instruction_set="sse")

@@ -11,6 +11,7 @@ import pytest
 
 from skisnow._support.errors import ParameterError
 from skisnow.scenario import load_scenario
+from tests.coded import raises
 
 from .balance import left_over
 from .sledges import advanced, given, sledge
@@ -70,7 +71,7 @@ def test_it_begins_where_it_was_moved_to_with_its_skis_as_bent() -> None:
     assert dynamics.position[:2] == pytest.approx([7.0, -2.998], abs=5e-5)
     assert not dynamics.touches
     for name, place, rotation in (("position", np.zeros(4), turned), ("rotation", np.zeros(3), np.zeros(3))):
-        with pytest.raises(ParameterError, match=f"{name} has shape"):
+        with raises(ParameterError, "wrong_shape", name=name):
             dynamics.move_to(place, rotation)
 
 

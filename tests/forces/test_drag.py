@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from tests.coded import raises, warns
 
 from skisnow._support.errors import ParameterError, RangeWarning
 from skisnow.forces.drag import AirDrag
@@ -76,7 +77,7 @@ def test_speed_over_the_path_on_a_plane_slope() -> None:
 
 @pytest.mark.parametrize("drag_area", [0.1, 0.9])
 def test_a_warning_outside_the_measured_range(drag_area: float) -> None:
-    with pytest.warns(RangeWarning, match="outside the 0.23 to 0.66 m²") as caught:
+    with warns(RangeWarning, "outside_measured", unit="m²", lowest=0.23, highest=0.66) as caught:
         AirDrag(drag_area, 1.2)
     assert caught[0].filename == __file__
 
@@ -87,5 +88,5 @@ def test_no_drag_is_not_warned_of() -> None:
 
 @pytest.mark.parametrize(("drag_area", "air_density"), [(-0.1, 1.2), (0.4, 0.0), (math.nan, 1.2), (0.4, math.inf)])
 def test_impossible_parameters_are_refused(drag_area: float, air_density: float) -> None:
-    with pytest.raises(ParameterError, match="AirDrag"):
+    with raises(ParameterError, "out_of_range", kind="AirDrag"):
         AirDrag(drag_area, air_density)

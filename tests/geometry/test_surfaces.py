@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from tests.coded import Coded, coded, raises
 
 from skisnow._support.errors import ParameterError
 from skisnow.compiled import core
@@ -30,19 +31,21 @@ def test_one_place_is_enough() -> None:
 @pytest.mark.parametrize(
     ("x", "y", "values", "said"),
     [
-        ([0.0, math.nan], [0.0], [[1.0], [2.0]], "x holds a number that is not finite"),
-        ([0.0, 1.0], [math.inf], [[1.0], [2.0]], "y holds a number that is not finite"),
-        ([0.0, 1.0], [0.0], [[1.0], [math.nan]], "values holds a number that is not finite"),
-        ([], [0.0], np.zeros((0, 1)), r"x must be a row of one place or more, its shape is \(0,\)"),
-        ([0.0], [[0.0, 1.0]], [[1.0, 2.0]], r"y must be a row of one place or more, its shape is \(1, 2\)"),
-        ([0.0, 0.0], [0.0], [[1.0], [2.0]], "x must rise evenly; their steps go from 0 to 0 m"),
-        ([1.0, 0.0], [0.0], [[1.0], [2.0]], "x must rise evenly; their steps go from -1 to -1 m"),
-        ([0.0], [0.0, 1.0, 3.0], [[1.0, 2.0, 3.0]], "y must rise evenly; their steps go from 1 to 2 m"),
-        ([0.0, 1.0], [0.0], [[1.0, 2.0]], r"values have shape \(1, 2\); for 2 places in x and 1 in y"),
+        ([0.0, math.nan], [0.0], [[1.0], [2.0]], coded("not_a_number", name="x")),
+        ([0.0, 1.0], [math.inf], [[1.0], [2.0]], coded("not_a_number", name="y")),
+        ([0.0, 1.0], [0.0], [[1.0], [math.nan]], coded("not_a_number", name="values")),
+        ([], [0.0], np.zeros((0, 1)), coded("wrong_shape", name="x", shape="(0,)")),
+        ([0.0], [[0.0, 1.0]], [[1.0, 2.0]], coded("wrong_shape", name="y", shape="(1, 2)")),
+        ([0.0, 0.0], [0.0], [[1.0], [2.0]], coded("not_rising", name="x", min=0.0, max=0.0)),
+        ([1.0, 0.0], [0.0], [[1.0], [2.0]], coded("not_rising", name="x", min=-1.0, max=-1.0)),
+        ([0.0], [0.0, 1.0, 3.0], [[1.0, 2.0, 3.0]], coded("not_rising", name="y", min=1.0, max=2.0)),
+        ([0.0, 1.0], [0.0], [[1.0, 2.0]], coded("wrong_shape", shape="(1, 2)", n_x=2, n_y=1)),
     ],
 )  # fmt: skip
-def test_what_is_no_grid_is_refused(x: list[float], y: list[float], values: list[list[float]], said: str) -> None:
-    with pytest.raises(ParameterError, match=said):
+def test_what_is_no_grid_is_refused(
+    x: list[float], y: list[float], values: list[list[float]], said: str | Coded
+) -> None:
+    with raises(ParameterError, said):
         Grid(np.asarray(x), np.asarray(y), np.asarray(values))
 
 
@@ -51,7 +54,7 @@ def test_steps_may_differ_by_rounding_alone() -> None:
     tenths = 0.1 * np.arange(1001)
     assert np.ptp(np.diff(tenths)) > 0.0
     Grid.along(tenths, tenths)
-    with pytest.raises(ParameterError, match="rise evenly"):
+    with raises(ParameterError, "not_rising"):
         Grid.along([0.0, 1.0, 2.000001], np.zeros(3))
 
 

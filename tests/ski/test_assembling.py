@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from tests.coded import raises
 
 from skisnow._support.errors import ParameterError
 from skisnow.ski import BaseShape, Ski, arc_ski, layout_of_lengths
@@ -76,7 +77,7 @@ def test_camber_of_the_ski() -> None:
 
 
 def test_parts_that_do_not_fit() -> None:
-    with pytest.raises(ParameterError, match="5 values stand at 4 stations"):
+    with raises(ParameterError, "wrong_shape", size=5, size_2=4):
         slalom(stations=[0.6, 0.3, 0.1, -0.3])
 
 

@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from tests.coded import Coded, coded, raises
 
 from skisnow._support.errors import ParameterError
 from skisnow.ski.base_profile import BaseShape
@@ -68,23 +69,21 @@ def test_boot_away_from_the_middle_is_still_at_zero() -> None:
 @pytest.mark.parametrize(
     ("shape", "named"),
     [
-        (BaseShape(tip_rocker_length=0.9, tail_rocker_length=0.6), "of the running length of 1396.0 mm"),
-        (BaseShape(tip_rocker_length=0.9, tail_rocker_length=0.4959), "of the running length of 1396.0 mm"),
-        (BaseShape(tip_rocker_height=0.01), "shovel has a height of 10.0 mm but no length"),
-        (BaseShape(tip_rocker_length=0.1, tip_rocker_height=0.03, shovel_height=0.05), "already"),
+        (BaseShape(tip_rocker_length=0.9, tail_rocker_length=0.6), coded("contradiction", running_length=1396.0)),
+        (BaseShape(tip_rocker_length=0.9, tail_rocker_length=0.4959), coded("contradiction", running_length=1396.0)),
+        (BaseShape(tip_rocker_height=0.01), coded("contradiction", name="shovel", rocker_height=10.0)),
+        (BaseShape(tip_rocker_length=0.1, tip_rocker_height=0.03, shovel_height=0.05), "contradiction"),
     ],
 )
-def test_impossible_bases_are_refused(shape: BaseShape, named: str) -> None:
-    with pytest.raises(ParameterError, match=named):
+def test_impossible_bases_are_refused(shape: BaseShape, named: str | Coded) -> None:
+    with raises(ParameterError, named):
         shape.height_at(np.zeros(1), LAYOUT)
 
 
 def test_shovel_height_without_a_shovel_is_refused() -> None:
     piece = layout_of_lengths(length=0.2, running_length=0.2, sidecut_length=0.2, tail_overhang=0.0)
     assert np.all(BaseShape().height_at(np.linspace(0.1, -0.1, 5), piece) == 0.0)
-    with pytest.raises(
-        ParameterError, match=r"shovel height is 50\.0 mm, but the running length ends where the ski does"
-    ):
+    with raises(ParameterError, "contradiction", name="shovel", given_height=50.0):
         BaseShape(shovel_height=0.05).height_at(np.zeros(1), piece)
 
 

@@ -6,6 +6,7 @@ import tracemalloc
 from pathlib import Path
 
 import pytest
+from tests.coded import raises
 
 from skisnow import read_ski
 from skisnow._support.errors import ParameterError
@@ -40,7 +41,7 @@ def test_a_table_that_is_no_plain_file(tmp_path: Path) -> None:
     """/dev/zero has no end."""
     path = tmp_path / "ski.toml"
     path.write_text('table = "/dev/zero"\nrunning_length_mm = 1396\nsidecut_length_mm = 1458\n' + TOML)
-    with pytest.raises(ParameterError, match="/dev/zero"):
+    with raises(ParameterError, "cannot_read"):
         read_ski(path)
 
 

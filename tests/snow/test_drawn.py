@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from tests.coded import raises
 
 from skisnow._support.errors import ParameterError
 from skisnow.snow import SnowProperties
@@ -36,9 +37,9 @@ def test_a_share_of_one_half_is_the_middle_and_more_is_more() -> None:
 
 
 def test_snow_without_interval_is_refused() -> None:
-    with pytest.raises(ParameterError, match="no interval of S_f"):
+    with raises(ParameterError, "no_data", quantity="S_f"):
         drawn_snows(replace(SNOW, failure_shear_stress_interval=None), np.full((3, 2), 0.5))
-    with pytest.raises(ParameterError, match="no snow above 0"):
+    with raises(ParameterError, "out_of_range", stress=0.0):
         drawn_snows(replace(SNOW, failure_shear_stress_interval=(0.0, 2.0)), np.full((3, 2), 0.5))
 
 

@@ -1,6 +1,7 @@
 """Snow by the name of a publication."""
 
 import pytest
+from tests.coded import Coded, coded, raises
 
 from skisnow._support.errors import ParameterError
 from skisnow._support.units import N_PER_MM2, N_PER_MM3
@@ -32,14 +33,19 @@ def test_all_names() -> None:
 
 @pytest.mark.parametrize(
     ("misspelt", "nearest"),
-    [("race-pist", "race-piste"), ("Glacier", "glacier"), ("spring snow", "spring-snow"), ("fresh", "fresh-snow")],
+    [
+        ("race-pist", coded("unknown_name", similar="race-piste")),
+        ("Glacier", coded("unknown_name", similar="glacier")),
+        ("spring snow", coded("unknown_name", similar="spring-snow")),
+        ("fresh", coded("unknown_name", name="fresh", similar="fresh-snow")),
+    ],
 )
-def test_a_misspelt_name_is_told_the_nearest_and_all(misspelt: str, nearest: str) -> None:
-    with pytest.raises(ParameterError, match=f"did you mean '{nearest}'") as caught:
+def test_a_misspelt_name_is_told_the_nearest_and_all(misspelt: str, nearest: str | Coded) -> None:
+    with raises(ParameterError, nearest) as caught:
         published_snow(misspelt)
     assert all(name in str(caught.value) for name in published_names())
 
 
 def test_a_name_like_none_is_told_all() -> None:
-    with pytest.raises(ParameterError, match=r"no published snow is named 'xyz'\. There are race-piste, "):
+    with raises(ParameterError, "unknown_name", name="xyz", problem="no published snow is named 'xyz'."):
         published_snow("xyz")

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 import pytest
+from tests.coded import raises
 
 from skisnow._support.errors import FitError, ParameterError
 from skisnow.statistics import cluster_intervals, linear_fit
@@ -146,7 +147,7 @@ def test_two_sites_with_slopes_of_their_own() -> None:
 
 
 def test_bad_input() -> None:
-    with pytest.raises(ParameterError, match="clusters"):
+    with raises(ParameterError, "wrong_shape"):
         cluster_intervals([1.0, 2.0, 3.0], [1.0, 2.0, 4.0], ["a", "b"])
     with pytest.raises(FitError):
         cluster_intervals([1.0, 2.0, 3.0], [1.0, 1.0, 1.0], ["a", "b", "b"])

@@ -87,3 +87,19 @@ def test_problems_come_from_another_process() -> None:
 def test_plain_text_has_no_fields() -> None:
     error = ParameterError("1.5 m")
     assert (error.code, error.fields, error.text("de")) == ("", {}, "1.5 m")
+
+
+class Law:
+    """An object that another process does not have."""
+
+    def __reduce__(self) -> tuple[object, ...]:
+        raise TypeError("not to be sent")
+
+    def __repr__(self) -> str:
+        return "Law(0.2)"
+
+
+def test_objects_are_sent_as_their_text() -> None:
+    message = Message("{law!r} and {error}: {laws}", law=Law(), error=ParameterError(Message("Low")), laws=[Law()])
+    received = pickle.loads(pickle.dumps(message))
+    assert (str(received), received.text("de")) == ("Law(0.2) and Low: Law(0.2)", "Law(0.2) and Niedrig: Law(0.2)")

@@ -94,9 +94,45 @@ def decimal_sign(language: str) -> str:
 
 
 def _message(template: str, plural: str | None, fields: dict[str, Any]) -> Message:
+    fields = {name: _plain(value) for name, value in fields.items()}
     message = str.__new__(Message, _filled(template, plural, fields, ENGLISH))
     message.template, message.plural, message.fields = template, plural, fields
     return message
+
+
+class _Printed(str):
+    """Text of an object that stays behind: another process may not have its class, and an error has its frames."""
+
+    printed: str
+
+    def __new__(cls, value: object) -> _Printed:
+        return _printed(str(value), repr(value))
+
+    def __repr__(self) -> str:
+        return self.printed
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _printed, (str(self), self.printed)
+
+
+def _printed(text: str, printed: str) -> _Printed:
+    result = str.__new__(_Printed, text)
+    result.printed = printed
+    return result
+
+
+def _plain(value: Any) -> Any:
+    """The value, or the text of an object that cannot go to every process."""
+    if isinstance(value, BaseException):
+        return getattr(value, "message", None) or _Printed(value)
+    if isinstance(value, list | tuple | set | frozenset):
+        return (
+            type(value)(map(_plain, value))
+            if type(value) in (list, tuple, set, frozenset)
+            else list(map(_plain, value))
+        )
+    plain = value is None or isinstance(value, str | Real | date | Path | dict)
+    return value if plain or callable(getattr(type(value), "text", None)) else _Printed(value)
 
 
 def _filled(template: str, plural: str | None, fields: dict[str, Any], language: str) -> str:
@@ -140,7 +176,7 @@ class _Localized(Formatter):
     def _several(self, values: Any, spec: str) -> str:
         items = [self.format_field(value, spec) for value in values]
         numbers = all(isinstance(value, Real) for value in values)
-        text = ("; " if numbers and self._sign == "," else ", ").join(items)
+        text = ("; " if numbers and any("," in item for item in items) else ", ").join(items)
         return f"[{text}]" if numbers and isinstance(values, tuple) else text
 
     def _date(self, value: date) -> str:

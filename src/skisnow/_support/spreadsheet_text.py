@@ -319,8 +319,7 @@ def _rows(
             raise ParameterError(
                 Message(
                     "{path}, row {row}: there are {count} cells under {columns} names of columns, perhaps "
-                    "because of decimal "
-                    "commas. {action}",
+                    "because of decimal commas. {action}",
                     path=path,
                     row=row,
                     count=len(cells),

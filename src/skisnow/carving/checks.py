@@ -6,6 +6,7 @@ import math
 from typing import Final
 
 from .._support.errors import ParameterError
+from .._support.messages import Message
 from .._support.nearest import require_choice
 from ..ski.ski import Ski
 from ..snow.properties import SnowProperties
@@ -19,10 +20,18 @@ SIDE_FORCE_SPREADS: Final = ("depth", "base-reaction")
 def require_kinds(ski: object, snow: object) -> None:
     """Reject arguments of another type than a ski and snow."""
     if not isinstance(ski, Ski):
-        raise ParameterError(f"ski is {ski!r}; it must be a Ski: read_ski gives one, from a name or a file")
+        raise ParameterError(
+            Message("ski is {ski!r}; it must be a Ski: read_ski gives one, from a name or a file", ski=ski),
+            code="wrong_kind",
+        )
     if not isinstance(snow, SnowProperties):
         raise ParameterError(
-            f"snow is {snow!r}; it must be SnowProperties: from published_snow, from snow_from_results, or from numbers"
+            Message(
+                "snow is {snow!r}; it must be SnowProperties: from published_snow, from "
+                "snow_from_results, or from numbers",
+                snow=snow,
+            ),
+            code="wrong_kind",
         )
 
 
@@ -30,14 +39,27 @@ def require_ranges(edge_angle: float, load: float, unloading_ratio: float, momen
     """Refuse a number outside its range."""
     if not 0.0 <= edge_angle <= GREATEST_EDGE_ANGLE:
         raise ParameterError(
-            f"edge_angle is {edge_angle} rad; it must be from 0 to {GREATEST_EDGE_ANGLE:.3f} rad (85 degrees)"
+            Message(
+                "edge_angle is {edge_angle} rad; it must be from 0 to {greatest_edge_angle:.3f} rad (85 degrees)",
+                edge_angle=edge_angle,
+                greatest_edge_angle=GREATEST_EDGE_ANGLE,
+            ),
+            code="out_of_range",
         )
     if not (math.isfinite(load) and load > 0.0):
-        raise ParameterError(f"load is {load} N; it must be a finite force above 0")
+        raise ParameterError(
+            Message("load is {load} N; it must be a finite force above 0", load=load), code="out_of_range"
+        )
     if not unloading_ratio >= 1.0:
-        raise ParameterError(f"unloading_ratio is {unloading_ratio}; k_u/H_V must be 1 (elastic) or more")
+        raise ParameterError(
+            Message(
+                "unloading_ratio is {unloading_ratio}; k_u/H_V must be 1 (elastic) or more",
+                unloading_ratio=unloading_ratio,
+            ),
+            code="out_of_range",
+        )
     if not math.isfinite(moment):
-        raise ParameterError(f"moment is {moment} N m; it must be finite")
+        raise ParameterError(Message("moment is {moment} N m; it must be finite", moment=moment), code="not_a_number")
 
 
 def require_within(ski: Ski, load: float, moment: float) -> None:
@@ -45,8 +67,17 @@ def require_within(ski: Ski, load: float, moment: float) -> None:
     ahead = moment / load
     if not ski.station[-1] < ahead < ski.station[0]:
         raise ParameterError(
-            f"a moment of {moment} N m under a load of {load} N puts the resultant {ahead:.2f} m ahead of the boot: "
-            f"off the ski, which reaches from {ski.station[-1]:.2f} to {ski.station[0]:.2f} m: no snow can balance that"
+            Message(
+                "a moment of {moment} N m under a load of {load} N puts the resultant {ahead:.2f} m "
+                "ahead of the boot: off the ski, which reaches from {tail:.2f} to {tip:.2f} m: "
+                "no snow can balance that",
+                moment=moment,
+                load=load,
+                ahead=ahead,
+                tail=ski.station[-1],
+                tip=ski.station[0],
+            ),
+            code="out_of_range",
         )
 
 
@@ -61,8 +92,11 @@ def require_strength(snow: SnowProperties) -> None:
     """Refuse snow without S_f, where no law says what holds the edge."""
     if snow.failure_shear_stress is None:
         raise ParameterError(
-            f"the snow ({snow.source}) has no failure shear stress S_f; a carved turn needs it: give one, or a shear "
-            "law"
+            Message(
+                "the snow ({source}) has no failure shear stress S_f; a carved turn needs it: give one, or a shear law",
+                source=snow.source,
+            ),
+            code="no_data",
         )
 
 
@@ -71,7 +105,11 @@ def unloading_ratio_of(snow: SnowProperties, given: float | None) -> float:
     ratio = snow.unloading_ratio if given is None else given
     if ratio is None:
         raise ParameterError(
-            f"unloading_ratio is missing, and the snow ({snow.source}) has none: k_u/H_V has no default. Give it here, "
-            "or to the snow: 1 is elastic snow, math.inf rigid-plastic snow"
+            Message(
+                "unloading_ratio is missing, and the snow ({source}) has none: k_u/H_V has no default. "
+                "Give it here, or to the snow: 1 is elastic snow, math.inf rigid-plastic snow",
+                source=snow.source,
+            ),
+            code="missing",
         )
     return ratio

@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .._support.errors import ParameterError
+from .._support.messages import Message
 from ..compiled import core
 from ..contact.asked_laws import AskedPressure, AskedStrength
 from ..forces.penetration import PenetrationLaw, PointLaw
@@ -31,13 +32,13 @@ class PressureLaw(AskedPressure):
 
     def __init__(self, law: PointLaw) -> None:
         super().__init__(law)
-        self.refused = ""
+        self.refused: Message | None = None
 
     def stress(self, depth: FloatArray, deepest: FloatArray, edge_angle: FloatArray, /) -> FloatArray:
         """Stress (N/m²) of places at depths (m), that were at deepest depths (m), at edge angles (rad)."""
         return self.bear(depth, deepest, edge_angle)[0]
 
-    def refuse(self, reason: str) -> None:
+    def refuse(self, reason: Message) -> None:
         """Keep the reason."""
         self.refused = reason
 
@@ -48,7 +49,7 @@ class StrengthLaw:
     def __init__(self, law: ShearLaw, edge_angle: float) -> None:
         self._asked = AskedStrength(law)
         self._unit = float(self._asked(np.array([_SOME_DEPTH]), np.array([edge_angle]))[0, 0])
-        self.refused = ""
+        self.refused: Message | None = None
 
     def share(self, depth: FloatArray, edge_angle: FloatArray, /) -> FloatArray:
         """Stress at depths (m), 0 at depths that are not positive, and at edge angles (rad)."""
@@ -90,7 +91,9 @@ class SnowLaws:
         """Refuse a law that gave no finite answer on the way; asked where no equilibrium was found."""
         for each in self.asked:
             if each.refused:
-                raise ParameterError(f"{each.refused}, and no equilibrium was found")
+                raise ParameterError(
+                    Message("{problem}, and no equilibrium was found", problem=each.refused), code="no_equilibrium"
+                )
 
 
 def snow_laws(shear: object, penetration: object, edge_angle: float) -> SnowLaws | None:
@@ -111,16 +114,23 @@ def snow_laws(shear: object, penetration: object, edge_angle: float) -> SnowLaws
     if shear is None and penetration is None:
         return None
     if penetration is not None and not isinstance(penetration, PointLaw):
-        raise ParameterError(_no_point_law(penetration))
+        raise ParameterError(_no_point_law(penetration), code="wrong_kind")
     if shear is not None and not isinstance(shear, ShearLaw):
         raise ParameterError(
-            f"shear is {shear!r}; it must be a shear law, such as ConstantShear(0.2e6) of skisnow.forces.shear, or one "
-            "of yours derived from ShearLaw"
+            Message(
+                "shear is {shear!r}; it must be a shear law, such as ConstantShear(0.2e6) of "
+                "skisnow.forces.shear, or one of yours derived from ShearLaw",
+                shear=shear,
+            ),
+            code="wrong_kind",
         )
     if shear is not None and penetration is not None and penetration.along_base_normal:
         raise ParameterError(
-            f"{type(penetration).__name__} acts along the base's normal and so holds the edge across by itself; leave "
-            "the shear law out"
+            Message(
+                "{kind} acts along the base's normal and so holds the edge across by itself; leave the shear law out",
+                kind=type(penetration).__name__,
+            ),
+            code="contradiction",
         )
     pressure = None if penetration is None else PressureLaw(penetration)
     strength = None
@@ -136,11 +146,17 @@ def snow_laws(shear: object, penetration: object, edge_angle: float) -> SnowLaws
     return SnowLaws(shear, penetration, tuple(each for each in (pressure, strength) if each is not None), compiled)
 
 
-def _no_point_law(given: object) -> str:
-    kind = "a law for the force of a whole tool" if isinstance(given, PenetrationLaw) else "no law of a place"
-    return (
-        f"penetration is {given!r}, {kind}; it must be a law of one place on the snow, such as MeanPressurePoint(…) of "
-        "skisnow.forces.penetration, or one of yours derived from PointLaw"
+def _no_point_law(law: object) -> Message:
+    if isinstance(law, PenetrationLaw):
+        return Message(
+            "penetration is {law!r}, a law for the force of a whole tool; it must be a law of one place on the snow, "
+            "such as MeanPressurePoint(…) of skisnow.forces.penetration, or one of yours derived from PointLaw",
+            law=law,
+        )
+    return Message(
+        "penetration is {law!r}, no law of a place; it must be a law of one place on the snow, such as "
+        "MeanPressurePoint(…) of skisnow.forces.penetration, or one of yours derived from PointLaw",
+        law=law,
     )
 
 
@@ -149,14 +165,29 @@ def _require_strength_alone(law: ShearLaw, edge_angle: float) -> None:
     stress, thrust = law.stress_and_thrust(depth, np.full(3, edge_angle))
     degrees = math.degrees(edge_angle)
     if not (np.isfinite(stress).all() and np.all(stress > 0.0)):
-        raise ParameterError(f"shear is {law!r}, which gives no finite strength above 0 at {degrees:.3g} degrees")
+        raise ParameterError(
+            Message(
+                "shear is {law!r}, which gives no finite strength above 0 at {degrees:.3g} degrees",
+                law=law,
+                degrees=degrees,
+            ),
+            code="invalid_law",
+        )
     share = float(np.max(np.abs(thrust / stress))) * math.tan(edge_angle)
     if share > 0.0:
         raise ParameterError(
-            f"shear is {law!r}, which comes with a thrust. Drawn as its strength is, it would bear {share:.3g} of the "
-            f"load by itself in a balanced turn at {degrees:.3g} degrees (of 1 on none is left for the base), and a "
-            "steady carve does not balance a thrust. Give the strength alone: ConstantShear("
-            f"{float(stress[0]):.6g}), or a law of yours without thrust_force. A simulated turn takes this one"
+            Message(
+                "shear is {law!r}, which comes with a thrust. Drawn as its strength is, it would bear "
+                "{share:.3g} of the load by itself in a balanced turn at {degrees:.3g} degrees (of 1 on "
+                "none is left for the base), and a steady carve does not balance a thrust. Give the "
+                "strength alone: ConstantShear({stress:.6g}), or a law of yours without thrust_force. A "
+                "simulated turn takes this one",
+                law=law,
+                share=share,
+                degrees=degrees,
+                stress=float(stress[0]),
+            ),
+            code="contradiction",
         )
 
 
@@ -188,12 +219,19 @@ def equivalent_snow(law: PointLaw, ski: Ski, edge_angle: float, load: float) -> 
     at = int(bears[0]) if len(bears) else len(_DEPTHS) - 1
     hardness, deepest = float(force[at] / volume[at]), np.array([_DEPTHS[at]])
     if not (math.isfinite(hardness) and hardness > 0.0):
-        raise ParameterError(f"penetration is {law!r}, which gives no finite pressure above 0 under this ski and load")
+        raise ParameterError(
+            Message("penetration is {law!r}, which gives no finite pressure above 0 under this ski and load", law=law),
+            code="invalid_law",
+        )
     spring = float(deepest[0] - np.asarray(law.residual_depth(deepest), float)[0])
     if not spring > 0.0:
         raise ParameterError(
-            f"penetration is {law!r}, which lets go at once when the depth shrinks: residual_depth must stay below the "
-            "deepest depth, as with a finite unloading_ratio"
+            Message(
+                "penetration is {law!r}, which lets go at once when the depth shrinks: residual_depth "
+                "must stay below the deepest depth, as with a finite unloading_ratio",
+                law=law,
+            ),
+            code="out_of_range",
         )
     stress = float(law.stress_and_energy(deepest, deepest, np.array([edge_angle]))[0, 0])
     ratio = min(max(stress / spring / hardness, 1.0), STEEPEST_RATIO)

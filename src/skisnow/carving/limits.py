@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Final
 
 from .._support.errors import ParameterError
+from .._support.messages import Message
 from .._support.units import MM, N_PER_MM3, in_degrees_if_radians
 from ..ski import Ski
 from ..snow.properties import GREATEST_LIKELY_HARDNESS
@@ -25,12 +26,26 @@ def require_clamp(ski: Ski, clamp_length_m: float) -> None:
     most = 2.0 * min(float(ski.station[0]), -float(ski.station[-1]))
     if clamp_length_m < most:
         return
-    default = " (the default)" if clamp_length_m == CARVE_KEYS["clamp_length_m"].default else ""
-    in_mm = f", or {clamp_length_m * MM:g} if the number is in mm" if clamp_length_m * MM < most else ""
-    raise ParameterError(
-        f"clamp_length_m (--clamp-length-m) is {clamp_length_m:g}{default}; the ski {ski.name} allows less than "
-        f"{most:.3g} m: write --clamp-length-m 0{in_mm if clamp_length_m >= 20.0 else ''}"
-    )
+    fields = {"clamp_length": clamp_length_m, "name": ski.name, "most": most, "in_metres": clamp_length_m * MM}
+    if clamp_length_m == CARVE_KEYS["clamp_length_m"].default:
+        problem = Message(
+            "clamp_length_m (--clamp-length-m) is {clamp_length:g} (the default); the ski {name} allows less than "
+            "{most:.3g} m: write --clamp-length-m 0",
+            **fields,
+        )
+    elif clamp_length_m >= 20.0 and clamp_length_m * MM < most:
+        problem = Message(
+            "clamp_length_m (--clamp-length-m) is {clamp_length:g}; the ski {name} allows less than {most:.3g} m: "
+            "write --clamp-length-m 0, or {in_metres:g} if the number is in mm",
+            **fields,
+        )
+    else:
+        problem = Message(
+            "clamp_length_m (--clamp-length-m) is {clamp_length:g}; the ski {name} allows less than {most:.3g} m: "
+            "write --clamp-length-m 0",
+            **fields,
+        )
+    raise ParameterError(problem, code="out_of_range")
 
 
 def implausible_values(question: CarveQuestion) -> tuple[str, ...]:

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Mapping
 from typing import Any
 
 from .._support.errors import ParameterError
+from .._support.messages import Message
 from ..parameters import nearest
 from .keys import CARVE_KEYS, CarveQuestion
 
@@ -40,7 +41,10 @@ def require_known(names: Iterable[str]) -> None:
     """Reject an unknown name, and suggest the nearest one."""
     for name in names:
         if name not in CARVE_KEYS:
-            raise ParameterError(f"{name} is no input of a carved turn. {nearest(name, CARVE_KEYS)}")
+            raise ParameterError(
+                Message("{name} is no input of a carved turn. {allowed}", name=name, allowed=nearest(name, CARVE_KEYS)),
+                code="unknown_name",
+            )
 
 
 def require_complete(values: Mapping[str, object]) -> None:
@@ -52,22 +56,48 @@ def require_complete(values: Mapping[str, object]) -> None:
     for name in ("ski", "edge_angle_deg", "load_N", *(() if rests else ("unloading_ratio",))):
         if name not in values:
             example = CARVE_KEYS[name].example
-            hint = f". Give one, e.g. {example}" if example else ""
-            raise ParameterError(f"{name} is missing: {CARVE_KEYS[name].meaning}. It has no default{hint}")
+            meaning = CARVE_KEYS[name].meaning
+            problem = (
+                Message(
+                    "{name} is missing: {meaning}. It has no default. Give one, e.g. {example}",
+                    name=name,
+                    meaning=meaning,
+                    example=example,
+                )
+                if example
+                else Message("{name} is missing: {meaning}. It has no default", name=name, meaning=meaning)
+            )
+            raise ParameterError(problem, code="missing")
     _require_one_snow(set(values), rests)
 
 
 def _require_one_snow(names: set[str], rests: bool) -> None:
     ways = [name for name in ("H_V_N_per_mm3", "results", "published") if name in names]
-    choices = "Give H_V_N_per_mm3 and S_f_N_per_mm2, or results, or published"
+    choices = Message("Give H_V_N_per_mm3 and S_f_N_per_mm2, or results, or published")
     if not ways:
-        raise ParameterError(f"no snow is given: H_V has no default. {choices}")
+        raise ParameterError(
+            Message("no snow is given: H_V has no default. {choices}", choices=choices), code="missing"
+        )
     if len(ways) > 1:
-        raise ParameterError(f"the snow is given in two ways, {ways[0]} and {ways[1]}. {choices}")
+        raise ParameterError(
+            Message(
+                "the snow is given in two ways, {first} and {second}. {choices}",
+                first=ways[0],
+                second=ways[1],
+                choices=choices,
+            ),
+            code="contradiction",
+        )
     if ways == ["H_V_N_per_mm3"] and "S_f_N_per_mm2" not in names and not rests:
         raise ParameterError(
-            "S_f_N_per_mm2 is missing: a carved turn needs the failure shear stress S_f, which has no default. "
-            "Give it, or ask for the ski at rest"
+            Message(
+                "S_f_N_per_mm2 is missing: a carved turn needs the failure shear stress S_f, which has "
+                "no default. Give it, or ask for the ski at rest"
+            ),
+            code="missing",
         )
     if "site" in names and ways != ["results"]:
-        raise ParameterError("site goes with results: it names one site of an analysed campaign. Leave it out")
+        raise ParameterError(
+            Message("site goes with results: it names one site of an analysed campaign. Leave it out"),
+            code="contradiction",
+        )

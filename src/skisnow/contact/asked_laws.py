@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .._support.errors import ParameterError
+from .._support.messages import Message
 
 if TYPE_CHECKING:
     from ..forces.friction import FrictionLaw
@@ -36,7 +37,7 @@ class AskedStrength:
 
     def __init__(self, law: ShearLaw) -> None:
         self.law = law
-        self.refused = ""
+        self.refused: Message | None = None
 
     def __call__(self, depth: FloatArray, edge_angle: FloatArray, /) -> FloatArray:
         """Both, or what is not finite."""
@@ -44,10 +45,14 @@ class AskedStrength:
         found = np.zeros((2, len(depth)))
         found[:, meets] = self.law.stress_and_thrust(depth[meets], edge_angle[meets])
         bad = ~np.isfinite(found).all(axis=0)
-        self.refused = ""
+        self.refused = None
         if bad.any():
             worst = float(np.degrees(edge_angle[bad][0]))
-            self.refused = f"{self.law!r} gives no finite strength at an edge angle of {worst:.3g} degrees"
+            self.refused = Message(
+                "{law!r} gives no finite strength at an edge angle of {edge_angle:.3g} degrees",
+                law=self.law,
+                edge_angle=worst,
+            )
         return found
 
 
@@ -69,13 +74,19 @@ class AskedPressure:
         """Energy (J/m²) that stays in places that were at deepest depths (m)."""
         return self._sound(self.law.lost_energy(deepest), deepest.shape, deepest)
 
-    def refuse(self, reason: str) -> None:
+    def refuse(self, reason: Message) -> None:
         """Act on an answer that is not finite."""
-        raise ParameterError(reason)
+        raise ParameterError(reason, code="invalid_law")
 
     def _sound(self, found: FloatArray, shape: tuple[int, ...], depth: FloatArray) -> FloatArray:
         found = np.ascontiguousarray(np.broadcast_to(found, shape), float)
         bad = ~np.isfinite(found).reshape(-1, len(depth)).all(axis=0)
         if bad.any():
-            self.refuse(f"{self.law!r} gives no finite answer at a depth of {1e3 * depth[bad][0]:.4g} mm")
+            self.refuse(
+                Message(
+                    "{law!r} gives no finite answer at a depth of {depth:.4g} mm",
+                    law=self.law,
+                    depth=1e3 * depth[bad][0],
+                )
+            )
         return found

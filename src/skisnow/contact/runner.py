@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from .._support.display import Facts, Shown, amount, ends
 from .._support.errors import ParameterError
+from .._support.messages import Message
 from .._support.units import MM
 from ..compiled import core
 
@@ -60,13 +61,28 @@ class Runner(Shown):
             array.flags.writeable = False
             object.__setattr__(self, name, array)
             if array.ndim != 1 or len(array) < 2 or array.shape != self.position.shape:
-                raise ParameterError(f"Runner: {name} has shape {array.shape}; it needs one number for each position")
+                raise ParameterError(
+                    Message(
+                        "Runner: {name} has shape {shape}; it needs one number for each position",
+                        name=name,
+                        shape=str(array.shape),
+                    ),
+                    code="wrong_shape",
+                )
             if not np.all(np.isfinite(array)):
-                raise ParameterError(f"Runner: {name} holds a number that is not finite")
+                raise ParameterError(
+                    Message("Runner: {name} holds a number that is not finite", name=name), code="not_a_number"
+                )
         if np.any(np.diff(self.position) >= 0.0):
-            raise ParameterError("Runner: positions must fall from tip to tail")
+            raise ParameterError(Message("Runner: positions must fall from tip to tail"), code="not_falling")
         if self.half_width.min() <= 0.0:
-            raise ParameterError(f"Runner: the half width is {self.half_width.min():g} m somewhere; it must be above 0")
+            raise ParameterError(
+                Message(
+                    "Runner: the half width is {half_width:g} m somewhere; it must be above 0",
+                    half_width=self.half_width.min(),
+                ),
+                code="out_of_range",
+            )
         self._check_nodes()
 
     def _check_nodes(self) -> None:
@@ -76,10 +92,17 @@ class Runner(Shown):
         object.__setattr__(self, "nodes", nodes)
         ends = (self.position[0], self.position[-1])
         if nodes.ndim != 1 or len(nodes) < 2 or np.any(np.diff(nodes) >= 0.0):
-            raise ParameterError("Runner: nodes must be two positions or more that fall from tip to tail")
+            raise ParameterError(
+                Message("Runner: nodes must be two positions or more that fall from tip to tail"), code="not_falling"
+            )
         if not np.allclose((nodes[0], nodes[-1]), ends, atol=1e-9):
             raise ParameterError(
-                f"Runner: nodes must begin at the tip and end at the tail, {ends[0]:g} and {ends[1]:g} m"
+                Message(
+                    "Runner: nodes must begin at the tip and end at the tail, {tip:g} and {tail:g} m",
+                    tip=ends[0],
+                    tail=ends[1],
+                ),
+                code="out_of_range",
             )
 
     @classmethod

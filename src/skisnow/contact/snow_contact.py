@@ -11,6 +11,7 @@ import numpy.typing as npt
 
 from .._support.display import Facts, Shown, field_facts
 from .._support.errors import ParameterError
+from .._support.messages import Message
 from ..compiled import core
 from .asked_laws import AskedFriction, AskedPressure, AskedStrength
 from .contact_state import ContactState
@@ -137,12 +138,22 @@ class SnowContact(Shown):
         instruction_set: str | None = None,
     ) -> None:
         if not runners:
-            raise ParameterError("SnowContact: it needs one runner or more")
+            raise ParameterError(Message("SnowContact: it needs one runner or more"), code="missing")
         if not (np.isfinite(spacing) and spacing > 0.0):
-            raise ParameterError(f"SnowContact: spacing is {spacing!r} m; it must be above 0")
+            raise ParameterError(
+                Message("SnowContact: spacing is {spacing!r} m; it must be above 0", spacing=spacing),
+                code="out_of_range",
+            )
         if instruction_set is not None and instruction_set not in core.instruction_sets():
             known = ", ".join(core.instruction_sets())
-            raise ParameterError(f"SnowContact: instruction_set is {instruction_set!r}; this machine has {known}")
+            raise ParameterError(
+                Message(
+                    "SnowContact: instruction_set is {instruction_set!r}; this machine has {known}",
+                    instruction_set=instruction_set,
+                    known=known,
+                ),
+                code="unknown_name",
+            )
         self.snow, self.runners = snow, tuple(runners)
         self.compiled = core.Contact(snow.compiled, [each.compiled() for each in runners], spacing, instruction_set)
         friction, shear = snow.friction_in_python, snow.shear_in_python
@@ -205,7 +216,7 @@ class SnowContact(Shown):
     def require_finite_laws(self) -> None:
         """ParameterError if a shear law in Python gave no finite strength at the pose evaluated last."""
         if self._shear is not None and self._shear.refused:
-            raise ParameterError(self._shear.refused)
+            raise ParameterError(self._shear.refused, code="invalid_law")
 
     def sections(self, runner: int = 0) -> Sections:
         """Sections along a runner at the last ``force`` or ``update``."""
@@ -252,7 +263,7 @@ class SnowContact(Shown):
         try:
             state.restore_in(self.compiled)
         except ValueError as error:
-            raise ParameterError(f"SnowContact: {error}") from error
+            raise ParameterError(Message("SnowContact: {error}", error=error), code="invalid") from error
 
     def _asked(
         self,
@@ -267,9 +278,14 @@ class SnowContact(Shown):
         where, axes = _array("position", position, (k, 3)), _array("rotation", rotation, (k, 3, 3))
         off = np.abs(np.swapaxes(axes, 1, 2) @ axes - np.eye(3)).max()
         if off > ORTHONORMAL or np.any(np.linalg.det(axes) < 0.0):
-            raise ParameterError(f"SnowContact: rotation is none, its columns are off by {off:.1e} from orthonormal")
+            raise ParameterError(
+                Message("SnowContact: rotation is none, its columns are off by {off:.1e} from orthonormal", off=off),
+                code="not_a_rotation",
+            )
         if not (np.isfinite(dt) and dt >= 0.0):
-            raise ParameterError(f"SnowContact: dt is {dt!r} s; it must be 0 or more")
+            raise ParameterError(
+                Message("SnowContact: dt is {dt!r} s; it must be 0 or more", dt=dt), code="out_of_range"
+            )
         moves = np.zeros((k, 6)) if velocity is None else _array("velocity", velocity, (k, 6))
         return where, axes, moves, dt, self._beams("beam_dofs", beams), self._beams("beam_rates", rates)
 
@@ -277,7 +293,15 @@ class SnowContact(Shown):
         if beams is None:
             return None
         if len(beams) != len(self.runners):
-            raise ParameterError(f"SnowContact: {name} has {len(beams)} entries for {len(self.runners)} runners")
+            raise ParameterError(
+                Message(
+                    "SnowContact: {name} has {n_beams} entries for {n_runners} runners",
+                    name=name,
+                    n_beams=len(beams),
+                    n_runners=len(self.runners),
+                ),
+                code="wrong_shape",
+            )
         counts = [2 if each.nodes is None else len(each.nodes) for each in self.runners]
         return [_array(name, beam, (count, 3)) for beam, count in zip(beams, counts, strict=True)]
 
@@ -285,9 +309,19 @@ class SnowContact(Shown):
 def _array(name: str, given: npt.ArrayLike, shape: tuple[int, ...]) -> FloatArray:
     array = np.ascontiguousarray(given, float)
     if array.shape != shape:
-        raise ParameterError(f"SnowContact: {name} has shape {array.shape}; it must be {shape}")
+        raise ParameterError(
+            Message(
+                "SnowContact: {name} has shape {shape}; it must be {needed}",
+                name=name,
+                shape=str(array.shape),
+                needed=str(shape),
+            ),
+            code="wrong_shape",
+        )
     if not np.all(np.isfinite(array)):
-        raise ParameterError(f"SnowContact: {name} holds a number that is not finite")
+        raise ParameterError(
+            Message("SnowContact: {name} holds a number that is not finite", name=name), code="not_a_number"
+        )
     return array
 
 

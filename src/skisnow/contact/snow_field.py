@@ -11,6 +11,7 @@ import numpy.typing as npt
 
 from .._support.display import Facts, Shown, amount
 from .._support.errors import ParameterError
+from .._support.messages import Message
 from .._support.units import N_PER_MM2, N_PER_MM3
 from ..compiled import core
 from ..forces.friction import ConstantFriction, FrictionLaw, LinearFriction, QuadraticFriction, WaterFilmFriction
@@ -135,10 +136,24 @@ class SnowField(Shown):
         self._require_one_place()
         _require("residual_ratio", self.residual_ratio, minimum=0.0)
         if self.residual_ratio > 1.0:
-            raise ParameterError(f"SnowField: residual_ratio is {self.residual_ratio!r}; it must be at most 1")
+            raise ParameterError(
+                Message(
+                    "SnowField: residual_ratio is {residual_ratio!r}; it must be at most 1",
+                    residual_ratio=self.residual_ratio,
+                ),
+                code="out_of_range",
+            )
         for name, choices in (("friction_acts_on", get_args(ActsOn)), ("friction_direction", get_args(Direction))):
             if getattr(self, name) not in choices:
-                raise ParameterError(f"SnowField: {name} is {getattr(self, name)!r}; it must be {' or '.join(choices)}")
+                raise ParameterError(
+                    Message(
+                        "SnowField: {name} is {value!r}; it must be one of {choices}",
+                        name=name,
+                        value=getattr(self, name),
+                        choices=list(choices),
+                    ),
+                    code="unknown_name",
+                )
         for name in (
             "slip_weakening",
             "shear_displacement",
@@ -161,26 +176,40 @@ class SnowField(Shown):
             return
         if self.shear is not None or _maximum(self.failure_shear_stress) > 0.0:
             raise ParameterError(
-                f"SnowField: {type(law).__name__} acts along the base's normal and so carries the side force "
-                "by itself; give it failure_shear_stress 0 and no shear law"
+                Message(
+                    "SnowField: {kind} acts along the base's normal and so carries the side force by itself; "
+                    "give it failure_shear_stress 0 and no shear law",
+                    kind=type(law).__name__,
+                ),
+                code="contradiction",
             )
 
     def _require_one_place(self) -> None:
         _require("strength_share", _minimum(self.strength_share), above=0.0)
         shared = isinstance(self.strength_share, Grid) or self.strength_share != 1.0
         if shared and isinstance(self.failure_shear_stress, Grid) and self.shear is None:
-            raise ParameterError("SnowField: failure_shear_stress varies over the place itself; leave strength_share 1")
+            raise ParameterError(
+                Message("SnowField: failure_shear_stress varies over the place itself; leave strength_share 1"),
+                code="contradiction",
+            )
         if shared and self.shear_in_python is not None:
             raise ParameterError(
-                f"SnowField: strength_share does not act on {type(self.shear).__name__}, which the core does not know; "
-                "leave it 1"
+                Message(
+                    "SnowField: strength_share does not act on {kind}, which the core does not know; leave it 1",
+                    kind=type(self.shear).__name__,
+                ),
+                code="contradiction",
             )
 
     def _require_own_law_for_rate(self) -> None:
         if self.penetration is not None and (self.damping > 0.0 or self.delayed_share > 0.0):
             raise ParameterError(
-                "SnowField: damping and delayed_share act beside H_V and k_u, not beside "
-                f"{type(self.penetration).__name__}; leave them 0, or give no penetration law"
+                Message(
+                    "SnowField: damping and delayed_share act beside H_V and k_u, not beside {kind}; leave "
+                    "them 0, or give no penetration law",
+                    kind=type(self.penetration).__name__,
+                ),
+                code="contradiction",
             )
 
     def _compiled(self) -> core.Snow:
@@ -273,10 +302,24 @@ def _maximum(value: float | Grid) -> float:
 
 
 def _require(name: str, value: float, *, minimum: float | None = None, above: float | None = None) -> None:
-    allowed = f"at least {minimum:g}" if minimum is not None else f"above {above:g}"
     good = math.isfinite(value) and (minimum is None or value >= minimum) and (above is None or value > above)
     if not good:
-        raise ParameterError(f"SnowField: {name} is {value!r}; it must be finite and {allowed}")
+        problem = (
+            Message(
+                "SnowField: {name} is {value!r}; it must be finite and above {limit:g}",
+                name=name,
+                value=value,
+                limit=above,
+            )
+            if minimum is None
+            else Message(
+                "SnowField: {name} is {value!r}; it must be finite and at least {limit:g}",
+                name=name,
+                value=value,
+                limit=minimum,
+            )
+        )
+        raise ParameterError(problem, code="out_of_range")
 
 
 def _grid(value: float | Grid, *, goes_on: bool = False) -> core.Grid:

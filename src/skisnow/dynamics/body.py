@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from .._support.display import ShownFields
 from .._support.errors import ParameterError
+from .._support.messages import Message
 from ..compiled import core
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
@@ -19,9 +20,14 @@ def shaped(name: str, given: npt.ArrayLike, shape: tuple[int, ...]) -> FloatArra
     """An array of finite numbers as compiled code takes it; it checks no shape itself."""
     array = np.asarray(given, float, order="C")
     if array.shape != shape:
-        raise ParameterError(f"{name} has shape {array.shape}; it must be {shape}")
+        raise ParameterError(
+            Message(
+                "{name} has shape {shape}; it must be {needed}", name=name, shape=str(array.shape), needed=str(shape)
+            ),
+            code="wrong_shape",
+        )
     if not np.all(np.isfinite(array)):
-        raise ParameterError(f"{name} holds a number that is not finite")
+        raise ParameterError(Message("{name} holds a number that is not finite", name=name), code="not_a_number")
     return array
 
 
@@ -74,8 +80,13 @@ class FlexibleSki(ShownFields):
         free = np.asarray(self.unknown)[np.asarray(self.unknown) >= 0]
         if not np.array_equal(np.sort(free), np.arange(0, n, 3)) or n % 3:
             raise ParameterError(
-                f"FlexibleSki: unknown gives {len(free)} free nodes their first unknowns, the matrices have {n} rows; "
-                "each node needs three of its own"
+                Message(
+                    "FlexibleSki: unknown gives {n_free} free nodes their first unknowns, the matrices have "
+                    "{n} rows; each node needs three of its own",
+                    n_free=len(free),
+                    n=n,
+                ),
+                code="wrong_shape",
             )
 
     def compiled(self) -> core.FlexibleSki:
@@ -123,7 +134,7 @@ class Body(ShownFields):
         for name, shape in shapes.items():
             shaped(f"Body: {name}", getattr(self, name), shape)
         if not self.skis:
-            raise ParameterError("Body: it needs one ski or more")
+            raise ParameterError(Message("Body: it needs one ski or more"), code="missing")
 
     def compiled(self) -> core.Body:
         """What the core takes."""

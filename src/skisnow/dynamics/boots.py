@@ -11,6 +11,7 @@ import numpy.typing as npt
 
 from .._support.display import Facts, Shown, ShownFields, amount
 from .._support.errors import ParameterError
+from .._support.messages import Message
 from .._support.units import DEGREE
 from ..geometry.boot_axes import angles_of, axes_of
 from .body import shaped
@@ -50,7 +51,10 @@ class BootPose(Shown):
             object.__setattr__(self, name, shaped(f"BootPose: {name}", getattr(self, name), shape))
         off = np.abs(self.axes @ self.axes.T - np.eye(3)).max()
         if off > 1e-9 or np.linalg.det(self.axes) < 0.0:
-            raise ParameterError(f"BootPose: axes are off by {off:.1e} from right-handed orthonormal ones")
+            raise ParameterError(
+                Message("BootPose: axes are off by {off:.1e} from right-handed orthonormal ones", off=off),
+                code="not_a_rotation",
+            )
 
     def _facts(self) -> Facts:
         edge, pitch, heading = (amount(angle / DEGREE, "°") for angle in angles_of(self.axes))
@@ -93,12 +97,26 @@ class BootMotion(ShownFields):
 
     def __post_init__(self) -> None:
         if not self.start < self.end:
-            raise ParameterError(f"BootMotion: it starts at {self.start!r} s and ends at {self.end!r} s, not later")
+            raise ParameterError(
+                Message(
+                    "BootMotion: it starts at {start!r} s and ends at {end!r} s, not later",
+                    start=self.start,
+                    end=self.end,
+                ),
+                code="out_of_range",
+            )
         turn = float(np.linalg.norm(self._turn))
         if turn > FARTHEST_TURN:
             raise ParameterError(
-                f"BootMotion: the boot turns by {math.degrees(turn):.3g} degrees between {self.start:g} s and "
-                f"{self.end:g} s; at most {math.degrees(FARTHEST_TURN):.3g} are allowed. Give poses in between"
+                Message(
+                    "BootMotion: the boot turns by {degrees:.3g} degrees between {start:g} s and {end:g} s; "
+                    "at most {limit:.3g} are allowed. Give poses in between",
+                    degrees=math.degrees(turn),
+                    start=self.start,
+                    end=self.end,
+                    limit=math.degrees(FARTHEST_TURN),
+                ),
+                code="out_of_range",
             )
 
     @property

@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .._support.errors import ParameterError
+from .._support.messages import Message
 from ..compiled import core
 from ..contact import ContactState, SnowContact
 from .body import Body, shaped
@@ -70,10 +71,22 @@ class StepControl:
     def __post_init__(self) -> None:
         for name in ("first", "tolerance", "longest", "shortest", "closeness"):
             if not 0.0 < getattr(self, name) < np.inf:
-                raise ParameterError(f"StepControl: {name} is {getattr(self, name)!r}; it must be finite and above 0")
+                raise ParameterError(
+                    Message(
+                        "StepControl: {name} is {value!r}; it must be finite and above 0",
+                        name=name,
+                        value=getattr(self, name),
+                    ),
+                    code="not_a_number",
+                )
         if self.shortest > self.longest:
             raise ParameterError(
-                f"StepControl: shortest is {self.shortest!r}, above longest, {self.longest!r}; it must not be"
+                Message(
+                    "StepControl: shortest is {shortest!r}, above longest, {longest!r}; it must not be",
+                    shortest=self.shortest,
+                    longest=self.longest,
+                ),
+                code="out_of_range",
             )
 
     def compiled(self) -> core.StepRule:
@@ -120,11 +133,26 @@ class Dynamics:
         self, body: Body, contact: SnowContact, position: FloatArray, rotation: FloatArray, control: StepControl
     ) -> None:
         if len(contact.runners) != len(body.skis):
-            raise ParameterError(f"the body has {len(body.skis)} skis, the contact {len(contact.runners)} runners")
+            raise ParameterError(
+                Message(
+                    "the body has {n_skis} skis, the contact {n_runners} runners",
+                    n_skis=len(body.skis),
+                    n_runners=len(contact.runners),
+                ),
+                code="wrong_shape",
+            )
         for k, (ski, runner) in enumerate(zip(body.skis, contact.runners, strict=True)):
             nodes = 0 if runner.nodes is None else len(runner.nodes)
             if nodes != len(ski.unknown):
-                raise ParameterError(f"ski {k} of the body has {len(ski.unknown)} nodes, its runner {nodes}")
+                raise ParameterError(
+                    Message(
+                        "ski {k} of the body has {n_unknown} nodes, its runner {nodes}",
+                        k=k,
+                        n_unknown=len(ski.unknown),
+                        nodes=nodes,
+                    ),
+                    code="wrong_shape",
+                )
         self.body, self.contact = body, contact
         self._core = core.Dynamics(body.compiled(), contact.compiled, control.compiled())
         self._core.set_pose(shaped("position", position, (3,)), shaped("rotation", rotation, (3, 3)))
@@ -149,9 +177,19 @@ class Dynamics:
             Skis and motions differ in number, or a ski has no inertia.
         """
         if not self.feels_boots:
-            raise ParameterError("boots can move where each FlexibleSki has its inertia; one has none")
+            raise ParameterError(
+                Message("boots can move where each FlexibleSki has its inertia; one has none"),
+                code="no_data",
+            )
         if len(motions) != len(self.body.skis):
-            raise ParameterError(f"there are {len(motions)} motions of boots for {len(self.body.skis)} skis")
+            raise ParameterError(
+                Message(
+                    "there are {n_motions} motions of boots for {n_skis} skis",
+                    n_motions=len(motions),
+                    n_skis=len(self.body.skis),
+                ),
+                code="wrong_shape",
+            )
         self._core.move_boots(np.array([each.numbers for each in motions]))
 
     def hold_body(self) -> None:

@@ -13,6 +13,7 @@ import numpy.typing as npt
 
 from .._support.display import Facts, Shown, amount, span
 from .._support.errors import ParameterError
+from .._support.messages import Message
 from ..campaign import read_campaign
 from ..campaign.records import Campaign
 from ..snow import SnowProperties
@@ -199,7 +200,14 @@ def analyse(
     * Efron (1979), "Bootstrap methods: another look at the jackknife", Ann. Stat. 7, 1-26, doi 10.1214/aos/1176344552.
     """
     if n_resamples < FEWEST_RESAMPLES:
-        raise ParameterError(f"n_resamples is {n_resamples!r}; a 95 % interval needs {FEWEST_RESAMPLES} or more")
+        raise ParameterError(
+            Message(
+                "n_resamples is {n_resamples!r}; a 95 % interval needs {fewest_resamples} or more",
+                n_resamples=n_resamples,
+                fewest_resamples=FEWEST_RESAMPLES,
+            ),
+            code="out_of_range",
+        )
     read = campaign if isinstance(campaign, Campaign) else read_campaign(campaign, progress=progress)
     return _analysis(read, geometry, seed, n_resamples, progress)
 

@@ -10,12 +10,11 @@ import numpy as np
 import numpy.typing as npt
 
 from .._support.content import numbered
-from .._support.errors import ParameterError
 from .._support.units import MM, N_PER_MM2, N_PER_MM3
 from ..snow import SnowProperties
 from ..snow.mean_snow import (
-    known_sites,
     mean_snow,
+    no_used_experiment,
     site_in_words,
     site_named,
     with_measured_displacement,
@@ -114,7 +113,7 @@ def site_snow(
     name = campaign.name
     if not hardness.size:
         sites = sorted({str(each) for each in pressed[1]})
-        raise ParameterError(f"{name} has no used penetration experiment{known_sites(site, sites)}")
+        raise no_used_experiment(name, site, sites)
     source = f"{name}, {site_in_words(site)}: {hardness.size} penetration and {stress.size} shear experiments"
     snow = mean_snow(hardness / N_PER_MM3, stress / N_PER_MM2, source=source, where=name)
     turned = next((each for each in shear.site_displacement if each.site == site), None) if shear else None

@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .._support.errors import ParameterError
+from .._support.messages import Message
 
 if TYPE_CHECKING:
     FloatArray = npt.NDArray[np.float64]
@@ -20,21 +21,45 @@ def require_above_zero(owner: object, **parameters: float) -> None:
     """Refuse a parameter that is not a finite number above 0."""
     for name, value in parameters.items():
         if not (math.isfinite(value) and value > 0):
-            raise ParameterError(f"{type(owner).__name__}: {name} is {value!r}; it must be a finite number above 0")
+            raise ParameterError(
+                Message(
+                    "{kind}: {name} is {value!r}; it must be a finite number above 0",
+                    kind=type(owner).__name__,
+                    name=name,
+                    value=value,
+                ),
+                code="out_of_range",
+            )
 
 
 def require_not_below_zero(owner: object, **parameters: float) -> None:
     """Refuse a parameter that is not a finite number of at least 0."""
     for name, value in parameters.items():
         if not (math.isfinite(value) and value >= 0):
-            raise ParameterError(f"{type(owner).__name__}: {name} is {value!r}; it must be a finite number, 0 or above")
+            raise ParameterError(
+                Message(
+                    "{kind}: {name} is {value!r}; it must be a finite number, 0 or above",
+                    kind=type(owner).__name__,
+                    name=name,
+                    value=value,
+                ),
+                code="out_of_range",
+            )
 
 
 def require_finite(owner: object, **parameters: float) -> None:
     """Reject a parameter that is not a finite number."""
     for name, value in parameters.items():
         if not math.isfinite(value):
-            raise ParameterError(f"{type(owner).__name__}: {name} is {value!r}; it must be a finite number")
+            raise ParameterError(
+                Message(
+                    "{kind}: {name} is {value!r}; it must be a finite number",
+                    kind=type(owner).__name__,
+                    name=name,
+                    value=value,
+                ),
+                code="not_a_number",
+            )
 
 
 def edge_angles(edge_angle: npt.ArrayLike) -> FloatArray:
@@ -45,7 +70,11 @@ def edge_angles(edge_angle: npt.ArrayLike) -> FloatArray:
     if np.any(wrong):
         first = float(angle[wrong].flat[0])
         raise ParameterError(
-            f"edge angle is {first!r} rad; it must be between 0 and π/2 rad (0° and 90°): an angle in degrees must be "
-            "converted with math.radians"
+            Message(
+                "edge angle is {edge_angle!r} rad; it must be between 0 and π/2 rad (0° and 90°): an angle in "
+                "degrees must be converted with math.radians",
+                edge_angle=first,
+            ),
+            code="out_of_range",
         )
     return angle

@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from .._support.display import ShownFields
 from .._support.errors import ParameterError
+from .._support.messages import Message
 from .patches import patched
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
@@ -55,13 +56,21 @@ class Grid(ShownFields):
             array.flags.writeable = False
             object.__setattr__(self, name, array)
             if not np.all(np.isfinite(array)):
-                raise ParameterError(f"Grid: {name} holds a number that is not finite")
+                raise ParameterError(
+                    Message("Grid: {name} holds a number that is not finite", name=name), code="not_a_number"
+                )
         for name, places in (("x", self.x), ("y", self.y)):
             _require_even(name, places)
         if self.values.shape != (len(self.x), len(self.y)):
             raise ParameterError(
-                f"Grid: values have shape {self.values.shape}; for {len(self.x)} places in x and {len(self.y)} in y it "
-                f"must be {(len(self.x), len(self.y))}"
+                Message(
+                    "Grid: values have shape {shape}; for {n_x} places in x and {n_y} in y it must be {needed}",
+                    shape=str(self.values.shape),
+                    n_x=len(self.x),
+                    n_y=len(self.y),
+                    needed=str((len(self.x), len(self.y))),
+                ),
+                code="wrong_shape",
             )
 
     @property
@@ -108,9 +117,22 @@ class Grid(ShownFields):
 
 def _require_even(name: str, places: FloatArray) -> None:
     if places.ndim != 1 or not len(places):
-        raise ParameterError(f"Grid: {name} must be a row of one place or more, its shape is {places.shape}")
+        raise ParameterError(
+            Message(
+                "Grid: {name} must be a row of one place or more, its shape is {shape}",
+                name=name,
+                shape=str(places.shape),
+            ),
+            code="wrong_shape",
+        )
     step = np.diff(places)
     if len(step) and (step.min() <= 0.0 or np.ptp(step) > EVEN * len(step) * np.abs(places).max()):
         raise ParameterError(
-            f"Grid: places in {name} must rise evenly; their steps go from {step.min():g} to {step.max():g} m"
+            Message(
+                "Grid: places in {name} must rise evenly; their steps go from {min:g} to {max:g} m",
+                name=name,
+                min=step.min(),
+                max=step.max(),
+            ),
+            code="not_rising",
         )

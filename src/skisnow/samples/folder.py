@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from .._support.errors import OutputError
+from .._support.messages import Message
 from .._support.staging import require_writable, staged, write_file
 from ..campaign import write_reference
 from .glides import photo_cell_times
@@ -48,7 +49,9 @@ def write_samples(folder: str | Path, *, seed: int = 1) -> list[Path]:
     """
     folder = Path(folder)
     if folder.exists() and any(folder.iterdir()):
-        raise OutputError(f"{folder} is not empty. Give a new or an empty folder.")
+        raise OutputError(
+            Message("{folder} is not empty. Give a new or an empty folder.", folder=folder), code="wrong_kind"
+        )
     require_writable(folder)
     with staged(folder, last=LAST) as stage:
         for name, content in _contents(np.random.default_rng(seed)):

@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .._support.errors import ParameterError
+from .._support.messages import Message
 from ..parameters import require_declared
 from .ski_quantity import ski_quantity
 
@@ -136,9 +137,16 @@ class BaseShape:
         foremost, hindmost = front - self.tip_rocker_length, rear + self.tail_rocker_length
         if foremost - hindmost < LEAST_CONTACT:
             raise ParameterError(
-                f"the rockers, {self.tip_rocker_length * 1e3:.1f} and {self.tail_rocker_length * 1e3:.1f} mm long, "
-                f"leave less than {LEAST_CONTACT * 1e3:g} mm of the running length of "
-                f"{layout.running_length * 1e3:.1f} mm. Shorten them."
+                Message(
+                    "the rockers, {tip_rocker_length:.1f} and {tail_rocker_length:.1f} mm long, leave less "
+                    "than {least_contact:g} mm of the running length of {running_length:.1f} mm. Shorten "
+                    "them.",
+                    tip_rocker_length=self.tip_rocker_length * 1e3,
+                    tail_rocker_length=self.tail_rocker_length * 1e3,
+                    least_contact=LEAST_CONTACT * 1e3,
+                    running_length=layout.running_length * 1e3,
+                ),
+                code="contradiction",
             )
         shovel = _End("shovel", self.tip_rocker_length, self.tip_rocker_height, layout.tip - front, self.shovel_height)
         tail = _End("tail", self.tail_rocker_length, self.tail_rocker_height, rear - layout.tail, self.tail_height)
@@ -172,8 +180,13 @@ class _End:
     def rise(self, distance: FloatArray) -> FloatArray:
         if self.rocker_height > 0 and not self.rocker_length > 0:
             raise ParameterError(
-                f"the rocker before the {self.name} has a height of {self.rocker_height * 1e3:.1f} mm but no length. "
-                "Give its length or leave the height out."
+                Message(
+                    "the rocker before the {name} has a height of {rocker_height:.1f} mm but no length. Give "
+                    "its length or leave the height out.",
+                    name=self.name,
+                    rocker_height=self.rocker_height * 1e3,
+                ),
+                code="contradiction",
             )
         share = np.minimum(distance, self.rocker_length) / self.rocker_length if self.rocker_length > 0 else 0.0
         beyond = np.maximum(distance - self.rocker_length, 0.0)
@@ -187,8 +200,13 @@ class _End:
         if self.length <= 1e-9:
             if self.given_height and abs(self.given_height - self.rocker_height) > 1e-9:
                 raise ParameterError(
-                    f"the {self.name} height is {self.given_height * 1e3:.1f} mm, but the running length ends where "
-                    f"the ski does. Give the {self.name} a length or leave its height out."
+                    Message(
+                        "the {name} height is {given_height:.1f} mm, but the running length ends where the ski "
+                        "does. Give the {name} a length or leave its height out.",
+                        name=self.name,
+                        given_height=self.given_height * 1e3,
+                    ),
+                    code="contradiction",
                 )
             return 0.0
         straight = self.rocker_height + self._slope * self.length
@@ -196,7 +214,13 @@ class _End:
         height = max(default, straight) if self.given_height is None else self.given_height
         if height < straight - 1e-9:
             raise ParameterError(
-                f"the {self.name} height is {height * 1e3:.1f} mm, but straight on from its rocker the base is already "
-                f"{straight * 1e3:.1f} mm high. Raise the {self.name} or flatten the rocker."
+                Message(
+                    "the {name} height is {height:.1f} mm, but straight on from its rocker the base is "
+                    "already {straight:.1f} mm high. Raise the {name} or flatten the rocker.",
+                    name=self.name,
+                    height=height * 1e3,
+                    straight=straight * 1e3,
+                ),
+                code="contradiction",
             )
         return (height - straight) / self.length**2

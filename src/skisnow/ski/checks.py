@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from .._support.errors import ParameterError
+from .._support.messages import Message
 
 if TYPE_CHECKING:
     from .layout import FloatArray, SkiSections
@@ -26,6 +27,9 @@ _ZERO_AT_BOOT = 1e-5  # m, a hundredth of a millimetre
 _POSITIVE = ("width", "bending_stiffness", "torsional_stiffness", "mass_per_length")
 
 
+_CORRECT: Final = Message("Correct it")
+
+
 def require_on_ski(name: str, stations: FloatArray, station: FloatArray) -> None:
     """Check that stations (m) are between tip and tail, the ends of the ski's own.
 
@@ -36,8 +40,13 @@ def require_on_ski(name: str, stations: FloatArray, station: FloatArray) -> None
     """
     off = ~((station >= stations[-1] - _ROUNDING) & (station <= stations[0] + _ROUNDING))
     if np.any(off):
-        reach = f"it reaches from {stations[0]:.4f} to {stations[-1]:.4f} m from the boot"
-        _refuse(name, f"station {station[off].flat[0]:.6g} m is not on the ski: {reach}", "Choose stations on it")
+        problem = Message(
+            "station {station:.6g} m is not on the ski: it reaches from {tip:.4f} to {tail:.4f} m from the boot",
+            station=station[off].flat[0],
+            tip=stations[0],
+            tail=stations[-1],
+        )
+        _refuse(name, problem, Message("Choose stations on it"))
 
 
 def require_tables(name: str, tables: SkiSections) -> None:
@@ -49,32 +58,46 @@ def require_tables(name: str, tables: SkiSections) -> None:
         The first rule broken.
     """
     if not (isinstance(name, str) and name.strip()):  # type: ignore[redundant-expr] # callers without types
-        _refuse(name, "its name is blank", "Give it one")
+        _refuse(name, Message("its name is blank"), Message("Give it one"))
     for which in ("station", "base_height", *_POSITIVE):
         table: FloatArray = getattr(tables, which)
         if table.ndim != 1 or table.size < 2 or table.size != tables.station.size:
-            what = f"{which} has shape {table.shape}, station {tables.station.shape}"
-            _refuse(name, what, "Give equally long tables")
+            problem = Message(
+                "{table} has shape {shape}, station {needed}",
+                table=which,
+                shape=str(table.shape),
+                needed=str(tables.station.shape),
+            )
+            _refuse(name, problem, Message("Give equally long tables"))
         if not np.all(np.isfinite(table)):
             place = int(np.argmin(np.isfinite(table)))
-            _refuse(name, f"{which}[{place}] is {table[place]}; every value must be finite", "Correct it")
+            problem = Message(
+                "{table}[{place}] is {value}; every value must be finite", table=which, place=place, value=table[place]
+            )
+            _refuse(name, problem, _CORRECT)
     _require_stations(name, tables.station)
     _require_positive(name, tables)
 
 
-def _refuse(name: str, what: str, action: str) -> None:
-    raise ParameterError(f"ski {name!r}: {what}. {action}.")
+def _refuse(name: str, problem: Message, action: Message) -> None:
+    raise ParameterError(
+        Message("ski {name!r}: {problem}. {action}.", name=name, problem=problem, action=action), code="invalid_ski"
+    )
 
 
 def _require_stations(name: str, station: FloatArray) -> None:
     steps = -np.diff(station)
     if np.any(steps <= 0):
         place = int(np.argmax(steps <= 0)) + 1
-        what = f"station[{place}] = {station[place]:.6g} m is not below the one before it"
-        _refuse(name, what, "List the stations from tip to tail, positive in front of the boot")
+        problem = Message(
+            "station[{place}] = {station:.6g} m is not below the one before it", place=place, station=station[place]
+        )
+        _refuse(name, problem, Message("List the stations from tip to tail, positive in front of the boot"))
     if np.max(steps) > GREATEST_SPACING + _ROUNDING:
-        what = f"stations are up to {np.max(steps) * 1e3:.3g} mm apart; at most 2.5 mm is allowed"
-        _refuse(name, what, "Interpolate the tables first, as the reader of ski files does")
+        problem = Message(
+            "stations are up to {spacing:.3g} mm apart; at most 2.5 mm is allowed", spacing=np.max(steps) * 1e3
+        )
+        _refuse(name, problem, Message("Interpolate the tables first, as the reader of ski files does"))
 
 
 def _require_positive(name: str, tables: SkiSections) -> None:
@@ -82,8 +105,13 @@ def _require_positive(name: str, tables: SkiSections) -> None:
         table: FloatArray = getattr(tables, which)
         if np.any(table <= 0):
             place = int(np.argmax(table <= 0))
-            what = f"{which} is {table[place]:.6g} at {tables.station[place]:.4f} m from the boot; it must be above 0"
-            _refuse(name, what, "Correct it")
+            problem = Message(
+                "{table} is {value:.6g} at {station:.4f} m from the boot; it must be above 0",
+                table=which,
+                value=table[place],
+                station=tables.station[place],
+            )
+            _refuse(name, problem, _CORRECT)
 
 
 def require_lengths(name: str, tables: SkiSections, *, running: float, sidecut: float, middle: float) -> None:
@@ -97,12 +125,20 @@ def require_lengths(name: str, tables: SkiSections, *, running: float, sidecut: 
     tip, tail = tables.station[0], tables.station[-1]
     for which, length in (("running_length", running), ("sidecut_length", sidecut)):
         if not (math.isfinite(length) and length > 0):
-            _refuse(name, f"{which} is {length!r} m; it must be a finite length above 0", "Correct it")
+            problem = Message("{key} is {length!r} m; it must be a finite length above 0", key=which, length=length)
+            _refuse(name, problem, _CORRECT)
         front, rear = middle + length / 2.0, middle - length / 2.0
         if not (front <= tip + _ROUNDING and rear >= tail - _ROUNDING):
-            reach = f"its tables reach from {tip:.4f} to {tail:.4f} m from the boot"
-            what = f"{reach} and so are shorter than the {which}, from {front:.4f} to {rear:.4f} m"
-            _refuse(name, what, f"Continue the tables to tip and tail or correct {which}")
+            problem = Message(
+                "its tables reach from {tip:.4f} to {tail:.4f} m from the boot and so are shorter than the {key}, from "
+                "{front:.4f} to {rear:.4f} m",
+                tip=tip,
+                tail=tail,
+                key=which,
+                front=front,
+                rear=rear,
+            )
+            _refuse(name, problem, Message("Continue the tables to tip and tail or correct {key}", key=which))
     require_on_ski(name, tables.station, np.zeros(1))
 
 
@@ -115,10 +151,13 @@ def require_edge(name: str, *, bevel: float, width: float, waist: float) -> None
         One is out of range.
     """
     if not 0.0 <= bevel <= GREATEST_BEVEL:
-        _refuse(name, f"base_bevel is {bevel!r} rad; it must be 0 to {GREATEST_BEVEL}", "Give it in radians")
+        problem = Message("base_bevel is {bevel!r} rad; it must be 0 to {limit}", bevel=bevel, limit=GREATEST_BEVEL)
+        _refuse(name, problem, Message("Give it in radians"))
     if not 0.0 <= width < waist / 2.0:
-        what = f"edge_width is {width!r} m; it must be 0 to half the waist, {waist / 2.0:.4f} m"
-        _refuse(name, what, "Correct it")
+        problem = Message(
+            "edge_width is {width!r} m; it must be 0 to half the waist, {limit:.4f} m", width=width, limit=waist / 2.0
+        )
+        _refuse(name, problem, _CORRECT)
 
 
 def require_narrow_waist(name: str, widths: tuple[float, float, float]) -> None:
@@ -130,10 +169,18 @@ def require_narrow_waist(name: str, widths: tuple[float, float, float]) -> None:
         It is not.
     """
     front, middle, rear = widths
-    for part, end in (("tip", front), ("tail", rear)):
-        if middle > end + _ROUNDING:
-            what = f"its waist, {middle * 1e3:.2f} mm, is wider than its {part}, {end * 1e3:.2f} mm"
-            _refuse(name, what, f"The waist must be the narrowest of the three widths: correct waist or {part}")
+    if middle > front + _ROUNDING:
+        problem = Message(
+            "its waist, {waist:.2f} mm, is wider than its tip, {width:.2f} mm", waist=middle * 1e3, width=front * 1e3
+        )
+        action = Message("The waist must be the narrowest of the three widths: correct waist or tip")
+        _refuse(name, problem, action)
+    if middle > rear + _ROUNDING:
+        problem = Message(
+            "its waist, {waist:.2f} mm, is wider than its tail, {width:.2f} mm", waist=middle * 1e3, width=rear * 1e3
+        )
+        action = Message("The waist must be the narrowest of the three widths: correct waist or tail")
+        _refuse(name, problem, action)
 
 
 def require_base_at_boot(name: str, base_height: float) -> None:
@@ -145,4 +192,5 @@ def require_base_at_boot(name: str, base_height: float) -> None:
         The height there is not 0.
     """
     if abs(base_height) > _ZERO_AT_BOOT:
-        _refuse(name, f"base_height is {base_height:.6g} m at the boot; it must be 0 there", "Subtract that height")
+        problem = Message("base_height is {height:.6g} m at the boot; it must be 0 there", height=base_height)
+        _refuse(name, problem, Message("Subtract that height"))

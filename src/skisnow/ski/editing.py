@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .._support.errors import ParameterError
+from .._support.messages import Message
 from ..parameters import nearest
 from .file_keys import COLUMNS
 from .table_file import StationTable
@@ -58,7 +59,15 @@ class SkiEdit:
         for what, given, columns in (("factors", self.factors, factors), ("values", self.values, (*EDITED_COLUMNS,))):
             for column in given:
                 if column not in columns:
-                    raise ParameterError(f"SkiEdit: {what} has no {column!r}. {nearest(column, columns)}")
+                    raise ParameterError(
+                        Message(
+                            "SkiEdit: {field} has no {column!r}. {allowed}",
+                            field=what,
+                            column=column,
+                            allowed=nearest(column, columns),
+                        ),
+                        code="unknown_name",
+                    )
 
 
 def edit_stations(ski: Ski, *, count: int = 9) -> FloatArray:
@@ -160,8 +169,16 @@ def _with_deeper_sidecut(ski: Ski, factor: float) -> FloatArray:
 def _require(edit: SkiEdit) -> None:
     for column, factor in edit.factors.items():
         if not 1.0 / _LARGEST_FACTOR <= factor <= _LARGEST_FACTOR:
-            allowed = f"{1.0 / _LARGEST_FACTOR:g} to {_LARGEST_FACTOR:g}"
-            raise ParameterError(f"the factor of {column} is {factor:g}; allowed is {allowed}. Correct it")
+            raise ParameterError(
+                Message(
+                    "the factor of {column} is {factor:g}; allowed is {lowest:g} to {highest:g}. Correct it",
+                    column=column,
+                    factor=factor,
+                    lowest=1.0 / _LARGEST_FACTOR,
+                    highest=_LARGEST_FACTOR,
+                ),
+                code="out_of_range",
+            )
     for column, values in edit.values.items():
         for station, value in zip(edit.station, values, strict=True):
             if not np.isnan(value):

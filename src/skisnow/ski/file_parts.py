@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import warnings
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
 from .._support.errors import ParameterError, RangeWarning
+from .._support.messages import Message, template
 from .assembling import SkiParts, stiffness_table
 from .file_keys import BASE, LISTS, RIGID, STIFFNESSES, TIP_END, WIDTHS
 from .layout import Layout, layout_of_lengths
@@ -26,6 +27,14 @@ _LEAST_LENGTH_IN_WIDTHS = 2.5  # 159.3 instead of 1593 beside a width of 116 is 
 _LEAST_SHARE_OF_LENGTH = 0.3  # of running and sidecut length: a tenth is another unit, a half a ski with long rocker
 _SAME_LENGTH = 1e-3  # m
 _SAME_MASS = 0.01  # of the mass
+_TABLE_TOO_SHORT: Final = template(
+    "its table reaches over {reach:.1f} mm and is shorter than the ski, length_mm {length:.1f}. Give the table "
+    "from tip to tail, or correct length_mm."
+)
+_TABLE_TOO_LONG: Final = template(
+    "its table reaches over {reach:.1f} mm and is longer than the ski, length_mm {length:.1f}. Give the table "
+    "from tip to tail, or correct length_mm."
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,7 +56,9 @@ class FileParts:
         """Put the ski together."""
         values = self.values
         if self.table.keys() >= set(STIFFNESSES):
-            values.refuse_together(["stiffness_station_mm"], "a table with both stiffnesses", "Leave it out")
+            values.refuse_together(
+                ["stiffness_station_mm"], Message("a table with both stiffnesses"), Message("Leave it out.")
+            )
         layout, width, name = self._shaped() if "shape" in values else self._laid_out()
         said = values.said
         mass_per_length = self.table.get("mass_per_length_kg_per_m")
@@ -72,7 +83,7 @@ class FileParts:
     def _shaped(self) -> tuple[Layout, StationFunction, str]:
         values = self.values
         outlined = ("table", "length_mm", "sidecut_length_mm", *WIDTHS, TIP_END, "tail_overhang_mm", "boot_position_mm")
-        values.refuse_together(outlined, "shape", "Leave one of them out")
+        values.refuse_together(outlined, "shape", Message("Leave one of them out."))
         file = values.beside("shape") or values.file
         shape = monkeycam_shape(file, running_length=values.said.running_length)
         return shape.outline.layout, shape.outline.width_at, shape.name
@@ -81,17 +92,21 @@ class FileParts:
         values = self.values
         layout = self._layout_of_table() if self.table else self._layout_of_keys()
         if "width_mm" in self.table:
-            values.refuse_together((*WIDTHS, TIP_END), "the column width_mm", "Leave one of them out")
+            column = Message("the column {column}", column="width_mm")
+            values.refuse_together((*WIDTHS, TIP_END), column, Message("Leave one of them out."))
             return layout, width_of_table(self.table["width_mm"], layout), values.file.stem
         tip, waist, tail = (values.needed(key) for key in WIDTHS)
         for key, width in (("tip_width_mm", tip), ("tail_width_mm", tail)):
             if waist > width:
-                allowed = f"at most {key}, {width * 1e3:g}: the waist is the narrowest of the three"
-                values.refuse("waist_width_mm", values.values["waist_width_mm"], allowed, f"Correct it or {key}")
+                allowed = Message(
+                    "at most {key}, {width:g}: the waist is the narrowest of the three", key=key, width=width * 1e3
+                )
+                action = Message("Correct it or {key}.", key=key)
+                values.refuse("waist_width_mm", values.values["waist_width_mm"], allowed, action)
         end = values.said.tip_end_width
         if end is not None and end > tip:
-            allowed = f"at most tip_width_mm, {tip * 1e3:g}"
-            values.refuse(TIP_END, values.values[TIP_END], allowed, "Correct one of them")
+            allowed = Message("at most tip_width_mm, {width:g}", width=tip * 1e3)
+            values.refuse(TIP_END, values.values[TIP_END], allowed, Message("Correct one of them."))
         outline = ArcOutline(layout=layout, tip_width=tip, waist_width=waist, tail_width=tail, end_width=end)
         return layout, outline.width_at, values.file.stem
 
@@ -100,8 +115,13 @@ class FileParts:
         length = values.needed("length_mm")
         least = _LEAST_LENGTH_IN_WIDTHS * (values.said.tip_width or 0.0)
         if length < least:
-            allowed = f"at least {least * 1e3:.0f}, {_LEAST_LENGTH_IN_WIDTHS:g} times the tip width"
-            values.refuse("length_mm", values.values["length_mm"], allowed, "Is it in centimetres? Write it in mm")
+            allowed = Message(
+                "at least {least:.0f}, {factor:g} times the tip width",
+                least=least * 1e3,
+                factor=_LEAST_LENGTH_IN_WIDTHS,
+            )
+            action = Message("Is it in centimetres? Write it in mm.")
+            values.refuse("length_mm", values.values["length_mm"], allowed, action)
         return layout_of_lengths(
             length=length,
             running_length=values.needed("running_length_mm"),
@@ -112,15 +132,14 @@ class FileParts:
 
     def _layout_of_table(self) -> Layout:
         values = self.values
-        values.refuse_together(["tail_overhang_mm"], "a table, which reaches from tip to tail", "Leave it out")
+        values.refuse_together(
+            ["tail_overhang_mm"], Message("a table, which reaches from tip to tail"), Message("Leave it out.")
+        )
         station = self.table["station_m"].station
         length, reach = values.said.length, float(station[0] - station[-1])
         if length is not None and abs(length - reach) > _SAME_LENGTH:
-            kind = "shorter" if reach < length else "longer"
-            what = (
-                f"its table reaches over {reach * 1e3:.1f} mm and is {kind} than the ski, length_mm {length * 1e3:.1f}"
-            )
-            raise ParameterError(f"{what}. Give the table from tip to tail, or correct length_mm.")
+            problem = _TABLE_TOO_SHORT if reach < length else _TABLE_TOO_LONG
+            raise ParameterError(Message(problem, reach=reach * 1e3, length=length * 1e3), code="contradiction")
         return Layout(
             tip=float(station[0]),
             tail=float(station[-1]),
@@ -132,35 +151,55 @@ class FileParts:
     def _base(self) -> BaseShape | StationFunction:
         values = self.values
         if "base_height_mm" in self.table:
-            values.refuse_together(BASE, "the column base_height_mm", "Leave one of them out")
+            values.refuse_together(
+                BASE, Message("the column {column}", column="base_height_mm"), Message("Leave one of them out.")
+            )
             return self.table["base_height_mm"].at
         return values.said.base
 
     def _stiffness(self, key: str, layout: Layout) -> StationFunction:
         values = self.values
         if values.said.rigid:
-            values.refuse_together(LISTS, "rigid", "Leave one of them out")
+            values.refuse_together(LISTS, "rigid", Message("Leave one of them out."))
             if key in self.table:
-                raise ParameterError(f"the column {key} cannot stand beside rigid = true. Leave one of them out.")
+                raise ParameterError(
+                    Message("the column {key} cannot stand beside rigid = true. Leave one of them out.", key=key),
+                    code="contradiction",
+                )
             return lambda station: np.full(np.shape(station), RIGID)
         if key in self.table:
-            values.refuse_together([key], f"the column {key}", "Leave one of them out")
+            values.refuse_together([key], Message("the column {column}", column=key), Message("Leave one of them out."))
             return self.table[key].at
         stiffness = values.numbers(key)
         station = values.numbers("stiffness_station_mm") if "stiffness_station_mm" in values else None
         try:
             return stiffness_table(stiffness, station, layout).at
         except ParameterError as error:
-            raise ParameterError(f"{key} and stiffness_station_mm: {error}") from error
+            raise ParameterError(
+                Message("{key} and stiffness_station_mm: {problem}", key=key, problem=error), code=error.code
+            ) from error
 
     def _require_mass(self, ski: Ski) -> None:
         mass = self.values.said.mass
         if mass is not None and abs(ski.mass - mass) > _SAME_MASS * mass:
-            allowed = f"{ski.mass:.4g}, which the column mass_per_length_kg_per_m integrates to"
-            self.values.refuse("mass_kg", mass, allowed, "Correct one of them or leave mass_kg out")
+            allowed = Message("{mass:.4g}, which the column mass_per_length_kg_per_m integrates to", mass=ski.mass)
+            self.values.refuse("mass_kg", mass, allowed, Message("Correct one of them or leave mass_kg out."))
 
     def _warn_of_lengths(self, ski: Ski) -> None:
         for key, length in (("running_length_mm", ski.running_length), ("sidecut_length_mm", ski.sidecut_length)):
             if length < _LEAST_SHARE_OF_LENGTH * ski.length:
-                text = f"{self.values.file}: {key} is {length * 1e3:g}, the ski {ski.length * 1e3:g} mm long"
-                warnings.warn(f"{text}; usual are 0.7 to 0.95 of it. Is it in mm?", RangeWarning, stacklevel=2)
+                warnings.warn(
+                    RangeWarning(
+                        Message(
+                            "{file}: {key} is {value:g}, the ski {length:g} mm long; usual are 0.7 to 0.95 of "
+                            "it. Is it "
+                            "in mm?",
+                            file=self.values.file,
+                            key=key,
+                            value=length * 1e3,
+                            length=ski.length * 1e3,
+                        ),
+                        code="unusual",
+                    ),
+                    stacklevel=2,
+                )

@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .._support.errors import ParameterError, RangeWarning
+from .._support.messages import Message, joined
 from .._support.units import DEGREE
 from .._support.user_files import read_toml
 from ..parameters import InputValue, Quantity, made, nearest
@@ -63,31 +64,62 @@ class FileValues:
         """Give a number in SI that the file must have."""
         number: float | None = getattr(self.said, SKI_KEYS[key].field)
         if number is None:
-            raise ParameterError(f"{self.file}: the key {key} is missing. Add it, in the unit that it names.")
+            raise ParameterError(
+                Message(
+                    "{file}: the key {key} is missing. Add it, in the unit that it names.", file=self.file, key=key
+                ),
+                code="missing",
+            )
         return number
 
     def numbers(self, key: str) -> FloatArray:
         """Give a list of numbers in SI that the file must have."""
         numbers = getattr(self.said, SKI_KEYS[key].field)
         if numbers is None:
-            raise ParameterError(f"{self.file}: the key {key} is missing. Add a list such as {key} = [100, 440, 100].")
+            raise ParameterError(
+                Message(
+                    "{file}: the key {key} is missing. Add a list such as {key} = [100, 440, 100].",
+                    file=self.file,
+                    key=key,
+                ),
+                code="missing",
+            )
         return np.array(numbers)
 
-    def refuse(self, key: str, value: object, allowed: str, action: str) -> NoReturn:
+    def refuse(self, key: str, value: object, allowed: Message, action: Message) -> NoReturn:
         """Raise the error for a key."""
         refuse(self.file, key, value, allowed, action)
 
-    def refuse_together(self, keys: Iterable[str], other: str, action: str) -> None:
+    def refuse_together(self, keys: Iterable[str], other: str | Message, action: Message) -> None:
         """Raise an error where one of the keys stands beside another that says the same."""
         for key in keys:
             if key in self.values:
-                what = f"{key} = {shown(self.values[key])} cannot stand beside {other}"
-                raise ParameterError(f"{self.file}: {what}, which says the same. {action}.")
+                raise ParameterError(
+                    Message(
+                        "{file}: {key} = {value} cannot stand beside {other}, which says the same. {action}",
+                        file=self.file,
+                        key=key,
+                        value=shown(self.values[key]),
+                        other=other,
+                        action=action,
+                    ),
+                    code="contradiction",
+                )
 
 
-def refuse(file: Path, place: str, value: object, allowed: str, action: str) -> NoReturn:
+def refuse(file: Path, place: str, value: object, allowed: str, action: Message) -> NoReturn:
     """Raise the error for a value at a place of a file."""
-    raise ParameterError(f"{file}: {place} is {shown(value)}; allowed is {allowed}. {action}.")
+    raise ParameterError(
+        Message(
+            "{file}: {place} is {value}; allowed is {allowed}. {action}",
+            file=file,
+            place=place,
+            value=shown(value),
+            allowed=allowed,
+            action=action,
+        ),
+        code="out_of_range",
+    )
 
 
 def checked(file: Path, value: object, quantity: Quantity) -> InputValue:
@@ -101,29 +133,35 @@ def checked(file: Path, value: object, quantity: Quantity) -> InputValue:
     try:
         return quantity.in_range(value)
     except ParameterError as error:
-        raise ParameterError(f"{file}: {error}. {_remedy(value, quantity)}".removesuffix(".") + ".") from None
+        raise ParameterError(
+            Message("{file}: {problem}. {action}", file=file, problem=error, action=_remedy(value, quantity)),
+            code=error.code or "out_of_range",
+        ) from None
 
 
-def _remedy(value: object, quantity: Quantity) -> str:
+def _remedy(value: object, quantity: Quantity) -> Message:
     numbers: list[Any] = value if isinstance(value, list) else [value]
     if any(isinstance(each, bool) or not isinstance(each, int | float) for each in numbers):
-        lists = "Put the numbers in brackets" if quantity.kind == "numbers" else "Write a number with a decimal point"
-        return "Correct it" if quantity.kind in ("text", "switch") else f"{lists}, no quotes"
-    units = (_likely_unit(float(each), quantity) for each in numbers)
-    return f"Correct it.{next((unit for unit in units if unit), '')}"
+        if quantity.kind in ("text", "switch"):
+            return Message("Correct it.")
+        if quantity.kind == "numbers":
+            return Message("Put the numbers in brackets, no quotes.")
+        return Message("Write a number with a decimal point, no quotes.")
+    units = [unit for each in numbers if (unit := _likely_unit(float(each), quantity))]
+    return joined([Message("Correct it."), *units[:1]])
 
 
 def _is_usual(value: float, quantity: Quantity) -> bool:
     return quantity.usual is None or quantity.usual[0] <= value <= quantity.usual[1]
 
 
-def _likely_unit(value: float, quantity: Quantity) -> str:
-    """Name the unit in which an unusual value would be a usual one, as a question; or nothing."""
+def _likely_unit(value: float, quantity: Quantity) -> Message | None:
+    """Question for the unit in which an unusual value would be a usual one; None without such a unit."""
     if not _is_usual(value, quantity):
         for name, factor in _OTHER_UNITS.get(quantity.unit, ()):
             if _is_usual(value * factor, quantity):
-                return f" Is it in {name}? Then write {value * factor:g}."
-    return ""
+                return Message("Is it in {unit}? Then write {value:g}.", unit=name, value=value * factor)
+    return None
 
 
 def warn_of_unusual(file: Path, values: Mapping[str, float], quantity: Quantity) -> None:
@@ -132,10 +170,18 @@ def warn_of_unusual(file: Path, values: Mapping[str, float], quantity: Quantity)
     if not unusual or quantity.usual is None:
         return
     place, value = unusual[0]
-    more = f" (and {len(unusual) - 1} more)" if len(unusual) > 1 else ""
-    usual = "usual is {:g} to {:g}".format(*quantity.usual)
-    text = f"{file}: {place} is {value:g}{more}; {usual}. It is used as it stands.{_likely_unit(value, quantity)}"
-    warnings.warn(text, RangeWarning, stacklevel=2)
+    fields = {"file": file, "place": place, "value": value, "low": quantity.usual[0], "high": quantity.usual[1]}
+    text = (
+        Message(
+            "{file}: {place} is {value:g} (and {count} more); usual is {low:g} to {high:g}. It is used as it stands.",
+            **fields,
+            count=len(unusual) - 1,
+        )
+        if len(unusual) > 1
+        else Message("{file}: {place} is {value:g}; usual is {low:g} to {high:g}. It is used as it stands.", **fields)
+    )
+    unit = _likely_unit(value, quantity)
+    warnings.warn(RangeWarning(joined([text, unit]) if unit else text, code="unusual"), stacklevel=2)
 
 
 def file_values(path: Path) -> FileValues:
@@ -149,7 +195,12 @@ def file_values(path: Path) -> FileValues:
     values = read_toml(path)
     for key in values:
         if key not in SKI_KEYS:
-            raise ParameterError(f"{path}: the key {key} is not known. {nearest(key, SKI_KEYS)}")
+            raise ParameterError(
+                Message(
+                    "{path}: the key {key} is not known. {allowed}", path=path, key=key, allowed=nearest(key, SKI_KEYS)
+                ),
+                code="unknown_name",
+            )
     given = {key: checked(path, value, SKI_KEYS[key]) for key, value in values.items()}
     for key, value in given.items():
         if isinstance(value, tuple):

@@ -11,6 +11,7 @@ import numpy.typing as npt
 
 from .._support.display import ShownFields
 from .._support.errors import ParameterError
+from .._support.messages import Message
 
 LONGEST: Final = 6.0
 """Length (m) from tip to tail beyond which no ski is tabulated: the reach of the stations that a ski file may name."""
@@ -35,19 +36,35 @@ class Layout:
     def __post_init__(self) -> None:
         if self.tip - self.tail > LONGEST:
             raise ParameterError(
-                f"the ski is {self.tip - self.tail:.6g} m long. Allowed: at most {LONGEST:g} m. Correct the lengths or "
-                "their units."
+                Message(
+                    "the ski is {tip:.6g} m long. Allowed: at most {longest:g} m. Correct the lengths or their units.",
+                    tip=self.tip - self.tail,
+                    longest=LONGEST,
+                ),
+                code="out_of_range",
             )
         for name in ("running_length", "sidecut_length"):
             length = getattr(self, name)
             if not length > 0:
-                raise ParameterError(f"{name} is {length!r} m; it must be above 0. Correct it.")
+                raise ParameterError(
+                    Message("{name} is {length!r} m; it must be above 0. Correct it.", name=name, length=length),
+                    code="out_of_range",
+                )
             front, rear = self.middle + length / 2.0, self.middle - length / 2.0
             if front > self.tip + 1e-9 or rear < self.tail - 1e-9:
                 raise ParameterError(
-                    f"the {name} of {length * 1e3:.1f} mm reaches from {front * 1e3:.1f} to {rear * 1e3:.1f} mm from "
-                    f"the boot, but the ski only from {self.tip * 1e3:.1f} to {self.tail * 1e3:.1f} mm. Correct the "
-                    "lengths, the boot position or the tail overhang."
+                    Message(
+                        "the {name} of {length:.1f} mm reaches from {front:.1f} to {rear:.1f} mm from the boot, "
+                        "but the ski only from {tip:.1f} to {tail:.1f} mm. Correct the lengths, the boot "
+                        "position or the tail overhang.",
+                        name=name,
+                        length=length * 1e3,
+                        front=front * 1e3,
+                        rear=rear * 1e3,
+                        tip=self.tip * 1e3,
+                        tail=self.tail * 1e3,
+                    ),
+                    code="contradiction",
                 )
 
     @property

@@ -14,6 +14,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final
 
 from .._support.errors import ParameterError
+from .._support.messages import Message
 from .._support.units import CM, MM
 from .._support.user_files import read_json
 from .assembling import SkiParts, stiffness_table
@@ -101,8 +102,8 @@ def monkeycam_shape(path: Path, *, running_length: float | None = None) -> Monke
     edge, waist, taper = (_length(path, board, key) for key in ("effective edge length", "waist width", "taper"))
     radius = _length(path, board, "sidecut radius")
     if not edge / 2.0 < radius <= STRAIGHTEST or not edge > 0.0:
-        allowed = f"more than half the edge length, at most {STRAIGHTEST:g} m"
-        refuse(path, "board: sidecut radius", board["sidecut radius"], allowed, "Correct it")
+        allowed = Message("more than half the edge length, at most {limit:g} m", limit=STRAIGHTEST)
+        refuse(path, "board: sidecut radius", board["sidecut radius"], allowed, Message("Correct it."))
     nose, tail = _length(path, board, "nose length"), _length(path, board, "tail length")
     layout = layout_of_lengths(
         length=nose + edge + tail,
@@ -122,13 +123,20 @@ def _board(path: Path) -> dict[str, Any]:
     design = read_json(path, most_bytes=_MOST_BYTES)
     board = design.get("board") if isinstance(design, dict) else None
     if not isinstance(board, dict):
-        raise ParameterError(f"{path} has no section 'board'. Give a design file of MonkeyCAM, such as ski-def.json.")
+        raise ParameterError(
+            Message("{path} has no section 'board'. Give a design file of MonkeyCAM, such as ski-def.json.", path=path),
+            code="missing",
+        )
     if board.get("splitboard"):
-        raise ParameterError(f"{path}: board: splitboard is true. Its outline is of two halves together; give a ski.")
+        raise ParameterError(
+            Message("{path}: board: splitboard is true. Its outline is of two halves together; give a ski.", path=path),
+            code="wrong_kind",
+        )
     form = board.get("edge shape")
     kind = form.get("type") if isinstance(form, dict) else None
     if kind != "Basic Arc":
-        refuse(path, "board: edge shape: type", kind, "'Basic Arc'", "Give other side lines as a table of widths")
+        action = Message("Give other side lines as a table of widths.")
+        refuse(path, "board: edge shape: type", kind, "'Basic Arc'", action)
     return board
 
 
@@ -137,5 +145,6 @@ def _length(path: Path, board: dict[str, Any], key: str) -> float:
     value = board.get(key)
     read = None if isinstance(value, bool) else _LENGTH.fullmatch(str(value).strip())
     if read is None or read[2].lower() not in _UNITS or not abs(float(read[1])) <= _LARGEST:
-        refuse(path, f"board: {key}", value, "a number in cm or a text such as '161cm', '2mm', '4in'", "Correct it")
+        allowed = Message("a number in cm or a text such as '161cm', '2mm', '4in'")
+        refuse(path, f"board: {key}", value, allowed, Message("Correct it."))
     return float(read[1]) * _UNITS[read[2].lower()]

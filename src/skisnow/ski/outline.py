@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .._support.errors import ParameterError
+from .._support.messages import Message
 from .checks import GREATEST_SPACING, STRAIGHT
 from .table_file import StationTable
 
@@ -128,9 +129,17 @@ def _parabola(table: StationTable, layout: Layout) -> _Parabola:
     span = float(station[0] - station[-1]) if station.size else 0.0
     if station.size < FEWEST_ROWS or span < LEAST_SHARE * layout.sidecut_length:
         raise ParameterError(
-            f"the column width_mm has {station.size} rows, {span * 1e3:.0f} mm apart, within the sidecut length, from "
-            f"{front:.4g} to {rear:.4g} m. Allowed are {FEWEST_ROWS} rows or more over at least half of it: give rows "
-            "at both ends and at the waist, and better every 10 cm"
+            Message(
+                "the column width_mm has {size} rows, {span:.0f} mm apart, within the sidecut length, "
+                "from {front:.4g} to {rear:.4g} m. Allowed are {fewest_rows} rows or more over at least "
+                "half of it: give rows at both ends and at the waist, and better every 10 cm",
+                size=station.size,
+                span=span * 1e3,
+                front=front,
+                rear=rear,
+                fewest_rows=FEWEST_ROWS,
+            ),
+            code="table_too_short",
         )
     within = np.clip(station, rear, front)
     coefficients = np.asarray(np.polynomial.polynomial.polyfit(within, table.value[inside], 2), dtype=np.float64)

@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from .._support.display import Facts, Shown
 from .._support.errors import ParameterError
+from .._support.messages import Message
 from ..parameters import APART
 from .base_profile import BaseShape
 from .checks import (
@@ -143,8 +144,15 @@ class Ski(Shown):
             The ski has no camber, or its heights were given themselves.
         """
         if self.base is None or self.base.camber == 0.0:
-            heights = "given heights of its base" if self.base is None else "no camber"
-            raise ParameterError(f"the ski {self.name} has {heights}, so that no camber is rounded. Leave it out")
+            problem = (
+                Message(
+                    "the ski {name} has given heights of its base, so that no camber is rounded. Leave it out",
+                    name=self.name,
+                )
+                if self.base is None
+                else Message("the ski {name} has no camber, so that no camber is rounded. Leave it out", name=self.name)
+            )
+            raise ParameterError(problem, code="no_camber")
         base = replace(self.base, camber_rounding=length)
         layout = Layout(
             tip=float(self.station[0]),

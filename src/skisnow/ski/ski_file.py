@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from .._support.errors import OutputError, ParameterError
+from .._support.messages import Message
 from .._support.staging import write_file
 from .._support.units import DEGREE, MM
 from .._support.user_files import is_file
@@ -64,8 +65,13 @@ def read_ski(name_or_path: str | Path) -> Ski:
         return ski_named(str(name_or_path))
     if path.suffix.lower() == ".json":
         raise ParameterError(
-            f"{path} has a shape but no stiffness and no mass. Write a TOML file with shape = {path.name!r}, EI_N_m2, "
-            "GJ_N_m2 and mass_kg, and read that."
+            Message(
+                "{path} has a shape but no stiffness and no mass. Write a TOML file with shape = "
+                "{file!r}, EI_N_m2, GJ_N_m2 and mass_kg, and read that.",
+                path=path,
+                file=path.name,
+            ),
+            code="no_stiffness",
         )
     if isinstance(name_or_path, Path) or path.suffix.lower() == ".toml" or path.name != str(path) or is_file(path):
         return _ski_in(path)
@@ -118,8 +124,14 @@ def ski_names() -> tuple[str, ...]:
 
 
 def _no_such_ski(name: str) -> ParameterError:
-    others = "Any other ski is read from a file ending in .toml."
-    return ParameterError(f"there is no ski named {name!r}. {nearest(name, ski_names())} {others}")
+    return ParameterError(
+        Message(
+            "there is no ski named {name!r}. {allowed} Any other ski is read from a file ending in .toml.",
+            name=name,
+            allowed=nearest(name, ski_names()),
+        ),
+        code="unknown_name",
+    )
 
 
 def _ski_in(path: Path) -> Ski:
@@ -131,7 +143,7 @@ def _ski_in(path: Path) -> Ski:
     except ParameterError as error:
         if any(str(error).startswith(str(file)) for file in (path, shape) if file):
             raise
-        raise ParameterError(f"{path}: {error}") from error
+        raise error.at(path) from error
 
 
 def write_ski(ski: Ski, path: str | Path) -> None:
@@ -151,7 +163,10 @@ def write_ski(ski: Ski, path: str | Path) -> None:
     """
     path = Path(path)
     if path.suffix.lower() != ".toml":
-        raise OutputError(f"{path} cannot be written: a ski file ends in .toml. Choose such a name.")
+        raise OutputError(
+            Message("{path} cannot be written: a ski file ends in .toml. Choose such a name.", path=path),
+            code="cannot_write",
+        )
     table = path.with_suffix(".csv")
     write_file(table, _table_text(ski))
     write_file(path, _keys_text(ski, table.name))

@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .._support.errors import ParameterError
+from .._support.messages import Message
 from .._support.spreadsheet_text import (
     SEPARATOR_NAMES,
     NoTextError,
@@ -51,11 +52,35 @@ def read_table(path: Path) -> dict[str, StationTable]:
     header = column_names(cells, COLUMNS)
     for place, name in enumerate(header):
         if name not in COLUMNS:
-            raise ParameterError(f"{path}, line {first}: the column {name!r} is not known. {nearest(name, COLUMNS)}")
+            raise ParameterError(
+                Message(
+                    "{path}, line {line}: the column {name!r} is not known. {allowed}",
+                    path=path,
+                    line=first,
+                    name=name,
+                    allowed=nearest(name, COLUMNS),
+                ),
+                code="unknown_name",
+            )
         if name in header[:place]:
-            raise ParameterError(f"{path}, line {first}: the column {name} stands there twice. Remove one.")
+            raise ParameterError(
+                Message(
+                    "{path}, line {line}: the column {name} stands there twice. Remove one.",
+                    path=path,
+                    line=first,
+                    name=name,
+                ),
+                code="repeated",
+            )
     if "station_m" not in header or len(header) < 2:
-        raise ParameterError(f"{path}, line {first}: needed are the column station_m and one or more others. Add it.")
+        raise ParameterError(
+            Message(
+                "{path}, line {line}: needed are the column station_m and one or more others. Add it.",
+                path=path,
+                line=first,
+            ),
+            code="missing",
+        )
     mark = decimal_mark([(cell for _, cells in lines[1:] for cell in cells)], separator=separator)
     rows = [_row(path, line, header, cells, mark) for line, cells in lines[1:]]
     columns = dict(zip(header, np.array(rows).T, strict=True))
@@ -73,7 +98,15 @@ def _lines(path: Path) -> tuple[str, list[tuple[int, list[str]]]]:
     try:
         text = decoded(plain_bytes(path, most_bytes=MOST_BYTES)).text
     except NoTextError as error:
-        raise ParameterError(f"{path} is no text ({error.place} is no {error.encoding}). Save it as UTF-8.") from error
+        raise ParameterError(
+            Message(
+                "{path} is no text ({place} is no {encoding}). Save it as UTF-8.",
+                path=path,
+                place=error.place,
+                encoding=error.encoding,
+            ),
+            code="not_text",
+        ) from error
     named = named_separator(text)
     first = 2 if named in SEPARATOR_NAMES else 1
     separator = named if named is not None and first == 2 else next((mark for mark in ";\t" if mark in text), ",")
@@ -81,16 +114,31 @@ def _lines(path: Path) -> tuple[str, list[tuple[int, list[str]]]]:
     try:
         lines = [(line, [cell.strip() for cell in row]) for line, row in rows if any(map(str.strip, row))]
     except csv.Error as error:
-        raise ParameterError(f"{path} is no table of cells ({error}). Is a quote never closed?") from error
+        raise ParameterError(
+            Message("{path} is no table of cells ({error}). Is a quote never closed?", path=path, error=error),
+            code="not_csv",
+        ) from error
     lines = [(line, cells) for line, cells in lines if not cells[0].startswith("#")]
     if len(lines) < 3:
-        raise ParameterError(f"{path}: a table needs a line of column names and two rows or more. Complete it.")
+        raise ParameterError(
+            Message("{path}: a table needs a line of column names and two rows or more. Complete it.", path=path),
+            code="missing",
+        )
     return separator, lines
 
 
 def _row(path: Path, line: int, header: list[str], cells: list[str], mark: str) -> list[float]:
     if len(cells) != len(header):
-        raise ParameterError(f"{path}, line {line}: {len(cells)} cells stand under {len(header)} columns. Correct it.")
+        raise ParameterError(
+            Message(
+                "{path}, line {line}: {n_cells} cells stand under {n_header} columns. Correct it.",
+                path=path,
+                line=line,
+                n_cells=len(cells),
+                n_header=len(header),
+            ),
+            code="wrong_number_of_cells",
+        )
     return [_cell(path, line, name, cell, mark) for name, cell in zip(header, cells, strict=True)]
 
 
@@ -108,9 +156,11 @@ def _cell(path: Path, line: int, name: str, cell: str, mark: str) -> float:
 def _require_falling(path: Path, station: FloatArray, lines: list[int]) -> None:
     rising = np.flatnonzero(np.diff(station) >= 0)
     if rising.size:
-        place, value = f"line {lines[rising[0] + 1]}, station_m", float(station[rising[0] + 1])
-        allowed = f"less than the {station[rising[0]]:g} before it"
-        refuse(path, place, value, allowed, "List the rows from tip to tail, positive in front of the boot")
+        place = Message("line {line}, {column}", line=lines[rising[0] + 1], column="station_m")
+        value = float(station[rising[0] + 1])
+        allowed = Message("less than the {before:g} before it", before=station[rising[0]])
+        action = Message("List the rows from tip to tail, positive in front of the boot.")
+        refuse(path, place, value, allowed, action)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -134,10 +184,18 @@ class StationTable:
     def __post_init__(self) -> None:
         if self.station.shape != self.value.shape or self.station.ndim != 1 or not self.station.size:
             raise ParameterError(
-                f"{self.value.size} values stand at {self.station.size} stations. Give as many values as stations."
+                Message(
+                    "{size} values stand at {size_2} stations. Give as many values as stations.",
+                    size=self.value.size,
+                    size_2=self.station.size,
+                ),
+                code="wrong_shape",
             )
         if np.any(np.diff(self.station) >= 0):
-            raise ParameterError("the stations do not fall. List them from tip to tail, positive in front of the boot.")
+            raise ParameterError(
+                Message("the stations do not fall. List them from tip to tail, positive in front of the boot."),
+                code="not_falling",
+            )
 
     def at(self, station: FloatArray) -> FloatArray:
         """Values at stations (m). Shape of ``station``."""

@@ -11,11 +11,12 @@ import numpy as np
 import numpy.typing as npt
 
 from .._support.errors import ParameterError
+from .._support.messages import Message
 from .._support.units import MM, N_PER_MM2, N_PER_MM3
 from .._support.user_files import GivenError, read_json
 from .mean_snow import (
-    known_sites,
     mean_snow,
+    no_used_experiment,
     site_in_words,
     site_named,
     with_measured_displacement,
@@ -73,7 +74,7 @@ def snow_from_results(path: str | Path, *, site: str | None = None) -> SnowPrope
     stress = _used(results, "shear", "S_f_N_per_mm2", site, path)
     if not hardness.size:
         sites = sorted({str(row["site"]) for row in results["penetration"]["experiments"] if row["used"]})
-        raise ParameterError(f"{path} has no used penetration experiment{known_sites(site, sites)}")
+        raise no_used_experiment(path, site, sites)
     source = f"{path}, {site_in_words(site)}: {hardness.size} penetration and {stress.size} shear experiments"
     snow = mean_snow(hardness, stress, source=source, where=str(path))
     ratio, interval = _of_site(
@@ -97,19 +98,34 @@ def _of_site(
         return None if value is None else float(value), ends
     except (AttributeError, KeyError, TypeError, ValueError, IndexError) as error:
         raise ParameterError(
-            f"{path}: {'.'.join(place)} is not a list with site, {' and '.join(keys)} ({error!r}); "
-            "give the results.json that `skisnow analyse` wrote"
+            Message(
+                "{path}: {place} is not a list with {keys} ({error!r}); give the results.json that "
+                "`skisnow analyse` wrote",
+                path=path,
+                place=".".join(place),
+                keys=["site", *keys],
+                error=error,
+            ),
+            code="wrong_kind",
         ) from error
 
 
 def _results(path: Path) -> dict[str, Any]:
-    advice = "give the results.json that `skisnow analyse` wrote"
     try:
         results = read_json(path)
     except GivenError as error:
-        raise ParameterError(f"{error} Needed is the results.json that `skisnow analyse` wrote") from error
+        raise ParameterError(
+            Message("{problem} Needed is the results.json that `skisnow analyse` wrote", problem=error),
+            code="wrong_kind",
+        ) from error
     if not isinstance(results, dict) or not {"penetration", "shear"} <= results.keys():
-        raise ParameterError(f"{path} has no entries 'penetration' and 'shear'; {advice}")
+        raise ParameterError(
+            Message(
+                "{path} has no entries 'penetration' and 'shear'; give the results.json that `skisnow analyse` wrote",
+                path=path,
+            ),
+            code="missing",
+        )
     return results
 
 
@@ -129,8 +145,15 @@ def _used(results: dict[str, Any], part: str, key: str, site: str | None, path: 
         return np.array([float(row[key]) for row in rows if row[key] is not None])
     except (KeyError, TypeError, ValueError) as error:
         raise ParameterError(
-            f"{path}: {part}.experiments is not a list of experiments with used, site and {key} ({error!r}); "
-            "give the results.json that `skisnow analyse` wrote"
+            Message(
+                "{path}: {part}.experiments is not a list of experiments with used, site and {key} "
+                "({error!r}); give the results.json that `skisnow analyse` wrote",
+                path=path,
+                part=part,
+                key=key,
+                error=error,
+            ),
+            code="wrong_kind",
         ) from error
 
 
@@ -218,8 +241,14 @@ def published_snow(name: str) -> SnowProperties:
     known = _by_name()
     if name not in known:
         near = get_close_matches(str(name).strip().lower().replace("_", "-").replace(" ", "-"), known, n=1, cutoff=0.4)
-        meant = f"; did you mean {near[0]!r}?" if near else "."
-        raise ParameterError(f"no published snow is named {name!r}{meant} There are {', '.join(known)}")
+        problem = (
+            Message("no published snow is named {name!r}; did you mean {similar!r}?", name=name, similar=near[0])
+            if near
+            else Message("no published snow is named {name!r}.", name=name)
+        )
+        raise ParameterError(
+            Message("{problem} There are {names}", problem=problem, names=list(known)), code="unknown_name"
+        )
     return known[name]
 
 

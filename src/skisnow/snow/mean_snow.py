@@ -11,6 +11,7 @@ import numpy.typing as npt
 from scipy.special import ndtri
 
 from .._support.errors import ParameterError
+from .._support.messages import Message
 from .._support.units import CONFIDENCE, MM, N_PER_MM2, N_PER_MM3
 from .properties import Interval, SnowProperties
 
@@ -46,9 +47,15 @@ def mean_snow(
     """
     hardness, stress = hardness_N_per_mm3, stress_N_per_mm2
     if not (np.all(hardness > 0) and np.all(stress >= 0) and (stress.size == 0 or np.any(stress > 0))):
-        raise ParameterError(f"{where}: H_V of a used experiment must be above 0, and S_f of one at least")
+        raise ParameterError(
+            Message("{where}: H_V of a used experiment must be above 0, and S_f of one at least", where=where),
+            code="out_of_range",
+        )
     if not (np.all(hardness >= 1.0 / _LARGEST) and np.all(hardness <= _LARGEST) and np.all(stress <= _LARGEST)):
-        raise ParameterError(f"{where}: H_V and S_f of a used experiment must lie from 1e-9 to 1e9 N/mm³ and N/mm²")
+        raise ParameterError(
+            Message("{where}: H_V and S_f of a used experiment must lie from 1e-9 to 1e9 N/mm³ and N/mm²", where=where),
+            code="out_of_range",
+        )
     H_V, H_V_interval = _mean(np.log(hardness))
     S_f, S_f_interval = _mean(stress) if stress.size else (None, None)
     if S_f is not None and S_f_interval is not None:
@@ -101,10 +108,20 @@ def site_in_words(site: str | None) -> str:
     return site if site.casefold().startswith("site") else f"site {site}"
 
 
-def known_sites(site: str | None, sites: Sequence[str]) -> str:
-    """The end of a message that a site has no experiment: which sites have."""
-    asked = "" if site is None else f" of site {site!r}"
-    return f"{asked}; " + (f"it has some of {', '.join(map(repr, sites))}" if sites else "it has none at any site")
+def no_used_experiment(source: object, site: str | None, sites: Sequence[str]) -> ParameterError:
+    """Error for a campaign, or a site of one, without a used penetration experiment; ``sites`` have some."""
+    if not sites:
+        message = Message("{source} has no used penetration experiment at any site", source=source)
+    elif site is None:
+        message = Message("{source} has no used penetration experiment without a site", source=source)
+    else:
+        message = Message(
+            "{source} has no used penetration experiment of site {site!r}; it has some of {sites}",
+            source=source,
+            site=site,
+            sites=list(map(repr, sites)),
+        )
+    return ParameterError(message, code="no_data")
 
 
 def _scaled(interval: Interval | None, unit: float) -> Interval | None:
@@ -161,11 +178,21 @@ def measured_intervals(snow: SnowProperties) -> tuple[Interval, Interval]:
     hardness, stress = snow.snow_hardness_interval, snow.failure_shear_stress_interval
     if hardness is None or stress is None:
         raise ParameterError(
-            f"the snow ({snow.source}) has no interval of {'H_V' if hardness is None else 'S_f'}; it takes two used "
-            "experiments of each kind. Choose a site that has them"
+            Message(
+                "the snow ({source}) has no interval of {quantity}; it takes two used experiments of each "
+                "kind. Choose a site that has them",
+                source=snow.source,
+                quantity="H_V" if hardness is None else "S_f",
+            ),
+            code="no_data",
         )
     if not stress[0] > 0.0:
-        raise ParameterError(f"the interval of S_f begins at {stress[0]:g} N/m²; no snow above 0 can be drawn from it")
+        raise ParameterError(
+            Message(
+                "the interval of S_f begins at {stress:g} N/m²; no snow above 0 can be drawn from it", stress=stress[0]
+            ),
+            code="out_of_range",
+        )
     return hardness, stress
 
 

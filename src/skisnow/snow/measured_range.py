@@ -16,6 +16,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .._support.errors import RangeWarning
+from .._support.messages import Message
 
 T = TypeVar("T")
 _ONE_AT_A_TIME: Final = threading.RLock()
@@ -73,11 +74,22 @@ class MeasuredRange:
             return
         # the value that lies farthest out speaks for an array
         farthest = outside[np.argmax(np.maximum(self.lowest - outside, outside - self.highest))]
-        shown = [f"{end / self.unit_factor:.4g}" for end in (float(farthest), self.lowest, self.highest)]
         warnings.warn(
-            f"{relation}: {self.quantity} {shown[0]} {self.unit} is outside the {shown[1]} to {shown[2]} {self.unit} "
-            f"that were measured ({self.source}); computed all the same",
-            RangeWarning,
+            RangeWarning(
+                Message(
+                    "{relation}: {quantity} {value:.4g} {unit} is outside the {lowest:.4g} to {highest:.4g} "
+                    "{unit} that "
+                    "were measured ({source}); computed all the same",
+                    relation=relation,
+                    quantity=self.quantity,
+                    value=float(farthest) / self.unit_factor,
+                    unit=self.unit,
+                    lowest=self.lowest / self.unit_factor,
+                    highest=self.highest / self.unit_factor,
+                    source=self.source,
+                ),
+                code="outside_measured",
+            ),
             stacklevel=stacklevel + 1,
         )
 

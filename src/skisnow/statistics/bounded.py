@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from .._support.errors import ParameterError
+from .._support.messages import Message
 from .least_squares import BoolArray, FloatArray, as_predictors, as_response
 
 if TYPE_CHECKING:
@@ -172,7 +173,10 @@ def _lengths(A: FloatArray) -> FloatArray:
 
 def _require_few(p: int) -> None:
     if not 1 <= p <= MOST_COEFFICIENTS:
-        raise ParameterError(f"{p} coefficients; every set of bounds is tried, which is meant for 1 to 6 of them")
+        raise ParameterError(
+            Message("{p} coefficients; every set of bounds is tried, which is meant for 1 to 6 of them", p=p),
+            code="too_many",
+        )
 
 
 def _root_weights(weights: npt.ArrayLike | None, n: int) -> FloatArray:
@@ -180,7 +184,14 @@ def _root_weights(weights: npt.ArrayLike | None, n: int) -> FloatArray:
         return np.ones(n)
     w = np.asarray(weights, dtype=float)
     if w.shape != (n,) or not np.all(np.isfinite(w)) or np.any(w < 0):
-        raise ParameterError(f"weights of shape {w.shape}; {n} finite numbers ≥ 0 are needed, one for each response")
+        raise ParameterError(
+            Message(
+                "weights of shape {shape}; {n} finite numbers ≥ 0 are needed, one for each response",
+                shape=str(w.shape),
+                n=n,
+            ),
+            code="wrong_shape",
+        )
     return np.sqrt(w)
 
 
@@ -258,7 +269,14 @@ def non_negative_fits(gram: npt.ArrayLike, moment: npt.ArrayLike) -> FloatArray:
     """
     G, m = np.asarray(gram, dtype=float), np.asarray(moment, dtype=float)
     if m.ndim != 2 or G.shape != (*m.shape, m.shape[1]):
-        raise ParameterError(f"gram has shape {G.shape}, moment {m.shape}; (B, p, p) and (B, p) are needed")
+        raise ParameterError(
+            Message(
+                "gram has shape {shape}, moment {shape_2}; (B, p, p) and (B, p) are needed",
+                shape=str(G.shape),
+                shape_2=str(m.shape),
+            ),
+            code="wrong_shape",
+        )
     _require_few(m.shape[1])
     known = np.isfinite(m).all(axis=1) & np.isfinite(G).all(axis=(1, 2))
     result = np.full(m.shape, np.nan)

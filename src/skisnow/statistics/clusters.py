@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from .._support.errors import ParameterError
+from .._support.messages import Message
 from .combined_uncertainty import expanded_factor, require_confidence
 from .least_squares import Factorisation, as_predictors, as_response, centre, factorise, standardised
 
@@ -92,7 +93,12 @@ def cluster_intervals(
     labels = np.asarray(clusters)
     if labels.shape != y.shape:
         raise ParameterError(
-            f"clusters have shape {labels.shape}; one of them is needed for each of {len(y)} responses"
+            Message(
+                "clusters have shape {shape}; one of them is needed for each of {n_y} responses",
+                shape=str(labels.shape),
+                n_y=len(y),
+            ),
+            code="wrong_shape",
         )
     names, cluster = np.unique(labels, return_inverse=True)
     fit = factorise(standardised(X, intercept=intercept))

@@ -14,6 +14,7 @@ import numpy.typing as npt
 from scipy.linalg import qr, solve_triangular
 
 from .._support.errors import FitError, ParameterError
+from .._support.messages import Message
 from .combined_uncertainty import expanded_factor
 
 if TYPE_CHECKING:
@@ -73,7 +74,10 @@ def as_response(response: npt.ArrayLike) -> FloatArray:
     """Check a response: one dimension, at least one finite number, no others."""
     y = np.asarray(response, dtype=float)
     if y.ndim != 1 or y.size == 0:
-        raise ParameterError(f"response has shape {y.shape}; it must be a row of at least one number")
+        raise ParameterError(
+            Message("response has shape {shape}; it must be a row of at least one number", shape=str(y.shape)),
+            code="wrong_shape",
+        )
     require_finite("response", y)
     return y
 
@@ -84,7 +88,12 @@ def as_predictors(predictors: npt.ArrayLike, n: int) -> FloatArray:
     if X.ndim == 1:
         X = X[:, None]
     if X.ndim != 2 or len(X) != n:
-        raise ParameterError(f"predictors have shape {X.shape}; {n} rows are needed, one for each response")
+        raise ParameterError(
+            Message(
+                "predictors have shape {shape}; {n} rows are needed, one for each response", shape=str(X.shape), n=n
+            ),
+            code="wrong_shape",
+        )
     require_finite("predictors", X)
     return X
 
@@ -95,7 +104,13 @@ def require_finite(name: str, values: FloatArray) -> None:
     if np.any(bad):
         place = tuple(int(i) for i in np.argwhere(bad)[0])
         raise ParameterError(
-            f"{name}{list(place)} is {values[place]}; only finite numbers can be fitted: leave such rows out"
+            Message(
+                "{name}{place} is {value}; only finite numbers can be fitted: leave such rows out",
+                name=name,
+                place=place,
+                value=values[place],
+            ),
+            code="not_a_number",
         )
 
 
@@ -153,11 +168,14 @@ def factorise(columns: Columns) -> Factorisation:
     """
     n, p = columns.scaled.shape
     if n < p:
-        raise FitError(f"{n} observations cannot determine {p} coefficients; at least {p} are needed")
+        raise FitError(
+            Message("{n} observations cannot determine {p} coefficients; at least {p} are needed", n=n, p=p),
+            code="too_few_data",
+        )
     Q, R, order = pivoted_qr(columns.scaled)
     rank = rank_of(R, n)
     if rank < p:
-        raise FitError(_dependence(columns.names, order[rank:].tolist(), rank))
+        raise FitError(_dependence(columns.names, order[rank:].tolist(), rank), code="rank_deficient")
     inverse = np.empty((p, p))
     inverse[order] = solve_triangular(R, np.eye(p))
     return Factorisation(Q, columns.back @ inverse, columns.scaled, columns.back, inverse)
@@ -199,9 +217,11 @@ def spread(coefficients: FloatArray, residuals: FloatArray, design: Factorisatio
     )
 
 
-def _dependence(names: Sequence[str], dependent: list[int], rank: int) -> str:
-    which = ", ".join(names[j] for j in sorted(dependent))
-    return (
-        f"the data determine only {rank} of {len(names)} coefficients: {which} does not vary or follows from the other "
-        "columns; leave it out, or measure at more settings of it"
+def _dependence(names: Sequence[str], dependent: list[int], rank: int) -> Message:
+    return Message(
+        "the data determine only {rank} of {count} coefficients: {names} does not vary or follows from the other "
+        "columns; leave it out, or measure at more settings of it",
+        rank=rank,
+        count=len(names),
+        names=[names[j] for j in sorted(dependent)],
     )

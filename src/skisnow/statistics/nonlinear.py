@@ -19,6 +19,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .._support.errors import FitError, FitWarning, ParameterError
+from .._support.messages import Message, template
 from .combined_uncertainty import require_confidence
 from .least_squares import Columns, Factorisation, FloatArray, as_response, factorise, require_finite, spread
 
@@ -139,9 +140,17 @@ def nonlinear_fit(
     n, p = len(observed), len(b)
     labels = tuple(names) if names is not None else tuple(f"b{j + 1}" for j in range(p))
     if len(labels) != p:
-        raise ParameterError(f"{len(labels)} names for {p} parameters; one is needed for each starting value")
+        raise ParameterError(
+            Message(
+                "{n_labels} names for {p} parameters; one is needed for each starting value", n_labels=len(labels), p=p
+            ),
+            code="wrong_shape",
+        )
     if n < p:
-        raise FitError(f"{n} observations cannot determine {p} parameters; at least {p} are needed")
+        raise FitError(
+            Message("{n} observations cannot determine {p} parameters; at least {p} are needed", n=n, p=p),
+            code="too_few_data",
+        )
     scale = np.where(b != 0, np.abs(b), 1.0)
 
     def values(parameters: FloatArray) -> FloatArray:
@@ -149,7 +158,12 @@ def nonlinear_fit(
             found = np.asarray(model(x, *parameters), dtype=float)
         if found.shape != (n,):
             raise ParameterError(
-                f"the model returned shape {found.shape}; one value is needed for each of {n} responses"
+                Message(
+                    "the model returned shape {shape}; one value is needed for each of {n} responses",
+                    shape=str(found.shape),
+                    n=n,
+                ),
+                code="wrong_shape",
             )
         return found
 
@@ -183,9 +197,15 @@ def _searched(values: _Values, observed: FloatArray, start: FloatArray, scale: F
                 max_nfev=2000,
             )
         except (ValueError, np.linalg.LinAlgError) as error:
-            raise FitError(f"the search broke off: {error}; start nearer to the solution") from error
+            raise FitError(
+                Message("the search broke off: {error}; start nearer to the solution", error=error),
+                code="not_converged",
+            ) from error
     if found.status <= 0 or not np.all(np.isfinite(found.x)):
-        raise FitError("the search did not settle in 2000 steps; start nearer to the solution, or fix a parameter")
+        raise FitError(
+            Message("the search did not settle in 2000 steps; start nearer to the solution, or fix a parameter"),
+            code="not_converged",
+        )
     return np.asarray(found.x, dtype=float)
 
 
@@ -208,7 +228,10 @@ def _polished(
         slopes = jacobian(values, b, scale)
         design, residual = _factorised(slopes, names), observed - values(b)
     if not least <= _SETTLED:
-        raise FitError("the last steps of the fit did not shrink; the data hardly determine the parameters")
+        raise FitError(
+            Message("the last steps of the fit did not shrink; the data hardly determine the parameters"),
+            code="not_converged",
+        )
     return b, design, _known(slopes, design, residual, values(b), np.abs(b) + error + _SETTLED * scale, least)
 
 
@@ -237,23 +260,36 @@ def _known(
 
 def _factorised(slopes: Jacobian, names: tuple[str, ...]) -> Factorisation:
     if not (np.all(np.isfinite(slopes.values)) and np.all(np.isfinite(slopes.error))):
-        raise FitError("the model has no finite derivatives at the solution; it may lie on the border of its domain")
+        raise FitError(
+            Message("the model has no finite derivatives at the solution; it may lie on the border of its domain"),
+            code="not_a_number",
+        )
     length = np.linalg.norm(slopes.values, axis=0)
     unit = np.where(length > 0, length, 1.0)
     return factorise(Columns(slopes.values / unit, np.diag(1.0 / unit), names))
 
 
+_FEW_DIGITS_OF_PARAMETERS: Final = template(
+    "the parameters of the fit are known to about {digits} digits: the data hardly determine them, or the model is not "
+    "smooth there"
+)
+_FEW_DIGITS_OF_ERRORS: Final = template(
+    "the standard errors of the fit are known to about {digits} digits: the residuals are little above rounding, "
+    "or the "
+    "model is not smooth there"
+)
+
+
 def _warn(known: _Known, errors_exist: bool) -> None:
     checks = (
-        ("parameters", known.parameters, _PARAMETER_DIGITS, "the data hardly determine them"),
-        ("standard errors", known.standard_errors, _ERROR_DIGITS, "the residuals are little above rounding"),
+        (_FEW_DIGITS_OF_PARAMETERS, known.parameters, _PARAMETER_DIGITS),
+        (_FEW_DIGITS_OF_ERRORS, known.standard_errors, _ERROR_DIGITS),
     )
-    for what, share, allowed, reason in checks[: 2 if errors_exist else 1]:
+    for few_digits, share, allowed in checks[: 2 if errors_exist else 1]:
         if not share <= allowed:
             digits = max(int(-np.log10(share)), 0) if np.isfinite(share) and share > 0 else 0
             warnings.warn(
-                f"the {what} of the fit are known to about {digits} digits: {reason}, or the model is not smooth there",
-                FitWarning,
+                FitWarning(Message(few_digits, digits=digits), code="few_digits"),
                 stacklevel=3,
             )
 

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from .._support.errors import FitError, ParameterError
+from .._support.errors import FitError, FitWarning, ParameterError
+from .._support.messages import Message
 from .combined_uncertainty import expanded_factor, require_confidence
 from .f_tests import f_ratio, f_tail
 from .least_squares import Columns, Factorisation, factorise, independent_columns, require_finite, standardised
@@ -97,7 +98,7 @@ def regress(y: npt.ArrayLike, X: npt.ArrayLike, alpha: float = 0.05) -> Regress:
     response, design = _checked(y, X)
     whole = ~(np.isnan(response) | np.any(np.isnan(design), axis=1))
     if not np.any(whole):
-        raise FitError("no row of y and X is without NaN; there is nothing to fit")
+        raise FitError(Message("no row of y and X is without NaN; there is nothing to fit"), code="no_data")
     fit = _factorised(design[whole])
     b, residuals = fit.solve(response[whole])
     _warn_without_constant(fit)
@@ -119,7 +120,14 @@ def _checked(y: npt.ArrayLike, X: npt.ArrayLike) -> tuple[FloatArray, FloatArray
     if design.ndim == 1:
         design = design[:, None]
     if response.ndim != 1 or design.ndim != 2 or len(response) != len(design) or design.shape[1] == 0:
-        raise ParameterError(f"y has shape {response.shape}, X {design.shape}; X needs one row for each value of y")
+        raise ParameterError(
+            Message(
+                "y has shape {shape}, X {shape_2}; X needs one row for each value of y",
+                shape=str(response.shape),
+                shape_2=str(design.shape),
+            ),
+            code="wrong_shape",
+        )
     for name, values in (("y", response), ("X", design)):
         require_finite(name, np.where(np.isnan(values), 0.0, values))
     return response, design
@@ -138,11 +146,17 @@ def _factorised(design: FloatArray) -> Factorisation:
         columns = standardised(design, intercept=False)
     kept = independent_columns(columns.scaled)
     if not kept:
-        raise FitError("X is zero throughout; it determines no coefficient")
+        raise FitError(Message("X is zero throughout; it determines no coefficient"), code="no_data")
     if len(kept) < design.shape[1]:
         warnings.warn(
-            f"X has {design.shape[1]} columns but rank {len(kept)}: coefficients that are not determined are set to 0",
-            UserWarning,
+            FitWarning(
+                Message(
+                    "X has {count} columns but rank {rank}: coefficients that are not determined are set to 0",
+                    count=design.shape[1],
+                    rank=len(kept),
+                ),
+                code="rank_deficient",
+            ),
             stacklevel=3,
         )
     part = Columns(columns.scaled[:, kept], columns.back[:, kept], tuple(columns.names[j] for j in kept))
@@ -154,9 +168,14 @@ def _warn_without_constant(fit: Factorisation) -> None:
     missed = ones - fit.orthogonal @ (fit.orthogonal.T @ ones)
     if np.abs(missed).sum() > len(ones) * np.sqrt(np.finfo(float).eps):
         warnings.warn(
-            "no combination of the columns of X is constant: R², F and p in stats are not those of a regression; "
-            "add a column of ones, or compare models without an intercept by nested_f_test",
-            UserWarning,
+            FitWarning(
+                Message(
+                    "no combination of the columns of X is constant: R², F and p in stats are not those of a "
+                    "regression; add a column of ones, or compare models without an intercept by "
+                    "nested_f_test"
+                ),
+                code="no_constant_column",
+            ),
             stacklevel=3,
         )
 

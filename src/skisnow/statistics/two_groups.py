@@ -9,6 +9,7 @@ import numpy as np
 from scipy.special import nctdtr, ndtr, ndtri, stdtr, stdtrit
 
 from .._support.errors import FitError, ParameterError
+from .._support.messages import Message
 from .combined_uncertainty import expanded_factor, require_confidence, welch_satterthwaite
 
 if TYPE_CHECKING:
@@ -72,7 +73,10 @@ def ratio_of_means(logs_a: npt.ArrayLike, logs_b: npt.ArrayLike, *, confidence: 
 def _logarithms(name: str, values: npt.ArrayLike) -> FloatArray:
     logs = np.asarray(values, dtype=float)
     if logs.ndim != 1 or np.any(np.isinf(logs)):
-        raise ParameterError(f"{name} must be one row without infinite values: logarithms of measurements above 0")
+        raise ParameterError(
+            Message("{name} must be one row without infinite values: logarithms of measurements above 0", name=name),
+            code="wrong_shape",
+        )
     return logs
 
 
@@ -112,17 +116,30 @@ def tests_per_group(sd_log: float, *, ratio: float = 1.1, power: float = 0.8, al
     """
     if not (sd_log > 0 and math.isfinite(sd_log) and ratio > 0 and math.isfinite(ratio) and ratio != 1):
         raise ParameterError(
-            f"sd_log is {sd_log!r}, ratio {ratio!r}; a scatter above 0 and a ratio above 0 other than 1 are needed"
+            Message(
+                "sd_log is {sd_log!r}, ratio {ratio!r}; a scatter above 0 and a ratio above 0 other than 1 are needed",
+                sd_log=sd_log,
+                ratio=ratio,
+            ),
+            code="out_of_range",
         )
     if not 0 < alpha < power < 1:
-        raise ParameterError(f"alpha is {alpha!r}, power {power!r}; 0 < alpha < power < 1 is needed")
+        raise ParameterError(
+            Message("alpha is {alpha!r}, power {power!r}; 0 < alpha < power < 1 is needed", alpha=alpha, power=power),
+            code="out_of_range",
+        )
     effect = abs(math.log(ratio)) / sd_log
     low, high = 1, 2
     while _power(high, effect, alpha) < power:
         low, high = high, 2 * high
         if low > _MOST_TESTS:
             raise FitError(
-                f"more than {_MOST_TESTS} tests per group would be needed for a ratio of {ratio} at this scatter"
+                Message(
+                    "more than {most_tests} tests per group would be needed for a ratio of {ratio} at this scatter",
+                    most_tests=_MOST_TESTS,
+                    ratio=ratio,
+                ),
+                code="too_many",
             )
     while high - low > 1:
         middle = (low + high) // 2

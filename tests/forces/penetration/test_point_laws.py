@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from tests.coded import raises, warns
 
 from skisnow._support.errors import ParameterError, RangeWarning
 from skisnow.forces.penetration import (
@@ -218,7 +219,7 @@ def test_rigid_plastic_snow_lets_go_at_once_and_stores_nothing() -> None:
 
 @pytest.mark.parametrize("ratio", [0.99, 0.0, -1.0, math.nan, -math.inf])
 def test_unloading_softer_than_loading_is_refused(ratio: float) -> None:
-    with pytest.raises(ParameterError, match="must be at least 1"):
+    with raises(ParameterError, "out_of_range"):
         HypoplasticPoint(H_V, ratio)
 
 
@@ -229,13 +230,13 @@ def test_the_unloading_ratio_has_no_default() -> None:
 
 @pytest.mark.parametrize("make", [lambda: ElasticPoint(0.0), lambda: HypoplasticPoint(math.nan, 2.0)])
 def test_hardness_must_be_above_zero(make: Callable[[], object]) -> None:
-    with pytest.raises(ParameterError, match="snow_hardness"):
+    with raises(ParameterError, "out_of_range", name="snow_hardness"):
         make()
 
 
 @pytest.mark.parametrize("make", [lambda: ElasticPoint(0.01e9), lambda: HypoplasticPoint(100e9, 2.0)])
 def test_a_warning_outside_the_measured_range(make: Callable[[], object]) -> None:
-    with pytest.warns(RangeWarning, match="outside the 0.02189 to 90 N/mm³") as caught:
+    with warns(RangeWarning, "outside_measured", unit="N/mm³", highest=90.0) as caught:
         make()
     assert caught[0].filename == __file__
 
@@ -258,5 +259,5 @@ def test_the_mean_over_a_wedge_is_that_of_federolf() -> None:
 
 @pytest.mark.parametrize("ratio", [0.5, math.inf, math.nan])
 def test_a_mean_pressure_that_unloads_more_softly_is_refused(ratio: float) -> None:
-    with pytest.raises(ParameterError, match=r"MeanPressurePoint: unloading_ratio is .*at least 1"):
+    with raises(ParameterError, "not_a_number"):
         MeanPressurePoint(A, B, ratio)

@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 import pytest
+from tests.coded import raises
 
 from skisnow._support.errors import ParameterError
 from skisnow.ski import Ski, read_ski
@@ -187,5 +188,5 @@ def test_a_footprint_is_between_a_rigid_clamp_and_one_section() -> None:
 
 
 def test_a_footprint_without_stiffness_is_refused() -> None:
-    with pytest.raises(ParameterError, match="footprint_stiffness is 0"):
+    with raises(ParameterError, "out_of_range", footprint_stiffness=0.0):
         clamped(plain_ski(), 0.3, 40, 0.0)

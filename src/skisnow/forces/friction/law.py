@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..._support.errors import ParameterError
+from ..._support.messages import Message
 from ..measured_ranges import GLIDE_FRICTION
 
 FloatArray = npt.NDArray[np.float64]
@@ -44,13 +45,22 @@ class FrictionLaw(abc.ABC):
         """
         v = np.asarray(speed, float)
         if np.any(v < 0):
-            raise ParameterError(f"speed is {float(v.min())!r} m/s; a sliding speed is at least 0")
+            raise ParameterError(
+                Message("speed is {speed!r} m/s; a sliding speed is at least 0", speed=float(v.min())),
+                code="out_of_range",
+            )
         mu = self._coefficient(v)
         if np.any(mu < 0):
             fastest = float(v.flat[int(np.argmin(mu))])
             raise ParameterError(
-                f"{type(self).__name__}: the coefficient of friction is negative at {fastest:g} m/s: {self!r} would "
-                "push the ski; use other parameters or lower speeds"
+                Message(
+                    "{kind}: the coefficient of friction is negative at {fastest:g} m/s: {law!r} would "
+                    "push the ski; use other parameters or lower speeds",
+                    kind=type(self).__name__,
+                    fastest=fastest,
+                    law=self,
+                ),
+                code="negative_friction",
             )
         return mu
 
