@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from skisnow._support.errors import FieldDataError
-from skisnow.campaign.density_records import read_density_layers
+from skisnow.campaign.snow_pit import read_density_layers
 
 REAL = Path(__file__).resolve().parents[3] / "shared" / "data" / "pit-density" / "pit_density.csv"
 HEADER = "ID,TOP,BOTTOM,RHO,NOTES,TYPE\n"

@@ -285,9 +285,9 @@ def test_creep_is_flagged_beyond_the_gauge_and_a_share_of_the_depth(
     campaign = campaign_of(GOOD, [(70.5, 0.5), (140.5, depth), (210.5, 4.0)])
     tests = campaign.penetration
     assert tests is not None
-    waited = np.full(6, np.nan)
-    waited[4] = after * 1e-3
-    campaign = dataclasses.replace(campaign, penetration=dataclasses.replace(tests, depth_after=waited))
+    add_creep = np.full(6, np.nan)
+    add_creep[4] = after * 1e-3
+    campaign = dataclasses.replace(campaign, penetration=dataclasses.replace(tests, depth_after=add_creep))
     masks = screen_penetration(campaign)
     assert [code for code, mask in masks.items() if mask[1]] == codes
     assert not any(mask[0] for mask in masks.values())

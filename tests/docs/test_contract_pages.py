@@ -8,10 +8,9 @@ from typing import Any
 import pytest
 
 import skisnow
-from skisnow.campaign.problems import ERROR_CODES, WARNING_CODES
-from skisnow.campaign.quality_flags import ALWAYS_EXCLUDE, QUALITY_FLAGS
+from skisnow.campaign.problems import ALWAYS_EXCLUDE, ERROR_CODES, QUALITY_FLAGS, WARNING_CODES
+from skisnow.campaign.reading.campaign_file import SHAPES
 from skisnow.campaign.reading.table_forms import CORRECTIONS, TABLES
-from skisnow.campaign.reading.tool_shapes import SHAPES
 from skisnow.cli import build_parser
 
 ROOT = Path(__file__).resolve().parents[2]

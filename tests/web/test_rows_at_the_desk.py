@@ -9,7 +9,7 @@ import pytest
 
 pytest.importorskip("nicegui", reason="the web lab is not installed")
 
-from skisnow.campaign.reading.row_checks import TURNING
+from skisnow.campaign.reading.experiments import TURNING
 from skisnow.web.entry.single import SingleForm
 from skisnow.web.entry.table_view import TableView
 

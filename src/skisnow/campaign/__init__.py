@@ -1,8 +1,6 @@
 """Field campaigns: records, files, screening, store, reference campaign."""
 
-from .density_records import DensityLayers, read_density_layers
-from .problems import AppliedCorrection, Problem
-from .quality_flags import QUALITY_FLAGS, QualityFlag
+from .problems import QUALITY_FLAGS, AppliedCorrection, Problem, QualityFlag
 from .reading import campaign_of_files, check_campaign, read_campaign
 from .records import (
     Campaign,
@@ -15,6 +13,7 @@ from .records import (
 from .reference import ReferenceCampaign, ReferenceNoise, reference_campaign, write_reference
 from .screening import flag_problems, screen_penetration, screen_shear
 from .snow_micro_pen import SnowMicroPenProfile, read_snow_micro_pen
+from .snow_pit import DensityLayers, read_density_layers
 
 __all__ = [
     "QUALITY_FLAGS",

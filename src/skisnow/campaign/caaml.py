@@ -78,8 +78,8 @@ class _Profile:
         self._file = file
         self._root = root
         if root.name != "SnowProfile" or NAMESPACE.fullmatch(root.namespace) is None:
-            found = f"{root.name} of {root.namespace or 'no namespace'}"
-            self._refuse("SnowProfile", found, "SnowProfile of CAAML 5 or 6", "Export it as CAAML 6.")
+            root_name = f"{root.name} of {root.namespace or 'no namespace'}"
+            self._refuse("SnowProfile", root_name, "SnowProfile of CAAML 5 or 6", "Export it as CAAML 6.")
         measured = root.child("snowProfileResultsOf", "SnowProfileMeasurements")
         if measured is None:
             self._refuse("snowProfileResultsOf", "nothing", "SnowProfileMeasurements", "The file holds no profile.")
@@ -116,17 +116,17 @@ class _Profile:
             slope_angle_deg=self._quantity(ANGLE, place, "validSlopeAngle", "SlopeAnglePosition", "position"),
             snow_height=self._snow_height,
             air_temperature_C=self._quantity(TEMPERATURE, measured.child("weatherCond") or measured, "airTempPres"),
-            layers=tuple(self._layer(*each) for each in self._of("stratProfile", "Layer")),
-            densities=tuple(self._density(*each) for each in self._of("densityProfile", "Layer")),
-            temperatures=tuple(self._temperature(*each) for each in self._of("tempProfile", "Obs")),
-            forces=tuple(self._forces(each) for each in measured.every("hardnessProfile")),
+            layers=tuple(self._layer(*pair) for pair in self._of("stratProfile", "Layer")),
+            densities=tuple(self._density(*pair) for pair in self._of("densityProfile", "Layer")),
+            temperatures=tuple(self._temperature(*pair) for pair in self._of("tempProfile", "Obs")),
+            forces=tuple(self._forces(pair) for pair in measured.every("hardnessProfile")),
             snow_hardness=self._plate_value("snowHardness", SNOW_HARDNESS),
             failure_shear_stress=self._plate_value("failureShearStress", SHEAR_STRESS),
         )
 
     def _of(self, profile: str, name: str) -> list[tuple[Element, Element]]:
         """The layers or observations of all profiles of a kind that hold them one by one, each after its profile."""
-        return [(found, each) for found in self._measured.every(profile) for each in found.every(name)]
+        return [(parent, child) for parent in self._measured.every(profile) for child in parent.every(name)]
 
     def _height(self) -> float | None:
         components = self._measured.child("snowPackCond", "hS", "Components")
@@ -137,7 +137,7 @@ class _Profile:
     def _time(self) -> str:
         records = (self._root.child("timeRef", "recordTime"), self._root.child("validTime"))
         paths = (("TimeInstant", "timePosition"), ("TimePeriod", "beginPosition"))
-        return next(filter(None, (each.text_of(*path) for each in records if each for path in paths)), "")
+        return next(filter(None, (record.text_of(*path) for record in records if record for path in paths)), "")
 
     def _aspect(self, place: Element, *path: str) -> str:
         """A compass point, or a number of degrees as text."""
@@ -163,7 +163,7 @@ class _Profile:
         text = "" if point is None else point.text_of("pos")
         if point is None or not text:
             return None, None
-        both = [self._finite("pos", each) for each in text.split()[:2]]
+        both = [self._finite("pos", number) for number in text.split()[:2]]
         if not self._is_version_6 and point.attributes.get("srsName", "").endswith("CRS84"):
             both.reverse()
         if len(both) != 2 or not (-90.0 <= both[0] <= 90.0 and -180.0 <= both[1] <= 180.0):
@@ -197,8 +197,8 @@ class _Profile:
         rows = profile.text_of("Measurements", "tupleList").split()
         if not rows:
             layers = list(profile.every("Layer"))
-            depths = [self._top_and_thickness(profile, each)[0] for each in layers]
-            forces = [self._required(FORCE, profile, each, "hardness") for each in layers]
+            depths = [self._top_and_thickness(profile, layer)[0] for layer in layers]
+            forces = [self._required(FORCE, profile, layer, "hardness") for layer in layers]
             return ForceProfile(method, np.array(depths, dtype=float), np.array(forces, dtype=float))
         pairs = [[self._finite("tupleList", number) for number in row.split(",")] for row in rows]
         if any(len(pair) != 2 for pair in pairs):
@@ -216,8 +216,8 @@ class _Profile:
             return None
         unit = custom.attributes.get("uom")
         ends = [custom.attributes.get(end) for end in ("low", "high")]
-        known = [self._convert(units, name, self._finite(name, each), unit) for each in ends if each is not None]
-        interval = (known[0], known[1]) if len(known) == 2 else None
+        limits = [self._convert(units, name, self._finite(name, end), unit) for end in ends if end is not None]
+        interval = (limits[0], limits[1]) if len(limits) == 2 else None
         count = round(self._finite(name, custom.attributes.get("n", "0")))
         return PlateValue(self._convert(units, name, self._finite(name, custom.text), unit), count, interval)
 
@@ -243,12 +243,14 @@ class _Profile:
         if text.lower() in NIL or (words and not any(character.isdigit() for character in text)):
             return None
         above = [parent.child(*path[:length]) for length in range(len(path), 0, -1)]
-        said = [each.attributes["uom"] for each in above if each is not None and "uom" in each.attributes]
+        units_given = [
+            element.attributes["uom"] for element in above if element is not None and "uom" in element.attributes
+        ]
         name = path[-1]
         if profile is not None:
             of_profile = _UNIT_OF_PROFILE.get(name, f"uom{name[0].upper()}{name[1:]}")
-            said += [profile.attributes[of_profile]] if of_profile in profile.attributes else []
-        return self._convert(units, name, self._finite(name, text), said[0] if said else None)
+            units_given += [profile.attributes[of_profile]] if of_profile in profile.attributes else []
+        return self._convert(units, name, self._finite(name, text), units_given[0] if units_given else None)
 
     def _convert(self, units: CaamlUnits, name: str, value: float, unit: str | None) -> float:
         converted = units.convert(value, unit)
@@ -303,17 +305,17 @@ class CaamlUnits:
         return None if size is None else (value + size[0]) * size[1]
 
 
-def _alike(factor: float, *names: str) -> dict[str, tuple[float, float]]:
+def _same_factor(factor: float, *names: str) -> dict[str, tuple[float, float]]:
     return dict.fromkeys(names, (0.0, factor))
 
 
 _LENGTHS: Final = {
-    **_alike(MM, "mm"),
-    **_alike(CM, "cm"),
-    **_alike(1.0, "m"),
-    **_alike(1e3, "km"),
-    **_alike(_INCH, "in", "inch"),
-    **_alike(_FOOT, "ft", "feet"),
+    **_same_factor(MM, "mm"),
+    **_same_factor(CM, "cm"),
+    **_same_factor(1.0, "m"),
+    **_same_factor(1e3, "km"),
+    **_same_factor(_INCH, "in", "inch"),
+    **_same_factor(_FOOT, "ft", "feet"),
 }
 LENGTH: Final = CaamlUnits("cm", _LENGTHS)
 ELEVATION: Final = CaamlUnits("m", _LENGTHS)
@@ -327,9 +329,10 @@ TEMPERATURE: Final = CaamlUnits(
     },
 )
 DENSITY: Final = CaamlUnits(
-    "kgm-3", {**_alike(1.0, "kgm-3", "kg/m3", "kg/m³"), **_alike(1e3, "gcm-3", "g/cm3", "g/cm³", "kgl-1", "kg/l")}
+    "kgm-3",
+    {**_same_factor(1.0, "kgm-3", "kg/m3", "kg/m³"), **_same_factor(1e3, "gcm-3", "g/cm3", "g/cm³", "kgl-1", "kg/l")},
 )
-FORCE: Final = CaamlUnits("N", {**_alike(1.0, "N"), **_alike(1e3, "kN"), **_alike(1e-3, "mN")})
-ANGLE: Final = CaamlUnits("deg", {**_alike(1.0, "deg", "°"), **_alike(1.0 / DEGREE, "rad")})
-SNOW_HARDNESS: Final = CaamlUnits("Nmm-3", _alike(1.0, "Nmm-3"))
-SHEAR_STRESS: Final = CaamlUnits("Nmm-2", _alike(1.0, "Nmm-2"))
+FORCE: Final = CaamlUnits("N", {**_same_factor(1.0, "N"), **_same_factor(1e3, "kN"), **_same_factor(1e-3, "mN")})
+ANGLE: Final = CaamlUnits("deg", {**_same_factor(1.0, "deg", "°"), **_same_factor(1.0 / DEGREE, "rad")})
+SNOW_HARDNESS: Final = CaamlUnits("Nmm-3", _same_factor(1.0, "Nmm-3"))
+SHEAR_STRESS: Final = CaamlUnits("Nmm-2", _same_factor(1.0, "Nmm-2"))

@@ -5,7 +5,11 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
-from typing import Final, Literal, TypeAlias
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Final, Literal, TypeAlias
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
 
 Severity: TypeAlias = Literal["error", "warning", "mark"]
 
@@ -68,9 +72,9 @@ class Problem:
             place += f", column {self.column}"
         if self.experiment is not None:
             place += f" (experiment {self.experiment})"
-        found = "" if self.value is None else f" found {_shortened(self.value)!r};"
+        value = "" if self.value is None else f" found {_shorten(self.value)!r};"
         shown = _SHOWN.get(self.severity, self.severity)
-        return f"{shown} {self.code}: {place}:{found} allowed: {self.allowed}. {self.action}"
+        return f"{shown} {self.code}: {place}:{value} allowed: {self.allowed}. {self.action}"
 
     def as_dict(self) -> dict[str, str | int | None]:
         """Give the problem as the object of ``skisnow check --json``."""
@@ -79,7 +83,7 @@ class Problem:
         return entry
 
 
-def _shortened(value: str) -> str:
+def _shorten(value: str) -> str:
     return value if len(value) <= LONGEST_VALUE else f"{value[:LONGEST_VALUE]}…"
 
 
@@ -114,7 +118,7 @@ def warning(
     return Problem("warning", code, file, row, column, experiment, value, allowed, action, needs_action)
 
 
-def placed(problem: Problem, places: Mapping[str, str]) -> Problem:
+def with_sheet_name(problem: Problem, places: Mapping[str, str]) -> Problem:
     """A problem of a table that is a sheet of a workbook, under the sheet's name."""
     place = places.get(problem.file)
     return problem if place is None else replace(problem, file=place)
@@ -124,25 +128,25 @@ MOST_ALIKE: Final = 10
 """Problems of one kind in one column that a terminal shows one by one."""
 
 
-def _once_a_name(problems: Iterable[Problem]) -> list[Problem]:
+def _group_unknown_names(problems: Iterable[Problem]) -> list[Problem]:
     """An unknown tool or plate once for a file, with the number of its experiments: it is one thing to put right."""
     together: dict[object, list[Problem]] = {}
     for number, problem in enumerate(problems):
         name = (problem.code, problem.file, problem.value)
         together.setdefault(name if problem.code in _NAMES else number, []).append(problem)
-    return [_of_all(alike) for alike in together.values()]
+    return [_combine(alike) for alike in together.values()]
 
 
 _NAMES: Final = ("unknown_tool", "unknown_plate")
 
 
-def _of_all(alike: Sequence[Problem]) -> Problem:
+def _combine(alike: Sequence[Problem]) -> Problem:
     first, more = alike[0], len(alike) - 1
     where = f"{first.experiment} and {more} more, up to row {alike[-1].row}"
     return replace(first, experiment=where) if more else first
 
 
-def _several(problems: Sequence[Problem]) -> Iterator[str]:
+def _limited_lines(problems: Sequence[Problem]) -> Iterator[str]:
     """A line each; of more than some of one kind in one column the first, and how many more there are."""
     kinds = [(problem.severity, problem.code, problem.file, problem.column) for problem in problems]
     counts, shown = Counter(kinds), Counter[tuple[object, ...]]()
@@ -168,10 +172,10 @@ def lines_of(problems: Iterable[Problem]) -> list[str]:
     files: dict[str, list[str]] = {}
     for problem in every:
         if not problem.needs_action:
-            kept = f"column {problem.value!r} kept as text" if problem.code == "unknown_column" else problem.value
-            files.setdefault(kept or problem.code, []).append(problem.file)
+            note = f"column {problem.value!r} kept as text" if problem.code == "unknown_column" else problem.value
+            files.setdefault(note or problem.code, []).append(problem.file)
     notes = "; ".join(f"{what} in {', '.join(dict.fromkeys(where))}" for what, where in files.items())
-    lines = list(_several(_once_a_name(problem for problem in every if problem.needs_action)))
+    lines = list(_limited_lines(_group_unknown_names(problem for problem in every if problem.needs_action)))
     return [*lines, f"note: nothing need be done: {notes}."] if notes else lines
 
 
@@ -188,3 +192,82 @@ class AppliedCorrection:
     who: str
     when: str
     why: str
+
+
+FEWEST_LOADS: Final = 3
+"""Fewer load steps do not show whether the law holds (modelling assumption)."""
+RESOLUTIONS: Final = 5.0
+"""A depth of fewer gauge resolutions is read with more than some 6 % of standard uncertainty: 1/(5 √12) (modelling
+assumption)."""
+CREEP_STEPS: Final = 2.0
+"""Growth under a constant load that a gauge distinguishes from its own rounding (modelling assumption)."""
+CREEP_SHARE: Final = 0.01
+"""The same as a share of the depth: of an edged tool it moves H_V by 2 %, as much as its readings scatter (modelling
+assumption). The paper cancelled a series whose depth "constantly and slowly increased", without a number."""
+
+
+ALWAYS_EXCLUDE: Final = frozenset({"cancelled", "zero_depth"})
+"""A campaign may choose which flags exclude, but not these: the observers took the test back, or there is no value."""
+
+
+@dataclass(frozen=True, slots=True)
+class QualityFlag:
+    """A quality flag: its code, the sentence that explains it in a report, and whether it excludes by default."""
+
+    code: str
+    sentence: str
+    excludes_by_default: bool
+
+
+_ALL: Final = (
+    QualityFlag("cancelled", "The experiment was cancelled by an entry in the column status.", True),
+    QualityFlag("too_few_loads", f"The series has fewer than {FEWEST_LOADS} load steps.", True),
+    QualityFlag("loads_not_rising", "A load of the series is not above the one before it.", True),
+    QualityFlag(
+        "depth_shrinks", "A depth of the series is below the one before it, although the load was raised.", True
+    ),
+    QualityFlag(
+        "zero_depth", "The depth is zero (of a series: at its largest load), so that no parameter follows.", True
+    ),
+    QualityFlag(
+        "beyond_tool", "The tool went deeper than the geometry that its area and volume are computed with.", False
+    ),
+    QualityFlag(
+        "below_resolution",
+        f"The depth (of a series: at its largest load) is below {RESOLUTIONS:g} steps of the gauge.",
+        False,
+    ),
+    QualityFlag(
+        "layered",
+        "The hardness of the snow changes with depth, or the depth zero is off by several tenths of a millimetre.",
+        False,
+    ),
+    QualityFlag(
+        "creeps",
+        f"Under one load the depth grew by more than {CREEP_STEPS:g} steps of the gauge and {CREEP_SHARE:.0%} of it.",
+        False,
+    ),
+    QualityFlag(
+        "unloading_not_falling",
+        "A load of the unloading is not below the one before it, so that no unloading ratio follows.",
+        False,
+    ),
+    QualityFlag(
+        "unloading_sinks", "The tool went deeper while the discs were taken off: the snow was still giving way.", False
+    ),
+    QualityFlag(
+        "rebound_unresolved",
+        "The tool came back by too little to tell how steep the unloading is: the ratio is only known from below.",
+        False,
+    ),
+    QualityFlag(
+        "hardness_outlier",
+        "The logarithm of the hardness is further than 3.5 scaled median absolute deviations from its site's median.",
+        False,
+    ),
+)
+QUALITY_FLAGS: Final[Mapping[str, QualityFlag]] = MappingProxyType({flag.code: flag for flag in _ALL})
+"""Every flag by its code, in the order in which they are listed."""
+
+NEED_HARDNESS: Final = frozenset({"layered", "rebound_unresolved", "hardness_outlier"})
+"""Flags that are set where hardness is estimated."""

@@ -302,7 +302,7 @@ def _means(keys: Sequence[Key], values: FloatArray, cancelled: Sequence[str]) ->
     for key, value, why in zip(keys, values.tolist(), cancelled, strict=True):
         if not why:
             collected.setdefault(key, []).append(value)
-    return {key: math.fsum(found) / len(found) for key, found in collected.items()}
+    return {key: math.fsum(items) / len(items) for key, items in collected.items()}
 
 
 @dataclass(frozen=True, slots=True, repr=False)

@@ -9,13 +9,26 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from .flag_problems import flag_problems
-from .penetration_series import creeping, maximum_depths, reading_at_largest_load, wrong_unloading
-from .quality_flags import FEWEST_LOADS, NEED_HARDNESS, QUALITY_FLAGS, RESOLUTIONS, QualityFlag
+from .._support.units import MM
+from ..geometry import in_form
+from .problems import (
+    CREEP_SHARE,
+    CREEP_STEPS,
+    FEWEST_LOADS,
+    NEED_HARDNESS,
+    QUALITY_FLAGS,
+    RESOLUTIONS,
+    Problem,
+    QualityFlag,
+    with_sheet_name,
+)
+from .reading.table_forms import PENETRATION, SHEAR
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
     from ..geometry import GeometryForm
-    from .records import BoolArray, Campaign, FloatArray, PenetrationTests
+    from .records import BoolArray, Campaign, FloatArray, IntArray, PenetrationTests, UnloadingReadings
 
 __all__ = [
     "QUALITY_FLAGS",
@@ -50,29 +63,29 @@ def screen_penetration(campaign: Campaign, *, geometry: GeometryForm = "extended
     largest_depth = tests.penetration_depth[reading_at_largest_load(tests)]
     deepest = np.maximum.reduceat(tests.penetration_depth, tests.first[:-1]) if len(tests) else np.zeros(0)
     return {
-        "cancelled": _is_given(tests.cancelled),
+        "cancelled": _is_filled(tests.cancelled),
         "too_few_loads": np.diff(tests.first) < FEWEST_LOADS,
         "loads_not_rising": _any_step(tests, _step(tests.load) <= 0),
         "depth_shrinks": _any_step(tests, _step(tests.penetration_depth) < 0),
         "zero_depth": largest_depth == 0,
         "beyond_tool": deepest > maximum_depths(campaign, tests, geometry) * (1 + _ROUNDING),
         "below_resolution": _is_below_resolution(largest_depth, campaign.gauge_resolution),
-        "creeps": _any_reading(tests, creeping(campaign, tests)),
-        **{code: _flagged_series(tests, bad) for code, bad in wrong_unloading(campaign, tests).items()},
+        "creeps": _any_reading(tests, find_creep(campaign, tests)),
+        **{code: _flagged_series(tests, bad) for code, bad in find_implausible_unloading(campaign, tests).items()},
     }
 
 
 def _any_reading(tests: PenetrationTests, bad: BoolArray) -> BoolArray:
-    found = np.zeros(len(tests), dtype=np.bool_)
-    found[tests.series_of_reading[bad]] = True
-    return found
+    flagged = np.zeros(len(tests), dtype=np.bool_)
+    flagged[tests.series_of_reading[bad]] = True
+    return flagged
 
 
 def _flagged_series(tests: PenetrationTests, bad: BoolArray) -> BoolArray:
-    found = np.zeros(len(tests), dtype=np.bool_)
+    flagged = np.zeros(len(tests), dtype=np.bool_)
     if tests.unloading is not None:
-        found[tests.unloading.series_of_reading[bad]] = True
-    return found
+        flagged[tests.unloading.series_of_reading[bad]] = True
+    return flagged
 
 
 def screen_shear(campaign: Campaign) -> dict[str, BoolArray]:
@@ -80,13 +93,13 @@ def screen_shear(campaign: Campaign) -> dict[str, BoolArray]:
     tests = campaign.shear
     depth = tests.penetration_depth if tests is not None else np.zeros(0)
     return {
-        "cancelled": _is_given(tests.cancelled if tests is not None else ()),
+        "cancelled": _is_filled(tests.cancelled if tests is not None else ()),
         "zero_depth": depth == 0,
         "below_resolution": _is_below_resolution(depth, campaign.gauge_resolution),
     }
 
 
-def _is_given(reasons: tuple[str, ...]) -> BoolArray:
+def _is_filled(reasons: tuple[str, ...]) -> BoolArray:
     return np.fromiter(map(bool, reasons), dtype=np.bool_, count=len(reasons))
 
 
@@ -106,3 +119,216 @@ def _is_below_resolution(depth: FloatArray, resolution: float | None) -> BoolArr
     if resolution is None:
         return np.zeros(len(depth), dtype=np.bool_)
     return depth < RESOLUTIONS * resolution * (1 - _ROUNDING)
+
+
+def reading_at_largest_load(tests: PenetrationTests) -> IntArray:
+    """Find the reading under each series' largest load, the last of equals.
+
+    Returns
+    -------
+    Index into ``tests.load`` and its like, one per experiment.
+    """
+    peak = np.maximum.reduceat(tests.load, tests.first[:-1]) if len(tests) else np.zeros(0)
+    at_peak = np.flatnonzero(tests.load == np.repeat(peak, np.diff(tests.first)))
+    last = np.zeros(len(tests), dtype=np.int64)
+    last[tests.series_of_reading[at_peak]] = at_peak  # of repeated indices the last assignment stays
+    return last
+
+
+def maximum_depths(campaign: Campaign, tests: PenetrationTests, geometry: GeometryForm) -> FloatArray:
+    """Depth (m) beyond which each experiment's tool, in this form, is no longer the body that its name says."""
+    limit = np.full(len(tests), np.inf)
+    names = np.array(tests.tool, dtype=object)
+    for name, tool in campaign.tools.items():
+        of_tool = np.flatnonzero(names == name)
+        limit[of_tool] = in_form(tool, geometry).greatest_depth(tests.edge_angle[of_tool])
+    return limit
+
+
+def find_creep(campaign: Campaign, tests: PenetrationTests) -> BoolArray:
+    """Readings whose depth grew under a constant load by more than the limits of `CREEP_STEPS` and `CREEP_SHARE`."""
+    if tests.depth_after is None:
+        return np.zeros(len(tests.load), dtype=np.bool_)
+    step = CREEP_STEPS * (campaign.gauge_resolution or 0.0)
+    limit = np.maximum(step, CREEP_SHARE * tests.penetration_depth) * (1 + _ROUNDING)
+    return np.asarray(np.nan_to_num(tests.depth_after - tests.penetration_depth) > limit)
+
+
+def find_implausible_unloading(campaign: Campaign, tests: PenetrationTests) -> dict[str, BoolArray]:
+    """For ``unloading_not_falling`` and ``unloading_sinks`` a mask over the readings of the unloading.
+
+    The first reading of a series may repeat the one under its largest load; a step of the gauge is no sinking.
+    """
+    if tests.unloading is None:
+        return dict.fromkeys(("unloading_not_falling", "unloading_sinks"), np.zeros(0, dtype=np.bool_))
+    unloading = tests.unloading
+    largest = reading_at_largest_load(tests)[unloading.series_of_reading]
+    begins = np.diff(unloading.series_of_reading, prepend=-1) > 0
+    load_before = np.where(begins, tests.load[largest], np.roll(unloading.load, 1))
+    depth_before = np.where(begins, tests.penetration_depth[largest], np.roll(unloading.penetration_depth, 1))
+    step = (campaign.gauge_resolution or 0.0) * (1 + _ROUNDING)
+    return {
+        "unloading_not_falling": (unloading.load > load_before) | (~begins & (unloading.load == load_before)),
+        "unloading_sinks": unloading.penetration_depth - depth_before > step,
+    }
+
+
+_UNFLAGGED_STATUS = "a blank status"
+_UNFLAGGED_ZERO = "a depth above 0 mm"
+_UNFLAGGED_LAYERED = "depths that grow with the load as F = H_V V has it"
+_UNFLAGGED_REBOUND = "a rebound that is large beside the step of the gauge and the scatter of the readings"
+_UNFLAGGED_OUTLIER = "a logarithm of the hardness nearer to its site's median"
+_OF_UNLOADING = ("unloading_not_falling", "unloading_sinks", "rebound_unresolved")
+
+
+def flag_problems(
+    campaign: Campaign,
+    masks_penetration: Mapping[str, BoolArray],
+    masks_shear: Mapping[str, BoolArray],
+    *,
+    geometry: GeometryForm = "extended",
+) -> list[Problem]:
+    """List every quality flag as a problem of severity ``mark``.
+
+    Parameters
+    ----------
+    campaign
+        The campaign that was screened.
+    masks_penetration, masks_shear
+        Masks by code over the experiments, from screening; further codes of `QUALITY_FLAGS` may have been added.
+    geometry
+        The form of the ski piece that was screened with.
+
+    Returns
+    -------
+    Penetration before shear, within them in the order of the file, then of `QUALITY_FLAGS`.
+    """
+    problems: list[Problem] = []
+    if campaign.penetration is not None:
+        flagged = _FlaggedReadings(campaign, campaign.penetration, geometry)
+        problems += [flagged.problem(index, code) for index, code in _flagged_experiments(masks_penetration)]
+    if campaign.shear is not None:
+        problems += [_shear_problem(campaign, index, code) for index, code in _flagged_experiments(masks_shear)]
+    return [with_sheet_name(problem, campaign.places) for problem in problems]
+
+
+def _flagged_experiments(masks: Mapping[str, BoolArray]) -> Iterator[tuple[int, str]]:
+    codes = [code for code in QUALITY_FLAGS if code in masks]
+    if codes:
+        for index, which in np.argwhere(np.stack([masks[code] for code in codes], axis=1)).tolist():
+            yield index, codes[which]
+
+
+def _effect_of_flag(campaign: Campaign, code: str) -> str:
+    if code in campaign.excluding:
+        return "The experiment is kept and counted, but not included in the estimates."
+    return "The experiment is only flagged and included in the estimates; look at it."
+
+
+def _resolution_limit(campaign: Campaign) -> str:
+    step = 0.0 if campaign.gauge_resolution is None else campaign.gauge_resolution
+    return f"at least {RESOLUTIONS:g} steps of the gauge, {RESOLUTIONS * step / MM:.10g} mm"
+
+
+def _shear_problem(campaign: Campaign, index: int, code: str) -> Problem:
+    tests = campaign.shear
+    assert tests is not None
+    depth = f"{tests.penetration_depth[index] / MM:.10g}"
+    column, value, allowed = {
+        "cancelled": ("status", tests.cancelled[index], _UNFLAGGED_STATUS),
+        "zero_depth": ("depth_mm", depth, _UNFLAGGED_ZERO),
+        "below_resolution": ("depth_mm", depth, _resolution_limit(campaign)),
+    }[code]
+    row, experiment = int(tests.row[index]), tests.experiment[index]
+    return Problem("mark", code, SHEAR.file, row, column, experiment, value, allowed, _effect_of_flag(campaign, code))
+
+
+class _FlaggedReadings:
+    """Finds the reading that a flag is about."""
+
+    def __init__(self, campaign: Campaign, tests: PenetrationTests, geometry: GeometryForm) -> None:
+        self._campaign = campaign
+        self._tests = tests
+        self._largest = reading_at_largest_load(tests)
+        self._limit = maximum_depths(campaign, tests, geometry)
+
+    def problem(self, index: int, code: str) -> Problem:
+        """One flag as a problem."""
+        reading, column, value, allowed = getattr(self, f"_{code}")(index)
+        unloading = self._tests.unloading
+        rows = self._tests.row if unloading is None or code not in _OF_UNLOADING else unloading.row
+        row = int(rows[reading])
+        experiment = self._tests.experiment[index]
+        follows = _effect_of_flag(self._campaign, code)
+        return Problem("mark", code, PENETRATION.file, row, column, experiment, value, allowed, follows)
+
+    def _depth(self, reading: int) -> str:
+        return f"{self._tests.penetration_depth[reading] / MM:.10g}"
+
+    def _cancelled(self, index: int) -> tuple[int, str, str, str]:
+        return int(self._tests.first[index]), "status", self._tests.cancelled[index], _UNFLAGGED_STATUS
+
+    def _too_few_loads(self, index: int) -> tuple[int, str, str, str]:
+        first, end = self._tests.first[index : index + 2].tolist()
+        return first, "load_N", str(end - first), f"at least {FEWEST_LOADS} load steps"
+
+    def _loads_not_rising(self, index: int) -> tuple[int, str, str, str]:
+        load = self._tests.series(index).load
+        step = int(np.flatnonzero(np.diff(load) <= 0)[0])
+        reading = int(self._tests.first[index]) + step + 1
+        return reading, "load_N", f"{load[step + 1]:.10g}", f"more than the {load[step]:.10g} N of the reading before"
+
+    def _depth_shrinks(self, index: int) -> tuple[int, str, str, str]:
+        step = int(np.flatnonzero(np.diff(self._tests.series(index).penetration_depth) < 0)[0])
+        before = int(self._tests.first[index]) + step
+        allowed = f"at least the {self._depth(before)} mm of the reading before"
+        return before + 1, "depth_mm", self._depth(before + 1), allowed
+
+    def _zero_depth(self, index: int) -> tuple[int, str, str, str]:
+        reading = int(self._largest[index])
+        return reading, "depth_mm", self._depth(reading), _UNFLAGGED_ZERO
+
+    def _beyond_tool(self, index: int) -> tuple[int, str, str, str]:
+        series = self._tests.series(index)
+        reading = int(self._tests.first[index]) + int(np.argmax(series.penetration_depth))
+        allowed = f"at most {self._limit[index] / MM:.10g} mm for the tool {series.tool!r} at this edge angle"
+        return reading, "depth_mm", self._depth(reading), allowed
+
+    def _below_resolution(self, index: int) -> tuple[int, str, str, str]:
+        reading = int(self._largest[index])
+        return reading, "depth_mm", self._depth(reading), _resolution_limit(self._campaign)
+
+    def _layered(self, index: int) -> tuple[int, str, None, str]:
+        return int(self._largest[index]), "depth_mm", None, _UNFLAGGED_LAYERED
+
+    def _creeps(self, index: int) -> tuple[int, str, str, str]:
+        first, end = self._tests.first[index : index + 2].tolist()
+        reading = first + int(np.flatnonzero(find_creep(self._campaign, self._tests)[first:end])[0])
+        assert self._tests.depth_after is not None
+        value = f"{self._tests.depth_after[reading] / MM:.10g}"
+        allowed = f"at most {CREEP_STEPS:g} steps of the gauge or {CREEP_SHARE:.0%} more than {self._depth(reading)} mm"
+        return reading, "depth_after_mm", value, allowed
+
+    def _unloading_not_falling(self, index: int) -> tuple[int, str, str, str]:
+        reading = self._first_wrong(index, "unloading_not_falling")
+        return reading, "load_N", f"{self._unloading.load[reading]:.10g}", "less than the load of the reading before"
+
+    def _unloading_sinks(self, index: int) -> tuple[int, str, str, str]:
+        reading = self._first_wrong(index, "unloading_sinks")
+        depth = f"{self._unloading.penetration_depth[reading] / MM:.10g}"
+        return reading, "depth_mm", depth, "at most the depth of the reading before and one step of the gauge"
+
+    def _rebound_unresolved(self, index: int) -> tuple[int, str, None, str]:
+        return int(self._unloading.first[index + 1]) - 1, "depth_mm", None, _UNFLAGGED_REBOUND
+
+    @property
+    def _unloading(self) -> UnloadingReadings:
+        assert self._tests.unloading is not None
+        return self._tests.unloading
+
+    def _first_wrong(self, index: int, code: str) -> int:
+        own = self._unloading.series_of_reading == index
+        return int(np.flatnonzero(find_implausible_unloading(self._campaign, self._tests)[code] & own)[0])
+
+    def _hardness_outlier(self, index: int) -> tuple[int, None, None, str]:
+        return int(self._largest[index]), None, None, _UNFLAGGED_OUTLIER

@@ -72,7 +72,9 @@ class StationSeries(Shown):
     fields: Mapping[str, FloatArray] = field(repr=False)
 
     def _facts(self) -> Facts:
-        ends = [datetime.fromtimestamp(each, UTC).strftime("%Y-%m-%d %H:%M") for each in self.time[[0, -1]].tolist()]
+        ends = [
+            datetime.fromtimestamp(seconds, UTC).strftime("%Y-%m-%d %H:%M") for seconds in self.time[[0, -1]].tolist()
+        ]
         return Facts(f"{self.station!r}: {len(self.time)} rows, {ends[0]} to {ends[1]} UTC, {', '.join(self.fields)}")
 
     def at(self, moments: FloatArray, name: str, *, longest_gap: float) -> FloatArray:
@@ -80,8 +82,8 @@ class StationSeries(Shown):
         values = self.fields.get(name)
         if values is None:
             return np.full(len(moments), math.nan)
-        known = np.isfinite(values)
-        time, values = self.time[known], values[known]
+        finite = np.isfinite(values)
+        time, values = self.time[finite], values[finite]
         if not len(time):
             return np.full(len(moments), math.nan)
         after = np.searchsorted(time, moments)
@@ -107,10 +109,10 @@ def read_smet(path: str | Path) -> StationSeries:
         allowed, action = "a weather file in SMET", "Check its name and folder."
         problem = error("unreadable_file", path.name, value=failure.what, allowed=allowed, action=action)
         raise FieldDataError([problem]) from failure
-    return smet_series(path.name, data)
+    return parse_smet(path.name, data)
 
 
-def smet_series(name: str, data: bytes) -> StationSeries:
+def parse_smet(name: str, data: bytes) -> StationSeries:
     """Take the bytes of a file of this name.
 
     Raises
@@ -133,8 +135,8 @@ class _Reading:
         self._lines = text.splitlines()
         first = self._lines[0].split() if self._lines else []
         if len(first) < 3 or first[0] != "SMET" or first[2] != "ASCII":
-            found = self._lines[0][:80] if self._lines else "nothing"
-            self._refuse(1, "", found, "SMET, a version and ASCII", "Export the station's data as SMET in ASCII.")
+            value = self._lines[0][:80] if self._lines else "nothing"
+            self._refuse(1, "", value, "SMET, a version and ASCII", "Export the station's data as SMET in ASCII.")
         if first[1] not in _VERSIONS:
             self._refuse(1, "", first[1], f"a version among {', '.join(_VERSIONS)}", "Export it in one of these.")
         self._version = first[1]
@@ -181,7 +183,7 @@ class _Reading:
         self._require_plausible(names, values)
         columns = {name: column for name, column in zip(names, values.T, strict=True) if name != _TIME}
         place = [self._number_of(key, math.nan) for key in ("latitude", "longitude", "altitude")]
-        latitude, longitude, altitude = (None if math.isnan(each) or each == nodata else each for each in place)
+        latitude, longitude, altitude = (None if math.isnan(number) or number == nodata else number for number in place)
         station = self._header.get("station_name", self._header["station_id"])[1]
         return StationSeries(self._file, station, latitude, longitude, altitude, offset, times, columns)
 
@@ -238,10 +240,12 @@ class _Reading:
         if key not in self._header:
             return [default] * len(names)
         line, text = self._header[key]
-        found = [self._number(line, key, each) for each in text.split()]
-        if len(found) != len(names):
-            self._refuse(line, key, f"{len(found)} numbers", f"{len(names)}, one for each field", "Correct the header.")
-        return found
+        numbers = [self._number(line, key, part) for part in text.split()]
+        if len(numbers) != len(names):
+            self._refuse(
+                line, key, f"{len(numbers)} numbers", f"{len(names)}, one for each field", "Correct the header."
+            )
+        return numbers
 
     def _rows(self, names: Sequence[str], offset: float) -> tuple[FloatArray, FloatArray]:
         zone, place = timezone(timedelta(hours=offset)), names.index(_TIME)
@@ -265,8 +269,8 @@ class _Reading:
 
     def _moment(self, line: int, text: str, zone: timezone) -> float:
         try:
-            found = datetime.fromisoformat(text)
-            moment = (found if found.tzinfo else found.replace(tzinfo=zone)).astimezone(UTC)
+            time = datetime.fromisoformat(text)
+            moment = (time if time.tzinfo else time.replace(tzinfo=zone)).astimezone(UTC)
         except (ValueError, OverflowError):
             self._refuse(line, _TIME, text[:80], "a time such as 2026-02-03T09:10", "Correct the time.")
         if not MINYEAR < moment.year < MAXYEAR:  # so that each zone has this time

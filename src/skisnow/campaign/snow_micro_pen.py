@@ -161,10 +161,10 @@ def read_snow_micro_pen(path: Path) -> SnowMicroPenProfile:
         data = plain_bytes(path, most_bytes=MOST_BYTES)
     except GivenError as failure:
         _refuse(path.name, failure.what, "a readable file", "Check its name and permissions.")
-    return snow_micro_pen_profile(path.name, data)
+    return parse_snow_micro_pen(path.name, data)
 
 
-def snow_micro_pen_profile(name: str, data: bytes) -> SnowMicroPenProfile:
+def parse_snow_micro_pen(name: str, data: bytes) -> SnowMicroPenProfile:
     """Take the bytes of a ``.PNT`` file of this name.
 
     Raises
@@ -188,8 +188,8 @@ def _value(data: bytes, offset: int, form: str) -> Any:
     return values[0] if len(values) == 1 else values
 
 
-def _refuse(name: str, found: str, allowed: str, action: str, code: str = "unreadable_file") -> NoReturn:
-    raise FieldDataError([error(code, name, value=found, allowed=allowed, action=action)])
+def _refuse(name: str, value: str, allowed: str, action: str, code: str = "unreadable_file") -> NoReturn:
+    raise FieldDataError([error(code, name, value=value, allowed=allowed, action=action)])
 
 
 def _check(file: str, header: dict[str, Any], size: int) -> None:

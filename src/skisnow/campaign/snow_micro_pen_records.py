@@ -12,7 +12,7 @@ import numpy.typing as npt
 from .._support.display import Facts, Shown, amount
 from .._support.units import MM
 from ..parameters import Quantity, require_declared
-from .snow_micro_pen import SnowMicroPenProfile, snow_micro_pen_profile
+from .snow_micro_pen import SnowMicroPenProfile, parse_snow_micro_pen
 
 if TYPE_CHECKING:
     import numpy as np
@@ -100,7 +100,7 @@ class SnowMicroPenRecordings(Shown):
 
     def profile(self, index: int) -> SnowMicroPenProfile:
         """Force against depth of one recording, by its index."""
-        return snow_micro_pen_profile(self.file[index], self.contents[index])
+        return parse_snow_micro_pen(self.file[index], self.contents[index])
 
     def _facts(self) -> Facts:
         depths = f"{amount(self.settings.from_depth / MM)} to {amount(self.settings.to_depth / MM, 'mm')}"
@@ -154,9 +154,9 @@ def snow_surface(force: FloatArray, sample_distance: float, *, rise: float, hold
     size = max(round(BLOCK / sample_distance), 1)
     length = size * sample_distance
     blocks = force[: len(force) // size * size].reshape(-1, size).mean(axis=1)
-    held, air, least = (max(round(each / length), 1) for each in (hold, AIR, LEAST_AIR))
-    for index in range(least, len(blocks) - held):
-        level = float(np.median(blocks[max(index - air, 0) : index]))
-        if (blocks[index : index + held + 1] >= level + rise).all():
+    hold_blocks, air_blocks, least_blocks = (max(round(distance / length), 1) for distance in (hold, AIR, LEAST_AIR))
+    for index in range(least_blocks, len(blocks) - hold_blocks):
+        level = float(np.median(blocks[max(index - air_blocks, 0) : index]))
+        if (blocks[index : index + hold_blocks + 1] >= level + rise).all():
             return SnowSurface(index * length, level)
     return None

@@ -112,7 +112,7 @@ def keys_with_values(name: str) -> Iterator[tuple[str, str, Quantity]]:
 
 def campaign_toml(name: str) -> str:
     """The text of campaign.toml."""
-    keys = "".join(_line(*each) for each in keys_with_values(name))
+    keys = "".join(_line(*entry) for entry in keys_with_values(name))
     tables = "".join(
         f"# {template.form.file}\n" + "".join(f"#   {column}: {words}\n" for column, words in template.explained())
         for template in TEMPLATES

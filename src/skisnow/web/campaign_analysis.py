@@ -10,8 +10,7 @@ import numpy as np
 
 from .._support.errors import FieldDataError, SkisnowError
 from ..campaign import QUALITY_FLAGS, campaign_of_files
-from ..campaign.problems import Problem, lines_of
-from ..campaign.quality_flags import ALWAYS_EXCLUDE
+from ..campaign.problems import ALWAYS_EXCLUDE, Problem, lines_of
 from ..estimation import analyse
 from ..report import write_report
 from ..report.campaign.data import ReportData

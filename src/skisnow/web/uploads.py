@@ -200,6 +200,8 @@ def add_uploaded(store: StorePlace, place: str, names: Sequence[str], limits: Li
     folder = campaign_folder(unpacking.folder)
     files = unfolded(FilesOfFolder(folder))
     if CAMPAIGN_FILE not in files.names():
-        raise ParameterError(f"{files.found[0].value}. {files.found[0].action}" if files.found else UNDESCRIBED)
+        raise ParameterError(
+            f"{files.problems[0].value}. {files.problems[0].action}" if files.problems else UNDESCRIBED
+        )
     with Store.open(store) as opened:
         return opened.add(folder).id

@@ -10,10 +10,8 @@ from typing import Any
 import jsonschema
 import pytest
 
-from skisnow.campaign.problems import Problem
-from skisnow.campaign.quality_flags import QUALITY_FLAGS
-from skisnow.campaign.reading.campaign_file import CampaignFile, read_campaign_file
-from skisnow.campaign.reading.tool_shapes import SHAPES
+from skisnow.campaign.problems import QUALITY_FLAGS, Problem
+from skisnow.campaign.reading.campaign_file import SHAPES, CampaignFile, read_campaign_file
 
 SKI = '[[tool]]\nname = "a"\nshape = "ski"\nlength_mm = 200\nwidth_mm = 62\n'
 PLATE = '[[plate]]\nname = "b"\nlength_mm = 200\n'

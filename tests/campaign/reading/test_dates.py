@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from skisnow.campaign import check_campaign, read_campaign
-from skisnow.campaign.reading.cell_values import iso_moment
+from skisnow.campaign.reading.columns import iso_moment
 
 
 @pytest.mark.parametrize(

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from skisnow.campaign import check_campaign, read_campaign
-from skisnow.campaign.reading.headings import proposed
+from skisnow.campaign.reading.headings import columns_by_synonym
 from skisnow.campaign.reading.table_forms import DENSITY, DROP_CONE, PENETRATION, SHEAR, TableForm
 from skisnow.cli import main
 
@@ -92,7 +92,7 @@ def test_the_proposal_is_one_line_a_file_and_does_what_it_says(
     ],
 )  # fmt: skip
 def test_headings_that_people_write(form: TableForm, headings: list[str], columns: list[str]) -> None:
-    assert list(proposed(form, headings).values()) == columns
+    assert list(columns_by_synonym(form, headings).values()) == columns
 
 
 def test_a_title_above_the_headings_is_passed_over(

@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from skisnow.campaign.problems import error
-from skisnow.campaign.reading.cell_values import decimal_mark, is_number, number, numbers
+from skisnow.campaign.reading.columns import decimal_mark, is_number, number, numbers
 
 GOOD = {"1": 1.0, "-2.5": -2.5, "+.5": 0.5, "3.": 3.0, "1e3": 1000.0, "2.5E-1": 0.25, " 7.5\u00a0": 7.5, "007": 7.0}
 BAD = [

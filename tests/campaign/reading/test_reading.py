@@ -82,10 +82,10 @@ def test_hashes_are_those_of_the_raw_files(write_campaign: WriteCampaign, small_
 
 def plain(campaign: Campaign) -> dict[str, object]:
     """Everything a campaign holds but how its files were written."""
-    whole = dataclasses.asdict(campaign)
+    checked_bytes = dataclasses.asdict(campaign)
     for left_out in ("folder", "problems", "file_hashes", "tools"):
-        del whole[left_out]
-    return {"tools": dict(campaign.tools), **whole}
+        del checked_bytes[left_out]
+    return {"tools": dict(campaign.tools), **checked_bytes}
 
 
 def rewritten(text: str, separator: str, comma: bool, line_end: str, *, stray: bool) -> str:
@@ -331,9 +331,9 @@ def test_random_files_give_problems(
 def test_damaged_files_give_problems(
     write_campaign: WriteCampaign, small_campaign: dict[str, str], name: str, place: float, length: int, content: bytes
 ) -> None:
-    whole = small_campaign[name].encode()
-    start = int(place * len(whole))
-    damaged = whole[:start] + content[:length] + whole[start + length :]
+    checked_bytes = small_campaign[name].encode()
+    start = int(place * len(checked_bytes))
+    damaged = checked_bytes[:start] + content[:length] + checked_bytes[start + length :]
     assert_told_and_not_raised(write_campaign({**small_campaign, name: damaged}))
 
 

@@ -368,8 +368,8 @@ def test_what_is_asked_for_beside_the_usual_tables_changes_nothing_of_them(tmp_p
     assert more["drop_cone.csv"] == usual["drop_cone.csv"]
     after = [row.pop("depth_after_mm") for row in more["penetration.csv"]]
     assert more["penetration.csv"] == usual["penetration.csv"]
-    waited = {(row["site"], row["branch"]) for row, text in zip(usual["penetration.csv"], after, strict=True) if text}
-    assert waited == {("site B", "loading")}
+    creeping = {(row["site"], row["branch"]) for row, text in zip(usual["penetration.csv"], after, strict=True) if text}
+    assert creeping == {("site B", "loading")}
     angles = [float(row.pop("turning_angle_deg")) for row in more["shear.csv"]]
     assert more["shear.csv"][4::5] == usual["shear.csv"]
     assert len(angles) == 5 * len(usual["shear.csv"])

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from skisnow._support.language.known import catalogue
-from skisnow.campaign.store.cells import (
+from skisnow.campaign.store.stored_tables import (
     ABOVE,
     ANY_NUMBER,
     AT_LEAST,

@@ -7,11 +7,11 @@ from typing import Any
 
 import pytest
 
+from skisnow.campaign.store import conflict as conflict_module
 from skisnow.campaign.store import sync
+from skisnow.campaign.store.conflict import Divergence, EntryIndex, Side, _shorten_text
 from skisnow.campaign.store.journal_entry import JournalEntry
-from skisnow.campaign.store.syncing import conflict as conflict_module
-from skisnow.campaign.store.syncing.conflict import Divergence, Heads, Side, _short
-from skisnow.campaign.store.syncing.sync import Names, same_names
+from skisnow.campaign.store.sync import Names, same_names
 
 from .test_syncing import Laptop, ada, bo, both_sync, shared
 
@@ -139,14 +139,14 @@ def test_it_is_told_line_by_line() -> None:
 
 
 def test_long_words_are_cut_at_eighty() -> None:
-    assert _short("a\n b") == "a b"
-    assert _short("a" * 80) == "a" * 80
-    assert _short("a" * 81) == "a" * 80 + "…"
+    assert _shorten_text("a\n b") == "a b"
+    assert _shorten_text("a" * 80) == "a" * 80
+    assert _shorten_text("a" * 81) == "a" * 80 + "…"
 
 
 def test_both_wrote_about_a_test_where_each_has_what_the_other_lacks() -> None:
-    here = Heads({"a": (FILE, "1"), "b": (FILE, "2"), "c": (FILE, "3"), "d": ("shear.csv", "1")})
-    there = Heads({"a": (FILE, "1"), "e": (FILE, "2"), "f": (FILE, "1"), "g": ("shear.csv", "1")})
+    here = EntryIndex({"a": (FILE, "1"), "b": (FILE, "2"), "c": (FILE, "3"), "d": ("shear.csv", "1")})
+    there = EntryIndex({"a": (FILE, "1"), "e": (FILE, "2"), "f": (FILE, "1"), "g": ("shear.csv", "1")})
     assert here.missing_in(there) == {"b", "c", "d"}
     assert here.written_on_both(there) == there.written_on_both(here) == [(FILE, "2"), ("shear.csv", "1")]
 
@@ -165,7 +165,7 @@ def test_the_next_free_name_is_taken_and_progress_is_told(
 
     Entries are asked for in portions, here of two.
     """
-    monkeypatch.setattr(conflict_module, "_ASKED_AT_ONCE", 2)
+    monkeypatch.setattr(conflict_module, "_ENTRIES_PER_QUERY", 2)
     id_ = shared(ada, bo, group)
     ada.enter(id_, "2", "4")
     ada.enter(id_, "2 (2)", "6")

@@ -9,7 +9,7 @@ import pytest
 from skisnow._support.errors import StoreError
 from skisnow.campaign import read_campaign
 from skisnow.campaign.store import Journals, NewEntry, OvertakenError, Store, export_corrected, replayed, stored_tables
-from skisnow.campaign.store.journal_entry import file_uid
+from skisnow.campaign.store.journal_entry import uid_of_file
 
 TOML = """name = "Kept"
 [[tool]]
@@ -101,7 +101,7 @@ def test_decimal_commas_and_corrections_that_came_with_the_campaign(store: Store
 def test_corrections_come_test_by_test_in_the_order_in_which_they_were_made(store: Store, tmp_path: Path) -> None:
     place = tmp_path / "kept"
     id_ = kept(store, place, PLAIN.encode())
-    by_name = sorted("12", key=lambda name: file_uid(id_, "penetration.csv", name))
+    by_name = sorted("12", key=lambda name: uid_of_file(id_, "penetration.csv", name))
     for name in reversed(by_name):  # not the order of what the entries of the file are called
         row = {"1": "3/depth_mm", "2": "6/depth_mm"}[name]
         Journals(store).correct(id_, correction(name, {row: "2.25"}), seen=0, standing=standing(place, name))

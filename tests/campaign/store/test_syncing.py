@@ -18,7 +18,7 @@ from skisnow.campaign.store import (
     NewEntry,
     Side,
     Store,
-    Synced,
+    SyncResult,
     campaign_files,
     corrected_files,
     replayed,
@@ -67,7 +67,7 @@ class Laptop:
     def files(self, id_: str) -> dict[str, str]:
         return campaign_files(replayed(self.journals.entries(id_)))
 
-    def sync(self, group: Store, keep: dict[str, Side] | None = None) -> Synced:
+    def sync(self, group: Store, keep: dict[str, Side] | None = None) -> SyncResult:
         done = sync(self.store, group, keep=keep, who=self.who)
         assert done.problems == ()
         return done
@@ -85,7 +85,7 @@ def bo(empty_file: Path, tmp_path: Path) -> Iterator[Laptop]:
         yield Laptop("Bo", store)
 
 
-def counts(done: Synced) -> tuple[int, int, int, int]:
+def counts(done: SyncResult) -> tuple[int, int, int, int]:
     return done.n_campaigns_given, done.n_campaigns_taken, done.n_entries_given, done.n_entries_taken
 
 

@@ -15,9 +15,9 @@ import numpy as np
 from skisnow import read_campaign, write_reference
 from skisnow._support.errors import FieldDataError
 from skisnow.campaign.caaml import read_caaml
-from skisnow.campaign.density_records import read_density_layers
 from skisnow.campaign.smet import read_smet
 from skisnow.campaign.snow_micro_pen import read_snow_micro_pen
+from skisnow.campaign.snow_pit import read_density_layers
 from skisnow.campaign.templates import workbook_bytes
 from skisnow.interop.caaml import write_caaml
 from tests.campaign.recordings import built
@@ -183,7 +183,5 @@ READERS = (
     _single("pit.caaml", lambda: _pit()["pit.caaml"], read_caaml, XML, "campaign.caaml:read_caaml"),
     _single("station.smet", lambda: _SMET, lambda path: repr(read_smet(path)), TEXT, "campaign.smet:read_smet"),
     _single("20260203.pnt", _recording, read_snow_micro_pen, BINARY, "campaign.snow_micro_pen:read_snow_micro_pen"),
-    _single(
-        "densities.csv", lambda: _DENSITY, read_density_layers, TABLE, "campaign.density_records:read_density_layers"
-    ),
+    _single("densities.csv", lambda: _DENSITY, read_density_layers, TABLE, "campaign.snow_pit:read_density_layers"),
 )

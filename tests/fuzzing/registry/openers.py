@@ -43,7 +43,7 @@ NO_READERS: Final[Mapping[str, str]] = {
     "studies.run:_hash": "bytes for a SHA-256",
     "studies.study:Study.fingerprint": "bytes for a SHA-256",
     "campaign.store.folder:read_chunks": "bytes for the store, whatever they say",
-    "campaign.store.corrected_export:add_corrections": "a file of the campaign that it has just exported",
+    "campaign.store.export:add_corrections": "a file of the campaign that it has just exported",
     "campaign.store.engine:_damage": "a store that is known to be damaged, for the integrity check",
     "studies.writing:_write_database": "the table that it writes",
     "web.lab_skis:LabSkis.texts": "the text of a ski, shown in a field",

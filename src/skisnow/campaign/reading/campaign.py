@@ -8,15 +8,23 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from ..._support.errors import FieldDataError
-from ..problems import error, placed
+from ..problems import error, with_sheet_name
 from ..records import Campaign
-from .assembling import density_samples, drop_cone_tests, penetration_tests, shear_tests
 from .campaign_file import CAMPAIGN_FILE, read_campaign_file
-from .campaign_files import FilesInMemory, FilesOfFolder, RawFiles
-from .corrections import corrections_by_file, refuse_without_file
+from .campaign_files import (
+    ENDING,
+    WEATHER_ENDING,
+    FilesInMemory,
+    FilesOfFolder,
+    RawFiles,
+    campaign_weather,
+    recording_contents,
+    snow_micro_pen_recordings,
+)
+from .corrections import corrections_by_file, report_missing_files
+from .experiments import density_samples, drop_cone_tests, penetration_tests, shear_tests
 from .headings import Headings
-from .recordings import ENDING, WEATHER_ENDING, campaign_weather, recording_contents, snow_micro_pen_recordings
-from .row_checks import check_together
+from .row_checks import check_rows
 from .table_forms import CORRECTIONS, DENSITY, DROP_CONE, PENETRATION, SHEAR, SNOW_MICRO_PEN, TABLES
 from .tables import read_table
 from .text import UnreadableTextError, decode, inspect_csv
@@ -82,7 +90,7 @@ def read_campaign(folder: str | Path, *, progress: Callable[[str], None] | None 
     ----------
     The page docs/files/campaign.md.
     """
-    return _sound(_read_folder(Path(folder), progress))
+    return _require_valid(_read_folder(Path(folder), progress))
 
 
 def campaign_of_files(files: Mapping[str, bytes], *, others: tuple[str, ...] = ()) -> Campaign:
@@ -100,7 +108,7 @@ def campaign_of_files(files: Mapping[str, bytes], *, others: tuple[str, ...] = (
     FieldDataError
         As `read_campaign`.
     """
-    return _sound(_read(FilesInMemory(files, others), None))
+    return _require_valid(_read(FilesInMemory(files, others), None))
 
 
 def check_campaign(folder: str | Path) -> tuple[Problem, ...]:
@@ -127,7 +135,7 @@ def check_campaign(folder: str | Path) -> tuple[Problem, ...]:
     return _read_folder(Path(folder), None).problems
 
 
-def _sound(contents: _Contents) -> Campaign:
+def _require_valid(contents: _Contents) -> Campaign:
     if contents.described is None or any(problem.severity == "error" for problem in contents.problems):
         raise FieldDataError(contents.problems)
     return _campaign(contents, contents.described)
@@ -162,10 +170,10 @@ def _read_folder(folder: Path, progress: Callable[[str], None] | None) -> _Conte
     return _read(FilesOfFolder(folder), progress)
 
 
-def _read(lying: CampaignFiles, progress: Callable[[str], None] | None) -> _Contents:
-    campaign = unfolded(lying)
-    files = RawFiles(campaign, found=campaign.found)
-    described = _described(files)
+def _read(campaign_files: CampaignFiles, progress: Callable[[str], None] | None) -> _Contents:
+    campaign = unfolded(campaign_files)
+    files = RawFiles(campaign, problems=campaign.problems)
+    described = _read_description(files)
     headings = described.headings if described is not None else Headings()
     corrections = _corrections(files, headings)
     tables: dict[str, Table] = {}
@@ -173,39 +181,40 @@ def _read(lying: CampaignFiles, progress: Callable[[str], None] | None) -> _Cont
         table = _table(files, form, corrections.get(form.file, {}), headings, progress)
         if table is not None:
             tables[form.file] = table
-            files.found.extend(check_together(table, described))
-    if not any(problem.severity == "error" for problem in files.found):
-        files.found.extend(_units_without_heading(headings, tables))
+            files.problems.extend(check_rows(table, described))
+    if not any(problem.severity == "error" for problem in files.problems):
+        files.problems.extend(_units_without_heading(headings, tables))
     recordings = recording_contents(tables.get(SNOW_MICRO_PEN.file), files)
     weather = None if described is None else campaign_weather(described.weather, files)
-    there = campaign.names()
-    files.found.extend(_misnamed(there, files.absent))
+    names = campaign.names()
+    files.problems.extend(_misnamed_files(names, files.absent))
     if {PENETRATION.file, SHEAR.file} <= files.absent:
-        files.found.append(_no_measurements())
+        files.problems.append(_missing_measurements())
     hashes = {name: digest for name, digest in files.hashes.items() if name not in campaign.of_sheets}
     applied = sorted(
-        (each for rows in corrections.values() for row in rows.values() for each in row), key=lambda each: each.line
+        (correction for rows in corrections.values() for row in rows.values() for correction in row),
+        key=lambda correction: correction.line,
     )
     return _Contents(
         campaign.folder,
         described,
         tables,
         hashes | campaign.hashes,
-        tuple(placed(problem, campaign.places) for problem in _in_order(files.found)),
-        tuple(each.applied() for each in applied),
-        (*(name for name in _unread(there) if name not in files.hashes), *campaign.unread),
+        tuple(with_sheet_name(problem, campaign.places) for problem in _sort_problems(files.problems)),
+        tuple(correction.applied() for correction in applied),
+        (*(name for name in _unread_files(names) if name not in files.hashes), *campaign.unread),
         campaign.places,
         recordings,
         weather,
     )
 
 
-def _in_order(problems: list[Problem]) -> tuple[Problem, ...]:
+def _sort_problems(problems: list[Problem]) -> tuple[Problem, ...]:
     place = {name: index for index, name in enumerate(CAMPAIGN_FILES)}
     return tuple(sorted(problems, key=lambda problem: (place.get(problem.file, len(place)), problem.row or 0)))
 
 
-def _unread(there: Mapping[str, bool]) -> tuple[str, ...]:
+def _unread_files(there: Mapping[str, bool]) -> tuple[str, ...]:
     """Files that are no part of a campaign; hidden ones, and what Excel puts beside an open one, are not spoken of."""
     files = sorted(name for name, is_file in there.items() if is_file)
     return tuple(name for name in files if name not in CAMPAIGN_FILES and not name.startswith((".", "~$")))
@@ -227,7 +236,7 @@ def _units_without_heading(headings: Headings, tables: Mapping[str, Table]) -> l
     ]
 
 
-def _misnamed(there: Mapping[str, bool], absent: set[str]) -> list[Problem]:
+def _misnamed_files(there: Mapping[str, bool], absent: set[str]) -> list[Problem]:
     """Files whose names differ from the campaign's by capitals alone: they would be passed over without a word."""
     return [
         error("unreadable_file", name, value=name, allowed=name.lower(), action=f"Rename it to {name.lower()}.")
@@ -236,7 +245,7 @@ def _misnamed(there: Mapping[str, bool], absent: set[str]) -> list[Problem]:
     ]
 
 
-def _no_measurements() -> Problem:
+def _missing_measurements() -> Problem:
     return error(
         "unreadable_file",
         PENETRATION.file,
@@ -245,12 +254,12 @@ def _no_measurements() -> Problem:
     )
 
 
-def _described(files: RawFiles) -> CampaignFile | None:
+def _read_description(files: RawFiles) -> CampaignFile | None:
     data = files.read(CAMPAIGN_FILE)
     if CAMPAIGN_FILE in files.absent:
         action = "`skisnow new campaign` writes one into this folder: put your tools and plates there."
         allowed = "a file of this name in the folder"
-        files.found.append(error("bad_toml", CAMPAIGN_FILE, allowed=allowed, action=action))
+        files.problems.append(error("bad_toml", CAMPAIGN_FILE, allowed=allowed, action=action))
     if data is None:
         return None
     try:
@@ -260,19 +269,19 @@ def _described(files: RawFiles) -> CampaignFile | None:
         return None
     if not decoded.text.strip():
         action = "Describe the tools and plates that the tables name."
-        files.found.append(
+        files.problems.append(
             error("empty_file", CAMPAIGN_FILE, value="nothing", allowed="keys and values", action=action)
         )
         return None
     files.report_encoding(CAMPAIGN_FILE, decoded.foreign_encoding)
-    return read_campaign_file(decoded.text, files.found)
+    return read_campaign_file(decoded.text, files.problems)
 
 
 def _corrections(files: RawFiles, headings: Headings) -> Mapping[str, RowCorrections]:
     table = _table(files, CORRECTIONS, {}, headings, None)
     if table is None or table.absent:
         return {}
-    return corrections_by_file(table, files.found)
+    return corrections_by_file(table, files.problems)
 
 
 def _table(
@@ -284,7 +293,7 @@ def _table(
 ) -> Table | None:
     data = files.read(form.file)
     if form.file in files.absent:
-        refuse_without_file(corrections, files.found)
+        report_missing_files(corrections, files.problems)
     if data is None:
         return None
     try:

@@ -5,23 +5,25 @@ from __future__ import annotations
 import difflib
 from collections.abc import Mapping
 from dataclasses import dataclass
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Annotated, Any, Final
 
 from ..._support.units import MM
 from ..._support.user_files import GivenError, toml_values
-from ...geometry import Tool
+from ...geometry import Disc, LyingCylinder, SkiPiece, Tool
 from ...geometry.tools import LIKELY_LENGTH_MM
 from ...parameters import Quantity, own_quantities
-from ..problems import error, warning
-from ..quality_flags import ALWAYS_EXCLUDE, QUALITY_FLAGS
+from ..problems import ALWAYS_EXCLUDE, QUALITY_FLAGS, error, warning
 from ..smet import WeatherSettings
 from ..snow_micro_pen_records import SnowMicroPenSettings
 from .headings import KEY as COLUMNS_KEY
-from .headings import UNITS_KEY, Headings, headings_of
+from .headings import UNITS_KEY, Headings, parse_headings
 from .toml_values import TomlValues
-from .tool_shapes import SHAPES
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from ...geometry import Tool
     from ..problems import Problem
 
 CAMPAIGN_FILE: Final = "campaign.toml"
@@ -114,7 +116,7 @@ _SECTIONS: Final = ("tool", "plate", "screening", COLUMNS_KEY, UNITS_KEY, "snow_
 TOP_KEYS: Final = ("name", "place", "observers", *list(CAMPAIGN_KEYS)[2:], *_SECTIONS)
 
 
-def read_campaign_file(text: str, found: list[Problem]) -> CampaignFile | None:
+def read_campaign_file(text: str, problems: list[Problem]) -> CampaignFile | None:
     """Read the text of campaign.toml.
 
     Parameters
@@ -126,12 +128,12 @@ def read_campaign_file(text: str, found: list[Problem]) -> CampaignFile | None:
 
     Returns
     -------
-    Its content, or None where it is not TOML. With an error in ``found`` what was refused is left out.
+    Its content, or None where it is not TOML. With an error in ``problems`` what was refused is left out.
     """
-    parsed = _parsed(text, found)
+    parsed = _parsed(text, problems)
     if parsed is None:
         return None
-    top = TomlValues(CAMPAIGN_FILE, parsed, "", found)
+    top = TomlValues(CAMPAIGN_FILE, parsed, "", problems)
     top.refuse_misspelt(TOP_KEYS)
     tools, tool_names, flat_tools = _tools(top)
     plates, plate_names = _plates(top)
@@ -152,19 +154,19 @@ def read_campaign_file(text: str, found: list[Problem]) -> CampaignFile | None:
         plate_names=plate_names,
         flat_tools=flat_tools,
         excluding=_excluding(top),
-        headings=headings_of(top),
+        headings=parse_headings(top),
         snow_micro_pen=_recordings(top.table("snow_micro_pen")),
         weather=top.table("weather").declared(WeatherSettings),
     )
 
 
-def _parsed(text: str, found: list[Problem]) -> dict[str, Any] | None:
+def _parsed(text: str, problems: list[Problem]) -> dict[str, Any] | None:
     try:
         return toml_values(text.replace("\r\n", "\n").replace("\r", "\n"))
     except GivenError as failure:
         row, what = failure.line, failure.what
     action = "Correct the line: texts stand in quotes, numbers have a decimal point, lists stand in brackets."
-    found.append(error("bad_toml", CAMPAIGN_FILE, row=row, value=what, allowed="TOML (toml.io)", action=action))
+    problems.append(error("bad_toml", CAMPAIGN_FILE, row=row, value=what, allowed="TOML (toml.io)", action=action))
     return None
 
 
@@ -187,7 +189,7 @@ def _tools(top: TomlValues) -> tuple[dict[str, Tool], frozenset[str], frozenset[
             continue
         shape = SHAPES[shape_name]
         entry.refuse_misspelt(("name", "shape", *shape.argument_of_key))
-        lengths = {each.field: _needed_length(entry, each) for each in shape.lengths}
+        lengths = {length.field: _needed_length(entry, length) for length in shape.lengths}
         if name is not None and all(length is not None for length in lengths.values()):
             tools[name] = shape.tool(**lengths)
         if name is not None and not shape.has_edge:
@@ -245,7 +247,7 @@ def _length(entry: TomlValues, quantity: Quantity) -> float | None:
     if value is not None and quantity.usual is not None and not quantity.usual[0] <= value <= quantity.usual[1]:
         low, high = quantity.usual
         unit = "m" if value < low else "µm"
-        entry.found.append(
+        entry.problems.append(
             warning(
                 "unlikely_unit",
                 CAMPAIGN_FILE,
@@ -279,3 +281,31 @@ def _excluding(top: TomlValues) -> frozenset[str]:
                 "exclude", f"codes among {', '.join(QUALITY_FLAGS)}", f"{hint}Correct the code.", value=code
             )
     return (frozenset(codes) & frozenset(QUALITY_FLAGS)) | ALWAYS_EXCLUDE
+
+
+@dataclass(frozen=True, slots=True)
+class Shape:
+    """A shape: its class, and whether it can be tilted by an edge angle."""
+
+    tool: type[Tool]
+    has_edge: bool
+
+    @property
+    def lengths(self) -> tuple[Quantity, ...]:
+        """The lengths that campaign.toml says of it."""
+        return own_quantities(self.tool)
+
+    @property
+    def argument_of_key(self) -> Mapping[str, str]:
+        """The class's argument for each key."""
+        return {length.name: length.field for length in self.lengths}
+
+
+SHAPES: Final[Mapping[str, Shape]] = MappingProxyType(
+    {
+        "ski": Shape(SkiPiece, has_edge=True),
+        "disc": Shape(Disc, has_edge=False),
+        "cylinder": Shape(LyingCylinder, has_edge=False),
+    }
+)
+"""Every shape by its name in campaign.toml."""

@@ -5,14 +5,26 @@ from __future__ import annotations
 import hashlib
 import stat
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING, Final, Protocol
 
+from ..._support.errors import FieldDataError
+from ..._support.units import MM
 from ..problems import error, warning
+from ..smet import CampaignWeather, parse_smet
+from ..snow_micro_pen import parse_snow_micro_pen
+from ..snow_micro_pen_records import SnowMicroPenRecordings
+from .campaign_file import CAMPAIGN_FILE
+from .table_forms import SNOW_MICRO_PEN
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from ..problems import Problem
+    from ..smet import WeatherSettings
+    from ..snow_micro_pen_records import SnowMicroPenSettings
+    from .columns import Table
     from .text import UnreadableTextError
 
 
@@ -104,7 +116,7 @@ class RawFiles:
     """
 
     files: CampaignFiles
-    found: list[Problem] = field(default_factory=list)
+    problems: list[Problem] = field(default_factory=list)
     hashes: dict[str, str] = field(default_factory=dict)
     absent: set[str] = field(default_factory=set)
 
@@ -127,11 +139,11 @@ class RawFiles:
     def _refuse(self, name: str, what: str) -> None:
         action = "Make the file readable, or remove it from the campaign."
         allowed = "a plain file that may be read"
-        self.found.append(error("unreadable_file", name, value=what, allowed=allowed, action=action))
+        self.problems.append(error("unreadable_file", name, value=what, allowed=allowed, action=action))
 
     def report_unreadable(self, name: str, failure: UnreadableTextError) -> None:
         """Say that a file is not the text it should be."""
-        self.found.append(
+        self.problems.append(
             error(
                 "unreadable_file",
                 name,
@@ -148,7 +160,7 @@ class RawFiles:
             return
         how = "It was guessed" if foreign_encoding == "Windows-1252" else "It was read as such"
         action = f"{how}; save as UTF-8 if letters look wrong in the report."
-        self.found.append(
+        self.problems.append(
             warning(
                 "encoding",
                 name,
@@ -158,3 +170,121 @@ class RawFiles:
                 needs_action=False,
             )
         )
+
+
+ENDING: Final = ".pnt"
+
+
+def recording_contents(table: Table | None, files: RawFiles) -> dict[str, bytes]:
+    """Read and check every file that the table names; what is wrong is reported with the row that names it."""
+    contents: dict[str, bytes] = {}
+    if table is None or table.absent:
+        return contents
+    for name in (SNOW_MICRO_PEN.key, "file"):
+        files.problems.extend(_repeated_names(table, name))
+    for row, name in enumerate(table.names["file"].cells()):
+        if name and name not in contents:
+            data = _content(table, row, name, files)
+            if data is not None:
+                contents[name] = data
+    return contents
+
+
+def _content(table: Table, row: int, name: str, files: RawFiles) -> bytes | None:
+    if "/" in name or "\\" in name or not name.lower().endswith(ENDING):
+        action = "Write the file's name alone, and lay the file beside the tables."
+        allowed = "the name of a .PNT file in the campaign's folder"
+        files.problems.append(_refusal(table, row, "file", "unreadable_file", allowed, action))
+        return None
+    before = len(files.problems)
+    data = files.read(name)
+    if data is None and len(files.problems) == before:
+        action = "Lay the file beside the tables, correct its name, or take the row out."
+        allowed = "a file of this name in the campaign's folder"
+        files.problems.append(_refusal(table, row, "file", "unreadable_file", allowed, action))
+    if data is None:
+        return None
+    try:
+        parse_snow_micro_pen(name, data)
+    except FieldDataError as failure:
+        problems: list[Problem] = failure.problems  # type: ignore[assignment]
+        recording = table.names[SNOW_MICRO_PEN.key][row]
+        files.problems.extend(replace(problem, experiment=recording) for problem in problems)
+        return None
+    return data
+
+
+def _repeated_names(table: Table, column: str) -> list[Problem]:
+    """A recording or a file that an earlier row names, too: it would count again."""
+    first: dict[str, int] = {}
+    problems = []
+    for row, name in enumerate(table.names[column].cells()):
+        reference = first.setdefault(name, row)
+        if name and reference != row:
+            allowed = f"each {column} once; row {int(table.row[reference])} has it, too"
+            action = "Correct the cell, or take one of the rows out."
+            problems.append(_refusal(table, row, column, "mixed_experiment", allowed, action))
+    return problems
+
+
+def _refusal(table: Table, row: int, column: str, code: str, allowed: str, action: str) -> Problem:
+    return error(
+        code,
+        SNOW_MICRO_PEN.file,
+        row=int(table.row[row]),
+        column=column,
+        experiment=table.names[SNOW_MICRO_PEN.key][row] or None,
+        value=table.names[column][row],
+        allowed=allowed,
+        action=action,
+    )
+
+
+def snow_micro_pen_recordings(
+    table: Table, contents: Mapping[str, bytes], settings: SnowMicroPenSettings
+) -> SnowMicroPenRecordings:
+    """Make the recordings of a table without an error."""
+    file = table.names["file"].cells()
+    return SnowMicroPenRecordings(
+        recording=table.names["recording"].cells(),
+        site=table.names["site"].cells(),
+        spot=table.names["spot"].cells(),
+        file=file,
+        surface=table.numbers["surface_mm"] * MM,
+        cancelled=table.names["status"].cells(),
+        row=table.row,
+        contents=tuple(contents[name] for name in file),
+        settings=settings,
+        further=table.further,
+    )
+
+
+WEATHER_ENDING: Final = ".smet"
+
+
+def campaign_weather(settings: WeatherSettings, files: RawFiles) -> CampaignWeather | None:
+    """Read the station's file; None where none is named, or where it cannot be read, which is reported."""
+    name = settings.file
+    if not name:
+        return None
+    if "/" in name or "\\" in name or not name.lower().endswith(WEATHER_ENDING):
+        _refuse(files, name, "the name of a .smet file in the campaign's folder")
+        return None
+    before = len(files.problems)
+    data = files.read(name)
+    if data is None:
+        if len(files.problems) == before:
+            _refuse(files, name, "a file of this name in the campaign's folder")
+        return None
+    try:
+        return CampaignWeather(parse_smet(name, data), settings)
+    except FieldDataError as failure:
+        files.problems.extend(failure.problems)  # type: ignore[arg-type]
+        return None
+
+
+def _refuse(files: RawFiles, name: str, allowed: str) -> None:
+    action = "Lay the file beside campaign.toml, or correct its name."
+    files.problems.append(
+        error("unreadable_file", CAMPAIGN_FILE, column="weather.file", value=name, allowed=allowed, action=action)
+    )

@@ -6,11 +6,10 @@ from typing import Final
 
 from ...parameters import own_quantities
 from ...parameters.json_schema import DRAFT, Schema, table_schema
-from ..quality_flags import QUALITY_FLAGS
+from ..problems import QUALITY_FLAGS
 from ..smet import WeatherSettings
 from ..snow_micro_pen_records import SnowMicroPenSettings
-from .campaign_file import CAMPAIGN_KEYS, PLATE_LENGTH
-from .tool_shapes import SHAPES, Shape
+from .campaign_file import CAMPAIGN_KEYS, PLATE_LENGTH, SHAPES, Shape
 
 FILE: Final = "campaign/schemas/campaign.schema.json"
 _NAME: Final[Schema] = {"type": "string", "pattern": "\\S", "description": "Unique in its list."}

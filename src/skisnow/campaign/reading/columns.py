@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Protocol
+from datetime import date, datetime, time
+from typing import TYPE_CHECKING, Final, Protocol
 
 import numpy as np
 
+from ..._support.spreadsheet_text import decimal_mark, is_number, number
 from ..problems import error, warning
-from .cell_values import is_number, iso_moment, numbers
 from .table_forms import UNLOADING, allowed_words
 
 if TYPE_CHECKING:
@@ -17,7 +19,7 @@ if TYPE_CHECKING:
     from ...parameters import Quantity
     from ..problems import Problem
     from ..records import BoolArray, FloatArray, IntArray
-    from .heading_units import UnitConversion
+    from .headings import UnitConversion
     from .table_forms import TableForm
 
 
@@ -46,8 +48,8 @@ class Rows:
 class Collector(Protocol):
     """Takes the cells of one column, some rows at a time."""
 
-    def take(self, cells: Sequence[str], rows: Rows, found: list[Problem]) -> None:
-        """Take cells; put what is wrong with them into ``found``."""
+    def take(self, cells: Sequence[str], rows: Rows, problems: list[Problem]) -> None:
+        """Take cells; put what is wrong with them into ``problems``."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -94,13 +96,13 @@ class NameCollector:
         self._codes = _NameCodes()
         self._parts: list[IntArray] = []
 
-    def take(self, cells: Sequence[str], rows: Rows, found: list[Problem]) -> None:
+    def take(self, cells: Sequence[str], rows: Rows, problems: list[Problem]) -> None:
         """See `Collector.take`."""
         code = np.fromiter(map(self._codes.__getitem__, cells), np.int64, len(cells))
         self._parts.append(code)
         blank = self._codes.code_of_name.get("")
         if self._required and blank is not None:
-            found.extend(self._blank(index, rows) for index in np.flatnonzero(code == blank).tolist())
+            problems.extend(self._blank(index, rows) for index in np.flatnonzero(code == blank).tolist())
 
     def _blank(self, index: int, rows: Rows) -> Problem:
         return rows.problem(
@@ -123,13 +125,13 @@ class NumberCollector:
         self._unit = unit if unit is not None and unit.changes else None
         self._parts: list[FloatArray] = []
 
-    def take(self, cells: Sequence[str], rows: Rows, found: list[Problem]) -> None:
+    def take(self, cells: Sequence[str], rows: Rows, problems: list[Problem]) -> None:
         """See `Collector.take`."""
         values = numbers(cells, self._mark)
         for index in np.flatnonzero(np.isnan(values)).tolist():
             cell = cells[index].strip()
             if cell or self._column.needed:
-                found.append(self._refusal("not_a_number", index, cell, rows, self._how_to_write(cell)))
+                problems.append(self._refusal("not_a_number", index, cell, rows, self._how_to_write(cell)))
         if self._unit is not None:
             with np.errstate(over="ignore"):
                 values = self._unit.convert(values)
@@ -137,7 +139,7 @@ class NumberCollector:
         for index in np.flatnonzero(outside).tolist():
             action = "Correct the cell; its unit stands in the column's name."
             cell = cells[index].strip() + (f" {self._unit.name}" if self._unit is not None else "")
-            found.append(self._refusal("out_of_range", index, cell, rows, action))
+            problems.append(self._refusal("out_of_range", index, cell, rows, action))
         values[outside] = np.nan
         self._parts.append(values)
 
@@ -165,7 +167,7 @@ class TextCollector:
     def __init__(self) -> None:
         self._texts: list[str] = []
 
-    def take(self, cells: Sequence[str], rows: Rows, found: list[Problem]) -> None:  # noqa: ARG002
+    def take(self, cells: Sequence[str], rows: Rows, problems: list[Problem]) -> None:  # noqa: ARG002
         """See `Collector.take`."""
         once: dict[str, str] = {}
         self._texts.extend(once.setdefault(cell, cell) for cell in map(str.strip, cells))
@@ -218,26 +220,26 @@ class DateCollector:
 
     def __init__(self, column: str) -> None:
         self._column = column
-        self._written: dict[str, str | None] = {"": ""}
+        self._iso_text: dict[str, str | None] = {"": ""}
         self._texts: list[str] = []
-        self._unread: list[tuple[int, str, str]] = []
+        self._unread_files: list[tuple[int, str, str]] = []
 
-    def take(self, cells: Sequence[str], rows: Rows, found: list[Problem]) -> None:  # noqa: ARG002
+    def take(self, cells: Sequence[str], rows: Rows, problems: list[Problem]) -> None:  # noqa: ARG002
         """See `Collector.take`."""
         for index, cell in enumerate(map(str.strip, cells)):
-            if cell not in self._written:
-                self._written[cell] = iso_moment(cell)
-            written = self._written[cell]
+            if cell not in self._iso_text:
+                self._iso_text[cell] = iso_moment(cell)
+            written = self._iso_text[cell]
             if written is None:
-                self._unread.append((rows.line[index], cell, rows.key[index]))
+                self._unread_files.append((rows.line[index], cell, rows.key[index]))
             self._texts.append(cell if written is None else written)
 
     def problems(self, file: str) -> list[Problem]:
         """What could not be read, in one warning."""
-        if not self._unread:
+        if not self._unread_files:
             return []
-        line, cell, key = self._unread[0]
-        more = f", and {len(self._unread) - 1} more like it" if len(self._unread) > 1 else ""
+        line, cell, key = self._unread_files[0]
+        more = f", and {len(self._unread_files) - 1} more like it" if len(self._unread_files) > 1 else ""
         return [
             warning(
                 "unreadable_date",
@@ -264,3 +266,77 @@ def is_unloading_cell(cell: str) -> bool:
 def is_unloading(branch: NameColumn) -> BoolArray:
     """True for each row that is a reading of the unloading."""
     return np.array(list(map(is_unloading_cell, branch.names)), dtype=np.bool_)[branch.code]
+
+
+__all__ = ["decimal_mark", "is_number", "number", "numbers"]
+
+_BETWEEN: Final = "\x1f"  # the unit separator: in no number
+
+
+def numbers(cells: Sequence[str], mark: str) -> FloatArray:
+    """Read a column of cells; NaN where a cell is blank or no finite number.
+
+    The whole column at once where it is plain, cell by cell where it is not.
+    """
+    together = _BETWEEN.join(cells)
+    if together.isascii() and "_" not in together and not (mark == "," and "." in together):
+        try:
+            values = np.array(_all_numbers(together.replace(",", ".").split(_BETWEEN) if mark == "," else cells))
+        except ValueError:
+            return np.array([number(cell, mark) for cell in cells])
+        values[~np.isfinite(values)] = np.nan
+        return values
+    return np.array([number(cell, mark) for cell in cells])
+
+
+def _all_numbers(cells: Sequence[str]) -> list[float]:
+    try:
+        return list(map(float, cells))
+    except ValueError:
+        return [float(cell or "nan") for cell in cells]
+
+
+_CLOCK: Final = r"(?:[ T,]+(?:um )?(?P<hour>\d{1,2})[:.](?P<minute>\d{2})(?:[:.](?P<second>\d{2}))?(?: Uhr)?)?"
+_DAY_FIRST: Final = re.compile(rf"(?P<day>\d{{1,2}})\. ?(?P<month>\d{{1,2}})\. ?(?P<year>\d{{4}}|\d{{2}}){_CLOCK}")
+_SLASHES: Final = re.compile(rf"(?P<day>\d{{1,2}})/(?P<month>\d{{1,2}})/(?P<year>\d{{4}}){_CLOCK}")
+_CLOCK_ALONE: Final = re.compile(r"\d{1,2}:\d{2}(:\d{2})?")
+
+
+def iso_moment(cell: str) -> str | None:
+    """A day, a day and time, or a time of day as ISO 8601 writes it; None where it is none, or could be two.
+
+    Written with points the day comes first; with slashes it is read only where the order cannot be mistaken.
+
+    >>> [iso_moment(cell) for cell in ("23.11.2026", "23.11.2026 9:05", "2026-11-23T09:05", "09:05")]
+    ['2026-11-23', '2026-11-23T09:05:00', '2026-11-23T09:05', '09:05']
+    >>> [iso_moment(cell) for cell in ("11/23/2026", "3/4/2026", "31.11.2026", "gestern")]
+    ['2026-11-23', None, None, None]
+    """
+    text = " ".join(cell.split())
+    match = _DAY_FIRST.fullmatch(text) or _SLASHES.fullmatch(text)
+    try:
+        if match is not None:
+            return _iso_text(match, slashes="/" in text)
+        if _CLOCK_ALONE.fullmatch(text):
+            time.fromisoformat(text.rjust(len("09:05") if text.count(":") == 1 else len("09:05:00"), "0"))
+        elif re.match(r"\d{4}-", text):
+            datetime.fromisoformat(text)
+        else:
+            return None
+    except ValueError:
+        return None
+    return text
+
+
+def _iso_text(match: re.Match[str], *, slashes: bool) -> str | None:
+    day, month, year = (int(match[name]) for name in ("day", "month", "year"))
+    if slashes and day != month:
+        if day <= 12 and month <= 12:
+            return None
+        if month > 12:
+            day, month = month, day
+    of_day = date(year + 2000 if year < 100 else year, month, day).isoformat()
+    if match["hour"] is None:
+        return of_day
+    clock = time(int(match["hour"]), int(match["minute"]), int(match["second"] or 0))
+    return f"{of_day}T{clock.isoformat()}"

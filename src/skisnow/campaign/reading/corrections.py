@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, TypeAlias
 
 from ..problems import AppliedCorrection, error
-from .cell_values import is_number, number
+from .columns import is_number, number
 from .table_forms import CORRECTIONS, TABLES
 
 if TYPE_CHECKING:
@@ -64,7 +64,7 @@ RowCorrections: TypeAlias = "Mapping[int, Sequence[Correction]]"
 """The corrections of one file by file line, each line's in the order of corrections.csv."""
 
 
-def corrections_by_file(table: Table, found: list[Problem]) -> dict[str, dict[int, list[Correction]]]:
+def corrections_by_file(table: Table, problems: list[Problem]) -> dict[str, dict[int, list[Correction]]]:
     """Sort the rows of corrections.csv by the file and the line that they correct."""
     files = [form.file for form in TABLES]
     sorted_by_file: dict[str, dict[int, list[Correction]]] = {}
@@ -76,24 +76,27 @@ def corrections_by_file(table: Table, found: list[Problem]) -> dict[str, dict[in
             continue  # already reported: no number, or blank
         correction = Correction(line, file, experiment, int(row), column, *rest)
         if file not in files:
-            found.append(correction.mismatch("file", file, f"one of {', '.join(files)}"))
+            problems.append(correction.mismatch("file", file, f"one of {', '.join(files)}"))
         elif row != int(row):
-            found.append(correction.mismatch("row", f"{row:g}", "a whole number, the file's line"))
+            problems.append(correction.mismatch("row", f"{row:g}", "a whole number, the file's line"))
         else:
             sorted_by_file.setdefault(file, {}).setdefault(int(row), []).append(correction)
     return sorted_by_file
 
 
-def refuse_without_file(corrections: RowCorrections, found: list[Problem]) -> None:
+def report_missing_files(corrections: RowCorrections, problems: list[Problem]) -> None:
     """Report of each correction that its file is not in the campaign, or cannot be read."""
     for of_one_row in corrections.values():
-        found.extend(each.mismatch("file", each.file, "a readable file of this campaign") for each in of_one_row)
+        problems.extend(
+            correction.mismatch("file", correction.file, "a readable file of this campaign")
+            for correction in of_one_row
+        )
 
 
 def header_with_status(form: TableForm, header: Header, corrections: RowCorrections) -> Header:
     """Append the column ``status`` where a correction cancels and the file has no such column."""
-    asked = (each.column for of_one_row in corrections.values() for each in of_one_row)
-    if STATUS in form.optional and STATUS not in header.columns and STATUS in asked:
+    columns = (correction.column for of_one_row in corrections.values() for correction in of_one_row)
+    if STATUS in form.optional and STATUS not in header.columns and STATUS in columns:
         return header.with_column(STATUS)
     return header
 
@@ -116,14 +119,14 @@ class Corrector:
     """
 
     def __init__(
-        self, form: TableForm, header: Header, corrections: RowCorrections, *, mark: str, found: list[Problem]
+        self, form: TableForm, header: Header, corrections: RowCorrections, *, mark: str, problems: list[Problem]
     ) -> None:
         self._header = header
         self._position = header.position
         self._numbers = {column.name for column in form.numbers}
         self._key = form.key
         self._mark = mark
-        self._found = found
+        self._problems = problems
         self._left = dict(corrections)
 
     def apply(self, lines: Sequence[int], rows: Sequence[list[str]]) -> None:
@@ -139,13 +142,13 @@ class Corrector:
         for row, of_one_row in sorted(self._left.items()):
             what = "the header" if row == self._header.row else "no measurement"
             allowed = f"a row of measurements; {what} stands there"
-            self._found.extend(each.mismatch("row", str(row), allowed) for each in of_one_row)
+            self._problems.extend(correction.mismatch("row", str(row), allowed) for correction in of_one_row)
 
     def _correct(self, cells: list[str], correction: Correction) -> None:
         position = self._position.get(correction.column)
         if position is None:
             allowed = f"a column of {correction.file}: {', '.join(self._position)}"
-            self._found.append(correction.mismatch("column", correction.column, allowed))
+            self._problems.append(correction.mismatch("column", correction.column, allowed))
             return
         cells.extend([""] * (len(self._header.columns) - len(cells)))
         if self._agrees(cells, position, correction):
@@ -156,12 +159,12 @@ class Corrector:
         experiment = cells[key_position].strip() if key_position is not None else correction.experiment
         if experiment != correction.experiment:
             allowed = f"what stands there: {experiment!r}"
-            self._found.append(correction.mismatch("experiment", correction.experiment, allowed))
+            self._problems.append(correction.mismatch("experiment", correction.experiment, allowed))
             return False
         standing = cells[position].strip()
         if standing == correction.old or (correction.column in self._numbers and self._equal(standing, correction.old)):
             return True
-        self._found.append(correction.mismatch("old", correction.old, f"what stands there: {standing!r}"))
+        self._problems.append(correction.mismatch("old", correction.old, f"what stands there: {standing!r}"))
         return False
 
     def _equal(self, standing: str, old: str) -> bool:

@@ -3,18 +3,23 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from itertools import compress
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from ..._support.units import DEGREE, MM
+from ..problems import error
+from ..records import DensitySamples, DropConeTests, PenetrationTests, ShearTests, TurningReadings, UnloadingReadings
+from .columns import is_unloading
+from .table_forms import BRANCH
+
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Mapping
 
     from ..problems import Problem
     from ..records import BoolArray, FloatArray, IntArray
     from .columns import NameColumn, Table
-
-from ..problems import error
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,19 +54,19 @@ class Blocks:
         count = np.add.reduceat(chosen.astype(np.int64), self.start)
         return np.concatenate(([0], np.cumsum(count))).astype(np.int64)
 
-    def first_given(self, given: BoolArray) -> IntArray:
+    def first_given(self, mask: BoolArray) -> IntArray:
         """First row of each block for which ``given`` holds, or the block's first row."""
         chosen = self.start.copy()
-        rows = np.flatnonzero(given)[::-1]
+        rows = np.flatnonzero(mask)[::-1]
         chosen[self.of_row[rows]] = rows  # of repeated indices the last assignment stays
         return chosen
 
     def means(self, values: FloatArray) -> FloatArray:
         """Mean of each block's numbers that are not NaN; exact where they are all the same."""
-        given = ~np.isnan(values)
-        count = np.add.reduceat(given.astype(np.int64), self.start)
+        finite = ~np.isnan(values)
+        count = np.add.reduceat(finite.astype(np.int64), self.start)
         low, high = np.fmin.reduceat(values, self.start), np.fmax.reduceat(values, self.start)
-        total = np.add.reduceat(np.where(given, values, 0.0), self.start)
+        total = np.add.reduceat(np.where(finite, values, 0.0), self.start)
         return np.where(low == high, low, total / np.maximum(count, 1) + np.where(count > 0, 0.0, np.nan))
 
     def texts(self, column: NameColumn) -> tuple[str, ...]:
@@ -71,6 +76,19 @@ class Blocks:
         for row in np.flatnonzero(~column.is_blank).tolist():
             collected.setdefault(int(block[row]), {})[column[row]] = None
         return tuple("; ".join(collected.get(index, ())) for index in range(len(self.start)))
+
+
+TURNING: Final = "turning_angle_deg"
+
+
+def shear_blocks(table: Table) -> Blocks:
+    """Rows of one experiment together where their turning angle is given; each row by itself where it is not."""
+    turned = ~np.isnan(table.numbers[TURNING])
+    if not turned.any():
+        return Blocks.of_single_rows(len(table))
+    code = table.names[table.form.key].code
+    goes_on = (code[1:] == code[:-1]) & turned[1:] & turned[:-1]
+    return Blocks(np.concatenate(([0], np.flatnonzero(~goes_on) + 1, [len(code)])).astype(np.int64))
 
 
 def check_series(table: Table, blocks: Blocks) -> Iterator[Problem]:
@@ -138,3 +156,110 @@ def _mixed(table: Table, row: int, reference: int, column: str, value: str, othe
         allowed=f"one {column} in an experiment; row {int(table.row[reference])} has {other!r}",
         action="Correct the cell, or give the rows that were another experiment another name.",
     )
+
+
+def penetration_tests(table: Table) -> PenetrationTests:
+    """Make the penetration experiments; their rows stand together and agree."""
+    blocks = Blocks.of_runs(table.names["experiment"])
+    spot = table.names["spot"]
+    taken_off = is_unloading(table.names[BRANCH])
+    is_unloaded = bool(taken_off.any())
+    laid_on = ~taken_off if is_unloaded else slice(None)
+    after = table.numbers["depth_after_mm"][laid_on]
+    return PenetrationTests(
+        experiment=_at(table.names["experiment"], blocks.start),
+        site=_at(table.names["site"], blocks.start),
+        tool=_at(table.names["tool"], blocks.start),
+        spot=_at(spot, blocks.first_given(~spot.is_blank)),
+        edge_angle=table.numbers["edge_angle_deg"][blocks.start] * DEGREE,
+        snow_density=blocks.means(table.numbers["snow_density_kg_per_m3"]),
+        drop_cone_depth=blocks.means(table.numbers["drop_cone_depth_mm"]) * MM,
+        cancelled=blocks.texts(table.names["status"]),
+        first=blocks.first_of(~taken_off),
+        load=table.numbers["load_N"][laid_on],
+        penetration_depth=table.numbers["depth_mm"][laid_on] * MM,
+        row=table.row[laid_on],
+        further=_select_rows(table.further, ~taken_off) if is_unloaded else table.further,
+        unloading=_unloading(table, blocks, taken_off) if is_unloaded else None,
+        depth_after=None if np.isnan(after).all() else after * MM,
+    )
+
+
+def _select_rows(further: Mapping[str, tuple[str, ...]], chosen: BoolArray) -> dict[str, tuple[str, ...]]:
+    return {name: tuple(compress(cells, chosen.tolist())) for name, cells in further.items()}
+
+
+def _unloading(table: Table, blocks: Blocks, taken_off: BoolArray) -> UnloadingReadings:
+    return UnloadingReadings(
+        first=blocks.first_of(taken_off),
+        load=table.numbers["load_N"][taken_off],
+        penetration_depth=table.numbers["depth_mm"][taken_off] * MM,
+        row=table.row[taken_off],
+    )
+
+
+def shear_tests(table: Table) -> ShearTests:
+    """Make the shear experiments, one a row, or one of the rows of its turning: that of the largest moment."""
+    blocks = shear_blocks(table)
+    moment, angle = table.numbers["moment_Nm"], table.numbers["turning_angle_deg"]
+    largest = blocks.first_given(moment == np.maximum.reduceat(moment, blocks.start)[blocks.of_row])
+    is_turned = ~np.isnan(angle)
+    spot = table.names["spot"]
+    return ShearTests(
+        experiment=_at(table.names["experiment"], largest),
+        site=_at(table.names["site"], largest),
+        plate=_at(table.names["plate"], largest),
+        spot=_at(spot, blocks.first_given(~spot.is_blank)),
+        edge_angle=table.numbers["edge_angle_deg"][largest] * DEGREE,
+        penetration_depth=table.numbers["depth_mm"][largest] * MM,
+        lever_arm=table.numbers["lever_arm_mm"][largest] * MM,
+        moment=moment[largest],
+        snow_density=blocks.means(table.numbers["snow_density_kg_per_m3"]),
+        drop_cone_depth=blocks.means(table.numbers["drop_cone_depth_mm"]) * MM,
+        cancelled=blocks.texts(table.names["status"]),
+        row=table.row[largest],
+        further={name: tuple(cells[row] for row in largest.tolist()) for name, cells in table.further.items()},
+        turning=TurningReadings(blocks.first_of(is_turned), angle[is_turned] * DEGREE, moment[is_turned])
+        if is_turned.any()
+        else None,
+    )
+
+
+def density_samples(table: Table) -> DensitySamples:
+    """Make the density samples."""
+    return DensitySamples(
+        sample=table.names["sample"].cells(),
+        site=table.names["site"].cells(),
+        snow_density=table.numbers["snow_density_kg_per_m3"],
+        cancelled=_cancelled_together(table),
+        row=table.row,
+        further=table.further,
+    )
+
+
+def drop_cone_tests(table: Table) -> DropConeTests:
+    """Make the repeats of the drop-cone tests."""
+    return DropConeTests(
+        test=table.names["test"].cells(),
+        site=table.names["site"].cells(),
+        repeat=table.names["repeat"].cells(),
+        drop_cone_depth=table.numbers["drop_cone_depth_mm"] * MM,
+        cancelled=_cancelled_together(table),
+        row=table.row,
+        further=table.further,
+    )
+
+
+def _at(column: NameColumn, rows: np.typing.NDArray[np.int64]) -> tuple[str, ...]:
+    return tuple(map(column.names.__getitem__, column.code[rows].tolist()))
+
+
+def _cancelled_together(table: Table) -> tuple[str, ...]:
+    """Let a status on any row of a sample or test cancel all rows of that name at that site."""
+    status = table.names["status"].cells()
+    together = list(zip(table.names["site"].cells(), table.names[table.form.key].cells(), strict=True))
+    reasons: dict[tuple[str, str], dict[str, None]] = {}
+    for name, reason in zip(together, status, strict=True):
+        if reason:
+            reasons.setdefault(name, {})[reason] = None
+    return tuple("; ".join(reasons.get(name, ())) for name in together)

@@ -11,15 +11,13 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 from ..problems import error, warning
-from .heading_units import conversion, known_unit, named_unit, own_unit, unit_of_column, units_for
-from .headings import proposed
+from .headings import columns_by_synonym, conversion, known_unit, named_unit, own_unit, unit_of_column, units_for
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from ..problems import Problem
-    from .heading_units import UnitConversion
-    from .headings import Headings
+    from .headings import Headings, UnitConversion
     from .table_forms import TableForm
 
 _MOST_TITLES = 20
@@ -72,7 +70,7 @@ class Header:
         return Header((*self.columns, name), self.row)
 
 
-def header_of(lines: list[int], rows: list[list[str]]) -> Header:
+def split_header(lines: list[int], rows: list[list[str]]) -> Header:
     """Take the header off the first records, with titles of one cell above it and a row of units below it."""
     filled = [sum(1 for cell in cells if cell.strip()) for cells in rows[:_MOST_TITLES]]
     place = next((place for place, count in enumerate(filled) if count > 1), 0)
@@ -111,14 +109,16 @@ def check_header(form: TableForm, header: Header) -> list[Problem]:
 
 def _all_missing(form: TableForm, header: Header) -> Problem:
     """One line for a table whose columns are called otherwise: what to write into campaign.toml."""
-    meant = proposed(form, header.columns)
+    meant = columns_by_synonym(form, header.columns)
     left = [name for name in form.required if name not in meant.values()]
     table = form.file.removesuffix(".csv")
     pairs = ", ".join(
         f"{json.dumps(heading, ensure_ascii=False)} = {json.dumps(name)}" for heading, name in meant.items()
     )
     line = f"Put this at the top of campaign.toml if it is right: columns.{table} = {{{pairs}}}" if meant else ""
-    other = [f"{heading} names {unit}" for heading in header.columns if (unit := _unit_of_none(form, heading))]
+    other = [
+        f"{heading} names {unit}" for heading in header.columns if (unit := _unit_of_other_quantity(form, heading))
+    ]
     lost = f"{'Nothing' if not meant else 'No heading'} looks like {', '.join(left)}: rename or add it" if left else ""
     action = ". ".join(filter(None, (line, lost, f"Convert first: {', '.join(other)}" if other else "")))
     return error(
@@ -130,10 +130,10 @@ def _all_missing(form: TableForm, header: Header) -> Problem:
     )
 
 
-def _unit_of_none(form: TableForm, heading: str) -> str | None:
+def _unit_of_other_quantity(form: TableForm, heading: str) -> str | None:
     """The unit of a heading whose words name a column of another quantity."""
     bare, unit = re.sub(r"[\[(].*", "", heading), named_unit(heading)
-    column = next(iter(proposed(form, [bare]).values()), "") if bare != heading else ""
+    column = next(iter(columns_by_synonym(form, [bare]).values()), "") if bare != heading else ""
     return unit if unit and unit_of_column(column) and conversion(unit, column) is None else None
 
 
@@ -150,9 +150,9 @@ def _repeated(form: TableForm, name: str, row: int) -> Problem:
 
 
 def _missing(form: TableForm, name: str, unknown: Sequence[str], row: int) -> Problem:
-    as_written = {each.lower(): each for each in unknown}
+    as_written = {heading.lower(): heading for heading in unknown}
     near = difflib.get_close_matches(name.lower(), list(as_written), n=1)
-    likely = {column: heading for heading, column in proposed(form, unknown).items()}
+    likely = {column: heading for heading, column in columns_by_synonym(form, unknown).items()}
     meant = as_written[near[0]] if near else likely.get(name)
     hint = (
         f"Is the column {meant!r} meant? Rename it, or map it under [columns] in campaign.toml" if meant else "Add it"
@@ -169,7 +169,7 @@ def _missing(form: TableForm, name: str, unknown: Sequence[str], row: int) -> Pr
 
 
 def _unknown(form: TableForm, name: str, header: Header) -> Problem:
-    free = [each for each in form.known if each not in header.columns]
+    free = [name_of_column for name_of_column in form.known if name_of_column not in header.columns]
     near = difflib.get_close_matches(name, free, n=1)
     hint = f"rename it where {near[0]!r} is meant" if near else "nothing need be done"
     return warning(
@@ -200,7 +200,7 @@ class ColumnUnits:
     unstated: Mapping[str, str] = field(default_factory=dict)
 
 
-def column_units(form: TableForm, header: Header, headings: Headings, found: list[Problem]) -> ColumnUnits:
+def column_units(form: TableForm, header: Header, headings: Headings, problems: list[Problem]) -> ColumnUnits:
     """Resolve the units of a table; a program's own name such as load_N states its unit.
 
     Parameters
@@ -220,18 +220,18 @@ def column_units(form: TableForm, header: Header, headings: Headings, found: lis
         named = own_unit(column) if heading == column else named_unit(heading)
         below = header.units[place] if header.units else ""
         stated = list(filter(None, (headings.unit(form, heading), named, below)))
-        if any(conversion(each, column) != conversion(stated[0], column) for each in stated):
-            found.append(_two_units(form, heading, column, header.row))
+        if any(conversion(unit_given, column) != conversion(stated[0], column) for unit_given in stated):
+            problems.append(_two_units(form, heading, column, header.row))
             continue
         unit = stated[0] if stated else ""
         size = conversion(unit, column) if unit else None
         if not unit:
             unstated |= {column: heading} if column in numbers else {}
         elif size is None or (size.changes and column not in numbers):
-            found.append(_other_unit(form, heading, column, header.row, is_number=column in numbers))
+            problems.append(_other_unit(form, heading, column, header.row, is_number=column in numbers))
         else:
             conversions[column] = size
-            found += [_note(form, heading, column, size.name)] if size.changes else []
+            problems += [_note(form, heading, column, size.name)] if size.changes else []
     return ColumnUnits(conversions, unstated)
 
 

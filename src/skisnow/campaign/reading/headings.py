@@ -9,15 +9,15 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Final
 
-from .heading_units import FORM, conversion, every_unit, known_unit, named_unit, unit_of_column
+from ..._support.units import DEGREE, KILOGRAM_FORCE, ZERO_CELSIUS
 from .table_forms import CORRECTIONS, TABLES
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Sequence
 
+    from ..records import FloatArray
     from .table_forms import TableForm
     from .toml_values import TomlValues
-
 
 KEY: Final = "columns"
 UNITS_KEY: Final = "units"
@@ -60,7 +60,7 @@ class Headings:
 
     def without_heading(self, headings: Mapping[str, Sequence[str]]) -> Iterator[str]:
         """Paths of stated units whose heading no table has; the headings of each table are given by its file."""
-        there = {file: {plain_heading(each) for each in names} for file, names in headings.items()}
+        there = {file: {plain_heading(heading) for heading in names} for file, names in headings.items()}
         everywhere = set().union(*there.values())
         yield from (f"{UNITS_KEY}.{name}" for name in self.units if name not in everywhere)
         for file, units in self.units_of_table.items():
@@ -77,7 +77,7 @@ def plain_heading(heading: str) -> str:
     return " ".join(unicodedata.normalize("NFC", heading).split()).casefold()
 
 
-def headings_of(top: TomlValues) -> Headings:
+def parse_headings(top: TomlValues) -> Headings:
     """Read ``[columns]`` and ``[units]``; each for all tables, or for one under ``[columns.penetration]``."""
     units, units_of_table = _units_of(top.table(UNITS_KEY))
     section = top.table(KEY)
@@ -116,22 +116,22 @@ def _unit(section: TomlValues, heading: str) -> str:
     return unit
 
 
-def _names(section: TomlValues, known: tuple[str, ...]) -> dict[str, str]:
-    found: dict[str, str] = {}
+def _names(section: TomlValues, columns: tuple[str, ...]) -> dict[str, str]:
+    names: dict[str, str] = {}
     for heading in section.values:
-        found |= _name(section, heading, known)
-    return found
+        names |= _name(section, heading, columns)
+    return names
 
 
-def _name(section: TomlValues, heading: str, known: tuple[str, ...]) -> dict[str, str]:
+def _name(section: TomlValues, heading: str, columns: tuple[str, ...]) -> dict[str, str]:
     """The column that a heading stands for, or nothing where that is refused."""
     value = section.values[heading]
-    if isinstance(value, str) and value.strip() in known:
+    if isinstance(value, str) and value.strip() in columns:
         return {plain_heading(heading): value.strip()}
-    near = difflib.get_close_matches(str(value).lower(), known, n=1)
+    near = difflib.get_close_matches(str(value).lower(), columns, n=1)
     meant = f"Is {near[0]} meant? " if near else ""
     action = f"{meant}Write the heading, an equals sign and the column's name, both in quotes."
-    section.refuse(heading, f"one of the columns {', '.join(known)}", action)
+    section.refuse(heading, f"one of the columns {', '.join(columns)}", action)
     return {}
 
 
@@ -166,55 +166,39 @@ WORDS: Final = {
 }  # fmt: skip
 """Words for a column, as `_letters` writes them; phrases are found by their words."""
 
-_LIKELY: Final = 0.62
-_UNIT_COUNTS: Final = 0.25
+_UNIT_RANK: Final = 0.25
 
 
-def proposed(form: TableForm, headings: Sequence[str]) -> dict[str, str]:
-    """Columns by the headings that may stand for them, each once, in the order of the headings."""
-    scored = sorted(
-        (
-            (-_likeness(heading, column), place, column)
-            for place, heading in enumerate(headings)
-            for column in form.known
-            if heading
-        ),
+def columns_by_synonym(form: TableForm, headings: Sequence[str]) -> dict[str, str]:
+    """Columns by the headings with one of their synonyms, each column once, in the order of the headings."""
+    ranked = sorted(
+        (-rank, place, column)
+        for place, heading in enumerate(headings)
+        for column in form.known
+        if (rank := _rank(heading, column))
     )
-    found: dict[int, str] = {}
-    for likeness, place, column in scored:
-        if -likeness >= _LIKELY and place not in found and column not in found.values():
-            found[place] = column
-    return {headings[place]: found[place] for place in sorted(found)}
+    columns: dict[int, str] = {}
+    for _, place, column in ranked:
+        if place not in columns and column not in columns.values():
+            columns[place] = column
+    return {headings[place]: columns[place] for place in sorted(columns)}
 
 
-def _likeness(heading: str, column: str) -> float:
-    """From 0 up; 0 if the heading names a unit that is not converted to the column's."""
+def _rank(heading: str, column: str) -> float:
+    """Rank of a column for a heading: 0 without a synonym, or if the heading names a unit of another quantity."""
     unit = named_unit(heading) if unit_of_column(column) else ""
     if unit and conversion(unit, column) is None:
         return 0.0
-    found = FORM.fullmatch(heading)
-    words = _letters(found["words"] if found else heading)
-    return _of_words(words, WORDS.get(column, "")) + (_UNIT_COUNTS if unit else 0.0)
-
-
-def _of_words(words: str, known: str) -> float:
-    vocabulary = [*known.split(), known]
-    if not words:
-        return 0.0
-    if words in vocabulary:
-        return 1.0 - 0.001 * vocabulary.index(words)  # the first word of a column is its own
+    match = FORM.fullmatch(heading)
+    words = _letters(match["words"] if match else heading)
+    synonyms = [*WORDS.get(column, "").split(), WORDS.get(column, "")]
     parts = words.split()
-    if any(part in vocabulary for part in parts):
-        return 0.8 if parts[0] in vocabulary else 0.7
-    if any(len(each) > 3 and (words.endswith(each) or words.startswith(each)) for each in vocabulary):
-        return 0.7
-    return 0.8 * _nearest(words, vocabulary)
-
-
-def _nearest(words: str, vocabulary: Iterable[str]) -> float:
-    return max(
-        (difflib.SequenceMatcher(None, words, each).ratio() for each in vocabulary if len(each) > 3), default=0.0
-    )
+    if not any(part in synonyms for part in parts):
+        return 0.0
+    unit_rank = _UNIT_RANK if unit else 0.0
+    if words in synonyms:
+        return 1.0 - 0.001 * synonyms.index(words) + unit_rank  # the first synonym is the column's name
+    return (0.8 if parts[0] in synonyms else 0.7) + unit_rank
 
 
 def _letters(text: str) -> str:
@@ -228,3 +212,142 @@ def _letters(text: str) -> str:
         small = unicodedata.normalize("NFC", small).replace(umlaut, letters)
     plain = unicodedata.normalize("NFKD", small)
     return " ".join(re.sub(r"[^a-z ]", " ", re.sub(r"[\u0300-\u036f]", "", plain)).split())
+
+
+_OWN: Final = {
+    "deg": ("°", "deg", "degree", "degrees", "Grad", "Winkelgrad"), "N": ("N", "Newton"),
+    "mm": ("mm", "Millimeter"), "Nm": ("Nm", "N m", "N·m", "N*m"),
+    "kg_per_m3": ("kg/m³", "kg/m3", "kg/m^3", "kg m-3", "kg·m⁻³", "g/l"), "C": ("°C", "Grad C", "Celsius"),
+}  # fmt: skip
+"""Units of columns, as the last part of a column's name writes them, with their names in headings."""
+_OTHER: Final[dict[str, dict[tuple[str, ...], tuple[float, float]]]] = {
+    "deg": {("rad",): (1.0 / DEGREE, 0.0)},
+    "N": {
+        ("kg", "kgf", "kp"): (KILOGRAM_FORCE, 0.0),
+        ("g", "Gramm"): (1e-3 * KILOGRAM_FORCE, 0.0),
+        ("kN",): (1e3, 0.0),
+        ("daN",): (10.0, 0.0),
+    },
+    "mm": {
+        ("cm", "Zentimeter"): (10.0, 0.0),
+        ("m", "Meter"): (1e3, 0.0),
+        ("dm",): (100.0, 0.0),
+        ("µm", "μm", "um"): (1e-3, 0.0),
+        ("in", "inch"): (25.4, 0.0),
+    },
+    "Nm": {
+        ("Ncm", "N cm", "N·cm"): (1e-2, 0.0),
+        ("Nmm", "N mm", "N·mm"): (1e-3, 0.0),
+        ("kNm", "kN m", "kN·m"): (1e3, 0.0),
+    },
+    "kg_per_m3": {("g/cm³", "g/cm3", "g/cm^3", "g cm-3", "kg/l", "kg/dm³", "kg/dm3", "t/m³", "t/m3"): (1e3, 0.0)},
+    "C": {("K", "Kelvin"): (1.0, -ZERO_CELSIUS), ("°F", "Fahrenheit"): (5.0 / 9.0, -160.0 / 9.0)},
+}
+"""Factor and shift from other units to those of columns."""
+_ONLY_NAMED: Final = ("mn", "s", "min", "h", "%", "pa", "kpa", "mpa")
+"""Units that no column is converted from."""
+FORM: Final = re.compile(
+    r"(?P<words>[^\[(]*?)\s*(?:[\[(](?P<in>[^\])]*)[\])]?|/\s*(?P<per>\S+)|\bin\s+(?P<of>\S+))?\s*"
+)
+_LAST_WORD: Final = re.compile(
+    r".*[^\s_,][\s_,]+(mm|cm|µm|μm|kg|N|kN|Nm|Ncm|Nmm|°|°C|kg/m³|kg/m3|g/cm³|g/cm3|kg/l)|.*[^\s_]_m"
+)
+"""Headings that end with a unit without brackets: Last kg, load_kg, depth_m."""
+
+
+@dataclass(frozen=True, slots=True)
+class UnitConversion:
+    """Conversion of numbers from the unit that a heading names to the unit of their column."""
+
+    name: str = field(compare=False)
+    factor: float = 1.0
+    shift: float = 0.0
+
+    @property
+    def changes(self) -> bool:
+        """Whether the units differ."""
+        return (self.factor, self.shift) != (1.0, 0.0)
+
+    def convert(self, values: FloatArray) -> FloatArray:
+        """Numbers in the unit of the column.
+
+        >>> import numpy as np
+        >>> conversion("cm", "depth_mm").convert(np.array([1.5])).tolist()
+        [15.0]
+        """
+        return values * self.factor + self.shift if self.changes else values
+
+    def revert(self, value: float) -> float:
+        """A number in the unit that the heading names, from the unit of the column.
+
+        >>> conversion("cm", "depth_mm").revert(15.0)
+        1.5
+        """
+        return (value - self.shift) / self.factor if self.changes else value
+
+
+_CONVERSIONS: Final = {
+    **{(unit, name.casefold()): UnitConversion(names[0]) for unit, names in _OWN.items() for name in names},
+    **{
+        (unit, name.casefold()): UnitConversion(names[0], *size)
+        for unit, others in _OTHER.items()
+        for names, size in others.items()
+        for name in names
+    },
+}
+_KNOWN: Final = frozenset({name for _, name in _CONVERSIONS} | set(_ONLY_NAMED))
+
+
+def unit_of_column(name: str) -> str:
+    """The unit in a column's name, as its last part writes it; empty where it has none.
+
+    >>> unit_of_column("snow_density_kg_per_m3"), unit_of_column("load_N"), unit_of_column("site")
+    ('kg_per_m3', 'N', '')
+    """
+    return next((unit for unit in sorted(_OWN, key=len, reverse=True) if name.endswith(f"_{unit}")), "")
+
+
+def named_unit(heading: str) -> str:
+    """Known unit that a heading names, in small letters; empty if it names none.
+
+    >>> [named_unit(each) for each in ("Last [kg]", "Tiefe / mm", "Arm in cm", "load_kg", "Tiefe (roh)", "Moment M")]
+    ['kg', 'mm', 'cm', 'kg', '', '']
+    """
+    plain = " ".join(heading.split())
+    last = _LAST_WORD.fullmatch(plain)
+    if last:
+        return (last[1] or "m").casefold()
+    match = FORM.fullmatch(plain)
+    unit = (match["in"] or match["per"] or match["of"] or "").strip() if match else ""
+    return known_unit(unit)
+
+
+def known_unit(text: str) -> str:
+    """A unit as the tables of this module write it; empty if it is unknown."""
+    unit = " ".join(text.split()).casefold()
+    return unit if unit in _KNOWN else ""
+
+
+def conversion(unit: str, column: str) -> UnitConversion | None:
+    """Conversion from a known unit to that of a column; None if the column has a quantity of another kind."""
+    return _CONVERSIONS.get((unit_of_column(column), unit))
+
+
+def own_unit(column: str) -> str:
+    """The unit of a column as headings name it."""
+    return _OWN[unit_of_column(column)][0].casefold()
+
+
+def units_for(column: str) -> str:
+    """Names of the units that numbers of a column may have, the column's first.
+
+    >>> units_for("load_N")
+    'N, kg, g, kN, daN'
+    """
+    unit = unit_of_column(column)
+    return ", ".join([_OWN[unit][0], *(names[0] for names in _OTHER[unit])])
+
+
+def every_unit() -> str:
+    """Names of the units that numbers of any column may have."""
+    return ", ".join(f"{names[0]}, {', '.join(other[0] for other in _OTHER[unit])}" for unit, names in _OWN.items())

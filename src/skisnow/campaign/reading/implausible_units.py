@@ -15,7 +15,7 @@ import numpy as np
 from ..._support.units import DEGREE, KILOGRAM_FORCE, MM, N_PER_MM2, N_PER_MM3
 from ..problems import error, warning
 from .columns import is_unloading
-from .heading_units import conversion
+from .headings import conversion
 from .table_forms import BRANCH, PENETRATION, SHEAR
 
 if TYPE_CHECKING:
@@ -64,14 +64,14 @@ def check_likely_units(table: Table) -> Iterator[Problem]:
             continue
         unlikely = unlikely_median(table, name)
         if unlikely is not None and name not in table.unstated:
-            yield _whole_column(table, name, likely, *unlikely)
+            yield _warn_of_column(table, name, likely, *unlikely)
         elif unlikely is None and likely.each_row:
             values = table.numbers[name]
             above_zero = np.flatnonzero(values > 0)
             ratio = values[above_zero] / middle
             far = above_zero[(ratio > FAR) | (ratio < 1.0 / FAR)]
             if len(far):
-                yield _some_rows(table, name, likely, middle, far.tolist())
+                yield _warn_of_rows(table, name, likely, middle, far.tolist())
 
 
 def unlikely_median(table: Table, name: str) -> tuple[float, str] | None:
@@ -88,7 +88,7 @@ def _median(table: Table, name: str) -> float | None:
     return float(np.median(above_zero)) if len(above_zero) else None
 
 
-def _whole_column(table: Table, name: str, likely: LikelyColumn, middle: float, unit: str) -> Problem:
+def _warn_of_column(table: Table, name: str, likely: LikelyColumn, middle: float, unit: str) -> Problem:
     return warning(
         "unlikely_unit",
         table.form.file,
@@ -99,7 +99,7 @@ def _whole_column(table: Table, name: str, likely: LikelyColumn, middle: float, 
     )
 
 
-def _some_rows(table: Table, name: str, likely: LikelyColumn, middle: float, rows: list[int]) -> Problem:
+def _warn_of_rows(table: Table, name: str, likely: LikelyColumn, middle: float, rows: list[int]) -> Problem:
     value = table.numbers[name][rows[0]]
     more = f", and {len(rows) - 1} more like it" if len(rows) > 1 else ""
     return warning(
@@ -131,11 +131,11 @@ def check_missing_units(table: Table, described: CampaignFile | None) -> Iterato
     if table.form == SHEAR and "lever_arm_mm" in table.unstated:
         yield from _lever_arms(table, described)
     for name in table.unstated:
-        found = unlikely_median(table, name) if name in LIKELY and name != "lever_arm_mm" else None
-        if found is not None:
-            middle, unit = found
+        unlikely = unlikely_median(table, name) if name in LIKELY and name != "lever_arm_mm" else None
+        if unlikely is not None:
+            middle, unit = unlikely
             values = f"with a median of {middle:g}"
-            yield _unstated(table, name, values, f"They look like {unit}.", unit.split(" or ", 1)[0])
+            yield _missing_unit(table, name, values, f"They look like {unit}.", unit.split(" or ", 1)[0])
 
 
 def _loads_in_kg(table: Table, described: CampaignFile | None) -> Iterator[Problem]:
@@ -149,7 +149,7 @@ def _loads_in_kg(table: Table, described: CampaignFile | None) -> Iterator[Probl
         largest = _largest_loads(table, rows.tolist())
         row, hardness = _middle(_hardness(table, name, largest, described), largest)
         both = f"H_V of this experiment is {hardness:.4g} N/mm³ if they are in N"
-        yield _unstated(table, "load_N", values, f"{both}, {hardness * KILOGRAM_FORCE:.4g} in kg.", "kg", row)
+        yield _missing_unit(table, "load_N", values, f"{both}, {hardness * KILOGRAM_FORCE:.4g} in kg.", "kg", row)
 
 
 def _largest_loads(table: Table, rows: Sequence[int]) -> list[int]:
@@ -188,7 +188,7 @@ def _lever_arms(table: Table, described: CampaignFile | None) -> Iterator[Proble
     size = conversion(unit, "lever_arm_mm")
     other = stress / size.factor if size is not None else np.nan
     both = f"S_f of this experiment is {stress:.4g} N/mm² if they are in mm, {other:.4g} in {unit}."
-    yield _unstated(table, "lever_arm_mm", f"{arm[rows].min():g} to {longest:g}", both, unit, row)
+    yield _missing_unit(table, "lever_arm_mm", f"{arm[rows].min():g} to {longest:g}", both, unit, row)
 
 
 def _shear_stress(table: Table, rows: list[int], described: CampaignFile | None) -> FloatArray:
@@ -203,12 +203,12 @@ def _shear_stress(table: Table, rows: list[int], described: CampaignFile | None)
 
 def _middle(values: FloatArray, rows: list[int]) -> tuple[int, float]:
     """Row and value of the middle one of the known values; the first row and NaN if none is known."""
-    known = sorted((value, row) for value, row in zip(values.tolist(), rows, strict=True) if np.isfinite(value))
-    value, row = known[(len(known) - 1) // 2] if known else (float("nan"), rows[0])
+    finite = sorted((value, row) for value, row in zip(values.tolist(), rows, strict=True) if np.isfinite(value))
+    value, row = finite[(len(finite) - 1) // 2] if finite else (float("nan"), rows[0])
     return row, value
 
 
-def _unstated(table: Table, column: str, values: str, effect: str, unit: str, row: int = 0) -> Problem:
+def _missing_unit(table: Table, column: str, values: str, effect: str, unit: str, row: int = 0) -> Problem:
     heading = table.unstated[column]
     line = f'units.{json.dumps(heading, ensure_ascii=False)} = "{unit}"'
     return error(

@@ -9,7 +9,7 @@ import numpy as np
 from ..problems import error, warning
 from .campaign_file import CAMPAIGN_FILE
 from .columns import is_unloading
-from .experiments import Blocks, check_one_site, check_series
+from .experiments import Blocks, check_one_site, check_series, shear_blocks
 from .implausible_units import check_likely_units, check_missing_units
 from .table_forms import BRANCH, BRANCHES, DENSITY, DROP_CONE, LOADING, PENETRATION, SHEAR, UNLOADING
 
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from .experiments import Blocks
 
 
-def check_together(table: Table, described: CampaignFile | None) -> Iterator[Problem]:
+def check_rows(table: Table, described: CampaignFile | None) -> Iterator[Problem]:
     """Find contradictions between the rows of a table, or with campaign.toml where that could be read."""
     yield from check_likely_units(table)
     yield from check_missing_units(table, described)
@@ -57,10 +57,10 @@ def _check_shear(table: Table, described: CampaignFile | None) -> Iterator[Probl
         yield from _unknown_names(table, blocks, "plate", described.plate_names)
 
 
-def _unknown_names(table: Table, blocks: Blocks, column: str, known: frozenset[str]) -> Iterator[Problem]:
+def _unknown_names(table: Table, blocks: Blocks, column: str, described_names: frozenset[str]) -> Iterator[Problem]:
     """Find tools or plates that campaign.toml does not describe, once in each experiment."""
     names = table.names[column]
-    unknown = np.array([bool(name) and name not in known for name in names.names], dtype=np.bool_)[names.code]
+    unknown = np.array([bool(name) and name not in described_names for name in names.names], dtype=np.bool_)[names.code]
     pairs = np.stack([blocks.of_row, names.code], axis=1)[unknown]
     _, first = np.unique(pairs, axis=0, return_index=True)
     for row in np.flatnonzero(unknown)[np.sort(first)].tolist():
@@ -71,7 +71,9 @@ def _unknown_names(table: Table, blocks: Blocks, column: str, known: frozenset[s
             column=column,
             experiment=table.names[table.form.key][row] or None,
             value=names[row],
-            allowed=f"one of {', '.join(sorted(known))}" if known else f"a {column} that {CAMPAIGN_FILE} describes",
+            allowed=f"one of {', '.join(sorted(described_names))}"
+            if described_names
+            else f"a {column} that {CAMPAIGN_FILE} describes",
             action=f"Correct the cell, or describe the {column} in {CAMPAIGN_FILE} under [[{column}]].",
         )
 
@@ -134,8 +136,8 @@ def check_flat_tools(table: Table, blocks: Blocks, flat_tools: frozenset[str]) -
 def _once_per_block(chosen: BoolArray, blocks: Blocks) -> list[int]:
     rows = np.flatnonzero(chosen)
     _, first = np.unique(blocks.of_row[rows], return_index=True)
-    found: list[int] = rows[first].tolist()
-    return found
+    numbers: list[int] = rows[first].tolist()
+    return numbers
 
 
 def check_branches(table: Table, blocks: Blocks) -> Iterator[Problem]:
@@ -165,18 +167,7 @@ def _refusal(table: Table, row: int, code: str, allowed: str) -> Problem:
     )
 
 
-TURNING: Final = "turning_angle_deg"
 _ONCE: Final = ("depth_mm", "lever_arm_mm")
-
-
-def shear_blocks(table: Table) -> Blocks:
-    """Rows of one experiment together where their turning angle is given; each row by itself where it is not."""
-    turned = ~np.isnan(table.numbers[TURNING])
-    if not turned.any():
-        return Blocks.of_single_rows(len(table))
-    code = table.names[table.form.key].code
-    goes_on = (code[1:] == code[:-1]) & turned[1:] & turned[:-1]
-    return Blocks(np.concatenate(([0], np.flatnonzero(~goes_on) + 1, [len(code)])).astype(np.int64))
 
 
 def check_turning(table: Table, blocks: Blocks) -> Iterator[Problem]:

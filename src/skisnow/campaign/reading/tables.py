@@ -8,10 +8,9 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from ..problems import error, warning
-from .cell_values import decimal_mark
-from .columns import DateCollector, NameCollector, NumberCollector, Rows, Table, TextCollector
+from .columns import DateCollector, NameCollector, NumberCollector, Rows, Table, TextCollector, decimal_mark
 from .corrections import Corrector, header_with_status
-from .header import ColumnUnits, Header, check_header, column_units, header_of
+from .header import ColumnUnits, Header, check_header, column_units, split_header
 from .headings import Headings
 from .text import SEPARATOR_NAMES, CsvText, UnreadableTextError
 
@@ -70,15 +69,15 @@ def read_table(
     errors = counted = 0
     try:
         for lines, rows in text.records():
-            errors += sum(problem.severity == "error" for problem in files.found[counted:])
-            counted = len(files.found)
+            errors += sum(problem.severity == "error" for problem in files.problems[counted:])
+            counted = len(files.problems)
             if errors > MOST_ERRORS and rows:
                 raise _too_many_errors(lines[0], errors)
             if reading is None and rows:
-                header = header_of(lines, rows)
-                units = column_units(form, header, headings, files.found)
+                header = split_header(lines, rows)
+                units = column_units(form, header, headings, files.problems)
                 renamed = header.renamed(form, headings)
-                reading = _TableReading(form, renamed, text, corrections, files.found, header.columns, units)
+                reading = _TableReading(form, renamed, text, corrections, files.problems, header.columns, units)
             if reading is not None and rows:
                 reading.take(lines, rows)
                 if progress is not None:
@@ -86,7 +85,7 @@ def read_table(
     except UnreadableTextError as failure:
         files.report_unreadable(form.file, failure)
         readable = False
-    return _table_or_empty(form, reading, files.found, readable=readable)
+    return _table_or_empty(form, reading, files.problems, readable=readable)
 
 
 def _too_many_errors(line: int, errors: int) -> UnreadableTextError:
@@ -99,15 +98,15 @@ def _too_many_errors(line: int, errors: int) -> UnreadableTextError:
 
 
 def _table_or_empty(
-    form: TableForm, reading: _TableReading | None, found: list[Problem], *, readable: bool
+    form: TableForm, reading: _TableReading | None, problems: list[Problem], *, readable: bool
 ) -> Table | None:
     if reading is None:
         if readable:
-            found.append(_empty(form, "nothing"))
+            problems.append(_empty(form, "nothing"))
         return None
     reading.finish()
     if readable and not reading.met_rows and not form.may_be_empty:
-        found.append(_empty(form, "a header only"))
+        problems.append(_empty(form, "a header only"))
     return reading.table() if len(reading) or form.may_be_empty else None
 
 
@@ -125,19 +124,19 @@ class _TableReading:
         header: Header,
         text: CsvText,
         corrections: RowCorrections,
-        found: list[Problem],
+        problems: list[Problem],
         headings: tuple[str, ...],
         units: ColumnUnits,
     ) -> None:
         self._headings, self._units = headings, units
         self._form = form
-        self._found = found
+        self._problems = problems
         self._file_header = header
         mark = decimal_mark_of(form, header, text)
-        found.extend(_not_plain(form.file, text.separator, mark))
-        found.extend(check_header(form, header))
+        problems.extend(_format_notes(form.file, text.separator, mark))
+        problems.extend(check_header(form, header))
         self._header = header_with_status(form, header, corrections)
-        self._corrector = Corrector(form, self._header, corrections, mark=mark, found=found)
+        self._corrector = Corrector(form, self._header, corrections, mark=mark, problems=problems)
         self._row: list[IntArray] = []
         self.met_rows = False
         present = self._header.position
@@ -164,13 +163,13 @@ class _TableReading:
         self._corrector.apply(lines, rows)
         if not rows:
             return
-        columns = _transposed(rows, len(self._header.columns))
+        columns = _transpose(rows, len(self._header.columns))
         key_position = self._header.position.get(self._form.key)
         keys = columns[key_position] if key_position is not None else ("",) * len(rows)
         about = Rows(self._form.file, lines, keys)
         self._row.append(np.array(lines, dtype=np.int64))
         for position, collector in self._collectors:
-            collector.take(columns[position], about, self._found)
+            collector.take(columns[position], about, self._problems)
 
     def _without_surplus(self, lines: list[int], rows: list[list[str]]) -> Records:
         """Refuse rows with a cell below no column name; blank cells there are a spreadsheet program's padding."""
@@ -186,7 +185,7 @@ class _TableReading:
                 good[0].append(line)
                 good[1].append(cells[:width])
             else:
-                self._found.append(self._surplus(line, first, width - len(unnamed)))
+                self._problems.append(self._surplus(line, first, width - len(unnamed)))
         return good
 
     def _surplus(self, line: int, cell: str, width: int) -> Problem:
@@ -204,7 +203,7 @@ class _TableReading:
         self._corrector.finish()
         for collector in self._further.values():
             if isinstance(collector, DateCollector):
-                self._found.extend(collector.problems(self._form.file))
+                self._problems.extend(collector.problems(self._form.file))
 
     def table(self) -> Table:
         """Join what was collected."""
@@ -222,7 +221,7 @@ class _TableReading:
         )
 
 
-def _transposed(rows: list[list[str]], width: int) -> list[tuple[str, ...]]:
+def _transpose(rows: list[list[str]], width: int) -> list[tuple[str, ...]]:
     if min(map(len, rows)) < width:
         rows = [cells + [""] * (width - len(cells)) for cells in rows]
     return list(zip(*rows, strict=True))
@@ -230,8 +229,8 @@ def _transposed(rows: list[list[str]], width: int) -> list[tuple[str, ...]]:
 
 def decimal_mark_of(form: TableForm, header: Header, text: CsvText) -> str:
     """The decimal mark of a table: that of its first numbers with a fraction, read ahead."""
-    asked = {column.name for column in form.numbers}
-    positions = [index for index, name in enumerate(header.columns) if name in asked]
+    number_columns = {column.name for column in form.numbers}
+    positions = [index for index, name in enumerate(header.columns) if name in number_columns]
 
     def groups() -> Iterator[list[str]]:
         for _, rows in text.records():
@@ -243,9 +242,9 @@ def decimal_mark_of(form: TableForm, header: Header, text: CsvText) -> str:
         return "."  # what is unreadable is reported where the records are taken in
 
 
-def _not_plain(file: str, separator: str, mark: str) -> Iterator[Problem]:
-    found = [SEPARATOR_NAMES[separator]] * (separator != ",") + ["decimal comma"] * (mark == ",")
-    for value in found:
+def _format_notes(file: str, separator: str, mark: str) -> Iterator[Problem]:
+    deviations = [SEPARATOR_NAMES[separator]] * (separator != ",") + ["decimal comma"] * (mark == ",")
+    for value in deviations:
         yield warning(
             "separator",
             file,

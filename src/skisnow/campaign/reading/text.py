@@ -64,11 +64,11 @@ def decode(data: bytes) -> DecodedText:
         Where the bytes are no text in UTF-8, UTF-16 with byte order mark, or Windows-1252.
     """
     try:
-        found = decoded(data)
+        text = decoded(data)
     except NoTextError as error:
         raise _binary(str(error) if error.place.startswith("byte") else error.place) from None
-    _refuse_control_characters(data if found.codec != "utf-16" else found.text.encode())
-    return found
+    _refuse_control_characters(data if text.codec != "utf-16" else text.text.encode())
+    return text
 
 
 def _refuse_control_characters(data: bytes) -> None:
@@ -77,9 +77,9 @@ def _refuse_control_characters(data: bytes) -> None:
         raise _binary(f"{control} control characters among {len(data)} bytes")
 
 
-def _binary(found: str) -> UnreadableTextError:
+def _binary(value: str) -> UnreadableTextError:
     return UnreadableTextError(
-        value=found,
+        value=value,
         allowed="text in UTF-8, UTF-16 with byte order mark, or Windows-1252",
         action="This looks like a binary file, such as a spreadsheet's own format; save it as CSV in UTF-8.",
     )
@@ -204,8 +204,8 @@ def inspect_csv(data: bytes) -> CsvText:
     UnreadableTextError
         Where the bytes are no text, or the first line names another separator.
     """
-    found = decode(data)
-    head = found.text[:_HEAD]
+    text = decode(data)
+    head = text.text[:_HEAD]
     named = named_separator(head)
     separator = named or most_frequent_separator(head)
     if separator not in SEPARATOR_NAMES:
@@ -215,4 +215,4 @@ def inspect_csv(data: bytes) -> CsvText:
             allowed="comma, semicolon or tab between cells",
             action="Save the file with one of these separators.",
         )
-    return CsvText(data, found.codec, found.foreign_encoding, separator, named is not None)
+    return CsvText(data, text.codec, text.foreign_encoding, separator, named is not None)

@@ -45,7 +45,7 @@ class TomlValues:
     file: str
     values: TomlTable
     path: str
-    found: list[Problem]
+    problems: list[Problem]
 
     def path_of(self, key: str) -> str:
         """Path of a key of this table."""
@@ -55,7 +55,9 @@ class TomlValues:
         """Report an error about a key; without a value the key's own is shown."""
         shown = self.values.get(key) if value is _MISSING else value
         text = None if shown is None else _shown(shown)
-        self.found.append(error(code, self.file, column=self.path_of(key), value=text, allowed=allowed, action=action))
+        self.problems.append(
+            error(code, self.file, column=self.path_of(key), value=text, allowed=allowed, action=action)
+        )
 
     def text(self, key: str, *, blank_allowed: bool = False) -> str | None:
         """Give a text, stripped; None where it is absent, wrong or blank."""
@@ -70,11 +72,11 @@ class TomlValues:
     def texts(self, key: str) -> tuple[str, ...]:
         """Give one text or a list of texts; empty where absent or wrong."""
         value = self.values.get(key, [])
-        each = [value] if isinstance(value, str) else value
-        if not isinstance(each, list) or not all(isinstance(item, str) for item in each):
+        items = [value] if isinstance(value, str) else value
+        if not isinstance(items, list) or not all(isinstance(item, str) for item in items):
             self.refuse(key, "a text or a list of texts, in quotes", f"Correct {key}.")
             return ()
-        return tuple(item.strip() for item in each if item.strip())
+        return tuple(item.strip() for item in items if item.strip())
 
     def number(self, quantity: Quantity) -> float | None:
         """Give a number in the unit of its key; None where absent or wrong."""
@@ -111,7 +113,7 @@ class TomlValues:
         if not isinstance(value, dict):
             self.refuse(key, f"a table, begun by the line [{key}]", f"Write [{key}] above its keys.")
             value = {}
-        return TomlValues(self.file, value, self.path_of(key), self.found)
+        return TomlValues(self.file, value, self.path_of(key), self.problems)
 
     def tables(self, key: str) -> list[TomlValues]:
         """Give the tables of a list; empty where absent or wrong."""
@@ -120,23 +122,23 @@ class TomlValues:
             self.refuse(key, f"tables, each begun by the line [[{key}]]", f"Write [[{key}]] above each one's keys.")
             return []
         paths = (f"{self.path_of(key)}[{place}]" for place in range(1, len(values) + 1))
-        return [TomlValues(self.file, value, path, self.found) for value, path in zip(values, paths, strict=True)]
+        return [TomlValues(self.file, value, path, self.problems) for value, path in zip(values, paths, strict=True)]
 
     def declared(self, owner: type[T]) -> T:
         """Give a dataclass of what this table says of its quantities; what is absent or refused has its default."""
-        known = {each.name: each for each in own_quantities(owner)}
-        self.refuse_misspelt(known)
+        quantities = {quantity.name: quantity for quantity in own_quantities(owner)}
+        self.refuse_misspelt(quantities)
         values: dict[str, object] = {}
-        for key in known.keys() & self.values.keys():
+        for key in quantities.keys() & self.values.keys():
             try:
-                values[key] = known[key].in_range(self.values[key])
+                values[key] = quantities[key].in_range(self.values[key])
             except ParameterError:
-                self.refuse(key, known[key].allowed, f"Correct {key}.", code="bad_toml")
+                self.refuse(key, quantities[key].allowed, f"Correct {key}.", code="bad_toml")
         return made(owner, values)
 
-    def refuse_misspelt(self, known: Iterable[str]) -> None:
+    def refuse_misspelt(self, allowed_keys: Iterable[str]) -> None:
         """Report keys that nobody knows: an error where one is nearly a known key, else a warning."""
-        keys: Sequence[str] = tuple(known)
+        keys: Sequence[str] = tuple(allowed_keys)
         for key in self.values:
             if key in keys:
                 continue
@@ -146,14 +148,14 @@ class TomlValues:
             else:
                 self._ignored(key, keys)
 
-    def _ignored(self, key: str, known: Sequence[str]) -> None:
-        self.found.append(
+    def _ignored(self, key: str, allowed_keys: Sequence[str]) -> None:
+        self.problems.append(
             warning(
                 "unknown_column",
                 self.file,
                 column=self.path_of(key),
                 value=key,
-                allowed=f"the keys {', '.join(known)}",
+                allowed=f"the keys {', '.join(allowed_keys)}",
                 action="The key is not used; nothing need be done.",
             )
         )

@@ -16,7 +16,7 @@ from ..._support.spreadsheet_text import is_number
 from ..._support.user_files import GivenError, workbook_sheets
 from ..problems import error, warning
 from .campaign_file import CAMPAIGN_KEYS
-from .headings import proposed
+from .headings import columns_by_synonym
 from .table_forms import CORRECTIONS, TABLES
 
 if TYPE_CHECKING:
@@ -56,7 +56,7 @@ class UnfoldedFiles:
     places: dict[str, str] = field(default_factory=dict)
     hashes: dict[str, str] = field(default_factory=dict)
     unread: dict[str, Rows] = field(default_factory=dict)
-    found: list[Problem] = field(default_factory=list)
+    problems: list[Problem] = field(default_factory=list)
 
     @property
     def folder(self) -> Path:
@@ -75,34 +75,35 @@ class UnfoldedFiles:
 
 def unfolded(files: CampaignFiles) -> UnfoldedFiles:
     """Look for workbooks among the files of a campaign, and read them."""
-    found = UnfoldedFiles(files)
-    there = files.names()
-    for name in sorted(there):
-        if there[name] and is_workbook(name):
-            _take(found, name)
-    for name in sorted(set(there) & set(found.of_sheets)):
-        found.of_sheets.pop(name)
+    workbooks = UnfoldedFiles(files)
+    names = files.names()
+    for name in sorted(names):
+        if names[name] and is_workbook(name):
+            _read_workbook(workbooks, name)
+    for name in sorted(set(names) & set(workbooks.of_sheets)):
+        workbooks.of_sheets.pop(name)
         action = f"Keep one of {name} and the sheet; rename or remove the other."
-        place, allowed = found.places.pop(name), "one table of a kind"
-        found.found.append(error("unreadable_file", place, value=name, allowed=allowed, action=action))
-    for place, rows in found.unread.items():
-        meant = _looks_like(rows)
-        if meant and _FILES[meant] not in {*there, *found.of_sheets}:
-            found.found.append(_named_otherwise(place, meant))
-    return found
+        place, allowed = workbooks.places.pop(name), "one table of a kind"
+        workbooks.problems.append(error("unreadable_file", place, value=name, allowed=allowed, action=action))
+    for place, rows in workbooks.unread.items():
+        meant = _likely_table(rows)
+        if meant and _FILES[meant] not in {*names, *workbooks.of_sheets}:
+            workbooks.problems.append(_misnamed_sheet(place, meant))
+    return workbooks
 
 
-def _looks_like(rows: Rows) -> str | None:
+def _likely_table(rows: Rows) -> str | None:
     """The table whose columns most of the headings of a sheet seem to be."""
     headings = next((cells for cells in rows if len(cells) > 2), [])
     shares = {
-        form: len(set(proposed(form, headings).values()) & set(form.required)) / len(form.required) for form in TABLES
+        form: len(set(columns_by_synonym(form, headings).values()) & set(form.required)) / len(form.required)
+        for form in TABLES
     }
     form = max(shares, key=lambda form: shares[form])
     return form.file.removesuffix(".csv") if shares[form] >= _LIKELY else None
 
 
-def _named_otherwise(place: str, table: str) -> Problem:
+def _misnamed_sheet(place: str, table: str) -> Problem:
     names = ", ".join(("campaign", "tools", "plates", "columns", *_FILES))
     action = f"It looks like {table}: call the sheet so if it is. Else nothing need be done."
     return warning(
@@ -119,27 +120,27 @@ def is_workbook(name: str) -> bool:
     return name.lower().endswith(ENDINGS) and not name.startswith((".", "~$"))
 
 
-def _take(found: UnfoldedFiles, workbook: str) -> None:
+def _read_workbook(workbooks: UnfoldedFiles, workbook: str) -> None:
     try:
-        data = found.files.read(workbook)
+        data = workbooks.files.read(workbook)
         if data is None:
             return
-        found.hashes[workbook] = hashlib.sha256(data).hexdigest()
+        workbooks.hashes[workbook] = hashlib.sha256(data).hexdigest()
         sheets = workbook_sheets(data, wanted=lambda _: True)
     except (GivenError, OSError) as failure:
         what = failure.strerror or str(failure) if isinstance(failure, OSError) else str(failure)
         value, _, action = what.partition(". ")
         allowed = "a workbook (.xlsx) with a sheet for each table"
-        found.found.append(
+        workbooks.problems.append(
             error(
                 "unreadable_file", workbook, value=value, allowed=allowed, action=action or "Save it again, or as CSV."
             )
         )
         return
-    _sort(found, workbook, {name: rows for name, rows in sheets.items() if rows})
+    _assign_sheets(workbooks, workbook, {name: rows for name, rows in sheets.items() if rows})
 
 
-def _sort(found: UnfoldedFiles, workbook: str, sheets: Mapping[str, Rows]) -> None:
+def _assign_sheets(workbooks: UnfoldedFiles, workbook: str, sheets: Mapping[str, Rows]) -> None:
     describing: dict[str, Rows] = {}
     for title, rows in sheets.items():
         kind = _kind(title)
@@ -147,18 +148,18 @@ def _sort(found: UnfoldedFiles, workbook: str, sheets: Mapping[str, Rows]) -> No
         if kind in DESCRIBING:
             describing[kind] = rows
         elif kind not in _FILES:
-            found.unread[place] = rows
-        elif _FILES[kind] in found.of_sheets:
+            workbooks.unread[place] = rows
+        elif _FILES[kind] in workbooks.of_sheets:
             action = "Keep one of the sheets; rename or remove the other."
-            found.found.append(
+            workbooks.problems.append(
                 error("unreadable_file", place, value=title, allowed="one table of a kind", action=action)
             )
         else:
-            found.of_sheets[_FILES[kind]] = _csv(rows)
-            found.places[_FILES[kind]] = place
+            workbooks.of_sheets[_FILES[kind]] = _csv(rows)
+            workbooks.places[_FILES[kind]] = place
     if describing:
-        found.of_sheets[DESCRIPTION] = description_text(describing).encode()
-        found.places[DESCRIPTION] = f"{workbook}, sheets {', '.join(describing)}"
+        workbooks.of_sheets[DESCRIPTION] = description_text(describing).encode()
+        workbooks.places[DESCRIPTION] = f"{workbook}, sheets {', '.join(describing)}"
 
 
 def _kind(title: str) -> str:
@@ -231,7 +232,7 @@ def _column_lines(row: Mapping[str, str]) -> Iterator[str]:
 
 def _pair(key: str, cell: str) -> str:
     if key in _LISTS:
-        several = ", ".join(_value(each) for each in re.split(r"\s*;\s*", cell) if each)
+        several = ", ".join(_value(item) for item in re.split(r"\s*;\s*", cell) if item)
         return f"{_quoted(key)} = [{several}]"
     return f"{_quoted(key)} = {_quoted(cell) if key in _TEXTS else _value(cell)}"
 

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from ..._support.errors import ParameterError
-from ..quality_flags import QUALITY_FLAGS
+from ..problems import QUALITY_FLAGS
 from ..records import Campaign
 from . import design, draws
 from .design import ReferenceNoise
@@ -171,15 +171,15 @@ def reference_campaign(
     snow_hardness = draws.snow_hardness(spread, noise)
     edge_angle = draws.edge_angle(spots, snow_hardness)
     pressed = draws.penetration(readings, snow_hardness, edge_angle, noise)
-    penetration = draws.unloaded(back, pressed, noise)
+    penetration = draws.add_unloading(back, pressed, noise)
     shear_tests, stress = draws.shear(shear, noise)
     way = np.full(len(shear_tests), np.nan)
     if turning_angles:
-        shear_tests, way = draws.turned(turn, shear_tests, noise)
+        shear_tests, way = draws.add_turning(turn, shear_tests, noise)
     return ReferenceCampaign(
         seed=seed,
         noise=noise,
-        penetration=draws.waited(wait, penetration.tests, noise) if creep else penetration.tests,
+        penetration=draws.add_creep(wait, penetration.tests, noise) if creep else penetration.tests,
         shear=shear_tests,
         density=draws.density(beside),
         drop_cone=draws.drop_cone(beside),

@@ -76,12 +76,12 @@ def penetration(
     # A gauge does not read below its zero.
     depth = true_depth * (1.0 + scatter)
     reading = np.maximum(depth + seating_offset[:, np.newaxis], 0.0)
-    tests = _penetration_tests(edge_angle, _on_gauge(reading, noise).ravel())
+    tests = _penetration_tests(edge_angle, _round_to_gauge(reading, noise).ravel())
     unknown = np.full(shape[0], np.nan)
     return DrawnPenetration(tests, seating_offset, layering, true_depth.ravel(), depth[:, -1], unknown)
 
 
-def unloaded(generator: np.random.Generator, drawn: DrawnPenetration, noise: ReferenceNoise) -> DrawnPenetration:
+def add_unloading(generator: np.random.Generator, drawn: DrawnPenetration, noise: ReferenceNoise) -> DrawnPenetration:
     """Add the readings while the discs are taken off, at the sites where they are.
 
     The tool starts at its depth e_m under the largest load, and feels at e_m - d what it felt at the depth e_m - κ d.
@@ -95,7 +95,7 @@ def unloaded(generator: np.random.Generator, drawn: DrawnPenetration, noise: Ref
     rebound = (deepest - design.SKI_PIECE.depth_at_volume(volume, angle)) / ratio[:, np.newaxis] * (1.0 + scatter)
     depth = np.maximum(deepest - rebound + drawn.seating_offset[:, np.newaxis], 0.0)
     there = np.isin(tests.site, design.UNLOADED_SITES)
-    readings = _unloading_readings(there, _on_gauge(depth, noise)[there])
+    readings = _unloading_readings(there, _round_to_gauge(depth, noise)[there])
     row = tests.row + readings.first[:-1][tests.series_of_reading]
     tests = replace(tests, unloading=readings, row=row)
     return drawn._replace(tests=tests, unloading_ratio=np.where(there, ratio, np.nan))
@@ -124,18 +124,22 @@ def shear(generator: np.random.Generator, noise: ReferenceNoise) -> tuple[ShearT
     depth = low + place_in_range * (np.minimum(high, reachable) - low)
     moment = np.maximum(stress * depth * design.PLATE_LENGTH * lever_arm + moment_error, 0.0)
     own_density: FloatArray = np.concatenate([np.full(count - further.size, np.nan), further])
-    return _shear_tests(angle, _on_gauge(depth, noise), np.round(moment, 2).astype(np.float64), own_density), stress
+    return _shear_tests(
+        angle, _round_to_gauge(depth, noise), np.round(moment, 2).astype(np.float64), own_density
+    ), stress
 
 
-def waited(generator: np.random.Generator, tests: PenetrationTests, noise: ReferenceNoise) -> PenetrationTests:
+def add_creep(generator: np.random.Generator, tests: PenetrationTests, noise: ReferenceNoise) -> PenetrationTests:
     """Add depths that are read once more under the same load, at the site whose snow creeps."""
     growth = noise.creep_mean * generator.standard_exponential(len(tests.load))
     there = np.array(tests.site, dtype=object)[tests.series_of_reading] == design.CREEPING_SITE
-    after = _on_gauge(tests.penetration_depth * (1.0 + growth), noise)
+    after = _round_to_gauge(tests.penetration_depth * (1.0 + growth), noise)
     return replace(tests, depth_after=np.where(there, after, np.nan))
 
 
-def turned(generator: np.random.Generator, tests: ShearTests, noise: ReferenceNoise) -> tuple[ShearTests, FloatArray]:
+def add_turning(
+    generator: np.random.Generator, tests: ShearTests, noise: ReferenceNoise
+) -> tuple[ShearTests, FloatArray]:
     """Add turning angles up to the largest moment, φ = (u_y/r) M/M_f, and give the true u_y (m) of each test."""
     shape, shares = (len(tests), len(design.TURNING_SHARES)), np.array(design.TURNING_SHARES)
     way = design.SHEAR_DISPLACEMENT * np.exp(noise.displacement_log_sd * generator.standard_normal(shape[0]))
@@ -191,7 +195,7 @@ def _normal_within(
     return value
 
 
-def _on_gauge(depth: FloatArray, noise: ReferenceNoise) -> FloatArray:
+def _round_to_gauge(depth: FloatArray, noise: ReferenceNoise) -> FloatArray:
     if noise.gauge_resolution == 0:
         return depth
     steps = np.rint(depth / noise.gauge_resolution)

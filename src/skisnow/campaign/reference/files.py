@@ -112,7 +112,7 @@ def _csv(header: Sequence[str], columns: Iterable[Sequence[str]]) -> str:
     return stream.getvalue()
 
 
-def _written(values: FloatArray, unit: float, decimals: int) -> list[str]:
+def _number_texts(values: FloatArray, unit: float, decimals: int) -> list[str]:
     """Write numbers in a unit; NaN as an empty cell."""
     return ["" if np.isnan(value) else f"{value / unit:.{decimals}f}" for value in values.tolist()]
 
@@ -129,13 +129,13 @@ def _penetration_csv(drawn: ReferenceCampaign) -> str:
     order = np.argsort(row, kind="stable")
     of_row = owner[order].tolist()
     names = [[column[index] for index in of_row] for column in (tests.experiment, tests.site, tests.spot, tests.tool)]
-    angle = _written(tests.edge_angle[of_row], DEGREE, 0)
-    numbers = (_written(load[order], 1.0, 0), _written(depth[order], MM, 2))
+    angle = _number_texts(tests.edge_angle[of_row], DEGREE, 0)
+    numbers = (_number_texts(load[order], 1.0, 0), _number_texts(depth[order], MM, 2))
     columns = [*names, angle, *numbers, [branch[index] for index in order.tolist()]]
     if tests.depth_after is None:
         return _csv(header, columns)
     after = np.concatenate([tests.depth_after, np.full(len(row) - len(tests.load), np.nan)])
-    return _csv((*header, "depth_after_mm"), [*columns, _written(after[order], MM, 2)])
+    return _csv((*header, "depth_after_mm"), [*columns, _number_texts(after[order], MM, 2)])
 
 
 def _shear_csv(drawn: ReferenceCampaign) -> str:
@@ -145,11 +145,11 @@ def _shear_csv(drawn: ReferenceCampaign) -> str:
         "snow_density_kg_per_m3",
     )  # fmt: skip
     numbers = [
-        _written(tests.edge_angle, DEGREE, 0),
-        _written(tests.penetration_depth, MM, 2),
-        _written(tests.lever_arm, MM, 0),
-        _written(tests.moment, 1.0, 2),
-        _written(tests.snow_density, 1.0, 0),
+        _number_texts(tests.edge_angle, DEGREE, 0),
+        _number_texts(tests.penetration_depth, MM, 2),
+        _number_texts(tests.lever_arm, MM, 0),
+        _number_texts(tests.moment, 1.0, 2),
+        _number_texts(tests.snow_density, 1.0, 0),
     ]
     columns = [tests.experiment, tests.site, tests.spot, tests.plate, *numbers]
     turning = tests.turning
@@ -157,20 +157,20 @@ def _shear_csv(drawn: ReferenceCampaign) -> str:
         return _csv(header, columns)
     of_row = turning.test_of_reading.tolist()
     several = [[column[index] for index in of_row] for column in columns]
-    several[header.index("moment_Nm")] = _written(turning.moment, 1.0, 2)
-    return _csv((*header, "turning_angle_deg"), [*several, _written(turning.turning_angle, DEGREE, 4)])
+    several[header.index("moment_Nm")] = _number_texts(turning.moment, 1.0, 2)
+    return _csv((*header, "turning_angle_deg"), [*several, _number_texts(turning.turning_angle, DEGREE, 4)])
 
 
 def _density_csv(drawn: ReferenceCampaign) -> str:
     samples = drawn.density
     header = ("sample", "site", "snow_density_kg_per_m3")
-    return _csv(header, [samples.sample, samples.site, _written(samples.snow_density, 1.0, 0)])
+    return _csv(header, [samples.sample, samples.site, _number_texts(samples.snow_density, 1.0, 0)])
 
 
 def _drop_cone_csv(drawn: ReferenceCampaign) -> str:
     tests = drawn.drop_cone
     header = ("test", "site", "repeat", "drop_cone_depth_mm")
-    return _csv(header, [tests.test, tests.site, tests.repeat, _written(tests.drop_cone_depth, MM, 1)])
+    return _csv(header, [tests.test, tests.site, tests.repeat, _number_texts(tests.drop_cone_depth, MM, 1)])
 
 
 def _campaign_toml(drawn: ReferenceCampaign) -> str:

@@ -1,14 +1,23 @@
 """The store, a file or on a server: campaigns byte for byte, and journals (event sourcing) of those being entered."""
 
-from .corrected_export import ExportedCampaign, add_corrections, corrected_files, export_corrected
+from .conflict import Conflict, Side
+from .export import (
+    ExportedCampaign,
+    FoundCampaign,
+    add_corrections,
+    corrected_files,
+    entered_files,
+    export_corrected,
+    export_entered,
+    find_campaign,
+)
 from .journal import JournalHead, Journals, OvertakenError
 from .journal_entry import JournalEntry, NewEntry
-from .lookup import FoundCampaign, entered_files, export_entered, find_campaign
 from .replayed import ReplayedCampaign, ReplayedRow, ReplayedTest, campaign_files, replayed, write_campaign
 from .server import ServerAddress, StorePlace, store_place
 from .store import AddedCampaign, Finding, Store, StoredCampaign, StoredFile, default_path
 from .stored_tables import StoredTable, stored_tables
-from .syncing import Conflict, Side, Synced, sync
+from .sync import SyncResult, sync
 
 __all__ = [
     "AddedCampaign",
@@ -31,7 +40,7 @@ __all__ = [
     "StoredCampaign",
     "StoredFile",
     "StoredTable",
-    "Synced",
+    "SyncResult",
     "add_corrections",
     "campaign_files",
     "corrected_files",

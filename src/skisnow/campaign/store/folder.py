@@ -73,7 +73,7 @@ def manifest_sha256(files: Iterable[StoredFile]) -> str:
     return manifest.hexdigest()
 
 
-def listed_files(folder: Path) -> dict[str, FileState]:
+def list_files(folder: Path) -> dict[str, FileState]:
     """List every file below a folder, hidden ones too.
 
     Raises
@@ -93,7 +93,7 @@ def listed_files(folder: Path) -> dict[str, FileState]:
             if stat.S_ISDIR(state.st_mode) and not _is_junction(entry):
                 waiting.append(entry)
             elif stat.S_ISREG(state.st_mode):
-                _refuse_unsafe(path, for_windows=False)
+                _require_safe(path, for_windows=False)
                 files[path] = FileState(state.st_size, state.st_mtime_ns)
             else:
                 refused.append(path)
@@ -164,7 +164,7 @@ def unsafe_because(path: str, *, for_windows: bool) -> str | None:
     return None
 
 
-def _refuse_unsafe(path: str, *, for_windows: bool) -> None:
+def _require_safe(path: str, *, for_windows: bool) -> None:
     if (why := unsafe_because(path, for_windows=for_windows)) is not None:
         raise StoreError(f"The file {_printable(path)} cannot be taken in or given back: {why}; rename it.")
 
@@ -193,11 +193,11 @@ def new_folder(out: Path) -> Iterator[Path]:
         filling.mkdir()
         yield filling
         for written in [filling, *filling.rglob("*")]:
-            _settle_folder(written)
+            _sync_folder(written)
         if os.name == "nt" and out.exists():
             out.rmdir()
         filling.rename(out)
-    _settle_folder(out.parent)
+    _sync_folder(out.parent)
 
 
 def write_file(folder: Path, file: StoredFile, pieces: Iterable[bytes]) -> None:
@@ -208,15 +208,15 @@ def write_file(folder: Path, file: StoredFile, pieces: Iterable[bytes]) -> None:
     StoreError
         An unsafe path, bytes that do not have the stored SHA-256, or two paths that are one on this file system.
     """
-    _refuse_unsafe(file.path, for_windows=os.name == "nt")
+    _require_safe(file.path, for_windows=os.name == "nt")
     place = folder / PurePosixPath(file.path)
     place.parent.mkdir(parents=True, exist_ok=True)
-    found = hashlib.sha256()
+    digest = hashlib.sha256()
     try:
         with place.open("xb") as stream:
             for piece in pieces:
                 stream.write(piece)
-                found.update(piece)
+                digest.update(piece)
             stream.flush()
             os.fsync(stream.fileno())
     except FileExistsError as error:
@@ -224,11 +224,11 @@ def write_file(folder: Path, file: StoredFile, pieces: Iterable[bytes]) -> None:
             f"{file.path} and another file of the campaign have the same name on this file system; "
             "export to one that tells upper from lower case."
         ) from error
-    if found.hexdigest() != file.sha256:
+    if digest.hexdigest() != file.sha256:
         raise StoreError(f"{file.path} is damaged in the store and was not written; `skisnow store verify` lists all.")
 
 
-def whole(file: StoredFile, pieces: Iterable[bytes]) -> bytes:
+def checked_bytes(file: StoredFile, pieces: Iterable[bytes]) -> bytes:
     """A file's bytes, which are checked to be what was stored.
 
     Raises
@@ -242,7 +242,7 @@ def whole(file: StoredFile, pieces: Iterable[bytes]) -> bytes:
     return data
 
 
-def _settle_folder(folder: Path) -> None:
+def _sync_folder(folder: Path) -> None:
     """Bring a folder's entries to the disk; Windows does so by itself and cannot be asked."""
     if os.name == "nt" or not folder.is_dir():
         return

@@ -20,8 +20,8 @@ from sqlalchemy.exc import DatabaseError
 from ..._support.errors import ParameterError, StoreError
 from ..._support.user_files import toml_values
 from .engine import apart, database_errors, reading, writing
-from .journal_entry import DESCRIPTION, JournalEntry, NewEntry, entry_of, file_uid, now, write_entry
-from .rows import damaged, number_of, text_of
+from .journal_entry import DESCRIPTION, JournalEntry, NewEntry, now, parse_entry, uid_of_file, write_entry
+from .rows import damaged, require_integer, text_of
 from .schema import campaign, journal, journal_entry
 
 if TYPE_CHECKING:
@@ -83,7 +83,7 @@ class Journals:
 
     def list(self) -> tuple[JournalHead, ...]:
         """Give the journals of all campaigns that are being entered, oldest first."""
-        asked = (
+        query = (
             select(
                 journal.c.id,
                 journal.c.begun_at,
@@ -96,8 +96,8 @@ class Journals:
             .order_by(journal.c.begun_at, journal.c.id)
         )
         with database_errors(self._path, "could not be read"), reading(self._engine) as connection:
-            rows = connection.execute(asked).all()
-            return tuple(_head(entered_name(connection, row[0]), *row) for row in rows)
+            rows = connection.execute(query).all()
+            return tuple(_journal_head(entered_name(connection, row[0]), *row) for row in rows)
 
     def entries(self, id: str, *, after: int = 0) -> tuple[JournalEntry, ...]:  # noqa: A002 (as in Store)
         """Give the entries of a journal, oldest first, from the one behind a sequence on.
@@ -125,9 +125,9 @@ class Journals:
     def _read(self, id_: str, after: int, require: Callable[[Connection, str], None]) -> tuple[JournalEntry, ...]:
         with database_errors(self._path, "could not be read"), reading(self._engine) as connection:
             require(connection, id_)
-            asked = select(journal_entry).where(journal_entry.c.journal_id == id_, journal_entry.c.sequence > after)
-            rows = connection.execute(asked).mappings()
-            return tuple(sorted(map(entry_of, rows), key=lambda entry: entry.uid))
+            query = select(journal_entry).where(journal_entry.c.journal_id == id_, journal_entry.c.sequence > after)
+            rows = connection.execute(query).mappings()
+            return tuple(sorted(map(parse_entry, rows), key=lambda entry: entry.uid))
 
     def append(self, id: str, entry: NewEntry, *, seen: int) -> JournalEntry:  # noqa: A002 (as in Store)
         """Write an entry down; when this returns it is on the disk. One that is there already is given back.
@@ -150,9 +150,9 @@ class Journals:
         """
         with database_errors(self._path, "could not be written"), writing(self._engine) as connection:
             _require(connection, id)
-            if (known := _written_before(connection, id, entry)) is not None:
-                return known
-            _refuse_overtaken(connection, id, entry, seen)
+            if (earlier := _earlier_entry(connection, id, entry)) is not None:
+                return earlier
+            _require_current(connection, id, entry, seen)
             _require_subject(connection, id, entry)
             return write_entry(connection, id, entry)
 
@@ -179,21 +179,21 @@ class Journals:
         """
         with database_errors(self._path, "could not be written"), writing(self._engine) as connection:
             _require_stored(connection, id)
-            if (known := _written_before(connection, id, entry)) is not None:
-                return known
-            _refuse_overtaken(connection, id, entry, seen)
+            if (earlier := _earlier_entry(connection, id, entry)) is not None:
+                return earlier
+            _require_current(connection, id, entry, seen)
             if connection.execute(select(journal.c.id).where(journal.c.id == id)).first() is None:
                 connection.execute(insert(journal).values(id=id, begun_at=now()))
-            base = _base(connection, id, entry, standing)
+            base = _entry_of_file(connection, id, entry, standing)
             if entry.action == "correct":
                 entry = replace(entry, about=base)
             _require_subject(connection, id, entry)
             return write_entry(connection, id, entry)
 
 
-def _head(name: str, id_: object, begun_at: object, n_entries: object, last_at: object) -> JournalHead:
+def _journal_head(name: str, id_: object, begun_at: object, n_entries: object, last_at: object) -> JournalHead:
     try:
-        return JournalHead(text_of(id_), name, text_of(begun_at), number_of(n_entries), text_of(last_at))
+        return JournalHead(text_of(id_), name, text_of(begun_at), require_integer(n_entries), text_of(last_at))
     except TypeError as error:
         raise damaged(f"The campaign in entry {id_}") from error
 
@@ -208,34 +208,34 @@ def _require_stored(connection: Connection, id_: str) -> None:
         raise StoreError(f"The store keeps no campaign with the id {id_!r}; the list of campaigns names all.")
 
 
-def _base(connection: Connection, id_: str, entry: NewEntry, standing: Mapping[str, str]) -> int:
+def _entry_of_file(connection: Connection, id_: str, entry: NewEntry, standing: Mapping[str, str]) -> int:
     """The sequence of the entry that says what the file says about a test; it is written where there is none."""
-    found = select(journal_entry.c.sequence).where(_of_test(id_, entry), journal_entry.c.action == "add")
-    row = connection.execute(found).first()
+    query = select(journal_entry.c.sequence).where(_is_about_test(id_, entry), journal_entry.c.action == "add")
+    row = connection.execute(query).first()
     if row is not None:
         return int(row[0])
     original = NewEntry(action="add", file=entry.file, test=entry.test, cells=standing, why="as the file has it")
-    uid = file_uid(id_, entry.file, entry.test)
+    uid = uid_of_file(id_, entry.file, entry.test)
     return write_entry(connection, id_, original, uid=uid).sequence
 
 
-def _of_test(id_: str, entry: NewEntry) -> ColumnElement[bool]:
+def _is_about_test(id_: str, entry: NewEntry) -> ColumnElement[bool]:
     columns = journal_entry.c
     return and_(columns.journal_id == id_, columns.file == entry.file, columns.test == entry.test)
 
 
-def _written_before(connection: Connection, id_: str, entry: NewEntry) -> JournalEntry | None:
+def _earlier_entry(connection: Connection, id_: str, entry: NewEntry) -> JournalEntry | None:
     """The entry as it was written down when it was sent the first time."""
     if entry.once is None:
         return None
-    found = select(journal_entry).where(journal_entry.c.journal_id == id_, journal_entry.c.once == entry.once)
-    row = connection.execute(found).mappings().first()
-    return None if row is None else entry_of(row)
+    query = select(journal_entry).where(journal_entry.c.journal_id == id_, journal_entry.c.once == entry.once)
+    row = connection.execute(query).mappings().first()
+    return None if row is None else parse_entry(row)
 
 
-def _refuse_overtaken(connection: Connection, id_: str, entry: NewEntry, seen: int) -> None:
-    found = select(journal_entry).where(_of_test(id_, entry), journal_entry.c.sequence > seen)
-    row = connection.execute(found.order_by(journal_entry.c.sequence.desc())).mappings().first()
+def _require_current(connection: Connection, id_: str, entry: NewEntry, seen: int) -> None:
+    query = select(journal_entry).where(_is_about_test(id_, entry), journal_entry.c.sequence > seen)
+    row = connection.execute(query.order_by(journal_entry.c.sequence.desc())).mappings().first()
     if row is not None:
         subject = f"{entry.file}, {entry.test}" if entry.test else entry.file
         raise OvertakenError(
@@ -247,8 +247,8 @@ def _refuse_overtaken(connection: Connection, id_: str, entry: NewEntry, seen: i
 def _require_subject(connection: Connection, id_: str, entry: NewEntry) -> None:
     if entry.about is None:
         return
-    found = select(journal_entry.c.sequence).where(_of_test(id_, entry), journal_entry.c.sequence == entry.about)
-    if connection.execute(found).first() is None:
+    query = select(journal_entry.c.sequence).where(_is_about_test(id_, entry), journal_entry.c.sequence == entry.about)
+    if connection.execute(query).first() is None:
         raise StoreError(f"{entry.test} has no entry {entry.about} that could be corrected or undone.")
 
 
@@ -258,7 +258,7 @@ def entered_name(connection: Connection, journal_id: str) -> str:
     descriptions = select(journal_entry).where(columns.journal_id == journal_id, columns.file == DESCRIPTION)
     try:
         with apart(connection):
-            entries = [entry_of(row) for row in connection.execute(descriptions).mappings()]
+            entries = [parse_entry(row) for row in connection.execute(descriptions).mappings()]
         last = max(entries, key=lambda entry: entry.uid, default=None)
         name = toml_values(last.cells[DESCRIPTION]).get("name") if last is not None else ""
     except (StoreError, ParameterError, KeyError, DatabaseError, UnicodeDecodeError):

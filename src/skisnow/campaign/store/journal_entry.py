@@ -15,7 +15,7 @@ from sqlalchemy import Connection, RowMapping, func, insert, select
 
 from ..._support.errors import StoreError
 from ..._support.user_files import json_value
-from .rows import TIME, damaged, number_of, text_of
+from .rows import TIME, damaged, require_integer, text_of
 from .schema import journal_entry
 
 if TYPE_CHECKING:
@@ -26,7 +26,7 @@ Action: TypeAlias = Literal["describe", "add", "correct", "cancel", "undo"]
 DESCRIPTION: Final = "campaign.toml"
 """The file, and the only cell, of an entry that describes the campaign."""
 
-PLAIN: Final = ("action", "file", "test", "position", "about", "who", "why", "once")
+SHARED_FIELDS: Final = ("action", "file", "test", "position", "about", "who", "why", "once")
 """What an entry and its row have alike."""
 
 
@@ -88,7 +88,7 @@ class JournalEntry(NewEntry):
         return self.action == "add" and self.position is None
 
 
-def entry_of(row: RowMapping) -> JournalEntry:
+def parse_entry(row: RowMapping) -> JournalEntry:
     """An entry from its row.
 
     Raises
@@ -103,14 +103,14 @@ def entry_of(row: RowMapping) -> JournalEntry:
 
 
 def readable_entry(row: RowMapping) -> JournalEntry:
-    """An entry from its row, whether or not that is what was written down; errors as in `entry_of`."""
-    values: dict[str, Any] = {name: row[name] for name in (*PLAIN, "sequence", "at", "uid")}
+    """An entry from its row, whether or not that is what was written down; errors as in `parse_entry`."""
+    values: dict[str, Any] = {name: row[name] for name in (*SHARED_FIELDS, "sequence", "at", "uid")}
     try:
         for name in ("action", "file", "test", "at", "who", "why", "uid"):
             text_of(values[name])
         for name in ("sequence", "position", "about"):
             if values[name] is not None or name == "sequence":
-                number_of(values[name])
+                require_integer(values[name])
         cells = {text_of(column): text_of(cell) for column, cell in json_value(text_of(row["cells"])).items()}
     except (TypeError, ValueError, AttributeError) as error:
         raise _damaged(row) from error
@@ -121,7 +121,7 @@ def _damaged(row: RowMapping) -> StoreError:
     return damaged(f"The entry {row['sequence']} of the campaign in entry {row['journal_id']}")
 
 
-_PARTICULARS: Final = (
+_SUMMED_COLUMNS: Final = (
     "sequence",
     "journal_id",
     "at",
@@ -145,42 +145,42 @@ def entry_sha256(row: Mapping[str, object]) -> str:
     >>> entry_sha256(row) == entry_sha256(row | {"who": ""}), len(entry_sha256(row))
     (False, 64)
     """
-    found = sha256()
-    for name in (*_PARTICULARS, "cells"):
+    digest = sha256()
+    for name in (*_SUMMED_COLUMNS, "cells"):
         data = as_bytes(row.get(name))
-        found.update(b"-;" if data is None else b"%d;%b" % (len(data), data))
-    return found.hexdigest()
+        digest.update(b"-;" if data is None else b"%d;%b" % (len(data), data))
+    return digest.hexdigest()
 
 
 def entry_sums(row: Mapping[str, object]) -> str:
     """A CRC-32 of each part, as JSON: they show where an entry is damaged that no longer has its SHA-256."""
-    return json.dumps({"entry": _of_particulars(row), "cells": _of_cells(row)}, ensure_ascii=False)
+    return json.dumps({"entry": _field_sums(row), "cells": _cell_sums(row)}, ensure_ascii=False)
 
 
-def differing(row: Mapping[str, object], sums: bytes) -> Iterator[tuple[str, str | None]]:
+def damaged_parts(row: Mapping[str, object], sums: bytes) -> Iterator[tuple[str, str | None]]:
     """The parts that are not what was summed: "entry" or "cells" and the column.
 
     With None for the column: "cells" that cannot be taken apart, "sums" that cannot be read.
     """
     try:
-        known = json_value(sums.decode())
-        by_kind = {kind: dict(known[kind]) for kind in ("entry", "cells")}
+        stored_sums = json_value(sums.decode())
+        by_kind = {kind: dict(stored_sums[kind]) for kind in ("entry", "cells")}
         if not by_kind["entry"].keys() <= row.keys():
             raise ValueError("a column that no entry has")
     except (AttributeError, ValueError, TypeError, KeyError):
         yield "sums", None
         return
     try:
-        found = {"entry": _of_particulars(row), "cells": _of_cells(row)}
+        current_sums = {"entry": _field_sums(row), "cells": _cell_sums(row)}
     except ValueError:
-        found = {"entry": _of_particulars(row), "cells": by_kind["cells"]}
+        current_sums = {"entry": _field_sums(row), "cells": by_kind["cells"]}
         yield "cells", None
     for kind, sums_of_kind in by_kind.items():
-        names = [*sums_of_kind, *(name for name in found[kind] if name not in sums_of_kind)]
-        yield from ((kind, name) for name in names if found[kind].get(name) != sums_of_kind.get(name))
+        names = [*sums_of_kind, *(name for name in current_sums[kind] if name not in sums_of_kind)]
+        yield from ((kind, name) for name in names if current_sums[kind].get(name) != sums_of_kind.get(name))
 
 
-def cells_of(row: Mapping[str, object]) -> dict[str, str]:
+def parse_cells(row: Mapping[str, object]) -> dict[str, str]:
     """The cells of an entry as their bytes say them, what is no text in them replaced.
 
     Raises
@@ -195,12 +195,12 @@ def cells_of(row: Mapping[str, object]) -> dict[str, str]:
     return {str(column): str(cell) for column, cell in cells.items()}
 
 
-def _of_particulars(row: Mapping[str, object]) -> dict[str, str]:
-    return {name: _crc32(as_bytes(row.get(name))) for name in _PARTICULARS}
+def _field_sums(row: Mapping[str, object]) -> dict[str, str]:
+    return {name: _crc32(as_bytes(row.get(name))) for name in _SUMMED_COLUMNS}
 
 
-def _of_cells(row: Mapping[str, object]) -> dict[str, str]:
-    return {column: _crc32(cell.encode()) for column, cell in cells_of(row).items()}
+def _cell_sums(row: Mapping[str, object]) -> dict[str, str]:
+    return {column: _crc32(cell.encode()) for column, cell in parse_cells(row).items()}
 
 
 def _crc32(data: bytes | None) -> str:
@@ -225,8 +225,8 @@ def now() -> str:
 
 def next_sequence(connection: Connection) -> int:
     """The number of the entry that is written next."""
-    asked = select(func.coalesce(func.max(journal_entry.c.sequence), 0) + 1)
-    return int(connection.execute(asked).scalar_one())
+    query = select(func.coalesce(func.max(journal_entry.c.sequence), 0) + 1)
+    return int(connection.execute(query).scalar_one())
 
 
 def new_uid(sequence: int) -> str:
@@ -234,10 +234,10 @@ def new_uid(sequence: int) -> str:
     return f"{sequence:0{NUMBER_DIGITS}d}-{secrets.token_hex(_RANDOM_BYTES)}"
 
 
-def file_uid(journal_id: str, file: str, test: str) -> str:
+def uid_of_file(journal_id: str, file: str, test: str) -> str:
     """What the entry is called that says what a stored file says: the same in every store, before all others.
 
-    >>> file_uid("0123456789ab", "shear.csv", "7")
+    >>> uid_of_file("0123456789ab", "shear.csv", "7")
     '0000000000-3e589431636df79bdf44'
     """
     said = sha256(b"\0".join(part.encode() for part in (journal_id, file, test)))
@@ -262,7 +262,7 @@ def insert_entry(
     connection: Connection, journal_id: str, entry: NewEntry, sequence: int, at: str, uid: str
 ) -> JournalEntry:
     """Write an entry down under a number and a uid."""
-    plain = {name: getattr(entry, name) for name in PLAIN}
+    plain = {name: getattr(entry, name) for name in SHARED_FIELDS}
     written = JournalEntry(**plain, cells=dict(entry.cells), at=at, sequence=sequence, uid=uid)
     insert_entries(connection, journal_id, [written])
     return written
@@ -275,6 +275,6 @@ def insert_entries(connection: Connection, journal_id: str, entries: Sequence[Jo
 
 
 def _row(journal_id: str, entry: JournalEntry) -> dict[str, Any]:
-    row = {name: getattr(entry, name) for name in (*PLAIN, "sequence", "at", "uid")}
+    row = {name: getattr(entry, name) for name in (*SHARED_FIELDS, "sequence", "at", "uid")}
     row |= {"journal_id": journal_id, "cells": json.dumps(dict(entry.cells), ensure_ascii=False)}
     return {**row, "sha256": entry_sha256(row), "sums": entry_sums(row)}

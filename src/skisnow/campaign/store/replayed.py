@@ -36,10 +36,10 @@ class ReplayedRow:
     @property
     def cells(self) -> dict[str, str]:
         """The cells as they are now."""
-        now = dict(self.entered.cells)
+        cells = dict(self.entered.cells)
         for correction in self.corrections:
-            now.update(correction.cells)
-        return now
+            cells.update(correction.cells)
+        return cells
 
 
 @dataclass(slots=True)
@@ -66,8 +66,8 @@ class ReplayedTest:
     @property
     def undoable(self) -> JournalEntry | None:
         """The last entry that still counts, which is the one that can be undone; not what a file says."""
-        counting = (each for each in reversed(self.history) if each.action != "undo" and not each.is_from_file)
-        return next((each for each in counting if each.sequence not in self.undone), None)
+        counting = (entry for entry in reversed(self.history) if entry.action != "undo" and not entry.is_from_file)
+        return next((entry for entry in counting if entry.sequence not in self.undone), None)
 
     def row_under(self, load: str, branch: str = "") -> ReplayedRow | None:
         """The reading of a series under a load (N), of the loading or, with its word, of the unloading."""
@@ -123,8 +123,8 @@ def replayed(entries: Iterable[JournalEntry], *, before: ReplayedCampaign | None
         else:
             added.setdefault((entry.file, entry.test), []).append(entry)
     for key, new in added.items():
-        known = campaign.tests[key].history if key in campaign.tests else []
-        campaign.tests[key] = _test(key, sorted([*known, *new], key=lambda entry: entry.uid))
+        history = campaign.tests[key].history if key in campaign.tests else []
+        campaign.tests[key] = _test(key, sorted([*history, *new], key=lambda entry: entry.uid))
     return campaign
 
 
@@ -136,7 +136,7 @@ def _test(key: tuple[str, str], history: list[JournalEntry]) -> ReplayedTest:
     rows: dict[int, ReplayedRow] = {}
     for entry in history:
         if entry.sequence not in test.undone:
-            _take(test, rows, entry)
+            _apply_entry(test, rows, entry)
     test.rows.sort(key=_order)
     return test
 
@@ -150,7 +150,7 @@ def _order(row: ReplayedRow) -> tuple[bool, float, int, int]:
     return taken_off, -float(load) if taken_off else float(load), position, row.entered.sequence
 
 
-def _take(test: ReplayedTest, rows: dict[int, ReplayedRow], entry: JournalEntry) -> None:
+def _apply_entry(test: ReplayedTest, rows: dict[int, ReplayedRow], entry: JournalEntry) -> None:
     if entry.action == "add":
         rows[entry.sequence] = ReplayedRow(entry)
         test.rows.append(rows[entry.sequence])
@@ -231,11 +231,11 @@ def _corrections(tests: Sequence[ReplayedTest]) -> Iterator[tuple[str, ...]]:
             yield correction_row(test.cancelling, line + 1, STATUS, "", test.cancelled)
         for row in test.rows:
             line += 1
-            now = dict(row.entered.cells)
+            cells = dict(row.entered.cells)
             for entry in row.corrections:
                 for column, new in entry.cells.items():
-                    yield correction_row(entry, line, column, now.get(column, ""), new)
-                    now[column] = new
+                    yield correction_row(entry, line, column, cells.get(column, ""), new)
+                    cells[column] = new
 
 
 Value: TypeAlias = "str | float | Sequence[str] | Sequence[float]"
@@ -258,21 +258,21 @@ def description_text(description: Description) -> str:
     FieldDataError
         With every problem of the text, as reading the file would tell it.
     """
-    lines = [f"{key} = {_written(value)}" for key, value in description.values.items() if value not in (None, "")]
+    lines = [f"{key} = {_toml_text(value)}" for key, value in description.values.items() if value not in (None, "")]
     for table, entries in (("tool", description.tools), ("plate", description.plates)):
         for entry in entries:
-            lines += ["", f"[[{table}]]", *(f"{key} = {_written(value)}" for key, value in entry.items())]
+            lines += ["", f"[[{table}]]", *(f"{key} = {_toml_text(value)}" for key, value in entry.items())]
     text = "\n".join(lines) + "\n"
-    found: list[Problem] = []
-    read_campaign_file(text, found)
-    if any(problem.severity == "error" for problem in found):
-        raise FieldDataError(found)
+    problems: list[Problem] = []
+    read_campaign_file(text, problems)
+    if any(problem.severity == "error" for problem in problems):
+        raise FieldDataError(problems)
     return text
 
 
-def _written(value: Value | None) -> str:
+def _toml_text(value: Value | None) -> str:
     if isinstance(value, str):  # a basic string of TOML is one of JSON, but for the letter DEL
         return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
     if isinstance(value, Sequence):
-        return f"[{', '.join(_written(item) for item in value)}]"
+        return f"[{', '.join(_toml_text(item) for item in value)}]"
     return repr(value)

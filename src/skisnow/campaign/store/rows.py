@@ -88,7 +88,7 @@ def one_campaign(connection: Connection, beginning: str) -> StoredCampaign:
     if len(rows) == 1:
         return stored_campaign(connection, rows[0])
     matching = [NamedId(row.id, row.name) for row in rows]
-    raise unclear_id(beginning, matching, known_campaigns(connection))
+    raise ambiguous_id_error(beginning, matching, campaign_ids(connection))
 
 
 def required_digits(beginning: str) -> str:
@@ -108,21 +108,21 @@ def required_digits(beginning: str) -> str:
     return digits
 
 
-def known_campaigns(connection: Connection) -> list[NamedId]:
+def campaign_ids(connection: Connection) -> list[NamedId]:
     """Id and name of each stored campaign, newest first."""
     rows = connection.execute(select(campaign).order_by(campaign.c.added_at.desc(), campaign.c.id)).all()
     return [NamedId(row.id, row.name) for row in rows]
 
 
-def unclear_id(beginning: str, matching: Sequence[NamedId], known: Sequence[NamedId]) -> StoreError:
+def ambiguous_id_error(beginning: str, matching: Sequence[NamedId], stored: Sequence[NamedId]) -> StoreError:
     """Error for an id that is the beginning of no or of several campaigns: lists those that may be meant."""
     if matching:
         return StoreError(f"Several campaigns begin with {beginning}: {_candidates(matching)}; give more digits.")
-    return StoreError(f"No campaign begins with {beginning}; the store holds {_candidates(known)}.")
+    return StoreError(f"No campaign begins with {beginning}; the store holds {_candidates(stored)}.")
 
 
 def _candidates(campaigns: Sequence[NamedId]) -> str:
-    named = [f"{each.id} ({each.name})" for each in campaigns[:_SHOWN_CANDIDATES]]
+    named = [f"{campaign_id.id} ({campaign_id.name})" for campaign_id in campaigns[:_SHOWN_CANDIDATES]]
     further = len(campaigns) - len(named)
     return (", ".join(named) or "none") + (f" and {further} more" if further else "")
 
@@ -171,14 +171,14 @@ def _stored_campaign(connection: Connection, row: Row[tuple[object, ...]]) -> St
         .join_from(campaign_file, content)
         .where(campaign_file.c.campaign_id == row.id)
     )
-    files = [StoredFile(text_of(file.path), number_of(file.size), text_of(file.sha256)) for file in rows]
+    files = [StoredFile(text_of(file.path), require_integer(file.size), text_of(file.sha256)) for file in rows]
     return StoredCampaign(
         id=text_of(row.id),
         name=text_of(row.name),
         added_at=datetime.strptime(text_of(row.added_at), TIME).replace(tzinfo=UTC),
         sha256=text_of(row.sha256),
-        n_errors=None if row.n_errors is None else number_of(row.n_errors),
-        n_warnings=None if row.n_warnings is None else number_of(row.n_warnings),
+        n_errors=None if row.n_errors is None else require_integer(row.n_errors),
+        n_warnings=None if row.n_warnings is None else require_integer(row.n_warnings),
         files=tuple(sorted(files, key=lambda file: file.path)),
     )
 
@@ -190,14 +190,14 @@ def text_of(value: object) -> str:
     return value
 
 
-def number_of(value: object) -> int:
+def require_integer(value: object) -> int:
     """A whole number as it must be."""
     if not isinstance(value, int):
         raise TypeError(f"{value!r} is no whole number")
     return value
 
 
-def bytes_of(value: object) -> bytes:
+def require_bytes(value: object) -> bytes:
     """Bytes as they must be; of a number `bytes` would make so many zeros."""
     if not isinstance(value, bytes):
         raise TypeError(f"{value!r} is not bytes")
@@ -209,21 +209,21 @@ def stored_chunks(connection: Connection, sha256: str) -> Iterator[bytes]:
     pieces = select(chunk.c.data).where(chunk.c.sha256 == sha256).order_by(chunk.c.position)
     try:
         for piece in connection.execute(pieces, execution_options={"yield_per": 1}).scalars():
-            yield bytes_of(piece)
+            yield require_bytes(piece)
     except TypeError as error:
         raise damaged(f"The content {sha256}") from error
 
 
 def is_sound(connection: Connection, sha256: str, size: int) -> bool:
     """Tell whether a content still has the hash and the size (bytes) that it had when it was taken in."""
-    found, n_bytes = hashlib.sha256(), 0
+    digest, n_bytes = hashlib.sha256(), 0
     try:
         for piece in stored_chunks(connection, sha256):
-            found.update(piece)
+            digest.update(piece)
             n_bytes += len(piece)
     except StoreError:
         return False
-    return found.hexdigest() == sha256 and n_bytes == size
+    return digest.hexdigest() == sha256 and n_bytes == size
 
 
 def store_content(connection: Connection, folder: Path, file: StoredFile) -> bool:
@@ -258,11 +258,11 @@ def copy_content(connection: Connection, file: StoredFile, pieces: Iterable[byte
 
 def _store_chunks(connection: Connection, sha256: str, pieces: Iterable[bytes]) -> bool:
     """Store a content piece by piece; whether it has its hash."""
-    found = hashlib.sha256()
+    digest = hashlib.sha256()
     for position, piece in enumerate(pieces):
-        found.update(piece)
+        digest.update(piece)
         connection.execute(insert(chunk).values(sha256=sha256, position=position, data=piece))
-    return found.hexdigest() == sha256
+    return digest.hexdigest() == sha256
 
 
 def refuse_changed(paths: Sequence[str]) -> None:

@@ -173,11 +173,11 @@ def _require_unicode(connection: Connection, address: ServerAddress) -> None:
 
 def _revision(connection: Connection, address: ServerAddress) -> str | None:
     """Migration that the store is at; None for a database without tables."""
-    asked = text(
+    query = text(
         "SELECT c.relname, obj_description(c.oid, 'pg_class') FROM pg_class c "
         "WHERE c.relnamespace = to_regnamespace(quote_ident(current_schema())) AND c.relkind IN ('r', 'p')"
     )
-    tables = {row[0]: row[1] for row in connection.execute(asked)}
+    tables = {row[0]: row[1] for row in connection.execute(query)}
     if not tables.keys() - {"alembic_version"}:
         return None
     if tables.get("campaign") != MARK or "alembic_version" not in tables:

@@ -20,12 +20,12 @@ from .folder import (
     StoredFile,
     campaign_name,
     changed_files,
-    listed_files,
+    checked_bytes,
+    list_files,
     manifest_sha256,
     new_folder,
     no_progress,
     read_chunks,
-    whole,
     write_file,
 )
 from .rows import (
@@ -183,7 +183,7 @@ class Store(Shown):
                     done += file.size
                     progress(done, 2 * n_bytes)
                 is_new = store_campaign(connection, files, sha256, name, (check.n_errors, check.n_warnings))
-                refuse_changed(changed_files(before, listed_files(folder)))
+                refuse_changed(changed_files(before, list_files(folder)))
         return AddedCampaign(
             id=sha256[:ID_DIGITS],
             name=name,
@@ -202,7 +202,7 @@ class Store(Shown):
             raise StoreError(f"{folder} is no folder; name the folder that holds the campaign's files.")
         if isinstance(self.path, Path) and self.path.resolve().is_relative_to(folder.resolve()):
             raise StoreError(f"The store {self.path} lies in {folder} itself; keep it somewhere else.")
-        files = listed_files(folder)
+        files = list_files(folder)
         if not files:
             raise StoreError(f"{folder} holds no file; name the folder that holds the campaign's files.")
         return files
@@ -270,7 +270,7 @@ class Store(Shown):
             stored = one_campaign(connection, id)
             require_whole(stored)
             chosen = [file for file in stored.files if file.path in names]
-            return stored, {file.path: whole(file, stored_chunks(connection, file.sha256)) for file in chosen}
+            return stored, {file.path: checked_bytes(file, stored_chunks(connection, file.sha256)) for file in chosen}
 
     def verify(self, *, progress: Progress = no_progress) -> tuple[Finding, ...]:
         """Look for damage: the database's own checks, the hash of every file, the id of every campaign; () if sound."""
@@ -291,14 +291,14 @@ def _hashed_files(
     """Take the hash of each file; ``progress`` is called with how many bytes are done."""
     files, done = [], 0
     for path, state in states.items():
-        found, size = hashlib.sha256(), 0
+        digest, size = hashlib.sha256(), 0
         for piece in read_chunks(folder / path, CHUNK_BYTES):
-            found.update(piece)
+            digest.update(piece)
             size += len(piece)
             progress(done + size)
         if size != state.size:
             refuse_changed([path])
-        files.append(StoredFile(path, size, found.hexdigest()))
+        files.append(StoredFile(path, size, digest.hexdigest()))
         done += size
     return tuple(files)
 

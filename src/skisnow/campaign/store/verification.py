@@ -12,7 +12,7 @@ from ..._support.errors import StoreError
 from ..._support.user_files import natural_number
 from .engine import apart, is_file
 from .folder import Progress, manifest_sha256, unsafe_because
-from .journal_entry import as_bytes, cells_of, differing, entry_sha256, readable_entry
+from .journal_entry import as_bytes, damaged_parts, entry_sha256, parse_cells, readable_entry
 from .rows import StoredCampaign, is_sound, stored_campaign
 from .schema import campaign, campaign_file, content, journal_entry
 from .server import broken_references
@@ -25,20 +25,25 @@ if TYPE_CHECKING:
 
 def findings(connection: Connection, progress: Progress) -> tuple[Finding, ...]:
     """Check database, contents, campaigns and entries, each whatever the others hold; an empty answer: all is sound."""
-    found: list[Finding] = []
-    for of_part in (_of_database, lambda each: _of_contents(each, progress), _of_campaigns, findings_of_entries):
+    damage: list[Finding] = []
+    for of_part in (
+        _database_damage,
+        lambda part_connection: _content_damage(part_connection, progress),
+        _campaigns_damage,
+        find_entry_damage,
+    ):
         try:
             with apart(connection):
                 for finding in of_part(connection):
-                    found.append(finding)
+                    damage.append(finding)
         except (DatabaseError, UnicodeDecodeError) as error:
             why = getattr(error, "orig", error)
             stopped = Finding(None, None, f"cannot be read further: {why}; put a backup in its place")
-            found.extend(() if stopped in found else (stopped,))
-    return tuple(found)
+            damage.extend(() if stopped in damage else (stopped,))
+    return tuple(damage)
 
 
-def _of_database(connection: Connection) -> Iterator[Finding]:
+def _database_damage(connection: Connection) -> Iterator[Finding]:
     if not is_file(connection):
         for table, parent, number in broken_references(connection):
             rows = f"{number} row{'' if number == 1 else 's'} of table {table}"
@@ -51,7 +56,7 @@ def _of_database(connection: Connection) -> Iterator[Finding]:
         yield Finding(None, None, f"row {row} of table {table} points at what table {parent} does not hold")
 
 
-def _of_contents(connection: Connection, progress: Progress) -> Iterator[Finding]:
+def _content_damage(connection: Connection, progress: Progress) -> Iterator[Finding]:
     rows = connection.execute(select(content.c.sha256, content.c.size)).all()
     done, total = 0, sum(size for _, size in rows if isinstance(size, int))
     for sha256, size in rows:
@@ -77,15 +82,15 @@ def _words(value: object) -> str | None:
     return value if value is None or isinstance(value, str) else repr(value)
 
 
-def _of_campaigns(connection: Connection) -> Iterator[Finding]:
+def _campaigns_damage(connection: Connection) -> Iterator[Finding]:
     for row in connection.execute(select(campaign)).all():
         try:
-            yield from _of_campaign(stored_campaign(connection, row))
+            yield from _campaign_damage(stored_campaign(connection, row))
         except StoreError as error:
             yield Finding(_words(row.id), None, str(error))
 
 
-def _of_campaign(stored: StoredCampaign) -> Iterator[Finding]:
+def _campaign_damage(stored: StoredCampaign) -> Iterator[Finding]:
     if manifest_sha256(stored.files) != stored.sha256:
         yield Finding(stored.id, None, "its files are not those it was added with")
     for file in stored.files:
@@ -112,50 +117,50 @@ _BACKUP: Final = "put a backup in its place"
 _CHECKSUM: Final = "its checksum is damaged, what it says is sound"
 
 
-def findings_of_entries(connection: Connection) -> Iterator[Finding]:
+def find_entry_damage(connection: Connection) -> Iterator[Finding]:
     """Check each entry, read as bytes: what is no text any more is named as well."""
-    rows = list(_as_bytes(connection))
+    rows = list(_rows_as_bytes(connection))
     places = {row["sequence"]: row["position"] for row in rows}
     for row in rows:
         about = row if row["about"] is None else {**row, "position": places.get(row["about"])}
-        damage = list(_of_sums(row))
+        damage = list(_sum_damage(row))
         if row["sha256"] is None or not damage:
-            yield from _of_form(connection, row)
+            yield from _form_damage(connection, row)
         yield from (_finding(row, _place(about, column), what) for column, what in damage)
 
 
-def _as_bytes(connection: Connection) -> Iterator[_Row]:
+def _rows_as_bytes(connection: Connection) -> Iterator[_Row]:
     columns = journal_entry.c
     if is_file(connection):
-        asked = select(*(cast(column, LargeBinary).label(column.name) for column in columns))
+        query = select(*(cast(column, LargeBinary).label(column.name) for column in columns))
     else:
-        asked = select(*columns)  # a server holds nothing in a text that is none
-    for row in connection.execute(asked.order_by(columns.sequence)).mappings().all():
+        query = select(*columns)  # a server holds nothing in a text that is none
+    for row in connection.execute(query.order_by(columns.sequence)).mappings().all():
         yield {str(name): as_bytes(value) for name, value in row.items()}
 
 
-def _of_form(connection: Connection, row: _Row) -> Iterator[Finding]:
+def _form_damage(connection: Connection, row: _Row) -> Iterator[Finding]:
     """What was never written down, whatever its checksum."""
-    asked = select(journal_entry).where(journal_entry.c.sequence == int(_text(row["sequence"])))
+    query = select(journal_entry).where(journal_entry.c.sequence == int(_text(row["sequence"])))
     try:
-        found = connection.execute(asked).mappings().first()
-        if found is None:
+        entry = connection.execute(query).mappings().first()
+        if entry is None:
             yield _finding(row, _place(row, None), "it is not found by its number")
         else:
-            readable_entry(found)
+            readable_entry(entry)
     except StoreError as error:
         yield Finding(_text(row["journal_id"]), None, str(error))
     except (DatabaseError, UnicodeDecodeError):
         yield _finding(row, _place(row, None), "it holds what is no text")
 
 
-def _of_sums(row: _Row) -> Iterator[tuple[str | None, str]]:
+def _sum_damage(row: _Row) -> Iterator[tuple[str | None, str]]:
     """What is damaged: its column, None for the entry itself, and in words."""
     if row["sha256"] is None or row["sums"] is None:
         yield None, "it has no checksum"
         return
     is_whole = _text(row["sha256"]) == entry_sha256(row)
-    parts = list(differing(row, row["sums"]))
+    parts = list(damaged_parts(row, row["sums"]))
     if is_whole and ("cells", None) in parts:
         return  # it was so when it was summed
     if is_whole == bool(parts):
@@ -163,18 +168,18 @@ def _of_sums(row: _Row) -> Iterator[tuple[str | None, str]]:
         return
     for kind, name in parts:
         if kind == "cells" and name is not None:
-            yield name, _of_cell(row, name)
+            yield name, _cell_damage(row, name)
         elif kind == "cells":
             yield None, "its cells cannot be read"
         elif kind == "sums":
             yield None, "neither what it says nor its checksums are as they were written down"
         else:
-            yield None, f"its {name} is not what was written down; {_short(_text(row[name or '']))} stands there"
+            yield None, f"its {name} is not what was written down; {_shorten_text(_text(row[name or '']))} stands there"
 
 
-def _of_cell(row: _Row, column: str) -> str:
-    text = cells_of(row).get(column)
-    return "the cell is gone" if text is None else f"{_short(text)} is not what was written down"
+def _cell_damage(row: _Row, column: str) -> str:
+    text = parse_cells(row).get(column)
+    return "the cell is gone" if text is None else f"{_shorten_text(text)} is not what was written down"
 
 
 def _place(row: _Row, column: str | None) -> str:
@@ -195,7 +200,7 @@ def _finding(row: _Row, place: str, what: str) -> Finding:
     return Finding(_text(row["journal_id"]), _text(row["file"]) or None, f"{where}{what} (entry {number}); {_BACKUP}")
 
 
-def _short(text: str) -> str:
+def _shorten_text(text: str) -> str:
     return repr(text if len(text) <= _LONGEST else f"{text[:_LONGEST]}…")
 
 

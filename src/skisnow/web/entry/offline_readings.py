@@ -10,7 +10,7 @@ from nicegui import ui
 from ..._support.errors import ParameterError, StoreError
 from ...campaign.reading.table_forms import BRANCH
 from ...campaign.store import NewEntry
-from ...campaign.store.cells import FORMS, checked_cell
+from ...campaign.store.stored_tables import FORMS, checked_cell
 from ..language import number_said, said, said_template
 from ..page_requests import LONGEST
 from .readings import problem_said

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple, TypeAlias
 
 from nicegui import ui
 
-from ...campaign.store.cells import CellError, checked_cell
+from ...campaign.store.stored_tables import CellError, checked_cell
 from ..language import number_said, said, said_template
 from ..words import in_words, label
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
     from ..._support.errors import SkisnowError
-    from ...campaign.reading.heading_units import UnitConversion
+    from ...campaign.reading.headings import UnitConversion
     from ...campaign.reading.table_forms import TableForm
     from ...campaign.store import ReplayedRow
 

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Final
 
 from nicegui import ui
 
-from ...campaign.reading.row_checks import TURNING
+from ...campaign.reading.experiments import TURNING
 from ..elements import Words, choice, field, named
 from ..language import said
 from ..layout import heading, sentence

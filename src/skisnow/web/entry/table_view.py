@@ -9,7 +9,7 @@ from nicegui import ui
 from ..._support.errors import ParameterError, StoreError
 from ..._support.user_files import natural_number
 from ...campaign.store import NewEntry, OvertakenError
-from ...campaign.store.cells import FORMS
+from ...campaign.store.stored_tables import FORMS
 from ..elements import StatusLine, link
 from ..layout import heading
 from ..page_addresses import entering

@@ -9,7 +9,7 @@ from nicegui import ui
 from ..._support.errors import FieldDataError, ParameterError, SkisnowError
 from ..._support.user_files import toml_values
 from ...campaign.problems import Problem
-from ...campaign.reading.tool_shapes import SHAPES
+from ...campaign.reading.campaign_file import SHAPES
 from ...campaign.store import Journals, NewEntry, OvertakenError
 from ...campaign.store.journal_entry import DESCRIPTION
 from ...campaign.store.replayed import Description, description_text

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from nicegui import ui
 
 from ..._support.errors import ParameterError
-from ...campaign.store.cells import checked_cell
+from ...campaign.store.stored_tables import checked_cell
 from ..edit_session import EditSession
 from ..entry.offline_readings import FILE, take_resent
 from ..entry.series import SeriesForm

@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from hashlib import sha256
+from typing import TYPE_CHECKING, TypeAlias
 
 from ..._support.errors import StoreError
 from ..._support.staging import write_file
 from ..reading.corrections import STATUS
 from ..reading.table_forms import CORRECTIONS
 from ..reading.text import UnreadableTextError, inspect_csv
-from .folder import no_progress
-from .journal import Journals
-from .replayed import COLUMNS, correction_row, csv_text, replayed
+from .engine import database_errors, file_errors, reading
+from .folder import StoredFile, new_folder, no_progress
+from .journal import JournalHead, Journals
+from .replayed import COLUMNS, campaign_files, correction_row, csv_text, replayed, write_campaign
+from .rows import ID_DIGITS, NamedId, StoredCampaign, ambiguous_id_error, campaign_ids, required_digits
 from .stored_tables import cell_of
 
 if TYPE_CHECKING:
@@ -74,7 +77,7 @@ def add_corrections(folder: Path, entries: Iterable[JournalEntry], *, before: by
     if before is None:
         before = place.read_bytes() if place.is_file() else b""
     if rows:
-        write_file(place, _together(before, rows))
+        write_file(place, _combine_corrections(before, rows))
     elif before:
         write_file(place, before)
     else:
@@ -93,10 +96,10 @@ def corrected_files(files: Mapping[str, bytes], entries: Iterable[JournalEntry])
     rows = list(_rows(entries))
     if not rows:
         return dict(files)
-    return {**files, CORRECTIONS.file: _together(files.get(CORRECTIONS.file, b""), rows).encode("utf-8")}
+    return {**files, CORRECTIONS.file: _combine_corrections(files.get(CORRECTIONS.file, b""), rows).encode("utf-8")}
 
 
-def _together(before: bytes, rows: list[dict[str, str]]) -> str:
+def _combine_corrections(before: bytes, rows: list[dict[str, str]]) -> str:
     """One file: the rows that came with the campaign with all their columns, then ours."""
     records = _records(before) if before.strip() else []
     header = [cell.strip() for cell in records.pop(0)] if records else []
@@ -118,24 +121,69 @@ def _records(data: bytes) -> list[list[str]]:
 
 def _rows(entries: Iterable[JournalEntry]) -> Iterator[dict[str, str]]:
     """Test by test, in the order in which they were first corrected."""
-    for test in sorted(replayed(entries).tests.values(), key=_first_by_hand):
+    for test in sorted(replayed(entries).tests.values(), key=_first_manual_entry):
         if test.rows:
-            yield from _rows_of(test)
+            yield from _rows_of_test(test)
 
 
-def _first_by_hand(test: ReplayedTest) -> str:
+def _first_manual_entry(test: ReplayedTest) -> str:
     return min((entry.uid for entry in test.history if not entry.is_from_file), default="")
 
 
-def _rows_of(test: ReplayedTest) -> Iterator[dict[str, str]]:
+def _rows_of_test(test: ReplayedTest) -> Iterator[dict[str, str]]:
     """The rows about one test, in the order of the entries."""
-    now = dict(test.rows[0].entered.cells)
-    first = min(cell_of(key)[0] for key in now)
+    cells_now = dict(test.rows[0].entered.cells)
+    first = min(cell_of(key)[0] for key in cells_now)
     for entry in test.history:
         if entry.sequence in test.undone or entry.action not in ("correct", "cancel"):
             continue
         cells = entry.cells if entry.action == "correct" else {f"{first}/{STATUS}": entry.why}
         for key, new in cells.items():
             line, column = cell_of(key)
-            yield dict(zip(COLUMNS, correction_row(entry, line, column, now.get(key, ""), new), strict=True))
-            now[key] = new
+            yield dict(zip(COLUMNS, correction_row(entry, line, column, cells_now.get(key, ""), new), strict=True))
+            cells_now[key] = new
+
+
+FoundCampaign: TypeAlias = StoredCampaign | JournalHead
+
+
+def find_campaign(store: Store, id: str) -> FoundCampaign:  # noqa: A002 (as in Store)
+    """The campaign whose id begins so: stored files or lab entries.
+
+    Raises
+    ------
+    StoreError
+        No campaign or several begin so; the message lists those that may be meant.
+    """
+    beginning = required_digits(id)
+    entry_index = {head.id: head for head in Journals(store).list()}
+    with database_errors(store.path, "could not be read"), reading(store.engine) as connection:
+        stored = campaign_ids(connection)
+    entered = [NamedId(head.id, head.name) for head in entry_index.values()]
+    matching = [candidate for candidate in entered if str(candidate.id).startswith(beginning)]
+    stored_too = [candidate for candidate in stored if str(candidate.id).startswith(beginning[:ID_DIGITS])]
+    if len(matching) == 1 and not stored_too:
+        return entry_index[str(matching[0].id)]
+    if stored_too and not matching:
+        return store.show(beginning)
+    raise ambiguous_id_error(beginning, [*stored_too, *matching], [*stored, *entered])
+
+
+def entered_files(store: Store, id: str) -> tuple[StoredFile, ...]:  # noqa: A002
+    """The files that `export_entered` writes, sorted by path; raises as it does."""
+    texts = campaign_files(replayed(Journals(store).entries(id)))
+    contents = {path: text.encode() for path, text in sorted(texts.items())}
+    return tuple(StoredFile(path, len(data), sha256(data).hexdigest()) for path, data in contents.items())
+
+
+def export_entered(store: Store, id: str, folder: Path) -> None:  # noqa: A002
+    """Write a campaign that consists of lab entries as a new folder, which `read_campaign` reads.
+
+    Raises
+    ------
+    StoreError
+        There is no such campaign, an entry is damaged, or the folder exists and is not empty.
+    """
+    campaign = replayed(Journals(store).entries(id))
+    with file_errors(folder, "could not be written"), new_folder(folder) as filling:
+        write_campaign(campaign, filling)

@@ -9,17 +9,17 @@ from typing import TYPE_CHECKING, Final, Literal, TypeAlias
 
 from sqlalchemy import Connection, select
 
-from ..journal_entry import DESCRIPTION, entry_of
-from ..rows import damaged
-from ..schema import campaign, journal, journal_entry
-from ..stored_tables import cell_of
+from .journal_entry import DESCRIPTION, parse_entry
+from .rows import damaged
+from .schema import campaign, journal, journal_entry
+from .stored_tables import cell_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
 
     from sqlalchemy import Connection
 
-    from ..journal_entry import JournalEntry
+    from .journal_entry import JournalEntry
 
 
 Side: TypeAlias = Literal["here", "there", "both"]
@@ -27,7 +27,7 @@ Kind: TypeAlias = Literal["described", "begun twice", "added to", "cancelled", "
 _ID_DIGITS: Final = 8
 _LONGEST: Final = 80
 
-_WHAT: Final[dict[Kind, str]] = {
+_KINDS: Final[dict[Kind, str]] = {
     "described": "the campaign was described differently",
     "begun twice": "a test of this name was begun in both",
     "added to": "rows were added in both",
@@ -90,7 +90,7 @@ class Divergence:
     @property
     def id(self) -> str:
         """What a choice names it by: the same as long as both sides are."""
-        parts = (self.journal_id, *self.subject, *(each.uid for side in (self.here, self.there) for each in side))
+        parts = (self.journal_id, *self.subject, *(entry.uid for side in (self.here, self.there) for entry in side))
         said = sha256("\0".join(parts).encode())
         return said.hexdigest()[:_ID_DIGITS]
 
@@ -133,16 +133,16 @@ class Divergence:
 
     def told(self, name: str) -> Conflict:
         """It in words."""
-        known = {entry.uid: entry for entry in (*self.common, *self.here, *self.there)}
+        entries_by_uid = {entry.uid: entry for entry in (*self.common, *self.here, *self.there)}
         return Conflict(
             id=self.id,
             campaign=self.journal_id,
             name=name,
             file=self.subject[0],
             test=self.subject[1],
-            what=_WHAT[self.kind],
-            here=tuple(_line(entry, self.uid_here, known) for entry in self.here),
-            there=tuple(_line(entry, self.uid_there, known) for entry in self.there),
+            what=_KINDS[self.kind],
+            here=tuple(_line(entry, self.uid_here, entries_by_uid) for entry in self.here),
+            there=tuple(_line(entry, self.uid_there, entries_by_uid) for entry in self.there),
             choices=self.choices,
         )
 
@@ -154,8 +154,8 @@ class Divergence:
         )
 
 
-def divergences(
-    here: Connection, there: Connection, journal_id: str, of_here: Heads, of_there: Heads
+def find_divergences(
+    here: Connection, there: Connection, journal_id: str, of_here: EntryIndex, of_there: EntryIndex
 ) -> Iterator[Divergence]:
     """What the stores say about each test that both wrote about, each in what the other lacks."""
     for subject in of_here.written_on_both(of_there):
@@ -182,22 +182,22 @@ def _corrected(entries: Sequence[JournalEntry], uids: Mapping[int, str]) -> dict
     }
 
 
-def _line(entry: JournalEntry, uids: Mapping[int, str], known: Mapping[str, JournalEntry]) -> str:
-    about = known.get(uids.get(entry.about or 0, ""))
-    return f"{entry.who or 'somebody'}, {entry.at}: {_did(entry, about)}"
+def _line(entry: JournalEntry, uids: Mapping[int, str], entries_by_uid: Mapping[str, JournalEntry]) -> str:
+    about = entries_by_uid.get(uids.get(entry.about or 0, ""))
+    return f"{entry.who or 'somebody'}, {entry.at}: {_entry_words(entry, about)}"
 
 
-def _did(entry: JournalEntry, about: JournalEntry | None) -> str:
+def _entry_words(entry: JournalEntry, about: JournalEntry | None) -> str:
     if entry.action == "describe":
-        return f"described the campaign: {_short(entry.cells[DESCRIPTION])}"
+        return f"described the campaign: {_shorten_text(entry.cells[DESCRIPTION])}"
     if entry.action == "cancel":
-        return f"cancelled it: {_short(entry.why)}"
+        return f"cancelled it: {_shorten_text(entry.why)}"
     if entry.action == "undo":
-        return f"took back: {_did(about, None)}" if about is not None else "took an entry back"
+        return f"took back: {_entry_words(about, None)}" if about is not None else "took an entry back"
     if entry.action == "correct":
         return "corrected " + ", ".join(_cell(key, text, about) for key, text in entry.cells.items())
     cells = ", ".join(f"{column} {text}" for column, text in entry.cells.items() if text and text != entry.test)
-    return f"added row {(entry.position or 0) + 1}: {_short(cells)}"
+    return f"added row {(entry.position or 0) + 1}: {_shorten_text(cells)}"
 
 
 def _cell(key: str, text: str, about: JournalEntry | None) -> str:
@@ -209,35 +209,35 @@ def _cell(key: str, text: str, about: JournalEntry | None) -> str:
     return f"{row}{key} to {text!r}"
 
 
-def _short(text: str) -> str:
+def _shorten_text(text: str) -> str:
     words = " ".join(text.split())
     return words if len(words) <= _LONGEST else f"{words[:_LONGEST]}…"
 
 
 Subject: TypeAlias = tuple[str, str]
 """File and test that an entry is about."""
-_ASKED_AT_ONCE = 500
+_ENTRIES_PER_QUERY = 500
 
 
 @dataclass(slots=True)
-class Heads:
+class EntryIndex:
     """The entries of a journal in one store, by uid: what they are about, and their numbers there."""
 
     subject: dict[str, Subject] = field(default_factory=dict)
     sequence: dict[str, int] = field(default_factory=dict)
     uid: dict[int, str] = field(default_factory=dict)
 
-    def missing_in(self, other: Heads) -> set[str]:
+    def missing_in(self, other: EntryIndex) -> set[str]:
         """What is here and not there."""
         return self.subject.keys() - other.subject.keys()
 
-    def written_on_both(self, other: Heads) -> list[Subject]:
+    def written_on_both(self, other: EntryIndex) -> list[Subject]:
         """The tests about which each side has what the other lacks, sorted."""
         here = {self.subject[uid] for uid in self.missing_in(other)}
         return sorted(here & {other.subject[uid] for uid in other.missing_in(self)})
 
 
-def heads(connection: Connection, journal_id: str) -> Heads:
+def entry_index(connection: Connection, journal_id: str) -> EntryIndex:
     """What a store has of a journal; nothing where it does not have it.
 
     Raises
@@ -245,24 +245,24 @@ def heads(connection: Connection, journal_id: str) -> Heads:
     StoreError
         An entry has no uid.
     """
-    columns, found = journal_entry.c, Heads()
-    asked = select(columns.uid, columns.sequence, columns.file, columns.test).where(columns.journal_id == journal_id)
-    for uid, sequence, file, test in connection.execute(asked):
+    columns, index = journal_entry.c, EntryIndex()
+    query = select(columns.uid, columns.sequence, columns.file, columns.test).where(columns.journal_id == journal_id)
+    for uid, sequence, file, test in connection.execute(query):
         if not isinstance(uid, str):
             raise damaged(f"The entry {sequence} of the campaign in entry {journal_id}")
-        found.subject[uid], found.sequence[uid], found.uid[sequence] = (file, test), sequence, uid
-    return found
+        index.subject[uid], index.sequence[uid], index.uid[sequence] = (file, test), sequence, uid
+    return index
 
 
 def entries_by_uid(connection: Connection, journal_id: str, uids: Iterable[str]) -> list[JournalEntry]:
     """Entries in the order of their uids, each checked to be what was written down."""
     wanted = sorted(uids)
-    found: list[JournalEntry] = []
-    for first in range(0, len(wanted), _ASKED_AT_ONCE):
-        some = journal_entry.c.uid.in_(wanted[first : first + _ASKED_AT_ONCE])
-        asked = select(journal_entry).where(journal_entry.c.journal_id == journal_id, some)
-        found += [entry_of(row) for row in connection.execute(asked).mappings()]
-    return sorted(found, key=lambda entry: entry.uid)
+    entries: list[JournalEntry] = []
+    for first in range(0, len(wanted), _ENTRIES_PER_QUERY):
+        some = journal_entry.c.uid.in_(wanted[first : first + _ENTRIES_PER_QUERY])
+        query = select(journal_entry).where(journal_entry.c.journal_id == journal_id, some)
+        entries += [parse_entry(row) for row in connection.execute(query).mappings()]
+    return sorted(entries, key=lambda entry: entry.uid)
 
 
 def entries_about(connection: Connection, journal_id: str, subject: Subject) -> list[JournalEntry]:
@@ -270,7 +270,7 @@ def entries_about(connection: Connection, journal_id: str, subject: Subject) -> 
     columns = journal_entry.c
     of_subject = (columns.journal_id == journal_id, columns.file == subject[0], columns.test == subject[1])
     rows = connection.execute(select(journal_entry).where(*of_subject)).mappings()
-    return sorted((entry_of(row) for row in rows), key=lambda entry: entry.uid)
+    return sorted((parse_entry(row) for row in rows), key=lambda entry: entry.uid)
 
 
 def shared_journals(here: Connection, there: Connection) -> Iterator[str]:

@@ -7,21 +7,21 @@ from typing import TYPE_CHECKING
 
 from sqlalchemy import Connection, insert, select
 
-from ...._support.errors import StoreError
-from ..cells import FORMS
-from ..journal_entry import DESCRIPTION, NewEntry, insert_entries, next_sequence, number_of_uid, write_entry
-from ..rows import ID_DIGITS, copy_content, damaged, require_whole, store_campaign, stored_chunks
-from ..schema import journal, journal_entry
-from .conflict import divergences, entries_by_uid, heads
+from ..._support.errors import StoreError
+from .conflict import entries_by_uid, entry_index, find_divergences
+from .journal_entry import DESCRIPTION, NewEntry, insert_entries, next_sequence, number_of_uid, write_entry
+from .rows import ID_DIGITS, copy_content, damaged, require_whole, store_campaign, stored_chunks
+from .schema import journal, journal_entry
+from .stored_tables import FORMS
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
     from sqlalchemy import Connection
 
-    from ..journal_entry import JournalEntry
-    from ..rows import StoredCampaign
     from .conflict import Divergence, Side
+    from .journal_entry import JournalEntry
+    from .rows import StoredCampaign
 
 
 def take_campaign(source: Connection, to: Connection, stored: StoredCampaign) -> None:
@@ -50,8 +50,12 @@ def take_journal(source: Connection, to: Connection, journal_id: str) -> int:
     StoreError
         An entry is damaged.
     """
-    of_source, held = heads(source, journal_id), heads(to, journal_id)
-    open_ = {each.subject for each in divergences(source, to, journal_id, of_source, held) if not each.is_agreed}
+    of_source, held = entry_index(source, journal_id), entry_index(to, journal_id)
+    open_ = {
+        divergence.subject
+        for divergence in find_divergences(source, to, journal_id, of_source, held)
+        if not divergence.is_agreed
+    }
     wanted = [uid for uid in of_source.missing_in(held) if of_source.subject[uid] not in open_]
     return len(take_entries(source, to, journal_id, wanted))
 
@@ -68,7 +72,7 @@ def take_entries(source: Connection, to: Connection, journal_id: str, uids: Iter
     if to.execute(select(journal.c.id).where(journal.c.id == journal_id)).first() is None:
         begun_at = source.execute(select(journal.c.begun_at).where(journal.c.id == journal_id)).scalar_one()
         to.execute(insert(journal).values(id=journal_id, begun_at=begun_at))
-    of_source, numbers = heads(source, journal_id).uid, dict(heads(to, journal_id).sequence)
+    of_source, numbers = entry_index(source, journal_id).uid, dict(entry_index(to, journal_id).sequence)
     once_there = select(journal_entry.c.once).where(journal_entry.c.journal_id == journal_id)
     sent = set(to.execute(once_there).scalars())
     next_, taken = next_sequence(to), []
@@ -98,13 +102,13 @@ def settle(here: Connection, there: Connection, divergence: Divergence, side: Si
         )
     numbers = take_entries(there, here, divergence.journal_id, [entry.uid for entry in divergence.there])
     if divergence.subject[0] == DESCRIPTION:
-        _describe_again(here, divergence, side, who)
+        _write_chosen_description(here, divergence, side, who)
     elif side == "here":
         taken = [numbers[entry.uid] for entry in divergence.there]
-        _take_back(here, divergence, taken, _why(divergence.there), who)
+        _undo_entries(here, divergence, taken, _why(divergence.there), who)
     elif side == "there":
         own = [entry.sequence for entry in divergence.here]
-        _take_back(here, divergence, own, _why(divergence.here), who)
+        _undo_entries(here, divergence, own, _why(divergence.here), who)
     elif divergence.kind == "begun twice":
         _rename(here, there, divergence, who)
 
@@ -114,13 +118,13 @@ def _why(others: Iterable[JournalEntry]) -> str:
     return f"stores synchronised, the other side kept{f'; written by {names}' if names else ''}"
 
 
-def _describe_again(here: Connection, divergence: Divergence, side: Side, who: str) -> None:
+def _write_chosen_description(here: Connection, divergence: Divergence, side: Side, who: str) -> None:
     chosen = (divergence.here if side == "here" else divergence.there)[-1]
     entry = NewEntry(action="describe", file=DESCRIPTION, cells=chosen.cells, who=who, why="stores synchronised")
     write_entry(here, divergence.journal_id, entry)
 
 
-def _take_back(here: Connection, divergence: Divergence, numbers: Iterable[int], why: str, who: str) -> None:
+def _undo_entries(here: Connection, divergence: Divergence, numbers: Iterable[int], why: str, who: str) -> None:
     file, test = divergence.subject
     for number in sorted(numbers, reverse=True):
         entry = NewEntry(action="undo", file=file, test=test, about=number, who=who, why=why)
@@ -132,7 +136,7 @@ def _rename(here: Connection, there: Connection, divergence: Divergence, who: st
     file, test = divergence.subject
     name = _free_name(here, there, divergence)
     why = f"stores synchronised; goes on as {name}"
-    _take_back(here, divergence, [entry.sequence for entry in divergence.here], why, who)
+    _undo_entries(here, divergence, [entry.sequence for entry in divergence.here], why, who)
     numbers: dict[int, int] = {}
     for entry in divergence.here:
         about = None if entry.about is None else numbers[entry.about]
@@ -150,8 +154,8 @@ def _renamed_cells(cells: Mapping[str, str], key: str, test: str, name: str) -> 
 
 def _free_name(here: Connection, there: Connection, divergence: Divergence) -> str:
     file, test = divergence.subject
-    subjects = {*heads(here, divergence.journal_id).subject.values()}
-    subjects |= {*heads(there, divergence.journal_id).subject.values()}
+    subjects = {*entry_index(here, divergence.journal_id).subject.values()}
+    subjects |= {*entry_index(there, divergence.journal_id).subject.values()}
     number = 2
     while (file, f"{test} ({number})") in subjects:
         number += 1

@@ -12,13 +12,13 @@ from typing import TYPE_CHECKING, Final
 
 from sqlalchemy import Connection, select
 
-from ...._support.errors import StoreError
-from ..engine import database_errors, reading, writing
-from ..folder import Progress, no_progress
-from ..journal import entered_name
-from ..rows import one_campaign, stored_hashes
-from ..schema import campaign, journal
-from .conflict import Conflict, divergences, entries_by_uid, heads, shared_journals
+from ..._support.errors import StoreError
+from .conflict import Conflict, entries_by_uid, entry_index, find_divergences, shared_journals
+from .engine import database_errors, reading, writing
+from .folder import Progress, no_progress
+from .journal import entered_name
+from .rows import one_campaign, stored_hashes
+from .schema import campaign, journal
 from .transfer import settle, take_campaign, take_journal
 
 if TYPE_CHECKING:
@@ -26,15 +26,15 @@ if TYPE_CHECKING:
 
     from sqlalchemy import Connection
 
-    from ..store import Store
     from .conflict import Divergence, Side
+    from .store import Store
 
 ALL: Final = "all"
 """In place of a conflict's id: every one that is open."""
 
 
 @dataclass(frozen=True, slots=True)
-class Synced:
+class SyncResult:
     """What was done.
 
     Attributes
@@ -70,7 +70,7 @@ def sync(
     keep: Mapping[str, Side] | None = None,
     who: str = "",
     progress: Progress = no_progress,
-) -> Synced:
+) -> SyncResult:
     """Bring each store what the other has; where both wrote about one test and contradict, neither is changed.
 
     Parameters
@@ -104,16 +104,16 @@ class _Sync:
         self._here, self._there = here, there
         self._problems: list[str] = []
 
-    def run(self, chosen: Mapping[str, Side], who: str, progress: Progress) -> Synced:
+    def run(self, chosen: Mapping[str, Side], who: str, progress: Progress) -> SyncResult:
         with database_errors(self._there.path, "could not be synchronised"):
             before = self._names()
-            n_settled = self._settle(chosen, who)
-            given, taken = (self._here, self._there), (self._there, self._here)
-            return Synced(
-                n_campaigns_given=self._carry_campaigns(*given),
-                n_campaigns_taken=self._carry_campaigns(*taken),
-                n_entries_given=self._carry_journals(*given, lambda done, n: progress(done, 2 * n)),
-                n_entries_taken=self._carry_journals(*taken, lambda done, n: progress(n + done, 2 * n)),
+            n_settled = self._settle_conflicts(chosen, who)
+            to_there, to_here = (self._here, self._there), (self._there, self._here)
+            return SyncResult(
+                n_campaigns_given=self._copy_campaigns(*to_there),
+                n_campaigns_taken=self._copy_campaigns(*to_here),
+                n_entries_given=self._copy_journals(*to_there, lambda done, n: progress(done, 2 * n)),
+                n_entries_taken=self._copy_journals(*to_here, lambda done, n: progress(n + done, 2 * n)),
                 n_settled=n_settled,
                 conflicts=self._conflicts(),
                 same_names=tuple(same_names(*before)),
@@ -124,7 +124,7 @@ class _Sync:
         with reading(self._here.engine) as here, reading(self._there.engine) as there:
             return names_of(here), names_of(there)
 
-    def _carry_campaigns(self, source: Store, to: Store) -> int:
+    def _copy_campaigns(self, source: Store, to: Store) -> int:
         with reading(to.engine) as connection:
             held = stored_hashes(connection)
         n_taken = 0
@@ -139,27 +139,27 @@ class _Sync:
                     self._problems.append(f"{source.path}: {error}")
         return n_taken
 
-    def _carry_journals(self, source: Store, to: Store, progress: Progress) -> int:
+    def _copy_journals(self, source: Store, to: Store, progress: Progress) -> int:
         n_taken = 0
         with reading(source.engine) as from_:
             with reading(to.engine) as connection:
                 ids = list(shared_journals(from_, connection))
             for number, id_ in enumerate(ids):
-                with self._sound(id_):
+                with self._collect_damage(id_):
                     with reading(to.engine) as connection:  # where nothing is lacking nobody need wait
-                        is_complete = not heads(from_, id_).missing_in(heads(connection, id_))
+                        is_complete = not entry_index(from_, id_).missing_in(entry_index(connection, id_))
                     if not is_complete:
                         with writing(to.engine) as connection:
                             n_taken += take_journal(from_, connection, id_)
                 progress(number + 1, len(ids))
         return n_taken
 
-    def _settle(self, chosen: Mapping[str, Side], who: str) -> int:
+    def _settle_conflicts(self, chosen: Mapping[str, Side], who: str) -> int:
         """Write down what was chosen, all of it or nothing."""
         if not chosen:
             return 0
         with reading(self._there.engine) as there, writing(self._here.engine) as here:
-            open_ = {each.id: each for each in self._open(here, there)}
+            open_ = {divergence.id: divergence for divergence in self._open(here, there)}
             if unknown := sorted(chosen.keys() - open_.keys() - {ALL}):
                 raise StoreError(
                     f"No open conflict is called {', '.join(unknown)}: one of its sides may have changed. Nothing was "
@@ -175,31 +175,31 @@ class _Sync:
         with reading(self._here.engine) as here, reading(self._there.engine) as there:
             open_ = list(self._open(here, there))
             names = names_of(here).all if open_ else {}
-        return tuple(each.told(names.get(each.journal_id, "")) for each in open_)
+        return tuple(divergence.told(names.get(divergence.journal_id, "")) for divergence in open_)
 
     def _open(self, here: Connection, there: Connection) -> Iterator[Divergence]:
         for id_ in shared_journals(here, there):
-            with self._sound(id_):
-                found = divergences(here, there, id_, heads(here, id_), heads(there, id_))
-                yield from [each for each in found if not each.is_agreed]
+            with self._collect_damage(id_):
+                candidates = find_divergences(here, there, id_, entry_index(here, id_), entry_index(there, id_))
+                yield from [divergence for divergence in candidates if not divergence.is_agreed]
 
     @contextmanager
-    def _sound(self, journal_id: str) -> Iterator[None]:
+    def _collect_damage(self, journal_id: str) -> Iterator[None]:
         """A journal that is damaged is told, with its store, and left as it is; the others go on."""
         try:
             yield
         except StoreError as error:
-            told = [
+            damage = [
                 f"{store.path}: {why}" for store in (self._here, self._there) if (why := _damage(store, journal_id))
             ]
-            self._problems += [each for each in told or [str(error)] if each not in self._problems]
+            self._problems += [message for message in damage or [str(error)] if message not in self._problems]
 
 
 def _damage(store: Store, journal_id: str) -> str:
     """What is wrong with a journal in a store; "" where it is sound."""
     try:
         with reading(store.engine) as connection:
-            entries_by_uid(connection, journal_id, heads(connection, journal_id).subject)
+            entries_by_uid(connection, journal_id, entry_index(connection, journal_id).subject)
     except StoreError as error:
         return str(error)
     return ""
