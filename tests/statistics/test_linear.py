@@ -11,8 +11,10 @@ import numpy.typing as npt
 import pytest
 from tests.coded import Coded, coded, raises
 
-from skisnow._support.errors import FitError, ParameterError
-from skisnow.statistics import linear_fit, polynomial_fit
+from skisnow._support.errors import FitError, FitWarning, ParameterError
+from skisnow.statistics import linear_fit, polynomial_fit, regress
+from skisnow.statistics.bounded import non_negative_fit
+from skisnow.statistics.clusters import cluster_intervals
 from skisnow.statistics.linear import chebyshev_columns, exact_way_back
 
 from ..versions import EXACT_QUANTILES
@@ -213,3 +215,48 @@ def test_columns_are_cosines_and_stay_near_one() -> None:
     inside = np.abs(columns.scaled[:, 1]) <= 1
     angle = np.arccos(columns.scaled[inside, 1])
     np.testing.assert_allclose(columns.scaled[inside, 8], np.cos(8 * angle), atol=1e-13)
+
+
+def filip_like() -> tuple[FloatArray, FloatArray]:
+    """Powers 1 to 10 of 82 points on -9 … -3, the layout of NIST's Filip."""
+    rng = np.random.default_rng(20130)
+    x = np.round(rng.uniform(-9.0, -3.0, 82), 6)
+    return np.sin(x), np.stack([x**j for j in range(1, 11)], axis=1)
+
+
+def wampler5() -> tuple[FloatArray, FloatArray]:
+    """NIST's Wampler5: 1 + x + … + x⁵ on 0 … 20 plus 100,000 times the deviations of Wampler4 over 100."""
+    x = np.arange(21.0)
+    delta = [759, -2048, 2048, -2048, 2523, -2048, 2048, -2048, 1838, -2048, 2048]
+    deviation = np.array([*delta, *delta[-2::-1]], dtype=float)
+    return sum(x**j for j in range(6)) + 100.0 * deviation, np.stack([x**j for j in range(1, 6)], axis=1)
+
+
+def with_ones(predictors: FloatArray) -> FloatArray:
+    return np.column_stack((np.ones(len(predictors)), predictors))
+
+
+@pytest.mark.parametrize("data", [filip_like, wampler5])
+def test_every_linear_regression_warns_by_the_condition_number(
+    data: Callable[[], tuple[FloatArray, FloatArray]],
+) -> None:
+    y, X = data()
+    regressions: tuple[Callable[[], object], ...] = (
+        lambda: linear_fit(y, X),
+        lambda: regress(y, with_ones(X)),
+        lambda: cluster_intervals(y, X, np.arange(len(y)) % 3),
+        lambda: non_negative_fit(X[:, -5:], y),
+    )
+    for fit in regressions:
+        with pytest.warns(FitWarning, match="condition number"):
+            fit()
+
+
+def test_wampler5_has_the_coefficients_of_its_design_to_the_digits_that_are_left(digits: Callable[..., float]) -> None:
+    """All six certified coefficients are 1, the residual standard deviation is 0.2369 million."""
+    y, X = wampler5()
+    with pytest.warns(FitWarning):
+        fit = linear_fit(y, X)
+    assert digits(fit.coefficients, np.ones(6)) > 6.0
+    assert fit.rmse_dof == pytest.approx(236_014.502, rel=1e-6)
+    assert digits(polynomial_fit(np.arange(21.0), y, 5).coefficients, np.ones(6)) > 8.0

@@ -15,7 +15,7 @@ import numpy as np
 
 from .._support.errors import ParameterError
 from .._support.messages import Message
-from .least_squares import BoolArray, FloatArray, as_predictors, as_response
+from .least_squares import BoolArray, FloatArray, as_predictors, as_response, warn_if_ill_conditioned
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -79,6 +79,11 @@ def non_negative_fit(
     ParameterError
         If shapes do not fit, values are not finite, a weight is below zero, or p is not between 1 and 6.
 
+    Warns
+    -----
+    FitWarning
+        If the condition number of the columns is above 1,000: the coefficients lose digits.
+
     Notes
     -----
     The design is scaled by columns and factorised as QR; all sets of active bounds are solved in the triangle.
@@ -93,7 +98,9 @@ def non_negative_fit(
     """
     y = as_response(response)
     A = as_predictors(design, len(y))
-    found = condensed(A, y, weights=weights).solved()
+    few = condensed(A, y, weights=weights)
+    warn_if_ill_conditioned(few.design)
+    found = few.solved()
     residuals = y - A @ found.coefficients
     sse = float(np.sum((_root_weights(weights, len(y)) * residuals) ** 2))
     return NonNegativeFit(found.coefficients, found.coefficients == 0.0, sse, residuals, found.rank)

@@ -14,7 +14,15 @@ import numpy as np
 from .._support.errors import ParameterError
 from .._support.messages import Message
 from .combined_uncertainty import expanded_factor, require_confidence
-from .least_squares import Factorisation, as_predictors, as_response, centre, factorise, standardised
+from .least_squares import (
+    Factorisation,
+    as_predictors,
+    as_response,
+    centre,
+    factorise,
+    standardised,
+    warn_if_ill_conditioned,
+)
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -70,6 +78,11 @@ def cluster_intervals(
     ParameterError, FitError
         As `linear_fit`.
 
+    Warns
+    -----
+    FitWarning
+        As `linear_fit`.
+
     Notes
     -----
     Intervals are NaN with fewer than two clusters, for n ≤ p, and for a coefficient that is lost when one of the
@@ -101,7 +114,9 @@ def cluster_intervals(
             code="wrong_shape",
         )
     names, cluster = np.unique(labels, return_inverse=True)
-    fit = factorise(standardised(X, intercept=intercept))
+    columns = standardised(X, intercept=intercept)
+    warn_if_ill_conditioned(columns.scaled)
+    fit = factorise(columns)
     shifted, middle = centre(y) if intercept else (y, np.zeros(()))
     coefficients, residuals = fit.solve(shifted)
     if intercept:

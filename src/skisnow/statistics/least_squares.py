@@ -6,14 +6,15 @@ carried back to the columns as given. No normal equations: they would square the
 
 from __future__ import annotations
 
+import warnings
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, TypeAlias, TypedDict
+from typing import TYPE_CHECKING, Final, TypeAlias, TypedDict
 
 import numpy as np
 import numpy.typing as npt
 from scipy.linalg import qr, solve_triangular
 
-from .._support.errors import FitError, ParameterError
+from .._support.errors import FitError, FitWarning, ParameterError
 from .._support.messages import Message
 from .combined_uncertainty import expanded_factor
 
@@ -24,6 +25,8 @@ FloatArray: TypeAlias = npt.NDArray[np.float64]
 IntArray: TypeAlias = npt.NDArray[np.int64]
 BoolArray: TypeAlias = npt.NDArray[np.bool_]
 
+CONDITION_LIMIT: Final = 1e3
+"""Of centred columns of unit length. NIST's Longley has 110 and keeps 13 digits; Wampler5 has 1,600 and keeps 8."""
 _EPS = float(np.finfo(float).eps)
 _ROUNDING = 4.0 * _EPS
 """A column whose spread is not above this share of its size is constant but for rounding."""
@@ -179,6 +182,26 @@ def factorise(columns: Columns) -> Factorisation:
     inverse = np.empty((p, p))
     inverse[order] = solve_triangular(R, np.eye(p))
     return Factorisation(Q, columns.back @ inverse, columns.scaled, columns.back, inverse)
+
+
+def warn_if_ill_conditioned(columns: FloatArray, *, limit: float = CONDITION_LIMIT) -> None:
+    """Warn where columns of unit length have a condition number κ above ``limit``.
+
+    Rounding of 2⁻⁵³ moves the coefficients by up to κ times as much, with large residuals by up to κ² times (Björck
+    1996, Numerical Methods for Least Squares Problems, section 1.4).
+    """
+    length = np.linalg.norm(columns, axis=0)
+    condition = float(np.linalg.cond(columns / np.where(length > 0, length, 1.0)))
+    if limit < condition < 1.0 / _EPS:
+        message = Message(
+            "The condition number of the predictors is {condition}, above {limit}: they nearly depend on each other. "
+            "The coefficients have at most {digits} correct digits, fewer where the residuals are large. "
+            "Fit powers of one predictor with polynomial_fit, or omit a predictor.",
+            condition=f"{condition:.1e}",
+            limit=f"{limit:.0e}",
+            digits=f"{-np.log10(_EPS * condition):.0f}",
+        )
+        warnings.warn(FitWarning(message, code="ill_conditioned"), stacklevel=4)
 
 
 class Spread(TypedDict):

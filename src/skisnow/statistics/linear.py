@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
@@ -17,10 +17,22 @@ from .._support.errors import ParameterError
 from .._support.messages import Message
 from .combined_uncertainty import require_confidence
 from .f_tests import f_ratio, f_tail
-from .least_squares import Columns, FloatArray, as_predictors, as_response, centre, factorise, spread, standardised
+from .least_squares import (
+    Columns,
+    FloatArray,
+    as_predictors,
+    as_response,
+    centre,
+    factorise,
+    spread,
+    standardised,
+    warn_if_ill_conditioned,
+)
 
 if TYPE_CHECKING:
     import numpy.typing as npt
+_CHEBYSHEV_LIMIT: Final = 1e5
+"""Of the condition number of Chebyshev polynomials: at 3·10⁴ the coefficients of the powers keep 9 digits."""
 Polynomial = list[Fraction]
 """Coefficients in ascending powers."""
 
@@ -91,6 +103,11 @@ def linear_fit(
     FitError
         If n < p, or a predictor does not vary or follows from the others.
 
+    Warns
+    -----
+    FitWarning
+        If the condition number of the centred and scaled predictors is above 1,000: the coefficients lose digits.
+
     Notes
     -----
     Columns are centred and scaled and factorised as QR; no normal equations. Without an intercept R², F and p stay NaN:
@@ -108,6 +125,7 @@ def linear_fit(
     y = as_response(response)
     X = as_predictors(predictors, len(y))
     columns = standardised(X, intercept=intercept)
+    warn_if_ill_conditioned(columns.scaled)
     return _fit(y, columns, intercept=intercept, confidence=confidence)
 
 
@@ -141,6 +159,7 @@ def polynomial_fit(x: npt.ArrayLike, y: npt.ArrayLike, degree: int, *, confidenc
     require_confidence(confidence)
     response = as_response(y)
     columns = chebyshev_columns(as_predictors(x, len(response)), degree)
+    warn_if_ill_conditioned(columns.scaled, limit=_CHEBYSHEV_LIMIT)
     return _fit(response, columns, intercept=True, confidence=confidence)
 
 

@@ -11,7 +11,15 @@ from .._support.errors import FitError, FitWarning, ParameterError
 from .._support.messages import Message
 from .combined_uncertainty import expanded_factor, require_confidence
 from .f_tests import f_ratio, f_tail
-from .least_squares import Columns, Factorisation, factorise, independent_columns, require_finite, standardised
+from .least_squares import (
+    Columns,
+    Factorisation,
+    factorise,
+    independent_columns,
+    require_finite,
+    standardised,
+    warn_if_ill_conditioned,
+)
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -72,6 +80,8 @@ def regress(y: npt.ArrayLike, X: npt.ArrayLike, alpha: float = 0.05) -> Regress:
     UserWarning
         If no combination of the columns of X is constant: R², F and p are wrong then (R² can be negative).
         If the columns of X depend on each other: b is 0 for those left out.
+    FitWarning
+        If the condition number of the columns is above 1,000: b loses digits.
 
     See Also
     --------
@@ -160,6 +170,7 @@ def _factorised(design: FloatArray) -> Factorisation:
             stacklevel=3,
         )
     part = Columns(columns.scaled[:, kept], columns.back[:, kept], tuple(columns.names[j] for j in kept))
+    warn_if_ill_conditioned(part.scaled)
     return factorise(part)
 
 
