@@ -97,7 +97,7 @@ OUTSIDE = """<!DOCTYPE b [<!ENTITY a SYSTEM "file:///etc/passwd">]><SnowProfile>
         (OUTSIDE, "document type"),
         ("<a>" * 100 + "</a>" * 100, "within each other"),
         ("<SnowProfile>", "damaged"),
-        ("", "no XML"),
+        ("", "not XML"),
         ("<SnowProfile/>", "SnowProfile of no namespace"),
         ('<gpx xmlns="http://www.topografix.com/GPX/1/1"/>', "gpx"),
     ],
@@ -114,8 +114,8 @@ def test_bombs_and_foreign_files_are_refused(tmp_path: Path, content: str, words
     [
         ({"time": ""}, "the pit has none"),
         ({"time": "yesterday"}, "'yesterday' is no such time"),
-        ({"layers": (SnowLayer(0.0, hardness="very hard"),)}, "hand hardness 'very hard'"),
-        ({"layers": (SnowLayer(0.0, grain_form="piste"),)}, "grain form 'piste'"),
+        ({"layers": (SnowLayer(0.0, hardness="very hard"),)}, "hand hardness: 'very hard'"),
+        ({"layers": (SnowLayer(0.0, grain_form="piste"),)}, "grain form: 'piste'"),
         ({"temperatures": (DepthTemperature(0.0, 1.5),)}, "up to 0 °C"),
     ],
 )

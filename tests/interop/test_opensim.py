@@ -332,7 +332,7 @@ def test_what_c3d_cannot_hold_is_refused(tmp_path: Path, monkeypatch: pytest.Mon
 
     with monkeypatch.context() as without:
         without.setitem(sys.modules, "ezc3d", None)
-        with pytest.raises(ParameterError, match=r"a \.c3d file that is to be written needs ezc3d"):
+        with pytest.raises(ParameterError, match=r"needs ezc3d"):
             write_c3d(at(TIME), out)
     monkeypatch.setitem(sys.modules, "ezc3d", SimpleNamespace())  # nothing is made before all is checked
     for markers, words in (

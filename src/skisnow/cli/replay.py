@@ -8,6 +8,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
+from .._support.messages import Message
 from .options import add_fall_line_azimuth, add_language, number
 from .progress import announced
 
@@ -91,13 +92,20 @@ def _beside(options: argparse.Namespace, shown: Replay) -> ReplayTrack:
     if track.axes == "east_north_up":
         if azimuth is None:
             raise ParameterError(
-                f"{options.track} is in latitude and longitude: say with --fall-line-azimuth-deg in which compass "
-                "direction the slope falls"
+                Message(
+                    "{track} is in latitude and longitude: say with --fall-line-azimuth-deg in which compass "
+                    "direction the slope falls",
+                    track=options.track,
+                ),
+                code="missing",
             )
         angle = shown.tilt if shown.profile is None else None
         track = in_slope_frame(track, fall_line_azimuth=azimuth * DEGREE, slope_angle=angle, missing_height="on_slope")
     elif azimuth is not None:
-        raise ParameterError(f"{options.track} is in the axes of the slope already: leave the direction out")
+        raise ParameterError(
+            Message("{track} is in the axes of the slope already: leave the direction out", track=options.track),
+            code="contradiction",
+        )
     return measured_track(track, starts_at=options.starts_at_s)
 
 

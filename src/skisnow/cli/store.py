@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 from .._support.errors import StoreError
+from .._support.messages import Message
 from .progress import Progress
 
 if TYPE_CHECKING:
@@ -142,7 +143,10 @@ def _export_entered(store: Store, head: JournalHead, args: argparse.Namespace) -
     from ..campaign.store import export_entered
 
     if args.as_added:
-        raise StoreError(f"The campaign {head.id} consists of lab entries and has no stored files. Omit --as-added.")
+        raise StoreError(
+            Message("The campaign {id} consists of lab entries and has no stored files. Omit --as-added.", id=head.id),
+            code="no_data",
+        )
     export_entered(store, head.id, args.out)
     return {**asdict(head), "out": str(args.out)}, f"{_entered_line(head)}, written to {args.out}", 0
 
@@ -178,7 +182,12 @@ def _group_place(given: str) -> StorePlace:
 
     place = store_place(given)
     if isinstance(place, Path) and not place.parent.is_dir():
-        raise StoreError(f"{place.parent} is not there; is the disk or stick with the group's store plugged in?")
+        raise StoreError(
+            Message(
+                "{parent} is not there; is the disk or stick with the group's store plugged in?", parent=place.parent
+            ),
+            code="wrong_kind",
+        )
     return place
 
 

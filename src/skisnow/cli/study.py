@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from .._support.errors import ParameterError
+from .._support.messages import Message
 from .ending import Ended, ending_is_an_interrupt
 from .options import MOST_WORKERS, add_language, add_scheduler, scheduler_of, whole_number
 from .progress import Progress
@@ -65,7 +66,10 @@ def _whole(options: argparse.Namespace, study: Study) -> int:
     from ..studies import run_study
 
     if options.figure is not None and "turn_radius_boot_m" not in study.columns:
-        raise ParameterError("--figure draws maps of carved turns; for simulated runs leave it out and use the table")
+        raise ParameterError(
+            Message("--figure draws maps of carved turns; for simulated runs leave it out and use the table"),
+            code="not_supported",
+        )
     executor = scheduler_of(options)
     _tell_state(study)
     try:
@@ -85,7 +89,9 @@ def _shard(options: argparse.Namespace, study: Study) -> int:
     from ..studies import Shard, run_shard
 
     if options.figure is not None:
-        raise ParameterError("--figure needs the whole table; draw it when the parts are put together")
+        raise ParameterError(
+            Message("--figure needs the whole table; draw it when the parts are put together"), code="missing"
+        )
     shard = Shard.of(options.shard)
     executor = scheduler_of(options)
     try:

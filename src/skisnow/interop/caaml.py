@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Final
 from xml.sax.saxutils import escape, quoteattr
 
 from .._support.errors import ParameterError
+from .._support.messages import Message
 from .._support.staging import write_file
 from .._support.units import CM, MM
 from ..campaign.caaml import OWN_NAMESPACE
@@ -140,7 +141,13 @@ def _density(sample: LayerDensity) -> str:
 
 def _temperature(observed: DepthTemperature) -> str:
     if observed.temperature_C > 0.0:
-        raise ParameterError(f"snow at {observed.temperature_C:g} °C cannot be written: CAAML allows up to 0 °C")
+        raise ParameterError(
+            Message(
+                "snow at {temperature_c:g} °C cannot be written: CAAML allows up to 0 °C",
+                temperature_c=observed.temperature_C,
+            ),
+            code="cannot_write",
+        )
     temperature = _text("snowTemp", _number(observed.temperature_C), uom="degC")
     return _nested("Obs", _cm("depth", observed.depth) + temperature)
 
@@ -209,14 +216,30 @@ def _number(value: float) -> str:
 
 def _require(what: str, value: str, allowed: frozenset[str] | tuple[str, ...]) -> None:
     if value not in allowed:
-        raise ParameterError(f"the {what} {value!r} cannot be written: CAAML knows {', '.join(sorted(allowed))}")
+        raise ParameterError(
+            Message(
+                "{field}: {value!r} cannot be written: CAAML knows {allowed}",
+                field=what,
+                value=value,
+                allowed=sorted(allowed),
+            ),
+            code="cannot_write",
+        )
 
 
 def _moment(time: str) -> str:
     if not _TIME.fullmatch(time):
-        found = f"{time!r} is no such time" if time else "the pit has none"
-        raise ParameterError(
-            f"CAAML demands a day such as 2026-11-23 or a time such as 2026-11-23T09:10, and {found}: give it with "
-            "--time"
+        problem = (
+            Message(
+                "CAAML demands a day such as 2026-11-23 or a time such as 2026-11-23T09:10, and {time!r} is no such "
+                "time: give it with --time",
+                time=time,
+            )
+            if time
+            else Message(
+                "CAAML demands a day such as 2026-11-23 or a time such as 2026-11-23T09:10, and the pit has none: give "
+                "it with --time"
+            )
         )
+        raise ParameterError(problem, code="missing")
     return f"{time}:00" if re.fullmatch(r"[^T]+T\d\d:\d\d", time) else time

@@ -10,11 +10,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from .._support.errors import OutputError, ParameterError
+from .._support.messages import Message, joined
 from ..campaign import read_campaign, read_snow_micro_pen
 from ..campaign.caaml import read_caaml
 from ..campaign.smet import read_smet
 from ..campaign.snow_pit import ForceProfile, SnowPit
-from ..parameters import meant
+from ..parameters import nearest
 from .caaml import write_caaml
 from .opensim import read_c3d, read_motion, read_trc, write_c3d, write_motion, write_trc
 from .site_pit import site_pit, sites_of
@@ -88,12 +89,27 @@ def convert(source: str | Path, target: str | Path, options: ConvertOptions | No
     kinds = _kind(source), _kind(target)
     made = CONVERSIONS.get(kinds)
     if made is None:
-        raise ParameterError(f"{kinds[0]} to {kinds[1]} is not known. Known are {known_conversions()}")
+        raise ParameterError(
+            Message(
+                "{source} to {target} is not known. Known are {known}",
+                source=kinds[0],
+                target=kinds[1],
+                known=known_conversions(),
+            ),
+            code="unknown_name",
+        )
     if source.resolve() == target.resolve():
-        raise OutputError(f"{target} is the file that is read; give the new one another name")
+        raise OutputError(
+            Message("{target} is the file that is read; give the new one another name", target=target), code="same_file"
+        )
     options = options or ConvertOptions()
     if options.forces is not None and kinds[1] != ENDINGS[".c3d"]:
-        raise ParameterError(f"forces go into a .c3d file beside its markers; {target} is none. Leave --forces out")
+        raise ParameterError(
+            Message(
+                "forces go into a .c3d file beside its markers; {target} is none. Leave --forces out", target=target
+            ),
+            code="wrong_ending",
+        )
     return made(source, target, options)
 
 
@@ -107,10 +123,8 @@ def _kind(path: Path) -> str:
         return CAMPAIGN
     ending = path.suffix.lower()
     if ending not in ENDINGS:
-        hint = meant(ending, ENDINGS)
-        raise ParameterError(
-            f"the ending of {path} tells no format. {hint}Known are {', '.join(ENDINGS)}, and a folder"
-        )
+        problem = Message("the ending of {path} tells no format; a folder is a campaign.", path=path)
+        raise ParameterError(joined([problem, nearest(ending, ENDINGS)]), code="wrong_ending")
     return ENDINGS[ending]
 
 
@@ -120,7 +134,15 @@ def _pit_of_campaign(source: Path, options: ConvertOptions) -> SnowPit:
     campaign = read_campaign(source)
     sites = sites_of(campaign)
     if options.site is None and len(sites) != 1:
-        raise ParameterError(f"{source} has {len(sites)} sites; name one with --site: {', '.join(sites)}")
+        raise ParameterError(
+            Message(
+                "{source} has {n_sites} sites; name one with --site: {sites}",
+                source=source,
+                n_sites=len(sites),
+                sites=list(sites),
+            ),
+            code="missing",
+        )
     site = sites[0] if options.site is None else options.site
     return site_pit(analyse(campaign, n_resamples=FEWEST_RESAMPLES), site)  # no bootstrap is in a mean's interval
 

@@ -12,6 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .._support.errors import ParameterError
+from .._support.messages import Message
 from .._support.staging import write_file
 from ..contact import SnowContact
 from ..ski import Ski
@@ -62,12 +63,23 @@ def ski_mjcf(
     alone: they collide with nothing.
     """
     if segments < 4:
-        raise ParameterError(f"ski_mjcf: segments is {segments!r}; it must be 4 or more")
+        raise ParameterError(
+            Message("ski_mjcf: segments is {segments!r}; it must be 4 or more", segments=segments), code="out_of_range"
+        )
     length = float(ski.station[0] - ski.station[-1])
     if not 0.0 < clamp_length < length:
-        raise ParameterError(f"ski_mjcf: clamp_length is {clamp_length!r} m; it must be above 0 and below {length:g}")
+        raise ParameterError(
+            Message(
+                "ski_mjcf: clamp_length is {clamp_length!r} m; it must be above 0 and below {length:g}",
+                clamp_length=clamp_length,
+                length=length,
+            ),
+            code="out_of_range",
+        )
     if not (np.isfinite(damping) and damping >= 0.0):
-        raise ParameterError(f"ski_mjcf: damping is {damping!r} s; it must be 0 or more")
+        raise ParameterError(
+            Message("ski_mjcf: damping is {damping!r} s; it must be 0 or more", damping=damping), code="out_of_range"
+        )
     half, (tip, tail) = clamp_length / 2.0, (float(ski.station[0]), float(ski.station[-1]))
     front = round(segments * (tip - half) / (length - clamp_length))
     chains = (
@@ -102,7 +114,9 @@ def write_ski_mjcf(ski: Ski, path: str | Path, *, segments: int = SEGMENTS) -> P
         The place cannot be written.
     """
     if Path(path).suffix.lower() != ".xml":
-        raise ParameterError(f"{path} does not end in .xml, as MJCF does; name it so")
+        raise ParameterError(
+            Message("{path} does not end in .xml, as MJCF does; name it so", path=path), code="wrong_ending"
+        )
     write_file(path, ski_mjcf(ski, segments=segments))
     return Path(path)
 
@@ -203,14 +217,24 @@ class SnowForces:
         try:
             import mujoco
         except ImportError:
-            raise ParameterError("MuJoCo is not installed: pip install mujoco") from None
+            raise ParameterError(Message("MuJoCo is not installed: pip install mujoco"), code="wrong_kind") from None
         self._engine: Any = mujoco
         if len(sites) != len(contact.runners):
-            raise ParameterError(f"SnowForces: {len(sites)} sites for {len(contact.runners)} runners; each needs one")
+            raise ParameterError(
+                Message(
+                    "SnowForces: {n_sites} sites for {n_runners} runners; each needs one",
+                    n_sites=len(sites),
+                    n_runners=len(contact.runners),
+                ),
+                code="wrong_shape",
+            )
         if any(runner.nodes is not None for runner in contact.runners):
-            raise ParameterError("SnowForces: a site has no beam; its runner has to be rigid")
+            raise ParameterError(Message("SnowForces: a site has no beam; its runner has to be rigid"), code="no_data")
         if model.opt.integrator == mujoco.mjtIntegrator.mjINT_RK4:
-            raise ParameterError("SnowForces: RK4 asks for forces at times that are not accepted; take Euler")
+            raise ParameterError(
+                Message("SnowForces: RK4 asks for forces at times that are not accepted; take Euler"),
+                code="not_supported",
+            )
         self._sites = [self._site(model, name) for name in sites]
         self.model, self.contact = model, contact
         self._fresh, self._accepted = contact.state(), None
@@ -223,7 +247,10 @@ class SnowForces:
         found = int(self._engine.mj_name2id(model, self._engine.mjtObj.mjOBJ_SITE, name))
         if found < 0:
             names = ", ".join(model.site(i).name for i in range(model.nsite))
-            raise ParameterError(f"SnowForces: there is no site {name}; there are {names or 'none'}")
+            raise ParameterError(
+                Message("SnowForces: there is no site {name}; there are {known}", name=name, known=names or "-"),
+                code="unknown_name",
+            )
         return found
 
     def __call__(self, model: Any, data: Any) -> None:

@@ -6,6 +6,7 @@ import math
 from typing import TYPE_CHECKING, Final
 
 from .._support.errors import ParameterError
+from .._support.messages import Message
 from .._support.units import MM
 from ..campaign.snow_pit import DepthTemperature, ForceProfile, LayerDensity, PlateValue, SnowPit
 from ..estimation.observations import HARDNESS_KEY, STRESS_KEY
@@ -37,7 +38,10 @@ def site_pit(analysis: Analysis, site: str) -> SnowPit:
     campaign = analysis.campaign
     sites = {name for table in _tables(campaign) for name in table[0]}
     if site not in sites:
-        raise ParameterError(f"{campaign.name} has no site {site!r}; it has {', '.join(sorted(sites))}")
+        raise ParameterError(
+            Message("{name} has no site {site!r}; it has {sites}", name=campaign.name, site=site, sites=sorted(sites)),
+            code="no_data",
+        )
     temperatures, air = _notes(campaign, site, "snow_temperature_C"), _notes(campaign, site, "air_temperature_C")
     densities = () if campaign.density is None else tuple(_densities(campaign, site))
     profiles = tuple(_recordings(analysis, site))

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from .._support.errors import ParameterError
+from .._support.messages import Message
 from .._support.staging import write_file
 from ..estimation.weather import QUANTITIES
 
@@ -47,7 +48,10 @@ def write_weather_csv(series: StationSeries, path: str | Path) -> Path:
     known = {key: made for key, made in QUANTITIES.items() if made[0] in series.fields}
     if not known:
         wanted = ", ".join(name for name, *_ in QUANTITIES.values())
-        raise ParameterError(f"{series.file} has none of the fields {wanted}; nothing was written")
+        raise ParameterError(
+            Message("{file} has none of the fields {wanted}; nothing was written", file=series.file, wanted=wanted),
+            code="no_data",
+        )
     columns = [(series.fields[name] * factor + offset).tolist() for name, factor, offset in known.values()]
     rows = (
         ",".join((when, *("" if math.isnan(value) else f"{value:.10g}" for value in values)))
@@ -81,7 +85,15 @@ def _smet(series: StationSeries) -> Iterator[str]:
     columns = [column.tolist() for column in series.fields.values()]
     for when, *values in zip(_times(series, zone=False), *columns, strict=True):
         if NO_DATA in values:
-            raise ParameterError(f"{series.file} has a value of {NO_DATA:g} at {when}, which stands for none in SMET")
+            raise ParameterError(
+                Message(
+                    "{file} has a value of {no_data:g} at {when}, which stands for none in SMET",
+                    file=series.file,
+                    no_data=NO_DATA,
+                    when=when,
+                ),
+                code="out_of_range",
+            )
         yield " ".join((when, *(f"{NO_DATA if math.isnan(value) else value:.10g}" for value in values)))
 
 

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from .._support.errors import ParameterError
+from .._support.messages import Message
 from .._support.staging import write_file
 from .._support.units import CM, MM
 
@@ -54,12 +55,19 @@ def write_snowex_pit(pit: SnowPit, path: str | Path) -> tuple[Path, ...]:
     height = pit.snow_height
     if height is None:
         raise ParameterError(
-            f"SnowEx counts heights from the ground, and the snow height of {pit.name!r} is not known: "
-            "give it with --snow-height-cm"
+            Message(
+                "SnowEx counts heights from the ground, and the snow height of {name!r} is not known: "
+                "give it with --snow-height-cm",
+                name=pit.name,
+            ),
+            code="unknown_name",
         )
     found = {name: (columns, rows) for name, columns, rows in _tables(pit, height) if rows}
     if not found:
-        raise ParameterError(f"{pit.name!r} has no layers, densities or temperatures; nothing was written")
+        raise ParameterError(
+            Message("{name!r} has no layers, densities or temperatures; nothing was written", name=pit.name),
+            code="no_data",
+        )
     written = []
     for name, (columns, rows) in found.items():
         written.append(path.with_name(f"{path.stem}_{name}.csv"))

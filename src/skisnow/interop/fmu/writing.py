@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Final
 
 from ..._support.errors import ParameterError
+from ..._support.messages import Message
 from ..._support.staging import write_file
 from ...contact import c_library
 from ...scenario import Scenario
@@ -60,7 +61,9 @@ def write_contact_fmu(scenario: Scenario, path: str | Path, *, fmi: Version = 2,
     """
     _require(path, fmi)
     if skis not in (1, 2):
-        raise ParameterError(f"skis is {skis!r}; an FMU of the contact has 1 or 2")
+        raise ParameterError(
+            Message("skis is {skis!r}; an FMU of the contact has 1 or 2", skis=skis), code="out_of_range"
+        )
     return _write(contact_model(scenario, skis=skis, step=STEP["contact"]), Path(path), fmi)
 
 
@@ -99,11 +102,22 @@ def write_sledge_fmu(scenario: Scenario, path: str | Path, *, fmi: Version = 2) 
 def _require(path: str | Path, fmi: int) -> None:
     """Refuse before the work what cannot be."""
     if Path(path).suffix.lower() != ENDING:
-        raise ParameterError(f"{path} does not end in {ENDING}, by which programs know an FMU; name it so")
+        raise ParameterError(
+            Message(
+                "{path} does not end in {ending}, by which programs know an FMU; name it so", path=path, ending=ENDING
+            ),
+            code="wrong_ending",
+        )
     if fmi not in FOLDERS:
-        raise ParameterError(f"fmi is {fmi!r}; FMUs are written for version 2 or 3 of the standard")
+        raise ParameterError(
+            Message("fmi is {fmi!r}; FMUs are written for version 2 or 3 of the standard", fmi=fmi),
+            code="unknown_name",
+        )
     if not sys.platform.startswith("linux") or platform.machine() != "x86_64":
-        raise ParameterError("FMUs are written on Linux on x86-64, for which alone their library is built")
+        raise ParameterError(
+            Message("FMUs are written on Linux on x86-64, for which alone their library is built"),
+            code="not_supported",
+        )
 
 
 def _write(model: Model, path: Path, fmi: Version) -> Path:

@@ -12,6 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..._support.errors import ParameterError
+from ..._support.messages import Message
 from ..._support.nearest import require_choice
 from ..._support.units import DEGREE
 from ...geometry.boot_axes import angles_of
@@ -93,14 +94,27 @@ def _seen(markers: Markers, name: str) -> FloatArray:
     if unseen.any():
         first = float(markers.time[int(np.argmax(unseen))])
         raise ParameterError(
-            f"marker {name} was not seen in {int(unseen.sum())} frames, first at {first:g} s; fill the gaps before"
+            Message(
+                "marker {name} was not seen in {count} frames, first at {first:g} s; fill the gaps before",
+                name=name,
+                count=int(unseen.sum()),
+                first=first,
+            ),
+            code="gap",
         )
     far = ~(np.abs(place) <= LARGEST).all(axis=1)
     if far.any():
         first = float(markers.time[int(np.argmax(far))])
         raise ParameterError(
-            f"marker {name} is beyond ±{LARGEST:g} m in {int(far.sum())} frames, first at {first:g} s. Correct the "
-            "numbers, or the unit of the file."
+            Message(
+                "marker {name} is beyond ±{largest:g} m in {count} frames, first at {first:g} s. Correct "
+                "the numbers, or the unit of the file.",
+                name=name,
+                largest=LARGEST,
+                count=int(far.sum()),
+                first=first,
+            ),
+            code="out_of_range",
         )
     return place
 
@@ -109,7 +123,13 @@ def _unit(vectors: FloatArray, of: BootMarkers) -> FloatArray:
     length = np.linalg.norm(vectors, axis=1, keepdims=True)
     if not np.all(length > 1e-9):
         raise ParameterError(
-            f"markers {of.heel}, {of.toe} and {of.left} lie on one line; three that span a plane are needed"
+            Message(
+                "markers {heel}, {toe} and {left} lie on one line; three that span a plane are needed",
+                heel=of.heel,
+                toe=of.toe,
+                left=of.left,
+            ),
+            code="out_of_range",
         )
     return np.asarray(vectors / length)
 

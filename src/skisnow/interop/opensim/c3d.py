@@ -57,7 +57,10 @@ def read_c3d(path: str | Path) -> Markers:
     except GivenError:
         raise
     except ParameterError as error:
-        raise ParameterError(f"{path} cannot be read as .c3d: {error}. Export it again") from error
+        raise ParameterError(
+            Message("{path} cannot be read as .c3d: {error}. Export it again", path=path, error=error),
+            code="cannot_read",
+        ) from error
     about = {name: values for (group, name), values in content.parameters.items() if group == "POINT"}
     rate, first, points = content.rate, content.first_frame, content.points
     labels, units = _labels_and_units(about)
@@ -65,15 +68,27 @@ def read_c3d(path: str | Path) -> Markers:
     names = labels[: points.shape[1]]
     columns = [i for i, name in enumerate(names) if not _is_quantity(name, quantities)]
     if not columns:
-        raise ParameterError(f"{path}: it has no markers. Allowed: at least one name in POINT:LABELS with a place.")
+        raise ParameterError(
+            Message("{path}: it has no markers. Allowed: at least one name in POINT:LABELS with a place.", path=path),
+            code="out_of_range",
+        )
     unknown = next((i for i in columns if units[i] not in METRES), None)
     if unknown is not None:
         raise ParameterError(
-            f"{path}: marker {names[unknown]} is in {units[unknown]!r}. Allowed: {', '.join(METRES)}. Export the "
-            "markers in one of these units."
+            Message(
+                "{path}: marker {name} is in {unit!r}. Allowed: {metres}. Export the markers in one of these units.",
+                path=path,
+                name=names[unknown],
+                unit=units[unknown],
+                metres=list(METRES),
+            ),
+            code="out_of_range",
         )
     if not (np.isfinite(rate) and rate > 0.0):
-        raise ParameterError(f"{path}: its rate is {rate:g} Hz. Allowed: above 0. Export the file again.")
+        raise ParameterError(
+            Message("{path}: its rate is {rate:g} Hz. Allowed: above 0. Export the file again.", path=path, rate=rate),
+            code="out_of_range",
+        )
     sizes = np.array([METRES[units[i]] for i in columns])
     place = points[:, columns] * sizes[:, None]
     time = (first + np.arange(len(place))) / rate
@@ -81,7 +96,7 @@ def read_c3d(path: str | Path) -> Markers:
     try:
         return Markers(time, tuple(names[i] for i in columns), np.ascontiguousarray(place), rate, omitted)
     except ParameterError as error:
-        raise ParameterError(f"{path}: {error}") from error
+        raise ParameterError(Message("{path}: {problem}", path=path, problem=error), code="damaged") from error
 
 
 def _labels_and_units(about: Mapping[str, Values]) -> tuple[list[str], list[str]]:
@@ -131,7 +146,9 @@ def write_c3d(markers: Markers, path: str | Path, *, forces: MotionTable | None 
     """
     path = Path(path)
     if path.suffix.lower() != ENDING:
-        raise ParameterError(f"{path} does not end in {ENDING}; name it so")
+        raise ParameterError(
+            Message("{path} does not end in {ending}; name it so", path=path, ending=ENDING), code="wrong_ending"
+        )
     ezc3d = _ezc3d(path)
     rate, n = markers.rate, len(markers.time)
     first = round(float(markers.time[0]) * rate)
@@ -139,8 +156,15 @@ def write_c3d(markers: Markers, path: str | Path, *, forces: MotionTable | None 
     _require_names(path, "markers", markers.names)
     if first < 0 or first + n > MOST_FRAMES:
         raise ParameterError(
-            f"{path}: the markers' frames are {first} to {first + n - 1}; .c3d counts frames from 0 to "
-            f"{MOST_FRAMES - 1}: shift the times, or write a shorter stretch"
+            Message(
+                "{path}: the markers' frames are {first} to {last}; .c3d counts frames from 0 to "
+                "{most_frames}: shift the times, or write a shorter stretch",
+                path=path,
+                first=first,
+                last=first + n - 1,
+                most_frames=MOST_FRAMES - 1,
+            ),
+            code="out_of_range",
         )
     made: Any = ezc3d.c3d()
     point = made["parameters"]["POINT"]
@@ -159,7 +183,9 @@ def write_c3d(markers: Markers, path: str | Path, *, forces: MotionTable | None 
             made.write(str(place))
             content = place.read_bytes()
     except (OSError, RuntimeError, ValueError) as error:
-        raise OutputError(f"{path} cannot be written as .c3d: {error}") from error
+        raise OutputError(
+            Message("{path} cannot be written as .c3d: {error}", path=path, error=error), code="cannot_write"
+        ) from error
     write_file(path, content)
 
 
@@ -169,7 +195,13 @@ def _put_forces(made: Any, path: Path, markers: Markers, forces: MotionTable, st
     often, rest = divmod(len(forces.time), n)
     if rest or not often:
         raise ParameterError(
-            f"{path}: forces have {len(forces.time)} rows for {n} frames; there must be a whole number for each frame"
+            Message(
+                "{path}: forces have {n_time} rows for {n} frames; there must be a whole number for each frame",
+                path=path,
+                n_time=len(forces.time),
+                n=n,
+            ),
+            code="wrong_kind",
         )
     rate = often * markers.rate
     _require_frames(path, "forces", forces.time, start, rate)
@@ -187,14 +219,31 @@ def _require_frames(path: Path, what: str, time: FloatArray, start: float, rate:
     if not np.all(off <= OFF_FRAME):
         worst = int(np.argmax(off > OFF_FRAME))
         raise ParameterError(
-            f"{path}: {what} at {float(time[worst])!r} s are not at a frame of {rate:g} Hz from {start:g} s on; "
-            ".c3d has one rate: bring them to it first"
+            Message(
+                "{path}: {field} at {time!r} s are not at a frame of {rate:g} Hz from {start:g} s on; "
+                ".c3d has one rate: bring them to it first",
+                path=path,
+                field=what,
+                time=float(time[worst]),
+                rate=rate,
+                start=start,
+            ),
+            code="wrong_rate",
         )
 
 
 def _require_names(path: Path, what: str, names: tuple[str, ...]) -> None:
     if not 0 < len(names) <= MOST_NAMES:
-        raise ParameterError(f"{path}: there are {len(names)} {what}; .c3d names 1 to {MOST_NAMES}")
+        raise ParameterError(
+            Message(
+                "{path}: {field} has {count} names; .c3d allows 1 to {limit}",
+                path=path,
+                count=len(names),
+                field=what,
+                limit=MOST_NAMES,
+            ),
+            code="too_many",
+        )
 
 
 def _ezc3d(path: str | Path) -> Any:
@@ -249,16 +298,19 @@ def c3d_content(data: bytes) -> C3dContent:
     try:
         return _content(data)
     except (struct.error, IndexError) as error:
-        raise ParameterError("the file is cut off within its head") from error
+        raise ParameterError(Message("the file is cut off within its head"), code="damaged") from error
 
 
 def _content(data: bytes) -> C3dContent:
     start = BLOCK * (data[0] - 1)
     if data[1] != _KEY or start < BLOCK:
-        raise ParameterError("the file does not begin as a .c3d file does")
+        raise ParameterError(Message("the file does not begin as a .c3d file does"), code="wrong_kind")
     processor = data[start + 3]
     if processor not in _ORDERS:
-        raise ParameterError(f"the processor has the number {processor}; it must be 84, 85 or 86")
+        raise ParameterError(
+            Message("the processor has the number {processor}; it must be 84, 85 or 86", processor=processor),
+            code="out_of_range",
+        )
     parameters = dict(_parameters(data, start + 4, processor))
     order = _ORDERS[processor]
     count, analogs, first, last = struct.unpack_from(f"{order}4H", data, 2)
@@ -287,7 +339,9 @@ def _parameters(data: bytes, at: int, processor: int) -> Iterator[tuple[tuple[st
         name = data[at + 2 : ends].decode("latin-1").upper()
         (distance,) = struct.unpack_from(f"{_ORDERS[processor]}h", data, ends)
         if group == 0 or distance < 0 or ends + distance > len(data):
-            raise ParameterError(f"the entry {name[:20]!r} of the parameters is damaged")
+            raise ParameterError(
+                Message("the entry {name!r} of the parameters is damaged", name=name[:20]), code="damaged"
+            )
         if group < 0:
             groups[-group] = name
         else:
@@ -302,13 +356,24 @@ def _values(data: bytes, name: str, at: int, processor: int) -> Values:
     """The values of a parameter; characters as texts along its first dimension."""
     kind, count = struct.unpack_from("bB", data, at)
     if kind not in _CODES or count > _MOST_DIMENSIONS:
-        raise ParameterError(f"the parameter {name[:20]!r} is damaged (type {kind}, {count} dimensions)")
+        raise ParameterError(
+            Message(
+                "the parameter {name!r} is damaged (type {kind}, {count} dimensions)",
+                name=name[:20],
+                kind=kind,
+                count=count,
+            ),
+            code="damaged",
+        )
     dimensions = struct.unpack_from(f"{count}B", data, at + 2)
     begin, code = at + 2 + count, _ORDERS[processor] + _CODES[kind]
     size = np.dtype(code).itemsize * math.prod(dimensions)
     content = data[begin : begin + size]
     if len(content) < size:
-        raise ParameterError(f"the parameter {name[:20]!r} has {size} bytes, more than there are")
+        raise ParameterError(
+            Message("the parameter {name!r} has {size} bytes, more than there are", name=name[:20], size=size),
+            code="damaged",
+        )
     if kind == -1:
         width = dimensions[0] if dimensions else 1
         texts = content.decode("latin-1")
@@ -333,7 +398,15 @@ def _points(data: bytes, begin: int, counts: tuple[int, int, int], scale: float,
     width = _COORDINATES * count + analogs
     size = bytes_each * width * frames
     if frames < 1 or begin < BLOCK or begin + size > len(data):
-        raise ParameterError(f"{frames} frames of {width} numbers need {size} bytes, more than there are")
+        raise ParameterError(
+            Message(
+                "{frames} frames of {width} numbers need {size} bytes, more than there are",
+                frames=frames,
+                width=width,
+                size=size,
+            ),
+            code="damaged",
+        )
     content = data[begin : begin + size]
     with np.errstate(invalid="ignore"):  # a damaged number may be a signalling NaN
         if scale < 0.0:

@@ -11,6 +11,7 @@ import numpy.typing as npt
 
 from ..._support.display import Facts, Shown, amount
 from ..._support.errors import ParameterError
+from ..._support.messages import Message
 from ..._support.staging import write_file
 from ..._support.user_files import plain_text
 from .table import MOST_BYTES, number_of, require_rising
@@ -55,12 +56,21 @@ class Markers(Shown):
         require_rising("markers", self.time)
         if np.shape(self.place) != (len(self.time), len(self.names), 3):
             raise ParameterError(
-                f"markers: place has shape {np.shape(self.place)}; it must be {(len(self.time), len(self.names), 3)}"
+                Message(
+                    "markers: place has shape {shape}; it must be {needed}",
+                    shape=str(np.shape(self.place)),
+                    needed=str((len(self.time), len(self.names), 3)),
+                ),
+                code="wrong_shape",
             )
         if len(set(self.names)) < len(self.names):
-            raise ParameterError("markers: a name is there twice; each marker needs one of its own")
+            raise ParameterError(
+                Message("markers: a name is there twice; each marker needs one of its own"), code="repeated"
+            )
         if not (np.isfinite(self.rate) and self.rate > 0.0):
-            raise ParameterError(f"markers: rate is {self.rate!r} Hz; it must be above 0")
+            raise ParameterError(
+                Message("markers: rate is {rate!r} Hz; it must be above 0", rate=self.rate), code="out_of_range"
+            )
 
     def _facts(self) -> Facts:
         omitted = f", {len(self.omitted)} other points omitted" if self.omitted else ""
@@ -75,7 +85,10 @@ class Markers(Shown):
             There is none of this name.
         """
         if name not in self.names:
-            raise ParameterError(f"there is no marker {name}; there are {', '.join(self.names)}")
+            raise ParameterError(
+                Message("there is no marker {name}; there are {names}", name=name, names=list(self.names)),
+                code="unknown_name",
+            )
         return self.place[:, self.names.index(name)]
 
 
@@ -90,11 +103,22 @@ def read_trc(path: str | Path) -> Markers:
     """
     lines = plain_text(path, most_bytes=MOST_BYTES).splitlines()
     if len(lines) < _HEAD or not lines[0].startswith("PathFileType"):
-        raise ParameterError(f"{path} does not begin with PathFileType and a head of five lines, as a .trc file does")
+        raise ParameterError(
+            Message("{path} does not begin with PathFileType and a head of five lines, as a .trc file does", path=path),
+            code="wrong_kind",
+        )
     head = dict(zip(lines[1].split(), lines[2].split(), strict=False))
     unit = head.get("Units", "")
     if unit not in METRES:
-        raise ParameterError(f"{path}, line 3: Units is {unit!r}; it must be one of {', '.join(METRES)}")
+        raise ParameterError(
+            Message(
+                "{path}, line 3: Units is {unit!r}; it must be one of {metres}",
+                path=path,
+                unit=unit,
+                metres=list(METRES),
+            ),
+            code="wrong_kind",
+        )
     names = tuple(word.strip() for word in lines[3].split("\t")[2:] if word.strip())
     rows = [(i + 1, line) for i, line in enumerate(lines[_HEAD:], start=_HEAD) if line.strip()]
     numbers = [_row(path, number, line, names) for number, line in rows]
@@ -102,8 +126,10 @@ def read_trc(path: str | Path) -> Markers:
         rate = float(head.get("DataRate", "nan"))
         table = np.array(numbers).reshape(-1, 1 + 3 * len(names))
         return Markers(table[:, 0], names, METRES[unit] * table[:, 1:].reshape(-1, len(names), 3), rate)
-    except (ParameterError, ValueError) as error:
-        raise ParameterError(f"{path}: {error}") from error
+    except ParameterError as error:
+        raise error.at(path) from error
+    except ValueError as error:
+        raise ParameterError(Message("{path}: {reason}", path=path, reason=error), code="not_a_number") from error
 
 
 def _row(path: str | Path, number: int, line: str, names: tuple[str, ...]) -> list[float]:
@@ -112,7 +138,15 @@ def _row(path: str | Path, number: int, line: str, names: tuple[str, ...]) -> li
     wanted = 2 + 3 * len(names)
     cells += [""] * (wanted - len(cells))
     if any(cells[wanted:]):
-        raise ParameterError(f"{path}, line {number}: more cells than {len(names)} markers have")
+        raise ParameterError(
+            Message(
+                "{path}, line {number}: more cells than {n_names} markers have",
+                path=path,
+                number=number,
+                n_names=len(names),
+            ),
+            code="wrong_number_of_cells",
+        )
     values = []
     for place, cell in enumerate(cells[1:wanted]):
         what = "Time" if place == 0 else f"{names[(place - 1) // 3]} {'XYZ'[(place - 1) % 3]}"
@@ -132,7 +166,7 @@ def write_trc(markers: Markers, path: str | Path) -> None:
     """
     path = Path(path)
     if path.suffix.lower() != ".trc":
-        raise ParameterError(f"{path} does not end in .trc; name it so")
+        raise ParameterError(Message("{path} does not end in .trc; name it so", path=path), code="wrong_ending")
     n, k = len(markers.time), len(markers.names)
     rate = repr(float(markers.rate))
     lines = [

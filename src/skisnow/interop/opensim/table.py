@@ -12,6 +12,7 @@ import numpy.typing as npt
 
 from ..._support.display import Facts, Shown, amount
 from ..._support.errors import ParameterError
+from ..._support.messages import Message
 from ..._support.staging import write_file
 from ..._support.user_files import plain_text
 from ..._support.user_files.motion_head import HEAD_END, head_of_motion, is_in_degrees, require_whole
@@ -57,7 +58,15 @@ class MotionTable(Shown):
         require_rising("table", self.time)
         for name, values in self.columns.items():
             if np.shape(values) != np.shape(self.time):
-                raise ParameterError(f"column {name} has shape {np.shape(values)}, time {np.shape(self.time)}")
+                raise ParameterError(
+                    Message(
+                        "column {name} has shape {shape}, time {shape_2}",
+                        name=name,
+                        shape=str(np.shape(values)),
+                        shape_2=str(np.shape(self.time)),
+                    ),
+                    code="wrong_shape",
+                )
 
     def _facts(self) -> Facts:
         return Facts(f"{len(self.columns)} columns, {len(self.time)} rows to {amount(float(self.time[-1]), 's')}")
@@ -66,10 +75,23 @@ class MotionTable(Shown):
 def require_rising(what: str, time: FloatArray) -> None:
     """ParameterError where there is no time, or one that does not rise."""
     if np.ndim(time) != 1 or not len(time):
-        raise ParameterError(f"{what}: time has shape {np.shape(time)}; there must be one row or more")
+        raise ParameterError(
+            Message(
+                "{field}: time has shape {shape}; there must be one row or more", field=what, shape=str(np.shape(time))
+            ),
+            code="wrong_shape",
+        )
     if not np.all(np.isfinite(time)) or np.any(np.diff(time) <= 0.0):
         row = int(np.argmin(np.append(True, np.diff(time) > 0.0)))
-        raise ParameterError(f"{what}: time of row {row + 1} is {time[row]:g} s; it must be finite and rise")
+        raise ParameterError(
+            Message(
+                "{field}: time of row {row} is {time:g} s; it must be finite and rise",
+                field=what,
+                row=row + 1,
+                time=time[row],
+            ),
+            code="not_a_number",
+        )
 
 
 def read_motion(path: str | Path) -> MotionTable:
@@ -84,12 +106,27 @@ def read_motion(path: str | Path) -> MotionTable:
     lines = plain_text(path, most_bytes=MOST_BYTES).splitlines()
     ends = next((i for i, line in enumerate(lines) if line.strip().lower() == HEAD_END), None)
     if ends is None or ends + 1 >= len(lines):
-        raise ParameterError(f"{path} has no line {HEAD_END} with a table behind it; a .mot or .sto file has one")
+        raise ParameterError(
+            Message(
+                "{path} has no line {head_end} with a table behind it; a .mot or .sto file has one",
+                path=path,
+                head_end=HEAD_END,
+            ),
+            code="no_data",
+        )
     head = head_of_motion(lines[:ends])
     name = "" if "=" in lines[0] else lines[0].strip()
     names = lines[ends + 1].split()
     if not names or names[0].lower() != _CLOCK or len(set(names)) < len(names):
-        raise ParameterError(f"{path}, line {ends + 2}: the columns must begin with {_CLOCK}, each name once")
+        raise ParameterError(
+            Message(
+                "{path}, line {line}: the columns must begin with {clock}, each name once",
+                path=path,
+                line=ends + 2,
+                clock=_CLOCK,
+            ),
+            code="out_of_range",
+        )
     first = ends + 2
     rows = [(i + 1, line.split()) for i, line in enumerate(lines[first:], start=first) if line.strip()]
     require_whole(path, head, rows=len(rows), columns=len(names))
@@ -100,12 +137,21 @@ def read_motion(path: str | Path) -> MotionTable:
         columns = {name: numbers[:, place] for place, name in enumerate(names) if place}
         return MotionTable(numbers[:, 0], columns, in_degrees, name or Path(path).stem, others)
     except ParameterError as error:
-        raise ParameterError(f"{path}: {error}") from error
+        raise error.at(path) from error
 
 
 def _numbers(path: str | Path, number: int, cells: list[str], names: list[str]) -> list[float]:
     if len(cells) != len(names):
-        raise ParameterError(f"{path}, line {number}: {len(cells)} cells stand under {len(names)} names of columns")
+        raise ParameterError(
+            Message(
+                "{path}, line {number}: {n_cells} cells stand under {n_names} names of columns",
+                path=path,
+                number=number,
+                n_cells=len(cells),
+                n_names=len(names),
+            ),
+            code="wrong_number_of_cells",
+        )
     return [number_of(cell, f"{path}, line {number}, column {name}") for name, cell in zip(names, cells, strict=True)]
 
 
@@ -114,7 +160,9 @@ def number_of(cell: str, where: str) -> float:
     try:
         return float(cell)
     except ValueError:
-        raise ParameterError(f"{where}: {cell!r} is no number; write one") from None
+        raise ParameterError(
+            Message("{where}: {cell!r} is no number; write one", where=where, cell=cell), code="not_a_number"
+        ) from None
 
 
 def write_motion(table: MotionTable, path: str | Path) -> None:
@@ -128,7 +176,10 @@ def write_motion(table: MotionTable, path: str | Path) -> None:
         The place cannot be written.
     """
     if Path(path).suffix.lower() not in ENDINGS:
-        raise ParameterError(f"{path} ends in none of {', '.join(ENDINGS)}; name it so")
+        raise ParameterError(
+            Message("{path} ends in none of {endings}; name it so", path=path, endings=list(ENDINGS)),
+            code="wrong_ending",
+        )
     names = [_CLOCK, *table.columns]
     rows = np.column_stack([table.time, *table.columns.values()]).tolist()
     keys = {"version": "1", "nRows": str(len(rows)), "nColumns": str(len(names)), **table.head}
