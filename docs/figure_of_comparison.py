@@ -9,7 +9,7 @@ import tempfile
 from dataclasses import replace
 from pathlib import Path
 
-from skisnow import compare_tracks, load_scenario, simulate
+from skisnow import compare, load_scenario, simulate
 from skisnow.report.figures.figure_files import write_figure
 from skisnow.report.track.report import track_comparison
 from skisnow.simulation.run_tables import write_track
@@ -29,4 +29,4 @@ def track(penetration: str, folder: Path) -> Track:
 if __name__ == "__main__":
     with tempfile.TemporaryDirectory() as folder:
         elastic, hypoplastic = (track(kind, Path(folder)) for kind in ("elastic", "hypoplastic"))
-        write_figure(PLACE, lambda: track_comparison(compare_tracks(elastic, hypoplastic)))
+        write_figure(PLACE, lambda: track_comparison(compare(elastic, hypoplastic)))

@@ -13,7 +13,7 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from skisnow import snow_from_results
+from skisnow import read_snow
 from skisnow.campaign import reference_campaign as drawn_campaign
 from skisnow.cli import main
 from skisnow.estimation.hardness import DEFINITIONS, hardness_at_largest_load
@@ -113,7 +113,7 @@ def tutorials_campaign(folder: Path) -> dict[str, str]:
     results = json.loads((folder / "results" / "results.json").read_text(encoding="utf-8"))
     penetration = results["penetration"]
     rmse = {row["id"]: significant(row["rmse_N"], 4) for row in penetration["models"]}
-    sites = {name: snow_from_results(folder / "results" / "results.json", site=f"site {name}") for name in "AH"}
+    sites = {name: read_snow(folder / "results" / "results.json", site=f"site {name}") for name in "AH"}
     low, high = (end / 1e9 for end in sites["A"].snow_hardness_interval or ())
     best = min(row["rmse_N"] for row in penetration["models"])
     selected = next(row for row in penetration["models"] if row["id"] == penetration["selected"]["id"])
@@ -141,7 +141,7 @@ def tutorials_campaign(folder: Path) -> dict[str, str]:
 
 def how_to_results_elsewhere(folder: Path) -> dict[str, str]:
     """The snow of site C in the field's units."""
-    snow = snow_from_results(folder / "results" / "results.json", site="site C")
+    snow = read_snow(folder / "results" / "results.json", site="site C")
     stress = snow.failure_shear_stress
     return {"hardness": significant(snow.snow_hardness / 1e9), "stress": significant(stress and stress / 1e6)}
 

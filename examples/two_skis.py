@@ -12,7 +12,7 @@ from __future__ import annotations
 import argparse
 import math
 
-from skisnow import carve, published_snow, read_ski
+from skisnow import carve, load_snow, read_ski
 
 EDGE_ANGLE = math.radians(30.0)
 LOAD_N = 400.0
@@ -23,7 +23,7 @@ def chord_radius(name: str) -> float:
     """Radius (m) of the circle through boot and ends of the contact, the ski held at one section."""
     answer = carve(
         read_ski(name),
-        published_snow("glacier"),
+        load_snow("glacier"),
         edge_angle=EDGE_ANGLE,
         load=LOAD_N,
         unloading_ratio=UNLOADING_RATIO,

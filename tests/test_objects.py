@@ -92,7 +92,7 @@ def test_snow_of_a_site_is_that_of_results_json(analysis: Analysis, tmp_path: Pa
     path = tmp_path / "results.json"
     path.write_bytes(results_json(analysis.results))
     for site in ("site C", None):
-        told = skisnow.snow_from_results(path, site=site)
+        told = skisnow.read_snow(path, site=site)
         assert replace(analysis.snow(site), source=told.source) == told
     assert analysis.snow("C", unloading_ratio=3.0).unloading_ratio == 3.0
     assert replace(analysis.snow("C", unloading_ratio=3.0), unloading_ratio=None) == analysis.snow("site C")
@@ -136,7 +136,7 @@ def test_with_changes_by_part_and_by_key() -> None:
     assert (sledge.edge_angle, sledge.centre_of_mass) == (math.radians(35.0), (0.1, turn.sledge.centre_of_mass[1]))
     assert (other.contact.friction, other.solver.step) == (0.02, 0.25e-3)
     assert turn.sledge.edge_angle == math.radians(30.0)
-    assert turn.with_(slope=skisnow.Plane(0.1)).slope == skisnow.Plane(0.1)
+    assert turn.with_(slope=skisnow.scenario.Plane(0.1)).slope == skisnow.scenario.Plane(0.1)
     assert turn.with_(ski="slalom").ski.name == "slalom"
 
 
@@ -198,7 +198,7 @@ def test_track_of_a_run_is_what_its_file_says(folder: Path) -> None:
         assert np.array_equal(getattr(track, name), getattr(read, name)), name
     assert track.flagged == read.flagged == {}
     assert track.axes == "slope"
-    assert skisnow.compare_tracks(track, read).nearest.numbers == skisnow.compare_tracks(read, read).nearest.numbers
+    assert skisnow.compare(track, read).nearest.numbers == skisnow.compare(read, read).nearest.numbers
 
 
 def test_dataframe_has_the_columns_of_the_file() -> None:

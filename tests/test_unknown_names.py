@@ -29,7 +29,7 @@ from tests.fuzzing.reader import Reader
 from tests.fuzzing.registry import BY_NAME
 
 TURN = load_scenario("carved-46m")
-SKI, SNOW = read_ski("slalom"), skisnow.published_snow("race-piste")
+SKI, SNOW = read_ski("slalom"), skisnow.load_snow("race-piste")
 MARKED = BootMarkers("heel", "toe", "left")
 MARKERS = Markers(time=np.arange(4.0), names=("heel", "toe", "left"), place=np.zeros((4, 3, 3)), rate=100.0)
 FREE_NAMES = ('"first"', "cores", "memory", "jobs", "queue")
@@ -109,7 +109,7 @@ CHOICES: dict[str, tuple[Callable[[], object], str]] = {
     "frame": (lambda: still(frame="slop"), "slope"),
     "over": (lambda: still(over="tim"), "time"),
     "up": (lambda: boots_of_markers(MARKERS, MARKED, MARKED, up="yy"), "y"),  # type: ignore[arg-type]
-    "model": (lambda: skisnow.quickest_line(TURN, model="skierr"), "skier"),  # type: ignore[arg-type]
+    "model": (lambda: skisnow.race(TURN, model="skierr"), "skier"),  # type: ignore[arg-type]
     "compared": (lambda: compared(TURN, {"a": TURN}, None, [SNOW], model="poin"), "point"),  # type: ignore[arg-type]
     "executor": (lambda: run_batch([1], str, executor="thread"), "threads"),  # type: ignore[arg-type]
     "factors": (lambda: SkiEdit(edit_stations(SKI), {"sidecut": 1.1}), "sidecut_depth"),

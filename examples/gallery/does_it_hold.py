@@ -27,7 +27,7 @@ for name in ("race-piste", "recreational-piste", "spring-snow"):
     for angle in angles:
         answer = skisnow.carve(
             ski,
-            skisnow.published_snow(name),
+            skisnow.load_snow(name),
             edge_angle=math.radians(angle),
             load=800.0,
             unloading_ratio=10.0,

@@ -30,7 +30,7 @@ for ski in (slalom, wider):
     for angle in angles:
         answer = skisnow.carve(
             ski,
-            skisnow.published_snow("glacier"),
+            skisnow.load_snow("glacier"),
             edge_angle=math.radians(angle),
             load=400.0,
             unloading_ratio=10.0,

@@ -24,7 +24,7 @@ def arc(name: str, radius: float, duration: float) -> skisnow.Track:
 
 
 simulated, measured = arc("simulated", 12.5, 3.0), arc("measured", 12.0, 3.3)
-found = skisnow.compare_tracks(simulated, measured)
+found = skisnow.compare(simulated, measured)
 
 figure, (above, beside) = plt.subplots(1, 2)
 for track in (simulated, measured):

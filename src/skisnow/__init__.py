@@ -1,54 +1,51 @@
-"""skisnow turns what was measured on a slope into what a ski does on it.
+"""skisnow turns measurements of snow on a ski slope into predictions of how a ski behaves on it.
 
-The public names, loaded when first used. Verbs act, nouns are what comes out of them or goes into them:
+The public names are loaded when first used. Functions are verbs; classes are their inputs and results.
 
 ``read_campaign``, ``check_campaign``, ``Campaign``
-    A folder of field measurements to a checked `Campaign`, or to the list of its problems.
+    Read a folder of field measurements into a `Campaign`, or list its problems.
 ``analyse``, ``Analysis``, ``results_dict``, ``write_report``
-    A campaign to snow hardness, failure shear stress, the choice of the model and the regressions; the snow of a site
-    out of them (`Analysis.snow`); results.json; a self-contained report with figures and tables.
+    Hardness, failure shear stress, models and regressions of a campaign; results.json; a report.
 ``Store``
-    The embedded store that keeps campaigns byte for byte.
+    Store that keeps campaigns byte for byte.
 ``write_reference``
-    A synthetic campaign with the design of Mössner and others (2013).
-``SnowProperties``, ``snow_from_results``, ``published_snow``, ``published_names``
-    Snow as the force laws need it: from numbers, from results.json, by the name of a publication.
+    Write a synthetic campaign with the design of Mössner and others (2013).
+``SnowProperties``, ``read_snow``, ``load_snow``, ``snow_names``
+    Snow for the force laws: from numbers, from results.json, from a publication.
 ``Ski``, ``read_ski``, ``ski_names``
-    A ski from its file or from the catalogue.
+    A ski from a file or from the catalogue.
 ``carve``, ``rest``, ``Equilibrium``
     A ski in snow under a load, carving steadily or at rest.
 ``load_scenario``, ``scenario_names``, ``Scenario``
-    What a run is: a built-in scenario by its name or any other from its file; `Scenario.with_` makes another of it.
-``Plane``, ``Profile``, ``Terrain``, ``Contact``, ``SnowMap``, ``Air``, ``RigidSledge``, ``Start``, ``Stop``, ``Solver``
-    The parts of a scenario: slope, how snow and skis meet, snow over the place, drag, sledge, where it begins and ends,
-    how it is computed.
+    Input of a run: a built-in scenario by name, or one from a file; `Scenario.with_` changes it.
+``Profile``, ``Terrain``, ``SnowMap``, ``RigidSledge``, ``Solver``
+    Parts of a scenario. Further parts are in `skisnow.scenario`: Plane, Contact, Air, Start, Stop.
 ``Boots``, ``BootPose``, ``BootMoment``
-    Boots that move: a table over time or distance; what a function that moves them knows, and gives.
+    Moving boots: a table over time or distance; output and input of a function that moves them.
 ``read_course``, ``course_names``, ``Course``, ``Gate``, ``time_gates``, ``CourseResult``
-    Gates from a file, and who passed them when: a run or a measured track.
+    Gates from a file, and the times at which a run or a track passes them.
 ``simulate``, ``Run``, ``verify``, ``Refinement``
-    A sledge on two flexible skis: the run that comes out of a scenario, and how exact it is.
+    Simulate a sledge on two flexible skis; estimate the numerical error of its end.
 ``turn``, ``TurnChain``
-    From a campaign to a turn in one call, with a band over what is not known of it.
+    From a campaign to a turn with an uncertainty band in one call.
 ``read_track``, ``Track``, ``GeodeticPoint``, ``in_slope_frame``, ``track_summary``, ``TrackSummary``
-    Where something was on a slope, and when: from the files of receivers and watches, into the slope's frame; what a
-    track says: distance, speed, runs and lifts, turns with their radii.
-``compare_tracks``, ``Comparison``
-    A simulated track compared with a measured one.
+    A measured track: read it, transform it into the slope's frame, compute distance, speed, runs and turns.
+``compare``, ``Comparison``
+    Compare a simulated track with a measured one.
 ``identify``, ``Identification``
-    Friction, drag and snow from tracks, photo-cell times or tracks left in the snow.
+    Friction, drag and snow from tracks, photo-cell times or grooves.
 ``study``, ``read_study``, ``Study``, ``StudyTable``, ``run_batch``
     One question over a grid or a sample of its inputs; one function over many points, on all cores.
-``quickest_line``, ``QuickestLine``
-    The quickest line through a course.
+``race``, ``QuickestLine``
+    The fastest line through a course.
 ``SnowField``, ``SnowContact``, ``Runner``, ``ContactForces``
-    History-dependent snow, and any body of one's own in it.
+    History-dependent snow, and contact of your own body with it.
 ``regress``
     Linear regression with the arguments and results of MATLAB's and Octave's ``regress``.
 ``SkisnowError``, ``ParameterError``, ``FieldDataError``, ``FitError``, ``SolverError``, ``StoreError``, ``OutputError``
-    What can go wrong; all derive from `SkisnowError`, each has a `code`.
+    Errors; all derive from `SkisnowError` and have a `code`.
 ``RangeWarning``, ``FitWarning``, ``ModelLimitWarning``
-    A relation outside its range, a fit with few certain digits, an input for which the model is known to be wrong.
+    Warnings: a relation outside its range, a fit with few certain digits, an input outside the model's limits.
 """
 
 from __future__ import annotations
@@ -74,27 +71,24 @@ if TYPE_CHECKING:
     from .campaign.store import Store
     from .carving import Equilibrium, rest
     from .carving.equilibrium import carve
-    from .comparison import Comparison, compare_tracks
+    from .comparison import Comparison
+    from .comparison import compare_tracks as compare
     from .contact import ContactForces, Runner, SnowContact, SnowField
     from .dynamics import BootPose
     from .estimation import Analysis, analyse, results_dict
     from .identification import Identification
     from .identification.fitting import identify
     from .pipeline.turn import turn
-    from .racing import QuickestLine, quickest_line
+    from .racing import QuickestLine
+    from .racing import quickest_line as race
     from .report import TurnChain, write_report
     from .scenario import (
-        Air,
         Boots,
-        Contact,
-        Plane,
         Profile,
         RigidSledge,
         Scenario,
         SnowMap,
         Solver,
-        Start,
-        Stop,
         Terrain,
         load_scenario,
         scenario_names,
@@ -105,7 +99,10 @@ if TYPE_CHECKING:
     from .simulation.simulated_run import simulate
     from .simulation.verification import Refinement, verify
     from .ski import Ski, read_ski, ski_names
-    from .snow import SnowProperties, published_names, published_snow, snow_from_results
+    from .snow import SnowProperties
+    from .snow import published_names as snow_names
+    from .snow import published_snow as load_snow
+    from .snow import snow_from_results as read_snow
     from .statistics import regress
     from .studies import Study, StudyTable, read_study
     from .studies import run_study as study
@@ -117,14 +114,12 @@ if TYPE_CHECKING:
     from .track.track import Track
 
 __all__ = [
-    "Air",
     "Analysis",
     "BootMoment",
     "BootPose",
     "Boots",
     "Campaign",
     "Comparison",
-    "Contact",
     "ContactForces",
     "Course",
     "CourseResult",
@@ -138,7 +133,6 @@ __all__ = [
     "ModelLimitWarning",
     "OutputError",
     "ParameterError",
-    "Plane",
     "Profile",
     "QuickestLine",
     "RangeWarning",
@@ -155,8 +149,6 @@ __all__ = [
     "SnowProperties",
     "Solver",
     "SolverError",
-    "Start",
-    "Stop",
     "Store",
     "StoreError",
     "Study",
@@ -168,17 +160,17 @@ __all__ = [
     "analyse",
     "carve",
     "check_campaign",
-    "compare_tracks",
+    "compare",
     "course_names",
     "identify",
     "in_slope_frame",
     "load_scenario",
-    "published_names",
-    "published_snow",
-    "quickest_line",
+    "load_snow",
+    "race",
     "read_campaign",
     "read_course",
     "read_ski",
+    "read_snow",
     "read_study",
     "read_track",
     "regress",
@@ -188,7 +180,7 @@ __all__ = [
     "scenario_names",
     "simulate",
     "ski_names",
-    "snow_from_results",
+    "snow_names",
     "study",
     "time_gates",
     "track_summary",
@@ -224,17 +216,12 @@ _PACKAGES = {
     "racing": ("QuickestLine", "quickest_line"),
     "report": ("TurnChain", "write_report"),
     "scenario": (
-        "Air",
         "Boots",
-        "Contact",
-        "Plane",
         "Profile",
         "RigidSledge",
         "Scenario",
         "SnowMap",
         "Solver",
-        "Start",
-        "Stop",
         "Terrain",
         "load_scenario",
         "scenario_names",
@@ -257,7 +244,17 @@ _PACKAGES = {
     "track.track": ("Track",),
 }
 _PLACES = {name: (package, name) for package, names in _PACKAGES.items() for name in names}
-_PLACES["study"] = _PLACES.pop("run_study")
+_PLACES |= {
+    public: _PLACES.pop(name)
+    for public, name in (
+        ("study", "run_study"),
+        ("compare", "compare_tracks"),
+        ("race", "quickest_line"),
+        ("load_snow", "published_snow"),
+        ("snow_names", "published_names"),
+        ("read_snow", "snow_from_results"),
+    )
+}
 
 
 def __getattr__(name: str) -> Any:

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from skisnow import carve, published_snow, read_ski
+from skisnow import carve, load_snow, read_ski
 from skisnow._support.errors import ParameterError
 from skisnow.carving.answer import answered
 from skisnow.carving.answer_dict import answer_dict, answers_dict, equilibrium_dict
@@ -102,7 +102,7 @@ def test_the_units_of_the_names() -> None:
 
 
 def test_the_inputs_of_a_named_snow_are_its_numbers() -> None:
-    snow = published_snow("race-piste")
+    snow = load_snow("race-piste")
     asked = ASKED | {"published": "race-piste"}
     told = answer_dict(answered(carve_question({**asked, "unloading_ratio": 10.0})))["inputs"]
     assert told["H_V_N_per_mm3"] == pytest.approx(snow.snow_hardness / 1e9, rel=1e-12)

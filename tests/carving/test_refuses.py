@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from skisnow import carve, published_snow, read_ski
+from skisnow import carve, load_snow, read_ski
 from skisnow._support.errors import ParameterError
 from tests.coded import Coded, coded, raises
 
@@ -26,4 +26,4 @@ from tests.coded import Coded, coded, raises
 def test_numbers_that_no_turn_has(asked: dict[str, float], told: str | Coded) -> None:
     sound: dict[str, Any] = {"edge_angle": 0.5, "load": 800.0, "unloading_ratio": 10.0}
     with raises(ParameterError, told):
-        carve(read_ski("slalom"), published_snow("race-piste"), **sound | asked)
+        carve(read_ski("slalom"), load_snow("race-piste"), **sound | asked)

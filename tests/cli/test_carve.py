@@ -217,7 +217,7 @@ def test_infinite_unloading_ratio_is_rigid_plastic_snow(capsys: Printed) -> None
 
 
 def test_snow_of_a_campaign_with_its_intervals(tmp_path: Path, capsys: Printed) -> None:
-    from skisnow import snow_from_results
+    from skisnow import read_snow
 
     rows = [{"used": True, "site": "A", "H_V_N_per_mm3": value} for value in (0.1, 0.4)]
     shear = [{"used": True, "site": "A", "S_f_N_per_mm2": value} for value in (0.3, 0.5)]
@@ -227,7 +227,7 @@ def test_snow_of_a_campaign_with_its_intervals(tmp_path: Path, capsys: Printed) 
     found = answer([*words, "--site", "A"], capsys)
     assert found["inputs"]["H_V_N_per_mm3"] == pytest.approx(0.2, rel=1e-12)  # the geometric mean
     assert found["inputs"]["S_f_N_per_mm2"] == pytest.approx(0.4, rel=1e-12)
-    interval = snow_from_results(path).snow_hardness_interval
+    interval = read_snow(path).snow_hardness_interval
     assert interval is not None
     assert found["snow"]["H_V_interval_N_per_mm3"] == pytest.approx([end / 1e9 for end in interval])
     assert "it has some of 'A'" in refusal([*words, "--site", "B"], capsys)

@@ -193,12 +193,12 @@ def test_without_any_uncertainty_a_shear_interval_is_null(make_campaign: MakeCam
 def test_snow_from_results(results: Json, tmp_path: Path) -> None:
     path = tmp_path / "results.json"
     path.write_text(json.dumps(results), encoding="utf-8")
-    snow = skisnow.snow_from_results(path, site="site C")
+    snow = skisnow.read_snow(path, site="site C")
     rows = [r for r in results["penetration"]["experiments"] if r["used"] and r["site"] == "site C"]
     mean = math.exp(sum(math.log(r["H_V_N_per_mm3"]) for r in rows) / len(rows))
     assert snow.snow_hardness == pytest.approx(mean * 1e9, rel=1e-12)
     with raises(skisnow._support.errors.ParameterError, "no_data"):
-        skisnow.snow_from_results(path, site="nowhere")
+        skisnow.read_snow(path, site="nowhere")
 
 
 @pytest.mark.parametrize("name", ["plain", 'a"},{"b', "ϑ, ü"])

@@ -156,7 +156,7 @@ def test_a_snow_takes_it_and_the_file_says_the_same(make_campaign: MakeCampaign,
     path = tmp_path / "results.json"
     path.write_text(json.dumps(results_dict(found)), encoding="utf-8")
     snow = found.snow("A")
-    read = skisnow.snow_from_results(path, site="A")
+    read = skisnow.read_snow(path, site="A")
     assert snow.shear_displacement == read.shear_displacement == pytest.approx(2e-3)
     assert snow.shear_displacement_interval == read.shear_displacement_interval
     turn = skisnow.load_scenario("carved-46m")

@@ -174,7 +174,7 @@ def test_a_snow_takes_it_and_the_file_says_the_same(tmp_path: Path) -> None:
     path = tmp_path / "results.json"
     path.write_text(json.dumps(results_dict(found)), encoding="utf-8")
     for site in ("B", None, "C"):
-        snow, read = found.snow(site), skisnow.snow_from_results(path, site=site)
+        snow, read = found.snow(site), skisnow.read_snow(path, site=site)
         assert replace(snow, source="") == replace(read, source="")
         assert (snow.unloading_ratio is None) == (site == "C")
     snow = found.snow("B")

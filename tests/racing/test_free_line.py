@@ -12,7 +12,7 @@ import pytest
 from scipy.interpolate import CubicSpline
 from scipy.optimize import minimize
 
-from skisnow import load_scenario, quickest_line
+from skisnow import load_scenario, race
 from skisnow.racing import PointRacer, follower_line
 from skisnow.racing.line import cut
 
@@ -85,6 +85,6 @@ def test_three_numbers_a_turn_lose_little_to_a_free_line() -> None:
     """What docs/how-to/race.md says."""
     pytest.importorskip("cmaes")
     free, _ = quickest_free_line(PointRacer.of(SLALOM))
-    found = quickest_line(SLALOM, gates=4, model="point", evaluations=1000, seed=1, workers=1).score.time
+    found = race(SLALOM, gates=4, model="point", evaluations=1000, seed=1, workers=1).score.time
     assert found is not None
     assert 0.0 < found - free < LOST

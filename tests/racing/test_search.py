@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from skisnow import QuickestLine, Scenario, load_scenario, quickest_line
+from skisnow import QuickestLine, Scenario, load_scenario, race
 from skisnow._support.errors import ParameterError
 from skisnow._support.processes.kept_rows import KeptRows
 from skisnow._support.processes.pool import Pool
@@ -75,7 +75,7 @@ def cycloid(x: float, y: float, down: float) -> float:
 def raced(asked: Scenario = SLALOM, **named: Any) -> QuickestLine:
     pytest.importorskip("cmaes")
     usual: dict[str, Any] = {"gates": 2, "model": "point", "evaluations": 40, "workers": 1, "room": 0.0}
-    return quickest_line(asked, **usual | named)
+    return race(asked, **usual | named)
 
 
 def test_gates_that_the_fall_line_passes_are_raced_straight() -> None:
@@ -168,15 +168,15 @@ def test_a_window_that_moves_on_finds_what_the_whole_search_finds() -> None:
 )
 def test_what_is_refused(named: dict[str, Any], words: str) -> None:
     with pytest.raises(ParameterError, match=words):
-        quickest_line(SLALOM, **({"gates": 2} | named))
+        race(SLALOM, **({"gates": 2} | named))
 
 
 def test_without_cmaes_it_says_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "cmaes", None)
     with pytest.raises(ParameterError, match=r"skisnow\[racing\]"):
-        quickest_line(SLALOM, gates=2, model="point")
+        race(SLALOM, gates=2, model="point")
 
 
 def test_a_scenario_without_a_skier_is_refused() -> None:
     with pytest.raises(ParameterError, match="no skier"):
-        quickest_line(replace(SLALOM, skier=None))
+        race(replace(SLALOM, skier=None))

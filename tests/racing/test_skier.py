@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from skisnow import load_scenario, quickest_line, simulate, time_gates
+from skisnow import load_scenario, race, simulate, time_gates
 from skisnow.racing import LineTurn, RacingLine, follower_line
 from skisnow.racing.line import cut
 from skisnow.racing.racers import Racer, run_score, skied
@@ -49,6 +49,6 @@ def test_a_line_too_near_the_poles_straddles_or_misses() -> None:
 def test_four_gates_are_raced_quicker_than_by_the_follower() -> None:
     """By the margin that docs/how-to/race.md states, with the turns alike already."""
     pytest.importorskip("cmaes")
-    found = quickest_line(SLALOM, gates=4, evaluations=13, seed=1)
+    found = race(SLALOM, gates=4, evaluations=13, seed=1)
     assert found.gained is not None
     assert found.gained > MARGIN

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from skisnow import carve, published_snow, read_ski
+from skisnow import carve, load_snow, read_ski
 from skisnow._support.errors import OutputError, ParameterError
 from skisnow._support.processes.kept_rows import KeptRows
 from skisnow.carving.keys import CARVE_KEYS
@@ -35,7 +35,7 @@ def test_rows_are_the_equilibria_in_the_order_of_the_grid(study_file: Path) -> N
     row = table.rows[4]
     alone = carve(
         read_ski("slalom"),
-        published_snow("race-piste"),
+        load_snow("race-piste"),
         edge_angle=math.radians(30.0),
         load=800.0,
         unloading_ratio=10.0,

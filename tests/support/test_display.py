@@ -71,14 +71,14 @@ def objects(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
         skisnow.Refinement("solver.step_ms", 1.0, 2.0, 0.1, "finished"), run.track, skisnow.GeodeticPoint(47.5, 11.25),
         skisnow.TurnChain(campaign="mine", site="site C", synthetic=True, snow=snow, runs={"one": run, "two": run},
                           ensemble=ensemble, seed=1),
-        skisnow.track_summary(run.track), skisnow.compare_tracks(run.track, measured, fit=["start"]),
+        skisnow.track_summary(run.track), skisnow.compare(run.track, measured, fit=["start"]),
         skisnow.read_study(folder / "study.toml"), field, runner, contact,
         skisnow.StudyTable(("mu_0", "outcome"), [{"mu_0": 0.01, "outcome": "finished"}], ("mu_0",)),
         contact.force(np.zeros((1, 3)), np.eye(3)[None], np.zeros((1, 6)), 1e-3), identified(), equilibrium(),
         skisnow.BootPose.of(np.zeros(3), 0.5), skisnow.BootMoment(0.0, 0.01, 0.0, np.zeros(3), np.eye(3), np.zeros(6),
                                                                   np.zeros((2, 6, 3)), np.zeros((2, 6))),
         skisnow.Boots(np.arange(4.0), np.zeros((4, 2, 3)), np.tile(np.eye(3), (4, 2, 1, 1))),
-        skisnow.quickest_line(skisnow.load_scenario("slalom-20-gates"), model="point", evaluations=1, workers=1),
+        skisnow.race(skisnow.load_scenario("slalom-20-gates"), model="point", evaluations=1, workers=1),
         skisnow.Store(folder / "store", None),  # type: ignore[arg-type]
     )  # fmt: skip
     return {type(each).__name__: each for each in made}

@@ -133,7 +133,7 @@ class Comparison(Shown):
 
     See Also
     --------
-    skisnow.compare_tracks
+    skisnow.compare
     """
 
     simulated: Polyline

@@ -117,7 +117,7 @@ class Analysis(Shown):
         k_u/H_V is that of the site's unloading readings, where both ends of its interval are known; the shear
         displacement u_y the geometric mean of its shear tests with turning angles.
 
-        The same numbers as `skisnow.snow_from_results` reads from results.json.
+        The same numbers as `skisnow.read_snow` reads from results.json.
 
         Parameters
         ----------

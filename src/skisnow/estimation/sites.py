@@ -106,7 +106,7 @@ def site_snow(
     site: str | None,
     unloading_ratio: float | None,
 ) -> SnowProperties:
-    """The means over the used experiments of a site, as `skisnow.snow_from_results` reads them from results.json."""
+    """The means over the used experiments of a site, as `skisnow.read_snow` reads them from results.json."""
     pressed, sheared = _pressed(penetration, campaign), _sheared(shear, campaign)
     site = site_of_campaign(campaign, site)
     hardness, stress = (_of(site, *known) for known in (pressed, sheared))

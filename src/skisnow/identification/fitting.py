@@ -109,7 +109,7 @@ def identify(
     See Also
     --------
     skisnow.simulate : the run that is fitted.
-    skisnow.compare_tracks : distances between two tracks, without a fit.
+    skisnow.compare : distances between two tracks, without a fit.
 
     Notes
     -----

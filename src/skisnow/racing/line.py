@@ -67,7 +67,7 @@ class RacingLine(Shown):
 
     See Also
     --------
-    skisnow.quickest_line
+    skisnow.race
 
     Notes
     -----

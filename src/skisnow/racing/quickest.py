@@ -46,7 +46,7 @@ class QuickestLine(Shown):
 
     See Also
     --------
-    skisnow.quickest_line
+    skisnow.race
     """
 
     scenario: Scenario

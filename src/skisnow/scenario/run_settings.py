@@ -17,7 +17,7 @@ class Start:
     See Also
     --------
     skisnow.Scenario
-    skisnow.Stop
+    skisnow.scenario.Stop
     """
 
     x: Annotated[
@@ -80,7 +80,7 @@ class Stop:
     See Also
     --------
     skisnow.Scenario
-    skisnow.Start
+    skisnow.scenario.Start
     """
 
     duration: Annotated[

@@ -86,7 +86,7 @@ class Profile(Shown):
 
     See Also
     --------
-    skisnow.Plane
+    skisnow.scenario.Plane
 
     Notes
     -----

@@ -54,7 +54,7 @@ class Terrain(Shown):
     See Also
     --------
     skisnow.Profile
-    skisnow.Plane
+    skisnow.scenario.Plane
 
     Notes
     -----

@@ -171,7 +171,7 @@ class Run(Shown):
     See Also
     --------
     skisnow.simulate
-    skisnow.compare_tracks
+    skisnow.compare
     """
 
     scenario: Scenario
@@ -212,7 +212,7 @@ class Run(Shown):
 
     @property
     def track(self) -> Track:
-        """The path of the middle between the boots, as track.csv has it: what `skisnow.compare_tracks` takes."""
+        """The path of the middle between the boots, as track.csv has it: what `skisnow.compare` takes."""
         slope = self.scenario.slope
         axes = ("x down the fall line", "z out of the snow")
         if not isinstance(slope, Plane):

@@ -112,7 +112,7 @@ def simulate(
     --------
     skisnow.scenario : what a run is.
     skisnow.verify : how exact it is.
-    skisnow.compare_tracks : the run beside a measured track.
+    skisnow.compare : the run beside a measured track.
 
     Notes
     -----

@@ -55,7 +55,7 @@ def snow_from_results(path: str | Path, *, site: str | None = None) -> SnowPrope
     See Also
     --------
     skisnow.Analysis.snow : the same without a file.
-    skisnow.published_snow : the snow of a publication.
+    skisnow.load_snow : the snow of a publication.
 
     Notes
     -----
@@ -185,7 +185,7 @@ def published_names() -> tuple[str, ...]:
 
     See Also
     --------
-    skisnow.published_snow : the snow of a name.
+    skisnow.load_snow : the snow of a name.
 
     References
     ----------
@@ -222,8 +222,8 @@ def published_snow(name: str) -> SnowProperties:
 
     See Also
     --------
-    skisnow.published_names : all names.
-    skisnow.snow_from_results : the snow of an analysed campaign.
+    skisnow.snow_names : all names.
+    skisnow.read_snow : the snow of an analysed campaign.
 
     References
     ----------

@@ -43,8 +43,8 @@ class SnowProperties(Shown):
 
     See Also
     --------
-    skisnow.published_snow
-    skisnow.snow_from_results
+    skisnow.load_snow
+    skisnow.read_snow
 
     Examples
     --------

@@ -80,7 +80,7 @@ def read_track(
     --------
     skisnow.track_summary : distance, speed, runs and turns of a track.
     skisnow.in_slope_frame : a track in the axes of a slope.
-    skisnow.compare_tracks : distances to a simulated track.
+    skisnow.compare : distances to a simulated track.
 
     References
     ----------

@@ -102,7 +102,7 @@ def track_summary(track: Track, *, window: float | None = None, place_noise: flo
     See Also
     --------
     skisnow.read_track : a track from a file.
-    skisnow.compare_tracks : two tracks.
+    skisnow.compare : two tracks.
 
     References
     ----------

@@ -32,7 +32,7 @@ NO_READERS: Final[Mapping[str, str]] = {
     "_support.messages:translations": "package data",
     "replay.page:static_text": "package data",
     "report.campaign.page:_frame": "package data",
-    "report.sheet:sheet": "package data",
+    "report.sheet:render_template": "package data",
     "interop.fmu.writing:_write": "the library of the package",
     "interop.fmu.writing:_licence": "package data",
     "interop.opensim.c3d:write_c3d": "the file that it has just written",

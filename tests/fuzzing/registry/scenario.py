@@ -9,7 +9,7 @@ from tempfile import TemporaryDirectory
 
 import numpy as np
 
-from skisnow import read_ski, snow_from_results
+from skisnow import read_ski, read_snow
 from skisnow.identification.data import _site, collect_data, start_values
 from skisnow.identification.fitting import _clock
 from skisnow.identification.parameter import parameter_table
@@ -213,7 +213,7 @@ READERS = (
         name="ski-def.json", target="ski-def.json", files=lambda: _SHAPED, mutations=JSON,
         read=lambda folder: _used_ski(folder / "ski.toml"), covers=("ski.monkeycam:_board",),
     ),
-    _of("results.json", _RESULTS, lambda path: repr(snow_from_results(path)), JSON, "snow.from_results:_results"),
+    _of("results.json", _RESULTS, lambda path: repr(read_snow(path)), JSON, "snow.from_results:_results"),
     _of("profile.csv", _PROFILE, _used_profile, TABLE, "scenario.slope:read_profile"),
     _of("terrain.csv", _TERRAIN, _used_terrain, TABLE, "scenario.raster_formats:read_grid_table"),
     _of("terrain.asc", _ESRI, _used_terrain, TEXT, "scenario.raster_formats:read_esri_ascii"),
