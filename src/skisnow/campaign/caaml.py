@@ -1,9 +1,9 @@
 """Snow pits from CAAML 5 and 6, the exchange format of avalanche services: ``.caaml``, ``.caaml.xml``.
 
-Read are place, time, observer, layers with hand hardness and grains, densities, temperatures, penetrometer forces, and
-H_V and S_f where skisnow wrote them. Everything else in a file is passed over. Each quantity is converted from the unit
-in its ``uom``; an unknown unit is an error. Version 5 gives units at the profile (``uomDensity``), version 6 at each
-value, and some quantities have another place.
+skisnow reads place, time, observer, layers with hand hardness and grains, densities, temperatures, forces of
+penetrometers, and H_V and S_f if skisnow wrote the file. Everything else is ignored. Each quantity is converted from
+the unit in its ``uom``; an unknown unit is an error. Version 5 gives units at the profile (``uomDensity``), version 6
+at each value, and some quantities have another place.
 """
 
 from __future__ import annotations
@@ -34,9 +34,9 @@ NAMESPACE: Final = re.compile(
     r"(Schemas/SnowProfileIACS/v6\.\d+(\.\d+)?|Schemas/V5\.0/Profiles/Snow[Pp]rofileIACS|v5\.0/Snow[Pp]rofile/IACS)"
 )
 OWN_NAMESPACE: Final = "urn:skisnow:caaml:1"
-"""Of H_V and S_f in ``customData``."""
+"""Namespace of H_V and S_f in ``customData``."""
 NIL: Final = ("", "inapplicable", "missing", "template", "unknown", "withheld", "n/a", "none")
-"""Words for a value that is not there, which the standard allows in the place of any number."""
+"""Words for a missing value, which the standard allows instead of any number."""
 _UNIT_OF_PROFILE: Final = {"snowTemp": "uomTemp"}
 """Attributes of a profile with the unit of its values, if they are not called ``uom`` and the value's name."""
 
@@ -47,13 +47,13 @@ def read_caaml(path: str | Path) -> SnowPit:
     Returns
     -------
     SnowPit
-        With depths from the surface down.
+        Snow pit with depths from the surface down.
 
     Raises
     ------
     FieldDataError
-        The file cannot be read, is not CAAML 5 or 6, declares entities, counts from the ground up without the height
-        of the snow, or has a number or unit that cannot be read.
+        The file cannot be read, is not CAAML 5 or 6, declares entities, gives heights from the ground without the
+        snow height, or has an invalid number or unit.
     """
     path = Path(path)
     try:
@@ -72,7 +72,7 @@ def read_caaml(path: str | Path) -> SnowPit:
 
 
 class _Profile:
-    """One file: finds and converts, and refuses by the names of its elements."""
+    """Parser of one file; errors name the element."""
 
     def __init__(self, file: str, root: Element) -> None:
         self._file = file
@@ -98,7 +98,7 @@ class _Profile:
         )
 
     def pit(self) -> SnowPit:
-        """Everything that is read."""
+        """The snow pit with all quantities that are read."""
         root, measured = self._root, self._measured
         place = root.child("locRef", "ObsPoint") or root.child("locRef") or root
         latitude, longitude = self._position(place)
@@ -125,7 +125,7 @@ class _Profile:
         )
 
     def _of(self, profile: str, name: str) -> list[tuple[Element, Element]]:
-        """The layers or observations of all profiles of a kind that hold them one by one, each after its profile."""
+        """Pairs of profile and layer or observation, for all profiles of a kind."""
         return [(parent, child) for parent in self._measured.every(profile) for child in parent.every(name)]
 
     def _height(self) -> float | None:
@@ -158,7 +158,7 @@ class _Profile:
         return next(filter(None, (source.text_of(*path) for path in paths)), "")
 
     def _position(self, place: Element) -> tuple[float, float] | tuple[None, None]:
-        """Latitude and longitude; version 5 gives the longitude first where it names CRS84, as that says."""
+        """Latitude and longitude; with CRS84 in version 5 the longitude comes first."""
         point = place.child("pointLocation", "Point") or place.child("Point")
         text = "" if point is None else point.text_of("pos")
         if point is None or not text:
@@ -226,7 +226,7 @@ class _Profile:
         return self._down(self._required(LENGTH, profile, layer, "depthTop")), thickness
 
     def _down(self, value: float) -> float:
-        """A depth from the surface, whichever way the profile counts."""
+        """Depth from the surface, also if the profile gives heights from the ground."""
         return (self._snow_height or 0.0) - value if self._from_ground else value
 
     def _required(self, units: CaamlUnits, profile: Element, parent: Element, name: str) -> float:

@@ -40,16 +40,16 @@ WARNING_CODES = (
     "converted_unit",
 )
 _SHOWN = {"mark": "flag"}
-"""What a severity is called on a terminal, where it is not its own word."""
+"""Names of severities on a terminal that differ from their codes."""
 LONGEST_VALUE: Final = 200
 """Characters of a value that its sentence shows."""
 
 
 @dataclass(frozen=True, slots=True)
 class Problem:
-    """One problem. ``row`` is the line of the file (header: 1); what does not apply is None.
+    """A problem of a campaign. ``row`` is the line of the file (header: 1); fields that do not apply are None.
 
-    ``needs_action`` is false where the program says how it read a file, and nobody need do anything.
+    ``needs_action`` is False for a note on how a file was read.
     """
 
     severity: Severity
@@ -64,7 +64,7 @@ class Problem:
     needs_action: bool = True
 
     def __str__(self) -> str:
-        """Say it in one line."""
+        """The problem in one line."""
         place = self.file
         if self.row is not None:
             place += f", row {self.row}"
@@ -98,7 +98,7 @@ def error(
     experiment: str | None = None,
     value: str | None = None,
 ) -> Problem:
-    """Make a problem that refuses the campaign."""
+    """Problem with which the campaign cannot be used."""
     return Problem("error", code, file, row, column, experiment, value, allowed, action)
 
 
@@ -114,7 +114,7 @@ def warning(
     value: str | None = None,
     needs_action: bool = True,
 ) -> Problem:
-    """Make a problem that is reported and leaves the campaign usable."""
+    """Problem with which the campaign can still be used."""
     return Problem("warning", code, file, row, column, experiment, value, allowed, action, needs_action)
 
 
@@ -129,7 +129,7 @@ MOST_ALIKE: Final = 10
 
 
 def _group_unknown_names(problems: Iterable[Problem]) -> list[Problem]:
-    """An unknown tool or plate once for a file, with the number of its experiments: it is one thing to put right."""
+    """Merge the problems of an unknown tool or plate in a file into one, with the number of its experiments."""
     together: dict[object, list[Problem]] = {}
     for number, problem in enumerate(problems):
         name = (problem.code, problem.file, problem.value)
@@ -147,7 +147,7 @@ def _combine(alike: Sequence[Problem]) -> Problem:
 
 
 def _limited_lines(problems: Sequence[Problem]) -> Iterator[str]:
-    """A line each; of more than some of one kind in one column the first, and how many more there are."""
+    """One line for each problem; of many problems of a kind in a column the first ones and the number of others."""
     kinds = [(problem.severity, problem.code, problem.file, problem.column) for problem in problems]
     counts, shown = Counter(kinds), Counter[tuple[object, ...]]()
     for kind, problem in zip(kinds, problems, strict=True):
@@ -161,7 +161,7 @@ def _limited_lines(problems: Sequence[Problem]) -> Iterator[str]:
 
 
 def lines_of(problems: Iterable[Problem]) -> list[str]:
-    """A line for each problem, one for an unknown tool or plate, and one for all together that need no action.
+    """Lines for a terminal: one for each problem, and one for all notes that need no action.
 
     >>> told = [warning("separator", f"{name}.csv", value="semicolon", allowed="", action="", needs_action=False)
     ...         for name in ("shear", "density")]
@@ -181,7 +181,7 @@ def lines_of(problems: Iterable[Problem]) -> list[str]:
 
 @dataclass(frozen=True, slots=True)
 class AppliedCorrection:
-    """A cell that was read otherwise than the raw file has it; ``row`` is the line of that file."""
+    """A correction that was applied to a cell; ``row`` is the line of the raw file."""
 
     file: str
     experiment: str

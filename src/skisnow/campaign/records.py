@@ -1,7 +1,7 @@
-"""What a field campaign consists of, in SI, by columns.
+"""Records of a field campaign in SI, stored as columns.
 
-Columns and not objects, because a campaign may hold a million readings. A single experiment is seen through
-``PenetrationTests.series(i)``.
+Records are columns because a campaign can have a million readings. ``PenetrationTests.series(i)`` is a single
+experiment.
 """
 
 from __future__ import annotations
@@ -63,14 +63,14 @@ class PenetrationSeries(Shown):
 
 @dataclass(frozen=True, slots=True, repr=False)
 class UnloadingReadings(Shown):
-    """Readings while the discs were taken off, series after series, each in the order in which they were read.
+    """Readings during unloading, series after series, each in the order of reading.
 
     Attributes
     ----------
     first
         m + 1 offsets: readings ``first[i]:first[i + 1]`` belong to experiment i, which may have none.
     load, penetration_depth
-        Load that is left F (N) and depth e (m), one per reading.
+        Remaining load F (N) and depth e (m), one per reading.
     row
         Line of the file of each reading.
     """
@@ -86,7 +86,7 @@ class UnloadingReadings(Shown):
 
     @property
     def count(self) -> IntArray:
-        """How many readings each experiment has."""
+        """Number of readings of each experiment."""
         return np.diff(self.first)
 
     @property
@@ -106,10 +106,9 @@ class PenetrationTests(Shown):
     edge_angle
         ϑ in rad, one per experiment.
     snow_density, drop_cone_depth
-        The experiment's own density ρ (kg/m³) and drop-cone depth H_p (m); NaN where its rows give none. The mean where
-        its rows give several.
+        Density ρ (kg/m³) and drop-cone depth H_p (m) of the experiment, the mean of its rows; NaN if missing.
     cancelled
-        Why the experiment was cancelled, ``""`` where it was not.
+        Reason for cancelling the experiment, or ``""``.
     first
         m + 1 offsets: readings ``first[i]:first[i + 1]`` belong to experiment i.
     load, penetration_depth
@@ -117,12 +116,11 @@ class PenetrationTests(Shown):
     row
         Line of the file of each reading; the header is line 1.
     further
-        Every further column of the file as text, one cell per reading: kept, not interpreted.
+        Other columns of the file as text, one cell per reading; they are not interpreted.
     unloading
-        Readings while the discs were taken off, which no estimate of hardness knows of; None where there are none.
+        Readings during unloading, which are not used for hardness (optional).
     depth_after
-        e (m) read once more under the same load after waiting, one per reading, NaN where it was not; None where the
-        campaign has none.
+        e (m) read again under the same load after waiting, one per reading; NaN if missing (optional).
     """
 
     experiment: tuple[str, ...]
@@ -161,7 +159,7 @@ class PenetrationTests(Shown):
         return np.repeat(np.arange(len(self), dtype=np.int64), np.diff(self.first))
 
     def series(self, index: int) -> PenetrationSeries:
-        """Look at one experiment by its index."""
+        """One experiment by its index."""
         part = slice(int(self.first[index]), int(self.first[index + 1]))
         return PenetrationSeries(
             experiment=self.experiment[index],
@@ -201,7 +199,7 @@ class TurningReadings(Shown):
 
 @dataclass(frozen=True, slots=True, repr=False)
 class ShearTests(Shown):
-    """All shear experiments of a campaign; one of several rows has what its row of the largest moment says.
+    """All shear experiments of a campaign; an experiment with several rows has the values of its largest moment.
 
     Attributes
     ----------
@@ -210,11 +208,11 @@ class ShearTests(Shown):
     edge_angle, penetration_depth, lever_arm, moment
         ϑ (rad), e (m), r (m), M (N m).
     snow_density, drop_cone_depth
-        The experiment's own ρ (kg/m³) and H_p (m), NaN where absent.
+        ρ (kg/m³) and H_p (m) of the experiment; NaN if missing.
     row
         Line of the file.
     turning
-        Moments over turning angles; None where the campaign has none.
+        Moments over turning angles (optional).
     """
 
     experiment: tuple[str, ...]
@@ -285,7 +283,7 @@ class DropConeTests(Shown):
         )
 
     def site_means(self) -> dict[str, float]:
-        """Mean over each site's tests of the mean over the test's repeats (m); a cancelled test takes no part."""
+        """Mean over each site's tests of the mean over their repeats (m), without cancelled tests."""
         tests = list(zip(self.site, self.test, strict=True))
         gone = {test for test, why in zip(tests, self.cancelled, strict=True) if why}
         cancelled = tuple("cancelled" if test in gone else "" for test in tests)
@@ -307,42 +305,42 @@ def _means(keys: Sequence[Key], values: FloatArray, cancelled: Sequence[str]) ->
 
 @dataclass(frozen=True, slots=True, repr=False)
 class Campaign(Shown):
-    """A checked campaign, corrections applied.
+    """A valid campaign with its corrections applied.
 
     Attributes
     ----------
     name, place, observers
-        From campaign.toml; the name falls back to the folder's.
+        From campaign.toml; the default name is that of the folder.
     folder
-        Where it was read from.
+        Folder from which it was read.
     gauge_resolution
-        Step of the depth gauge (m), or None where the campaign does not say.
+        Step of the depth gauge (m), or None if not stated.
     load_uncertainty, moment_uncertainty, lever_arm_uncertainty
-        Standard uncertainties (N, N m, m); None where left out, which counts as 0.
+        Standard uncertainties (N, N m, m); None counts as 0.
     seating
         Standard deviation of the depth zero from series to series (m); None where not stated.
     load_steps
-        The campaign's own discs (N), for entry; may be empty.
+        Loads of the campaign's discs (N), for entry; can be empty.
     tools, plates
         Tools by name; plate lengths L (m) by name.
     excluding
         Codes of the quality flags that keep an experiment out of the estimates.
     penetration, shear, density, drop_cone, snow_micro_pen
-        The tables; None where the campaign has no such file.
+        The tables; None without such a file.
     problems
-        Warnings of reading the files (errors would have refused the campaign).
+        Warnings from reading the files.
     file_hashes
         SHA-256 of each file that was read, by name.
     corrections
-        What corrections.csv changed, in its order.
+        Applied corrections, in the order of corrections.csv.
     unread_files
-        Names of files in the folder that are no part of a campaign.
+        Names of files in the folder that are not part of a campaign.
     pole_stiffness
         Moment over twist of the shear device between angle and plate (N m/rad); None: rigid.
     weather
-        Readings of a station; None where the campaign has none.
+        Readings of a weather station (optional).
     places
-        What people know a table as that is a sheet of a workbook, by the file's name.
+        Workbook and sheet of tables that are sheets of a workbook, by the name of the file.
 
     See Also
     --------

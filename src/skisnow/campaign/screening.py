@@ -104,7 +104,7 @@ def _is_filled(reasons: tuple[str, ...]) -> BoolArray:
 
 
 def _step(values: FloatArray) -> FloatArray:
-    """Difference to the reading before; the file's very first has none and counts as rising."""
+    """Difference from the previous reading; infinite for the first reading of the file."""
     return np.diff(values, prepend=-np.inf)
 
 
@@ -122,7 +122,7 @@ def _is_below_resolution(depth: FloatArray, resolution: float | None) -> BoolArr
 
 
 def reading_at_largest_load(tests: PenetrationTests) -> IntArray:
-    """Find the reading under each series' largest load, the last of equals.
+    """Number of the reading under the largest load of each series, the last one if the load is repeated.
 
     Returns
     -------
@@ -136,7 +136,7 @@ def reading_at_largest_load(tests: PenetrationTests) -> IntArray:
 
 
 def maximum_depths(campaign: Campaign, tests: PenetrationTests, geometry: GeometryForm) -> FloatArray:
-    """Depth (m) beyond which each experiment's tool, in this form, is no longer the body that its name says."""
+    """Depth (m) up to which the shape of each experiment's tool is valid."""
     limit = np.full(len(tests), np.inf)
     names = np.array(tests.tool, dtype=object)
     for name, tool in campaign.tools.items():
@@ -146,7 +146,7 @@ def maximum_depths(campaign: Campaign, tests: PenetrationTests, geometry: Geomet
 
 
 def find_creep(campaign: Campaign, tests: PenetrationTests) -> BoolArray:
-    """Readings whose depth grew under a constant load by more than the limits of `CREEP_STEPS` and `CREEP_SHARE`."""
+    """True for readings whose depth grew under constant load by more than `CREEP_STEPS` and `CREEP_SHARE` allow."""
     if tests.depth_after is None:
         return np.zeros(len(tests.load), dtype=np.bool_)
     step = CREEP_STEPS * (campaign.gauge_resolution or 0.0)
@@ -155,9 +155,10 @@ def find_creep(campaign: Campaign, tests: PenetrationTests) -> BoolArray:
 
 
 def find_implausible_unloading(campaign: Campaign, tests: PenetrationTests) -> dict[str, BoolArray]:
-    """For ``unloading_not_falling`` and ``unloading_sinks`` a mask over the readings of the unloading.
+    """Masks over the readings of the unloading, for ``unloading_not_falling`` and ``unloading_sinks``.
 
-    The first reading of a series may repeat the one under its largest load; a step of the gauge is no sinking.
+    The first reading of a series can repeat the one under its largest load. One step of the gauge does not count as
+    sinking.
     """
     if tests.unloading is None:
         return dict.fromkeys(("unloading_not_falling", "unloading_sinks"), np.zeros(0, dtype=np.bool_))
@@ -195,13 +196,13 @@ def flag_problems(
     campaign
         The campaign that was screened.
     masks_penetration, masks_shear
-        Masks by code over the experiments, from screening; further codes of `QUALITY_FLAGS` may have been added.
+        Masks by code over the experiments, from screening or with further codes of `QUALITY_FLAGS`.
     geometry
-        The form of the ski piece that was screened with.
+        Form of the ski piece in the screening.
 
     Returns
     -------
-    Penetration before shear, within them in the order of the file, then of `QUALITY_FLAGS`.
+    Problems of penetration before shear, in the order of the file, then of `QUALITY_FLAGS`.
     """
     problems: list[Problem] = []
     if campaign.penetration is not None:
@@ -244,7 +245,7 @@ def _shear_problem(campaign: Campaign, index: int, code: str) -> Problem:
 
 
 class _FlaggedReadings:
-    """Finds the reading that a flag is about."""
+    """Problems of penetration experiments with the reading that caused the flag."""
 
     def __init__(self, campaign: Campaign, tests: PenetrationTests, geometry: GeometryForm) -> None:
         self._campaign = campaign

@@ -46,20 +46,20 @@ _PLAUSIBLE: Final = {
 
 @dataclass(frozen=True, slots=True, repr=False)
 class StationSeries(Shown):
-    """What a weather station measured, in rising time.
+    """Readings of a weather station, in rising time.
 
     Attributes
     ----------
     file, station
         Name of the file; ``station_name``, else ``station_id``.
     latitude_deg, longitude_deg, altitude
-        Of the station (degree, m); None where the header does not say.
+        Place of the station (degree, m); None if not in the header.
     utc_offset
-        Of the file's times, hours east of Greenwich.
+        Offset of the file's times from UTC, hours east of Greenwich.
     time
         (n,) seconds since 1970-01-01, UTC.
     fields
-        Each column by its name in the file, SI, NaN where there is no value.
+        Columns by their names in the file, in SI; NaN for missing values.
     """
 
     file: str
@@ -99,8 +99,8 @@ def read_smet(path: str | Path) -> StationSeries:
     Raises
     ------
     FieldDataError
-        The file cannot be read, is no SMET in ASCII, lacks a key of the header, or has a row, time or number that does
-        not fit; the message names the line.
+        The file cannot be read, is not SMET in ASCII, lacks a key of the header, or has an invalid row, time or
+        number; the message names the line.
     """
     path = Path(path)
     try:
@@ -113,7 +113,7 @@ def read_smet(path: str | Path) -> StationSeries:
 
 
 def parse_smet(name: str, data: bytes) -> StationSeries:
-    """Take the bytes of a file of this name.
+    """Parse the bytes of a SMET file.
 
     Raises
     ------
@@ -124,7 +124,7 @@ def parse_smet(name: str, data: bytes) -> StationSeries:
 
 
 class _Reading:
-    """One file, whose refusals name the line."""
+    """Parser of one file; errors name the line."""
 
     def __init__(self, file: str, data: bytes) -> None:
         self._file = file
@@ -310,7 +310,7 @@ class WeatherSettings:
 
 @dataclass(frozen=True, slots=True, repr=False)
 class CampaignWeather(Shown):
-    """What a station measured, and how the campaign takes it."""
+    """Readings of a station, and the campaign's settings for them."""
 
     series: StationSeries
     settings: WeatherSettings
@@ -320,6 +320,6 @@ class CampaignWeather(Shown):
 
     @property
     def utc_offset(self) -> float:
-        """Of the campaign's times (h)."""
+        """Offset of the campaign's times from UTC (h)."""
         offset = self.settings.utc_offset_h
         return self.series.utc_offset if offset is None else offset

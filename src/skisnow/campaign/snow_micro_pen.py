@@ -26,7 +26,7 @@ FloatArray = npt.NDArray[np.float64]
 
 HEADER_BYTES: Final = 512
 MOST_BYTES: Final = 1 << 26
-"""Of a recording: 30 million samples, 130 m of snow at the usual distance of 4 µm."""
+"""Maximum size of a recording: 30 million samples, 130 m of snow at the usual distance of 4 µm."""
 _SAMPLE_BYTES: Final = 2
 _NO_HEIGHT_CM: Final = 99999.0
 _MICROMETRE: Final = 1e-6
@@ -63,44 +63,44 @@ _FIELDS: Final = (
 
 @dataclass(frozen=True, slots=True)
 class SnowMicroPenProfile:
-    """A recording: force against depth, and what the header says.
+    """A recording: force against depth, and the header.
 
     Attributes
     ----------
     file, name, comment
         Name of the file; name of the recording and comment in its header.
     depth
-        How far the tip had moved at each sample (m). Its zero is where the recording began, in the air above the snow:
-        the file does not say where the surface is, nor why a recording ended.
+        Distance of the tip from its start in the air above the snow, at each sample (m). The file has neither the
+        position of the surface nor the reason for the end of the recording.
     force
-        Force on the tip (N), counts times `force_per_count`; no offset is taken off.
+        Force on the tip (N): counts times `force_per_count`, without an offset.
     sample_distance
         Distance from sample to sample (m).
     force_per_count
         N per count of the analogue-digital converter.
     force_offset
-        As in the header, where the makers call it unused; 0 in practice.
+        From the header; according to the makers unused, 0 in practice.
     announced_samples
-        A second, larger sample count of the header. The recording has ``len(force)``, the header's count of force
-        samples; what follows it in the file is padding.
+        A second, larger sample count in the header. The recording has ``len(force)`` samples; the rest of the file is
+        padding.
     clock
-        Time stamp by the instrument's clock, UTC; None where it is no date. It may be wrong by years, see
+        Time by the instrument's clock, UTC; None if it is not a date. It can be wrong by years, see
         `date_in_file_name`.
     date_in_file_name
-        The first eight digits of the file's name that are a date (20200208), or None.
+        Date from the first eight digits in the file's name that are a date (20200208), or None.
     latitude_deg, longitude_deg
         WGS 84, north and east positive: the header has magnitudes and the flags N or S, E or W. None where flags or
         numbers are not valid, or both are 0.
     height
-        Above sea level (m), None where the receiver gave none.
+        Height above sea level (m), or None.
     dilution_of_precision, satellites, fix_mode
-        Of the satellite receiver, as in the header.
+        Values of the satellite receiver, from the header.
     speed
-        Of the tip (m/s).
+        Speed of the tip (m/s).
     tip_diameter, instrument_length
         In m.
     overload_N
-        Force at which the instrument stops itself.
+        Force at which the instrument stops.
     firmware, instrument_serial, sensor_serial, amplifier_serial
         As in the header.
     """
@@ -138,10 +138,10 @@ class SnowMicroPenProfile:
 
     @property
     def clock_is_one_rollover_behind(self) -> bool:
-        """Whether the clock is exactly 1024 weeks behind the file name.
+        """True if the clock is exactly 1024 weeks behind the file name.
 
-        Satellites count weeks modulo 1024, last from 0 on 7 April 2019; a receiver that does not know gives a date 19.6
-        years too early, at the right time of day.
+        Satellites count weeks modulo 1024, with the last zero at 7 April 2019. An old receiver gives a date that is
+        19.6 years too early, at the right time of day.
         """
         if self.clock is None or self.date_in_file_name is None:
             return False
@@ -154,7 +154,7 @@ def read_snow_micro_pen(path: Path) -> SnowMicroPenProfile:
     Raises
     ------
     FieldDataError
-        Where the file cannot be read, is empty, is cut off, or is no recording of a SnowMicroPen.
+        The file cannot be read, is empty or cut off, or is not a recording of a SnowMicroPen.
     """
     path = Path(path)
     try:
@@ -165,7 +165,7 @@ def read_snow_micro_pen(path: Path) -> SnowMicroPenProfile:
 
 
 def parse_snow_micro_pen(name: str, data: bytes) -> SnowMicroPenProfile:
-    """Take the bytes of a ``.PNT`` file of this name.
+    """Parse the bytes of a ``.PNT`` file.
 
     Raises
     ------
@@ -193,7 +193,7 @@ def _refuse(name: str, value: str, allowed: str, action: str, code: str = "unrea
 
 
 def _check(file: str, header: dict[str, Any], size: int) -> None:
-    """Refuse what is no such recording; the format has no signature, so that plausible numbers must do."""
+    """Check that the header has plausible numbers; the format has no signature."""
     limits = {
         "sample_distance_mm": (1e-4, 1.0),
         "force_per_count": (1e-6, 1.0),
@@ -245,7 +245,7 @@ def _profile(file: str, header: dict[str, Any], counts: FloatArray) -> SnowMicro
 
 
 def _text(raw: bytes) -> str:
-    """Take the text before the first NUL; what follows it is filling."""
+    """Text before the first NUL."""
     return raw.split(b"\0", 1)[0].decode("latin-1").strip()
 
 

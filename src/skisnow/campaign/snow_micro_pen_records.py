@@ -70,17 +70,17 @@ class SnowMicroPenRecordings(Shown):
     recording, site, spot, file
         Names as written in the table; an absent spot is ``""``.
     surface
-        Depth of the snow surface that the table states, from where the recording began (m); NaN where it is looked for.
+        Depth of the snow surface stated in the table, from the start of the recording (m); NaN if to be detected.
     cancelled
-        Why the recording was cancelled, ``""`` where it was not.
+        Reason for cancelling the recording, or ``""``.
     row
         Line of the table.
     contents
-        Bytes of each file, as they are.
+        Bytes of each file.
     settings
-        How they are evaluated.
+        Settings of the evaluation.
     further
-        Every further column as text.
+        Other columns as text.
     """
 
     recording: tuple[str, ...]
@@ -108,23 +108,23 @@ class SnowMicroPenRecordings(Shown):
 
 
 BLOCK: Final = 0.5 * MM
-"""The force is averaged over it, and the surface is found to it (modelling assumption)."""
+"""Length over which the force is averaged, and accuracy of the surface (modelling assumption)."""
 AIR: Final = 20.0 * MM
-"""The air's force is the median over this length before a block (modelling assumption)."""
+"""Length before a block over which the force in air is the median (modelling assumption)."""
 LEAST_AIR: Final = 5.0 * MM
-"""A recording that begins nearer to the snow does not show the air's force (modelling assumption)."""
+"""Shortest recorded length in air from which the force in air is known (modelling assumption)."""
 
 
 @dataclass(frozen=True, slots=True)
 class SnowSurface:
-    """Where it is (m from where the recording began), and the force in the air before it (N)."""
+    """Surface of the snow: depth (m) from the start of the recording, and force in the air before it (N)."""
 
     depth: float
     air_force: float
 
 
 def snow_surface(force: FloatArray, sample_distance: float, *, rise: float, hold: float) -> SnowSurface | None:
-    """The first block whose force, and that of all blocks over ``hold`` below it, is ``rise`` above the air's.
+    """Find the surface: the first block from which the force stays ``rise`` above that in air over ``hold``.
 
     Parameters
     ----------
@@ -139,7 +139,7 @@ def snow_surface(force: FloatArray, sample_distance: float, *, rise: float, hold
 
     Returns
     -------
-    The surface, or None where no block is such.
+    The surface, or None if it is not found.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""A snow pit: where and when it was dug, its layers, densities, temperatures, and what plate tests gave beside it."""
+"""Records of snow pits: place, time, layers, densities, temperatures, results of plate tests; CSV of pit densities."""
 
 from __future__ import annotations
 
@@ -29,8 +29,8 @@ class SnowLayer:
     """A layer: depth of its top from the surface (m), thickness (m) or None, hand hardness, grain form and size.
 
     ``hardness`` and ``grain_form`` are codes of the International Classification for Seasonal Snow on the Ground, such
-    as ``P+`` and ``RGsr``, or ``""``; ``hardness_bottom`` is another one where the layer grows harder or softer
-    downwards. ``grain_size`` is in m, None where it is not said.
+    as ``P+`` and ``RGsr``, or ``""``; ``hardness_bottom`` is a different hardness at the bottom of the layer.
+    ``grain_size`` is in m, or None.
     """
 
     top: float
@@ -79,20 +79,20 @@ class PlateValue:
 
 @dataclass(frozen=True, slots=True, repr=False)
 class SnowPit(Shown):
-    """A snow pit. Depths count from the surface down; what is not known is None, ``""`` or empty.
+    """A snow pit. Depths count from the surface down; unknown values are None, ``""`` or empty.
 
     Attributes
     ----------
     name
-        Of the pit or site.
+        Name of the pit or site.
     time
-        ISO 8601, day alone or with a time, with or without an offset; ``""`` where it is not known.
+        Day, or day and time with or without an offset, in ISO 8601; ``""`` if unknown.
     observer, comment, country, region
         Texts; the country as two letters of ISO 3166.
     latitude_deg, longitude_deg
         WGS 84.
     elevation
-        Above sea level (m).
+        Elevation above sea level (m).
     aspect
         N, NE, …, or degrees, as text.
     slope_angle_deg
@@ -100,7 +100,7 @@ class SnowPit(Shown):
     snow_height
         Height of the snow on the ground (m).
     air_temperature_C
-        Of the air.
+        Temperature of the air.
     layers, densities, temperatures, forces
         From the top down, as observed.
     snow_hardness, failure_shear_stress
@@ -145,17 +145,17 @@ class DensityLayers:
     pit
         Name of the pit.
     top, bottom
-        Limits of the layer, heights above the ground or ice that the snow lies on (m); top > bottom.
+        Limits of the layer, heights above the ground or ice below the snow (m); top > bottom.
     snow_density
         ρ in kg/m³.
     note
-        The column NOTES, ``""`` where there is none.
+        The column NOTES, or ``""``.
     kind
-        Kind of snow as the file writes it, ``""`` where it does not say.
+        Kind of snow in the file, or ``""``.
     row
         Line of the file; the header is line 1.
     problems
-        Warnings of reading, such as columns that are not known.
+        Warnings of reading, such as unknown columns.
     """
 
     pit: tuple[str, ...]
@@ -173,7 +173,7 @@ class DensityLayers:
 
     @property
     def thickness(self) -> FloatArray:
-        """Of each layer (m)."""
+        """Thickness of each layer (m)."""
         return self.top - self.bottom
 
 
@@ -183,7 +183,7 @@ def read_density_layers(path: Path) -> DensityLayers:
     Raises
     ------
     FieldDataError
-        With every problem of the file, each with its row and column.
+        The file has errors; the exception has all problems with their rows and columns.
     """
     path = Path(path)
     files = RawFiles(FilesOfFolder(path.parent))

@@ -40,18 +40,18 @@ GAUGE_RESOLUTION_MM: Final = 0.01
 
 @dataclass(frozen=True, slots=True)
 class Template:
-    """A table with one row; the cells by the names of the columns."""
+    """A table with one example row: cells by the names of the columns."""
 
     form: TableForm
     example: Mapping[str, str | float]
 
     @property
     def numbers(self) -> dict[str, Quantity]:
-        """The columns of numbers."""
+        """Columns of numbers by name."""
         return {quantity.name: quantity for quantity in self.form.numbers}
 
     def explained(self) -> Iterator[tuple[str, str]]:
-        """Each column with what stands in it."""
+        """Pairs of column and explanation."""
         for name in self.example:
             quantity = self.numbers.get(name)
             yield name, WORDS.get(name, "") if quantity is None else f"{quantity.meaning}; {_unit(quantity)}"
@@ -101,11 +101,11 @@ GIVEN: Final[dict[str, str]] = {
     "gauge_resolution_mm": f"{GAUGE_RESOLUTION_MM:g}",
     "load_steps_N": "; ".join(f"{load:g}" for load in LOADS_N),
 }
-"""Values that a new campaign begins with, as a cell holds them; the name is asked for."""
+"""Values of a new campaign as cells, without its name."""
 
 
 def keys_with_values(name: str) -> Iterator[tuple[str, str, Quantity]]:
-    """Every key of one value or a list of numbers, with what a new campaign of this name begins with."""
+    """Key, cell and quantity of each value of a new campaign with this name."""
     for key, quantity in CAMPAIGN_KEYS.items():
         yield key, name if key == "name" else GIVEN.get(key, ""), quantity
 
@@ -150,7 +150,7 @@ _WIDEST: Final = 60
 
 
 def workbook_bytes(name: str) -> bytes:
-    """The .xlsx file of a new campaign; what stands in a column is said in a note at its heading."""
+    """The .xlsx file of a new campaign; notes at the headings explain the columns."""
     from openpyxl import Workbook
 
     book = Workbook()
@@ -208,23 +208,23 @@ WORKBOOK: Final = "campaign.xlsx"
 
 
 def write_new_campaign(folder: str | Path, *, xlsx: bool = False) -> tuple[Path, ...]:
-    """Write what a campaign is filled into; where tables lie in the folder already, campaign.toml alone.
+    """Write a template of a campaign; in a folder with tables only campaign.toml.
 
     Parameters
     ----------
     folder
-        Made where it is missing; the campaign takes its name.
+        Folder, created if necessary; its name is that of the campaign.
     xlsx
-        One workbook in place of campaign.toml and four tables.
+        True for a workbook instead of campaign.toml and four tables.
 
     Returns
     -------
-    The files. Each table has a row as an example, whose status keeps it out of every estimate.
+    Paths of the files. Each table has an example row, whose status excludes it from all estimates.
 
     Raises
     ------
     OutputError
-        The folder holds a campaign.toml, or with ``xlsx`` any table, or cannot be written; nothing is half-written.
+        The folder has a campaign.toml, or with ``xlsx`` any table, or cannot be written; nothing is written then.
     """
     folder = Path(folder)
     there = _there(folder)
@@ -247,7 +247,7 @@ def _workbook(name: str) -> Mapping[str, bytes | str]:
 
 
 def _there(folder: Path) -> list[str]:
-    """What a campaign reads and the folder has: files of tables, workbooks."""
+    """Names of tables and workbooks in a folder."""
     names = sorted(path.name for path in folder.iterdir()) if folder.is_dir() else []
     return [name for name in names if name in CAMPAIGN_FILES or is_workbook(name)]
 

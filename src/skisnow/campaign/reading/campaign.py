@@ -1,4 +1,4 @@
-"""Read a campaign's folder: every file once, every problem reported, and records only where none is an error."""
+"""Reader of campaigns: each file is read once, all problems are reported, and records are made if none is an error."""
 
 from __future__ import annotations
 
@@ -42,11 +42,11 @@ if TYPE_CHECKING:
     from .table_forms import TableForm
 
 CAMPAIGN_FILES: Final = (CAMPAIGN_FILE, CORRECTIONS.file, *(form.file for form in TABLES))
-"""Names of the files that a campaign reads, in their order; workbooks may stand for them."""
+"""Names of the files of a campaign, in the order of reading; workbooks can replace them."""
 
 
 class _ReadFiles(Container[str]):
-    """Those, and in the campaign's folder workbooks and the files that its tables may name."""
+    """Names of the files of a campaign, of workbooks, and of files that tables can name."""
 
     def __contains__(self, name: object) -> bool:
         if not isinstance(name, str) or "/" in name:
@@ -70,21 +70,21 @@ def read_campaign(folder: str | Path, *, progress: Callable[[str], None] | None 
     folder
         The folder with campaign.toml and the tables; or a workbook (.xlsx) with all of it in its sheets.
     progress
-        Called now and then with a few words on how far the reading is.
+        Called with a few words on the progress of reading.
 
     Returns
     -------
-    The campaign in SI, corrections applied; ``problems`` holds the warnings.
+    The campaign in SI with its corrections applied; ``problems`` has the warnings.
 
     Raises
     ------
     FieldDataError
-        With every problem, warnings too, where at least one is an error.
+        At least one problem is an error; the exception has all problems.
 
     See Also
     --------
-    skisnow.check_campaign : lists problems and does not raise.
-    skisnow.analyse : what the campaign says.
+    skisnow.check_campaign : list of the problems, without an exception.
+    skisnow.analyse : hardness and shear stress of the snow.
 
     References
     ----------
@@ -94,14 +94,14 @@ def read_campaign(folder: str | Path, *, progress: Callable[[str], None] | None 
 
 
 def campaign_of_files(files: Mapping[str, bytes], *, others: tuple[str, ...] = ()) -> Campaign:
-    """Read and check a campaign whose files are at hand: nothing is looked for on the disk.
+    """Read and check a campaign from files in memory.
 
     Parameters
     ----------
     files
-        Contents by name, as they would lie in the campaign's folder.
+        Contents by name.
     others
-        Names of further files, which a campaign does not read.
+        Names of other files in the campaign's folder, which are not read.
 
     Raises
     ------
@@ -112,21 +112,21 @@ def campaign_of_files(files: Mapping[str, bytes], *, others: tuple[str, ...] = (
 
 
 def check_campaign(folder: str | Path) -> tuple[Problem, ...]:
-    """List every error and warning of a campaign, in the order of its files and rows; a bad campaign does not raise.
+    """List all errors and warnings of a campaign, in the order of its files and rows.
 
     Parameters
     ----------
     folder
-        Of the campaign, with campaign.toml and its tables.
+        Folder with campaign.toml and the tables, or a workbook.
 
     Returns
     -------
     tuple of Problem
-        Each with file, row, column, value, what is allowed and what to do; empty where nothing is wrong.
+        Problems with file, row, column, value, allowed values and remedy; empty for a valid campaign.
 
     See Also
     --------
-    skisnow.read_campaign : raises in place of listing.
+    skisnow.read_campaign : the campaign, or an exception.
 
     References
     ----------
@@ -143,7 +143,7 @@ def _require_valid(contents: _Contents) -> Campaign:
 
 @dataclass(frozen=True, slots=True)
 class _Contents:
-    """What was read, and what was found wrong, by file and row."""
+    """Contents of a campaign's files before conversion to records, with all problems."""
 
     folder: Path
     described: CampaignFile | None
@@ -215,13 +215,13 @@ def _sort_problems(problems: list[Problem]) -> tuple[Problem, ...]:
 
 
 def _unread_files(there: Mapping[str, bool]) -> tuple[str, ...]:
-    """Files that are no part of a campaign; hidden ones, and what Excel puts beside an open one, are not spoken of."""
+    """Files that are not part of a campaign, without hidden ones and Excel's lock files."""
     files = sorted(name for name, is_file in there.items() if is_file)
     return tuple(name for name in files if name not in CAMPAIGN_FILES and not name.startswith((".", "~$")))
 
 
 def _units_without_heading(headings: Headings, tables: Mapping[str, Table]) -> list[Problem]:
-    """Units that campaign.toml states for headings that no table has: they would be ignored without a word."""
+    """Errors for units in campaign.toml whose heading is in no table, because they would be ignored silently."""
     there = {file: table.headings for file, table in tables.items()}
     return [
         error(
@@ -237,7 +237,7 @@ def _units_without_heading(headings: Headings, tables: Mapping[str, Table]) -> l
 
 
 def _misnamed_files(there: Mapping[str, bool], absent: set[str]) -> list[Problem]:
-    """Files whose names differ from the campaign's by capitals alone: they would be passed over without a word."""
+    """Errors for files whose names differ from the expected ones only by case, because they would not be read."""
     return [
         error("unreadable_file", name, value=name, allowed=name.lower(), action=f"Rename it to {name.lower()}.")
         for name in sorted(there)

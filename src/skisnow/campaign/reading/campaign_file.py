@@ -1,4 +1,4 @@
-"""campaign.toml: who measured with what, how finely, and which quality flags exclude."""
+"""Reader of campaign.toml: observers, tools and plates, uncertainties, and quality flags that exclude."""
 
 from __future__ import annotations
 
@@ -40,10 +40,10 @@ class Plate:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CampaignFile:
-    """What campaign.toml says, in SI; the fields are those of `skisnow.campaign.records.Campaign`.
+    """Content of campaign.toml in SI; the fields are those of `skisnow.campaign.records.Campaign`.
 
-    ``tool_names`` and ``plate_names`` also hold those whose lengths were refused; ``flat_tools`` are the tools without
-    an edge, for which only the edge angle 0 has a meaning.
+    ``tool_names`` and ``plate_names`` include tools and plates with invalid lengths. ``flat_tools`` are the tools
+    without an edge, whose edge angle must be 0.
     """
 
     name: Annotated[str | None, Quantity("name", "name of the campaign; left out or blank: the folder's", blank=True)]
@@ -123,12 +123,12 @@ def read_campaign_file(text: str, problems: list[Problem]) -> CampaignFile | Non
     ----------
     text
         The decoded file.
-    found
+    problems
         Takes every problem.
 
     Returns
     -------
-    Its content, or None where it is not TOML. With an error in ``problems`` what was refused is left out.
+    Its content, or None if it is not TOML. Invalid values are missing, with an error in ``problems``.
     """
     parsed = _parsed(text, problems)
     if parsed is None:
@@ -210,7 +210,7 @@ def _plates(top: TomlValues) -> tuple[dict[str, float], frozenset[str]]:
 
 
 def _new_name(entry: TomlValues, names: set[str]) -> str | None:
-    """Take a name in; None, with an error, where it is missing or taken."""
+    """Read a name and add it to `names`; None, with an error, if it is missing or repeated."""
     if "name" not in entry.values:
         entry.refuse("name", "a name", "Add the name that the tables use.")
     name = entry.text("name")
@@ -242,7 +242,7 @@ def _needed_length(entry: TomlValues, quantity: Quantity) -> float | None:
 
 
 def _length(entry: TomlValues, quantity: Quantity) -> float | None:
-    """A length in m; one that hardly is in mm is warned of."""
+    """A length in m, with a warning if it is probably not in mm."""
     value = entry.number(quantity)
     if value is not None and quantity.usual is not None and not quantity.usual[0] <= value <= quantity.usual[1]:
         low, high = quantity.usual
@@ -267,7 +267,7 @@ def _stiffness(top: TomlValues) -> float | None:
 
 
 def _excluding(top: TomlValues) -> frozenset[str]:
-    """Codes of the quality flags that exclude: the file's list replaces the default, but for those that always do."""
+    """Codes of the quality flags that exclude: the file's list or the default, and those that always exclude."""
     screening = top.table("screening")
     screening.refuse_misspelt(("exclude",))
     if "exclude" not in screening.values:
@@ -285,19 +285,19 @@ def _excluding(top: TomlValues) -> frozenset[str]:
 
 @dataclass(frozen=True, slots=True)
 class Shape:
-    """A shape: its class, and whether it can be tilted by an edge angle."""
+    """A shape of a tool: its class, and True if it has an edge that can be tilted."""
 
     tool: type[Tool]
     has_edge: bool
 
     @property
     def lengths(self) -> tuple[Quantity, ...]:
-        """The lengths that campaign.toml says of it."""
+        """Lengths of the shape in campaign.toml."""
         return own_quantities(self.tool)
 
     @property
     def argument_of_key(self) -> Mapping[str, str]:
-        """The class's argument for each key."""
+        """Argument of the class by key."""
         return {length.name: length.field for length in self.lengths}
 
 

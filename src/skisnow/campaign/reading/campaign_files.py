@@ -1,4 +1,4 @@
-"""Where the files of a campaign lie: in a folder, or in memory."""
+"""Files of a campaign in a folder or in memory, recordings and weather files that it names."""
 
 from __future__ import annotations
 
@@ -29,15 +29,15 @@ if TYPE_CHECKING:
 
 
 class CampaignFiles(Protocol):
-    """Files by name, of one campaign."""
+    """Files of one campaign by name."""
 
     @property
     def folder(self) -> Path:
-        """The folder; of files in memory one by whose name the campaign goes where it has none."""
+        """The folder; for files in memory its name is the default name of the campaign."""
         ...
 
     def read(self, name: str) -> bytes | None:
-        """A file's bytes; None where it is something that is no plain file.
+        """Bytes of a file; None for a directory, pipe or the like.
 
         Raises
         ------
@@ -49,7 +49,7 @@ class CampaignFiles(Protocol):
         ...
 
     def names(self) -> dict[str, bool]:
-        """What lies there, and whether it is a file."""
+        """Names in the folder, with True for plain files."""
         ...
 
 
@@ -62,7 +62,7 @@ class FilesOfFolder:
     def read(self, name: str) -> bytes | None:
         """See `CampaignFiles.read`."""
         path = self.folder / name
-        # a pipe would be waited for, a folder cannot be read
+        # reading a pipe would block, and a folder cannot be read
         return path.read_bytes() if stat.S_ISREG(path.stat().st_mode) else None
 
     def names(self) -> dict[str, bool]:
@@ -72,16 +72,16 @@ class FilesOfFolder:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class FilesInMemory:
-    """Files that are at hand.
+    """Files in memory.
 
     Attributes
     ----------
     contents
-        By name.
+        Contents by name.
     others
-        Names of files that are no part of a campaign, whose contents nobody asks for.
+        Names of other files, which are not read.
     folder
-        By whose name the campaign goes where its description has none; nothing is looked for there.
+        Path whose name is the default name of the campaign; it is not read.
     """
 
     contents: Mapping[str, bytes]
@@ -101,18 +101,18 @@ class FilesInMemory:
 
 @dataclass(frozen=True, slots=True)
 class RawFiles:
-    """Reads files of one campaign and remembers what it met.
+    """Reader of the files of one campaign, with the problems so far.
 
     Attributes
     ----------
     files
-        Where they lie.
-    found
+        The files.
+    problems
         Takes the problems.
     hashes
         SHA-256 of each file that was read.
     absent
-        Names that were asked for and are not there.
+        Names of missing files.
     """
 
     files: CampaignFiles
@@ -121,7 +121,7 @@ class RawFiles:
     absent: set[str] = field(default_factory=set)
 
     def read(self, name: str) -> bytes | None:
-        """Give a file's bytes; None where it is absent, or cannot be read, which is reported."""
+        """Bytes of a file; None if it is missing, or cannot be read, which is reported."""
         try:
             data = self.files.read(name)
         except FileNotFoundError:
@@ -142,7 +142,7 @@ class RawFiles:
         self.problems.append(error("unreadable_file", name, value=what, allowed=allowed, action=action))
 
     def report_unreadable(self, name: str, failure: UnreadableTextError) -> None:
-        """Say that a file is not the text it should be."""
+        """Report a file that is not valid text."""
         self.problems.append(
             error(
                 "unreadable_file",
@@ -155,7 +155,7 @@ class RawFiles:
         )
 
     def report_encoding(self, name: str, foreign_encoding: str | None) -> None:
-        """State an encoding that is not the plain one."""
+        """Report an encoding other than UTF-8."""
         if foreign_encoding is None:
             return
         how = "It was guessed" if foreign_encoding == "Windows-1252" else "It was read as such"
@@ -176,7 +176,7 @@ ENDING: Final = ".pnt"
 
 
 def recording_contents(table: Table | None, files: RawFiles) -> dict[str, bytes]:
-    """Read and check every file that the table names; what is wrong is reported with the row that names it."""
+    """Read and check all files that the table names; problems are reported with the row."""
     contents: dict[str, bytes] = {}
     if table is None or table.absent:
         return contents
@@ -215,7 +215,7 @@ def _content(table: Table, row: int, name: str, files: RawFiles) -> bytes | None
 
 
 def _repeated_names(table: Table, column: str) -> list[Problem]:
-    """A recording or a file that an earlier row names, too: it would count again."""
+    """Errors for recordings and files that are repeated in a later row, because they would count twice."""
     first: dict[str, int] = {}
     problems = []
     for row, name in enumerate(table.names[column].cells()):
@@ -243,7 +243,7 @@ def _refusal(table: Table, row: int, column: str, code: str, allowed: str, actio
 def snow_micro_pen_recordings(
     table: Table, contents: Mapping[str, bytes], settings: SnowMicroPenSettings
 ) -> SnowMicroPenRecordings:
-    """Make the recordings of a table without an error."""
+    """Convert a valid table to recordings."""
     file = table.names["file"].cells()
     return SnowMicroPenRecordings(
         recording=table.names["recording"].cells(),
@@ -263,7 +263,7 @@ WEATHER_ENDING: Final = ".smet"
 
 
 def campaign_weather(settings: WeatherSettings, files: RawFiles) -> CampaignWeather | None:
-    """Read the station's file; None where none is named, or where it cannot be read, which is reported."""
+    """Read the station's file; None if none is named, or if it cannot be read, which is reported."""
     name = settings.file
     if not name:
         return None

@@ -1,4 +1,4 @@
-"""The JSON Schema of campaign.toml: what `CampaignFile`, plates and tools declare."""
+"""JSON Schema of campaign.toml, from the declarations of `CampaignFile`, plates and tools."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _NAME: Final[Schema] = {"type": "string", "pattern": "\\S", "description": "Uniq
 
 
 def campaign_schema() -> Schema:
-    """The schema that stands in the package as `FILE`."""
+    """JSON Schema of campaign.toml; the package contains it as `FILE`."""
     return {
         "$schema": DRAFT,
         "$id": "urn:skisnow:schema:campaign:1",
@@ -49,7 +49,7 @@ def _exclude() -> Schema:
 
 
 def _by_heading(words: str) -> Schema:
-    """Texts by headings, for all tables or for one."""
+    """Schema of texts by headings, for all tables or for one."""
     pairs = {"type": "object", "additionalProperties": {"type": "string"}}
     either: Schema = {"anyOf": [{"type": "string"}, pairs]}
     words = f"{words}; in a table of a table's name, such as penetration, for that one."
@@ -57,13 +57,13 @@ def _by_heading(words: str) -> Schema:
 
 
 def _recordings() -> Schema:
-    """How recordings of a SnowMicroPen are evaluated."""
+    """Settings of recordings of a SnowMicroPen."""
     words = "How the recordings that snow_micro_pen.csv names are evaluated."
     return {"description": words, **table_schema(own_quantities(SnowMicroPenSettings))}
 
 
 def _weather() -> Schema:
-    """The readings of a station."""
+    """Settings of a weather station."""
     words = "Readings of a weather station, in SMET."
     return {"description": words, **table_schema(own_quantities(WeatherSettings))}
 

@@ -1,4 +1,4 @@
-"""A table as it was read: columns of names, numbers and texts, each cell checked."""
+"""Columns of a table while it is read: names, numbers, texts and dates, with checks of each cell."""
 
 from __future__ import annotations
 
@@ -25,14 +25,14 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Rows:
-    """Some rows of a file: their file lines, and the cells of the column that names the experiment."""
+    """Some rows of a file: their lines, and the cells of the column with the name of the experiment."""
 
     file: str
     line: Sequence[int]
     key: Sequence[str]
 
     def problem(self, code: str, index: int, *, column: str, value: str, allowed: str, action: str) -> Problem:
-        """Make an error about one cell."""
+        """Error of one cell."""
         return error(
             code,
             self.file,
@@ -46,7 +46,7 @@ class Rows:
 
 
 class Collector(Protocol):
-    """Takes the cells of one column, some rows at a time."""
+    """Collects the cells of one column, several rows at a time."""
 
     def take(self, cells: Sequence[str], rows: Rows, problems: list[Problem]) -> None:
         """Take cells; put what is wrong with them into ``problems``."""
@@ -54,28 +54,28 @@ class Collector(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class NameColumn:
-    """A column of text in which few texts stand often: the distinct ones, and one code per row."""
+    """A column of text with few distinct values: the values, and the number of the value in each row."""
 
     names: tuple[str, ...]
     code: IntArray
 
     @property
     def is_blank(self) -> BoolArray:
-        """Tell the rows without a name."""
+        """True (n,) for rows without a name."""
         blank = np.array([not name for name in self.names], dtype=np.bool_)
         return blank[self.code]
 
     def __getitem__(self, index: int) -> str:
-        """Give one cell."""
+        """One cell."""
         return self.names[self.code[index]]
 
     def cells(self) -> tuple[str, ...]:
-        """Give all cells; equal ones are one object."""
+        """All cells."""
         return tuple(map(self.names.__getitem__, self.code.tolist()))
 
 
 class _NameCodes(dict[str, int]):
-    """Code of each cell; the dictionary asks for each distinct cell once, and strips it."""
+    """Number of the name in each distinct cell; cells are stripped when they are first met."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -88,7 +88,7 @@ class _NameCodes(dict[str, int]):
 
 
 class NameCollector:
-    """Collects names; a required one may not be blank."""
+    """Collects names; a required name must not be blank."""
 
     def __init__(self, column: str, *, required: bool) -> None:
         self._column = column
@@ -110,14 +110,14 @@ class NameCollector:
         )
 
     def column(self, count: int) -> NameColumn:
-        """Give the column; blank where the file does not have it."""
+        """The column; blank if the file does not have it."""
         if not self._parts:
             return NameColumn(("",), np.zeros(count, dtype=np.int64))
         return NameColumn(tuple(self._codes.code_of_name), np.concatenate(self._parts))
 
 
 class NumberCollector:
-    """Collects numbers in the unit of the column's name; NaN where a cell is blank or refused."""
+    """Collects numbers in the unit of the column's name; NaN for blank and invalid cells."""
 
     def __init__(self, column: Quantity, mark: str, unit: UnitConversion | None = None) -> None:
         self._column = column
@@ -157,12 +157,12 @@ class NumberCollector:
         return f"Write a plain number such as 12{self._mark}5, without unit, remark or thousands separator."
 
     def column(self, count: int) -> FloatArray:
-        """Give the column; NaN where the file does not have it."""
+        """The column; NaN if the file does not have it."""
         return np.concatenate(self._parts) if self._parts else np.full(count, np.nan)
 
 
 class TextCollector:
-    """Collects texts, stripped; equal ones that stand near each other are one object."""
+    """Collects stripped texts; equal neighbours share an object."""
 
     def __init__(self) -> None:
         self._texts: list[str] = []
@@ -179,24 +179,24 @@ class TextCollector:
 
 @dataclass(frozen=True, slots=True)
 class Table:
-    """A table as it was read: n rows in the order of the file, numbers in the units of the columns' names.
+    """A table after reading: n rows in the order of the file, numbers in the units of the columns' names.
 
     Attributes
     ----------
     form
-        What the table must and may have.
+        Required and allowed columns.
     row
         File line of each row.
     names
-        The required and the interpreted optional text columns, whether the file has them or not.
+        Required and interpreted optional text columns, also if the file does not have them.
     numbers
-        Every column of numbers of the form; NaN where blank, absent or refused.
+        All columns of numbers of the form; NaN for blank, missing and invalid cells.
     further
-        The other columns of the file, unknown ones too, as text.
+        Other columns of the file, also unknown ones, as text.
     absent
-        Required columns that the file lacks.
+        Required columns that the file does not have.
     headings
-        Headings as the file has them.
+        Headings in the file.
     unstated
         Headings without a unit, by their columns of numbers.
     """
@@ -216,7 +216,7 @@ class Table:
 
 
 class DateCollector:
-    """Collects days and times, written after ISO 8601; one that cannot be read stays as it is, and is reported once."""
+    """Collects days and times in ISO 8601; unreadable ones are kept as text and reported in one warning."""
 
     def __init__(self, column: str) -> None:
         self._column = column
@@ -235,7 +235,7 @@ class DateCollector:
             self._texts.append(cell if written is None else written)
 
     def problems(self, file: str) -> list[Problem]:
-        """What could not be read, in one warning."""
+        """Warning of unreadable days and times, if any."""
         if not self._unread_files:
             return []
         line, cell, key = self._unread_files[0]
@@ -274,10 +274,7 @@ _BETWEEN: Final = "\x1f"  # the unit separator: in no number
 
 
 def numbers(cells: Sequence[str], mark: str) -> FloatArray:
-    """Read a column of cells; NaN where a cell is blank or no finite number.
-
-    The whole column at once where it is plain, cell by cell where it is not.
-    """
+    """Numbers in a column of cells (n,); NaN for blank cells and for cells that are not a finite number."""
     together = _BETWEEN.join(cells)
     if together.isascii() and "_" not in together and not (mark == "," and "." in together):
         try:
@@ -303,9 +300,9 @@ _CLOCK_ALONE: Final = re.compile(r"\d{1,2}:\d{2}(:\d{2})?")
 
 
 def iso_moment(cell: str) -> str | None:
-    """A day, a day and time, or a time of day as ISO 8601 writes it; None where it is none, or could be two.
+    """A day, a day and time, or a time of day in ISO 8601; None if it is invalid or ambiguous.
 
-    Written with points the day comes first; with slashes it is read only where the order cannot be mistaken.
+    With points the day comes first. With slashes it is read only if the order of day and month is unambiguous.
 
     >>> [iso_moment(cell) for cell in ("23.11.2026", "23.11.2026 9:05", "2026-11-23T09:05", "09:05")]
     ['2026-11-23', '2026-11-23T09:05:00', '2026-11-23T09:05', '09:05']

@@ -1,7 +1,7 @@
-"""Corrections of single cells, kept beside the raw files and applied before anything is interpreted.
+"""Corrections of single cells in a separate file, applied before the raw files are interpreted.
 
-A correction says what stood in the cell and what is meant. Where something else stands there it is not applied: the raw
-file or the correction is not the one that was meant.
+A correction has the old and the new text of the cell. It is not applied if the cell has another text, because then the
+raw file or the correction is not the intended one.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ STATUS = "status"
 
 @dataclass(frozen=True, slots=True)
 class Correction:
-    """One row of corrections.csv; ``line`` is its own file line, ``row`` the one that it corrects."""
+    """One row of corrections.csv; ``line`` is its line in corrections.csv, ``row`` the corrected line."""
 
     line: int
     file: str
@@ -41,13 +41,13 @@ class Correction:
     why: str
 
     def applied(self) -> AppliedCorrection:
-        """What the records keep of it."""
+        """The correction for the records of the campaign."""
         return AppliedCorrection(
             self.file, self.experiment, self.row, self.column, self.old, self.new, self.who, self.when, self.why
         )
 
     def mismatch(self, column: str, value: str, allowed: str) -> Problem:
-        """Say that this correction does not meet what it names."""
+        """Error of a correction that does not match the raw file."""
         return error(
             "correction_mismatch",
             CORRECTIONS.file,
@@ -61,11 +61,11 @@ class Correction:
 
 
 RowCorrections: TypeAlias = "Mapping[int, Sequence[Correction]]"
-"""The corrections of one file by file line, each line's in the order of corrections.csv."""
+"""Corrections of one file by line; those of a line in the order of corrections.csv."""
 
 
 def corrections_by_file(table: Table, problems: list[Problem]) -> dict[str, dict[int, list[Correction]]]:
-    """Sort the rows of corrections.csv by the file and the line that they correct."""
+    """Group the rows of corrections.csv by corrected file and line."""
     files = [form.file for form in TABLES]
     sorted_by_file: dict[str, dict[int, list[Correction]]] = {}
     lines, rows = table.row.tolist(), table.numbers["row"].tolist()
@@ -85,7 +85,7 @@ def corrections_by_file(table: Table, problems: list[Problem]) -> dict[str, dict
 
 
 def report_missing_files(corrections: RowCorrections, problems: list[Problem]) -> None:
-    """Report of each correction that its file is not in the campaign, or cannot be read."""
+    """Report corrections whose file is missing or cannot be read."""
     for of_one_row in corrections.values():
         problems.extend(
             correction.mismatch("file", correction.file, "a readable file of this campaign")
@@ -94,7 +94,7 @@ def report_missing_files(corrections: RowCorrections, problems: list[Problem]) -
 
 
 def header_with_status(form: TableForm, header: Header, corrections: RowCorrections) -> Header:
-    """Append the column ``status`` where a correction cancels and the file has no such column."""
+    """Append the column ``status`` if a correction cancels an experiment and the file has no such column."""
     columns = (correction.column for of_one_row in corrections.values() for correction in of_one_row)
     if STATUS in form.optional and STATUS not in header.columns and STATUS in columns:
         return header.with_column(STATUS)
@@ -107,14 +107,14 @@ class Corrector:
     Parameters
     ----------
     form
-        What the table must and may have.
+        Required and allowed columns.
     header
-        The file's header, with `header_with_status`.
+        Header of the file, from `header_with_status`.
     corrections
-        Those of this file.
+        Corrections of this file.
     mark
-        How the file writes decimals.
-    found
+        Decimal mark of the file.
+    problems
         Takes the problems.
     """
 
@@ -138,7 +138,7 @@ class Corrector:
                 self._correct(cells, correction)
 
     def finish(self) -> None:
-        """Say which corrections met no row; to be called after the last record."""
+        """Report corrections whose row is not in the file; call this after the last record."""
         for row, of_one_row in sorted(self._left.items()):
             what = "the header" if row == self._header.row else "no measurement"
             allowed = f"a row of measurements; {what} stands there"
@@ -172,7 +172,7 @@ class Corrector:
         return any(stands == number(old, mark) for mark in (self._mark, "."))  # NaN, no number, equals nothing
 
     def _in_the_files_form(self, correction: Correction) -> str:
-        """Let a number in the plain form stand in a file with decimal commas too."""
+        """New text of the cell, with a decimal comma if the file uses decimal commas."""
         if self._mark == "," and correction.column in self._numbers and is_number(correction.new, "."):
             return correction.new.replace(".", ",")
         return correction.new

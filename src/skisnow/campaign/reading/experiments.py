@@ -1,4 +1,4 @@
-"""Rows of a table to experiments: which rows belong together, and whether they agree on what they must agree on."""
+"""Conversion of rows to experiments: blocks of rows, checks of their consistency, records in SI."""
 
 from __future__ import annotations
 
@@ -24,19 +24,19 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Blocks:
-    """Runs of rows with one key: m blocks, block i being rows ``first[i]:first[i + 1]``."""
+    """m blocks of consecutive rows with the same key; block i has the rows ``first[i]:first[i + 1]``."""
 
     first: IntArray
 
     @classmethod
     def of_runs(cls, key: NameColumn) -> Blocks:
-        """Cut where the key changes."""
+        """Blocks of rows with the same key."""
         changes = np.flatnonzero(key.code[1:] != key.code[:-1]) + 1
         return cls(np.concatenate(([0], changes, [len(key.code)])).astype(np.int64))
 
     @classmethod
     def of_single_rows(cls, count: int) -> Blocks:
-        """Let each row be a block of its own."""
+        """Blocks of one row each."""
         return cls(np.arange(count + 1, dtype=np.int64))
 
     @property
@@ -50,19 +50,19 @@ class Blocks:
         return np.repeat(np.arange(len(self.start), dtype=np.int64), np.diff(self.first))
 
     def first_of(self, chosen: BoolArray) -> IntArray:
-        """Offsets of the blocks among the chosen rows alone: m + 1 of them."""
+        """Offsets (m + 1,) of the blocks if only the chosen rows are counted."""
         count = np.add.reduceat(chosen.astype(np.int64), self.start)
         return np.concatenate(([0], np.cumsum(count))).astype(np.int64)
 
     def first_given(self, mask: BoolArray) -> IntArray:
-        """First row of each block for which ``given`` holds, or the block's first row."""
+        """First row of each block with ``mask``, or the block's first row."""
         chosen = self.start.copy()
         rows = np.flatnonzero(mask)[::-1]
         chosen[self.of_row[rows]] = rows  # of repeated indices the last assignment stays
         return chosen
 
     def means(self, values: FloatArray) -> FloatArray:
-        """Mean of each block's numbers that are not NaN; exact where they are all the same."""
+        """Mean (m,) of each block's numbers without NaN; exact if all are equal."""
         finite = ~np.isnan(values)
         count = np.add.reduceat(finite.astype(np.int64), self.start)
         low, high = np.fmin.reduceat(values, self.start), np.fmax.reduceat(values, self.start)
@@ -70,7 +70,7 @@ class Blocks:
         return np.where(low == high, low, total / np.maximum(count, 1) + np.where(count > 0, 0.0, np.nan))
 
     def texts(self, column: NameColumn) -> tuple[str, ...]:
-        """Each block's different texts that are not blank, joined by semicolons."""
+        """Distinct texts of each block that are not blank, joined by semicolons."""
         collected: dict[int, dict[str, None]] = {}
         block = self.of_row
         for row in np.flatnonzero(~column.is_blank).tolist():
@@ -82,7 +82,7 @@ TURNING: Final = "turning_angle_deg"
 
 
 def shear_blocks(table: Table) -> Blocks:
-    """Rows of one experiment together where their turning angle is given; each row by itself where it is not."""
+    """Blocks of a shear table: rows of an experiment with turning angles, and single rows without one."""
     turned = ~np.isnan(table.numbers[TURNING])
     if not turned.any():
         return Blocks.of_single_rows(len(table))
@@ -92,7 +92,7 @@ def shear_blocks(table: Table) -> Blocks:
 
 
 def check_series(table: Table, blocks: Blocks) -> Iterator[Problem]:
-    """Find experiments of several rows that change their place, tool or angle, or have rows in two places."""
+    """Errors for experiments that change their site, tool or angle, or whose rows are not consecutive."""
     key = table.names[table.form.key]
     if table.form.key in table.absent:
         return
@@ -113,7 +113,7 @@ def check_series(table: Table, blocks: Blocks) -> Iterator[Problem]:
 
 
 def check_one_site(table: Table) -> Iterator[Problem]:
-    """Find tests that are given two sites."""
+    """Errors for tests with two sites."""
     key, site = table.names[table.form.key], table.names["site"]
     if table.absent & {table.form.key, "site"}:
         return
@@ -159,7 +159,7 @@ def _mixed(table: Table, row: int, reference: int, column: str, value: str, othe
 
 
 def penetration_tests(table: Table) -> PenetrationTests:
-    """Make the penetration experiments; their rows stand together and agree."""
+    """Convert a valid table to penetration experiments."""
     blocks = Blocks.of_runs(table.names["experiment"])
     spot = table.names["spot"]
     taken_off = is_unloading(table.names[BRANCH])
@@ -199,7 +199,7 @@ def _unloading(table: Table, blocks: Blocks, taken_off: BoolArray) -> UnloadingR
 
 
 def shear_tests(table: Table) -> ShearTests:
-    """Make the shear experiments, one a row, or one of the rows of its turning: that of the largest moment."""
+    """Convert a valid table to shear experiments; one with turning angles has the row of its largest moment."""
     blocks = shear_blocks(table)
     moment, angle = table.numbers["moment_Nm"], table.numbers["turning_angle_deg"]
     largest = blocks.first_given(moment == np.maximum.reduceat(moment, blocks.start)[blocks.of_row])
@@ -226,7 +226,7 @@ def shear_tests(table: Table) -> ShearTests:
 
 
 def density_samples(table: Table) -> DensitySamples:
-    """Make the density samples."""
+    """Convert a valid table to density samples."""
     return DensitySamples(
         sample=table.names["sample"].cells(),
         site=table.names["site"].cells(),
@@ -238,7 +238,7 @@ def density_samples(table: Table) -> DensitySamples:
 
 
 def drop_cone_tests(table: Table) -> DropConeTests:
-    """Make the repeats of the drop-cone tests."""
+    """Convert a valid table to the repeats of drop-cone tests."""
     return DropConeTests(
         test=table.names["test"].cells(),
         site=table.names["site"].cells(),
@@ -255,7 +255,7 @@ def _at(column: NameColumn, rows: np.typing.NDArray[np.int64]) -> tuple[str, ...
 
 
 def _cancelled_together(table: Table) -> tuple[str, ...]:
-    """Let a status on any row of a sample or test cancel all rows of that name at that site."""
+    """Status of each row: a status in any row of a sample or test cancels all its rows at that site."""
     status = table.names["status"].cells()
     together = list(zip(table.names["site"].cells(), table.names[table.form.key].cells(), strict=True))
     reasons: dict[tuple[str, str], dict[str, None]] = {}

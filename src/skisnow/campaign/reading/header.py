@@ -1,4 +1,4 @@
-"""The header of a table: which columns it has, which are missing, which nobody knows."""
+"""Header of a table: its columns and units, and errors for missing, repeated and unknown columns."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ class Header:
     row
         Line of the file.
     units
-        Units in a row of their own below the names, ``""`` where it names none; empty without such a row.
+        Units in a separate row below the names, ``""`` without a unit; empty without such a row.
     """
 
     columns: tuple[str, ...]
@@ -46,32 +46,32 @@ class Header:
 
     @classmethod
     def from_cells(cls, cells: Sequence[str], row: int) -> Header:
-        """Make a header from its cells."""
+        """Header from its cells."""
         return cls(tuple(cell.strip().strip("\ufeff").strip() for cell in cells), row)
 
     def renamed(self, form: TableForm, headings: Headings) -> Header:
-        """Name the columns as the program does, where headings stand for them."""
+        """Header with the names of the columns instead of mapped headings."""
         return Header(tuple(headings.name(form, column) for column in self.columns), self.row)
 
     @property
     def position(self) -> dict[str, int]:
-        """Where each named column stands; of equal names the first."""
+        """Number of each named column; the first of equal names."""
         backwards = reversed(range(len(self.columns)))
         places = {self.columns[index]: index for index in backwards if self.columns[index]}
         return dict(sorted(places.items(), key=lambda item: item[1]))
 
     @property
     def unnamed(self) -> tuple[int, ...]:
-        """Where columns without a name stand."""
+        """Numbers of the columns without a name."""
         return tuple(index for index, name in enumerate(self.columns) if not name)
 
     def with_column(self, name: str) -> Header:
-        """Append a column."""
+        """Header with a further column."""
         return Header((*self.columns, name), self.row)
 
 
 def split_header(lines: list[int], rows: list[list[str]]) -> Header:
-    """Take the header off the first records, with titles of one cell above it and a row of units below it."""
+    """Remove the header from the first records, with title rows above it and a row of units below it."""
     filled = [sum(1 for cell in cells if cell.strip()) for cells in rows[:_MOST_TITLES]]
     place = next((place for place, count in enumerate(filled) if count > 1), 0)
     header = Header.from_cells(rows[place], lines[place])
@@ -82,7 +82,7 @@ def split_header(lines: list[int], rows: list[list[str]]) -> Header:
 
 
 def _units_of(cells: Sequence[str]) -> tuple[str, ...]:
-    """Units in a row that has nothing else, two at least; empty for any other row.
+    """Units in a row with at least two units and nothing else; empty for any other row.
 
     >>> _units_of(["Nr.", "°", "kg", "[mm]", ""]), _units_of(["1", "30", "kg", "mm", ""])
     (('', '°', 'kg', 'mm', ''), ())
@@ -94,7 +94,7 @@ def _units_of(cells: Sequence[str]) -> tuple[str, ...]:
 
 
 def check_header(form: TableForm, header: Header) -> list[Problem]:
-    """Find missing, repeated and unknown columns; one problem alone where no needed column is there."""
+    """Problems of missing, repeated and unknown columns; only one if all required columns are missing."""
     present = header.position
     unknown = [name for name in present if name not in form.known]
     missing = [name for name in form.required if name not in present]
@@ -108,7 +108,7 @@ def check_header(form: TableForm, header: Header) -> list[Problem]:
 
 
 def _all_missing(form: TableForm, header: Header) -> Problem:
-    """One line for a table whose columns are called otherwise: what to write into campaign.toml."""
+    """Error of a table with foreign headings: proposes the lines for campaign.toml."""
     meant = columns_by_synonym(form, header.columns)
     left = [name for name in form.required if name not in meant.values()]
     table = form.file.removesuffix(".csv")
@@ -131,7 +131,7 @@ def _all_missing(form: TableForm, header: Header) -> Problem:
 
 
 def _unit_of_other_quantity(form: TableForm, heading: str) -> str | None:
-    """The unit of a heading whose words name a column of another quantity."""
+    """Unit of a heading whose words are a synonym of a column with another quantity."""
     bare, unit = re.sub(r"[\[(].*", "", heading), named_unit(heading)
     column = next(iter(columns_by_synonym(form, [bare]).values()), "") if bare != heading else ""
     return unit if unit and unit_of_column(column) and conversion(unit, column) is None else None
@@ -201,14 +201,14 @@ class ColumnUnits:
 
 
 def column_units(form: TableForm, header: Header, headings: Headings, problems: list[Problem]) -> ColumnUnits:
-    """Resolve the units of a table; a program's own name such as load_N states its unit.
+    """Resolve the units of a table; a column's own name such as load_N states its unit.
 
     Parameters
     ----------
     form, header, headings
-        The table, its headings as the file has them, and what campaign.toml says about headings.
-    found
-        Takes the problems: a unit of another kind, two units for one heading, a note on each conversion.
+        The table, its headings in the file, and the mapping of headings in campaign.toml.
+    problems
+        List to which problems are added: a wrong unit, two units for one heading, a note on each conversion.
     """
     numbers = {column.name for column in form.numbers} - set(form.further)
     conversions: dict[str, UnitConversion] = {}

@@ -1,4 +1,4 @@
-"""Headings that a campaign's tables have in place of the columns' names: ``[columns]`` in campaign.toml."""
+"""Headings of tables: mapping to columns by ``[columns]`` in campaign.toml, synonyms, units and conversions."""
 
 from __future__ import annotations
 
@@ -27,16 +27,16 @@ FORMS: Final = {form.file.removesuffix(".csv"): form for form in (*TABLES, CORRE
 
 @dataclass(frozen=True, slots=True)
 class Headings:
-    """Names of columns by the headings that stand for them, plain ones.
+    """Mapping of plain headings to columns and units.
 
     Attributes
     ----------
     everywhere
-        In every table that may have such a column.
+        Columns in all tables.
     of_table
-        In one table, by its file; before what holds everywhere.
+        Columns in one table, by its file; they override `everywhere`.
     units, units_of_table
-        Units of the numbers below headings, in the same way.
+        Units of the numbers below headings, likewise.
     """
 
     everywhere: Mapping[str, str] = field(default_factory=dict)
@@ -45,7 +45,7 @@ class Headings:
     units_of_table: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
 
     def name(self, form: TableForm, heading: str) -> str:
-        """The column that a heading of a table stands for; the heading where it stands for itself."""
+        """Column of a heading, or the heading itself if it is not mapped."""
         plain = plain_heading(heading)
         own = self.of_table.get(form.file, {}).get(plain)
         if own is not None:
@@ -54,12 +54,12 @@ class Headings:
         return name if name is not None and name in form.known else heading
 
     def unit(self, form: TableForm, heading: str) -> str:
-        """The unit that campaign.toml states for a heading of a table; empty if it states none."""
+        """Unit that campaign.toml states for a heading of a table, otherwise ""."""
         plain = plain_heading(heading)
         return self.units_of_table.get(form.file, {}).get(plain) or self.units.get(plain, "")
 
     def without_heading(self, headings: Mapping[str, Sequence[str]]) -> Iterator[str]:
-        """Paths of stated units whose heading no table has; the headings of each table are given by its file."""
+        """Paths of stated units whose heading is in no table; `headings` are those of each table by file."""
         there = {file: {plain_heading(heading) for heading in names} for file, names in headings.items()}
         everywhere = set().union(*there.values())
         yield from (f"{UNITS_KEY}.{name}" for name in self.units if name not in everywhere)
@@ -69,7 +69,7 @@ class Headings:
 
 
 def plain_heading(heading: str) -> str:
-    r"""A heading without what nobody sees: line breaks, several spaces, capitals, two ways to write an umlaut.
+    r"""A heading without differences in case, white space and Unicode form.
 
     >>> plain_heading(" Kantwinkel\n[°] ")
     'kantwinkel [°]'
@@ -124,7 +124,7 @@ def _names(section: TomlValues, columns: tuple[str, ...]) -> dict[str, str]:
 
 
 def _name(section: TomlValues, heading: str, columns: tuple[str, ...]) -> dict[str, str]:
-    """The column that a heading stands for, or nothing where that is refused."""
+    """Column of a heading by plain heading; empty, with an error, if it is unknown."""
     value = section.values[heading]
     if isinstance(value, str) and value.strip() in columns:
         return {plain_heading(heading): value.strip()}
@@ -164,7 +164,7 @@ WORDS: Final = {
     "status": "status ungueltig storniert abgebrochen",
     "remark": "remark comment bemerkung anmerkung kommentar notiz remarque nota",
 }  # fmt: skip
-"""Words for a column, as `_letters` writes them; phrases are found by their words."""
+"""Synonyms of each column in the form of `_letters`; phrases are found by their words."""
 
 _UNIT_RANK: Final = 0.25
 
@@ -202,7 +202,7 @@ def _rank(heading: str, column: str) -> float:
 
 
 def _letters(text: str) -> str:
-    """Small letters and spaces alone; ä is ae.
+    """Lower-case letters and spaces of a text; ä becomes ae.
 
     >>> _letters("Eindring-Tiefe_e  Prüfkörper")
     'eindring tiefe e pruefkoerper'
@@ -265,7 +265,7 @@ class UnitConversion:
 
     @property
     def changes(self) -> bool:
-        """Whether the units differ."""
+        """True if the units differ."""
         return (self.factor, self.shift) != (1.0, 0.0)
 
     def convert(self, values: FloatArray) -> FloatArray:
@@ -278,7 +278,7 @@ class UnitConversion:
         return values * self.factor + self.shift if self.changes else values
 
     def revert(self, value: float) -> float:
-        """A number in the unit that the heading names, from the unit of the column.
+        """Convert a number from the unit of the column to that of the heading.
 
         >>> conversion("cm", "depth_mm").revert(15.0)
         1.5
@@ -299,7 +299,7 @@ _KNOWN: Final = frozenset({name for _, name in _CONVERSIONS} | set(_ONLY_NAMED))
 
 
 def unit_of_column(name: str) -> str:
-    """The unit in a column's name, as its last part writes it; empty where it has none.
+    """Unit at the end of a column's name, or "" without a unit.
 
     >>> unit_of_column("snow_density_kg_per_m3"), unit_of_column("load_N"), unit_of_column("site")
     ('kg_per_m3', 'N', '')
@@ -323,7 +323,7 @@ def named_unit(heading: str) -> str:
 
 
 def known_unit(text: str) -> str:
-    """A unit as the tables of this module write it; empty if it is unknown."""
+    """A unit in the form of this module's tables, or "" if it is unknown."""
     unit = " ".join(text.split()).casefold()
     return unit if unit in _KNOWN else ""
 
@@ -334,7 +334,7 @@ def conversion(unit: str, column: str) -> UnitConversion | None:
 
 
 def own_unit(column: str) -> str:
-    """The unit of a column as headings name it."""
+    """Unit of a column in the form of headings."""
     return _OWN[unit_of_column(column)][0].casefold()
 
 

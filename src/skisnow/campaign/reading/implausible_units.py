@@ -1,7 +1,7 @@
-"""Numbers that hardly can be in the unit that their column's name says: kN, metres, N mm, g/cm³.
+"""Checks of numbers that are probably in another unit than their column's name states: kN, metres, N mm, g/cm³.
 
-They are computed with as they stand; the warning names what was found. A whole file in another unit shows by its
-median, single rows by their distance from it.
+The numbers are used unchanged, with a warning. A whole file in another unit is recognised by its median, single rows by
+their distance from it.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ FAR: Final = 500.0
 
 @dataclass(frozen=True, slots=True)
 class LikelyColumn:
-    """Between what limits the median of a column's numbers above 0 is likely, and whether single rows are judged."""
+    """Likely range of the median of a column's numbers above 0, and True if single rows are checked, too."""
 
     low: float
     high: float
@@ -125,7 +125,7 @@ _METRES: Final = 5.0
 
 
 def check_missing_units(table: Table, described: CampaignFile | None) -> Iterator[Problem]:
-    """Find columns whose heading states no unit and whose numbers suggest another unit than the column's."""
+    """Errors for columns whose heading states no unit and whose numbers suggest another unit."""
     if table.form == PENETRATION and "load_N" in table.unstated:
         yield from _loads_in_kg(table, described)
     if table.form == SHEAR and "lever_arm_mm" in table.unstated:
@@ -153,7 +153,7 @@ def _loads_in_kg(table: Table, described: CampaignFile | None) -> Iterator[Probl
 
 
 def _largest_loads(table: Table, rows: Sequence[int]) -> list[int]:
-    """Of the given rows, the one with the largest load in the loading of each experiment."""
+    """Row of the largest load of each experiment, among the given rows without unloading."""
     load, unloading, key = table.numbers["load_N"], is_unloading(table.names[BRANCH]), table.names[table.form.key].code
     largest: dict[int, int] = {}
     for row in rows:
@@ -202,7 +202,7 @@ def _shear_stress(table: Table, rows: list[int], described: CampaignFile | None)
 
 
 def _middle(values: FloatArray, rows: list[int]) -> tuple[int, float]:
-    """Row and value of the middle one of the known values; the first row and NaN if none is known."""
+    """Row and value of the median of the finite values; the first row and NaN without finite values."""
     finite = sorted((value, row) for value, row in zip(values.tolist(), rows, strict=True) if np.isfinite(value))
     value, row = finite[(len(finite) - 1) // 2] if finite else (float("nan"), rows[0])
     return row, value

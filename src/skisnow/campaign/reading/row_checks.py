@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 
 def check_rows(table: Table, described: CampaignFile | None) -> Iterator[Problem]:
-    """Find contradictions between the rows of a table, or with campaign.toml where that could be read."""
+    """Problems between the rows of a table, and between the table and campaign.toml."""
     yield from check_likely_units(table)
     yield from check_missing_units(table, described)
     if table.form in (DENSITY, DROP_CONE):
@@ -58,7 +58,7 @@ def _check_shear(table: Table, described: CampaignFile | None) -> Iterator[Probl
 
 
 def _unknown_names(table: Table, blocks: Blocks, column: str, described_names: frozenset[str]) -> Iterator[Problem]:
-    """Find tools or plates that campaign.toml does not describe, once in each experiment."""
+    """Errors for tools or plates that are not in campaign.toml, one for each experiment."""
     names = table.names[column]
     unknown = np.array([bool(name) and name not in described_names for name in names.names], dtype=np.bool_)[names.code]
     pairs = np.stack([blocks.of_row, names.code], axis=1)[unknown]
@@ -80,13 +80,13 @@ def _unknown_names(table: Table, blocks: Blocks, column: str, described_names: f
 
 COLUMN: Final = "edge_angle_deg"
 STEEPEST_MEASURED_DEG: Final = 60.0
-"""Edge angles of the paper's penetration experiments end here (Mössner and others 2013)."""
+"""Largest edge angle of the paper's penetration experiments (Mössner and others 2013)."""
 SMALLEST_LIKELY_DEG: Final = 1.6
-"""Just above π/2: a file whose angles all stay below may hold radians."""
+"""Just above π/2: a file with only smaller angles is probably in radians."""
 
 
 def check_unit(table: Table) -> Iterator[Problem]:
-    """Warn once where all angles of the file that are not zero look like radians."""
+    """Warning if all angles of the file above 0 look like radians."""
     angle = table.numbers[COLUMN]
     tilted = angle[angle > 0]
     if len(tilted) and float(tilted.max()) < SMALLEST_LIKELY_DEG:
@@ -101,7 +101,7 @@ def check_unit(table: Table) -> Iterator[Problem]:
 
 
 def check_steepness(table: Table, blocks: Blocks) -> Iterator[Problem]:
-    """Warn of each experiment that is steeper than what was measured for the paper."""
+    """Warning of each experiment at a larger edge angle than in the paper."""
     steep = table.numbers[COLUMN] > STEEPEST_MEASURED_DEG
     for row in _once_per_block(steep, blocks):
         yield warning(
@@ -117,7 +117,7 @@ def check_steepness(table: Table, blocks: Blocks) -> Iterator[Problem]:
 
 
 def check_flat_tools(table: Table, blocks: Blocks, flat_tools: frozenset[str]) -> Iterator[Problem]:
-    """Find tools without an edge that are tilted."""
+    """Errors for tilted tools without an edge."""
     tool = table.names["tool"]
     is_flat = np.array([name in flat_tools for name in tool.names], dtype=np.bool_)[tool.code]
     for row in _once_per_block(is_flat & (table.numbers[COLUMN] > 0), blocks):
@@ -141,7 +141,7 @@ def _once_per_block(chosen: BoolArray, blocks: Blocks) -> list[int]:
 
 
 def check_branches(table: Table, blocks: Blocks) -> Iterator[Problem]:
-    """Find words that name no branch, discs that are laid on again, and series that were never loaded."""
+    """Errors for unknown branches, loading after unloading, and series without loading."""
     branch = table.names[BRANCH]
     unknown = np.array([name.casefold() not in BRANCHES for name in branch.names], dtype=np.bool_)[branch.code]
     for row in np.flatnonzero(unknown).tolist():
@@ -171,7 +171,7 @@ _ONCE: Final = ("depth_mm", "lever_arm_mm")
 
 
 def check_turning(table: Table, blocks: Blocks) -> Iterator[Problem]:
-    """Find depths and lever arms that change within an experiment."""
+    """Errors for depths and lever arms that change within an experiment."""
     for name in _ONCE:
         values = table.numbers[name]
         first = values[blocks.start][blocks.of_row]
@@ -189,11 +189,11 @@ def check_turning(table: Table, blocks: Blocks) -> Iterator[Problem]:
 
 
 MOST_LISTED: Final = 1000
-"""Repeated rows that are listed one by one."""
+"""Maximum number of repeated rows that are listed separately."""
 
 
 def check_repeated_rows(table: Table) -> Iterator[Problem]:
-    """Warn of each row that says in every column what an earlier row says; beyond `MOST_LISTED` of their number."""
+    """Warning of each row that equals an earlier one; above `MOST_LISTED` one warning with their number."""
     names = [column.cells() for column in table.names.values()]
     numbers = [np.where(np.isfinite(column), column, -np.inf).tolist() for column in table.numbers.values()]
     first: dict[tuple[object, ...], int] = {}

@@ -1,4 +1,4 @@
-"""What each table of a campaign must and may have: columns, and the numbers that are allowed in them."""
+"""Required and allowed columns of each table of a campaign, with the allowed numbers."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 def allowed_words(column: Quantity) -> str:
-    """Say in words which numbers are allowed.
+    """Allowed numbers in words.
 
     >>> allowed_words(Quantity("edge_angle_deg", "edge angle", lowest=0, highest=90, below=True))
     'a number from 0 to below 90'
@@ -29,11 +29,11 @@ class TableForm:
     Attributes
     ----------
     file
-        Its name in the campaign's folder.
+        Name of the file in the campaign's folder.
     key
         The column that names an experiment, sample or test.
     names
-        Required text columns that may not be blank, in order; the key is one of them.
+        Required text columns that must not be blank, in order; the key is one of them.
     numbers
         Columns of numbers, required and optional.
     texts
@@ -43,7 +43,7 @@ class TableForm:
     further
         Optional columns that are known and kept as text.
     may_be_empty
-        Whether a header alone is fine.
+        True if a table with only a header is valid.
     """
 
     file: str
@@ -57,12 +57,12 @@ class TableForm:
 
     @property
     def required(self) -> tuple[str, ...]:
-        """Columns that the file must have."""
+        """Required columns."""
         return self.names + tuple(column.name for column in self.numbers if column.needed) + self.texts
 
     @property
     def known(self) -> tuple[str, ...]:
-        """Every column that this file may have without being asked about it."""
+        """All known columns."""
         numbers = tuple(column.name for column in self.numbers)
         return tuple(dict.fromkeys(self.names + numbers + self.texts + self.optional + self.further))
 
@@ -155,11 +155,11 @@ class CorrectionRow:
 
 
 BRANCH: Final = "branch"
-"""Column that says whether a disc was laid on or taken off."""
+"""Column with the branch: a disc was added (loading) or removed (unloading)."""
 LOADING: Final = "loading"
 UNLOADING: Final = "unloading"
 BRANCHES: Final = ("", LOADING, UNLOADING)
-"""What may stand in it; a blank cell is loading."""
+"""Allowed values of the column; a blank cell means loading."""
 
 _NOTES: Final = ("time", "air_temperature_C", "snow_temperature_C", "snow_type", "remark")
 

@@ -1,4 +1,4 @@
-"""One table of a campaign: its CSV with the corrections applied, by columns, every cell checked."""
+"""Reader of one table of a campaign: applies corrections, splits it into columns, and checks each cell."""
 
 from __future__ import annotations
 
@@ -27,11 +27,11 @@ if TYPE_CHECKING:
 
 
 OWN_NAMES: Final = Headings()
-"""Columns are called by their names."""
+"""Default mapping of headings: columns have their names as headings."""
 DATES: Final = ("time", "when")
-"""Columns of days and times."""
+"""Names of columns with days and times."""
 MOST_ERRORS: Final = 10_000
-"""Errors of a table after which the rest of it is not read."""
+"""Number of errors above which the rest of a table is not read."""
 
 
 def read_table(
@@ -48,21 +48,21 @@ def read_table(
     Parameters
     ----------
     form
-        What the table must and may have.
+        Required and allowed columns.
     text
         The file.
     corrections
-        Those of this file.
+        Corrections of this file.
     files
         Takes every problem.
     headings
-        What stands for the columns' names.
+        Mapping of headings to columns.
     progress
-        Called now and then with how many rows were read.
+        Called with the number of rows read so far.
 
     Returns
     -------
-    The table, or None where no row could be read. With an error found its columns may have gaps.
+    The table, or None if no row can be read. After an error its columns can have gaps.
     """
     reading: _TableReading | None = None
     readable = True
@@ -116,7 +116,7 @@ def _empty(form: TableForm, what: str) -> Problem:
 
 
 class _TableReading:
-    """Takes the records of a table in, some thousand at a time."""
+    """Collects the records of a table in chunks."""
 
     def __init__(
         self,
@@ -157,7 +157,7 @@ class _TableReading:
         return sum(map(len, self._row))
 
     def take(self, lines: list[int], rows: list[list[str]]) -> None:
-        """Take some records in."""
+        """Add some records."""
         self.met_rows = True
         lines, rows = self._without_surplus(lines, rows)
         self._corrector.apply(lines, rows)
@@ -172,7 +172,7 @@ class _TableReading:
             collector.take(columns[position], about, self._problems)
 
     def _without_surplus(self, lines: list[int], rows: list[list[str]]) -> Records:
-        """Refuse rows with a cell below no column name; blank cells there are a spreadsheet program's padding."""
+        """Remove and report rows with a cell below an unnamed column; blank cells there are ignored."""
         width = len(self._file_header.columns)
         unnamed = self._file_header.unnamed
         if not unnamed and max(map(len, rows)) <= width:
@@ -199,14 +199,14 @@ class _TableReading:
         )
 
     def finish(self) -> None:
-        """Report what only the whole file shows."""
+        """Report problems that only the whole file shows."""
         self._corrector.finish()
         for collector in self._further.values():
             if isinstance(collector, DateCollector):
                 self._problems.extend(collector.problems(self._form.file))
 
     def table(self) -> Table:
-        """Join what was collected."""
+        """The table from all records."""
         count = len(self)
         present = self._header.position
         return Table(
@@ -228,7 +228,7 @@ def _transpose(rows: list[list[str]], width: int) -> list[tuple[str, ...]]:
 
 
 def decimal_mark_of(form: TableForm, header: Header, text: CsvText) -> str:
-    """The decimal mark of a table: that of its first numbers with a fraction, read ahead."""
+    """Decimal mark of a table: that of its first numbers with a fraction."""
     number_columns = {column.name for column in form.numbers}
     positions = [index for index, name in enumerate(header.columns) if name in number_columns]
 

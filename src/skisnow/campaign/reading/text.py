@@ -1,8 +1,8 @@
-"""Bytes of a file to text and records: encoding, separator, file lines.
+"""Decoding of files and separation into records with their lines.
 
-What any European laptop's spreadsheet program writes is read: UTF-8 with or without byte order mark, UTF-16,
-Windows-1252; comma, semicolon or tab; CR, LF or both. Nothing is interpreted here, and nothing is dropped but lines
-that hold no character other than separators and spaces.
+Supported are the formats of European spreadsheet programs: UTF-8 with or without byte order mark, UTF-16, Windows-1252;
+comma, semicolon or tab; CR, LF or both. Cells are not interpreted here. Only lines with nothing but separators and
+spaces are dropped.
 """
 
 from __future__ import annotations
@@ -37,13 +37,13 @@ Records: TypeAlias = tuple[list[int], list[list[str]]]
 RECORDS_AT_ONCE: Final = 4096  # more at once is slower: the garbage collector walks them
 
 _CONTROL_BYTES: Final = bytes(code for code in range(32) if code not in b"\t\n\v\f\r") + b"\x7f"
-_CONTROL_SHARE: Final = 0.01  # text has none; random bytes have a tenth
+_CONTROL_SHARE: Final = 0.01  # 0 in text, 0.1 in random bytes
 _END: Final = "\0"  # a line that no text file holds: decode refuses the character
 _HEAD: Final = 1 << 16
 
 
 class UnreadableTextError(Exception):
-    """A file is not the text it should be. ``row`` is the file line, or None where no line can be named."""
+    """A file is not valid text. ``row`` is the line of the file, or None if unknown."""
 
     def __init__(self, *, value: str | None, allowed: str, action: str, row: int | None = None) -> None:
         super().__init__(allowed)
@@ -61,7 +61,7 @@ def decode(data: bytes) -> DecodedText:
     Raises
     ------
     UnreadableTextError
-        Where the bytes are no text in UTF-8, UTF-16 with byte order mark, or Windows-1252.
+        The bytes are not text in UTF-8, UTF-16 with byte order mark, or Windows-1252.
     """
     try:
         text = decoded(data)
@@ -87,18 +87,18 @@ def _binary(value: str) -> UnreadableTextError:
 
 @dataclass(frozen=True, slots=True)
 class CsvText:
-    """A CSV file that was looked at but not yet cut into records.
+    """A CSV file with its encoding and separator, before it is split into records.
 
     Attributes
     ----------
     data
-        The file's bytes, held once.
+        Bytes of the file.
     codec, foreign_encoding
         As in `DecodedText`.
     separator
         Comma, semicolon or tab.
     separator_line
-        Whether line 1 is a spreadsheet program's ``sep=;``, so that the header begins below it.
+        True if line 1 is ``sep=;`` and the header begins below it.
     """
 
     data: bytes
@@ -108,15 +108,14 @@ class CsvText:
     separator_line: bool
 
     def records(self) -> Iterator[Records]:
-        """Cut the file into records, some thousand at a time; the first record is the header.
+        """Split the file into records, in chunks; the first record is the header.
 
-        The apostrophe that keeps a text from being taken for a formula is off again.
+        An apostrophe that protects a text from being read as a formula is removed.
 
         Raises
         ------
         UnreadableTextError
-            At a quote that is never closed: all further lines would end in one cell; at a cell or a row that is longer
-            than any table of measurements has.
+            A quote is never closed, so that all further lines would be one cell; or a cell or row is too long.
         """
         for lines, rows in self._records():
             _require_size(lines, rows)
@@ -129,7 +128,7 @@ class CsvText:
         lines: list[int] = []
         rows: list[list[str]] = []
         line = 1 + skipped
-        may_be_guarded = b"'" in self.data  # in most files there is none
+        may_be_guarded = b"'" in self.data  # most files have no apostrophe
         try:
             for cells in reader:
                 if len(rows) >= RECORDS_AT_ONCE:
@@ -194,15 +193,14 @@ def _endless_cell(line: int) -> UnreadableTextError:
 
 
 def inspect_csv(data: bytes) -> CsvText:
-    """Find out how a CSV file is written.
+    """Determine encoding and separator of a CSV file.
 
-    The separator is the one found most often in the header, outside quotes, or the one that a first line like ``sep=;``
-    names.
+    The separator is the most frequent one in the header outside quotes, or that of a first line such as ``sep=;``.
 
     Raises
     ------
     UnreadableTextError
-        Where the bytes are no text, or the first line names another separator.
+        The bytes are not text, or the first line names another separator.
     """
     text = decode(data)
     head = text.text[:_HEAD]

@@ -1,6 +1,6 @@
-"""Values of a parsed TOML file, asked for by key: each is checked, and each problem names the path of its key.
+"""Validated values of a parsed TOML file by key; each problem names the path of its key.
 
-Paths count from 1, ``tool[2].length_mm`` is the second tool's length.
+Paths count from 1: ``tool[2].length_mm`` is the length of the second tool.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ class TomlValues:
         The parsed table.
     path
         Path of the table, ``""`` at the top.
-    found
+    problems
         Takes the problems.
     """
 
@@ -52,7 +52,7 @@ class TomlValues:
         return f"{self.path}.{key}" if self.path else key
 
     def refuse(self, key: str, allowed: str, action: str, *, code: str = "bad_toml", value: object = _MISSING) -> None:
-        """Report an error about a key; without a value the key's own is shown."""
+        """Report an error of a key (default: with its value)."""
         shown = self.values.get(key) if value is _MISSING else value
         text = None if shown is None else _shown(shown)
         self.problems.append(
@@ -60,7 +60,7 @@ class TomlValues:
         )
 
     def text(self, key: str, *, blank_allowed: bool = False) -> str | None:
-        """Give a text, stripped; None where it is absent, wrong or blank."""
+        """Stripped text; None if it is missing, invalid or blank."""
         value = self.values.get(key)
         if value is None:
             return None
@@ -70,7 +70,7 @@ class TomlValues:
         return value.strip() or None
 
     def texts(self, key: str) -> tuple[str, ...]:
-        """Give one text or a list of texts; empty where absent or wrong."""
+        """One text or a list of texts; empty if missing or invalid."""
         value = self.values.get(key, [])
         items = [value] if isinstance(value, str) else value
         if not isinstance(items, list) or not all(isinstance(item, str) for item in items):
@@ -79,12 +79,12 @@ class TomlValues:
         return tuple(item.strip() for item in items if item.strip())
 
     def number(self, quantity: Quantity) -> float | None:
-        """Give a number in the unit of its key; None where absent or wrong."""
+        """Number in the unit of its key; None if missing or invalid."""
         key = quantity.name
         return self._checked(self.values[key], quantity) if key in self.values else None
 
     def numbers(self, quantity: Quantity) -> tuple[float, ...]:
-        """Give a list of numbers; wrong ones are left out."""
+        """List of the valid numbers."""
         key = quantity.name
         values = self.values.get(key, [])
         if not isinstance(values, list):
@@ -108,7 +108,7 @@ class TomlValues:
         return float(value)
 
     def table(self, key: str) -> TomlValues:
-        """Give a table below this one; empty where absent or wrong."""
+        """A table below this one; empty if missing or invalid."""
         value = self.values.get(key, {})
         if not isinstance(value, dict):
             self.refuse(key, f"a table, begun by the line [{key}]", f"Write [{key}] above its keys.")
@@ -116,7 +116,7 @@ class TomlValues:
         return TomlValues(self.file, value, self.path_of(key), self.problems)
 
     def tables(self, key: str) -> list[TomlValues]:
-        """Give the tables of a list; empty where absent or wrong."""
+        """Tables of a list; empty if missing or invalid."""
         values = self.values.get(key, [])
         if not isinstance(values, list) or not all(isinstance(value, dict) for value in values):
             self.refuse(key, f"tables, each begun by the line [[{key}]]", f"Write [[{key}]] above each one's keys.")
@@ -125,7 +125,7 @@ class TomlValues:
         return [TomlValues(self.file, value, path, self.problems) for value, path in zip(values, paths, strict=True)]
 
     def declared(self, owner: type[T]) -> T:
-        """Give a dataclass of what this table says of its quantities; what is absent or refused has its default."""
+        """Dataclass with the quantities of this table; missing and invalid ones have their defaults."""
         quantities = {quantity.name: quantity for quantity in own_quantities(owner)}
         self.refuse_misspelt(quantities)
         values: dict[str, object] = {}
@@ -137,7 +137,7 @@ class TomlValues:
         return made(owner, values)
 
     def refuse_misspelt(self, allowed_keys: Iterable[str]) -> None:
-        """Report keys that nobody knows: an error where one is nearly a known key, else a warning."""
+        """Report unknown keys: an error if a key is similar to a known one, otherwise a warning."""
         keys: Sequence[str] = tuple(allowed_keys)
         for key in self.values:
             if key in keys:

@@ -1,4 +1,4 @@
-"""A workbook as the files of a campaign: each sheet of a table's name is that table, row for row."""
+"""Workbooks as files of a campaign: a sheet with the name of a table replaces its CSV file, row by row."""
 
 from __future__ import annotations
 
@@ -27,28 +27,28 @@ if TYPE_CHECKING:
 ENDINGS: Final = (".xlsx", ".xlsm")
 DESCRIPTION: Final = "campaign.toml"
 _LIKELY: Final = 0.6
-"""Share of the needed columns."""
+"""Smallest share of required columns with which a sheet is proposed as a table."""
 _FILES: Final = {form.file.removesuffix(".csv"): form.file for form in (*TABLES, CORRECTIONS)}
 
 
 @dataclass(frozen=True, slots=True)
 class UnfoldedFiles:
-    """The files of a campaign, those that stand in workbooks too.
+    """The files of a campaign, including sheets of workbooks.
 
     Attributes
     ----------
     files
-        Where the others lie.
+        The other files.
     of_sheets
-        What the sheets hold, by the names of a campaign's files.
+        Contents of the sheets, by the names of a campaign's files.
     places
-        What a file that is a sheet is called for people, by its name.
+        Name of workbook and sheet for messages, by the name of the file.
     hashes
         SHA-256 of each workbook that was read.
     unread
-        Rows of the sheets that have another name, by what they are called for people.
-    found
-        What is wrong with the workbooks.
+        Rows of the sheets with other names, by name of workbook and sheet.
+    problems
+        Problems of the workbooks.
     """
 
     files: CampaignFiles
@@ -68,13 +68,13 @@ class UnfoldedFiles:
         return self.of_sheets[name] if name in self.of_sheets else self.files.read(name)
 
     def names(self) -> dict[str, bool]:
-        """See `CampaignFiles.names`: without the workbooks, with what stands in them."""
+        """See `CampaignFiles.names`: with the sheets instead of the workbooks."""
         there = {name: is_file for name, is_file in self.files.names().items() if name not in self.hashes}
         return there | dict.fromkeys(self.of_sheets, True)
 
 
 def unfolded(files: CampaignFiles) -> UnfoldedFiles:
-    """Look for workbooks among the files of a campaign, and read them."""
+    """Read the workbooks among the files of a campaign."""
     workbooks = UnfoldedFiles(files)
     names = files.names()
     for name in sorted(names):
@@ -93,7 +93,7 @@ def unfolded(files: CampaignFiles) -> UnfoldedFiles:
 
 
 def _likely_table(rows: Rows) -> str | None:
-    """The table whose columns most of the headings of a sheet seem to be."""
+    """Table with the most columns among the headings of a sheet; None if there are too few."""
     headings = next((cells for cells in rows if len(cells) > 2), [])
     shares = {
         form: len(set(columns_by_synonym(form, headings).values()) & set(form.required)) / len(form.required)
@@ -112,7 +112,7 @@ def _misnamed_sheet(place: str, table: str) -> Problem:
 
 
 def is_workbook(name: str) -> bool:
-    """Whether a file is a workbook by its name, and not what a spreadsheet program puts beside an open one.
+    """True if a file is a workbook by its name, and not a lock file of a spreadsheet program.
 
     >>> is_workbook("Hang.XLSX"), is_workbook("~$Hang.xlsx"), is_workbook("hang.csv")
     (True, False, False)
@@ -163,7 +163,7 @@ def _assign_sheets(workbooks: UnfoldedFiles, workbook: str, sheets: Mapping[str,
 
 
 def _kind(title: str) -> str:
-    """The table that a sheet is by its name.
+    """Name of a table from the title of a sheet.
 
     >>> _kind(" Drop cone "), _kind("penetration.csv")
     ('drop_cone', 'penetration')
@@ -172,7 +172,7 @@ def _kind(title: str) -> str:
 
 
 def _csv(rows: Iterable[list[str]]) -> bytes:
-    """A line for each row, so that line and row have one number; all cells in quotes, so that nothing is guessed."""
+    """CSV with one line for each row, so that rows keep their numbers, and all cells in quotes."""
     stream = io.StringIO()
     writer = csv.writer(stream, lineterminator="\n", quoting=csv.QUOTE_ALL)
     for cells in rows:
@@ -195,14 +195,14 @@ _TEXTS: Final = ("name", "shape", *(name for name, key in CAMPAIGN_KEYS.items() 
 
 
 def description_text(sheets: Mapping[str, Rows]) -> str:
-    """What the sheets say, as TOML.
+    """Convert the sheets that describe the campaign to TOML.
 
     Parameters
     ----------
     sheets
-        Rows by the names of `DESCRIBING`. ``campaign`` has the columns key and value, with several values of one key
-        parted by semicolons; ``tools`` and ``plates`` have the keys of ``[[tool]]`` and ``[[plate]]`` as columns;
-        ``columns`` has heading, and column or unit or both, and may have table.
+        Rows by the names of `DESCRIBING`. ``campaign`` has the columns key and value, with semicolons between several
+        values; ``tools`` and ``plates`` have the keys of ``[[tool]]`` and ``[[plate]]`` as columns; ``columns`` has
+        heading, column or unit or both, and optionally table.
     """
     lines = [line for row in _records(sheets.get(COLUMNS, [])) for line in _column_lines(row)]
     for row in _records(sheets.get(CAMPAIGN, [])):
@@ -216,7 +216,7 @@ def description_text(sheets: Mapping[str, Rows]) -> str:
 
 
 def _records(rows: Rows) -> Iterator[Mapping[str, str]]:
-    """Rows that are not blank, by the names in the first of them."""
+    """Rows that are not blank, by the names in the first row."""
     filled = (cells for cells in rows if any(cells))
     header: Sequence[str] = next(filled, [])
     for cells in filled:
@@ -238,7 +238,7 @@ def _pair(key: str, cell: str) -> str:
 
 
 def _value(cell: str) -> str:
-    """A number where the cell is one, with a point or a comma, else a text.
+    """TOML of a cell: a number with a decimal point or comma, or else a text.
 
     >>> _value("0,01"), _value("12"), _value("Müller")
     ('0.01', '12.0', '"Müller"')

@@ -1,7 +1,6 @@
-"""Synthetic reference campaign: the paper's design, snow whose truth is known, stated measurement errors.
+"""Synthetic reference campaign: the paper's design, known properties of the snow, stated measurement errors.
 
-The design, and which part of it is the paper's, stands in ``design``; the errors stand in `ReferenceNoise`.
-Both were fixed before any table of results was made from them.
+``design`` has the design and its origin, `ReferenceNoise` the errors. Both were fixed before results were computed.
 """
 
 from __future__ import annotations
@@ -27,28 +26,28 @@ DEFAULT_NOISE: Final = ReferenceNoise()
 
 @dataclass(frozen=True, slots=True)
 class ReferenceCampaign:
-    """A synthetic campaign and the truth behind it.
+    """A synthetic campaign and its true values.
 
     Attributes
     ----------
     seed, noise
-        What it was drawn with.
+        Seed and errors of the random draws.
     penetration, shear, density, drop_cone
-        The tables as a reader of the written files gives them.
+        Tables as read from the written files.
     snow_hardness
         True H_V (N/m³), one per penetration series: F₇/V₇ at the nominal largest load and the true depth there.
     seating_offset
-        What the gauge reads too much in each series (m).
+        Offset of the gauge in each series (m), positive if it reads too much.
     layering
         κ of each series.
     penetration_depth
         True depth of each penetration reading under its true load (m).
     unloading_ratio
-        True k_u/H_V of each series whose discs were taken off again, NaN of the others.
+        True k_u/H_V of each series with unloading, NaN for the others.
     failure_shear_stress
         True S_f (N/m²), one per shear test.
     shear_displacement
-        True u_y (m), one per shear test; NaN where no turning angle was asked for.
+        True u_y (m), one per shear test; NaN without turning angles.
     """
 
     seed: int
@@ -67,16 +66,16 @@ class ReferenceCampaign:
 
     @property
     def name(self) -> str:
-        """Name of the campaign; it says that it is synthetic."""
+        """Name of the campaign, which marks it as synthetic."""
         return f"synthetic reference campaign, seed {self.seed}"
 
     @property
     def place(self) -> str:
-        """Where it was measured: nowhere."""
+        """Place of the campaign, which marks it as synthetic."""
         return "nowhere: synthetic, drawn by a random number generator"
 
     def campaign(self) -> Campaign:
-        """Give the campaign as if it had been read from files, for studies that draw many."""
+        """Campaign as read from files, for studies with many draws."""
         return Campaign(
             name=self.name,
             place=self.place,
@@ -107,13 +106,13 @@ def reference_campaign(
     Parameters
     ----------
     seed
-        For `numpy.random.default_rng`, the only source of randomness; an integer of at least 0.
+        Seed of `numpy.random.default_rng`, the only source of randomness; an integer of at least 0.
     noise
-        The errors; the default is the reference campaign, others are for studies.
+        Errors (default: those of the reference campaign).
     turning_angles
-        Whether the shear tests have turning angles; all else stays as it is.
+        True for shear tests with turning angles; all other values stay the same.
     creep
-        Whether depths were read once more after waiting, at a site whose snow creeps; all else stays as it is.
+        True for depths read again after waiting at a site with creeping snow; all other values stay the same.
 
     Returns
     -------
@@ -123,7 +122,7 @@ def reference_campaign(
     Raises
     ------
     ParameterError
-        For a seed that is no integer of at least 0.
+        The seed is not an integer of at least 0.
 
     Notes
     -----
@@ -138,8 +137,8 @@ def reference_campaign(
     its step; it does not read below its zero, so a negative reading is recorded as 0. The file states the nominal
     loads. Readings are recorded as they come: where depths shrink, screening flags the series.
 
-    A series planned flat whose snow would let the flat tool no deeper than 0.2 mm at the largest load is done at one of
-    the other angles instead (modelling assumption: nobody measures 0.0004 mm).
+    A flat series with a depth of at most 0.2 mm at the largest load is drawn at one of the other angles instead
+    (modelling assumption: 0.0004 mm cannot be measured).
 
     Unloading. At three sites the discs are taken off again one by one, to the first load. The tool starts at the depth
     e_m at which the gauge read it, seating apart, and comes back by d = (e_m - ê(V(e_m) F/F_m))/κ with κ = k_u/H_V,

@@ -92,11 +92,11 @@ UNLOADING_RATIO: Final = 10.0
 """Median k_u/H_V everywhere: of the order that the published runs of a sledge are simulated with."""
 
 SHEAR_DISPLACEMENT: Final = 0.25 * MM
-"""Median u_y, where turning angles are asked for: between the default of a scenario and half a millimetre."""
+"""Median u_y with turning angles: between the default of a scenario and half a millimetre."""
 TURNING_SHARES: Final = (0.2, 0.4, 0.6, 0.8, 1.0)
-"""Of the largest moment, at which the turning angle is read: four readings of the rising part, and the largest."""
+"""Shares of the largest moment at which the turning angle is read: four on the rising part, and the largest."""
 CREEPING_SITE: Final = "site B"
-"""Whose snow goes on giving way under a constant load, where depths after waiting are asked for."""
+"""Site with creeping snow, if depths are read again after waiting."""
 
 PLATE: Final = "plate 100 mm"
 PLATE_LENGTH: Final = 100.0 * MM
@@ -124,7 +124,7 @@ SHEAR_STRESS_RANGE: Final = tuple(limit * N_PER_MM2 for limit in moessner_2013.F
 DENSITY_SCATTER: Final = 0.059 * N_PER_MM2
 
 FLAT_LIMIT: Final = LOADS[-1] / (SKI_PIECE.length * SKI_PIECE.width * SHALLOWEST_FLAT_DEPTH)
-"""H_V (N/m³) from which on the flat tool stays shallower than `SHALLOWEST_FLAT_DEPTH`."""
+"""Smallest H_V (N/m³) at which the flat tool stays shallower than `SHALLOWEST_FLAT_DEPTH`."""
 
 
 def planned_angles() -> FloatArray:
@@ -147,7 +147,7 @@ class ReferenceNoise:
     load_sd
         True load less the nominal one that the file states (N), each reading by itself.
     seating_sd
-        Offset of the depth zero (m), one per series: what the gauge reads too much.
+        Offset of the depth zero (m), one per series, positive if the gauge reads too much.
     depth_scatter
         Relative scatter of depth from reading to reading.
     hardness_log_sd
@@ -165,7 +165,7 @@ class ReferenceNoise:
     rebound_scatter
         Relative scatter of the rebound from reading to reading, while discs are taken off.
     displacement_log_sd
-        Spread of ln u_y from shear test to shear test, where turning angles are asked for.
+        Spread of ln u_y between shear tests with turning angles.
     turning_sd
         Error of a turning angle (rad), each reading by itself: of 0.01 mm on a dial gauge at the plate.
     creep_mean

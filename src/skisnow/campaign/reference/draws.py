@@ -1,6 +1,6 @@
-"""The draws of the synthetic reference campaign: tables with errors, and the truth behind them.
+"""Random draws of the synthetic reference campaign: tables with errors, and their true values.
 
-What is drawn, and from which law, stands in `skisnow.campaign.reference_campaign`.
+`skisnow.campaign.reference_campaign` describes the distributions.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 
 _ANGLE_DECIMALS = 4
-"""Of a turning angle in degrees: finer than 0.001 mm at the plate."""
+"""Decimals of a turning angle in degrees: finer than 0.001 mm at the plate."""
 
 
 class DrawnPenetration(NamedTuple):
@@ -53,7 +53,7 @@ def snow_hardness(generator: np.random.Generator, noise: ReferenceNoise) -> Floa
 
 
 def edge_angle(generator: np.random.Generator, snow_hardness: FloatArray) -> FloatArray:
-    """Give each series its planned angle (rad), or one drawn from the others where the flat tool stays too shallow."""
+    """Planned angle (rad) of each series, or another random angle if the flat tool stays too shallow."""
     planned = design.planned_angles()
     others = np.array([angle for angle in design.EDGE_ANGLES_DEG if angle > 0]) * DEGREE
     instead = others[generator.integers(len(others), size=planned.size)]
@@ -82,7 +82,7 @@ def penetration(
 
 
 def add_unloading(generator: np.random.Generator, drawn: DrawnPenetration, noise: ReferenceNoise) -> DrawnPenetration:
-    """Add the readings while the discs are taken off, at the sites where they are.
+    """Add the readings of the unloading, at the sites with unloading.
 
     The tool starts at its depth e_m under the largest load, and feels at e_m - d what it felt at the depth e_m - κ d.
     """
@@ -102,7 +102,7 @@ def add_unloading(generator: np.random.Generator, drawn: DrawnPenetration, noise
 
 
 def _unloading_readings(there: BoolArray, depth: FloatArray) -> UnloadingReadings:
-    """Readings behind those of their own series in the file."""
+    """Readings of the unloading, in the rows after those of their series."""
     up, down = len(design.LOADS), depth.shape[1]
     first = np.concatenate(([0], np.cumsum(np.where(there, down, 0)))).astype(np.int64)
     before = 2 + (np.flatnonzero(there) + 1) * up
@@ -130,7 +130,7 @@ def shear(generator: np.random.Generator, noise: ReferenceNoise) -> tuple[ShearT
 
 
 def add_creep(generator: np.random.Generator, tests: PenetrationTests, noise: ReferenceNoise) -> PenetrationTests:
-    """Add depths that are read once more under the same load, at the site whose snow creeps."""
+    """Add depths read again under the same load, at the site with creeping snow."""
     growth = noise.creep_mean * generator.standard_exponential(len(tests.load))
     there = np.array(tests.site, dtype=object)[tests.series_of_reading] == design.CREEPING_SITE
     after = _round_to_gauge(tests.penetration_depth * (1.0 + growth), noise)
@@ -140,7 +140,7 @@ def add_creep(generator: np.random.Generator, tests: PenetrationTests, noise: Re
 def add_turning(
     generator: np.random.Generator, tests: ShearTests, noise: ReferenceNoise
 ) -> tuple[ShearTests, FloatArray]:
-    """Add turning angles up to the largest moment, φ = (u_y/r) M/M_f, and give the true u_y (m) of each test."""
+    """Add turning angles up to the largest moment, φ = (u_y/r) M/M_f; return also the true u_y (m) of each test."""
     shape, shares = (len(tests), len(design.TURNING_SHARES)), np.array(design.TURNING_SHARES)
     way = design.SHEAR_DISPLACEMENT * np.exp(noise.displacement_log_sd * generator.standard_normal(shape[0]))
     angle = (way / tests.lever_arm)[:, np.newaxis] * shares + noise.turning_sd * generator.standard_normal(shape)
@@ -187,7 +187,7 @@ def drop_cone(generator: np.random.Generator) -> DropConeTests:
 def _normal_within(
     generator: np.random.Generator, centre: FloatArray, sd: float, limits: tuple[float, float]
 ) -> FloatArray:
-    """Draw from a normal distribution, again where outside the limits; the centres lie inside."""
+    """Draw from a normal distribution truncated to the limits, which contain the centres."""
     low, high = limits
     value: FloatArray = centre + sd * generator.standard_normal(centre.shape)
     while np.any(outside := (value < low) | (value > high)):

@@ -32,11 +32,11 @@ def write_reference(folder: str | Path, *, seed: int, turning_angles: bool = Fal
     Parameters
     ----------
     folder
-        Made where it does not exist; other files in it are left alone.
+        Folder, created if necessary; other files in it are not changed.
     seed
         As for `skisnow.campaign.reference_campaign`. The same seed writes the same bytes.
     turning_angles, creep
-        Whether shear.csv has turning angles, and penetration.csv depths after waiting; all other cells stay the same.
+        True for turning angles in shear.csv, and depths after waiting in penetration.csv; other cells stay the same.
 
     Returns
     -------
@@ -48,7 +48,7 @@ def write_reference(folder: str | Path, *, seed: int, turning_angles: bool = Fal
     OutputError
         Where the folder already holds a file of a campaign, or cannot be written; nothing is left half-written.
     ParameterError
-        For a seed that is no integer of at least 0.
+        The seed is not an integer of at least 0.
 
     See Also
     --------
@@ -73,7 +73,7 @@ def write_reference(folder: str | Path, *, seed: int, turning_angles: bool = Fal
         "shear.csv": _shear_csv(drawn),
         "density.csv": _density_csv(drawn),
         "drop_cone.csv": _drop_cone_csv(drawn),
-        "campaign.toml": _campaign_toml(drawn),  # moved last: without it the folder is no campaign
+        "campaign.toml": _campaign_toml(drawn),  # moved last: without it the folder is not a campaign
     }
     try:
         folder.mkdir(parents=True, exist_ok=True)
@@ -217,7 +217,7 @@ length_mm = {design.PLATE_LENGTH / MM:g}
 
 
 def _further_noise(drawn: ReferenceCampaign) -> str:
-    """Of what was asked for beside the usual tables."""
+    """Comment lines on the errors of turning angles and creep."""
     noise, said = drawn.noise, ""
     if drawn.shear.turning is not None:
         said += (

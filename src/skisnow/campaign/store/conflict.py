@@ -1,4 +1,4 @@
-"""What two stores say about one test, where each has entries that the other lacks: whether they agree, or in words."""
+"""Conflicts between two stores: tests about which each store has entries that the other does not have."""
 
 from __future__ import annotations
 
@@ -39,22 +39,22 @@ _KINDS: Final[dict[Kind, str]] = {
 
 @dataclass(frozen=True, slots=True)
 class Conflict:
-    """What was written here and there about one test and cannot both stand; nothing of it was carried over.
+    """A conflict: contradicting entries of two stores about one test, which are not transferred.
 
     Attributes
     ----------
     id
-        By which a choice names it; it changes when one of the sides does.
+        Identifier of the conflict for a choice; it changes if one side changes.
     campaign, name
         Id and name of the campaign.
     file, test
-        What it is about; for a description ``campaign.toml`` and ``""``.
+        Table and test of the entries; for a description ``campaign.toml`` and ``""``.
     what
-        In words.
+        Kind of conflict in words.
     here, there
-        What was written in each store alone, one line each, oldest first.
+        Entries that only one store has, one line each, oldest first.
     choices
-        What can be kept.
+        Sides that can be kept.
     """
 
     id: str
@@ -68,7 +68,7 @@ class Conflict:
     choices: tuple[Side, ...]
 
     def __str__(self) -> str:
-        """Say it in a few lines."""
+        """The conflict in a few lines."""
         subject = f"{self.file}, {self.test}" if self.test else self.file
         lines = [f"{self.id}  {self.name} ({self.campaign}), {subject}: {self.what}"]
         lines += [f"    {side}: {line}" for side in ("here", "there") for line in getattr(self, side)]
@@ -77,7 +77,7 @@ class Conflict:
 
 @dataclass(frozen=True, slots=True)
 class Divergence:
-    """Entries about one test, in the order of their uids: those of both stores (as numbered here) and of each alone."""
+    """Entries about one test in the order of their uids: those of both stores, and those of only one."""
 
     journal_id: str
     subject: Subject
@@ -89,14 +89,14 @@ class Divergence:
 
     @property
     def id(self) -> str:
-        """What a choice names it by: the same as long as both sides are."""
+        """Identifier for a choice, which changes with the entries of both sides."""
         parts = (self.journal_id, *self.subject, *(entry.uid for side in (self.here, self.there) for entry in side))
         said = sha256("\0".join(parts).encode())
         return said.hexdigest()[:_ID_DIGITS]
 
     @property
     def is_agreed(self) -> bool:
-        """Whether what both sides wrote can stand together without anybody's choice."""
+        """True if the entries of both sides are compatible without a choice."""
         if self.subject[0] == DESCRIPTION:
             return self.here[-1].cells == self.there[-1].cells
         entries = (*self.here, *self.there)
@@ -106,13 +106,13 @@ class Divergence:
 
     @property
     def contested(self) -> list[tuple[str, str]]:
-        """The cells that both sides corrected, to different ends: uid of the row's entry, and column."""
+        """Cells that both sides corrected differently: uid of the row's entry, and column."""
         here, there = _corrected(self.here, self.uid_here), _corrected(self.there, self.uid_there)
         return sorted(cell for cell in here.keys() & there.keys() if here[cell] != there[cell])
 
     @property
     def kind(self) -> Kind:
-        """What sort of a contradiction it is."""
+        """Kind of the conflict."""
         actions = {entry.action for entry in (*self.here, *self.there)}
         added = [any(entry.action == "add" for entry in side) for side in (self.here, self.there)]
         if self.subject[0] == DESCRIPTION:
@@ -127,12 +127,12 @@ class Divergence:
 
     @property
     def choices(self) -> tuple[Side, ...]:
-        """What can be kept: both, where neither takes the other's word back."""
+        """Sides that can be kept; both if neither contradicts the other."""
         together = self.kind == "begun twice" or (self.kind == "cancelled" and not self.contested)
         return ("here", "there", "both") if together else ("here", "there")
 
     def told(self, name: str) -> Conflict:
-        """It in words."""
+        """The conflict in words, with the name of the campaign."""
         entries_by_uid = {entry.uid: entry for entry in (*self.common, *self.here, *self.there)}
         return Conflict(
             id=self.id,
@@ -157,7 +157,7 @@ class Divergence:
 def find_divergences(
     here: Connection, there: Connection, journal_id: str, of_here: EntryIndex, of_there: EntryIndex
 ) -> Iterator[Divergence]:
-    """What the stores say about each test that both wrote about, each in what the other lacks."""
+    """Divergence of each test about which each store has entries that the other does not have."""
     for subject in of_here.written_on_both(of_there):
         on_here, on_there = entries_about(here, journal_id, subject), entries_about(there, journal_id, subject)
         uids_here, uids_there = {entry.uid for entry in on_here}, {entry.uid for entry in on_there}
@@ -173,7 +173,7 @@ def find_divergences(
 
 
 def _corrected(entries: Sequence[JournalEntry], uids: Mapping[int, str]) -> dict[tuple[str, str], str]:
-    """What cells came to by the corrections among the entries."""
+    """Last correction of each cell among the entries."""
     return {
         (uids.get(entry.about or 0, ""), column): text
         for entry in entries
@@ -201,7 +201,7 @@ def _entry_words(entry: JournalEntry, about: JournalEntry | None) -> str:
 
 
 def _cell(key: str, text: str, about: JournalEntry | None) -> str:
-    """A correction of a cell; those of a stored campaign say their line."""
+    """Correction of a cell in words, with the line of the file for a stored campaign."""
     if "/" in key:
         line, column = cell_of(key)
         return f"line {line}, {column} to {text!r}"
@@ -215,30 +215,30 @@ def _shorten_text(text: str) -> str:
 
 
 Subject: TypeAlias = tuple[str, str]
-"""File and test that an entry is about."""
+"""File and test of an entry."""
 _ENTRIES_PER_QUERY = 500
 
 
 @dataclass(slots=True)
 class EntryIndex:
-    """The entries of a journal in one store, by uid: what they are about, and their numbers there."""
+    """Index of the entries of a journal in one store: subject and sequence by uid, uid by sequence."""
 
     subject: dict[str, Subject] = field(default_factory=dict)
     sequence: dict[str, int] = field(default_factory=dict)
     uid: dict[int, str] = field(default_factory=dict)
 
     def missing_in(self, other: EntryIndex) -> set[str]:
-        """What is here and not there."""
+        """Uids of the entries that the other store does not have."""
         return self.subject.keys() - other.subject.keys()
 
     def written_on_both(self, other: EntryIndex) -> list[Subject]:
-        """The tests about which each side has what the other lacks, sorted."""
+        """Sorted tests about which each store has entries that the other does not have."""
         here = {self.subject[uid] for uid in self.missing_in(other)}
         return sorted(here & {other.subject[uid] for uid in other.missing_in(self)})
 
 
 def entry_index(connection: Connection, journal_id: str) -> EntryIndex:
-    """What a store has of a journal; nothing where it does not have it.
+    """Index of the entries of a journal in a store; empty if it does not have the journal.
 
     Raises
     ------
@@ -255,7 +255,7 @@ def entry_index(connection: Connection, journal_id: str) -> EntryIndex:
 
 
 def entries_by_uid(connection: Connection, journal_id: str, uids: Iterable[str]) -> list[JournalEntry]:
-    """Entries in the order of their uids, each checked to be what was written down."""
+    """Entries in the order of their uids, with verified checksums."""
     wanted = sorted(uids)
     entries: list[JournalEntry] = []
     for first in range(0, len(wanted), _ENTRIES_PER_QUERY):
@@ -274,7 +274,7 @@ def entries_about(connection: Connection, journal_id: str, subject: Subject) -> 
 
 
 def shared_journals(here: Connection, there: Connection) -> Iterator[str]:
-    """The journals that can be compared: of campaigns that are entered, or stored in both stores."""
+    """Ids of the journals that can be compared: of campaigns in entry, or stored in both stores."""
     of_here, of_there = _journals(here), _journals(there)
     stored_here, stored_there = _stored(here), _stored(there)
     for id_ in sorted(of_here | of_there):

@@ -1,8 +1,8 @@
-"""The database under the store: connections, transactions, the schema of a file, plain words for what goes wrong.
+"""Database of the store: connections, transactions, schema of a file, error messages.
 
-A store on a server is opened by `server`. In a file,
-every connection has foreign keys on and waits for others; every commit is on the disk before it returns
-(``synchronous=FULL``). Connections are opened for each piece of work and closed after it, threads share none.
+`server` opens a store on a server. In a file every connection has foreign keys switched on and waits for others, and
+every commit is on the disk before it returns (``synchronous=FULL``). Each operation opens and closes a connection;
+threads share none.
 """
 
 from __future__ import annotations
@@ -52,7 +52,7 @@ _SYSTEM_REASONS: Final = {
 
 @contextmanager
 def database_errors(store: StorePlace, doing: str) -> Iterator[None]:
-    """Turn a database error into a `StoreError` that says what to do; ``doing`` as in "could not be read"."""
+    """Convert database errors to a `StoreError` with a remedy; ``doing`` as in "could not be read"."""
     try:
         yield
     except (DBAPIError, sqlite3.Error) as error:
@@ -61,12 +61,12 @@ def database_errors(store: StorePlace, doing: str) -> Iterator[None]:
             raise StoreError(f"The store {store} {doing}: {reason(error, store)}.") from error
         original = getattr(error, "orig", error)
         raise StoreError(f"The store {store} {doing}: {_file_reason(original, store)}.") from error
-    except UnicodeDecodeError as error:  # what SQLite says names a part of the schema that is no text any more
+    except UnicodeDecodeError as error:  # SQLite's message contains damaged text from the schema
         raise StoreError(f"The store {store} {doing}: {_DAMAGED}.") from error
 
 
 def _file_reason(error: BaseException, path: Path) -> str:
-    """Why a store in a file cannot be used, and what to do."""
+    """Reason why a store in a file cannot be used, with a remedy."""
     message, code = str(error), primary_code(error)
     if code == sqlite3.SQLITE_NOTADB:
         return _NO_STORE
@@ -83,7 +83,7 @@ def _damage(path: Path) -> str | None:
 
 @contextmanager
 def file_errors(place: Path, doing: str) -> Iterator[None]:
-    """Turn a file system error into a `StoreError` that says what to do; ``doing`` as in "could not be read"."""
+    """Convert file system errors to a `StoreError` with a remedy; ``doing`` as in "could not be read"."""
     try:
         yield
     except OSError as error:
@@ -92,7 +92,7 @@ def file_errors(place: Path, doing: str) -> Iterator[None]:
 
 
 def _remember_place(engine: Engine, place: StorePlace) -> None:
-    """Errors say which of two stores they are from."""
+    """Attach the store's place to errors of the engine, so that messages name the right one of two stores."""
 
     def remember(context: ExceptionContext) -> None:
         context.original_exception.skisnow_place = place  # type: ignore[attr-defined]
@@ -106,7 +106,7 @@ def _place_of(error: BaseException) -> StorePlace | None:
 
 @contextmanager
 def reading(engine: Engine) -> Iterator[Connection]:
-    """Give a connection that sees the store as it is now, whatever others write meanwhile; it cannot commit."""
+    """Connection with a snapshot of the store, independent of other writers; it cannot commit."""
     with (
         engine.connect() as connection
     ):  # ended by a rollback, which works even on damaged files, where COMMIT does not
@@ -117,7 +117,7 @@ def reading(engine: Engine) -> Iterator[Connection]:
 
 @contextmanager
 def writing(engine: Engine) -> Iterator[Connection]:
-    """Give a connection that alone may write; all of its work is kept, or none."""
+    """Connection with the write lock, in one transaction."""
     with engine.connect() as connection, connection.execution_options(skisnow_begin="IMMEDIATE").begin():
         if not is_file(connection):
             lock_for_writing(connection)
@@ -126,7 +126,7 @@ def writing(engine: Engine) -> Iterator[Connection]:
 
 @contextmanager
 def apart(connection: Connection) -> Iterator[None]:
-    """What fails inside leaves the transaction as it was before, so that it can go on; a server ends it otherwise."""
+    """Savepoint: a failure inside leaves the transaction usable, which a server would otherwise abort."""
     if is_file(connection):
         yield
     else:
@@ -135,7 +135,7 @@ def apart(connection: Connection) -> Iterator[None]:
 
 
 def is_file(connection: Connection) -> bool:
-    """Tell an SQLite file from a server."""
+    """True for an SQLite file, False for a server."""
     return connection.dialect.name == "sqlite"
 
 
@@ -145,7 +145,7 @@ def open_engine(place: StorePlace, *, create: bool, busy_timeout_s: float) -> En
     Raises
     ------
     StoreError
-        It is no store, or of a newer program, or damaged, or must be written and cannot.
+        It is not a store, is from a newer program, is damaged, or cannot be written if necessary.
     """
     with database_errors(place, "cannot be used"):
         if isinstance(place, ServerAddress):
@@ -165,7 +165,7 @@ def _open_file(path: Path, *, create: bool, busy_timeout_s: float) -> Engine:
 
 
 def _require_tables(engine: Engine, path: Path) -> None:
-    """Check that every table of the schema is there with all of its columns."""
+    """Check that all tables of the schema exist with all columns."""
     with reading(engine) as connection:
         database: Any = connection.connection.driver_connection
         try:
@@ -181,8 +181,8 @@ def _readable_engine(path: Path, *, create: bool, busy_timeout_s: float) -> Engi
     try:
         _tables(engine)
     except DBAPIError as error:
-        # A write-ahead log needs a file beside the store. Where the folder forbids that and there is no log, nobody is
-        # writing, and SQLite can be told to read the file as it stands.
+        # A write-ahead log needs a file next to the store. If the folder is read-only and there is no log, no process
+        # is writing, and SQLite can read the file as immutable.
         log = path.with_name(path.name + "-wal")
         forbidden = primary_code(error.orig or error) in (sqlite3.SQLITE_CANTOPEN, sqlite3.SQLITE_READONLY)
         if not forbidden or not path.exists() or (log.exists() and log.stat().st_size > 0):
@@ -219,7 +219,7 @@ def _tables(engine: Engine) -> set[str]:
 
 
 def _revision(connection: Connection, path: Path) -> str | None:
-    """Migration that the store is at; None for a file without tables."""
+    """Revision of the store; None for a file without tables."""
     tables = set(connection.exec_driver_sql("SELECT name FROM sqlite_master WHERE type = 'table'").scalars())
     if not tables - {"alembic_version"}:
         return None
@@ -241,8 +241,8 @@ def _bring_up_to_date(engine: Engine, path: Path, busy_timeout_s: float) -> None
 
     _use_write_ahead_log(engine, busy_timeout_s)
     with engine.connect() as connection:
-        # Tables are rebuilt by some migrations, which foreign keys would hinder; they can only be switched off outside
-        # of a transaction and are checked before it ends.
+        # Some migrations rebuild tables, which foreign keys would prevent. They can only be switched off outside of a
+        # transaction, and are checked before its end.
         connection.connection.cursor().execute("PRAGMA foreign_keys = OFF")
         with connection.execution_options(skisnow_begin="IMMEDIATE").begin():
             if not needs_migration(_revision(connection, path), path):

@@ -1,4 +1,4 @@
-"""What was corrected in a stored campaign, whose files stay byte for byte, as rows of its corrections.csv."""
+"""Export of campaigns: stored files with later corrections in corrections.csv, and campaigns from lab entries."""
 
 from __future__ import annotations
 
@@ -30,22 +30,21 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class ExportedCampaign:
-    """A campaign that was given back, and how many cells were corrected since it was stored."""
+    """An exported campaign, and the number of cells that were corrected since it was stored."""
 
     stored: StoredCampaign
     n_corrections: int
 
 
 def export_corrected(store: Store, id_: str, folder: Path, *, progress: Progress = no_progress) -> ExportedCampaign:
-    """Give a stored campaign back in a new folder: its files byte for byte, and what was corrected since.
+    """Export a stored campaign to a new folder: its files byte for byte, and later corrections.
 
-    Corrections stand in corrections.csv behind those that came with the campaign; where there are none, every file is
-    as it came in.
+    Corrections are appended to corrections.csv; without corrections all files are unchanged.
 
     Raises
     ------
     StoreError
-        As `Store.export`; and where a corrections.csv that came with the campaign cannot be gone on with.
+        As `Store.export`; or the corrections.csv of the campaign cannot be read.
     """
     entries = Journals(store).corrections(store.show(id_).id)
     written: list[int] = []
@@ -56,16 +55,16 @@ def export_corrected(store: Store, id_: str, folder: Path, *, progress: Progress
 
 
 def add_corrections(folder: Path, entries: Iterable[JournalEntry], *, before: bytes | None = None) -> int:
-    """Write corrections.csv into a campaign's folder, where there is something to correct; says how many cells are.
+    """Write corrections.csv in a campaign's folder if there are corrections; return the number of corrected cells.
 
     Parameters
     ----------
     folder
         The campaign's files.
     entries
-        Those about the campaign, oldest first.
+        Entries about the campaign, oldest first.
     before
-        corrections.csv as it came with the campaign; None: as it stands in the folder.
+        Original corrections.csv of the campaign (default: that in the folder).
 
     Raises
     ------
@@ -86,12 +85,12 @@ def add_corrections(folder: Path, entries: Iterable[JournalEntry], *, before: by
 
 
 def corrected_files(files: Mapping[str, bytes], entries: Iterable[JournalEntry]) -> dict[str, bytes]:
-    """The files of a campaign with the corrections.csv that `add_corrections` would write beside them.
+    """Files of a campaign with the corrections.csv that `add_corrections` writes.
 
     Raises
     ------
     StoreError
-        The corrections.csv that came with the campaign cannot be read.
+        The corrections.csv of the campaign cannot be read.
     """
     rows = list(_rows(entries))
     if not rows:
@@ -100,7 +99,7 @@ def corrected_files(files: Mapping[str, bytes], entries: Iterable[JournalEntry])
 
 
 def _combine_corrections(before: bytes, rows: list[dict[str, str]]) -> str:
-    """One file: the rows that came with the campaign with all their columns, then ours."""
+    """Text of corrections.csv: the original rows with all their columns, then the new ones."""
     records = _records(before) if before.strip() else []
     header = [cell.strip() for cell in records.pop(0)] if records else []
     header += [column for column in COLUMNS if column not in header]
@@ -120,7 +119,7 @@ def _records(data: bytes) -> list[list[str]]:
 
 
 def _rows(entries: Iterable[JournalEntry]) -> Iterator[dict[str, str]]:
-    """Test by test, in the order in which they were first corrected."""
+    """Rows of corrections.csv, test by test, in the order of the first correction of each test."""
     for test in sorted(replayed(entries).tests.values(), key=_first_manual_entry):
         if test.rows:
             yield from _rows_of_test(test)
@@ -131,7 +130,7 @@ def _first_manual_entry(test: ReplayedTest) -> str:
 
 
 def _rows_of_test(test: ReplayedTest) -> Iterator[dict[str, str]]:
-    """The rows about one test, in the order of the entries."""
+    """Rows of corrections.csv about one test, in the order of the entries."""
     cells_now = dict(test.rows[0].entered.cells)
     first = min(cell_of(key)[0] for key in cells_now)
     for entry in test.history:
@@ -148,12 +147,12 @@ FoundCampaign: TypeAlias = StoredCampaign | JournalHead
 
 
 def find_campaign(store: Store, id: str) -> FoundCampaign:  # noqa: A002 (as in Store)
-    """The campaign whose id begins so: stored files or lab entries.
+    """Find a campaign by the beginning of its id, among stored campaigns and lab entries.
 
     Raises
     ------
     StoreError
-        No campaign or several begin so; the message lists those that may be meant.
+        No campaign or several have this beginning; the message lists candidates.
     """
     beginning = required_digits(id)
     entry_index = {head.id: head for head in Journals(store).list()}
@@ -170,14 +169,14 @@ def find_campaign(store: Store, id: str) -> FoundCampaign:  # noqa: A002 (as in 
 
 
 def entered_files(store: Store, id: str) -> tuple[StoredFile, ...]:  # noqa: A002
-    """The files that `export_entered` writes, sorted by path; raises as it does."""
+    """Files that `export_entered` writes, sorted by path; errors as there."""
     texts = campaign_files(replayed(Journals(store).entries(id)))
     contents = {path: text.encode() for path, text in sorted(texts.items())}
     return tuple(StoredFile(path, len(data), sha256(data).hexdigest()) for path, data in contents.items())
 
 
 def export_entered(store: Store, id: str, folder: Path) -> None:  # noqa: A002
-    """Write a campaign that consists of lab entries as a new folder, which `read_campaign` reads.
+    """Export a campaign from lab entries to a new folder, which `read_campaign` reads.
 
     Raises
     ------

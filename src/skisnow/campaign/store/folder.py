@@ -1,6 +1,6 @@
-"""Folders that go into the store and come out of it: listing, hashing, safe paths, writing.
+"""Folders of stored campaigns: listing, hashing, checks of paths, writing.
 
-What is stored of a folder is the path and the bytes of each regular file; empty folders, times and permissions are not.
+The store keeps path and bytes of each regular file, but no empty folders, times and permissions.
 """
 
 from __future__ import annotations
@@ -31,14 +31,14 @@ _NOT_ON_WINDOWS: Final = re.compile(r'[<>:"|?*\\\x00-\x1f]|[. ]$')
 
 
 class Progress(Protocol):
-    """Told how many bytes of all have been worked through."""
+    """Callback with the number of processed bytes and their total."""
 
     def __call__(self, done_bytes: int, total_bytes: int, /) -> None:
-        """Take note."""
+        """Report the progress."""
 
 
 def no_progress(done_bytes: int, total_bytes: int, /) -> None:
-    """Take no note of the progress."""
+    """Ignore the progress."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,14 +52,14 @@ class StoredFile:
 
 @dataclass(frozen=True, slots=True)
 class FileState:
-    """What must not change while a file is read: its size (bytes) and the time of its last change (ns)."""
+    """State of a file that must not change while it is read: size (bytes) and time of last change (ns)."""
 
     size: int
     changed_ns: int
 
 
 def manifest_sha256(files: Iterable[StoredFile]) -> str:
-    """Hash paths, sizes and contents of a campaign, whatever the order the files come in.
+    """SHA-256 of paths, sizes and contents of a campaign, independent of the order of the files.
 
     The manifest is the line ``skisnow manifest 1`` and, sorted by the bytes of the path in UTF-8, for each file
     ``SHA256 SIZE PATH`` and a zero byte.
@@ -79,7 +79,7 @@ def list_files(folder: Path) -> dict[str, FileState]:
     Raises
     ------
     StoreError
-        Links, pipes and the like (all are named), names that are no text, paths that no folder could give back.
+        Links, pipes and the like (all are named), names that are not text, paths that cannot be exported.
     OSError
         A folder cannot be read.
     """
@@ -106,22 +106,19 @@ def list_files(folder: Path) -> dict[str, FileState]:
 
 
 def _is_junction(entry: Path) -> bool:
-    """Tell Windows's other kind of link to a folder, which Python knows from 3.12."""
+    """True for a junction, Windows's other link to a folder (Python 3.12 and later)."""
     return bool(getattr(entry, "is_junction", bool)())
 
 
 def read_chunks(file: Path, chunk_bytes: int) -> Iterator[bytes]:
-    """Read a file piece by piece; every piece but the last is full."""
+    """Read a file in pieces; all but the last are full."""
     with file.open("rb") as stream:
         while piece := stream.read(chunk_bytes):
             yield piece
 
 
 def campaign_name(folder: Path) -> str:
-    """Name from campaign.toml, or the sheets that stand for it, where they can be read, else the folder's.
-
-    Never an error: raw data are kept as is.
-    """
+    """Name from campaign.toml or its sheets if they can be read, otherwise that of the folder."""
     own = folder.resolve().name.encode(errors="replace").decode()
     try:
         name = toml_values(decode(_description(folder)).text).get("name")
@@ -139,7 +136,7 @@ def _description(folder: Path) -> bytes:
 
 
 def unsafe_because(path: str, *, for_windows: bool) -> str | None:
-    """Say why a relative path must not be written below a folder; None where it may.
+    """Reason why a relative path must not be written below a folder; None if it is safe.
 
     >>> unsafe_because("../passwd", for_windows=False)
     'it has a part that is empty, . or ..'
@@ -175,7 +172,7 @@ def _printable(path: str) -> str:
 
 @contextmanager
 def new_folder(out: Path) -> Iterator[Path]:
-    """Give an empty folder to fill, which takes the name ``out`` only when all went well.
+    """Temporary folder to fill, which is renamed to ``out`` after success.
 
     Raises
     ------
@@ -201,7 +198,7 @@ def new_folder(out: Path) -> Iterator[Path]:
 
 
 def write_file(folder: Path, file: StoredFile, pieces: Iterable[bytes]) -> None:
-    """Write one file below a folder, to the disk's surface, and check that it is what was stored.
+    """Write one file below a folder, flush it to the disk, and verify its SHA-256.
 
     Raises
     ------
@@ -229,7 +226,7 @@ def write_file(folder: Path, file: StoredFile, pieces: Iterable[bytes]) -> None:
 
 
 def checked_bytes(file: StoredFile, pieces: Iterable[bytes]) -> bytes:
-    """A file's bytes, which are checked to be what was stored.
+    """Bytes of a file with a verified SHA-256.
 
     Raises
     ------
@@ -243,7 +240,7 @@ def checked_bytes(file: StoredFile, pieces: Iterable[bytes]) -> bytes:
 
 
 def _sync_folder(folder: Path) -> None:
-    """Bring a folder's entries to the disk; Windows does so by itself and cannot be asked."""
+    """Flush a folder's entries to the disk; Windows does this automatically."""
     if os.name == "nt" or not folder.is_dir():
         return
     handle = os.open(folder, os.O_RDONLY)
@@ -254,5 +251,5 @@ def _sync_folder(folder: Path) -> None:
 
 
 def changed_files(before: Mapping[str, FileState], after: Mapping[str, FileState]) -> list[str]:
-    """Name the files that came, went or changed between two listings."""
+    """Paths of the files that were added, removed or changed between two listings."""
     return sorted(path for path in before.keys() | after.keys() if before.get(path) != after.get(path))

@@ -1,10 +1,10 @@
-"""Journals: campaigns that are being entered, by event sourcing. Each entry is on the disk before it counts as stored.
+"""Journals of campaigns in entry (event sourcing); each entry is on the disk before it is acknowledged.
 
-A journal is a list of entries that only grows (event sourcing). A reading is an entry; so is its correction, a
-cancelling, an undoing: nothing is overwritten, and the campaign as it is now is replayed from all of them (`replayed`).
+A journal is an append-only list of entries. Readings, corrections, cancellations and undo operations are entries.
+Nothing is overwritten, and `replayed` computes the current campaign from all entries.
 
-What is corrected in a campaign that is stored byte for byte stands in a journal too, which has that campaign's id. Its
-first entry about a test says what the file says.
+Corrections of a campaign that is stored byte for byte are in a journal with that campaign's id. Its first entry about a
+test has the cells of the file.
 """
 
 from __future__ import annotations
@@ -30,25 +30,25 @@ if TYPE_CHECKING:
     from .store import Store
 
 _IN_ENTRY: Final = journal.c.id.not_in(select(campaign.c.id))
-"""Of a journal; that of a stored campaign says what is corrected in it."""
+"""Condition for journals of campaigns in entry; those of stored campaigns have corrections."""
 
 
 class OvertakenError(StoreError):
-    """Somebody else wrote about the same test since it was last read; nothing was stored."""
+    """There is a newer entry about the same test than the writer has seen; nothing was stored."""
 
 
 @dataclass(frozen=True, slots=True)
 class JournalHead:
-    """A campaign that consists of lab entries, in a list.
+    """Summary of a campaign in entry.
 
     Attributes
     ----------
     id
         12 hexadecimal digits.
     name
-        From its description; "" if it has none or is damaged.
+        Name from its description; "" if missing or damaged.
     begun_at, last_at
-        Times of the beginning and of the last entry (UTC, ISO 8601).
+        Times of the begin and of the last entry (UTC, ISO 8601).
     n_entries
         Number of its entries.
     """
@@ -68,9 +68,9 @@ class Journals:
         self._path = store.path
 
     def begin(self, description: str, *, who: str = "", once: str | None = None) -> str:
-        """Begin a campaign with the text of its campaign.toml; gives the journal's id.
+        """Begin a campaign with the text of its campaign.toml; return the journal's id.
 
-        With the same ``once`` again it gives the id of the campaign that was begun the first time.
+        Another call with the same ``once`` returns the id of the same campaign.
         """
         id_ = secrets.token_hex(6) if once is None else sha256(once.encode()).hexdigest()[:12]
         with database_errors(self._path, "could not be written"), writing(self._engine) as connection:
@@ -82,7 +82,7 @@ class Journals:
         return id_
 
     def list(self) -> tuple[JournalHead, ...]:
-        """Give the journals of all campaigns that are being entered, oldest first."""
+        """Journals of all campaigns in entry, oldest first."""
         query = (
             select(
                 journal.c.id,
@@ -100,10 +100,10 @@ class Journals:
             return tuple(_journal_head(entered_name(connection, row[0]), *row) for row in rows)
 
     def entries(self, id: str, *, after: int = 0) -> tuple[JournalEntry, ...]:  # noqa: A002 (as in Store)
-        """Give the entries of a journal, oldest first, from the one behind a sequence on.
+        """Entries of a journal after a sequence, oldest first.
 
-        The order is that of their uids, which is the same in all stores; where nothing was synchronised it is that in
-        which they were written down.
+        The order is that of their uids, which is the same in all stores; without synchronisation it is the order of
+        writing.
 
         Raises
         ------
@@ -113,7 +113,7 @@ class Journals:
         return self._read(id, after, _require)
 
     def corrections(self, id: str, *, after: int = 0) -> tuple[JournalEntry, ...]:  # noqa: A002 (as in Store)
-        """Give the entries about a campaign that is stored byte for byte, oldest first, from behind a sequence on.
+        """Entries after a sequence about a campaign that is stored byte for byte, oldest first.
 
         Raises
         ------
@@ -130,16 +130,16 @@ class Journals:
             return tuple(sorted(map(parse_entry, rows), key=lambda entry: entry.uid))
 
     def append(self, id: str, entry: NewEntry, *, seen: int) -> JournalEntry:  # noqa: A002 (as in Store)
-        """Write an entry down; when this returns it is on the disk. One that is there already is given back.
+        """Write an entry, which is on the disk when this returns; an entry that was sent before is returned.
 
         Parameters
         ----------
         id
             The journal.
         entry
-            What to write.
+            Entry to write.
         seen
-            The last sequence that the writer knows of the entry's test; 0 for a test that it takes for new.
+            Last sequence of the entry's test that the writer has seen; 0 for a new test.
 
         Raises
         ------
@@ -157,18 +157,18 @@ class Journals:
             return write_entry(connection, id, entry)
 
     def correct(self, id: str, entry: NewEntry, *, seen: int, standing: Mapping[str, str]) -> JournalEntry:  # noqa: A002
-        """Write down what is to be different in a campaign that is stored byte for byte.
+        """Write a correction, cancellation or undo of a campaign that is stored byte for byte.
 
         Parameters
         ----------
         id
-            The campaign, with all digits.
+            Complete id of the campaign.
         entry
-            A correction, a cancelling or an undoing of one test; ``about`` of a correction is filled in.
+            Entry about one test; ``about`` of a correction is filled in.
         seen
             As in `append`.
         standing
-            Every cell of the test as the files say it, which is written down before the first entry about it.
+            All cells of the test in the files, which are written before the first entry about it.
 
         Raises
         ------
@@ -209,7 +209,7 @@ def _require_stored(connection: Connection, id_: str) -> None:
 
 
 def _entry_of_file(connection: Connection, id_: str, entry: NewEntry, standing: Mapping[str, str]) -> int:
-    """The sequence of the entry that says what the file says about a test; it is written where there is none."""
+    """Sequence of the entry with the cells of a test in the file, which is written if it does not exist."""
     query = select(journal_entry.c.sequence).where(_is_about_test(id_, entry), journal_entry.c.action == "add")
     row = connection.execute(query).first()
     if row is not None:
@@ -225,7 +225,7 @@ def _is_about_test(id_: str, entry: NewEntry) -> ColumnElement[bool]:
 
 
 def _earlier_entry(connection: Connection, id_: str, entry: NewEntry) -> JournalEntry | None:
-    """The entry as it was written down when it was sent the first time."""
+    """Entry that was written when it was sent the first time, or None."""
     if entry.once is None:
         return None
     query = select(journal_entry).where(journal_entry.c.journal_id == id_, journal_entry.c.once == entry.once)
@@ -253,7 +253,7 @@ def _require_subject(connection: Connection, id_: str, entry: NewEntry) -> None:
 
 
 def entered_name(connection: Connection, journal_id: str) -> str:
-    """Name in the campaign's last description; "" if it has none or is damaged."""
+    """Name in the campaign's last description; "" if missing or damaged."""
     columns = journal_entry.c
     descriptions = select(journal_entry).where(columns.journal_id == journal_id, columns.file == DESCRIPTION)
     try:

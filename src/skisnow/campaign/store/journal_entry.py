@@ -1,4 +1,4 @@
-"""One entry of a journal: what is to be written down, what was, and how it is read from its row."""
+"""Entries of a journal: new and written ones, their rows in the database, and their checksums."""
 
 from __future__ import annotations
 
@@ -24,32 +24,32 @@ if TYPE_CHECKING:
 Action: TypeAlias = Literal["describe", "add", "correct", "cancel", "undo"]
 
 DESCRIPTION: Final = "campaign.toml"
-"""The file, and the only cell, of an entry that describes the campaign."""
+"""Name of the file and of the only cell of an entry with the campaign's description."""
 
 SHARED_FIELDS: Final = ("action", "file", "test", "position", "about", "who", "why", "once")
-"""What an entry and its row have alike."""
+"""Fields that an entry and its row share."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class NewEntry:
-    """What is to be written down.
+    """A new entry to be written.
 
     Attributes
     ----------
     action
-        describe (the whole of campaign.toml), add (a row), correct (one cell of a row), cancel (a test), undo.
+        describe (all of campaign.toml), add (a row), correct (one cell of a row), cancel (a test), undo.
     file, test
         The table's file and the test's name; ``""`` for a description.
     cells
         Texts by column.
     position
-        Place of an added row within its test; rows are given back in this order, however late one was filled in.
+        Number of an added row within its test; it defines the order of the rows.
     about
-        The sequence of the entry that is corrected or undone.
+        Sequence of the entry that is corrected or undone.
     who, why
-        As corrections.csv has them; why a test was cancelled.
+        As in corrections.csv; for a cancellation its reason.
     once
-        Any text that the writer gives to this entry alone: sent again, it is not written down a second time.
+        Unique text of this entry from the writer; an entry that is sent again is not written twice.
     """
 
     action: Action
@@ -65,17 +65,17 @@ class NewEntry:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class JournalEntry(NewEntry):
-    """What was written down.
+    """A written entry.
 
     Attributes
     ----------
     sequence
-        Its number in this store, which rises.
+        Rising number in this store.
     at
-        When, in UTC (ISO 8601).
+        Time in UTC (ISO 8601).
     uid
-        What it is called in every store that has it; entries sorted by it are in the same order everywhere, and none
-        stands before one that its writer knew.
+        Identifier in all stores. Entries sorted by it have the same order everywhere, and none precedes an entry that
+        its writer knew.
     """
 
     sequence: int
@@ -84,17 +84,17 @@ class JournalEntry(NewEntry):
 
     @property
     def is_from_file(self) -> bool:
-        """Whether it says what a stored file says, and nobody entered it."""
+        """True if it has the cells of a stored file instead of entered ones."""
         return self.action == "add" and self.position is None
 
 
 def parse_entry(row: RowMapping) -> JournalEntry:
-    """An entry from its row.
+    """Convert a row to an entry and verify its checksum.
 
     Raises
     ------
     StoreError
-        It holds what was never written there.
+        The row is damaged.
     """
     entry = readable_entry(row)
     if row["sha256"] != entry_sha256({str(name): value for name, value in row.items()}):
@@ -103,7 +103,7 @@ def parse_entry(row: RowMapping) -> JournalEntry:
 
 
 def readable_entry(row: RowMapping) -> JournalEntry:
-    """An entry from its row, whether or not that is what was written down; errors as in `parse_entry`."""
+    """Convert a row to an entry without verifying its checksum; errors as in `parse_entry`."""
     values: dict[str, Any] = {name: row[name] for name in (*SHARED_FIELDS, "sequence", "at", "uid")}
     try:
         for name in ("action", "file", "test", "at", "who", "why", "uid"):
@@ -135,11 +135,11 @@ _SUMMED_COLUMNS: Final = (
     "once",
     "uid",
 )
-"""Columns beside the cells, in the order in which they are summed; only ever added to with a migration."""
+"""Columns other than the cells, in the order of the checksum; additions need a migration."""
 
 
 def entry_sha256(row: Mapping[str, object]) -> str:
-    """The SHA-256 of all that an entry says, by the names of its columns.
+    """SHA-256 of all fields of an entry, given by the names of its columns.
 
     >>> row = {name: None for name in ("at", "who", "about")} | {"sequence": 1, "cells": "{}"}
     >>> entry_sha256(row) == entry_sha256(row | {"who": ""}), len(entry_sha256(row))
@@ -153,14 +153,14 @@ def entry_sha256(row: Mapping[str, object]) -> str:
 
 
 def entry_sums(row: Mapping[str, object]) -> str:
-    """A CRC-32 of each part, as JSON: they show where an entry is damaged that no longer has its SHA-256."""
+    """CRC-32 of each field as JSON, which locates damage in an entry with a wrong SHA-256."""
     return json.dumps({"entry": _field_sums(row), "cells": _cell_sums(row)}, ensure_ascii=False)
 
 
 def damaged_parts(row: Mapping[str, object], sums: bytes) -> Iterator[tuple[str, str | None]]:
-    """The parts that are not what was summed: "entry" or "cells" and the column.
+    """Damaged fields: "entry" or "cells", and the column.
 
-    With None for the column: "cells" that cannot be taken apart, "sums" that cannot be read.
+    The column is None for "cells" that cannot be parsed and for "sums" that cannot be read.
     """
     try:
         stored_sums = json_value(sums.decode())
@@ -181,12 +181,12 @@ def damaged_parts(row: Mapping[str, object], sums: bytes) -> Iterator[tuple[str,
 
 
 def parse_cells(row: Mapping[str, object]) -> dict[str, str]:
-    """The cells of an entry as their bytes say them, what is no text in them replaced.
+    """Cells of an entry from the bytes of its row, with replacement of invalid characters.
 
     Raises
     ------
     ValueError
-        They cannot be taken apart.
+        The cells cannot be parsed.
     """
     data = as_bytes(row.get("cells")) or b""
     cells = json_value(data.decode(errors="replace"))
@@ -208,7 +208,7 @@ def _crc32(data: bytes | None) -> str:
 
 
 def as_bytes(value: object) -> bytes | None:
-    """A value as SQLite casts it to a BLOB."""
+    """Bytes of a value, as SQLite casts it to a BLOB."""
     if value is None or isinstance(value, bytes):
         return value
     return str(value).encode(errors="surrogatepass")
@@ -219,23 +219,23 @@ _RANDOM_BYTES: Final = 10
 
 
 def now() -> str:
-    """The time in UTC (ISO 8601)."""
+    """Current time in UTC (ISO 8601)."""
     return datetime.now(UTC).strftime(TIME)
 
 
 def next_sequence(connection: Connection) -> int:
-    """The number of the entry that is written next."""
+    """Sequence of the next entry."""
     query = select(func.coalesce(func.max(journal_entry.c.sequence), 0) + 1)
     return int(connection.execute(query).scalar_one())
 
 
 def new_uid(sequence: int) -> str:
-    """What an entry is called that is written down with this number."""
+    """New uid for an entry with this sequence."""
     return f"{sequence:0{NUMBER_DIGITS}d}-{secrets.token_hex(_RANDOM_BYTES)}"
 
 
 def uid_of_file(journal_id: str, file: str, test: str) -> str:
-    """What the entry is called that says what a stored file says: the same in every store, before all others.
+    """Uid of the entry with the cells of a stored file, the same in all stores and before all others.
 
     >>> uid_of_file("0123456789ab", "shear.csv", "7")
     '0000000000-3e589431636df79bdf44'
@@ -245,7 +245,7 @@ def uid_of_file(journal_id: str, file: str, test: str) -> str:
 
 
 def number_of_uid(uid: str) -> int:
-    """The number that an entry had where it was written."""
+    """Sequence of an entry in the store where it was written."""
     digits = uid[:NUMBER_DIGITS]
     return int(digits) if digits.isdecimal() else 0
 
@@ -253,7 +253,7 @@ def number_of_uid(uid: str) -> int:
 def write_entry(
     connection: Connection, journal_id: str, entry: NewEntry, *, at: str | None = None, uid: str | None = None
 ) -> JournalEntry:
-    """Write a new entry down; ``at`` and ``uid`` where they are not to be of now."""
+    """Write a new entry (default: at the current time, with a new uid)."""
     sequence = next_sequence(connection)
     return insert_entry(connection, journal_id, entry, sequence, at or now(), uid or new_uid(sequence))
 
@@ -261,7 +261,7 @@ def write_entry(
 def insert_entry(
     connection: Connection, journal_id: str, entry: NewEntry, sequence: int, at: str, uid: str
 ) -> JournalEntry:
-    """Write an entry down under a number and a uid."""
+    """Write an entry with a given sequence, time and uid."""
     plain = {name: getattr(entry, name) for name in SHARED_FIELDS}
     written = JournalEntry(**plain, cells=dict(entry.cells), at=at, sequence=sequence, uid=uid)
     insert_entries(connection, journal_id, [written])
@@ -269,7 +269,7 @@ def insert_entry(
 
 
 def insert_entries(connection: Connection, journal_id: str, entries: Sequence[JournalEntry]) -> None:
-    """Write entries down as they are, with their sums."""
+    """Write entries unchanged, with their checksums."""
     if entries:
         connection.execute(insert(journal_entry), [_row(journal_id, entry) for entry in entries])
 

@@ -1,4 +1,4 @@
-"""The state that a journal's entries give when they are replayed (event sourcing): the tests, each with its history."""
+"""Current state of a campaign in entry, computed by replaying its journal (event sourcing); its files."""
 
 from __future__ import annotations
 
@@ -28,14 +28,14 @@ if TYPE_CHECKING:
 
 @dataclass(slots=True)
 class ReplayedRow:
-    """A row of a table: as it was entered, what was corrected since, and what its cells are now."""
+    """A row of a table: its entry and the corrections since then."""
 
     entered: JournalEntry
     corrections: list[JournalEntry] = field(default_factory=list)
 
     @property
     def cells(self) -> dict[str, str]:
-        """The cells as they are now."""
+        """Current cells."""
         cells = dict(self.entered.cells)
         for correction in self.corrections:
             cells.update(correction.cells)
@@ -44,7 +44,7 @@ class ReplayedRow:
 
 @dataclass(slots=True)
 class ReplayedTest:
-    """A test, sample or experiment: its rows in order, why it was cancelled if it was, every entry about it."""
+    """A test, sample or experiment: rows in order, cancellation, all entries about it, undone sequences."""
 
     file: str
     name: str
@@ -55,22 +55,22 @@ class ReplayedTest:
 
     @property
     def last(self) -> int:
-        """Sequence of the last entry about it: what `Journals.append` takes as seen."""
+        """Sequence of the last entry about it, for `seen` of `Journals.append`."""
         return max((entry.sequence for entry in self.history), default=0)
 
     @property
     def cancelled(self) -> str:
-        """Why it was cancelled, ``""`` where it was not."""
+        """Reason for its cancellation, or ``""``."""
         return self.cancelling.why if self.cancelling is not None else ""
 
     @property
     def undoable(self) -> JournalEntry | None:
-        """The last entry that still counts, which is the one that can be undone; not what a file says."""
+        """Last entry that was not undone and can be undone; entries from a file cannot."""
         counting = (entry for entry in reversed(self.history) if entry.action != "undo" and not entry.is_from_file)
         return next((entry for entry in counting if entry.sequence not in self.undone), None)
 
     def row_under(self, load: str, branch: str = "") -> ReplayedRow | None:
-        """The reading of a series under a load (N), of the loading or, with its word, of the unloading."""
+        """Reading of a series under a load (N), of the loading or the unloading branch; None without one."""
         taken_off = is_unloading_cell(branch)
         return next(
             (
@@ -84,13 +84,13 @@ class ReplayedTest:
 
     @property
     def next_position(self) -> int:
-        """A place within the test that no row has had."""
+        """First unused position in the test."""
         return max((entry.position + 1 for entry in self.history if entry.position is not None), default=0)
 
 
 @dataclass(slots=True)
 class ReplayedCampaign:
-    """A campaign that is being entered, as it is now. ``tests`` are keyed by file and name, in the order of entry."""
+    """Current state of a campaign in entry; ``tests`` by file and name, in the order of entry."""
 
     description: str = ""
     described: int = 0
@@ -101,19 +101,19 @@ class ReplayedCampaign:
         return [test for test in self.tests.values() if test.file == file and test.rows]
 
     def test(self, file: str, name: str) -> ReplayedTest:
-        """A test by its name; an empty one where there is none yet."""
+        """A test by its name; a new empty one if it does not exist."""
         return self.tests.get((file, name)) or ReplayedTest(file, name)
 
 
 def replayed(entries: Iterable[JournalEntry], *, before: ReplayedCampaign | None = None) -> ReplayedCampaign:
-    """Replay a journal's entries, oldest first. What was undone is left out, but stays in the history.
+    """Replay a journal's entries, oldest first. Undone entries have no effect, but stay in the history.
 
     Parameters
     ----------
     entries
-        All entries, or those behind ``before``.
+        All entries, or those after ``before``.
     before
-        What the entries up to there came to; it is not changed. Only tests with new entries are replayed again.
+        State before these entries, which is not changed; only tests with new entries are replayed.
     """
     campaign = replace(before, tests=dict(before.tests)) if before is not None else ReplayedCampaign()
     added: dict[tuple[str, str], list[JournalEntry]] = {}
@@ -142,7 +142,7 @@ def _test(key: tuple[str, str], history: list[JournalEntry]) -> ReplayedTest:
 
 
 def _order(row: ReplayedRow) -> tuple[bool, float, int, int]:
-    """Readings that were entered rise with their loads, then fall with those of the unloading; rows of a file stay."""
+    """Sort key of a row: entered readings by rising load, then unloading by falling load; rows of a file stay."""
     position, load = row.entered.position, row.cells.get("load_N")
     if not load or position is None:
         return False, 0.0, position or 0, row.entered.sequence
@@ -164,12 +164,12 @@ COLUMNS: Final = ("file", "experiment", "row", "column", "old", "new", "who", "w
 
 
 def correction_row(entry: JournalEntry, line: int, column: str, old: str, new: str) -> tuple[str, ...]:
-    """What an entry says of a cell in a line of its file, by `COLUMNS`."""
+    """Row of corrections.csv with `COLUMNS` for one cell of an entry."""
     return (entry.file, entry.test, str(line), column, old, new, entry.who, entry.at, entry.why)
 
 
 def csv_text(rows: Iterable[Sequence[str]]) -> str:
-    r"""A table with commas and plain line ends; no cell is taken for a formula.
+    r"""CSV text with commas and line feeds; cells are protected from being read as formulas.
 
     >>> csv_text([("old", "new"), ("1,5", "1.5")])
     'old,new\n"1,5",1.5\n'
@@ -183,14 +183,14 @@ _TIME = "time"
 
 
 def campaign_files(campaign: ReplayedCampaign, *, of: Iterable[ReplayedTest] | None = None) -> dict[str, str]:
-    """The text of each file of the campaign's folder, by name.
+    """Text of each file of the campaign's folder, by name.
 
     Parameters
     ----------
     campaign
-        As it is now.
+        Current state.
     of
-        The tests to write; all where it is left out.
+        Tests to include (default: all).
     """
     chosen = list(campaign.tests.values() if of is None else of)
     files = {DESCRIPTION: campaign.description}
@@ -206,7 +206,7 @@ def campaign_files(campaign: ReplayedCampaign, *, of: Iterable[ReplayedTest] | N
 
 
 def write_campaign(campaign: ReplayedCampaign, folder: Path, *, of: Iterable[ReplayedTest] | None = None) -> None:
-    """Write these files into a folder that exists, without waiting for the disk: they can be made again at any time."""
+    """Write the campaign's files to an existing folder, without flushing: they can be written again at any time."""
     for name, text in campaign_files(campaign, of=of).items():
         (folder / name).write_text(text, encoding="utf-8", newline="")
 
@@ -225,7 +225,7 @@ def _cells(row: ReplayedRow, columns: Sequence[str]) -> list[str]:
 
 
 def _corrections(tests: Sequence[ReplayedTest]) -> Iterator[tuple[str, ...]]:
-    line = 1  # of the header
+    line = 1  # the header
     for test in tests:
         if test.cancelling is not None:
             yield correction_row(test.cancelling, line + 1, STATUS, "", test.cancelled)
@@ -243,7 +243,7 @@ Value: TypeAlias = "str | float | Sequence[str] | Sequence[float]"
 
 @dataclass(frozen=True, slots=True)
 class Description:
-    """Keys of campaign.toml with their values: of the whole, of each tool, of each plate. None and "" are left out."""
+    """Content of campaign.toml: values by key, tools, plates. None and "" are omitted."""
 
     values: Mapping[str, Value | None] = field(default_factory=dict)
     tools: Sequence[Mapping[str, Value]] = ()
@@ -251,12 +251,12 @@ class Description:
 
 
 def description_text(description: Description) -> str:
-    """The text of campaign.toml.
+    """Text of campaign.toml.
 
     Raises
     ------
     FieldDataError
-        With every problem of the text, as reading the file would tell it.
+        The description is invalid; the exception has the problems of reading the text.
     """
     lines = [f"{key} = {_toml_text(value)}" for key, value in description.values.items() if value not in (None, "")]
     for table, entries in (("tool", description.tools), ("plate", description.plates)):

@@ -1,4 +1,4 @@
-"""Campaigns as rows of the store: what each read and write does inside a transaction that the caller opened."""
+"""Rows of stored campaigns and contents: reading and writing inside a transaction of the caller."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ TIME: Final = "%Y-%m-%dT%H:%M:%SZ"
 
 
 class NamedId(NamedTuple):
-    """A campaign as a message names it."""
+    """Id and name of a campaign for messages."""
 
     id: object
     name: object
@@ -38,15 +38,15 @@ class StoredCampaign:
     Attributes
     ----------
     id, sha256
-        The hash of the manifest and its first 12 hex digits.
+        SHA-256 of the manifest and its first 12 hexadecimal digits.
     name
-        From campaign.toml, else the folder's, when it was added first.
+        Name from campaign.toml or of the folder when it was first added.
     added_at
-        When, in UTC.
+        Time in UTC.
     n_errors, n_warnings
-        Of checking the campaign; None where the check itself failed.
+        Numbers of problems of the campaign; None if the check failed.
     files
-        Sorted by path.
+        Files sorted by path.
     """
 
     id: str
@@ -59,28 +59,28 @@ class StoredCampaign:
 
     @property
     def n_files(self) -> int:
-        """Count the files."""
+        """Number of files."""
         return len(self.files)
 
     @property
     def n_bytes(self) -> int:
-        """Add up the sizes of the files."""
+        """Total size of the files in bytes."""
         return sum(file.size for file in self.files)
 
 
 def all_campaigns(connection: Connection) -> tuple[StoredCampaign, ...]:
-    """Give all campaigns, oldest first."""
+    """All campaigns, oldest first."""
     rows = connection.execute(select(campaign).order_by(campaign.c.added_at, campaign.c.id)).all()
     return tuple(stored_campaign(connection, row) for row in rows)
 
 
 def one_campaign(connection: Connection, beginning: str) -> StoredCampaign:
-    """Find the one campaign whose hash begins so.
+    """Find the campaign by the beginning of its hash.
 
     Raises
     ------
     StoreError
-        No hexadecimal digits, fewer than 4, unknown, or several: lists those that may be meant.
+        Not hexadecimal, fewer than 4 digits, unknown, or ambiguous; the message lists candidates.
     """
     beginning = required_digits(beginning)
     begins_so = select(campaign).where(campaign.c.sha256.startswith(beginning)).order_by(campaign.c.id)
@@ -92,7 +92,7 @@ def one_campaign(connection: Connection, beginning: str) -> StoredCampaign:
 
 
 def required_digits(beginning: str) -> str:
-    """The beginning of an id in lower case.
+    """Validated beginning of an id, in lower case.
 
     Raises
     ------
@@ -115,7 +115,7 @@ def campaign_ids(connection: Connection) -> list[NamedId]:
 
 
 def ambiguous_id_error(beginning: str, matching: Sequence[NamedId], stored: Sequence[NamedId]) -> StoreError:
-    """Error for an id that is the beginning of no or of several campaigns: lists those that may be meant."""
+    """Error for an unknown or ambiguous beginning of an id, with candidates."""
     if matching:
         return StoreError(f"Several campaigns begin with {beginning}: {_candidates(matching)}; give more digits.")
     return StoreError(f"No campaign begins with {beginning}; the store holds {_candidates(stored)}.")
@@ -128,19 +128,19 @@ def _candidates(campaigns: Sequence[NamedId]) -> str:
 
 
 def stored_hashes(connection: Connection) -> set[str]:
-    """The SHA-256 of every campaign."""
+    """SHA-256 of all campaigns."""
     return set(connection.execute(select(campaign.c.sha256)).scalars())
 
 
 def damaged(what: str) -> StoreError:
-    """The error for rows that hold what was never written there."""
+    """Error for damaged rows."""
     return StoreError(
         f"{what} is damaged in the store; `skisnow store verify` lists all damage. Put a backup in its place."
     )
 
 
 def require_whole(stored: StoredCampaign) -> None:
-    """Refuse a campaign whose list of files is not the one that it was added with.
+    """Check that a campaign's list of files is unchanged since it was added.
 
     Raises
     ------
@@ -152,12 +152,12 @@ def require_whole(stored: StoredCampaign) -> None:
 
 
 def stored_campaign(connection: Connection, row: Row[tuple[object, ...]]) -> StoredCampaign:
-    """A campaign from its row.
+    """Convert a row to a campaign.
 
     Raises
     ------
     StoreError
-        The row, or one of its files, holds what was never written there.
+        The row or one of its files is damaged.
     """
     try:
         return _stored_campaign(connection, row)
@@ -184,28 +184,28 @@ def _stored_campaign(connection: Connection, row: Row[tuple[object, ...]]) -> St
 
 
 def text_of(value: object) -> str:
-    """A text as it must be; SQLite gives bytes or a number where a damaged row says so."""
+    """The value, which must be text; SQLite can return bytes or a number for a damaged row."""
     if not isinstance(value, str):
         raise TypeError(f"{value!r} is no text")
     return value
 
 
 def require_integer(value: object) -> int:
-    """A whole number as it must be."""
+    """The value, which must be an integer."""
     if not isinstance(value, int):
         raise TypeError(f"{value!r} is no whole number")
     return value
 
 
 def require_bytes(value: object) -> bytes:
-    """Bytes as they must be; of a number `bytes` would make so many zeros."""
+    """The value, which must be bytes (`bytes` would convert a number to zeros)."""
     if not isinstance(value, bytes):
         raise TypeError(f"{value!r} is not bytes")
     return value
 
 
 def stored_chunks(connection: Connection, sha256: str) -> Iterator[bytes]:
-    """Give a content's bytes piece by piece."""
+    """Pieces of a content's bytes."""
     pieces = select(chunk.c.data).where(chunk.c.sha256 == sha256).order_by(chunk.c.position)
     try:
         for piece in connection.execute(pieces, execution_options={"yield_per": 1}).scalars():
@@ -215,7 +215,7 @@ def stored_chunks(connection: Connection, sha256: str) -> Iterator[bytes]:
 
 
 def is_sound(connection: Connection, sha256: str, size: int) -> bool:
-    """Tell whether a content still has the hash and the size (bytes) that it had when it was taken in."""
+    """True if a content has its hash and size (bytes)."""
     digest, n_bytes = hashlib.sha256(), 0
     try:
         for piece in stored_chunks(connection, sha256):
@@ -227,12 +227,12 @@ def is_sound(connection: Connection, sha256: str, size: int) -> bool:
 
 
 def store_content(connection: Connection, folder: Path, file: StoredFile) -> bool:
-    """Store the bytes of a file unless they are there already; True where damaged ones were made whole.
+    """Store the bytes of a file unless they are stored already; True if damaged ones were repaired.
 
     Raises
     ------
     StoreError
-        The file no longer is what its hash was taken from.
+        The file changed since it was hashed.
     """
     stored_size = connection.execute(select(content.c.size).where(content.c.sha256 == file.sha256)).scalar_one_or_none()
     if stored_size is None:
@@ -248,7 +248,7 @@ def store_content(connection: Connection, folder: Path, file: StoredFile) -> boo
 
 
 def copy_content(connection: Connection, file: StoredFile, pieces: Iterable[bytes]) -> bool:
-    """Store the bytes of a file that another store gives, unless they are there; False where they are damaged."""
+    """Store the bytes of a file from another store unless they are stored; False if they are damaged."""
     held = connection.execute(select(content.c.size).where(content.c.sha256 == file.sha256)).first()
     if held is not None:
         return True
@@ -257,7 +257,7 @@ def copy_content(connection: Connection, file: StoredFile, pieces: Iterable[byte
 
 
 def _store_chunks(connection: Connection, sha256: str, pieces: Iterable[bytes]) -> bool:
-    """Store a content piece by piece; whether it has its hash."""
+    """Store a content in pieces; True if it has its hash."""
     digest = hashlib.sha256()
     for position, piece in enumerate(pieces):
         digest.update(piece)
@@ -266,7 +266,7 @@ def _store_chunks(connection: Connection, sha256: str, pieces: Iterable[bytes]) 
 
 
 def refuse_changed(paths: Sequence[str]) -> None:
-    """Refuse a campaign whose files changed while they were read."""
+    """Raise an error if files changed while they were read."""
     if paths:
         raise StoreError(
             f"Changed while being read: {', '.join(paths)}; nothing was stored. "
@@ -283,9 +283,9 @@ def store_campaign(
     *,
     added_at: datetime | None = None,
 ) -> bool:
-    """Enter a campaign whose contents are stored already; False where it was there before.
+    """Write the row of a campaign whose contents are stored; False if it exists already.
 
-    Counts: errors, warnings. ``added_at`` is now where it is not given.
+    `counts` are the numbers of errors and warnings; the default of ``added_at`` is the current time.
     """
     id_ = sha256[:ID_DIGITS]
     present = connection.execute(select(campaign.c.sha256).where(campaign.c.id == id_)).scalar_one_or_none()

@@ -1,9 +1,9 @@
 """Tables of the store.
 
-A campaign is a list of paths, each pointing at a content; a content is a SHA-256 and its bytes, cut into chunks so that
-a file of any size needs the memory of one chunk. Two campaigns that share a file share its content.
+A campaign is a list of paths, each with a content. A content is a SHA-256 and its bytes in chunks, so that a file of
+any size needs the memory of one chunk. Campaigns that share a file share its content.
 
-The tables here are what the migrations must lead to; a change of one needs a migration and a new ``REVISION``.
+The migrations must produce these tables; a change needs a migration and a new ``REVISION``.
 """
 
 from __future__ import annotations
@@ -77,7 +77,7 @@ chunk = Table(
     Column("data", LargeBinary, nullable=False),
     ForeignKeyConstraint(["sha256"], ["content.sha256"], ondelete="CASCADE"),
 )
-"""``position`` counts a content's chunks from 0; an empty file has none."""
+"""``position`` counts a content's chunks from 0; an empty file has no chunk."""
 
 campaign_file = Table(
     "campaign_file",

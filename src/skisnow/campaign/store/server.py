@@ -1,8 +1,7 @@
-"""The PostgreSQL server under a group's store: connections, locks, schema, and plain words for what goes wrong.
+"""PostgreSQL server of a group's store: connections, locks, schema, error messages.
 
-One advisory lock makes writers wait for each other, as SQLite's does; every commit is on the server's disk before it
-returns. A laptop that is closed in the midst holds others up for a minute at most: the server then drops it, and what
-it had begun.
+One advisory lock makes writers wait for each other, as in SQLite. Every commit is on the server's disk before it
+returns. A laptop that is closed during a transaction blocks others for at most a minute, until the server drops it.
 """
 
 from __future__ import annotations
@@ -25,9 +24,9 @@ if TYPE_CHECKING:
 
 CONNECT_TIMEOUT_S: Final = 10
 _SILENT_S: Final = 60
-"""How long the other side may say nothing before the connection is given up (s)."""
+"""Longest silence of the other side (s), after which the connection is closed."""
 _IDLE_S: Final = 300
-"""How long a transaction may wait for its client (s): reading a large file between two pieces takes far less."""
+"""Longest time (s) for which a transaction waits for its client, far longer than reading a large file."""
 _CONNECTION: Final = {
     "connect_timeout": str(CONNECT_TIMEOUT_S),
     "keepalives_idle": "30",
@@ -71,11 +70,11 @@ _CONNECTING: Final = (
     ("connection is closed", _BROKEN),
     ("terminating connection", _BROKEN),
 )
-"""What is searched for in what the driver says where the server gave no code, and what is told instead."""
+"""Parts of the driver's messages without an error code, and the texts that replace them."""
 
 
 def reason(error: BaseException, address: ServerAddress) -> str:
-    """What went wrong, in words, without the password."""
+    """Reason of a database error in words, without the password."""
     cause = getattr(error, "orig", None) or error
     state = getattr(cause, "sqlstate", None)
     if state in _STATES:
@@ -114,12 +113,12 @@ def open_server(address: ServerAddress, *, create: bool, busy_timeout_s: float) 
 
 
 def lock_for_writing(connection: Connection) -> None:
-    """Wait until no other program writes; let go at the end of the transaction."""
+    """Acquire the write lock until the end of the transaction."""
     connection.execute(text("SELECT pg_advisory_xact_lock(:key)"), {"key": APPLICATION_ID})
 
 
 def broken_references(connection: Connection) -> Iterator[tuple[str, str, int]]:
-    """Tables with rows that point at what another does not hold: both names, and how many."""
+    """Tables with broken references: name, name of the referenced table, number of rows."""
     from sqlalchemy import and_, exists, func, select
 
     from .schema import metadata
@@ -172,7 +171,7 @@ def _require_unicode(connection: Connection, address: ServerAddress) -> None:
 
 
 def _revision(connection: Connection, address: ServerAddress) -> str | None:
-    """Migration that the store is at; None for a database without tables."""
+    """Revision of the store; None for a database without tables."""
     query = text(
         "SELECT c.relname, obj_description(c.oid, 'pg_class') FROM pg_class c "
         "WHERE c.relnamespace = to_regnamespace(quote_ident(current_schema())) AND c.relkind IN ('r', 'p')"
@@ -191,7 +190,7 @@ def _revision(connection: Connection, address: ServerAddress) -> str | None:
 
 
 def needs_migration(revision: str | None, place: object) -> bool:
-    """Tell whether a store at that migration must be brought up to date.
+    """True if a store with that revision needs a migration.
 
     Raises
     ------
@@ -227,12 +226,12 @@ _FORM: Final = "postgresql://USER@HOST/DATABASE"
 
 @dataclass(frozen=True, slots=True)
 class ServerAddress:
-    """A database on a server; as text it is the address without the password."""
+    """Address of a database on a server; its text does not contain the password."""
 
     url: URL = field(repr=False)
 
     def __str__(self) -> str:
-        """Say where it is, to people: user, host, port and database alone."""
+        """User, host, port and database."""
         host = self.url.host or _first(self.url.query.get("host"))
         user = f"{self.url.username}@" if self.url.username else ""
         port = self.url.port or _first(self.url.query.get("port"))
@@ -243,12 +242,12 @@ StorePlace: TypeAlias = "Path | ServerAddress"
 
 
 def store_place(place: Path | str | ServerAddress) -> StorePlace:
-    """Where a store is, from what was given: the path of a file, or ``postgresql://USER@HOST/DATABASE``.
+    """Parse the place of a store: the path of a file, or ``postgresql://USER@HOST/DATABASE``.
 
     Raises
     ------
     StoreError
-        An address that is neither; its text, which may hold a password, is not told.
+        The address is invalid; the message does not contain it, because it can have a password.
 
     >>> str(store_place("postgresql://ada:secret@snow.example:5433/group"))
     'postgresql://ada@snow.example:5433/group'
@@ -269,7 +268,7 @@ def store_place(place: Path | str | ServerAddress) -> StorePlace:
 def _server_url(text: str) -> URL:
     try:
         url = make_url(text).set(drivername="postgresql+psycopg")
-    except (ArgumentError, ValueError):  # what they say quotes the address
+    except (ArgumentError, ValueError):  # their messages contain the address
         raise StoreError(
             f"The address of the server cannot be read; it has the form {_FORM}, and what is none of A–Z, 0–9, - . _ ~ "
             "in a user's name or a password is written as % and two hexadecimal digits."

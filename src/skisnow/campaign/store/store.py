@@ -1,7 +1,7 @@
-"""The store of campaigns: raw files stored byte for byte in one SQLite file, or on a PostgreSQL server.
+"""Store of campaigns: raw files byte for byte in an SQLite file, or on a PostgreSQL server.
 
-An import is one transaction: after it, or after the process was killed in its midst, the store holds the whole campaign
-or nothing of it. A campaign's id comes from its content, so the same files get the same id wherever they are added.
+An import is one transaction: also if the process is killed, the store has the whole campaign or nothing of it. A
+campaign's id is computed from its content, so the same files have the same id in all stores.
 """
 
 from __future__ import annotations
@@ -56,20 +56,20 @@ __all__ = ["AddedCampaign", "Finding", "Store", "StoredCampaign", "StoredFile", 
 
 @dataclass(frozen=True, slots=True)
 class AddedCampaign:
-    """What `Store.add` stored.
+    """Result of `Store.add`.
 
     Attributes
     ----------
     id, name, sha256, n_errors, n_warnings
         As in `StoredCampaign`.
     n_files, n_bytes
-        How much the campaign holds.
+        Number and total size of the files.
     already_stored
-        The same files were there before; nothing was added.
+        True if the same files were stored before; nothing was added.
     n_repaired
-        Files that were there but damaged, and now are whole again.
+        Number of damaged files that were repaired.
     check_failure
-        Why the check of the campaign itself failed, else None.
+        Reason why the check of the campaign failed, or None.
     """
 
     id: str
@@ -94,10 +94,10 @@ class _Check:
 
 
 class Store(Shown):
-    """An open store; made by `Store.open`, closed by leaving its ``with`` block.
+    """An open store, from `Store.open`; it is closed at the end of its ``with`` block.
 
-    Every method raises `StoreError`, with what to do, where the disk is full, the store is read-only or locked for
-    longer than the timeout, or the file is damaged; the store then is as it was.
+    Every method raises `StoreError` with a remedy if the disk is full, the store is read-only, locked for longer than
+    the timeout, or damaged. The store is then unchanged.
 
     See Also
     --------
@@ -112,22 +112,21 @@ class Store(Shown):
     def open(
         cls, path: Path | str | ServerAddress | None = None, *, create: bool = True, busy_timeout_s: float = 30.0
     ) -> Self:
-        """Open a store, and bring it to the present schema.
+        """Open a store, and migrate it to the current schema.
 
         Parameters
         ----------
         path
-            The SQLite file, or a database as ``postgresql://USER@HOST/DATABASE``; None: the user's own file, see
-            `default_path`.
+            SQLite file, or a database as ``postgresql://USER@HOST/DATABASE`` (default: `default_path`).
         create
-            Make the file, and the folders above it, or the tables in the database, where there are none.
+            True to create a missing file with its folders, or missing tables in the database.
         busy_timeout_s
-            How long to wait for another process that writes (s).
+            Longest wait for another process that writes (s).
 
         Raises
         ------
         StoreError
-            There is none, or it is something else, or its schema is unknown.
+            The store does not exist, is something else, or has an unknown schema.
         """
         place = default_path() if path is None else store_place(path)
         if isinstance(place, ServerAddress):
@@ -145,11 +144,11 @@ class Store(Shown):
         return Facts(f"at {self.path}")
 
     def close(self) -> None:
-        """Let go of the file or the server."""
+        """Close the connections."""
         self.engine.dispose()
 
     def __enter__(self) -> Self:
-        """Use the store for the length of a block."""
+        """The store itself."""
         return self
 
     def __exit__(
@@ -159,15 +158,15 @@ class Store(Shown):
         self.close()
 
     def add(self, folder: Path, *, progress: Progress = no_progress) -> AddedCampaign:
-        """Keep all files below a folder, as they are, whether or not they make a sound campaign.
+        """Store all files below a folder unchanged, also if they are not a valid campaign.
 
-        Files are read twice: once to know the campaign's id, once to store them; a file that changes in between refuses
-        the campaign. Only the second reading holds other writers up.
+        Files are read twice, for the campaign's id and to store them. If a file changes in between, nothing is stored.
+        Other writers wait only during the second reading.
 
         Raises
         ------
         StoreError
-            No such folder, no file in it, a link or the like in it, or a file that changed while it was read.
+            The folder does not exist, is empty, contains a link or the like, or a file changed while it was read.
         """
         folder = Path(folder)
         with file_errors(folder, "could not be read"):
@@ -208,17 +207,17 @@ class Store(Shown):
         return files
 
     def list(self) -> tuple[StoredCampaign, ...]:
-        """Give all campaigns, oldest first."""
+        """All campaigns, oldest first."""
         with database_errors(self.path, "could not be read"), reading(self.engine) as connection:
             return all_campaigns(connection)
 
     def show(self, id: str) -> StoredCampaign:  # noqa: A002 (users know it by this name)
-        """Give one campaign by its id or the beginning of it (at least 4 digits).
+        """One campaign by its id or the beginning of it (at least 4 digits).
 
         Raises
         ------
         StoreError
-            No campaign or several begin so; the message lists those that may be meant.
+            The id is unknown or ambiguous; the message lists candidates.
         """
         with database_errors(self.path, "could not be read"), reading(self.engine) as connection:
             return one_campaign(connection, id)
@@ -231,15 +230,15 @@ class Store(Shown):
         progress: Progress = no_progress,
         complete: Callable[[Path], object] | None = None,
     ) -> StoredCampaign:
-        """Give a campaign's files back as they came in, in a new folder; `export_corrected` adds later corrections.
+        """Export a campaign's original files to a new folder; `export_corrected` adds later corrections.
 
-        The folder appears under its name when all files are on the disk and their hashes were checked. ``complete`` is
-        called with it just before, and can put more into it.
+        The folder gets its name after all files are on the disk and verified. ``complete`` is called with it before,
+        and can add files.
 
         Raises
         ------
         StoreError
-            As in `show`; the folder is there already and not empty; a file is damaged or its path is not safe here.
+            As in `show`; the folder exists and is not empty; a file is damaged or its path is not safe here.
         """
         out, done = Path(out_folder), 0
         with database_errors(self.path, "could not be read"), reading(self.engine) as connection:
@@ -259,7 +258,7 @@ class Store(Shown):
         id: str,  # noqa: A002
         names: Container[str],
     ) -> tuple[StoredCampaign, dict[str, bytes]]:
-        """Give some of a campaign's files as they came in, by their paths; those that it does not have are left out.
+        """Original bytes of some of a campaign's files, by path; missing ones are omitted.
 
         Raises
         ------
@@ -273,7 +272,7 @@ class Store(Shown):
             return stored, {file.path: checked_bytes(file, stored_chunks(connection, file.sha256)) for file in chosen}
 
     def verify(self, *, progress: Progress = no_progress) -> tuple[Finding, ...]:
-        """Look for damage: the database's own checks, the hash of every file, the id of every campaign; () if sound."""
+        """Search for damage: checks of the database, hashes of all files, ids of all campaigns; () without damage."""
         with database_errors(self.path, "could not be read"), reading(self.engine) as connection:
             return findings(connection, progress)
 
@@ -288,7 +287,7 @@ def default_path() -> Path:
 def _hashed_files(
     folder: Path, states: Mapping[str, FileState], progress: Callable[[int], None]
 ) -> tuple[StoredFile, ...]:
-    """Take the hash of each file; ``progress`` is called with how many bytes are done."""
+    """Hash each file; ``progress`` is called with the number of bytes."""
     files, done = [], 0
     for path, state in states.items():
         digest, size = hashlib.sha256(), 0

@@ -1,4 +1,4 @@
-"""The tables of a stored campaign cell by cell, as its files say it: what is there to be corrected."""
+"""Cells of tables for entry and correction: tables of a stored campaign, and validation of typed cells."""
 
 from __future__ import annotations
 
@@ -40,13 +40,13 @@ class StoredTable:
     Attributes
     ----------
     form
-        What the table must and may have.
+        Required and allowed columns.
     columns
-        Those that the file has, and ``status``, which a correction may add.
+        Columns of the file, and ``status``, which a correction can add.
     tests
-        Cells by the test's name, file line and column, corrections of the campaign's own corrections.csv applied.
+        Cells by test, line of the file and column, with the corrections of the campaign's corrections.csv.
     conversions
-        From the unit of its cells, of each column that has another unit in the file than its name states.
+        Conversion of each column whose unit in the file differs from its name.
     """
 
     form: TableForm
@@ -56,7 +56,7 @@ class StoredTable:
 
 
 def stored_tables(campaign: CampaignFiles | Path) -> dict[str, StoredTable]:
-    """Every table of a campaign that can be read, by its file; the campaign is a folder, or files that are at hand."""
+    """Readable tables of a campaign by file; the campaign is a folder, or files in memory."""
     files = RawFiles(FilesOfFolder(campaign) if isinstance(campaign, Path) else campaign)
     headings = _headings(files)
     corrections = _corrections(files, headings)
@@ -65,7 +65,7 @@ def stored_tables(campaign: CampaignFiles | Path) -> dict[str, StoredTable]:
 
 
 def cell_key(line: int, column: str) -> str:
-    """How an entry about a stored test names a cell.
+    """Key of a cell in an entry about a stored test.
 
     >>> cell_key(12, "depth_mm")
     '12/depth_mm'
@@ -74,7 +74,7 @@ def cell_key(line: int, column: str) -> str:
 
 
 def cell_of(key: str) -> tuple[int, str]:
-    """The file line and the column that a key names.
+    """Line of the file and column of a cell's key.
 
     >>> cell_of("12/depth_mm")
     (12, 'depth_mm')
@@ -82,7 +82,7 @@ def cell_of(key: str) -> tuple[int, str]:
     Raises
     ------
     StoreError
-        The key names no cell: the entry is damaged.
+        The key is invalid: the entry is damaged.
     """
     text, _, column = key.partition("/")
     line = natural_number(text)
@@ -101,7 +101,7 @@ def _csv_text(files: RawFiles, form: TableForm) -> CsvText | None:
 
 
 def _headings(files: RawFiles) -> Headings:
-    """What stands for the columns' names; nothing where campaign.toml cannot be read."""
+    """Mapping of headings; empty if campaign.toml cannot be read."""
     data = files.read(CAMPAIGN_FILE)
     try:
         described = read_campaign_file(decode(data).text, []) if data is not None else None
@@ -150,7 +150,7 @@ def _stored_table(
 
 
 FORMS: Final = {form.file: form for form in TABLES}
-"""What each table must and may have, by its file."""
+"""Required and allowed columns of each table, by file."""
 LONGEST_TEXT: Final = 200
 
 EMPTY: Final = "{} is empty."

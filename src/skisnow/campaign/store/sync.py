@@ -1,7 +1,7 @@
-"""Two stores made alike: campaigns with their files, and journals entry by entry, in both directions.
+"""Synchronisation of two stores in both directions: campaigns with their files, and journals entry by entry.
 
-Nothing is remembered between two runs: each compares what both stores have, by hashes and uids. Each campaign and each
-journal goes over in one transaction, so that a run that was cut short at any moment is simply done again.
+A run has no memory of earlier ones: it compares both stores by hashes and uids. Each campaign and each journal is
+transferred in one transaction, so that an interrupted run can be repeated.
 """
 
 from __future__ import annotations
@@ -30,27 +30,27 @@ if TYPE_CHECKING:
     from .store import Store
 
 ALL: Final = "all"
-"""In place of a conflict's id: every one that is open."""
+"""Instead of a conflict's id: all open conflicts."""
 
 
 @dataclass(frozen=True, slots=True)
 class SyncResult:
-    """What was done.
+    """Result of a synchronisation.
 
     Attributes
     ----------
     n_campaigns_given, n_campaigns_taken
-        Stored campaigns that went there, and that came here.
+        Number of stored campaigns that were sent, and received.
     n_entries_given, n_entries_taken
-        Entries of journals, likewise.
+        Number of journal entries that were sent, and received.
     n_settled
-        Conflicts that were settled as chosen.
+        Number of conflicts that were settled by choices.
     conflicts
-        Those that are open.
+        Open conflicts.
     same_names
-        Campaigns from two sources that bear one name, in words; they are kept apart.
+        Sentences on campaigns from both stores with the same name, which are kept separate.
     problems
-        What is damaged and was left where it is, in words.
+        Sentences on damaged campaigns and journals, which were not transferred.
     """
 
     n_campaigns_given: int
@@ -71,26 +71,26 @@ def sync(
     who: str = "",
     progress: Progress = no_progress,
 ) -> SyncResult:
-    """Bring each store what the other has; where both wrote about one test and contradict, neither is changed.
+    """Transfer missing campaigns and entries between two stores; contradicting entries about a test are not changed.
 
     Parameters
     ----------
     here
-        This user's store; what is chosen is written down here first.
+        The user's store; choices are written here first.
     there
-        The group's: on a server, or a file that is carried about.
+        The group's store, on a server or in a file.
     keep
-        What to keep of conflicts, by their ids or ``"all"``: what is here, what is there, or both where that can be.
+        Sides to keep by id of the conflict or ``"all"``: here, there, or both if possible.
     who
-        Whose choice it is.
+        Author of the choices.
     progress
-        Told how many campaigns of all have been compared.
+        Called with the number of compared campaigns and their total.
 
     Raises
     ------
     StoreError
-        A store cannot be reached, read or written, both are one, or a choice names no conflict that is open. What went
-        over before stays; run again, it goes on.
+        A store cannot be reached, read or written, both are the same, or a choice names no open conflict. Completed
+        transfers stay; another run continues.
     """
     if here.path == there.path:
         raise StoreError(f"{here.path} cannot be synchronised with itself; name the group's store.")
@@ -98,7 +98,7 @@ def sync(
 
 
 class _Sync:
-    """One run."""
+    """One synchronisation."""
 
     def __init__(self, here: Store, there: Store) -> None:
         self._here, self._there = here, there
@@ -146,7 +146,7 @@ class _Sync:
                 ids = list(shared_journals(from_, connection))
             for number, id_ in enumerate(ids):
                 with self._collect_damage(id_):
-                    with reading(to.engine) as connection:  # where nothing is lacking nobody need wait
+                    with reading(to.engine) as connection:  # no write lock if nothing is missing
                         is_complete = not entry_index(from_, id_).missing_in(entry_index(connection, id_))
                     if not is_complete:
                         with writing(to.engine) as connection:
@@ -155,7 +155,7 @@ class _Sync:
         return n_taken
 
     def _settle_conflicts(self, chosen: Mapping[str, Side], who: str) -> int:
-        """Write down what was chosen, all of it or nothing."""
+        """Write all choices in one transaction; return their number."""
         if not chosen:
             return 0
         with reading(self._there.engine) as there, writing(self._here.engine) as here:
@@ -185,7 +185,7 @@ class _Sync:
 
     @contextmanager
     def _collect_damage(self, journal_id: str) -> Iterator[None]:
-        """A journal that is damaged is told, with its store, and left as it is; the others go on."""
+        """Report a damaged journal with its store, and continue with the others."""
         try:
             yield
         except StoreError as error:
@@ -196,7 +196,7 @@ class _Sync:
 
 
 def _damage(store: Store, journal_id: str) -> str:
-    """What is wrong with a journal in a store; "" where it is sound."""
+    """Damage of a journal in a store, or ""."""
     try:
         with reading(store.engine) as connection:
             entries_by_uid(connection, journal_id, entry_index(connection, journal_id).subject)
@@ -207,7 +207,7 @@ def _damage(store: Store, journal_id: str) -> str:
 
 @dataclass(frozen=True, slots=True)
 class Names:
-    """Names by id, of stored campaigns and of those in entry; damaged ones have none."""
+    """Names by id of stored campaigns and of those in entry, without damaged ones."""
 
     stored: Mapping[str, str]
     entered: Mapping[str, str]
@@ -227,7 +227,7 @@ def names_of(connection: Connection) -> Names:
 
 
 def same_names(here: Names, there: Names) -> Iterator[str]:
-    """Campaigns of one kind and name that meet for the first time, in words."""
+    """Sentences on campaigns of the same kind and name that are new to each other."""
     for what, of_here, of_there in (
         ("stored campaigns", here.stored, there.stored),
         ("campaigns in entry", here.entered, there.entered),

@@ -1,4 +1,4 @@
-"""One store takes from another what it lacks, each campaign or journal in one transaction: whole, or not at all."""
+"""Transfer of campaigns and journals between stores, each in one transaction of the caller; settlement of conflicts."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 
 def take_campaign(source: Connection, to: Connection, stored: StoredCampaign) -> None:
-    """Take a campaign with the bytes of its files.
+    """Copy a campaign with the bytes of its files.
 
     Raises
     ------
@@ -41,9 +41,7 @@ def take_campaign(source: Connection, to: Connection, stored: StoredCampaign) ->
 
 
 def take_journal(source: Connection, to: Connection, journal_id: str) -> int:
-    """Take the entries of a journal that are lacking, but for tests that both wrote about and do not agree on.
-
-    Returns how many were taken.
+    """Copy the missing entries of a journal, without those of conflicts; return their number.
 
     Raises
     ------
@@ -61,12 +59,12 @@ def take_journal(source: Connection, to: Connection, journal_id: str) -> int:
 
 
 def take_entries(source: Connection, to: Connection, journal_id: str, uids: Iterable[str]) -> dict[str, int]:
-    """Take these entries of a journal, and the journal where it is lacking; their numbers by their uids.
+    """Copy entries of a journal, and the journal if it is missing; return their sequences by uid.
 
     Raises
     ------
     StoreError
-        An entry is damaged, or is about one that is not there.
+        An entry is damaged, or refers to a missing one.
     """
     entries = entries_by_uid(source, journal_id, uids)
     if to.execute(select(journal.c.id).where(journal.c.id == journal_id)).first() is None:
@@ -89,7 +87,7 @@ def take_entries(source: Connection, to: Connection, journal_id: str, uids: Iter
 
 
 def settle(here: Connection, there: Connection, divergence: Divergence, side: Side, who: str) -> None:
-    """Make this store the one that holds both sides' entries and the choice between them.
+    """Write the entries of both sides and the choice between them to this store.
 
     Raises
     ------
@@ -132,7 +130,7 @@ def _undo_entries(here: Connection, divergence: Divergence, numbers: Iterable[in
 
 
 def _rename(here: Connection, there: Connection, divergence: Divergence, who: str) -> None:
-    """Give this store's test another name: it is taken back under the old one and written again as it was entered."""
+    """Rename this store's test: its entries are undone and written again with the new name."""
     file, test = divergence.subject
     name = _free_name(here, there, divergence)
     why = f"stores synchronised; goes on as {name}"

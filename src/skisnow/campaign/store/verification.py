@@ -1,4 +1,4 @@
-"""Search for damage in the store: database, contents, campaigns, and each entry with its row and column."""
+"""Search for damage in the store: database, contents, campaigns, entries with their rows and columns."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 
 def findings(connection: Connection, progress: Progress) -> tuple[Finding, ...]:
-    """Check database, contents, campaigns and entries, each whatever the others hold; an empty answer: all is sound."""
+    """Check database, contents, campaigns and entries independently; empty without damage."""
     damage: list[Finding] = []
     for of_part in (
         _database_damage,
@@ -100,14 +100,14 @@ def _campaign_damage(stored: StoredCampaign) -> Iterator[Finding]:
 
 @dataclass(frozen=True, slots=True)
 class Finding:
-    """Damage found in the store: in which campaign and file (None: in the database as a whole), and what it is."""
+    """Damage in the store: campaign and file (None: the whole database), and a message."""
 
     campaign: str | None
     path: str | None
     message: str
 
     def __str__(self) -> str:
-        """Say it in one line."""
+        """The damage in one line."""
         place = ", ".join(part for part in (self.campaign, self.path) if part is not None)
         return f"{place or 'database'}: {self.message}"
 
@@ -118,7 +118,7 @@ _CHECKSUM: Final = "its checksum is damaged, what it says is sound"
 
 
 def find_entry_damage(connection: Connection) -> Iterator[Finding]:
-    """Check each entry, read as bytes: what is no text any more is named as well."""
+    """Check each entry by its bytes, so that invalid text is found, too."""
     rows = list(_rows_as_bytes(connection))
     places = {row["sequence"]: row["position"] for row in rows}
     for row in rows:
@@ -140,7 +140,7 @@ def _rows_as_bytes(connection: Connection) -> Iterator[_Row]:
 
 
 def _form_damage(connection: Connection, row: _Row) -> Iterator[Finding]:
-    """What was never written down, whatever its checksum."""
+    """Damage of the form of an entry, independent of its checksum."""
     query = select(journal_entry).where(journal_entry.c.sequence == int(_text(row["sequence"])))
     try:
         entry = connection.execute(query).mappings().first()
@@ -155,7 +155,7 @@ def _form_damage(connection: Connection, row: _Row) -> Iterator[Finding]:
 
 
 def _sum_damage(row: _Row) -> Iterator[tuple[str | None, str]]:
-    """What is damaged: its column, None for the entry itself, and in words."""
+    """Damaged columns of an entry (None for the entry itself), with a message."""
     if row["sha256"] is None or row["sums"] is None:
         yield None, "it has no checksum"
         return
