@@ -21,7 +21,7 @@ from ..scenario.identify_section import Prior, measured_of
 from ..simulation import Run
 from ..simulation.simulated_run import simulate
 from ..ski import Ski
-from ..snow.mean_snow import known_sites, measured_intervals, site_in_words
+from ..snow.mean_snow import measured_intervals, no_used_experiment, site_in_words
 from .ensemble import MEASURED, drawn_scenarios, ensemble_of, inputs_with
 
 UNLOADING_RATIO: Final = 10.0
@@ -146,7 +146,7 @@ def _analysed(campaign: Campaign | str | Path, site: str | None, progress: Calla
     read = campaign if isinstance(campaign, Campaign) else read_campaign(campaign, progress=progress)
     pressed = set(read.penetration.site) if read.penetration is not None else set()
     if site is not None and pressed and site_of_campaign(read, site) not in pressed:
-        raise ParameterError(f"{read.name} has no used penetration experiment{known_sites(site, sorted(pressed))}")
+        raise no_used_experiment(read.name, site, sorted(pressed))
     return analyse(read, progress=progress)
 
 

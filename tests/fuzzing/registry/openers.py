@@ -31,7 +31,6 @@ NO_READERS: Final[Mapping[str, str]] = {
     "_support.language.catalogue:_entries": "package data",
     "_support.messages:translations": "package data",
     "replay.page:static_text": "package data",
-    "report.campaign.page:_frame": "package data",
     "report.sheet:render_template": "package data",
     "interop.fmu.writing:_write": "the library of the package",
     "interop.fmu.writing:_licence": "package data",
