@@ -164,7 +164,7 @@ def _write(options: argparse.Namespace, found: Run, summary: dict[str, Any], *, 
             found,
             folder,
             summary=summary,
-            beside=replay,
+            write_more=replay,
             language=options.language,
             progress=lambda doing: progress(f"writing {doing}"),
         )

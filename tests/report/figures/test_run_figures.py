@@ -17,12 +17,12 @@ from skisnow.comparison.nearest_place import distance_from_path
 from skisnow.report.figures.style import BLUE, VERMILLION, journal_style
 from skisnow.report.run.time_figures import (
     drawn_radius,
+    grip_utilisation,
     run_along_ski,
     run_energies,
     run_grip,
     run_motion,
     stacked_energies,
-    used_share_of_skis,
 )
 from skisnow.report.run.track_figure import beside_track, groove_corners, run_track
 from skisnow.report.turn.figures import TimedTrack, band_of, loaded_ski, offsets, runs_compared, track_band
@@ -149,9 +149,9 @@ def test_energies_stack_to_a_level_rim(run: Run) -> None:
 
 
 def test_share_of_the_shear_strength(run: Run) -> None:
-    assert used_share_of_skis(run) == pytest.approx(np.full((len(run.time), 2), 0.4))
+    assert grip_utilisation(run) == pytest.approx(np.full((len(run.time), 2), 0.4))
     to_the_right = replace(run.skis, shear_per_length=-run.skis.shear_per_length)
-    assert used_share_of_skis(replace(run, skis=to_the_right)) == pytest.approx(np.full((len(run.time), 2), 0.4))
+    assert grip_utilisation(replace(run, skis=to_the_right)) == pytest.approx(np.full((len(run.time), 2), 0.4))
 
 
 def test_grip_is_drawn_for_each_ski_not_for_each_section(run: Run) -> None:
@@ -160,7 +160,7 @@ def test_grip_is_drawn_for_each_ski_not_for_each_section(run: Run) -> None:
         (axes,) = run_grip(run).axes
     left, right, limit = (np.asarray(line.get_ydata()) for line in axes.lines)
     assert not axes.collections
-    assert np.stack([left, right], axis=1) == pytest.approx(used_share_of_skis(run))
+    assert np.stack([left, right], axis=1) == pytest.approx(grip_utilisation(run))
     assert np.all(limit == 1.0)
 
 

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 
 def run_drawings(run: Run) -> Iterator[Drawing]:
-    """Draw one after the other, inside the house style; a run without any step has none."""
+    """All figures in order, drawn in the style in force when they are requested; none for a run without a step."""
     if len(run.time) < 2:
         return
     yield Drawing(
@@ -121,7 +121,7 @@ def run_drawings(run: Run) -> Iterator[Drawing]:
 
 
 def _carved_radius(run: Run) -> Markup:
-    """What the dotted line is, which boots that move have not."""
+    """Sentence about the dotted line of the carved radius; empty for moving boots, which have none."""
     if run.boots_by is not None:
         return prose("")
     return prose(
@@ -131,14 +131,14 @@ def _carved_radius(run: Run) -> Markup:
 
 
 def _other_strength(run: Run) -> Markup:
-    """Said where the edge met another strength than the scenario's."""
-    given = [name.replace("_", " ") for name, law in run.given_laws.items() if law and name != "friction"]
-    if not given:
+    """Sentence about a law in Python that replaces the scenario's S_f; empty without one."""
+    laws = [name.replace("_", " ") for name, law in run.given_laws.items() if law and name != "friction"]
+    if not laws:
         return prose("")
     return prose(
         " S_f here is the scenario's; the run had another strength ({given}, given in Python), whose limit is "
         "not at 1.",
-        given=", ".join(given),
+        given=", ".join(laws),
     )
 
 
@@ -155,7 +155,7 @@ _FIGURES: Final = {
 
 
 def run_figure(run: Run, what: str) -> Figure:
-    """One figure of a run by its name, in the house style: see `Run.plot`."""
+    """One figure of a run by its name, in the style of the reports; see `Run.plot`."""
     if what not in _FIGURES:
         raise ParameterError(f"there is no figure {what!r} of a run. {nearest(what, _FIGURES)}")
     if len(run.time) < 2:

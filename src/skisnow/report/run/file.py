@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
 CONVENTIONS: Final = "CF-1.11"
 MISSING: Final = 9.969209968386869e36
-"""The value that the NetCDF library keeps for doubles that are not there."""
+"""Fill value of the NetCDF library for missing doubles."""
 SKI_NAMES: Final = ("left", "right")
 _LETTERS: Final = 5
 
@@ -38,19 +38,19 @@ _LETTERS: Final = 5
 def write_run_file(
     run: Run, values: Mapping[str, Any], path: str | Path, *, provenance: Mapping[str, Any] | None = None
 ) -> None:
-    """Write a run as NetCDF-3, in one piece.
+    """Write a run as a complete NetCDF-3 file.
 
     Parameters
     ----------
     run
-        What `skisnow.simulate` gave.
+        Result of `skisnow.simulate`.
     values
-        The scenario's keys with their values, as they stand in summary.json: the global attribute ``scenario``. What
-        each key means, with its unit, stands in ``scenario_keys``.
+        Keys of the scenario with their values as in summary.json, for the global attribute ``scenario``; the attribute
+        ``scenario_keys`` has their meanings and units.
     path
-        Of the file, which is replaced where it exists.
+        Path of the file; an existing file is replaced.
     provenance
-        As in summary.json: the global attribute ``provenance``; left out: only the program's version.
+        Global attribute ``provenance`` as in summary.json (default: the program's version).
 
     Raises
     ------
@@ -59,23 +59,23 @@ def write_run_file(
 
     Notes
     -----
-    All numbers are SI doubles, angles in radians. What is not finite (the turn radius of a straight path) is missing:
-    ``_FillValue``.
+    All numbers are SI doubles, angles in radians. A value that is not finite, such as the turn radius of a straight
+    path, is missing: ``_FillValue``.
     """
     memory = io.BytesIO()
     file = netcdf_file(memory, "w", version=2)  # 64-bit offsets: long runs pass 2 GB
-    _attributes(file, run, values, provenance or {"versions": {"skisnow": version("skisnow")}})
-    _dimensions(file, run)
-    _names(file)
+    _write_attributes(file, run, values, provenance or {"versions": {"skisnow": version("skisnow")}})
+    _create_dimensions(file, run)
+    _write_ski_names(file)
     for variable in variables_of(run):
-        _write(file, variable, run)
+        _write_variable(file, variable, run)
     file.flush()
     content = memory.getvalue()
     file.close()
     write_file(path, content)
 
 
-def _attributes(file: Any, run: Run, values: Mapping[str, Any], provenance: Mapping[str, Any]) -> None:
+def _write_attributes(file: Any, run: Run, values: Mapping[str, Any], provenance: Mapping[str, Any]) -> None:
     texts = {
         "Conventions": CONVENTIONS,
         "title": "Simulated run of a sledge on two flexible skis on snow",
@@ -106,19 +106,19 @@ def _attributes(file: Any, run: Run, values: Mapping[str, Any], provenance: Mapp
         setattr(file, name, np.int32(count))
 
 
-def _dimensions(file: Any, run: Run) -> None:
+def _create_dimensions(file: Any, run: Run) -> None:
     sizes = {TIME: len(run.time), SKI: len(SKI_NAMES), STATION: len(run.skis.station), PIECE: len(run.groove.width)}
     for name, size in (sizes | {"space_axis": 3, "sledge_axis": 3, "letter": _LETTERS}).items():
         file.createDimension(name, size)
 
 
-def _names(file: Any) -> None:
+def _write_ski_names(file: Any) -> None:
     variable = file.createVariable("ski_name", "c", (SKI, "letter"))
     variable.long_name = b"which ski"
     variable[:] = np.array([list(name.ljust(_LETTERS)) for name in SKI_NAMES], dtype="S1")
 
 
-def _write(file: Any, variable: RunVariable, run: Run) -> None:
+def _write_variable(file: Any, variable: RunVariable, run: Run) -> None:
     written = file.createVariable(variable.name, "d", variable.dimensions)
     values = np.asarray(variable.values(run), dtype=float)
     written[:] = np.where(np.isfinite(values), values, MISSING)
@@ -137,17 +137,17 @@ def _write(file: Any, variable: RunVariable, run: Run) -> None:
 
 
 def run_dataframe(run: Run) -> DataFrame:
-    """The rows of track.csv; see `Run.to_dataframe`."""
+    """DataFrame with the rows of track.csv; see `Run.to_dataframe`."""
     pandas = needed("pandas", extra="pandas", what=Message("A run as a DataFrame"))
     return pandas.DataFrame(track_table(run), columns=list(track_columns(run)))
 
 
 def run_dataset(run: Run) -> Dataset:
-    """Every variable of run.nc with its unit and meaning; see `Run.to_xarray`."""
+    """Dataset with the variables of run.nc, their units and meanings; see `Run.to_xarray`."""
     xarray = needed("xarray", extra="xarray", what=Message("A run as a Dataset"))
     stored = variables_of(run)
-    coordinates = {each.name for each in stored if (each.name,) == each.dimensions}
-    variables = {each.name: _variable(each, run) for each in stored}
+    coordinates = {variable.name for variable in stored if (variable.name,) == variable.dimensions}
+    variables = {variable.name: _data_variable(variable, run) for variable in stored}
     return xarray.Dataset(
         {name: value for name, value in variables.items() if name not in coordinates},
         {name: variables[name] for name in coordinates} | {SKI: list(SKI_NAMES)},
@@ -160,7 +160,7 @@ def run_dataset(run: Run) -> Dataset:
     )
 
 
-def _variable(variable: RunVariable, run: Run) -> tuple[tuple[str, ...], Any, dict[str, str]]:
+def _data_variable(variable: RunVariable, run: Run) -> tuple[tuple[str, ...], Any, dict[str, str]]:
     values = np.asarray(variable.values(run), dtype=float)
     finite = np.where(np.isfinite(values), values, np.nan)  # as in run.nc: the radius of a straight path is missing
     return variable.dimensions, finite, {"units": variable.units, "long_name": variable.meaning}

@@ -1,8 +1,7 @@
-"""Folder of a simulated run, and the link from its page to a replay that is written later."""
+"""Folder of a simulated run, and the link from its report to a replay."""
 
 from __future__ import annotations
 
-import json
 import re
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
@@ -16,7 +15,8 @@ from ...simulation.run_gates import run_gates
 from ...simulation.run_summary import summary_dict
 from ...simulation.run_tables import write_track
 from ...track.course.gates_table import gates_csv
-from ..figures.figure_files import picture_files
+from ..figures.figure_files import picture_files, silent
+from ..formatting import json_text
 from ..translated import translated_html
 from .page import FIGURES, FURTHER, REPLAY, REPLAY_FACT, write_run_report
 
@@ -35,52 +35,51 @@ def write_run(
     folder: str | Path,
     *,
     summary: Mapping[str, Any] | None = None,
-    beside: Callable[[Path], None] | None = None,
+    write_more: Callable[[Path], None] | None = None,
     language: str = ENGLISH,
     progress: Callable[[str], None] | None = None,
 ) -> Path:
-    """Write all files beside the folder's own and move them into place: never those of two runs together.
+    """Write all files of a run to a temporary folder and move them into place together.
 
     Parameters
     ----------
     run
-        What came out.
+        The run.
     folder
-        Made where it is missing. Other files in it stay.
+        Output folder, created if necessary; other files in it stay.
     summary
-        The contents of summary.json; left out: made from the run.
-    beside
-        Is given the folder in which all is made, for what else belongs to the run.
+        Contents of summary.json (default: those of `summary_dict`).
+    write_more
+        Function that writes further files of the run into the temporary folder.
     language
-        Of the page and the figures: en, or a language that there is a catalogue of (de).
+        Language of the page and the figures (en, de).
     progress
-        Called with a line of text now and then.
+        Callback for progress messages.
 
     Returns
     -------
     Path
-        Of report.html.
+        Path of report.html.
 
     Raises
     ------
     OutputError
         A file cannot be written.
     ParameterError
-        There are no texts of the language.
+        The language is unknown.
     """
     require_language(language)
-    folder, report = Path(folder), progress or _silent
+    folder, report = Path(folder), progress or silent
     for sentence in tidied(folder):
         report(sentence)
     contents = summary_dict(run, warnings=implausible_values(run.scenario)) if summary is None else summary
     with staged(folder, last=SUMMARY) as stage:
-        stage.stale += [*_STALE, *(each.name for each in folder.glob(_MOMENTS))]
-        text = json.dumps(contents, ensure_ascii=False, allow_nan=False, indent=1)
-        write_file(stage.path / SUMMARY, f"{text}\n")
+        stage.stale += [*_STALE, *(path.name for path in folder.glob(_MOMENTS))]
+        write_file(stage.path / SUMMARY, f"{json_text(contents)}\n")
         write_track(run, stage.path / "track.csv")
         _write_gates(run, stage.path)
-        if beside is not None:
-            beside(stage.path)
+        if write_more is not None:
+            write_more(stage.path)
         page = write_run_report(run, contents, stage.path, language=language, progress=report)
     return folder / page.name
 
@@ -91,10 +90,6 @@ def _write_gates(run: Run, folder: Path) -> None:
         write_file(folder / GATES, gates_csv(result))
 
 
-def _silent(_text: str) -> None:
-    return
-
-
 MOST_BYTES: Final = 1 << 26
 
 PAGE: Final = "report.html"
@@ -103,19 +98,17 @@ _LANGUAGE: Final = re.compile(r'<html lang="([a-z]+)">')
 
 
 def link_replay(folder: str | Path) -> Path | None:
-    """Put the link to replay.html among the facts of a run's report that lies beside it.
-
-    The page is replaced in one piece; all else in it stays as it is, and one that has the link already is not touched.
+    """Add the link to replay.html to the facts in the report of a run.
 
     Parameters
     ----------
     folder
-        Of the run.
+        Folder of the run.
 
     Returns
     -------
     Path or None
-        Of the page that was changed; None where there is no report, or none that a run left, or the link is there.
+        Path of the changed page; None if the folder has no report of a run, or the page has the link already.
 
     Raises
     ------
@@ -137,7 +130,7 @@ def link_replay(folder: str | Path) -> Path | None:
 
 
 def with_link(page: str) -> str:
-    r"""The page with the link, in its own language; the same page where that is no report of a run, or has the link.
+    r"""The page with the link in its language; unchanged if it has the link or is not the report of a run.
 
     Examples
     --------
@@ -150,9 +143,9 @@ def with_link(page: str) -> str:
     </dl>
     <h2 id="scenario">1</h2>
     """
-    said = _LANGUAGE.search(page)
-    language = said[1] if said and said[1] in codes() else ENGLISH
+    declared = _LANGUAGE.search(page)
+    language = declared[1] if declared and declared[1] in codes() else ENGLISH
     if f'href="{REPLAY}"' in page or "skisnow" not in page or 'id="scenario"' not in page:
         return page
     fact = translated_html(REPLAY_FACT, language)
-    return _FACTS.sub(lambda found: f"{found[1]}{fact}\n{found[2]}", page, count=1)
+    return _FACTS.sub(lambda match: f"{match[1]}{fact}\n{match[2]}", page, count=1)

@@ -19,7 +19,7 @@ from ...simulation.run_gates import run_gates
 from ...simulation.run_summary import run_warnings
 from ...track.course.gates_table import time_warnings
 from ..figures.course import edge_angles_of_skis
-from ..figures.figure_files import write_pictures
+from ..figures.figure_files import silent, write_pictures
 from ..formatting import counted, significant, whole
 from ..sheet import Header, Section, sheet
 from ..symbols import html, prose
@@ -38,15 +38,15 @@ Json = dict[str, Any]
 FIGURES: Final = ("track", "motion", "along_ski", "grip", "energies")
 """Names of a run's figures, in figures/ as .png and .svg."""
 FURTHER: Final = ("course", "balance", "boots")
-"""Those that a run with a course, with a skier, or with boots that are moved, has beside them."""
+"""Names of the further figures of a run with a course, a skier, or moving boots."""
 CHOICES: Final = frozenset(word for key in SCENARIO_KEYS.values() for word in key.choices)
-"""Words of a scenario's file: they are the same in every language."""
+"""Words of scenario files, which are not translated."""
 REPLAY: Final = "replay.html"
-"""The run in three dimensions, where that was asked for."""
+"""Name of the file with the replay."""
 
 _LINK: Final = Markup('<a href="{}">the run in three dimensions</a>').format(REPLAY)
 REPLAY_FACT: Final = Markup("<dt>Replay</dt><dd>{}</dd>").format(_LINK)
-"""The link as the page of a run has it among its facts."""
+"""Link to the replay among the facts of the page."""
 
 
 def write_run_report(
@@ -62,20 +62,20 @@ def write_run_report(
     Parameters
     ----------
     run
-        What came out.
+        The run.
     summary
-        The contents of summary.json, with ``verification`` where the run was repeated.
+        Contents of summary.json, with ``verification`` if the run was repeated.
     folder
-        Made where it is missing. Other files in it stay; figures of an earlier run are replaced or removed.
+        Output folder, created if necessary. Figures of an earlier run are replaced or removed; other files stay.
     language
-        Of the page and the figures: en, or a language that there is a catalogue of (de).
+        Language of the page and the figures (en, de).
     progress
-        Called with a line of text now and then.
+        Callback for progress messages.
 
     Returns
     -------
     Path
-        Of report.html, which is written last.
+        Path of report.html, which is written last.
 
     Raises
     ------
@@ -84,7 +84,7 @@ def write_run_report(
     """
     folder = Path(folder)
     require_writable(folder)
-    report = progress or _silent
+    report = progress or silent
     report("run.nc")
     write_run_file(run, summary["scenario"], folder / "run.nc", provenance=summary["provenance"])
     every = (*FIGURES, *FURTHER)
@@ -103,7 +103,7 @@ def run_page(
     has_replay: bool = False,
     language: str = ENGLISH,
 ) -> str:
-    """The HTML of a run's report; with a replay beside it a link leads there."""
+    """HTML of a run's report, with a link to the replay if there is one."""
     by_name = {picture.name: [picture] for picture in pictures}
     sections = [
         Section("outcome", "Outcome", key=outcome_sentences(run), pictures=by_name.get("track", ())),
@@ -132,7 +132,7 @@ def _course_section(run: Run, by_name: Mapping[str, Sequence[Picture]]) -> list[
     result = run_gates(run)
     if result is None:
         return []
-    words = [prose("{text}.", text=each) for each in time_warnings(result)]
+    words = [prose("{text}.", text=text) for text in time_warnings(result)]
     return [Section("gates", "Gates", words=words, pictures=by_name.get("course", ()), tables=[gates_table(result)])]
 
 
@@ -146,8 +146,8 @@ def _header(run: Run, *, has_replay: bool) -> Header:
     facts = [
         ("Snow", html(f"H_V {_hardness(run)}, S_f {_strength(run)}, k_u / H_V {significant(ratio)}")),
         ("Source of the snow", scenario.contact.snow.source),
-        *_laws(run),
-        ("Skis", f"{scenario.ski.name}, {_edged(run)}"),
+        *_replaced_laws(run),
+        ("Skis", f"{scenario.ski.name}, {_edge_in_words(run)}"),
         ("Computed", f"skisnow {version('skisnow')}"),
         *([("Replay", _LINK)] if has_replay else []),
     ]  # fmt: skip
@@ -155,18 +155,18 @@ def _header(run: Run, *, has_replay: bool) -> Header:
     return Header(f"A simulated run of a {who} on two flexible skis", _title(run), facts, headline=_headline(run))
 
 
-def _edged(run: Run) -> str:
+def _edge_in_words(run: Run) -> str:
     if run.scenario.skier is not None:
         return "edged by the skier"
     if run.boots_by is not None:
         angles = edge_angles_of_skis(run) / DEGREE
-        low, high = (significant(float(each), 2) for each in (np.nanmin(angles), np.nanmax(angles)))
+        low, high = (significant(float(angle), 2) for angle in (np.nanmin(angles), np.nanmax(angles)))
         return f"edge angles from {low}° to {high}°"
     return f"edge angle {significant(run.scenario.sledge.edge_angle / DEGREE)}°"
 
 
 def _headline(run: Run) -> Markup:
-    """Gates and the time through them; else the turn's radius, or the speed where it is nearly straight."""
+    """Time through the gates; without gates the turn radius, or the speed of a nearly straight run."""
     result = run_gates(run)
     times = [] if result is None else [time for time in result.times if time is not None]
     if result is not None and len(times) > 1:
@@ -177,23 +177,23 @@ def _headline(run: Run) -> Markup:
         )  # fmt: skip
     radii = [run.turn_radius_quantile(share) for share in (0.05, 0.5, 0.95)]
     if all(radius is not None and np.isfinite(radius) for radius in radii):
-        return _middle("Turn radius", "m", [float(radius) for radius in radii if radius is not None])
-    known = run.speed[np.isfinite(run.speed)]
-    if not known.size:
+        return _median_and_range("Turn radius", "m", [float(radius) for radius in radii if radius is not None])
+    speed = run.speed[np.isfinite(run.speed)]
+    if not speed.size:
         return Markup("")
-    return _middle("Speed", "m/s", np.quantile(known, [0.05, 0.5, 0.95]).tolist())
+    return _median_and_range("Speed", "m/s", np.quantile(speed, [0.05, 0.5, 0.95]).tolist())
 
 
-def _middle(name: str, unit: str, found: Sequence[float]) -> Markup:
-    low, middle, high = map(significant, found)
+def _median_and_range(name: str, unit: str, quantiles: Sequence[float]) -> Markup:
+    low, middle, high = map(significant, quantiles)
     return prose(
         "{name} {value} (median; nine tenths of the time from {low} to {high}).",
         name=name, value=Markup("<strong>{} {}</strong>").format(middle, unit), low=low, high=f"{high}\u00a0{unit}",
     )  # fmt: skip
 
 
-def _laws(run: Run) -> Iterator[tuple[str, str]]:
-    """What acted in place of the scenario's laws."""
+def _replaced_laws(run: Run) -> Iterator[tuple[str, str]]:
+    """Names and descriptions of the laws that replaced those of the scenario."""
     for name, law in run.given_laws.items():
         if law:
             yield f"{name.replace('_', ' ').capitalize()}, given in Python", law
@@ -216,7 +216,7 @@ def _strength(run: Run) -> str:
 
 
 def _value(value: float | None, over_place: Grid | None, size: float, unit: str) -> str:
-    """A number, or where it varies over the place the ends of its range."""
+    """A number, or the range of a number that varies over the place."""
     if over_place is None:
         return f"{_number(None if value is None else value / size)} {unit}"
     low, high = float(over_place.values.min()), float(over_place.values.max())
@@ -224,7 +224,7 @@ def _value(value: float | None, over_place: Grid | None, size: float, unit: str)
 
 
 def outcome_sentences(run: Run) -> list[Markup]:
-    """How it ended, what to do, and the numbers that people ask for first."""
+    """Sentences with the outcome, its remedy, and the main numbers of the run."""
     sentences = [prose("Outcome: {outcome}. {remedy}", outcome=run.outcome.replace("_", " "), remedy=run.remedy)]
     sentences.append(
         prose(
@@ -246,7 +246,7 @@ def outcome_sentences(run: Run) -> list[Markup]:
     sentences.append(prose("Deepest place of an edge in the snow: {deepest} mm.", deepest=_number(deepest)))
     scenario = run.scenario
     limits = model_limits(scenario.sledge.edge_angle, scenario.ski, controlled=scenario.controlled)
-    sentences += [prose("Warning: {text}.", text=each) for each in limits.values()]
+    sentences += [prose("Warning: {text}.", text=text) for text in limits.values()]
     return sentences + _balance(run)
 
 
@@ -255,7 +255,7 @@ def _balance(run: Run) -> list[Markup]:
     if error is None or json_number(error) is None:
         return []
     if warnings := run_warnings(run):
-        return [prose("Warning: {text}.", text=each) for each in warnings]
+        return [prose("Warning: {text}.", text=text) for text in warnings]
     return [prose("The energy residual is {error} % of the energy exchanged.", error=_number(100.0 * error, 2))]
 
 
@@ -264,10 +264,10 @@ def _no_step() -> Markup:
 
 
 def provenance_sentences(run: Run, summary: Mapping[str, Any]) -> list[Markup]:
-    """Programs, steps, time."""
+    """Sentences about program versions, steps, computing time and files."""
     provenance = summary["provenance"]
     versions = ", ".join(f"{name} {number}" for name, number in provenance.get("versions", {}).items())
-    numbers = ", ".join(map(_named, run.numbers, run.numbers.values()))
+    numbers = ", ".join(map(_number_in_words, run.numbers, run.numbers.values()))
     rate = run.simulated_s / run.wall_s if run.wall_s > 0.0 else None
     return [
         prose("Programs: {versions}.", versions=versions or f"skisnow {version('skisnow')}"),
@@ -285,13 +285,13 @@ def provenance_sentences(run: Run, summary: Mapping[str, Any]) -> list[Markup]:
 
 
 _UNITS: Final = {"m": " m", "mm": " mm", "s": " s", "N": " N", "kg": " kg"}
-"""Of numbers whose names end in it."""
+"""Unit of a number by the end of its name."""
 
 
-def _named(name: str, value: float) -> str:
-    """A number of the computation with its name and unit; what counts something is a whole number.
+def _number_in_words(name: str, value: float) -> str:
+    """A number of the computation with its name and unit; integers have no decimals.
 
-    >>> _named("load_N", 390.0), _named("elements", 92.0)
+    >>> _number_in_words("load_N", 390.0), _number_in_words("elements", 92.0)
     ('load 390 N', 'elements 92')
     """
     words, _, unit = name.rpartition("_")
@@ -301,14 +301,10 @@ def _named(name: str, value: float) -> str:
 
 
 def _angle(angle: float) -> str:
-    """Degrees to three digits; less than a thousandth is none: no heading is that exact."""
+    """An angle in degrees with three digits; below a thousandth of a degree it is 0."""
     return _number(angle / DEGREE if abs(angle) >= 0.001 * DEGREE else 0.0)
 
 
 def _number(value: float | None, digits: int = 3) -> str:
-    """To a few digits; a dash for what is not finite."""
+    """A number with a few digits; a dash for None, NaN and infinity."""
     return significant(None if value is None else json_number(value), digits)
-
-
-def _silent(_text: str) -> None:
-    return

@@ -13,7 +13,7 @@ from ...simulation.run import OPEN_SHARE
 from ...track.course.gates_table import COLUMNS, gate_rows
 from ..formatting import significant
 from ..table import Column, Table
-from .time_figures import used_share_of_skis
+from .time_figures import grip_utilisation
 
 if TYPE_CHECKING:
     from ...simulation.run import Run
@@ -49,12 +49,12 @@ _GIVEN: Final = (
 
 
 def scenario_table(values: Json) -> Table:
-    """Every key with the value in force, its unit and meaning.
+    """Table of the scenario's keys with value, unit and meaning.
 
     Parameters
     ----------
     values
-        By full name, ``section.key``, or in sections as in a scenario's file.
+        Values by full name, ``section.key``, or in sections as in a scenario file.
     """
     return Table(
         "scenario",
@@ -70,14 +70,14 @@ def scenario_table(values: Json) -> Table:
 
 
 def by_full_name(values: Json) -> Iterator[tuple[str, Any]]:
-    """Keys as ``section.key`` with their values, whether they came in sections or not.
+    """Full names ``section.key`` with their values, also for values in sections.
 
     >>> list(by_full_name({"run": {"duration_s": 5.0}, "snow.site": "A"}))
     [('run.duration_s', 5.0), ('snow.site', 'A')]
     """
     for name, value in values.items():
         if isinstance(value, Mapping):
-            yield from ((f"{name}.{key}", each) for key, each in value.items())
+            yield from ((f"{name}.{key}", cell) for key, cell in value.items())
         else:
             yield name, value
 
@@ -88,19 +88,19 @@ def _unit_and_meaning(name: str) -> tuple[str, str]:
 
 
 def _text(value: Any) -> str | None:
-    """A value as it may be given again, with all digits that matter."""
+    """A value as in a scenario file, with ten significant digits."""
     if value is None:
         return None
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, list | tuple):
-        return f"[{', '.join(str(_text(each)) for each in value)}]"
+        return f"[{', '.join(str(_text(item)) for item in value)}]"
     return f"{value:.10g}" if isinstance(value, int | float) else str(value)
 
 
 def skis_table(run: Run) -> Table:
-    """Force of the snow on each ski, total and normal, and grip utilisation: one row for each ski."""
-    total, normal, grip = run.skis.total_force, run.skis.normal_force, used_share_of_skis(run)
+    """Table with total force, normal force and grip utilisation of each ski."""
+    total, normal, grip = run.skis.total_force, run.skis.normal_force, grip_utilisation(run)
     rows = [
         (name, *_middle_and_high(total[:, ski]), *_middle_and_high(normal[:, ski]), *_middle_and_high(grip[:, ski]))
         for ski, name in enumerate(("left ski", "right ski"))
@@ -124,12 +124,12 @@ def skis_table(run: Run) -> Table:
 
 
 def _middle_and_high(values: FloatArray) -> tuple[float | None, float | None]:
-    known = values[np.isfinite(values)]
-    return (float(np.median(known)), float(np.quantile(known, 0.95))) if known.size else (None, None)
+    finite = values[np.isfinite(values)]
+    return (float(np.median(finite)), float(np.quantile(finite, 0.95))) if finite.size else (None, None)
 
 
 def energies_table(summary: Json) -> Table:
-    """Each energy at the start and the end, and each loss."""
+    """Table of the energies at the start and the end, and of the losses."""
     energies = summary["energies"]
     rows: list[tuple[Any, ...]] = [
         (label, *_change(energies[f"{key.removesuffix('_J')}_start_J"], energies[key])) for key, label in _STORED
@@ -159,17 +159,17 @@ def energies_table(summary: Json) -> Table:
 
 
 def _change(start: float | None, end: float | None) -> tuple[float | None, float | None, float | None]:
-    """None of a run that did not stay finite."""
+    """Start, end and change of an energy; None for values that are not finite."""
     return start, end, None if start is None or end is None else end - start
 
 
 def verification_table(verification: Json) -> Table:
-    """How far the end moves when one choice of the solver is made finer, or one input is another, at a time.
+    """Table of the displacements of the end for one changed choice of the solver or input at a time.
 
     Parameters
     ----------
     verification
-        What `skisnow.simulation.verification.verification_dict` gives.
+        Contents of `skisnow.simulation.verification.verification_dict`.
     """
     return Table(
         "verification",
@@ -189,7 +189,7 @@ def verification_table(verification: Json) -> Table:
 
 
 def gates_table(result: CourseResult) -> Table:
-    """A row for each gate, times and poles to a hundredth."""
+    """Table with a row for each gate, times and poles with two decimals."""
     rows = [tuple(_words(row[name]) for name in COLUMNS) for row in gate_rows(result)]
     fault = result.fault
     return Table(

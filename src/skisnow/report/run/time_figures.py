@@ -41,11 +41,11 @@ if TYPE_CHECKING:
 
 FloatArray = npt.NDArray[np.float64]
 _TIMES_MEDIAN: Final = 3.0
-"""Radii above so many medians are hardly turns; the axis ends there."""
+"""Ratio of a radius to the median above which it is not drawn."""
 
 
 def run_motion(run: Run) -> Figure:
-    """Draw three curves over one time axis."""
+    """Draw speed, heading and turn radius over time."""
     figure = new_figure(width_mm=DOUBLE_MM, height_mm=118.0)
     speed, heading, radius = figure.subplots(3, 1, sharex=True)
     speed.plot(run.time, run.speed, color=BLUE)
@@ -54,14 +54,14 @@ def run_motion(run: Run) -> Figure:
     heading.plot(run.time, run.heading / DEGREE, color=BLUE)
     heading.axhline(0.0, color=PALE, linewidth=0.6, zorder=0)
     heading.set_ylabel("heading (°)\nleft of the fall line +")
-    _radius(radius, run)
+    _draw_radius(radius, run)
     radius.set_xlabel("time (s)")
     radius.set_xlim(float(run.time[0]), float(run.time[-1]))
     figure.align_ylabels()
     return figure
 
 
-def _radius(axes: Axes, run: Run) -> None:
+def _draw_radius(axes: Axes, run: Run) -> None:
     values = drawn_radius(run.turn_radius)
     axes.plot(run.time, values, color=BLUE)
     axes.axhline(0.0, color=PALE, linewidth=0.6, zorder=0)
@@ -77,11 +77,11 @@ def _radius(axes: Axes, run: Run) -> None:
 
 
 def drawn_radius(radius: FloatArray) -> FloatArray:
-    """The radii with gaps where the path is nearly straight: more than three times the median."""
-    known = np.abs(radius[np.isfinite(radius)])
-    if not known.size:
+    """Turn radii, NaN where the path is nearly straight: above three times the median."""
+    size = np.abs(radius[np.isfinite(radius)])
+    if not size.size:
         return np.full_like(radius, np.nan)
-    return np.where(np.abs(radius) <= _TIMES_MEDIAN * float(np.median(known)), radius, np.nan)
+    return np.where(np.abs(radius) <= _TIMES_MEDIAN * float(np.median(size)), radius, np.nan)
 
 
 _STYLES: Final = {
@@ -101,14 +101,14 @@ _RATE: Final = ("delayed_snow", "snow_damping")
 
 
 def run_energies(run: Run) -> Figure:
-    """Draw what is stored and lost on top of each other: a level upper rim is a zero residual. Right: losses alone."""
+    """Draw stored energies and losses on top of each other, where a level upper rim is a zero residual; and losses."""
     figure = new_figure(width_mm=DOUBLE_MM, height_mm=80.0)
-    every, losses = figure.subplots(1, 2, width_ratios=(1.25, 1.0))
+    total_axes, losses = figure.subplots(1, 2, width_ratios=(1.25, 1.0))
     shares = stacked_energies(run)
-    _stack(every, run, shares, (*STORED, *LOST))
+    _stack(total_axes, run, shares, (*STORED, *LOST))
     total = sum(shares[name][0] for name in STORED)
-    every.axhline(float(total), color=BLACK, linewidth=0.8, linestyle=(0, (4, 2)))
-    every.set_title(_closing(run), loc="left", fontsize=7.5)
+    total_axes.axhline(float(total), color=BLACK, linewidth=0.8, linestyle=(0, (4, 2)))
+    total_axes.set_title(_residual_in_words(run), loc="left", fontsize=7.5)
     _stack(losses, run, shares, LOST)
     losses.set_title("losses alone", loc="left", fontsize=7.5)
     drawn = [style for name, style in _STYLES.items() if name not in _RATE or shares[name].any()]
@@ -117,10 +117,10 @@ def run_energies(run: Run) -> Figure:
 
 
 def stacked_energies(run: Run) -> dict[str, FloatArray]:
-    """Each energy and each loss over time (J); the potential one from its minimum."""
-    found = {name: run.energies[name] for name in (*STORED, *LOST)}
-    found["potential"] = found["potential"] - np.nanmin(found["potential"])
-    return found
+    """Stored energies and losses over time (J); the potential energy is counted from its minimum."""
+    energies = {name: run.energies[name] for name in (*STORED, *LOST)}
+    energies["potential"] = energies["potential"] - np.nanmin(energies["potential"])
+    return energies
 
 
 def _stack(axes: Axes, run: Run, shares: dict[str, FloatArray], names: tuple[str, ...]) -> None:
@@ -132,7 +132,7 @@ def _stack(axes: Axes, run: Run, shares: dict[str, FloatArray], names: tuple[str
     axes.set_ylabel("energy (J)")
 
 
-def _closing(run: Run) -> str:
+def _residual_in_words(run: Run) -> str:
     error = run.energy_balance_error
     if error is None or not np.isfinite(error):
         return "no energy was exchanged" if error is None else "not finite at the end"
@@ -141,7 +141,7 @@ def _closing(run: Run) -> str:
 
 
 def run_balance(run: Run) -> Figure:
-    """Draw four panels over one time axis: leans; total, normal and side force of the snow on each ski."""
+    """Draw leans, and total, normal and side force of the snow on each ski, over time."""
     figure = new_figure(width_mm=DOUBLE_MM, height_mm=156.0)
     leans, totals, normals, sides = figure.subplots(4, 1, sharex=True)
     balance, boots = run.balance, run.boots
@@ -172,7 +172,7 @@ def run_balance(run: Run) -> Figure:
 
 
 def draw_both(axes: Axes, run: Run, values: np.ndarray[tuple[int, int], np.dtype[np.float64]]) -> None:
-    """Both skis; the axis holds all but the last hundredth of peaks."""
+    """Draw a quantity of both skis; the axis omits 1 % of peaks."""
     for ski, (name, colour) in enumerate((("left ski", BLUE), ("right ski", ORANGE))):
         hidden = ski == 0 and np.allclose(values[:, 0], values[:, 1])
         axes.plot(run.time, values[:, ski], color=colour, linewidth=2.4 if hidden else 0.8, label=name)
@@ -182,7 +182,7 @@ def draw_both(axes: Axes, run: Run, values: np.ndarray[tuple[int, int], np.dtype
 
 
 def run_boots(run: Run) -> Figure:
-    """Draw four panels over one time axis; for runs with boots that something moves."""
+    """Draw edge angles, forces and edging moment of moving boots over time."""
     figure = new_figure(width_mm=DOUBLE_MM, height_mm=150.0)
     panels = figure.subplots(4, 1, sharex=True)
     boots = run.boots
@@ -206,10 +206,10 @@ def run_boots(run: Run) -> Figure:
 
 
 def run_grip(run: Run) -> Figure:
-    """Draw the grip utilisation of each whole ski over time; 1: side-slip."""
+    """Draw the grip utilisation of each ski over time."""
     figure = new_figure(width_mm=DOUBLE_MM, height_mm=62.0)
     axes = figure.subplots()
-    for share, colour, name in zip(used_share_of_skis(run).T, SKI_COLOURS, SKIS, strict=True):
+    for share, colour, name in zip(grip_utilisation(run).T, SKI_COLOURS, SKIS, strict=True):
         axes.plot(run.time, share, color=colour, label=name)
     axes.axhline(1.0, color=GREY, linewidth=0.8, linestyle=(0, (4, 2)))
     axes.set_xlim(float(run.time[0]), float(run.time[-1]))
@@ -222,17 +222,17 @@ def run_grip(run: Run) -> Figure:
     return figure
 
 
-def used_share_of_skis(run: Run) -> FloatArray:
-    """|∫ shear ds| / (S_f ∫ e ds) of each ski, (n, 2); nan where a ski is off the snow."""
+def grip_utilisation(run: Run) -> FloatArray:
+    """Grip utilisation |∫ shear ds| / (S_f ∫ e ds) of each ski, shape (n, 2); NaN if a ski is off the snow."""
     station = run.skis.station
     force = np.abs(np.trapezoid(run.skis.shear_per_length, -station, axis=2))
-    limit = np.trapezoid(_limit(run), -station, axis=2)
+    limit = np.trapezoid(_shear_capacity(run), -station, axis=2)
     with np.errstate(divide="ignore", invalid="ignore"):
         return np.where(limit > 0.0, force / limit, np.nan)
 
 
-def _limit(run: Run) -> FloatArray:
-    """S_f e (N/m), 0 above the snow."""
+def _shear_capacity(run: Run) -> FloatArray:
+    """Shear capacity S_f e per length (N/m), 0 above the snow."""
     strength = run.scenario.contact.snow.failure_shear_stress
     assert strength is not None  # a scenario has it
     return np.asarray(strength * np.maximum(run.skis.edge_depth, 0.0))
@@ -240,11 +240,11 @@ def _limit(run: Run) -> FloatArray:
 
 SKIS: Final = ("left ski", "right ski")
 _SHARE_SHOWN: Final = 99.5
-"""Percentile of the forces at which the colours end: single peaks would leave the rest dark."""
+"""Percentile of the forces at the end of the colour scale: single peaks would leave the rest dark."""
 
 
 def run_along_ski(run: Run) -> Figure:
-    """Draw four maps with the tip at the top; white: the edge is above the snow, or the snow does not press."""
+    """Draw maps of edge depth and normal force of both skis, with the tip at the top; white: no contact."""
     depth, force = run.skis.edge_depth / MM, run.skis.force_per_length
     figure = new_figure(width_mm=DOUBLE_MM, height_mm=112.0)
     grid = figure.subplots(2, 2, sharex=True, sharey=True)
@@ -262,13 +262,13 @@ def run_along_ski(run: Run) -> Figure:
 
 
 def highest(values: FloatArray) -> float:
-    """Where the colours of a map end."""
+    """Upper end of the colour scale of a map."""
     positive = values[values > 0.0]
     return float(np.percentile(positive, _SHARE_SHOWN)) if positive.size else 1.0
 
 
 def along_ski_map(axes: Axes, run: Run, values: FloatArray, top: float) -> QuadMesh:
-    """One map: values (n, m) over time and station, time to the right and the tip up."""
+    """Draw one map of values (n, m) over time and station, with the tip at the top."""
     mesh = axes.pcolormesh(
         run.time, run.skis.station, np.ma.masked_invalid(values.T), shading="nearest", cmap="cividis", vmin=0.0,
         vmax=top, rasterized=True,
@@ -279,7 +279,7 @@ def along_ski_map(axes: Axes, run: Run, values: FloatArray, top: float) -> QuadM
 
 
 def label_maps(grid: npt.NDArray[np.object_]) -> None:
-    """Names of the skis above, time below, station at the left."""
+    """Label maps with the names of the skis, time and station."""
     for ski, axes in enumerate(grid[0]):
         axes.set_title(SKIS[ski], loc="left", fontsize=8.0)
     for axes in grid[-1]:

@@ -1,4 +1,4 @@
-"""A run from above: tracks of both skis, groove, time marks, fall line."""
+"""Figure of a run from above: tracks of both skis, grooves, time marks, fall line."""
 
 from __future__ import annotations
 
@@ -27,31 +27,31 @@ if TYPE_CHECKING:
 FloatArray = npt.NDArray[np.float64]
 
 SKI_COLOURS: Final = (BLUE, VERMILLION)
-"""Of the left and the right ski."""
+"""Colours of the left and the right ski."""
 CUTOUT: Final = 2.0
-"""Length (m) of track that is drawn a second time, large."""
+"""Length (m) of the enlarged part of the track."""
 _MARGIN: Final = 0.6
 _LARGEST_MM, _SMALLEST_MM = 130.0, 32.0
 _PLAN_MM: Final = DOUBLE_MM - 22.0
-"""Width of the plan."""
+"""Width (mm) of the plan."""
 _FRAME_MM: Final = 38.0
 _DETAIL_MM: Final = 38.0
 _LEAST_REACH: Final = 2.0
-"""Half the height (mm) of the detail, at least."""
+"""Minimum of half the height (mm) of the detail."""
 _SPACING: Final = 0.02
 _MOST_MARKS: Final = 16
 _LABEL_POINTS: Final = 12.0
-"""How far to the left of the track a time stands."""
+"""Distance of a time mark's text from the track (points)."""
 
 
 def run_track(run: Run) -> Figure:
-    """Draw the whole run with equal scales, and below it the grooves over a short distance at half time."""
-    limits = _with_room(track_limits(run.skis.track.reshape(-1, 3)))
+    """Draw the whole run with equal scales, and the grooves over a short distance at half time."""
+    limits = _with_space(track_limits(run.skis.track.reshape(-1, 3)))
     height = plan_height_mm(limits)
     figure = new_figure(width_mm=DOUBLE_MM, height_mm=height + _DETAIL_MM + _FRAME_MM)
     grid = figure.add_gridspec(2, 2, height_ratios=(height + 12.0, _DETAIL_MM))
     draw_plan(figure.add_subplot(grid[0, :]), run, limits)
-    _groove_details(figure, [figure.add_subplot(grid[1, ski]) for ski in (0, 1)], run)
+    _draw_groove_details(figure, [figure.add_subplot(grid[1, ski]) for ski in (0, 1)], run)
     handles = [Line2D([], [], color=c, label=f"{s} ski") for c, s in zip(SKI_COLOURS, ("left", "right"), strict=True)]
     handles.append(
         Line2D([], [], linestyle="none", marker="o", markersize=3.0, color=BLACK, label="each second; square: end")
@@ -61,26 +61,26 @@ def run_track(run: Run) -> Figure:
 
 
 def track_limits(points: FloatArray) -> tuple[float, float, float, float]:
-    """Least and greatest x, and y, of points (n, 2 or more) with a margin (m)."""
+    """Minimum and maximum of x and of y of points (n, 2 or more), with a margin (m)."""
     low, high = np.nanmin(points[:, :2], axis=0) - _MARGIN, np.nanmax(points[:, :2], axis=0) + _MARGIN
     return float(low[0]), float(high[0]), float(low[1]), float(high[1])
 
 
 def plan_height_mm(limits: tuple[float, float, float, float]) -> float:
-    """Height that a plan as wide as the figure needs, within reason."""
+    """Height (mm) of a plan as wide as the figure, between a minimum and a maximum."""
     x_low, x_high, y_low, y_high = limits
     return float(np.clip((y_high - y_low) / (x_high - x_low) * _PLAN_MM, _SMALLEST_MM, _LARGEST_MM))
 
 
-def _with_room(limits: tuple[float, float, float, float]) -> tuple[float, float, float, float]:
-    """Limits as high as the lowest plan: what a long run is flatter is room for the words at its line."""
+def _with_space(limits: tuple[float, float, float, float]) -> tuple[float, float, float, float]:
+    """Limits with at least the height of the lowest plan, as space for the texts at a long, flat run."""
     x_low, x_high, y_low, y_high = limits
     lacking = max((x_high - x_low) * _SMALLEST_MM / _PLAN_MM - (y_high - y_low), 0.0)
     return x_low, x_high, y_low - 0.4 * lacking, y_high + 0.6 * lacking
 
 
 def plan_axes(axes: Axes, limits: tuple[float, float, float, float], *, profile: bool = False) -> None:
-    """Equal scales, x to the right and y up, as seen from above, with an arrow down the fall line."""
+    """Set equal scales, x to the right and y up, and draw an arrow down the fall line."""
     axes.set_aspect("equal", adjustable="box")
     axes.set_xlim(limits[0], limits[1])
     axes.set_ylim(limits[2], limits[3])
@@ -95,15 +95,15 @@ def plan_axes(axes: Axes, limits: tuple[float, float, float, float], *, profile:
 
 
 def draw_plan(axes: Axes, run: Run, limits: tuple[float, float, float, float]) -> None:
-    """Tracks of both skis, a mark each second, start and end."""
+    """Draw the tracks of both skis with time marks, start and end."""
     for ski, colour in enumerate(SKI_COLOURS):
         axes.plot(run.skis.track[:, ski, 0], run.skis.track[:, ski, 1], color=colour, linewidth=0.9)
-    _time_marks(axes, run)
+    _draw_time_marks(axes, run)
     plan_axes(axes, limits, profile=not isinstance(run.scenario.slope, Plane))
-    thin_out(axes, min(_PLAN_MM / (limits[1] - limits[0]), _LARGEST_MM / (limits[3] - limits[2])))
+    hide_overlapping(axes, min(_PLAN_MM / (limits[1] - limits[0]), _LARGEST_MM / (limits[3] - limits[2])))
 
 
-def _time_marks(axes: Axes, run: Run) -> None:
+def _draw_time_marks(axes: Axes, run: Run) -> None:
     every = max(1, math.ceil(run.simulated_s / _MOST_MARKS))
     marks = np.arange(0.0, run.simulated_s + 1e-9, every)
     x, y = (np.interp(marks, run.time, run.place[:, k]) for k in (0, 1))
@@ -125,8 +125,8 @@ def _time_marks(axes: Axes, run: Run) -> None:
     axes.annotate(ended, (1.0, 1.035), xycoords="axes fraction", ha="right", va="center", fontsize=7.0)
 
 
-def _groove_details(figure: Figure, row: Sequence[Axes], run: Run) -> None:
-    """The grooves over a short distance at half time, stretched across, coloured by the depth that stays."""
+def _draw_groove_details(figure: Figure, row: Sequence[Axes], run: Run) -> None:
+    """Draw the grooves over a short distance at half time, stretched across and coloured by the residual depth."""
     centre = run.place[len(run.time) // 2]
     near = np.linalg.norm(run.groove.middle - centre, axis=1) < CUTOUT + run.scenario.sledge.stance_width
     top = max(float(run.groove.residual_depth[near].max(initial=0.0)) / MM, 1e-9)
@@ -153,9 +153,9 @@ def _groove_details(figure: Figure, row: Sequence[Axes], run: Run) -> None:
 
 
 def beside_track(points: FloatArray, track: FloatArray, origin: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Where points (k, 3) lie along a track (n, 3) and to the left of it, seen from above (m), each (k,).
+    """Arc length from ``origin`` and offset to the left of points (k, 3) at a track (n, 3), from above (m), each (k,).
 
-    The arc length is counted from the track's point ``origin``; each point belongs to the nearest piece of the track.
+    Each point belongs to the nearest piece of the track.
     """
     start, along = track[:-1, :2], np.diff(track[:, :2], axis=0)
     length = np.linalg.norm(along, axis=1)
@@ -172,7 +172,7 @@ def beside_track(points: FloatArray, track: FloatArray, origin: FloatArray) -> t
 
 
 def groove_corners(arc_length: FloatArray, aside: FloatArray, width: FloatArray, spacing: float) -> FloatArray:
-    """Corners (k, 4, 2) of pieces: along the track (m) as long as the lines are apart, across it (mm) their width."""
+    """Corners (k, 4, 2) of pieces of groove: along the track (m), across it (mm)."""
     half, wide = spacing / 2.0, width / 2.0
     x = np.stack([arc_length - half, arc_length + half, arc_length + half, arc_length - half], axis=1)
     y = np.stack([aside + wide, aside + wide, aside - wide, aside - wide], axis=1) / MM
@@ -180,25 +180,25 @@ def groove_corners(arc_length: FloatArray, aside: FloatArray, width: FloatArray,
 
 
 MARK: Final = "time mark"
-"""Group of the words, as the artist's gid."""
+"""Group of the time marks' texts, as the artist's gid."""
 _POINT_MM: Final = 25.4 / 72.0
 _LETTER: Final = 0.62
-"""Width of a letter over the size of its type (about)."""
+"""Approximate ratio of the width of a letter to the font size."""
 
 
-def thin_out(axes: Axes, mm_per_unit: float) -> None:
-    """Show of the words in this group, from the first on, those that lie over none shown; both axes have one scale."""
+def hide_overlapping(axes: Axes, mm_per_unit: float) -> None:
+    """Hide time marks that overlap an earlier visible one; both axes have the same scale."""
     taken: list[tuple[float, float, float, float]] = []
-    for each in axes.texts:
-        if isinstance(each, Annotation) and each.get_gid() == MARK:
-            box = _box(each, mm_per_unit)
+    for word in axes.texts:
+        if isinstance(word, Annotation) and word.get_gid() == MARK:
+            box = _box(word, mm_per_unit)
             is_free = not any(_overlap(box, other) for other in taken)
-            each.set_visible(is_free)
+            word.set_visible(is_free)
             taken += [box] if is_free else []
 
 
 def _box(word: Annotation, mm_per_unit: float) -> tuple[float, float, float, float]:
-    """Centre and half sizes (mm)."""
+    """Centre and half sizes of a text (mm)."""
     (x, y), (aside, above), size = word.xy, word.get_position(), float(word.get_fontsize()) * _POINT_MM
     half_width = 0.5 * _LETTER * size * (len(word.get_text()) + 1)  # and a space
     more = half_width if word.get_horizontalalignment() == "left" else 0.0

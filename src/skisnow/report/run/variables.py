@@ -26,15 +26,15 @@ class RunVariable:
     Attributes
     ----------
     name, dimensions, units
-        As in the file; units are SI in the words of UDUNITS, an angle in rad.
+        As in the file; units are SI in the notation of UDUNITS, angles in rad.
     meaning
         Its long_name.
     values
-        From a run to the array, in that unit.
+        Function that returns the array of a run in this unit.
     axis
-        "T", "X", "Y" or "Z" where it is a coordinate; empty: it is none.
+        "T", "X", "Y" or "Z" of a coordinate, otherwise empty.
     coordinates
-        Names of the variables that place it in space.
+        Names of the variables with its place in space.
     """
 
     name: str
@@ -59,7 +59,7 @@ def _three(
     values: Callable[[Run], npt.NDArray[np.float64]],
     **further: str,
 ) -> list[RunVariable]:
-    """x, y and z of a vector, each a variable of its own."""
+    """Variables of the components x, y and z of a vector."""
 
     def part(place: int) -> Values:
         return lambda run: values(run)[..., place]
@@ -89,34 +89,34 @@ def _energies() -> list[RunVariable]:
         "damping": "work lost to damping of the skis since the start",
         "snow_damping": "work lost to damping and delayed depth of the snow since the start",
     }
-    found = [RunVariable(f"{name}_energy", (TIME,), "J", stored[name], of(name)) for name in STORED]
-    found += [RunVariable(f"lost_{name}", (TIME,), "J", lost[name], of(name)) for name in LOST]
-    given = {
+    variables = [RunVariable(f"{name}_energy", (TIME,), "J", stored[name], of(name)) for name in STORED]
+    variables += [RunVariable(f"lost_{name}", (TIME,), "J", lost[name], of(name)) for name in LOST]
+    supplied = {
         "boots": "work given since the start by what moves the boots",
         "push": "work given since the start by a push on the body",
     }
-    return found + [RunVariable(f"given_{name}", (TIME,), "J", given[name], _given(name)) for name in GIVEN]
+    return variables + [RunVariable(f"given_{name}", (TIME,), "J", supplied[name], _supplied(name)) for name in GIVEN]
 
 
-def _given(name: str) -> Values:
+def _supplied(name: str) -> Values:
     return lambda run: run.energies.get(name, np.zeros(len(run.time)))
 
 
-def _of_boots() -> list[RunVariable]:
+def _boot_variables() -> list[RunVariable]:
     place = "middle of the boot's sole at the level of the base: {}"
-    found = _three("boot_{}", (TIME, SKI), "m", place, lambda run: _boots(run, "place"))
+    variables = _three("boot_{}", (TIME, SKI), "m", place, lambda run: _boots(run, "place"))
     angles = ("edge_angle", "pitch", "heading")
     meanings = ("edge angle, positive: left edge down", "pitch, positive: tip up", "heading, positive to the left")
     for i, (name, meaning) in enumerate(zip(angles, meanings, strict=True)):
-        found.append(RunVariable(f"boot_{name}", (TIME, SKI), "rad", f"of the boot: {meaning}", _part("angles", i)))
+        variables.append(RunVariable(f"boot_{name}", (TIME, SKI), "rad", f"of the boot: {meaning}", _part("angles", i)))
     for what, unit in (("force", "N"), ("moment", "N m")):
         for i, axis in enumerate("xyz"):
             meaning = f"{what} of the ski on its boot, in space: {axis}"
-            found.append(RunVariable(f"boot_{what}_{axis}", (TIME, SKI), unit, meaning, _part(what, i)))
+            variables.append(RunVariable(f"boot_{what}_{axis}", (TIME, SKI), unit, meaning, _part(what, i)))
         for i, axis in enumerate(("ahead", "left", "up")):
             meaning = f"{what} of the ski on its boot, in the boot's axes: {axis}"
-            found.append(RunVariable(f"boot_{what}_{axis}", (TIME, SKI), unit, meaning, _part(f"own_{what}", i)))
-    return found
+            variables.append(RunVariable(f"boot_{what}_{axis}", (TIME, SKI), unit, meaning, _part(f"own_{what}", i)))
+    return variables
 
 
 def _boots(run: Run, name: str) -> npt.NDArray[np.float64]:
@@ -146,7 +146,7 @@ def _along_skis() -> list[RunVariable]:
     ]
 
 
-def _forces_of_snow() -> list[RunVariable]:
+def _snow_forces() -> list[RunVariable]:
     total = "total force of the snow on the ski, in space (normal force, shear and friction): {}"
     return [
         *_three("snow_force_{}", (TIME, SKI), "N", total, lambda run: run.skis.force),
@@ -198,7 +198,7 @@ def _over_time() -> list[RunVariable]:
     ]  # fmt: skip
 
 
-def _of_groove() -> list[RunVariable]:
+def _groove_variables() -> list[RunVariable]:
     return [
         *_three("groove_left_{}", (PIECE,), "1", "unit vector along the piece, to the left: {}",
                 lambda run: run.groove.left, coordinates=_GROOVE),
@@ -212,12 +212,13 @@ def _of_groove() -> list[RunVariable]:
 
 
 RUN_VARIABLES: Final = (
-    *_coordinates(), *_over_time(), *_along_skis(), *_forces_of_snow(), *_of_boots(), *_energies(), *_of_groove(),
+    *_coordinates(), *_over_time(), *_along_skis(), *_snow_forces(), *_boot_variables(), *_energies(),
+    *_groove_variables(),
 )  # fmt: skip
-"""Every variable of run.nc but the names of the skis, in the order of the file."""
+"""Variables of run.nc except the names of the skis, in the order of the file."""
 
 
-def _of_balance() -> tuple[RunVariable, ...]:
+def _balance_variables() -> tuple[RunVariable, ...]:
     def of(name: str) -> Values:
         return lambda run: getattr(run.balance, name)
 
@@ -245,10 +246,10 @@ def _centre(run: Run) -> npt.NDArray[np.float64]:
     return np.full((len(run.time), 3), np.nan) if run.boots is None else run.boots.centre_of_mass
 
 
-SKIER_VARIABLES: Final = _of_balance()
-"""What a skier's run has besides."""
+SKIER_VARIABLES: Final = _balance_variables()
+"""Further variables of a run with a skier."""
 
 
 def variables_of(run: Run) -> tuple[RunVariable, ...]:
-    """Every variable of a run's file but the names of the skis."""
+    """Variables of a run's file except the names of the skis."""
     return RUN_VARIABLES if run.scenario.skier is None else (*RUN_VARIABLES, *SKIER_VARIABLES)

@@ -32,50 +32,50 @@ _MARGIN: Final = 0.04
 _LARGEST_MM, _SMALLEST_MM = 150.0, 16.0
 _FRAME_MM: Final = 26.0
 MOST_TURNS: Final = 40
-"""Turns that are told apart; more would be a pattern of dots."""
+"""Maximum number of turns that are drawn separately."""
 MOST_DRAWN: Final = 10_000
-"""Points of a line that a page can show."""
+"""Maximum number of points of a line."""
 
 
 def track_map(summary: TrackSummary) -> Figure:
-    """Draw the places as recorded with equal scales; points that are marked as wrong are left out."""
+    """Draw the usable places as recorded, with equal scales."""
     limits = map_limits(summary.track.place[summary.track.usable])
     height = float(np.clip((limits[3] - limits[2]) / (limits[1] - limits[0]) * 150.0, _SMALLEST_MM, _LARGEST_MM))
     figure = new_figure(width_mm=DOUBLE_MM, height_mm=height + _FRAME_MM)
     axes = figure.add_subplot()
-    _line(axes, summary, 0, len(summary.track) - 1, color=PALE, linewidth=0.7, zorder=1)
+    _draw_line(axes, summary, 0, len(summary.track) - 1, color=PALE, linewidth=0.7, zorder=1)
     for lift in summary.day.lifts:
-        _line(axes, summary, lift.first, lift.last, color=GREY, linewidth=0.7, linestyle=(0, (4, 2)), zorder=2)
+        _draw_line(axes, summary, lift.first, lift.last, color=GREY, linewidth=0.7, linestyle=(0, (4, 2)), zorder=2)
     if turns_are_distinct(summary):
-        _turns(axes, summary)
+        _draw_turns(axes, summary)
     else:
         for run in summary.day.runs:
-            _line(axes, summary, run.first, run.last, color=BLUE, linewidth=0.9, zorder=3)
-    _ends(axes, summary)
-    _frame(axes, limits, summary.track.axes)
+            _draw_line(axes, summary, run.first, run.last, color=BLUE, linewidth=0.9, zorder=3)
+    _draw_ends(axes, summary)
+    _set_axes(axes, limits, summary.track.axes)
     legend_below(figure, _handles(summary))
     return figure
 
 
 def turns_are_distinct(summary: TrackSummary) -> bool:
-    """Whether single turns are drawn."""
+    """True if the turns are drawn separately."""
     return len(summary.day.runs) == 1 and 0 < len(summary.turns) <= MOST_TURNS
 
 
 def map_limits(place: FloatArray) -> tuple[float, float, float, float]:
-    """Least and greatest first and second coordinate of places (n, 2 or more) with a margin (m)."""
+    """Minimum and maximum of x and of y of places (n, 2 or more), with a margin (m)."""
     low, high = np.nanmin(place[:, :2], axis=0), np.nanmax(place[:, :2], axis=0)
     margin = max(_MARGIN * float((high - low).max()), 0.5)
     return float(low[0] - margin), float(high[0] + margin), float(low[1] - margin), float(high[1] + margin)
 
 
 def drawn_points(first: int, last: int) -> npt.NDArray[np.int64]:
-    """Numbers of the points that a line needs, both ends among them."""
+    """Indices of at most `MOST_DRAWN` points from first to last, including both."""
     return np.unique(np.linspace(first, last, min(last - first + 1, MOST_DRAWN)).round().astype(np.int64))
 
 
-def _line(axes: Axes, summary: TrackSummary, first: int, last: int, **line_style: object) -> None:
-    """A line through the usable points; gaps stay open."""
+def _draw_line(axes: Axes, summary: TrackSummary, first: int, last: int, **line_style: object) -> None:
+    """Draw a line through the usable points with breaks at gaps."""
     numbers = drawn_points(first, last)
     numbers = numbers[summary.track.usable[numbers]]
     place = summary.track.place[numbers, :2]
@@ -84,7 +84,7 @@ def _line(axes: Axes, summary: TrackSummary, first: int, last: int, **line_style
     axes.plot(x, y, **line_style)  # type: ignore[arg-type]
 
 
-def _turns(axes: Axes, summary: TrackSummary) -> None:
+def _draw_turns(axes: Axes, summary: TrackSummary) -> None:
     usable = summary.track.usable
     time, place = summary.motion.time[usable], summary.track.place[usable]
     for turn in summary.turns:
@@ -103,7 +103,7 @@ def switch_times(summary: TrackSummary) -> FloatArray:
     return ends[ends == np.array([turn.start for turn in summary.turns[1:]])]
 
 
-def _ends(axes: Axes, summary: TrackSummary) -> None:
+def _draw_ends(axes: Axes, summary: TrackSummary) -> None:
     chosen = np.flatnonzero(summary.track.usable)
     for number, word in ((chosen[0], "start"), (chosen[-1], "end")):
         x, y = summary.track.place[number, :2]
@@ -111,7 +111,7 @@ def _ends(axes: Axes, summary: TrackSummary) -> None:
         axes.annotate(word, (x, y), (5, 5), textcoords="offset points", fontsize=7.0, zorder=6)
 
 
-def _frame(axes: Axes, limits: tuple[float, float, float, float], kind: str) -> None:
+def _set_axes(axes: Axes, limits: tuple[float, float, float, float], kind: str) -> None:
     axes.set_aspect("equal", adjustable="box")
     axes.set_xlim(limits[0], limits[1])
     axes.set_ylim(limits[2], limits[3])
@@ -136,22 +136,22 @@ def _handles(summary: TrackSummary) -> list[Line2D]:
 
 
 WALKING: Final = 2.0
-"""Speed (m/s) from which a radius is drawn (modelling assumption)."""
+"""Speed (m/s) above which a radius is drawn: slower movement is a walk (modelling assumption)."""
 KILOMETRE: Final = 1000.0
 """Metres in a kilometre."""
 _IN_KILOMETRES: Final = 3000.0
-"""Distances (m) that are longer are given in km."""
+"""Distance (m) above which the axis is in km."""
 _RADII: Final = (2, 3, 5, 7, 10, 15, 20, 30, 50, 70, 100, 150, 200, 300, 500, 700, 1000, 2000, 5000)
 _TICKS: Final = 3
-"""Radii named on each side of the axis."""
+"""Maximum number of radii named on each side of the axis."""
 _SHARE_SHOWN: Final = 0.98
 """Share of the distance in runs whose curvature is inside the axis."""
 _NEIGHBOURS: Final = 0.18
-"""Least distance of two named radii, as a share of half the axis."""
+"""Minimum distance of two named radii as a share of half the axis."""
 
 
 def track_along(summary: TrackSummary) -> Figure:
-    """Draw three curves over one axis of distance; runs stand on a tint, and only they have a radius."""
+    """Draw speed, height and turn radius over the distance; runs have a tinted background, and only they a radius."""
     with_height = bool(np.isfinite(summary.track.place[:, 2]).any())
     rows = 3 if with_height else 2
     figure = new_figure(width_mm=DOUBLE_MM, height_mm=42.0 * rows + 10.0)
@@ -160,10 +160,10 @@ def track_along(summary: TrackSummary) -> Figure:
     numbers = numbers[summary.track.usable[numbers]]
     arc_length = summary.motion.arc_length - summary.motion.arc_length[0]
     unit = KILOMETRE if arc_length[-1] > _IN_KILOMETRES else 1.0
-    _speed(grid[0], summary, numbers, arc_length / unit)
+    _draw_speed(grid[0], summary, numbers, arc_length / unit)
     if with_height:
-        _height(grid[1], summary, numbers, arc_length / unit)
-    _radius(grid[-1], summary, arc_length / unit)
+        _draw_height(grid[1], summary, numbers, arc_length / unit)
+    _draw_radius(grid[-1], summary, arc_length / unit)
     for axes in grid:
         _tint_runs(axes, summary, arc_length / unit)
     grid[-1].set_xlabel(f"distance along the track ({'km' if unit == KILOMETRE else 'm'})")
@@ -182,15 +182,15 @@ def _tint_runs(axes: Axes, summary: TrackSummary, arc_length: FloatArray) -> Non
         )
 
 
-def _parted(summary: TrackSummary, numbers: npt.NDArray[np.int64], values: FloatArray) -> FloatArray:
-    """Values at these points, the first after each gap not drawn, so that the line has a hole."""
-    found = values[numbers].astype(float)
-    found[1:][np.diff(summary.motion.smoothed.part[numbers]) > 0] = np.nan
-    return found
+def _with_gaps(summary: TrackSummary, numbers: npt.NDArray[np.int64], values: FloatArray) -> FloatArray:
+    """Values at these points, NaN at the first one after each gap, so that the line has a break."""
+    parted = values[numbers].astype(float)
+    parted[1:][np.diff(summary.motion.smoothed.part[numbers]) > 0] = np.nan
+    return parted
 
 
-def _speed(axes: Axes, summary: TrackSummary, numbers: npt.NDArray[np.int64], arc_length: FloatArray) -> None:
-    speed = _parted(summary, numbers, summary.motion.speed)
+def _draw_speed(axes: Axes, summary: TrackSummary, numbers: npt.NDArray[np.int64], arc_length: FloatArray) -> None:
+    speed = _with_gaps(summary, numbers, summary.motion.speed)
     path = summary.motion.path
     if path is not None:
         half = INTERVAL_FACTOR * path.speed_sd_at(summary.track.time[numbers])
@@ -204,18 +204,18 @@ def _speed(axes: Axes, summary: TrackSummary, numbers: npt.NDArray[np.int64], ar
     )
 
 
-def _height(axes: Axes, summary: TrackSummary, numbers: npt.NDArray[np.int64], arc_length: FloatArray) -> None:
-    axes.plot(arc_length[numbers], _parted(summary, numbers, summary.track.place[:, 2]), color=BLUE, linewidth=0.8)
+def _draw_height(axes: Axes, summary: TrackSummary, numbers: npt.NDArray[np.int64], arc_length: FloatArray) -> None:
+    axes.plot(arc_length[numbers], _with_gaps(summary, numbers, summary.track.place[:, 2]), color=BLUE, linewidth=0.8)
     words = {"east_north_up": "height above\nthe origin (m)", "slope": "out of the slope\n$z$ (m)", "file": "$z$ (m)"}
     axes.set_ylabel(words[summary.track.axes])
 
 
-def _radius(axes: Axes, summary: TrackSummary, arc_length: FloatArray) -> None:
-    """The curvature with its interval, its axis named by radii: a straight path lies at 0, where no radius could."""
+def _draw_radius(axes: Axes, summary: TrackSummary, arc_length: FloatArray) -> None:
+    """Draw the curvature with its interval; the axis has radii as labels, and a straight path is at 0."""
     motion, ridden = summary.motion, _ridden_curvature(summary)
     for run in summary.day.runs:
         numbers = drawn_points(run.first, run.last)
-        curvature, half = _parted(summary, numbers, ridden), INTERVAL_FACTOR * motion.curvature_sd[numbers]
+        curvature, half = _with_gaps(summary, numbers, ridden), INTERVAL_FACTOR * motion.curvature_sd[numbers]
         axes.fill_between(arc_length[numbers], curvature - half, curvature + half, color=PALE, alpha=0.7, linewidth=0.0)
         axes.plot(arc_length[numbers], curvature, color=BLUE, linewidth=0.8)
     reach = curvature_reach(summary)
@@ -228,18 +228,18 @@ def _radius(axes: Axes, summary: TrackSummary, arc_length: FloatArray) -> None:
 
 
 def _ridden_curvature(summary: TrackSummary) -> FloatArray:
-    """The curvature where the track is faster than a walk; slower, feet make it and not skis."""
+    """Curvature of the places with more than walking speed, NaN elsewhere."""
     return np.where(summary.motion.speed >= WALKING, summary.motion.curvature, np.nan)
 
 
 def curvature_reach(summary: TrackSummary) -> float:
-    """Where the axis of the curvature ends (1/m): above that of nearly all points, whatever happens near a rest."""
+    """Limit of the axis of curvature (1/m), above the curvature of 98 % of the distance in runs."""
     ridden = np.abs(_ridden_curvature(summary))
     steps = np.gradient(summary.motion.arc_length)
     inside = np.zeros(len(ridden), dtype=bool)
     for run in summary.day.runs:
         inside[run.first : run.last + 1] = True
-    order = np.argsort(ridden)[: int(np.count_nonzero(np.isfinite(ridden)))]  # unknown ones come last
+    order = np.argsort(ridden)[: int(np.count_nonzero(np.isfinite(ridden)))]  # NaN comes last
     order = order[inside[order]]
     ways = np.cumsum(steps[order])
     if not len(order) or ways[-1] <= 0.0:
@@ -248,18 +248,18 @@ def curvature_reach(summary: TrackSummary) -> float:
 
 
 def named_radii(reach: float) -> list[int]:
-    """Radii (m) to be named on an axis of curvatures up to ``reach`` (1/m), the smallest first.
+    """Radii (m) that label an axis of curvatures up to ``reach`` (1/m), in rising order.
 
     >>> named_radii(0.1)
     [10, 15, 30]
     """
-    found: list[int] = []
+    radii: list[int] = []
     for radius in _RADII:
         place = 1.0 / radius / reach
-        apart = 1.0 / found[-1] / reach - place if found else 1.0
-        if place <= 1.0 + 1e-9 and apart >= _NEIGHBOURS and place >= _NEIGHBOURS and len(found) < _TICKS:
-            found.append(radius)
-    return found
+        apart = 1.0 / radii[-1] / reach - place if radii else 1.0
+        if place <= 1.0 + 1e-9 and apart >= _NEIGHBOURS and place >= _NEIGHBOURS and len(radii) < _TICKS:
+            radii.append(radius)
+    return radii
 
 
 def _legend_handles(summary: TrackSummary) -> list[Line2D | Patch]:

@@ -1,8 +1,7 @@
-"""Folder of a measured track: figures and summary.json."""
+"""Report of a measured track: figures and track.json; and the figure of two compared tracks."""
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
@@ -30,7 +29,7 @@ from ..figures.style import (
     new_figure,
     plain_number,
 )
-from ..formatting import significant
+from ..formatting import json_text, significant
 from ..run.track_figure import plan_axes, plan_height_mm, track_limits
 from ..symbols import figure_text, prose
 from .figures import track_along, track_map
@@ -49,7 +48,7 @@ if TYPE_CHECKING:
 FIGURES: Final = ("map", "along")
 """Names of a track's figures, in figures/ as .png and .svg."""
 OF_COURSE: Final = "course"
-"""The one that is there beside them where gates were given."""
+"""Name of the further figure of a track with gates."""
 
 
 def write_track_report(
@@ -66,22 +65,22 @@ def write_track_report(
     Parameters
     ----------
     summary
-        What `skisnow.track.summary.track_summary` gave.
+        Result of `skisnow.track.summary.track_summary`.
     folder
-        Made where it is missing. Other files in it stay.
+        Output folder, created if necessary; other files in it stay.
     values
-        What goes into track.json; left out, what `summary_dict` gives.
+        Contents of track.json (default: those of `summary_dict`).
     gates
-        Of a course: then gates.csv and figures/course, the line over the gates with the speed as colour, too.
+        Passages of a course; adds gates.csv and figures/course, the line over the gates coloured by speed.
     language
-        Of the figures: en, or a language that there is a catalogue of (de).
+        Language of the figures (en, de).
     progress
-        Called with a line of text now and then.
+        Callback for progress messages.
 
     Returns
     -------
     Path
-        Of track.json, which is written last.
+        Path of track.json, which is written last.
 
     Raises
     ------
@@ -90,9 +89,7 @@ def write_track_report(
     """
     folder = Path(folder)
     require_writable(folder)
-    text = json.dumps(
-        summary_dict(summary) if values is None else values, ensure_ascii=False, allow_nan=False, indent=1
-    )
+    text = json_text(summary_dict(summary) if values is None else values)
     with staged(folder, last="track.json") as stage:
         stage.stale += [*picture_files((*FIGURES, OF_COURSE)), "gates.csv"]
         if gates is not None:
@@ -105,7 +102,7 @@ def write_track_report(
 
 
 def _estimates(summary: TrackSummary) -> Markup:
-    """Highest speed and length with their intervals; nothing if the device recorded them."""
+    """Maximum speed and length with their intervals; empty if the device recorded them."""
     if summary.max_speed_interval is None or summary.distance_interval is None:
         return Markup()
     return prose(
@@ -120,7 +117,7 @@ def _estimates(summary: TrackSummary) -> Markup:
 
 
 def track_drawings(summary: TrackSummary, gates: CourseResult | None = None) -> Iterator[Drawing]:
-    """Draw one after the other, inside the house style."""
+    """All figures in order; each is drawn when it is requested, so that it gets the style in force."""
     name = summary.track.name
     yield Drawing(
         "map",
@@ -165,9 +162,9 @@ LINE_STYLES: Final[dict[str, dict[str, Any]]] = {
     "time": {"color": PURPLE, "linestyle": (0, (1, 1))},
 }
 MOST_DRAWN: Final = 20_000
-"""Points of a line above which every k-th is drawn, the largest among them."""
+"""Maximum number of points of a line; of a longer one every k-th point and the extremes are drawn."""
 EXACTNESS: Final = 1e-6
-"""Distances (m) below this are none."""
+"""Distance (m) below which two places are equal."""
 _HIDES: Final = 20.0
 _MARGIN: Final = 0.02
 _DISTANCES_MM: Final = 58.0
@@ -179,26 +176,26 @@ _AXIS_WORDS: Final = {
 
 
 def track_comparison(comparison: Comparison) -> Figure:
-    """Draw both tracks from above, and the three distances along the measured one with their largest marked."""
+    """Draw both tracks from above, and the three distances along the measured one with marked maxima."""
     lines = [comparison.measured, comparison.simulated]
     if comparison.fitted is not None:
         lines.append(comparison.fitted.before.simulated)
-    limits = _limits(np.concatenate([line.place[:, :2] for line in lines]))
+    limits = _plan_limits(np.concatenate([line.place[:, :2] for line in lines]))
     height = plan_height_mm(limits)
     figure = new_figure(width_mm=DOUBLE_MM, height_mm=height + _DISTANCES_MM + _FRAME_MM)
     grid = figure.add_gridspec(2, 1, height_ratios=(height + 10.0, _DISTANCES_MM))
     plan = figure.add_subplot(grid[0])
-    _plan(plan, comparison)
+    _draw_plan(plan, comparison)
     plan_axes(plan, limits)
     if comparison.axes in _AXIS_WORDS:
-        _other_axes(plan, *_AXIS_WORDS[comparison.axes])
-    _along(figure.add_subplot(grid[1]), comparison)
+        _relabel_axes(plan, *_AXIS_WORDS[comparison.axes])
+    _draw_distances(figure.add_subplot(grid[1]), comparison)
     legend_below(figure, _handles(comparison))
     return figure
 
 
 def comparison_drawing(comparison: Comparison) -> Drawing:
-    """The same with its words; it stands on no page."""
+    """Figure of `track_comparison` with its caption."""
     simulated, measured = comparison.names
     words = "{simulated} and {measured} from above, and the distance between them along the latter."
     alt = f"{simulated} and {measured} from above, and the distance between them."
@@ -206,60 +203,60 @@ def comparison_drawing(comparison: Comparison) -> Drawing:
     return Drawing("track_comparison", caption, alt, track_comparison(comparison))
 
 
-def _limits(points: FloatArray) -> tuple[float, float, float, float]:
-    """With a margin that suits a turn and a day."""
+def _plan_limits(points: FloatArray) -> tuple[float, float, float, float]:
+    """Limits of a plan with a margin in proportion to its size."""
     room = _MARGIN * float(np.ptp(points, axis=0).max())
     return track_limits(np.concatenate([points - room, points + room]))
 
 
-def _other_axes(axes: Axes, x_label: str, y_label: str) -> None:
-    """Neither x nor an arrow points down the fall line."""
+def _relabel_axes(axes: Axes, x_label: str, y_label: str) -> None:
+    """Replace the axis labels, and remove the arrow down the fall line."""
     axes.set_xlabel(x_label)
     axes.set_ylabel(y_label)
     for text in list(axes.texts):
         text.remove()
 
 
-def _plan(axes: Axes, comparison: Comparison) -> None:
+def _draw_plan(axes: Axes, comparison: Comparison) -> None:
     if comparison.fitted is not None:
         before = comparison.fitted.before.simulated.place
-        axes.plot(*_drawn(before[:, 0], before[:, 1]), **BEFORE)
+        axes.plot(*_thinned(before[:, 0], before[:, 1]), **BEFORE)
     for line, line_style in ((comparison.measured, MEASURED), (comparison.simulated, SIMULATED)):
-        axes.plot(*_drawn(line.place[:, 0], line.place[:, 1]), **line_style)
+        axes.plot(*_thinned(line.place[:, 0], line.place[:, 1]), **line_style)
         axes.plot(*line.place[0, :2], marker="o", markersize=3.2, linestyle="none", color=line_style["color"])
         axes.plot(*line.place[-1, :2], marker="s", markersize=3.2, linestyle="none", color=line_style["color"])
     for kind, line_style in LINE_STYLES.items():
-        _tie(axes, comparison, getattr(comparison, kind), line_style["color"])
+        _draw_maximum(axes, comparison, getattr(comparison, kind), line_style["color"])
 
 
-def _tie(axes: Axes, comparison: Comparison, found: Distances, colour: str) -> None:
-    """A line between both places where the distance is largest."""
-    if found.numbers is None or found.apart is None:
+def _draw_maximum(axes: Axes, comparison: Comparison, distances: Distances, colour: str) -> None:
+    """Draw a line between both places of the maximum distance."""
+    if distances.numbers is None or distances.apart is None:
         return
-    largest = int(np.nanargmax(found.apart.distance))
-    own = comparison.measured.at_arc_length(found.apart.arc_length[[largest]])[0, :2]
-    other = own + found.apart.offset[largest, :2]
+    largest = int(np.nanargmax(distances.apart.distance))
+    own = comparison.measured.at_arc_length(distances.apart.arc_length[[largest]])[0, :2]
+    other = own + distances.apart.offset[largest, :2]
     axes.plot([own[0], other[0]], [own[1], other[1]], color=colour, linewidth=1.4, solid_capstyle="butt", zorder=4)
 
 
-def _along(axes: Axes, comparison: Comparison) -> None:
+def _draw_distances(axes: Axes, comparison: Comparison) -> None:
     for kind, line_style in LINE_STYLES.items():
-        found: Distances = getattr(comparison, kind)
-        if found.numbers is None or found.apart is None:
+        distances: Distances = getattr(comparison, kind)
+        if distances.numbers is None or distances.apart is None:
             continue
-        axes.plot(*_drawn(found.apart.arc_length, found.apart.distance), **line_style)
-        place = (found.numbers.max_at, found.numbers.max)
+        axes.plot(*_thinned(distances.apart.arc_length, distances.apart.distance), **line_style)
+        place = (distances.numbers.max_at, distances.numbers.max)
         axes.plot(
             *place, marker="o", markersize=3.0, linestyle="none", color=line_style["color"], clip_on=False, zorder=4
         )
     axes.set_xlim(0.0, comparison.measured.length)
-    _scale(axes, comparison)
+    _set_scale(axes, comparison)
     axes.set_xlabel("distance along the measured track (m)")
     axes.set_ylabel("distance of the\nsimulated track (m)")
 
 
-def _scale(axes: Axes, comparison: Comparison) -> None:
-    """From 0; logarithmic where one distance would hide another."""
+def _set_scale(axes: Axes, comparison: Comparison) -> None:
+    """Set the axis of distances from 0; logarithmic if one distance would hide another."""
     every = [getattr(comparison, kind).numbers for kind in LINE_STYLES]
     largest = [numbers.max for numbers in every if numbers is not None and numbers.max > EXACTNESS]
     if largest and max(largest) > _HIDES * min(largest):
@@ -270,18 +267,16 @@ def _scale(axes: Axes, comparison: Comparison) -> None:
         axes.set_ylim(bottom=0.0)
 
 
-def _drawn(x: FloatArray, y: FloatArray) -> tuple[Any, Any]:
-    """Every k-th point of a long line, and those with the largest and smallest y of each stretch."""
+def _thinned(x: FloatArray, y: FloatArray) -> tuple[Any, Any]:
+    """Every k-th point of a long line, with those of the largest and smallest y of each section."""
     step = 2 * -(-len(x) // MOST_DRAWN)
     if len(x) <= MOST_DRAWN:
         return x, y
     whole = len(x) // step * step
-    stretches = np.where(np.isnan(y[:whole]), -np.inf, y[:whole]).reshape(-1, step)
-    chosen = np.arange(0, whole, step)
-    chosen = np.concatenate(
-        [chosen, chosen + stretches.argmax(axis=1), chosen + stretches.argmin(axis=1), [len(x) - 1]]
-    )
-    chosen = np.unique(chosen)
+    sections = np.where(np.isnan(y[:whole]), -np.inf, y[:whole]).reshape(-1, step)
+    first = np.arange(0, whole, step)
+    extremes = first + sections.argmax(axis=1), first + sections.argmin(axis=1)
+    chosen = np.unique(np.concatenate([first, *extremes, [len(x) - 1]]))
     return x[chosen], y[chosen]
 
 

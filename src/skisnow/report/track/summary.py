@@ -1,4 +1,4 @@
-"""Measured tracks and comparisons of two tracks as lines for a terminal."""
+"""Measured tracks and comparisons of two tracks as text for a terminal."""
 
 from __future__ import annotations
 
@@ -7,16 +7,16 @@ from datetime import datetime
 from textwrap import fill
 from typing import TYPE_CHECKING, Any, Final
 
-from ..formatting import counted, date_words, significant
+from ..formatting import aligned_rows, counted, date_words, plain
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
 Json = dict[str, Any]
 MOST_ROWS: Final = 40
-"""Rows of a table on a terminal; the JSON has them all."""
+"""Maximum number of rows of a table; the JSON has all."""
 WIDTH: Final = 110
-"""Letters in a line of prose."""
+"""Maximum length of a line of prose."""
 
 _RUNS_WORDS: Final = {
     "height": "A run is what descends between two lifts, from the last stand at its top to the first at its bottom; "
@@ -32,14 +32,14 @@ _TURNS_WORDS: Final = (
 
 
 def track_text(values: Mapping[str, Any], *, flag_sentences: Mapping[str, str] | None = None) -> str:
-    """What a track says.
+    """Text of a measured track: its numbers, flags, runs, lifts and turns.
 
     Parameters
     ----------
     values
-        What `skisnow.track.summary.summary_dict` gives.
+        Contents of `skisnow.track.summary.summary_dict`.
     flag_sentences
-        What each flag means.
+        Sentence of each flag, by code.
     """
     rows = list(_rows(values))
     width = max(len(name) for name, _ in rows)
@@ -48,20 +48,16 @@ def track_text(values: Mapping[str, Any], *, flag_sentences: Mapping[str, str] |
         lines.append(f"{'flagged ' + code.replace('_', ' ')}: {count}. {(flag_sentences or {}).get(code, '')}".rstrip())
     for remark in values["remarks"]:
         lines.append(f"Note: {remark}")
-    lines += _table("runs", values["runs"], _RUN_COLUMNS, _RUNS_WORDS[values["runs_by"]])
+    lines += _table_lines("runs", values["runs"], _RUN_COLUMNS, _RUNS_WORDS[values["runs_by"]])
     if values["lifts"]:
-        lines += _table("lifts", values["lifts"], _LIFT_COLUMNS, "")
-    lines += _table("turns", values["turns"], _TURN_COLUMNS, _TURNS_WORDS)
+        lines += _table_lines("lifts", values["lifts"], _LIFT_COLUMNS, "")
+    lines += _table_lines("turns", values["turns"], _TURN_COLUMNS, _TURNS_WORDS)
     return "\n".join(lines)
-
-
-def _plain(value: float | None, digits: int = 3) -> str:
-    return significant(value, digits, style="plain")
 
 
 def _rows(values: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
     smoothing = values["smoothing"]
-    yield "points", f"{values['points']} in {_plain(values['duration_s'], 4)} s, time scale {values['time_scale']}"
+    yield "points", f"{values['points']} in {plain(values['duration_s'], 4)} s, time scale {values['time_scale']}"
     if values["start"]:
         yield "start", _moment(values["start"], values["time_scale"])
     if values.get("solutions"):
@@ -70,27 +66,27 @@ def _rows(values: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
             ", ".join(f"{count} {_SOLUTION_WORDS[name]}" for name, count in values["solutions"].items()),
         )
     yield "frame", values["frame"]
-    distance = f"{_plain(values['distance_m'], 5)} m{_interval(values['distance_interval_m'], 'm', 5)}"
+    distance = f"{plain(values['distance_m'], 5)} m{_interval(values['distance_interval_m'], 'm', 5)}"
     yield "distance", f"{distance}, {_DISTANCE_WORDS[values['distance_source']]}"
     if values["horizontal_distance_m"] not in (None, values["distance_m"]):
         horizontal = _interval(values["horizontal_distance_interval_m"], "m", 5)
-        yield "seen from above", f"{_plain(values['horizontal_distance_m'], 5)} m{horizontal}"
-    speed = f"{_plain(values['max_speed_m_per_s'], 4)} m/s{_interval(values['max_speed_interval_m_per_s'], 'm/s', 4)}"
+        yield "seen from above", f"{plain(values['horizontal_distance_m'], 5)} m{horizontal}"
+    speed = f"{plain(values['max_speed_m_per_s'], 4)} m/s{_interval(values['max_speed_interval_m_per_s'], 'm/s', 4)}"
     yield "highest speed", f"{speed}, {_SPEED_WORDS[values['speed_source']]}"
-    yield "noise of the places", f"{_plain(smoothing['place_noise_m'], 2)} m a coordinate, about the smoothed track"
-    yield "smoothing", f"cubics by least squares in windows of {_plain(smoothing['window_s'])} s"
+    yield "noise of the places", f"{plain(smoothing['place_noise_m'], 2)} m a coordinate, about the smoothed track"
+    yield "smoothing", f"cubics by least squares in windows of {plain(smoothing['window_s'])} s"
     yield "resolution", _resolution(smoothing)
 
 
 def _interval(ends: Sequence[float | None] | None, unit: str, digits: int) -> str:
-    return "" if ends is None else f" (95 %: {_plain(ends[0], digits)} to {_plain(ends[1], digits)} {unit})"
+    return "" if ends is None else f" (95 %: {plain(ends[0], digits)} to {plain(ends[1], digits)} {unit})"
 
 
 def _moment(start: str, time_scale: str) -> str:
-    """When a track begins, to the second, in its own time scale."""
-    found = datetime.fromisoformat(start)
+    """Start of a track to the second, in its own time scale."""
+    time = datetime.fromisoformat(start)
     scale = "" if time_scale == "local" else f" {time_scale}"
-    return f"{date_words(found.date().isoformat())}, {found:%H:%M:%S}{scale}"
+    return f"{date_words(time.date().isoformat())}, {time:%H:%M:%S}{scale}"
 
 
 _DISTANCE_WORDS: Final = {
@@ -106,10 +102,10 @@ _SPEED_WORDS: Final = {"recorded": "as recorded", "fitted": "horizontal, of the 
 
 def _resolution(smoothing: Json) -> str:
     length = smoothing["half_amplitude_wavelength_m"]
-    metres = "" if length is None else f" ({_plain(length)} m at the median speed of the runs)"
+    metres = "" if length is None else f" ({plain(length)} m at the median speed of the runs)"
     return (
-        f"a curvature that swings in {_plain(smoothing['half_amplitude_period_s'])} s{metres} is halved, "
-        f"in {_plain(smoothing['ninety_percent_period_s'])} s it keeps 90 %"
+        f"a curvature that swings in {plain(smoothing['half_amplitude_period_s'])} s{metres} is halved, "
+        f"in {plain(smoothing['ninety_percent_period_s'])} s it keeps 90 %"
     )
 
 
@@ -129,25 +125,23 @@ _TURN_COLUMNS: Final = (
 )  # fmt: skip
 
 
-def _table(title: str, rows: Sequence[Json], columns: Sequence[tuple[str, str, int]], words: str) -> list[str]:
-    """A heading with the count, the definition, and the rows in columns; negative digits: so many decimals."""
+def _table_lines(title: str, rows: Sequence[Json], columns: Sequence[tuple[str, str, int]], words: str) -> list[str]:
+    """Heading with the count, definition, and rows in columns; negative digits are a number of decimals."""
     if not rows:
         return ["", f"0 {title}", *fill(words, WIDTH).splitlines()]
     cells = [[label for _, label, _ in columns]]
     cells += [[_cell(row[key], digits) for key, _, digits in columns] for row in rows[:MOST_ROWS]]
-    widths = [max(len(line[place]) for line in cells) for place in range(len(columns))]
-    lines = ["  ".join(cell.rjust(width) for cell, width in zip(line, widths, strict=True)) for line in cells]
     more = [f"… and {len(rows) - MOST_ROWS} more; --json gives all"] if len(rows) > MOST_ROWS else []
     heading = counted(len(rows), title.removesuffix("s"))
-    return ["", heading, *fill(words, WIDTH).splitlines(), *lines, *more]
+    return ["", heading, *fill(words, WIDTH).splitlines(), *aligned_rows(cells), *more]
 
 
 def _cell(value: Any, digits: int) -> str:
     if isinstance(value, str):
         return value
     if isinstance(value, list):
-        return " to ".join("straight" if end is None else _plain(end, digits) for end in value)
-    return f"{value:.{-digits}f}" if digits < 0 else _plain(value, digits)
+        return " to ".join("straight" if end is None else plain(end, digits) for end in value)
+    return f"{value:.{-digits}f}" if digits < 0 else plain(value, digits)
 
 
 TITLES: Final = {"nearest": "nearest place", "arc_length": "equal arc length", "time": "equal time"}
@@ -159,39 +153,39 @@ _NO_FRAME: Final = (
 _WORDS: Final = {"max": "largest", "mean": "mean", "rms": "rms"}
 
 
-def compare_summary(found: Mapping[str, Any]) -> str:
-    """The numbers with their definitions.
+def compare_summary(comparison: Mapping[str, Any]) -> str:
+    """Text of a comparison: distances with their definitions.
 
     Parameters
     ----------
-    found
-        What `skisnow.comparison.comparison_dict` gives.
+    comparison
+        Contents of `skisnow.comparison.comparison_dict`.
     """
-    simulated, measured, exact = found["simulated"], found["measured"], found["known_to_m"]
+    simulated, measured, exact = comparison["simulated"], comparison["measured"], comparison["known_to_m"]
     lines = [
         f"{simulated['name']} ({metres(simulated['length_m'], exact, 4)}) compared with {measured['name']} "
-        f"({metres(measured['length_m'], exact, 4)}), {found['seen']}",
+        f"({metres(measured['length_m'], exact, 4)}), {comparison['seen']}",
         "",
     ]
-    if not found["in_one_frame"]:
+    if not comparison["in_one_frame"]:
         return "\n".join([*lines, *_NO_FRAME])
     for kind, title in TITLES.items():
-        lines += [*_distances(title, found[kind], measured["length_m"], exact), ""]
-    back = found["largest_from_simulated_m"]
+        lines += [*_distances(title, comparison[kind], measured["length_m"], exact), ""]
+    back = comparison["largest_from_simulated_m"]
     if back is not None:
         lines.append(
             f"The other way round, from the simulated track to the nearest place of the measured one: "
             f"maximum {metres(back, exact)}."
         )
-    lines.append(f"{found['means']}.")
+    lines.append(f"{comparison['means']}.")
     if exact:
-        lines.append(f"A place is known to {significant(exact, 1, style='plain')} m: no further digits are printed.")
-    lines += _fitted(found)
+        lines.append(f"A place is known to {plain(exact, 1)} m: no further digits are printed.")
+    lines += _fitted(comparison)
     return "\n".join(lines)
 
 
 def metres(value: float | None, exact: float, digits: int = 3) -> str:
-    """A distance with the digits that places known to ``exact`` (m) have.
+    """A distance without digits below the precision ``exact`` (m) of the places; 0 for exact places.
 
     >>> metres(2.345, 0.0), metres(2.345, 3.0), metres(0.4, 3.0), metres(41.987, 0.02, 4), metres(41.987, 0.3, 4)
     ('2.35 m', '2 m', 'below 1 m', '41.99 m', '42.0 m')
@@ -200,9 +194,9 @@ def metres(value: float | None, exact: float, digits: int = 3) -> str:
 
 
 def rounded(value: float | None, exact: float, digits: int = 3) -> str:
-    """A number with no digit below that of ``exact``, in its own unit; 0: with ``digits`` significant ones."""
+    """A number without digits below the precision ``exact``; with ``digits`` significant digits if that is 0."""
     if value is None or exact <= 0.0 or not math.isfinite(value):
-        return _plain(value, digits)
+        return plain(value, digits)
     decimals = -math.floor(math.log10(exact))
     if 0.0 < abs(value) < 0.5 * 10.0**-decimals:
         return f"below {10.0**-decimals:.{max(decimals, 0)}f}"
@@ -210,21 +204,23 @@ def rounded(value: float | None, exact: float, digits: int = 3) -> str:
     return f"{round(value, min(decimals, max(fewest, 0))):.{max(min(decimals, max(fewest, 0)), 0)}f}"
 
 
-def _distances(title: str, found: Mapping[str, Any], length: float, exact: float) -> Iterator[str]:
-    yield f"{title}: {found['definition']}"
-    if found["max_m"] is None:
-        yield f"  none: {found['reason']}"
+def _distances(title: str, distances: Mapping[str, Any], length: float, exact: float) -> Iterator[str]:
+    yield f"{title}: {distances['definition']}"
+    if distances["max_m"] is None:
+        yield f"  none: {distances['reason']}"
         return
     for key, word in _WORDS.items():
-        share = f"{rounded(100.0 * found[f'{key}_share'], 100.0 * exact / length, 2)} % of the measured track's length"
-        where = f", {metres(found['max_at_m'], exact)} along it" if key == "max" else ""
-        yield f"  {word:8}{metres(found[f'{key}_m'], exact)}, {share}{where}"
-    share = _plain(100.0 * found["compared_share"], 4)
-    yield f"  over    {metres(found['compared_m'], exact, 4)}, {share} % of the measured track"
+        share = (
+            f"{rounded(100.0 * distances[f'{key}_share'], 100.0 * exact / length, 2)} % of the measured track's length"
+        )
+        where = f", {metres(distances['max_at_m'], exact)} along it" if key == "max" else ""
+        yield f"  {word:8}{metres(distances[f'{key}_m'], exact)}, {share}{where}"
+    share = plain(100.0 * distances["compared_share"], 4)
+    yield f"  over    {metres(distances['compared_m'], exact, 4)}, {share} % of the measured track"
 
 
-def _fitted(found: Mapping[str, Any]) -> Iterator[str]:
-    fitted = found["fitted"]
+def _fitted(comparison: Mapping[str, Any]) -> Iterator[str]:
+    fitted = comparison["fitted"]
     if fitted is None:
         return
     yield ""
@@ -233,19 +229,19 @@ def _fitted(found: Mapping[str, Any]) -> Iterator[str]:
     if fitted["undetermined"]:
         yield f"  {fitted['undetermined']} direction(s) these tracks do not tell; nothing was moved along them"
     for kind, title in TITLES.items():
-        before, after = (_pair(each[kind], found["known_to_m"]) for each in (fitted["before"], found))
+        before, after = (_pair(state[kind], comparison["known_to_m"]) for state in (fitted["before"], comparison))
         yield f"  {title}: largest and mean {before} before, {after} after"
 
 
 def fitted_words(fitted: Mapping[str, Any]) -> str:
-    """By how much the simulated track was moved."""
-    height = "" if fitted["moved_z_m"] is None else f", z {_plain(fitted['moved_z_m'])} m"
+    """Displacement of the fitted simulated track in words."""
+    height = "" if fitted["moved_z_m"] is None else f", z {plain(fitted['moved_z_m'])} m"
     return (
-        f"start by x {_plain(fitted['moved_x_m'])} m, y {_plain(fitted['moved_y_m'])} m{height}; turned by "
-        f"{_plain(fitted['turned_deg'])} degrees to the left; looked up {_plain(fitted['later_s'])} s later"
+        f"start by x {plain(fitted['moved_x_m'])} m, y {plain(fitted['moved_y_m'])} m{height}; turned by "
+        f"{plain(fitted['turned_deg'])} degrees to the left; looked up {plain(fitted['later_s'])} s later"
     )
 
 
-def _pair(found: Mapping[str, Any], exact: float) -> str:
-    largest, mean = (metres(found[key], exact) for key in ("max_m", "mean_m"))
+def _pair(distances: Mapping[str, Any], exact: float) -> str:
+    largest, mean = (metres(distances[key], exact) for key in ("max_m", "mean_m"))
     return f"both {mean}" if largest == mean else f"{largest} and {mean}"

@@ -25,15 +25,15 @@ class EnsembleRun(Shown):
     Attributes
     ----------
     snow
-        That was drawn for it.
+        Sampled snow.
     outcome
-        How it ended.
+        Outcome of the run.
     track
-        Of the middle between the boots.
+        Track of the middle between the boots.
     values
-        What was drawn, by the scenario's keys in their units.
+        Sampled values by the scenario's keys, in their units.
     slips
-        Share of the time in which the more heavily loaded ski side-slips; None where it is not known.
+        Share of the time in which the more heavily loaded ski side-slips; None if unknown.
     """
 
     snow: SnowProperties
@@ -48,33 +48,33 @@ class EnsembleRun(Shown):
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True, repr=False)
 class TurnChain(Shown):
-    """From a campaign to a turn.
+    """Result of `skisnow.turn`: from a campaign to a turn.
 
     Attributes
     ----------
     campaign, site
-        Names.
+        Names of campaign and site.
     synthetic
-        Whether nobody measured the campaign.
+        True if the campaign is synthetic.
     snow
         H_V and S_f of that site with their intervals.
     runs
-        By the name of the contact, two or more; the first is the nominal run of the ensemble.
+        Runs by the name of the contact, at least two; the first is the nominal run of the ensemble.
     ensemble
-        Runs over the intervals, three or more.
+        Runs with sampled inputs, at least three.
     seed
-        Of the ensemble's draws.
+        Seed of the samples.
     ensemble_error
-        Distance between the ends of the nominal run and of the same run computed like the ensemble (m); None where
-        both are computed alike.
+        Distance between the ends of the nominal run and of the same run computed like the ensemble (m); None if both
+        are computed in the same way.
     measured
-        What the ensemble was drawn from that the campaign measured: H_V, S_f, and as far as known k_u/H_V and u_y.
+        Measured inputs of the ensemble: H_V, S_f, and k_u/H_V and u_y if the campaign has them.
     priors
-        What else it was drawn from.
+        The other inputs of the ensemble.
     warnings
-        Of the nominal run, where it is near the limit of grip.
+        Warnings of a nominal run near the limit of grip.
     analysis
-        Of the campaign, where it was made on the way.
+        Analysis of the campaign, if `skisnow.turn` computed one.
 
     See Also
     --------
@@ -96,12 +96,12 @@ class TurnChain(Shown):
 
     @property
     def nominal(self) -> Run:
-        """The turn on the snow that was found, with the first contact."""
+        """Run on the snow of the site with the first contact."""
         return next(iter(self.runs.values()))
 
     @property
     def sentences(self) -> list[str]:
-        """What the contacts do otherwise, and where the spread of each input of the band comes from, in plain text."""
+        """Differences between the contacts, and the origin of each input's spread, as plain text."""
         from .sentences import plain_sentences
 
         return [sentence.replace("<sub>", "_").striptags() for sentence in plain_sentences(self)]

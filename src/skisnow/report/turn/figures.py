@@ -43,14 +43,14 @@ class TimedTrack:
 
 
 def track_band(nominal: TimedTrack, tracks: Sequence[TimedTrack]) -> Figure:
-    """Draw the tracks from above, and how far each run lies beside and ahead of the nominal one at the same time.
+    """Draw the tracks from above, and the offsets of each run to the side of and ahead of the nominal run.
 
     Parameters
     ----------
     nominal
-        The run with the parameters' best values.
+        Run with the best values of the parameters.
     tracks
-        The ensemble, three at least. A run that ended earlier counts up to its end.
+        The ensemble, at least three. A run that ends earlier counts until its end.
     """
     aside, ahead = offsets(nominal, tracks)
     band = band_of(aside)
@@ -61,18 +61,23 @@ def track_band(nominal: TimedTrack, tracks: Sequence[TimedTrack]) -> Figure:
     figure = new_figure(width_mm=DOUBLE_MM, height_mm=height + 78.0)
     grid = figure.add_gridspec(2, 2, height_ratios=(height + 10.0, 50.0))
     plan = figure.add_subplot(grid[0, :])
-    _plan(plan, nominal, tracks, outline)
+    _draw_plan(plan, nominal, tracks, outline)
     plan_axes(plan, limits)
-    _over_time(
+    _draw_over_time(
         figure.add_subplot(grid[1, 0]), nominal.time, aside, "to the left of the nominal\nrun at the same time (m)"
     )
-    _over_time(figure.add_subplot(grid[1, 1]), nominal.time, ahead, "ahead of the nominal run\nat the same time (m)")
+    _draw_over_time(
+        figure.add_subplot(grid[1, 1]), nominal.time, ahead, "ahead of the nominal run\nat the same time (m)"
+    )
     legend_below(figure, _handles(len(tracks)))
     return figure
 
 
 def offsets(nominal: TimedTrack, tracks: Sequence[TimedTrack]) -> tuple[FloatArray, FloatArray]:
-    """How far the tracks lie to the left and ahead of the nominal run at its times: (tracks, n); nan after an end."""
+    """Offsets of tracks to the left and ahead of the nominal run at its times (m), each of shape (tracks, n).
+
+    NaN after the end of a track.
+    """
     direction = np.stack([np.gradient(nominal.x), np.gradient(nominal.y)], axis=1)
     length = np.linalg.norm(direction, axis=1)
     along = direction / np.where(length > 0.0, length, 1.0)[:, None]
@@ -86,7 +91,7 @@ def offsets(nominal: TimedTrack, tracks: Sequence[TimedTrack]) -> tuple[FloatArr
 
 
 def band_of(values: FloatArray) -> FloatArray:
-    """The 5, 25, 50, 75 and 95 % quantiles at each time, (5, n); nan where fewer than three runs are left."""
+    """The 5, 25, 50, 75 and 95 % quantiles at each time, (5, n); NaN with fewer than three runs."""
     band = np.full((len(QUANTILES), values.shape[1]), np.nan)
     enough = np.isfinite(values).sum(axis=0) >= FEWEST
     if enough.any():
@@ -95,17 +100,17 @@ def band_of(values: FloatArray) -> FloatArray:
 
 
 def _outline(nominal: TimedTrack, band: FloatArray) -> FloatArray:
-    """The quantiles laid off to the left of the nominal track: (5, n, 2)."""
+    """Places of the quantiles to the left of the nominal track, shape (5, n, 2)."""
     slope = np.unwrap(np.arctan2(np.gradient(nominal.y), np.gradient(nominal.x)))
     to_left = np.stack([-np.sin(slope), np.cos(slope)], axis=1)
     middle = np.stack([nominal.x, nominal.y], axis=1)
     return np.asarray(middle + band[:, :, None] * to_left)
 
 
-def _plan(axes: Axes, nominal: TimedTrack, tracks: Sequence[TimedTrack], outline: FloatArray) -> None:
+def _draw_plan(axes: Axes, nominal: TimedTrack, tracks: Sequence[TimedTrack], outline: FloatArray) -> None:
     for (low, high), colour in zip(((0, 4), (1, 3)), (PALE, SKY), strict=True):
-        known = np.isfinite(outline[low, :, 0])
-        rim = np.concatenate([outline[low, known], outline[high, known][::-1]])
+        finite = np.isfinite(outline[low, :, 0])
+        rim = np.concatenate([outline[low, finite], outline[high, finite][::-1]])
         axes.fill(rim[:, 0], rim[:, 1], color=colour, alpha=0.6, linewidth=0, zorder=1)
     for track in tracks:
         axes.plot(track.x, track.y, color=GREY, linewidth=0.3, zorder=2)
@@ -114,7 +119,7 @@ def _plan(axes: Axes, nominal: TimedTrack, tracks: Sequence[TimedTrack], outline
     axes.plot(nominal.x, nominal.y, color=VERMILLION, linewidth=1.0, zorder=4)
 
 
-def _over_time(axes: Axes, time: FloatArray, values: FloatArray, label: str) -> None:
+def _draw_over_time(axes: Axes, time: FloatArray, values: FloatArray, label: str) -> None:
     band = band_of(values)
     axes.plot(time, values.T, color=GREY, linewidth=0.3, zorder=2)
     axes.fill_between(time, band[0], band[4], color=PALE, alpha=0.6, linewidth=0, zorder=1)
@@ -142,14 +147,14 @@ LINE_STYLES: Final = ("-", (0, (5, 1.5)), (0, (1, 1)), "-.", (0, (7, 2, 1, 2, 1,
 
 
 def runs_compared(runs: Mapping[str, Run], *, at: float | None = None) -> Figure:
-    """Draw the runs by their names; the first is the one that the others are held against.
+    """Draw runs by name; the first one is the reference.
 
     Parameters
     ----------
     runs
-        One at least, on one slope.
+        At least one run, all on the same slope.
     at
-        Time (s) at which the skis are drawn; None: the latest that all runs reached, less a tenth of it.
+        Time (s) at which the skis are drawn (default: 0.9 of the last time that all runs reach).
     """
     named = list(runs.items())
     limits = track_limits(np.concatenate([run.place for run in runs.values()]))
@@ -161,9 +166,9 @@ def runs_compared(runs: Mapping[str, Run], *, at: float | None = None) -> Figure
         plan.plot(run.place[:, 0], run.place[:, 1], **_line_style(place))
         plan.plot(*run.place[-1, :2], marker="s", markersize=3.0, linestyle="none", color=_line_style(place)["color"])
     plan_axes(plan, limits, profile=not isinstance(named[0][1].scenario.slope, Plane))
-    _distances(figure.add_subplot(grid[1, 0]), named)
+    _draw_distances(figure.add_subplot(grid[1, 0]), named)
     moment = 0.9 * min(run.simulated_s for run in runs.values()) if at is None else at
-    _depths(figure.add_subplot(grid[1, 1]), named, moment)
+    _draw_depths(figure.add_subplot(grid[1, 1]), named, moment)
     legend_below(
         figure, [Line2D([], [], label=mathtext(name), **_line_style(place)) for place, (name, _) in enumerate(named)]
     )
@@ -171,7 +176,7 @@ def runs_compared(runs: Mapping[str, Run], *, at: float | None = None) -> Figure
 
 
 def mathtext(name: str) -> str:
-    """A run's name for a figure, with its symbols set.
+    """Name of a run for a figure, with markup for its symbols.
 
     >>> mathtext("hypoplastic, k_u / H_V = 10")
     'hypoplastic, $k_u$ / $H_V$ = 10'
@@ -183,7 +188,7 @@ def _line_style(place: int) -> dict[str, Any]:
     return {"color": COLOURS[place % len(COLOURS)], "linestyle": LINE_STYLES[place % len(LINE_STYLES)]}
 
 
-def _distances(axes: Axes, named: list[tuple[str, Run]]) -> None:
+def _draw_distances(axes: Axes, named: list[tuple[str, Run]]) -> None:
     (first, reference), *others = named
     for place, (_, run) in enumerate(others, start=1):
         axes.plot(arc_lengths(run.place), distance_from_path(run.place, reference.place), **_line_style(place))
@@ -193,13 +198,12 @@ def _distances(axes: Axes, named: list[tuple[str, Run]]) -> None:
     axes.set_ylabel(f"distance (m) from the track of\n{mathtext(first)}")
 
 
-def _depths(axes: Axes, named: list[tuple[str, Run]], moment: float) -> None:
-    """The more heavily loaded ski in the first run, in all runs at one time."""
+def _draw_depths(axes: Axes, named: list[tuple[str, Run]], moment: float) -> None:
+    """Draw the depth along the ski that is more heavily loaded in the first run, for all runs at one time."""
     reference = named[0][1]
     ski = loaded_ski(reference, moment)
     for place, (_, run) in enumerate(named):
-        now = int(np.argmin(abs(run.time - moment)))
-        axes.plot(run.skis.station, run.skis.edge_depth[now, ski] / MM, **_line_style(place))
+        axes.plot(run.skis.station, run.skis.edge_depth[_at(run, moment), ski] / MM, **_line_style(place))
     deepest = max(float(np.nanmax(run.skis.edge_depth[_at(run, moment), ski])) for _, run in named) / MM
     axes.axhline(0.0, color=GREY, linewidth=0.6, zorder=1)
     axes.axvline(0.0, color=PALE, linewidth=0.5, zorder=0)
@@ -213,5 +217,5 @@ def _at(run: Run, moment: float) -> int:
 
 
 def loaded_ski(run: Run, moment: float) -> int:
-    """The ski with the larger total force at a time (s): 0 left, 1 right."""
+    """Index of the ski with the larger total force at a time (s): 0 left, 1 right."""
     return int(np.argmax(run.skis.total_force[_at(run, moment)]))

@@ -17,7 +17,7 @@ from ...scenario.plausibility import implausible_values
 from ...simulation.run_summary import summary_dict
 from ...snow.from_results import snow_dict
 from ...statistics import VarianceShares, variance_shares
-from ..run.time_figures import used_share_of_skis
+from ..run.time_figures import grip_utilisation
 from .figures import FEWEST, TimedTrack, band_of, offsets
 
 if TYPE_CHECKING:
@@ -27,68 +27,71 @@ if TYPE_CHECKING:
 
 FloatArray = npt.NDArray[np.float64]
 MORE_THAN_INPUTS: Final = 3
-"""Runs at least, more than inputs, that tell shares with an interval."""
+"""Minimum number of runs above the number of inputs for shares with an interval."""
 YIELDS: Final = 0.95
-"""Share of the shear strength from which a ski counts as side-slipping: short parts at its ends may have grip."""
+"""Grip utilisation above which a ski side-slips; short parts at its ends can still have grip."""
 
 
 def loaded_skis(run: Run) -> npt.NDArray[np.intp]:
-    """The ski with the larger total force at each time, (n,): 0 left, 1 right."""
+    """Index of the ski with the larger total force at each time, shape (n,): 0 left, 1 right."""
     return np.argmax(run.skis.total_force, axis=1)
 
 
 def afterbody_depth_ratio(run: Run) -> float | None:
-    """Mean edge depth of the loaded ski's contact behind the boot over that before it; the median over the second half.
+    """Ratio of the loaded ski's mean edge depth behind the boot to that before it, median over the second half.
 
-    None where the ski has no contact before or behind the boot in all that time.
+    None if the ski never has contact on both sides of the boot in that time.
     """
     late = np.flatnonzero(run.time >= run.time[-1] / 2.0)
     depth = run.skis.edge_depth[late, loaded_skis(run)[late]]
     behind, before = (_mean_depth(depth[:, part]) for part in (run.skis.station < 0.0, run.skis.station > 0.0))
     ratio = behind / before
-    known = ratio[np.isfinite(ratio)]
-    return float(np.median(known)) if known.size else None
+    finite = ratio[np.isfinite(ratio)]
+    return float(np.median(finite)) if finite.size else None
 
 
 def _mean_depth(depth: FloatArray) -> FloatArray:
-    """Mean over the stations below the surface, (n,); nan where there is none."""
+    """Mean over the stations below the surface, shape (n,); NaN without one."""
     below = depth > 0.0
     count = below.sum(axis=1)
     return np.where(count > 0, np.where(below, depth, 0.0).sum(axis=1) / np.maximum(count, 1), np.nan)
 
 
 def used_grip(run: Run) -> tuple[float | None, float | None]:
-    """Median share of the shear strength that the loaded ski uses, and the share of time in which it side-slips."""
-    share = np.take_along_axis(used_share_of_skis(run), loaded_skis(run)[:, None], axis=1)[:, 0]
-    known = share[np.isfinite(share)]
-    return (float(np.median(known)), float(np.mean(known >= YIELDS))) if known.size else (None, None)
+    """Median grip utilisation of the loaded ski, and the share of time in which it side-slips."""
+    share = np.take_along_axis(grip_utilisation(run), loaded_skis(run)[:, None], axis=1)[:, 0]
+    finite = share[np.isfinite(share)]
+    return (float(np.median(finite)), float(np.mean(finite >= YIELDS))) if finite.size else (None, None)
 
 
 def median_radius(run: Run) -> float | None:
-    """Median turn radius (m) of the run where it turns; None where it never does."""
+    """Median turn radius (m) of the curved parts of a run; None without one."""
     radius = np.abs(run.turn_radius[np.isfinite(run.turn_radius)])
     return float(np.median(radius)) if radius.size else None
 
 
 def maximum_distance(run: Run, reference: Run) -> float | None:
-    """The farthest that a run's path goes from that of another (m) while it lies beside it; None: nowhere."""
+    """Maximum distance of a run's path from that of another run (m); None if they do not overlap."""
     distance = distance_from_path(run.place, reference.place)
     return float(np.nanmax(distance)) if np.isfinite(distance).any() else None
 
 
 def middle_track(run: Run) -> TimedTrack:
-    """The path of the middle between the boots from above."""
+    """Track of the middle between the boots from above."""
     return TimedTrack(run.time, run.place[:, 0], run.place[:, 1])
 
 
 def band_width(nominal: TimedTrack, tracks: Sequence[TimedTrack]) -> tuple[float, float]:
-    """Width of the band of 90 % of the tracks to the side, and ahead, at the last time that three runs reach (m)."""
+    """Widths across and along (m) of the band of 90 % of the tracks, at the last time that three runs reach."""
     aside, ahead = (band_of(values[:, None])[:, 0] for values in end_offsets(nominal, tracks))
     return float(aside[4] - aside[0]), float(ahead[4] - ahead[0])
 
 
 def end_offsets(nominal: TimedTrack, tracks: Sequence[TimedTrack]) -> tuple[FloatArray, FloatArray]:
-    """How far each track lies to the left and ahead (m), (tracks,), at the last time that three reach; nan: ended."""
+    """Offsets of the tracks to the left and ahead (m), shape (tracks,), at the last time that three runs reach.
+
+    NaN for a run that ended before.
+    """
     aside, ahead = offsets(nominal, tracks)
     last = int(np.flatnonzero(np.isfinite(aside).sum(axis=0) >= FEWEST)[-1])
     return aside[:, last], ahead[:, last]
@@ -96,14 +99,14 @@ def end_offsets(nominal: TimedTrack, tracks: Sequence[TimedTrack]) -> tuple[Floa
 
 @dataclass(frozen=True, slots=True, eq=False)
 class BandShares:
-    """What each input of an ensemble adds to the variance at the end of the band, aside and ahead.
+    """Share of each input of an ensemble in the variance at the end of the band, aside and ahead.
 
     Attributes
     ----------
     keys
-        What varies, by the scenario's keys.
+        Keys of the varied inputs.
     aside, ahead
-        Shares of these.
+        Shares of these inputs.
     """
 
     keys: tuple[str, ...]
@@ -121,7 +124,7 @@ def band_shares(nominal: TimedTrack, ensemble: Sequence[EnsembleRun]) -> BandSha
     if reached.sum() < len(keys) + MORE_THAN_INPUTS:
         return None
     inputs = np.log([[run.values[key] for key in keys] for run in ensemble])[reached]
-    return BandShares(tuple(keys), *(variance_shares(each[reached], inputs) for each in (aside, ahead)))
+    return BandShares(tuple(keys), *(variance_shares(offset[reached], inputs) for offset in (aside, ahead)))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -131,15 +134,15 @@ class BandInput:
     Attributes
     ----------
     key
-        Of the scenario.
+        Key of the scenario.
     measured
-        Whether the campaign tells its spread; else a prior does.
+        True if the campaign measured its spread; otherwise a prior gives it.
     value
-        The median, in the key's unit; None of a prior, which has no favourite.
+        Median in the key's unit; None for a prior.
     low, high
-        Ends in the key's unit: of the 95 % interval of what was measured, of the whole range of a prior.
+        Ends in the key's unit: of the 95 % interval of a measured input, of the whole range of a prior.
     origin
-        Where the range comes from.
+        Origin of the range.
     """
 
     key: str
@@ -151,12 +154,12 @@ class BandInput:
 
     @property
     def distribution(self) -> str:
-        """Its name."""
+        """Name of the distribution."""
         return "log-normal" if self.measured else "log-uniform"
 
     @property
     def spread(self) -> str:
-        """Where the spread comes from, in a word."""
+        """Origin of the spread: measured or prior."""
         return "measured" if self.measured else "prior"
 
     @property
@@ -168,7 +171,7 @@ class BandInput:
 
 
 def band_inputs(chain: TurnChain) -> Iterator[BandInput]:
-    """What was measured, then the priors."""
+    """Inputs of the band: first the measured ones, then the priors."""
     for of in chain.measured:
         yield BandInput(key=of.key, measured=True, value=of.value, low=of.low, high=of.high, origin=chain.site)
     own = values_of(chain.nominal.scenario)
@@ -202,21 +205,21 @@ def turn_dict(chain: TurnChain) -> dict[str, Any]:
             "nominal_end_moves_m": json_number(chain.ensemble_error),
             "inputs": [
                 {
-                    "key": each.key,
-                    "spread": each.spread,
-                    "distribution": each.distribution,
-                    "value": each.value,
-                    "low": each.low,
-                    "high": each.high,
-                    "origin": each.origin,
+                    "key": row.key,
+                    "spread": row.spread,
+                    "distribution": row.distribution,
+                    "value": row.value,
+                    "low": row.low,
+                    "high": row.high,
+                    "origin": row.origin,
                 }
-                for each in band_inputs(chain)
+                for row in band_inputs(chain)
             ],
             "priors": [
-                {"key": each.key, "low": each.low, "high": each.high, "times_own": each.about, "origin": each.origin}
-                for each in chain.priors
+                {"key": row.key, "low": row.low, "high": row.high, "times_own": row.about, "origin": row.origin}
+                for row in chain.priors
             ],
-            "runs": [_ensemble_dict(each) for each in chain.ensemble],
+            "runs": [_ensemble_dict(row) for row in chain.ensemble],
         },
         "sentences": chain.sentences,
         "warnings": list(chain.warnings),

@@ -1,8 +1,7 @@
-"""One page for the whole chain: a campaign, its snow with intervals, a turn with each contact, an ensemble."""
+"""Page of the chain from a campaign to a turn: snow with intervals, a turn with each contact, an ensemble."""
 
 from __future__ import annotations
 
-import json
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from importlib.metadata import version
@@ -19,7 +18,7 @@ from ..._support.units import DEGREE, MM, N_PER_MM2, N_PER_MM3
 from ...scenario.keys import scenario_values
 from ..figures.drawing import Drawing
 from ..figures.figure_files import write_pictures
-from ..formatting import significant
+from ..formatting import json_text, significant
 from ..run.page import CHOICES
 from ..run.tables import scenario_table
 from ..run.time_figures import run_along_ski, run_grip
@@ -52,17 +51,17 @@ FIGURES: Final = ("contacts", "along_ski", "grip", "band")
 
 
 def write_turn_report(chain: TurnChain, folder: str | Path, *, language: str = ENGLISH) -> Path:
-    """Write report.html, turn.json and figures/ of the chain from a campaign to a turn; page and figures in a language.
+    """Write report.html, turn.json and figures/; the language applies to page and figures.
 
     Returns
     -------
     Path
-        Of report.html, which is written last.
+        Path of report.html, which is written last.
 
     Raises
     ------
     ParameterError
-        There are fewer than two contacts, or too few runs for a band, or there are no texts of the language.
+        There are fewer than two contacts or too few runs for a band, or the language is unknown.
     OutputError
         A file cannot be written.
     """
@@ -78,19 +77,18 @@ def write_turn_report(chain: TurnChain, folder: str | Path, *, language: str = E
     pictures = write_pictures(
         _drawings(chain), folder / "figures", every=FIGURES, language=language, names=frozenset(map(figure_text, names))
     )
-    text = json.dumps(turn_dict(chain), ensure_ascii=False, allow_nan=False, indent=1)
-    write_file(folder / "turn.json", f"{text}\n")
+    write_file(folder / "turn.json", f"{json_text(turn_dict(chain))}\n")
     write_file(folder / "report.html", turn_page(chain, pictures, language=language))
     return folder / "report.html"
 
 
 def turn_page(chain: TurnChain, pictures: Sequence[Picture], *, language: str = ENGLISH) -> str:
-    """The HTML of the report."""
+    """HTML of the report."""
     return sheet(_header(chain), _sections(chain, pictures), language=language, names=names_in(chain))
 
 
 def names_in(chain: TurnChain) -> frozenset[str]:
-    """What users wrote, and words of a scenario's file: the same in every language."""
+    """Names from users and words of scenario files, which are not translated."""
     skis = {run.scenario.ski.name for run in chain.runs.values()}
     return CHOICES | skis | {chain.campaign, chain.site, chain.snow.source}
 
@@ -228,7 +226,7 @@ def _provenance(chain: TurnChain) -> Markup:
 
 
 def parameters_table(snow: SnowProperties) -> Table:
-    """H_V and S_f with their intervals, and k_u/H_V and u_y where they were measured with one."""
+    """Table of H_V and S_f with their intervals, and of k_u/H_V and u_y if they have one."""
     rows = [
         ("snow hardness H_V", "N/mm³", _scaled(snow.snow_hardness, N_PER_MM3),
          _both(snow.snow_hardness_interval, N_PER_MM3)),
@@ -262,7 +260,7 @@ def _both(interval: tuple[float, float] | None, unit: float) -> tuple[float, flo
 
 
 def contacts_table(runs: Mapping[str, Run]) -> Table:
-    """One row for each contact."""
+    """Table with one row for each contact."""
     return Table(
         "contacts",
         "The turn with each contact.",
@@ -301,7 +299,7 @@ def _contact(name: str, run: Run) -> tuple[Any, ...]:
 
 
 def ensemble_table(ensemble: Sequence[EnsembleRun]) -> Table:
-    """How the runs ended, and the range of the snow that was drawn."""
+    """Table of the outcomes of the ensemble with the ranges of the sampled snow."""
     counts = Counter(run.outcome for run in ensemble)
     rows = []
     for outcome, count in counts.most_common():
@@ -323,8 +321,8 @@ def ensemble_table(ensemble: Sequence[EnsembleRun]) -> Table:
 
 
 def shares_table(chain: TurnChain) -> Table:
-    """What the band was drawn from, and what each input adds to its variance at the end."""
-    found = band_shares(middle_track(chain.nominal), chain.ensemble)
+    """Table of the inputs of the band with their shares in the variance at its end."""
+    shares = band_shares(middle_track(chain.nominal), chain.ensemble)
     return Table(
         "band_inputs",
         "What the band counts, and what each of it adds to the variance of the places at its end.",
@@ -335,32 +333,37 @@ def shares_table(chain: TurnChain) -> Table:
             Column("aside_percent", "Share of the offset across", "estimate", unit="%", digits=2),
             Column("ahead_percent", "Share of the offset along", "estimate", unit="%", digits=2),
         ),
-        [*_inputs(chain, found), *_left(found)],
+        [*_inputs(chain, shares), *_unexplained(shares)],
         note="Shares: first-order Sobol indices by linear regression on the logarithms of the inputs, with 95 % "
         "intervals. What is left over does not follow any input in proportion: curvature, thresholds such as an edge "
         "that loses its grip, and the interplay of inputs.",
     )
 
 
-def _inputs(chain: TurnChain, found: BandShares | None) -> Iterator[tuple[Any, ...]]:
-    for each in band_inputs(chain):
-        yield each.key, (each.low, each.high), each.in_words, *_shares_of(each.key, found)
+def _inputs(chain: TurnChain, shares: BandShares | None) -> Iterator[tuple[Any, ...]]:
+    for band_input in band_inputs(chain):
+        yield (
+            band_input.key,
+            (band_input.low, band_input.high),
+            band_input.in_words,
+            *_shares_of(band_input.key, shares),
+        )
 
 
-def _shares_of(key: str, found: BandShares | None) -> tuple[Any, Any]:
-    """Of the variance across and along, in per cent with intervals; none where it does not vary."""
-    if found is None or key not in found.keys:
+def _shares_of(key: str, shares: BandShares | None) -> tuple[Any, Any]:
+    """Shares of an input in the variance across and along (%) with intervals; (None, None) if it does not vary."""
+    if shares is None or key not in shares.keys:
         return (None, None), (None, None)
-    place = found.keys.index(key)
+    place = shares.keys.index(key)
     across, along = (
-        (100.0 * float(each.share[place]), tuple((100.0 * each.interval[place]).tolist()))
-        for each in (found.aside, found.ahead)
+        (100.0 * float(direction.share[place]), tuple((100.0 * direction.interval[place]).tolist()))
+        for direction in (shares.aside, shares.ahead)
     )
     return across, along
 
 
-def _left(found: BandShares | None) -> list[tuple[Any, ...]]:
-    if found is None:
+def _unexplained(shares: BandShares | None) -> list[tuple[Any, ...]]:
+    if shares is None:
         return []
-    across, along = ((100.0 * each.left, None) for each in (found.aside, found.ahead))
+    across, along = ((100.0 * direction.left, None) for direction in (shares.aside, shares.ahead))
     return [("left over", None, "", across, along)]

@@ -29,9 +29,9 @@ if TYPE_CHECKING:
     from .chain import TurnChain
 
 ALIKE: Final = 0.002
-"""Two numbers that differ by less of their size are called alike."""
+"""Relative difference below which two numbers are called the same."""
 HELD: Final = 0.05
-"""A ski that side-slips in no larger share of the time keeps its grip."""
+"""Share of the time with side-slip up to which a ski holds its grip."""
 _INPUTS: Final = {
     "snow.H_V_N_per_mm3": ("the snow hardness H_V", "further penetration tests at this site"),
     "snow.S_f_N_per_mm2": ("the failure shear stress S_f", "further shear tests at this site"),
@@ -44,48 +44,49 @@ _INPUTS: Final = {
     "ski.stiffness_factor": ("the stiffness of the ski", "the bending and torsion of the ski, measured"),
     "ski.camber_rounding_mm": ("the rounding of the camber", "the height of the unloaded base along the ski, measured"),
 }
-"""Inputs of the band in words, and what would tell more of them."""
+"""Names of the band's inputs, and the measurement that would determine them better."""
 _FURTHER: Final = {
     "snow.unloading_ratio": "further series with discs taken off one by one at this site, for k_u",
     "snow.shear_displacement_mm": "further shear tests with turning angles at this site, for u_y",
 }
-"""What would tell more of what was measured already."""
+"""Measurement that would determine an already measured input better."""
 
 
 def key_sentences(chain: TurnChain) -> list[Markup]:
-    """Snow, contacts, band, and a warning near the limit of grip."""
+    """Key sentences: snow, contacts, band, and warnings near the limit of grip."""
     contacts = [_contact(name, run) for name, run in chain.runs.items()]
     spreads = [_band(chain), *_spreads(chain), *_largest_share(chain)]
-    return [_snow(chain), *contacts, *contrast(chain), *spreads, *_warned(chain)]
+    return [_snow(chain), *contacts, *contrast(chain), *spreads, *_warnings(chain)]
 
 
 def headline(chain: TurnChain) -> Markup:
-    """The turn's radius, and how well its end is known."""
+    """Sentence with the turn radius and the precision of the end of the run."""
     radius = median_radius(chain.nominal)
     aside, ahead = _widths(chain)
-    known = prose(
+    precision = prose(
         "its end is known within {aside} m across and {ahead} m along the track (90 % of {runs})",
         aside=significant(aside, 2),
         ahead=significant(ahead, 2),
         runs=counted(len(chain.ensemble), "run"),
     )
     if radius is None:
-        return prose("The run is straight; {known}.", known=known)
+        return prose("The run is straight; {known}.", known=precision)
     value = Markup("<strong>{} m</strong>").format(significant(radius))
-    return prose("Turn radius {value} (median); {known}.", value=value, known=known)
+    return prose("Turn radius {value} (median); {known}.", value=value, known=precision)
 
 
 def plain_sentences(chain: TurnChain) -> list[Markup]:
-    """What the contacts do otherwise, and what the band is drawn from."""
+    """Differences between the contacts, and the inputs of the band."""
     return [*contrast(chain), *_spreads(chain)]
 
 
 def _spreads(chain: TurnChain) -> list[Markup]:
-    """Which inputs of the band have a measured spread, and which a prior."""
-    found = list(band_inputs(chain))
-    if not found:
+    """Sentence that lists the inputs with a measured spread and those with a prior; empty without inputs."""
+    inputs = list(band_inputs(chain))
+    if not inputs:
         return []
-    measured, assumed = (_listed([each.key for each in found if each.measured is of]) for of in (True, False))
+    measured = _listed([row.key for row in inputs if row.measured])
+    assumed = _listed([row.key for row in inputs if not row.measured])
     return [
         prose(
             "The band draws {measured} from the intervals that the campaign measured, {assumed} from priors.",
@@ -100,23 +101,23 @@ def _listed(keys: Sequence[str]) -> Markup:
     return html(", ").join(before) + html(" and ") + last if before else last
 
 
-def _warned(chain: TurnChain) -> list[Markup]:
+def _warnings(chain: TurnChain) -> list[Markup]:
     return [prose("Warning: {text}.", text=text) for text in chain.warnings]
 
 
 def _largest_share(chain: TurnChain) -> list[Markup]:
-    """Which input moves the end of the band most to the side."""
-    found = _shares(chain)
-    if found is None:
+    """Sentence with the input of the largest share in the variance across the track; empty without shares."""
+    shares = _shares(chain)
+    if shares is None:
         return []
-    first, *others = np.argsort(-found.aside.share, kind="stable").tolist()
+    first, *others = np.argsort(-shares.aside.share, kind="stable").tolist()
     return [
         prose(
             "Most of that across the track comes from {key}: {percent} % of the variance {interval}{then}.",
-            key=_in_words(found.keys[first]),
-            percent=significant(100.0 * float(found.aside.share[first]), 2),
-            interval=interval((100.0 * found.aside.interval[first]).tolist(), 2),
-            then=html("; next is ") + _in_words(found.keys[others[0]]) if others else "",
+            key=_in_words(shares.keys[first]),
+            percent=significant(100.0 * float(shares.aside.share[first]), 2),
+            interval=interval((100.0 * shares.aside.interval[first]).tolist(), 2),
+            then=html("; next is ") + _in_words(shares.keys[others[0]]) if others else "",
         )
     ]
 
@@ -126,19 +127,19 @@ def _in_words(key: str) -> Markup:
 
 
 def _shares(chain: TurnChain) -> BandShares | None:
-    """Shares of the band's inputs, where some input moves its end at all."""
-    found = band_shares(middle_track(chain.nominal), chain.ensemble)
-    return found if found is not None and found.aside.share.any() else None
+    """Shares of the band's inputs; None if no input changes its end."""
+    shares = band_shares(middle_track(chain.nominal), chain.ensemble)
+    return shares if shares is not None and shares.aside.share.any() else None
 
 
 def _snow(chain: TurnChain) -> Markup:
     snow = chain.snow
     of_hardness, of_stress = snow.snow_hardness_interval, snow.failure_shear_stress_interval
     return prose(
-        "Snow of {site}: H_V {hardness} N/mm³ {of_hardness}, S_f {stress} N/mm² {of_stress}{ratio}{way}.",
+        "Snow of {site}: H_V {hardness} N/mm³ {of_hardness}, S_f {stress} N/mm² {of_stress}{ratio}{displacement}.",
         site=chain.site,
         ratio=_ratio(snow.unloading_ratio, snow.unloading_ratio_interval),
-        way=_way(snow.shear_displacement, snow.shear_displacement_interval),
+        displacement=_displacement(snow.shear_displacement, snow.shear_displacement_interval),
         hardness=significant(snow.snow_hardness / N_PER_MM3),
         of_hardness=interval(of_hardness and [end / N_PER_MM3 for end in of_hardness]),
         stress=significant(None if snow.failure_shear_stress is None else snow.failure_shear_stress / N_PER_MM2),
@@ -147,13 +148,15 @@ def _snow(chain: TurnChain) -> Markup:
 
 
 def _ratio(value: float | None, ends: tuple[float, float] | None) -> Markup:
-    """k_u/H_V, where it was measured."""
-    known = value is not None and ends is not None
-    return prose(", k_u / H_V {value} {ends}", value=significant(value), ends=interval(ends)) if known else html("")
+    """k_u/H_V with its interval; empty if it was not measured."""
+    is_measured = value is not None and ends is not None
+    return (
+        prose(", k_u / H_V {value} {ends}", value=significant(value), ends=interval(ends)) if is_measured else html("")
+    )
 
 
-def _way(value: float | None, ends: tuple[float, float] | None) -> Markup:
-    """u_y, where it was measured with an interval."""
+def _displacement(value: float | None, ends: tuple[float, float] | None) -> Markup:
+    """u_y with its interval; empty without one."""
     if value is None or ends is None:
         return html("")
     return prose(", u_y {value} mm {ends}", value=significant(value / MM), ends=interval([end / MM for end in ends]))
@@ -175,17 +178,17 @@ def _contact(name: str, run: Run) -> Markup:
 
 
 def contrast(chain: TurnChain) -> list[Markup]:
-    """What the other contacts do otherwise than the first: turn radius, grip utilisation, edge-depth ratio."""
+    """Differences of the other contacts from the first: turn radius, grip utilisation, edge-depth ratio."""
     (first, reference), *others = chain.runs.items()
     return [sentence for name, run in others for sentence in _contrast(html(name), run, html(first), reference)]
 
 
 def _contrast(name: Markup, run: Run, first: Markup, reference: Run) -> list[Markup]:
     return [
-        prose("The turn with the contact “{name}” ", name=name) + _width(median_radius(run), first, reference),
+        prose("The turn with the contact “{name}” ", name=name) + _compare_radii(median_radius(run), first, reference),
         prose("Its grip utilisation is {more}: {shares}. ",
               more=_more(*_grips(run, reference), words=("higher", "lower", "the same")),
-              shares=_both(*_grips(run, reference))) + _slip(name, run, first, reference),
+              shares=_both(*_grips(run, reference))) + _compare_slip(name, run, first, reference),
         prose("Its afterbody/forebody edge-depth ratio is {larger}: {ratios}.",
               larger=_more(*_ratios(run, reference), words=("larger", "smaller", "the same")),
               ratios=_both(*_ratios(run, reference))),
@@ -193,7 +196,7 @@ def _contrast(name: Markup, run: Run, first: Markup, reference: Run) -> list[Mar
     ]  # fmt: skip
 
 
-def _width(radius: float | None, first: Markup, reference: Run) -> Markup:
+def _compare_radii(radius: float | None, first: Markup, reference: Run) -> Markup:
     other = median_radius(reference)
     if radius is None or other is None:
         return prose("or that with “{first}” never turns.", first=first)
@@ -210,9 +213,9 @@ def _width(radius: float | None, first: Markup, reference: Run) -> Markup:
     )
 
 
-def _slip(name: Markup, run: Run, first: Markup, reference: Run) -> Markup:
-    """Which of two runs side-slips at all."""
-    sliding = [each for each, of in ((name, run), (first, reference)) if (used_grip(of)[1] or 0.0) > HELD]
+def _compare_slip(name: Markup, run: Run, first: Markup, reference: Run) -> Markup:
+    """Sentence about which of two runs side-slip."""
+    sliding = [label for label, of in ((name, run), (first, reference)) if (used_grip(of)[1] or 0.0) > HELD]
     if not sliding:
         return html("Grip holds in both.")
     return html("Both side-slip.") if len(sliding) == 2 else prose("“{who}” side-slips.", who=sliding[0])
@@ -252,7 +255,7 @@ def _widths(chain: TurnChain) -> tuple[float, float]:
 
 
 def ensemble_sentence(chain: TurnChain) -> Markup:
-    """How many of the runs ended like the nominal one, and how many side-slipped."""
+    """Sentence with the numbers of runs that ended like the nominal one and that side-slipped."""
     nominal = next(iter(chain.runs.values()))
     alike = sum(run.outcome == nominal.outcome for run in chain.ensemble)
     slipped = sum((run.slips or 0.0) > HELD for run in chain.ensemble)
@@ -268,7 +271,7 @@ def ensemble_sentence(chain: TurnChain) -> Markup:
 
 
 def ensemble_accuracy(chain: TurnChain) -> list[Markup]:
-    """What it costs that the ensemble is computed in a quicker way, where it is."""
+    """Sentence with the error of the ensemble's longer time steps; empty if it has none."""
     if chain.ensemble_error is None:
         return []
     return [
@@ -281,7 +284,7 @@ def ensemble_accuracy(chain: TurnChain) -> list[Markup]:
 
 
 def meaning(chain: TurnChain) -> list[Markup]:
-    """Model against what is not known: which of the two moves the track more, and what would tell most."""
+    """Effects of the contact and of the unknown inputs on the track, and the measurement that would help most."""
     reference, *others = chain.runs.values()
     aside, _ = _widths(chain)
     far = max(maximum_distance(run, reference) or 0.0 for run in others)  # a run without a step moved nowhere
@@ -297,15 +300,15 @@ def meaning(chain: TurnChain) -> list[Markup]:
             "Hard snow lets an edge in little and so offers little to hold on to: here the skis side-slip, and a "
             "slower start, a gentler slope or softer snow brings them back on their edges."
         )
-    return [contacts + _would_tell(chain), html(grip)]
+    return [contacts + _best_measurement(chain), html(grip)]
 
 
-def _would_tell(chain: TurnChain) -> Markup:
-    """What would narrow the band most."""
-    found = _shares(chain)
-    if found is None:
+def _best_measurement(chain: TurnChain) -> Markup:
+    """Sentence with the measurement that would narrow the band most; empty without shares."""
+    shares = _shares(chain)
+    if shares is None:
         return html("")
-    key = found.keys[int(np.argmax(found.aside.share))]
-    known = _FURTHER if key in {each.key for each in chain.measured} else {}
-    test = known.get(key) or (_INPUTS[key][1] if key in _INPUTS else f"a better value of {key}")
+    key = shares.keys[int(np.argmax(shares.aside.share))]
+    tests = _FURTHER if key in {measured.key for measured in chain.measured} else {}
+    test = tests.get(key) or (_INPUTS[key][1] if key in _INPUTS else f"a better value of {key}")
     return prose("The band would narrow most by {test}.", test=html(test))
