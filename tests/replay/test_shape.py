@@ -10,7 +10,7 @@ import pytest
 
 from skisnow._support.units import DEGREE
 from skisnow.replay import Replay, replay_of_run, ski_edges
-from skisnow.replay.shapes import nearest_frame
+from skisnow.replay.replay import nearest_frame
 from skisnow.scenario import load_scenario
 from skisnow.simulation.simulated_run import simulate
 

@@ -20,8 +20,18 @@ from skisnow.replay import (
     replay_of_file,
     replay_of_run,
 )
-from skisnow.replay.skier import ANKLE_BEHIND, JOINTS, STAND_HEIGHT, centre_of_mass, two_bones
-from skisnow.replay.skier_shapes import AROUND, _round, part_poses, skier_mesh, skier_parts
+from skisnow.replay.skier import (
+    ANKLE_BEHIND,
+    AROUND,
+    JOINTS,
+    STAND_HEIGHT,
+    _round,
+    centre_of_mass,
+    part_poses,
+    skier_mesh,
+    skier_parts,
+    two_bones,
+)
 from skisnow.scenario.skier import Skier
 from skisnow.simulation.moving_boots import BootHistory
 from skisnow.simulation.run import Run

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from skisnow.replay.binary import KEPT
+from skisnow.replay.binary import ARRAY_TYPES
 from skisnow.replay.meshes import _strips
-from skisnow.replay.shapes import groove_times, quaternions
+from skisnow.replay.replay import groove_times, quaternions
 
 
 def test_a_strip_between_two_sections_is_two_triangles_that_face_the_same_way() -> None:
@@ -28,8 +28,8 @@ def test_pieces_of_groove_of_a_single_moment_have_its_time() -> None:
 
 
 def test_every_array_has_a_kind_and_a_unit_that_readers_know() -> None:
-    assert {each.type for each in KEPT.values()} == {"float32", "uint16"}
-    assert {each.unit for each in KEPT.values()} == {"1", "m", "m/s", "1/m", "rad", "s", "N/m", "N"}
+    assert {each.type for each in ARRAY_TYPES.values()} == {"float32", "uint16"}
+    assert {each.unit for each in ARRAY_TYPES.values()} == {"1", "m", "m/s", "1/m", "rad", "s", "N/m", "N"}
 
 
 def test_quaternions_go_on_over_more_than_a_turn() -> None:

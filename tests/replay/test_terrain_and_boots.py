@@ -11,7 +11,7 @@ import pytest
 from skisnow.geometry.boot_axes import axes_of
 from skisnow.replay import Replay, moving_replay_model, replay_bytes, replay_of_bytes, replay_of_file, replay_of_run
 from skisnow.replay.meshes import _normals, grid_mesh, snow_mesh
-from skisnow.replay.shapes import ski_edges
+from skisnow.replay.replay import ski_edges
 from skisnow.scenario import Profile, Terrain, read_terrain
 from skisnow.simulation.moving_boots import BootHistory
 from skisnow.simulation.run import Run

@@ -27,7 +27,7 @@ _UNREAD: Final = """
 """
 UNREAD_CALLS: Final = frozenset(_UNREAD.split())
 """What is handed to these is read by programs, or was translated before."""
-NO_PAGES: Final = frozenset({"addresses.py", "guard.py", "server.py", "replay/__init__.py"})
+NO_PAGES: Final = frozenset({"replay_addresses.py", "guard.py", "server.py"})
 """Files whose words are printed where the lab was started, or answered to programs."""
 NO_WORDS: Final = frozenset(
     {
@@ -49,6 +49,7 @@ NO_WORDS: Final = frozenset(
         "default-src 'none'; style-src 'unsafe-inline'; img-src data:; frame-ancestors 'none'; sandbox",
         "beside above",  # classes of the stylesheet
         "card ask",
+        'multiple accept=".toml,.csv,.json"',
         "main then",
         "quiet progress",
         "quiet range",

@@ -14,9 +14,9 @@ from skisnow import analyse, read_campaign
 from skisnow._support.errors import ParameterError
 from skisnow.parameters import Quantity
 from skisnow.snow import published_snow
-from skisnow.web.entry.imported_test import KeptForm
 from skisnow.web.line_chart import BEHIND
-from skisnow.web.pages.study_table import _Found
+from skisnow.web.pages.correct import ImportedTestForm
+from skisnow.web.pages.study_table import _ResultsView
 from skisnow.web.snow_choice import ALL_SITES, PUBLISHED, SnowChoice
 from skisnow.web.study_fields import NOTHING, AxisFields
 
@@ -92,7 +92,7 @@ class Fields:
 
     def choose(self, key: str) -> None:
         self.inside._menu.value = key
-        finished(self.inside._another())
+        finished(self.inside._choose_campaign_or_snow())
 
 
 def test_a_published_snow_holds_until_numbers_are_chosen_again() -> None:
@@ -112,7 +112,7 @@ def test_a_published_snow_holds_until_numbers_are_chosen_again() -> None:
 
 
 def test_a_snow_of_a_campaign_without_shear_gives_no_stress(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("skisnow.web.snow_choice.said_options", dict)
+    monkeypatch.setattr("skisnow.web.snow_choice.option_texts", dict)
     (tmp_path / "campaign.toml").write_text(TOML, encoding="utf-8")
     second = "".join(line.replace(",A,", ",B,").replace("1,", "3,", 1) + "\n" for line in PENETRATION.splitlines()[1:4])
     (tmp_path / "penetration.csv").write_text(PENETRATION + second, encoding="utf-8")
@@ -161,7 +161,7 @@ def test_a_campaign_is_analysed_once_while_it_is_chosen(tmp_path: Path, monkeypa
 
     monkeypatch.setattr("skisnow.web.snow_choice.run.io_bound", io_bound)
     monkeypatch.setattr("skisnow.web.snow_choice.campaign_snow", campaign_snow)
-    monkeypatch.setattr("skisnow.web.snow_choice.said_options", dict)
+    monkeypatch.setattr("skisnow.web.snow_choice.option_texts", dict)
     fields = Fields({f"kept-{number}": f"day {number}" for number in range(1, 5)})
     fields.inside._lab = None
     for key in ("kept-1", "kept-1", "kept-2"):
@@ -184,7 +184,7 @@ def test_a_campaign_is_analysed_once_while_it_is_chosen(tmp_path: Path, monkeypa
 
 def test_a_line_for_each_value_of_the_other_input_the_named_ones_last(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("skisnow.web.pages.study_table.said", str)
-    made: Any = object.__new__(_Found)
+    made: Any = object.__new__(_ResultsView)
     made._keys = {"load_N": Quantity("load_N", "load", label="load"), "edge_angle_deg": ANGLE}
     made._x, made._other, made._lines = "edge_angle_deg", "load_N", [400.0, 600.0, 800.0, 1000.0]
     rows = [
@@ -203,7 +203,7 @@ def test_a_line_for_each_value_of_the_other_input_the_named_ones_last(monkeypatc
 
 
 def test_cells_that_were_typed_anew_are_those_of_every_row_that_has_them_once() -> None:
-    made: Any = object.__new__(KeptForm)
+    made: Any = object.__new__(ImportedTestForm)
     now = {"2/site": "A", "3/site": "A", "2/depth_mm": "1.5", "3/depth_mm": "2"}
     assert made._is_once((2, 3), "site", now)
     assert not made._is_once((2, 3), "depth_mm", now)
@@ -217,11 +217,11 @@ def test_cells_that_were_typed_anew_are_those_of_every_row_that_has_them_once() 
     }
     with pytest.MonkeyPatch.context() as patched:
         patched.setattr(
-            "skisnow.web.entry.imported_test.checked_fields",
+            "skisnow.web.pages.correct.checked_fields",
             lambda _, fields, **_conversions: {column: str(each.value).strip() for column, each in fields.items()},
         )
         patched.setattr(
-            "skisnow.web.entry.imported_test.faults", lambda fields: [each.error for each in fields if each.error]
+            "skisnow.web.pages.correct.faults", lambda fields: [each.error for each in fields if each.error]
         )
         assert made._changed(now) == {"2/site": "B", "3/site": "B", "3/depth_mm": "2.5"}
         made._fields[(3,)]["depth_mm"].error = "Depth: no number"

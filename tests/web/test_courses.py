@@ -15,8 +15,8 @@ from fastapi import FastAPI
 
 from skisnow._support.errors import ParameterError
 from skisnow.track.course import course_names
-from skisnow.web.lab_courses import LARGEST_BYTES, LabCourses
-from skisnow.web.replay.addresses import RunFolders, add_addresses
+from skisnow.web.lab_tracks import LARGEST_COURSE_BYTES, LabCourses
+from skisnow.web.replay_addresses import RunFolders, add_addresses
 
 from ..track.course.test_gate_gaps import folder_of
 from .replay.test_addresses import Client
@@ -45,7 +45,7 @@ def test_what_is_no_course_is_refused_and_leaves_nothing(tmp_path: Path) -> None
     courses = LabCourses(tmp_path)
     for called, content, said in (
         ("words.txt", b"words", "choose a .csv or .gpx file"),
-        ("long.csv", b"x" * (LARGEST_BYTES + 1), "more than 1 MB"),
+        ("long.csv", b"x" * (LARGEST_COURSE_BYTES + 1), "more than 1 MB"),
         ("bad.csv", COURSE.replace(b"right", b"up"), r"bad\.csv.*up"),
     ):
         with pytest.raises(ParameterError, match=said):

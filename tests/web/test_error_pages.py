@@ -13,7 +13,7 @@ pytest.importorskip("nicegui", reason="the web lab is not installed")
 from starlette.requests import Request
 
 from skisnow._support.errors import StoreError
-from skisnow.web.error_pages import LOG, _notified, error_sentence, log_to, plain_page
+from skisnow.web.layout import LOG, _notify, error_sentence, log_to, plain_page
 
 
 @pytest.fixture
@@ -45,7 +45,7 @@ def test_what_no_page_can_show_stands_in_the_log(log: Path, monkeypatch: pytest.
         raise RuntimeError("the slot stack for this task is empty")
 
     monkeypatch.setattr("nicegui.ui.notify", without_page)
-    _notified(StoreError("the disk is full"))
+    _notify(StoreError("the disk is full"))
     assert log.read_text(encoding="utf-8").endswith(" INFO not shown on a page: the disk is full\n")
 
 

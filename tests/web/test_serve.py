@@ -20,7 +20,7 @@ from .conftest import MISSING, Served
 if "nicegui" in MISSING:
     pytest.skip("the web lab is not installed", allow_module_level=True)
 
-from skisnow.web.server import for_others
+from skisnow.web.server import lines_for_others
 
 
 @pytest.fixture(scope="module")
@@ -101,12 +101,12 @@ def test_a_certificate_that_is_none_is_said(tmp_path: Path, capsys: pytest.Captu
 
 
 def test_who_lets_phones_in_is_told_the_addresses_and_what_can_be_read_on_the_way() -> None:
-    told = "\n".join(for_others(["http://192.168.1.7:80/", "http://10.0.0.2:80/"], secure=False))
+    told = "\n".join(lines_for_others(["http://192.168.1.7:80/", "http://10.0.0.2:80/"], secure=False))
     assert "also: http://10.0.0.2:80/" in told and "open http://192.168.1.7:80/" in told
     assert "not encrypted, the token neither" in told
     code = [line for line in told.splitlines() if set(line) <= set("█▀▄ ")]
     assert len(code) > 10 and len({len(line) for line in code}) == 1  # a block of modules
-    assert "is encrypted" in "\n".join(for_others(["https://192.168.1.7:80/"], secure=True))
+    assert "is encrypted" in "\n".join(lines_for_others(["https://192.168.1.7:80/"], secure=True))
 
 
 @pytest.mark.slow

@@ -20,7 +20,7 @@ if "nicegui" in MISSING:
 
 import uvicorn
 
-from skisnow.web.server import HEAD_BYTES, PatientToAPoint
+from skisnow.web.server import HEAD_BYTES, TimeLimitedProtocol
 
 if TYPE_CHECKING:
     from starlette.types import Receive, Scope, Send
@@ -110,7 +110,7 @@ async def greeting(_: Scope, receive: Receive, send: Send) -> None:
     await send({"type": "http.response.body", "body": b"hi"})
 
 
-class Hasty(PatientToAPoint):
+class Hasty(TimeLimitedProtocol):
     head_s = 0.2
     body_s = 0.3
 

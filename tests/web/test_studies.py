@@ -13,16 +13,16 @@ from skisnow._support.errors import ParameterError
 from skisnow.cli import main
 from skisnow.studies import read_study
 from skisnow.web.runs import duration_words
-from skisnow.web.studies import CARVE_S, Studies, StudyJob, estimate_words, learned, unit_s
-from skisnow.web.study_fields import CARVE, MOST_POINTS, Range, StudyAsked, study_keys
+from skisnow.web.studies import CARVE_S, Studies, StudyJob, estimate_words, measured_slowness, unit_s
+from skisnow.web.study_fields import CARVE, MOST_POINTS, Range, StudyQuestion, study_keys
 
-TURNS = StudyAsked(
+TURNS = StudyQuestion(
     CARVE,
     {"edge_angle_deg": Range(10.0, 70.0, 3), "H_V_N_per_mm3": Range(0.1, 10.0, 3, log=True)},
     {"ski": "slalom", "load_N": 800.0, "S_f_N_per_mm2": 0.5, "unloading_ratio": float("inf")},
     unit_s=CARVE_S,
 )
-RUNS = StudyAsked(
+RUNS = StudyQuestion(
     "carved-46m",
     {"start.speed_m_per_s": Range(6.0, 9.0, 2)},
     {"run.duration_s": 0.1, "ski.name": "slalom", "sledge.inertia_kg_m2": (6.0, 8.0, 10.0)},
@@ -66,9 +66,9 @@ def test_what_cannot_be_a_study_is_refused_and_leaves_nothing(tmp_path: Path) ->
     studies = Studies(tmp_path)
     large = Range(10.0, 70.0, MOST_POINTS + 1)
     for asked, said in (
-        (StudyAsked(CARVE, {"load_N": Range(1.0, 2.0, 2)}, {"ski": "no-such"}), "^edge_angle_deg is missing|no ski"),
-        (StudyAsked(CARVE, {"edge_angle_deg": large}, dict(TURNS.fixed) | {"H_V_N_per_mm3": 0.2}), "at most 10000"),
-        (StudyAsked("carved-46m", RUNS.varied, {"run.duration_s": -1.0}), "^fixed.run.duration_s is -1"),
+        (StudyQuestion(CARVE, {"load_N": Range(1.0, 2.0, 2)}, {"ski": "no-such"}), "^edge_angle_deg is missing|no ski"),
+        (StudyQuestion(CARVE, {"edge_angle_deg": large}, dict(TURNS.fixed) | {"H_V_N_per_mm3": 0.2}), "at most 10000"),
+        (StudyQuestion("carved-46m", RUNS.varied, {"run.duration_s": -1.0}), "^fixed.run.duration_s is -1"),
     ):
         with pytest.raises(ParameterError, match=said) as refused:
             studies.ask_for(asked)
@@ -94,19 +94,19 @@ def test_a_scheduler_computes_in_place_of_processes(tmp_path: Path, capsys: pyte
         == f"100000 points, about {duration_words(1e5 * CARVE_S)} of one core, shared by the workers of tcp://host:8786."
     )
     assert main(["serve", "--scheduler", "nowhere", "--store", str(tmp_path / "store.sqlite3")]) == 1
-    assert "the scheduler is 'nowhere'; it must be an address" in capsys.readouterr().err
+    assert "'nowhere'" in capsys.readouterr().err
 
 
 def test_the_time_of_a_study_is_learned_from_those_before() -> None:
     def done(points: int, took_s: float, workers: int = 2) -> StudyJob:
         return StudyJob("a", CARVE, {}, "2026", state="done", took_s=took_s, points=points, workers=workers, unit_s=0.5)
 
-    assert learned([], "") is None
+    assert measured_slowness([], "") is None
     assert (
-        learned([done(10, 1.0), done(10, 100.0, workers=0)], "") is None
+        measured_slowness([done(10, 1.0), done(10, 100.0, workers=0)], "") is None
     )  # a start is no measure, nor another machine
-    assert learned([done(100, 108.0), done(100, 58.0)], "") == pytest.approx((100.0 + 50.0) * 2 / 100.0)
-    assert learned([done(100, 108.0)], "fast") is None
+    assert measured_slowness([done(100, 108.0), done(100, 58.0)], "") == pytest.approx((100.0 + 50.0) * 2 / 100.0)
+    assert measured_slowness([done(100, 108.0)], "fast") is None
 
 
 def test_every_number_of_a_carved_turn_and_of_a_scenario_can_vary() -> None:

@@ -15,10 +15,10 @@ from fastapi import FastAPI
 from skisnow._support.errors import FieldDataError, ParameterError
 from skisnow.campaign.store import Store
 from skisnow.ski import read_ski
-from skisnow.web import error_pages
+from skisnow.web import layout
 from skisnow.web.lab_skis import LabSkis
-from skisnow.web.replay.addresses import add_uploads
-from skisnow.web.replay.tracks import TrackFolders
+from skisnow.web.lab_tracks import TrackFolders
+from skisnow.web.replay_addresses import add_track_uploads
 from skisnow.web.settings import Lab
 from skisnow.web.ski_uploads import add_ski_uploads
 
@@ -76,7 +76,7 @@ def test_skis_that_are_not_taken_in(lab: Lab, files: list[tuple[str, bytes]], en
 
 def test_a_track_is_taken_in_with_what_places_it(tmp_path: Path) -> None:
     app, tracks = FastAPI(), TrackFolders(tmp_path)
-    add_uploads(app, tracks)
+    add_track_uploads(app, tracks)
     found = answer(app, "/replay/track", [("Hang 1.csv", TRACK)], "file", azimuth="", start="2.5")
     (name,) = tracks.names()
     assert (found.status_code, found.headers["location"]) == (303, f"/replay?track={name}")
@@ -95,14 +95,14 @@ def test_an_error_of_ours_says_what_to_do_and_another_has_a_reference(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     log = logging.getLogger("skisnow.test-of-errors")
-    monkeypatch.setattr(error_pages, "LOG", log)
-    error_pages.log_to(tmp_path / "new" / "lab.log")
-    assert error_pages.error_sentence(ParameterError("write it so")) == "write it so"
-    assert error_pages.error_sentence(FieldDataError(["a", "b"])) == "The campaign cannot be used as it is: a\nb"
+    monkeypatch.setattr(layout, "LOG", log)
+    layout.log_to(tmp_path / "new" / "lab.log")
+    assert layout.error_sentence(ParameterError("write it so")) == "write it so"
+    assert layout.error_sentence(FieldDataError(["a", "b"])) == "The campaign cannot be used as it is: a\nb"
     try:
         raise KeyError("inside")
     except KeyError as error:
-        told = error_pages.error_sentence(error)
+        told = layout.error_sentence(error)
     reference = told.rsplit("Reference: ", 1)[1].rstrip(".")
     kept = (tmp_path / "new" / "lab.log").read_text(encoding="utf-8")
     assert f"ERROR reference {reference}" in kept

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from skisnow._support.errors import ParameterError
-from skisnow.web.number_input import typed_number
+from skisnow.web.words import typed_number
 
 
 @pytest.mark.parametrize(("text", "value"), [("0,5", 0.5), (" 12.25 ", 12.25), ("−3", -3.0), ("1e-3", 1e-3)])

@@ -1,12 +1,11 @@
-"""The replay of a simulated run: its arrays, their compact binary, and what a browser needs to show them."""
+"""Replay of a simulated run: its arrays, their compact binary format, pages and glTF models."""
 
 from .binary import replay_bytes, replay_of_bytes
 from .from_run import replay_of_run
 from .model import moving_replay_model, replay_model, write_moving_replay_model, write_replay_model
 from .page import replay_page, write_replay
-from .replay import Replay, ReplayTrack, measured_track
+from .replay import Replay, ReplayTrack, measured_track, ski_edges
 from .run_file import replay_of_file
-from .shapes import ski_edges
 
 __all__ = [
     "Replay",

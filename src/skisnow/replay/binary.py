@@ -1,4 +1,4 @@
-"""A replay as one compact piece of bytes, for a browser.
+"""Compact binary format of a replay for a browser.
 
 The bytes are: the four letters ``SKRP``, a little-endian uint32 with the length of the header, the header as JSON in
 UTF-8 padded with spaces to a multiple of four, then the arrays one after the other, each padded to a multiple of four.
@@ -23,82 +23,81 @@ from .._support.errors import ParameterError
 from .._support.user_files import GivenError, json_value
 from .meshes import COLOURS, drawn_thickness
 from .replay import SKI_NAMES, Replay, ReplayBoots, ReplayGroove, ReplaySkier, ReplaySkis, ReplayTerrain, ReplayTrack
-from .skier import JOINTS
-from .skier_shapes import skier_parts
+from .skier import JOINTS, skier_parts
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from .skier_shapes import Part
+    from .skier import Part
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 
 MAGIC: Final = b"SKRP"
 FORMAT: Final = 2
 MOST_FRAMES_PER_SECOND: Final = 100.0
-"""Finer outputs are thinned to this: a screen shows no more."""
+"""Maximum number of moments per second in a file."""
 _STEPS: Final = 65535
 _EXACT: Final = "float32"
 _COARSE: Final = "uint16"
 
 
 @dataclass(frozen=True, slots=True)
-class _Kept:
-    """How an array is kept: its type and the unit of its numbers."""
+class _ArrayType:
+    """Type of the numbers of an array in a file, and their unit."""
 
     type: str
     unit: str
 
 
-KEPT: Final[dict[str, _Kept]] = {
-    "time": _Kept(_EXACT, "s"),
-    "place": _Kept(_EXACT, "m"),
-    "attitude": _Kept(_EXACT, "1"),
-    "speed": _Kept(_EXACT, "m/s"),
-    "curvature": _Kept(_EXACT, "1/m"),
-    "heading": _Kept(_EXACT, "rad"),
-    "depth": _Kept(_EXACT, "m"),
-    "profile": _Kept(_EXACT, "m"),
-    "station": _Kept(_EXACT, "m"),
-    "half_width": _Kept(_EXACT, "m"),
-    "base_height": _Kept(_EXACT, "m"),
-    "thickness": _Kept(_EXACT, "m"),
-    "middle": _Kept(_EXACT, "m"),
-    "bending": _Kept(_COARSE, "m"),
-    "twist": _Kept(_COARSE, "rad"),
-    "edge_depth": _Kept(_COARSE, "m"),
-    "force_per_length": _Kept(_COARSE, "N/m"),
-    "force": _Kept(_EXACT, "N"),
-    "normal_force": _Kept(_EXACT, "N"),
-    "groove_middle": _Kept(_EXACT, "m"),
-    "groove_left": _Kept(_COARSE, "1"),
-    "groove_width": _Kept(_COARSE, "m"),
-    "groove_depth": _Kept(_COARSE, "m"),
-    "groove_residual_depth": _Kept(_COARSE, "m"),
-    "groove_time": _Kept(_EXACT, "s"),
-    "groove_ski": _Kept(_COARSE, "1"),
-    "track_place": _Kept(_EXACT, "m"),
-    "track_time": _Kept(_EXACT, "s"),
-    "gate_place": _Kept(_EXACT, "m"),
-    "gate_time": _Kept(_EXACT, "s"),
-    "boot_place": _Kept(_EXACT, "m"),
-    "boot_attitude": _Kept(_EXACT, "1"),
-    "terrain_x": _Kept(_EXACT, "m"),
-    "terrain_y": _Kept(_EXACT, "m"),
-    "terrain_height": _Kept(_EXACT, "m"),
-    "skier_joints": _Kept(_COARSE, "m"),
-    "skier_vertices": _Kept(_COARSE, "m"),
-    "skier_colours": _Kept(_COARSE, "1"),
-    "skier_triangles": _Kept(_COARSE, "1"),
+ARRAY_TYPES: Final[dict[str, _ArrayType]] = {
+    "time": _ArrayType(_EXACT, "s"),
+    "place": _ArrayType(_EXACT, "m"),
+    "attitude": _ArrayType(_EXACT, "1"),
+    "speed": _ArrayType(_EXACT, "m/s"),
+    "curvature": _ArrayType(_EXACT, "1/m"),
+    "heading": _ArrayType(_EXACT, "rad"),
+    "depth": _ArrayType(_EXACT, "m"),
+    "profile": _ArrayType(_EXACT, "m"),
+    "station": _ArrayType(_EXACT, "m"),
+    "half_width": _ArrayType(_EXACT, "m"),
+    "base_height": _ArrayType(_EXACT, "m"),
+    "thickness": _ArrayType(_EXACT, "m"),
+    "middle": _ArrayType(_EXACT, "m"),
+    "bending": _ArrayType(_COARSE, "m"),
+    "twist": _ArrayType(_COARSE, "rad"),
+    "edge_depth": _ArrayType(_COARSE, "m"),
+    "force_per_length": _ArrayType(_COARSE, "N/m"),
+    "force": _ArrayType(_EXACT, "N"),
+    "normal_force": _ArrayType(_EXACT, "N"),
+    "groove_middle": _ArrayType(_EXACT, "m"),
+    "groove_left": _ArrayType(_COARSE, "1"),
+    "groove_width": _ArrayType(_COARSE, "m"),
+    "groove_depth": _ArrayType(_COARSE, "m"),
+    "groove_residual_depth": _ArrayType(_COARSE, "m"),
+    "groove_time": _ArrayType(_EXACT, "s"),
+    "groove_ski": _ArrayType(_COARSE, "1"),
+    "track_place": _ArrayType(_EXACT, "m"),
+    "track_time": _ArrayType(_EXACT, "s"),
+    "gate_place": _ArrayType(_EXACT, "m"),
+    "gate_time": _ArrayType(_EXACT, "s"),
+    "boot_place": _ArrayType(_EXACT, "m"),
+    "boot_attitude": _ArrayType(_EXACT, "1"),
+    "terrain_x": _ArrayType(_EXACT, "m"),
+    "terrain_y": _ArrayType(_EXACT, "m"),
+    "terrain_height": _ArrayType(_EXACT, "m"),
+    "skier_joints": _ArrayType(_COARSE, "m"),
+    "skier_vertices": _ArrayType(_COARSE, "m"),
+    "skier_colours": _ArrayType(_COARSE, "1"),
+    "skier_triangles": _ArrayType(_COARSE, "1"),
 }
-"""Every array that a file may hold. Those in uint16 are off by half a step at most: 1/131070 of the array's range."""
+"""Types of all arrays of a file; uint16 has an error of at most half a step, 1/131070 of the array's range."""
 _OF_SHAPE: Final = ("station", "half_width", "base_height", "middle")
 _OVER_TIME: Final = ("bending", "twist", "edge_depth", "force_per_length", "force", "normal_force")
-"""Fields of the skis: their shape, and their histories."""
+"""Fields of the skis: shape, and histories."""
 
 
 def replay_bytes(replay: Replay) -> bytes:
-    """A replay as bytes; see the module's text.
+    """Bytes of a replay in the format of this module.
 
     Notes
     -----
@@ -107,7 +106,7 @@ def replay_bytes(replay: Replay) -> bytes:
     """
     arrays, described, at = [], {}, 0
     for name, values in _arrays(thinned(replay)).items():
-        content, description = _packed(KEPT[name], values)
+        content, description = _pack(ARRAY_TYPES[name], values)
         described[name] = description | {"start": at}
         arrays.append(content)
         at += len(content)
@@ -117,12 +116,12 @@ def replay_bytes(replay: Replay) -> bytes:
 
 
 def replay_of_bytes(content: bytes) -> Replay:
-    """The replay that `replay_bytes` put into bytes.
+    """Replay from the bytes of `replay_bytes`.
 
     Raises
     ------
     ParameterError
-        The bytes are none of that kind, cut off, or of a later format.
+        The bytes are not a replay, are incomplete, or have a later format.
     """
     if content[: len(MAGIC)] != MAGIC or len(content) < 8:
         raise ParameterError("these bytes are no replay: they do not begin with SKRP")
@@ -131,10 +130,10 @@ def replay_of_bytes(content: bytes) -> Replay:
         header = json_value(content[8 : 8 + length].decode("utf-8"))
         if header["format"] != FORMAT:
             raise ParameterError(f"the replay has format {header['format']}; this program reads format {FORMAT}")
-        arrays = {name: _unpacked(content, 8 + length, each) for name, each in header["arrays"].items()}
+        arrays = {name: _unpack(content, 8 + length, description) for name, description in header["arrays"].items()}
         if not np.isin(np.rint(arrays["groove_ski"]), range(len(SKI_NAMES))).all():
             raise ParameterError("a piece of the groove belongs to no ski")
-        return _rebuilt(header, arrays)
+        return _build(header, arrays)
     except (ValueError, LookupError, TypeError, AttributeError, OverflowError, MemoryError) as error:
         if isinstance(error, ParameterError) and not isinstance(error, GivenError):
             raise
@@ -142,7 +141,7 @@ def replay_of_bytes(content: bytes) -> Replay:
 
 
 def thinned(replay: Replay) -> Replay:
-    """At most so many moments a second, first and last kept."""
+    """Replay with at most `MOST_FRAMES_PER_SECOND` moments per second, including the first and the last."""
     number = len(replay.time)
     duration = float(replay.time[-1] - replay.time[0])
     step = max(1, round((number - 1) / max(duration * MOST_FRAMES_PER_SECOND, 1.0))) if number > 1 else 1
@@ -151,51 +150,51 @@ def thinned(replay: Replay) -> Replay:
     return at_moments(replay, np.unique(np.append(np.arange(0, number, step), number - 1)))
 
 
-def at_moments(replay: Replay, kept: npt.NDArray[np.int64]) -> Replay:
-    """Those moments alone, by their numbers; the groove stays whole."""
+def at_moments(replay: Replay, moments: npt.NDArray[np.int64]) -> Replay:
+    """Replay with only the moments of these indices, and the whole groove."""
     skis = replay.skis
-    along: dict[str, Any] = {name: getattr(skis, name)[kept] for name in _OVER_TIME}
+    along: dict[str, Any] = {name: getattr(skis, name)[moments] for name in _OVER_TIME}
     if skis.boots is not None:
-        along["boots"] = ReplayBoots(place=skis.boots.place[kept], attitude=skis.boots.attitude[kept])
+        along["boots"] = ReplayBoots(place=skis.boots.place[moments], attitude=skis.boots.attitude[moments])
     over: dict[str, Any] = {
-        name: getattr(replay, name)[kept]
+        name: getattr(replay, name)[moments]
         for name in ("time", "place", "attitude", "speed", "curvature", "heading", "depth")
     }
     if replay.skier is not None:
-        over["skier"] = replace(replay.skier, joints=replay.skier.joints[kept])
+        over["skier"] = replace(replay.skier, joints=replay.skier.joints[moments])
     return replace(replay, skis=replace(skis, **along), **over)
 
 
 def _arrays(replay: Replay) -> dict[str, FloatArray]:
     skis, groove = replay.skis, replay.groove
-    found: dict[str, Any] = {
+    arrays: dict[str, Any] = {
         name: getattr(replay, name)
         for name in ("time", "place", "attitude", "speed", "curvature", "heading", "depth", "profile")
     }
     for name in (*_OF_SHAPE, *_OVER_TIME):
-        found[name] = getattr(skis, name)
-    found["thickness"] = drawn_thickness(skis.station)
+        arrays[name] = getattr(skis, name)
+    arrays["thickness"] = drawn_thickness(skis.station)
     for name in ("middle", "left", "width", "depth", "residual_depth", "time", "ski"):
-        found[f"groove_{name}"] = getattr(groove, name)
+        arrays[f"groove_{name}"] = getattr(groove, name)
     if replay.track is not None:
-        found |= {"track_place": replay.track.place, "track_time": replay.track.time}
-    found |= {"gate_place": replay.gates, "gate_time": replay.gate_times}
+        arrays |= {"track_place": replay.track.place, "track_time": replay.track.time}
+    arrays |= {"gate_place": replay.gates, "gate_time": replay.gate_times}
     if skis.boots is not None:
-        found |= {"boot_place": skis.boots.place, "boot_attitude": skis.boots.attitude}
+        arrays |= {"boot_place": skis.boots.place, "boot_attitude": skis.boots.attitude}
     if replay.terrain is not None:
-        found |= {f"terrain_{name}": getattr(replay.terrain, name) for name in ("x", "y", "height")}
+        arrays |= {f"terrain_{name}": getattr(replay.terrain, name) for name in ("x", "y", "height")}
     if replay.skier is not None:
-        found |= {"skier_joints": replay.skier.joints} | _shape_arrays(skier_parts(replay.skier.height))
-    return {name: np.asarray(values, dtype=float) for name, values in found.items() if values is not None}
+        arrays |= {"skier_joints": replay.skier.joints} | _shape_arrays(skier_parts(replay.skier.height))
+    return {name: np.asarray(values, dtype=float) for name, values in arrays.items() if values is not None}
 
 
 def _shape_arrays(parts: list[Part]) -> dict[str, FloatArray]:
-    """Meshes of the skier's parts one after the other; triangles count from each part's first vertex."""
+    """Concatenated meshes of the skier's parts; triangles count from each part's first vertex."""
     meshes = [part.mesh for part in parts]
     return {
-        "skier_vertices": np.concatenate([each.vertices for each in meshes]),
-        "skier_colours": np.concatenate([each.colours for each in meshes]),
-        "skier_triangles": np.concatenate([each.pieces for each in meshes]).astype(float),
+        "skier_vertices": np.concatenate([mesh.vertices for mesh in meshes]),
+        "skier_colours": np.concatenate([mesh.colours for mesh in meshes]),
+        "skier_triangles": np.concatenate([mesh.pieces for mesh in meshes]).astype(float),
     }
 
 
@@ -216,18 +215,18 @@ def _words(replay: Replay) -> dict[str, Any]:
 
 
 def _skier_words(skier: ReplaySkier) -> dict[str, Any]:
-    """The body's height, the names of its joints, and each part with its joints and the size of its mesh."""
+    """Height of the body, names of the joints, and joints and sizes of the parts' meshes."""
     parts = [
-        {"name": each.name, "start": each.start, "end": each.end, "vertices": len(each.mesh.vertices),
-         "triangles": len(each.mesh.pieces)}
-        for each in skier_parts(skier.height)
+        {"name": part.name, "start": part.start, "end": part.end, "vertices": len(part.mesh.vertices),
+         "triangles": len(part.mesh.pieces)}
+        for part in skier_parts(skier.height)
     ]  # fmt: skip
     return {"height": skier.height, "joints": list(JOINTS), "parts": parts}
 
 
-def _packed(kept: _Kept, values: FloatArray) -> tuple[bytes, dict[str, Any]]:
-    description: dict[str, Any] = {"type": kept.type, "shape": list(values.shape), "unit": kept.unit}
-    if kept.type == _EXACT:
+def _pack(array_type: _ArrayType, values: FloatArray) -> tuple[bytes, dict[str, Any]]:
+    description: dict[str, Any] = {"type": array_type.type, "shape": list(values.shape), "unit": array_type.unit}
+    if array_type.type == _EXACT:
         numbers: npt.NDArray[Any] = values.astype("<f4")
         back = numbers.astype(float)
     else:
@@ -241,7 +240,7 @@ def _packed(kept: _Kept, values: FloatArray) -> tuple[bytes, dict[str, Any]]:
     return content + b"\0" * (-len(content) % 4), description
 
 
-def _unpacked(content: bytes, base: int, description: Mapping[str, Any]) -> FloatArray:
+def _unpack(content: bytes, base: int, description: Mapping[str, Any]) -> FloatArray:
     count = int(np.prod(description["shape"]))
     kind = "<f4" if description["type"] == _EXACT else "<u2"
     with np.errstate(invalid="ignore"):  # a damaged number may be a signalling NaN
@@ -251,7 +250,7 @@ def _unpacked(content: bytes, base: int, description: Mapping[str, Any]) -> Floa
     return np.asarray(numbers.reshape(description["shape"]))
 
 
-def _rebuilt(header: Mapping[str, Any], arrays: dict[str, FloatArray]) -> Replay:
+def _build(header: Mapping[str, Any], arrays: dict[str, FloatArray]) -> Replay:
     def some(*names: str, before: str = "") -> dict[str, Any]:
         return {name: arrays[f"{before}{name}"] for name in names}
 

@@ -1,4 +1,4 @@
-"""A replay from a run in memory."""
+"""Replay of a run in memory."""
 
 from __future__ import annotations
 
@@ -15,8 +15,17 @@ from ..scenario import Plane, Profile, Terrain
 from ..simulation.run_gates import feet_and_tips
 from ..skier.segments import height_of
 from ..track.course import MovingPoint, passages
-from .replay import Replay, ReplayBoots, ReplayGroove, ReplaySkier, ReplaySkis, ReplayTerrain, ReplayTrack
-from .shapes import groove_times, quaternions
+from .replay import (
+    Replay,
+    ReplayBoots,
+    ReplayGroove,
+    ReplaySkier,
+    ReplaySkis,
+    ReplayTerrain,
+    ReplayTrack,
+    groove_times,
+    quaternions,
+)
 from .skier import replay_skier
 
 if TYPE_CHECKING:
@@ -30,29 +39,29 @@ FloatArray: TypeAlias = npt.NDArray[np.float64]
 Slope: TypeAlias = Plane | Profile | Terrain
 
 _AROUND: Final = 30.0
-"""How far around a run measured heights are shown (m); farther out the slope goes on evenly."""
+"""Distance around a run with measured heights (m); beyond it the slope is a plane."""
 _STEP: Final = 0.5
-"""Between their places (m): a screen shows no more."""
+"""Minimum distance of the heights (m)."""
 _MOST_PLACES: Final = 40_000
-"""Of a long run they are farther apart, so that a replay stays below a megabyte."""
+"""Maximum number of heights, so that a replay stays below a megabyte."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Setting:
-    """What a run took place with.
+    """Slope, ski and sizes of a run.
 
     Attributes
     ----------
     slope, ski
         As in the scenario.
     line_spacing
-        Of the snow's lines along the path (m).
+        Distance of the snow's lines along the path (m).
     edge_angle, stance_width, centre_of_mass_height
-        Of the sledge (rad, m, m).
+        Sizes of the sledge (rad, m, m).
     course
-        Whose gates are shown, in the scenario's axes; None: there is none.
+        Course in the scenario's axes, for its gates.
     skier_height
-        Of the skier's body (m); None: a sledge.
+        Height of the skier's body (m) (default: a sledge).
     facts
         Lines of name and value for the reader.
     """
@@ -80,28 +89,28 @@ def replay_of_run(
     Parameters
     ----------
     run
-        What `skisnow.simulate` gave.
+        Result of `skisnow.simulate`.
     title
-        What the reader sees.
+        Title for the reader.
     track
-        A measured track in the run's axes, shown beside.
+        Measured track in the run's axes.
     gates
-        (g, 2) x and y of the poles of gates (m), red and blue by turns; they stand on the snow. Left out: the turning
-        poles of the run's course, where it has one.
+        x and y of the gates' poles (m), shape (g, 2), alternately red and blue (default: the turning poles of the run's
+        course).
 
     Raises
     ------
     ParameterError
-        The run has not even a first moment, or the gates are no pairs of finite numbers.
+        The run has no moment, or the gates are not pairs of finite numbers.
     """
     setting = _setting(run)
     boots = None if run.boots_by is None or run.boots is None else moving_boots(run.boots.place, run.boots.axes)
-    found = assembled(_arrays(run), setting, title=title, track=track, boots=boots)
-    return found if gates is None else replace(found, gates=_gates(gates, setting.slope), gate_times=None)
+    replay = assembled(_arrays(run), setting, title=title, track=track, boots=boots)
+    return replay if gates is None else replace(replay, gates=_gates(gates, setting.slope), gate_times=None)
 
 
 def _arrays(run: Run) -> dict[str, FloatArray]:
-    """Under the names of run.nc, vectors in one."""
+    """Arrays of a run with the names of run.nc; the components of a vector are one array."""
     skis, groove = run.skis, run.groove
     centre = run.place if run.boots is None else run.boots.centre_of_mass
     return {
@@ -197,7 +206,7 @@ def assembled(
 def _gate_times(
     course: Course, arrays: Mapping[str, FloatArray], setting: Setting, boots: ReplayBoots | None
 ) -> FloatArray:
-    """Time from the first moment to each gate (s), as gates.csv has it; NaN where there is none."""
+    """Time from the first moment to each gate as in gates.csv (s); NaN for a gate that was not crossed."""
     time, place = arrays["time"], arrays["place"]
     if boots is not None:
         feet, ahead = boots.place, _axes(boots)[..., 0]
@@ -206,8 +215,8 @@ def _gate_times(
         feet, ahead = np.stack([place + side, place - side], axis=1), arrays["attitude"][:, None, :, 0]
     tips = feet + float(setting.ski.station[0]) * ahead
     middle = MovingPoint(time, place[:, :2], arrays["velocity"][:, :2])
-    found = passages(course, middle, feet_and_tips(time, feet, tips))
-    return np.array([np.nan if each is None else each - found.start_time for each in found.times])
+    result = passages(course, middle, feet_and_tips(time, feet, tips))
+    return np.array([np.nan if gate_time is None else gate_time - result.start_time for gate_time in result.times])
 
 
 def _axes(boots: ReplayBoots) -> FloatArray:
@@ -217,7 +226,7 @@ def _axes(boots: ReplayBoots) -> FloatArray:
 
 
 def _skier(arrays: Mapping[str, FloatArray], height: float, boots: ReplayBoots | None) -> ReplaySkier | None:
-    """None where boots stand still: then nothing is known of a body."""
+    """Skier of a run; None without moving boots."""
     if boots is None:
         return None
     axes = boots.place, _axes(boots).swapaxes(-1, -2)
@@ -225,19 +234,19 @@ def _skier(arrays: Mapping[str, FloatArray], height: float, boots: ReplayBoots |
 
 
 def _profile(slope: Profile) -> FloatArray:
-    """The slope's points, every 0.25 m so that its curve is seen."""
+    """Points of the slope every 0.25 m."""
     start, end = slope.ends
     x = np.linspace(start, end, max(2, int(np.ceil((end - start) / 0.25)) + 1))
     return np.column_stack([x, slope.heights(x)])
 
 
 def _terrain(slope: Terrain, path: FloatArray) -> ReplayTerrain:
-    """The heights around a run, at places close enough that they look smooth, and not too many."""
+    """Heights around a run, at most about `_MOST_PLACES` of them."""
     surface = slope.surface
     low, high = (path[:, :2].min(axis=0) - _AROUND, path[:, :2].max(axis=0) + _AROUND)
     step = max(_STEP, float(np.sqrt(np.prod(high - low) / _MOST_PLACES)))
     x, y = (low[axis] + step * np.arange(int(np.ceil((high[axis] - low[axis]) / step)) + 1) for axis in (0, 1))
-    height = np.array([surface.heights(each, y) for each in x])
+    height = np.array([surface.heights(row_x, y) for row_x in x])
     terms = np.column_stack([np.ones(height.size), np.repeat(x - x.mean(), len(y)), np.tile(y - y.mean(), len(x))])
     plane = np.linalg.lstsq(terms, height.ravel(), rcond=None)[0]
     return ReplayTerrain(x=x, y=y, height=height, grade=(float(plane[1]), float(plane[2])))
@@ -250,11 +259,11 @@ def moving_boots(place: FloatArray, axes: FloatArray) -> ReplayBoots:
 
 
 def _gates(places: npt.ArrayLike, slope: Slope) -> FloatArray:
-    """Feet of poles on the snow."""
-    found = np.asarray(places, dtype=float)
-    if found.ndim != 2 or found.shape[1] != 2 or not np.isfinite(found).all():
-        raise ParameterError(f"gates are pairs of x and y in m; given is an array of shape {found.shape}")
-    return np.column_stack([found, _heights(slope, found)])
+    """Feet of the poles on the snow, shape (g, 3)."""
+    points = np.asarray(places, dtype=float)
+    if points.ndim != 2 or points.shape[1] != 2 or not np.isfinite(points).all():
+        raise ParameterError(f"gates are pairs of x and y in m; given is an array of shape {points.shape}")
+    return np.column_stack([points, _heights(slope, points)])
 
 
 def _heights(slope: Slope, place: FloatArray) -> FloatArray:
@@ -265,7 +274,7 @@ def _heights(slope: Slope, place: FloatArray) -> FloatArray:
 
 
 def _on_the_snow(track: ReplayTrack, slope: Slope) -> ReplayTrack:
-    """A height that was not measured is that of the snow."""
+    """Track with the height of the snow instead of missing heights."""
     place = np.array(track.place, dtype=float)
     place[:, 2] = np.where(np.isfinite(place[:, 2]), place[:, 2], _heights(slope, place))
     return ReplayTrack(name=track.name, place=place, time=track.time)
@@ -292,7 +301,7 @@ def _skis(arrays: Mapping[str, FloatArray], setting: Setting, boots: ReplayBoots
 
 
 def _groove(arrays: Mapping[str, FloatArray], spacing: float) -> ReplayGroove:
-    """Pieces in the order in which they were made."""
+    """Pieces of groove in the order of time."""
     when, ski = groove_times(arrays["groove"], arrays["time"], arrays["ski"])
     order = np.argsort(when, kind="stable")
     return ReplayGroove(

@@ -1,4 +1,4 @@
-"""A replay as a glTF model in one binary file (GLB): one moment, or the whole motion."""
+"""Replay as a glTF model in a binary file (GLB): one moment, or the whole motion."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ from scipy.spatial.transform import Rotation
 
 from .._support.staging import write_file
 from .binary import at_moments, thinned
-from .glb import Glb
 from .meshes import (
     CORNERS,
+    Glb,
     end_of_force_scale,
     grid_mesh,
     groove_mesh,
@@ -25,22 +25,20 @@ from .meshes import (
     unloaded_ski_mesh,
     upright,
 )
-from .replay import SKI_NAMES
-from .shapes import continuous, nearest_frame
-from .skier import JOINTS
-from .skier_shapes import part_poses, skier_mesh, skier_parts
+from .replay import SKI_NAMES, continuous, nearest_frame
+from .skier import JOINTS, part_poses, skier_mesh, skier_parts
 
 if TYPE_CHECKING:
     from .replay import Replay, ReplayBoots
 
 
 def replay_model(replay: Replay, time: float, *, exaggeration: float = 1.0) -> bytes:
-    """A GLB file of the moment nearest to a time (s); bending and twist taken `exaggeration` times.
+    """GLB file of the moment nearest to a time (s); ``exaggeration`` is the factor of bending and twist.
 
     Notes
     -----
-    Metres; y is up as glTF 2.0 wants it, the run's own axes are those of the node ``run`` below. Colours of vertices:
-    normal force per length along the skis, depth that stays along the groove, on the same scales as in the picture.
+    Metres; y is up as in glTF 2.0, and the node ``run`` below has the run's axes. Colours of vertices: normal force per
+    length along the skis, residual depth along the groove, on the same scales as on the page.
     """
     frame = nearest_frame(replay, time)
     named = {"snow": snow_mesh(replay)}
@@ -54,7 +52,7 @@ def replay_model(replay: Replay, time: float, *, exaggeration: float = 1.0) -> b
     model = Glb()
     parts = [model.node(name, mesh=model.mesh(name, mesh)) for name, mesh in named.items()]
     run = model.node("run", rotation=upright(replay.tilt), children=parts)
-    return model.finished(replay.title, [run])
+    return model.to_bytes(replay.title, [run])
 
 
 def write_replay_model(replay: Replay, path: str | Path, time: float, *, exaggeration: float = 1.0) -> None:
@@ -63,7 +61,7 @@ def write_replay_model(replay: Replay, path: str | Path, time: float, *, exagger
     Raises
     ------
     OutputError
-        The place cannot be written.
+        The file cannot be written.
     """
     write_file(path, replay_model(replay, time, exaggeration=exaggeration))
 
@@ -71,25 +69,27 @@ def write_replay_model(replay: Replay, path: str | Path, time: float, *, exagger
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 
 GROOVE_STEP: Final = 0.05
-"""Time (s) in which a part of the groove is made that appears as one, when it is complete (modelling assumption)."""
-_EYE, _LOOKED_AT = (-4.0, 0.0, 2.0), (0.4, 0.0, 0.1)  # of the camera that goes along, from the sledge (m)
+"""Time (s) of the parts of the groove, each of which appears when it is complete."""
+_EYE, _LOOKED_AT = (
+    (-4.0, 0.0, 2.0),
+    (0.4, 0.0, 0.1),
+)  # camera and its target from the sledge (m)
 _HIDDEN_AND_SHOWN: Final = [[0.0, 0.0, 0.0], [1.0, 1.0, 1.0]]
 
 
 def moving_replay_model(replay: Replay, *, exaggeration: float = 1.0) -> bytes:
-    """A GLB file of a whole replay that plays at true speed; bending and twist taken `exaggeration` times.
+    """GLB file of a whole replay at true speed; ``exaggeration`` is the factor of bending and twist.
 
     Notes
     -----
-    Metres; y is up as glTF 2.0 wants it, the run's own axes are those of the node ``run``. The one animation, ``run``,
-    begins at 0 with the first moment and has a key at every moment, at most 100 a second; between them places go
-    straight and attitudes by the shortest turn. The node ``sledge`` has the middle between the boots; below it each ski
-    has one joint for each station, from tip to tail, and a skier one node for each part of the body. Nothing of the
-    skis stays the same but their colours, which glTF 2.0 cannot move: they show the mean normal force. Each part
-    of the groove has scale 0 until it is made, as section 3.5.3 of the specification hides what is not to be seen. A
-    camera goes along.
+    Metres; y is up as in glTF 2.0, and the node ``run`` has the run's axes. The animation ``run`` begins at 0 with the
+    first moment and has a key at every moment, at most 100 per second; places are linear between them, attitudes take
+    the shortest rotation. The node ``sledge`` is at the middle between the boots; each ski below it has a joint for a
+    station, from tip to tail, and a skier a node for each part of the body. The colours of the skis are constant,
+    because glTF 2.0 cannot animate them: they show the mean normal force. Each part of the groove has scale 0 until its
+    time, the way to hide a node in section 3.5.3 of the specification. A camera moves with the sledge.
     """
-    shown = _told_apart(thinned(replay))
+    shown = _with_rising_times(thinned(replay))
     model = Glb()
     clock = model.array(shown.time, bounds=True)
     course = model.array(shown.place)
@@ -102,7 +102,7 @@ def moving_replay_model(replay: Replay, *, exaggeration: float = 1.0) -> bytes:
     parts = [model.node(name, mesh=model.mesh(name, mesh)) for name, mesh in ground.items()]
     parts += [*_groove(model, shown), sledge, _camera(model, shown, clock, course)]
     run = model.node("run", rotation=upright(shown.tilt), children=parts, extras=_extras(shown, exaggeration))
-    return model.finished(shown.title, [run], cameras=_CAMERAS)
+    return model.to_bytes(shown.title, [run], cameras=_CAMERAS)
 
 
 def write_moving_replay_model(replay: Replay, path: str | Path, *, exaggeration: float = 1.0) -> None:
@@ -111,17 +111,17 @@ def write_moving_replay_model(replay: Replay, path: str | Path, *, exaggeration:
     Raises
     ------
     OutputError
-        The place cannot be written.
+        The file cannot be written.
     """
     write_file(path, moving_replay_model(replay, exaggeration=exaggeration))
 
 
-def _told_apart(replay: Replay) -> Replay:
-    """From time 0 on, moments alone whose times differ as float32: keys of an animation must rise."""
+def _with_rising_times(replay: Replay) -> Replay:
+    """Replay from time 0 with only moments whose times differ as float32: keys of an animation must rise."""
     time = (replay.time - replay.time[0]).astype(np.float32).astype(float)
     groove = replace(replay.groove, time=replay.groove.time - replay.time[0])
-    kept = np.flatnonzero(np.append(np.diff(time) > 0.0, True))  # of equal ones the last
-    return at_moments(replace(replay, time=time, groove=groove), kept)
+    moments = np.flatnonzero(np.append(np.diff(time) > 0.0, True))  # the last one of equal times
+    return at_moments(replace(replay, time=time, groove=groove), moments)
 
 
 def _xyzw(replay: Replay) -> FloatArray:
@@ -129,15 +129,15 @@ def _xyzw(replay: Replay) -> FloatArray:
 
 
 def _about(axis: int, angle: FloatArray | float) -> FloatArray:
-    """Quaternions x, y, z, w of turns about an axis (0 x, 1 y, 2 z) by angles (rad)."""
+    """Quaternions x, y, z, w of rotations about an axis (0 x, 1 y, 2 z) by angles (rad)."""
     half = 0.5 * np.asarray(angle)
-    found = np.zeros((*half.shape, 4))
-    found[..., axis], found[..., 3] = np.sin(half), np.cos(half)
-    return found
+    quaternions = np.zeros((*half.shape, 4))
+    quaternions[..., axis], quaternions[..., 3] = np.sin(half), np.cos(half)
+    return quaternions
 
 
 def _skier(model: Glb, replay: Replay, clock: int) -> tuple[list[int], list[int]]:
-    """A skier: the nodes of both boots, which stand on the skis, and those of the body's parts on the sledge."""
+    """Nodes of a skier: the boots, for the skis, and the parts of the body, for the sledge."""
     boots: list[int] = []
     body: list[int] = []
     for part in [] if replay.skier is None else skier_parts(replay.skier.height):
@@ -153,11 +153,11 @@ def _skier(model: Glb, replay: Replay, clock: int) -> tuple[list[int], list[int]
     return boots, body
 
 
-def _ski(model: Glb, replay: Replay, ski: int, exaggeration: float, clock: int, on_it: list[int]) -> tuple[int, int]:
-    """A ski: the node on the sledge that carries its joints and what stands on it, and the node with its mesh.
+def _ski(model: Glb, replay: Replay, ski: int, exaggeration: float, clock: int, on_ski: list[int]) -> tuple[int, int]:
+    """Nodes of a ski on the sledge: the carrier of its joints and boot, and the node of its mesh.
 
-    The joints alone place a mesh with a skin (section 3.7.3.2), wherever its node is. It is on the sledge because some
-    viewers look once how far the mesh reaches from its node, and draw it while that is in the picture.
+    Only the joints place a mesh with a skin (section 3.7.3.2). Its node is on the sledge because some viewers determine
+    the visibility of a mesh once, from the place of its node.
     """
     skis, name = replay.skis, f"{SKI_NAMES[ski]} ski"
     place = np.zeros((*skis.bending[:, ski].shape, 3))
@@ -172,7 +172,7 @@ def _ski(model: Glb, replay: Replay, ski: int, exaggeration: float, clock: int, 
     moved = None if skis.boots is None else _on_the_sledge(replay, skis.boots, ski)
     if moved is not None:
         boot = {"translation": moved[0][0], "rotation": moved[1][0]}
-    carrier = model.node(f"{name}, boot", children=[*joints, *on_it], **boot)
+    carrier = model.node(f"{name}, boot", children=[*joints, *on_ski], **boot)
     if moved is not None:
         model.move(carrier, "translation", clock, model.array(moved[0]))
         model.move(carrier, "rotation", clock, model.array(moved[1]))
@@ -185,14 +185,14 @@ def _ski(model: Glb, replay: Replay, ski: int, exaggeration: float, clock: int, 
 
 
 def _on_the_sledge(replay: Replay, boots: ReplayBoots, ski: int) -> tuple[FloatArray, FloatArray]:
-    """Places (n, 3) of a boot that moves in the sledge's frame (m), and its quaternions x, y, z, w against it."""
+    """Places (n, 3) of a moving boot in the sledge's frame (m), and its quaternions x, y, z, w."""
     back = Rotation.from_quat(_xyzw(replay)).inv()
     turn = (back * Rotation.from_quat(np.roll(boots.attitude[:, ski], -1, axis=1))).as_quat()
     return back.apply(boots.place[:, ski] - replay.place), continuous(turn)
 
 
 def _groove(model: Glb, replay: Replay) -> list[int]:
-    """Parts of the groove, each seen from the end of its step on; those that are there from the start, always."""
+    """Nodes of the parts of the groove, each visible after the end of its step."""
     made = replay.groove.time
     step = np.maximum(0, np.ceil(made / GROOVE_STEP - 1e-9)).astype(int)
     appear = model.array(_HIDDEN_AND_SHOWN)
@@ -211,7 +211,7 @@ _CAMERAS: Final = [{"name": "along", "type": "perspective", "perspective": {"yfo
 
 
 def _camera(model: Glb, replay: Replay, clock: int, course: int) -> int:
-    """A camera uphill of the sledge that goes along and does not turn."""
+    """Node of a camera uphill of the sledge, which moves with it without rotation."""
     back = np.subtract(_EYE, _LOOKED_AT)
     back /= math.hypot(*back)
     right = np.cross([0.0, 0.0, 1.0], back)
@@ -233,7 +233,7 @@ def _steepness_behind(replay: Replay) -> FloatArray:
 
 
 def _extras(replay: Replay, exaggeration: float) -> dict[str, Any]:
-    """What the model does not show of itself."""
+    """Further data of the model."""
     force = end_of_force_scale(replay.skis.force_per_length)
     return {
         "exaggeration_of_bending_and_twist": exaggeration,

@@ -1,4 +1,4 @@
-"""A replay as one HTML file that needs nothing else: program, picture and numbers are inside it."""
+"""Replay as one self-contained HTML file with scripts, styles and data."""
 
 from __future__ import annotations
 
@@ -33,12 +33,12 @@ MODULES: Final = (
     "gap.js",
     "stage.js", "replay.js",
 )  # fmt: skip
-"""The program, each file before those that import it."""
+"""Scripts, each one before those that import it."""
 STYLE: Final = "replay.css"
 _PACKAGE: Final = "skisnow.replay"
 _ENDS_A_SCRIPT: Final = ("</script", "<!--")
 _SAID: Final = re.compile(r'\bsaid\("([^"]+)"')
-"""A text in the program that is looked up."""
+"""Pattern of a translated text in a script."""
 
 
 def write_replay(
@@ -55,27 +55,27 @@ def write_replay(
     Parameters
     ----------
     run
-        A run, its replay, or the folder or file that it was written to.
+        A run, its replay, or its folder or file.
     path
-        Of the HTML file, which is replaced where it exists.
+        Path of the HTML file; an existing file is replaced.
     ghost
-        A second run, shown translucent over the first at the same times.
+        Second run, shown translucent at the same times.
     title
-        What the reader sees; left out: the folder's name, or "A simulated run".
+        Title for the reader (default: the folder's name, or "A simulated run").
     track
-        A measured track in the run's axes, shown beside; not with a replay, which has its own.
+        Measured track in the run's axes; not allowed with a replay, which has its own track.
     language
-        Of the page: en, or a language that there is a catalogue of (de).
+        Language of the page (en, de).
 
     Returns
     -------
     Path
-        Of the file.
+        Path of the file.
 
     Raises
     ------
     ParameterError
-        A folder holds no run that can be shown, or there are no texts of the language.
+        A folder has no run that can be shown, or the language is unknown.
     OutputError
         The file cannot be written.
     """
@@ -98,24 +98,24 @@ def _replay(run: Run | Replay | str | Path, title: str | None, track: ReplayTrac
 
 
 def replay_page(run: Replay, ghost: Replay | None = None, *, language: str = ENGLISH) -> str:
-    """The HTML of a replay in a language, a second run over it where there is one."""
+    """HTML of a replay in a language, with a second run if one is given."""
     environment = Environment(loader=PackageLoader(_PACKAGE, "static"), autoescape=True, undefined=StrictUndefined)
     named = {"run": run} if ghost is None else {"run": run, "ghost": ghost}
-    content = {name: replay_bytes(in_language(each, language)) for name, each in named.items()}
+    content = {name: replay_bytes(in_language(replay, language)) for name, replay in named.items()}
     return environment.get_template("replay.html").render(
         title=run.title,
         language=language,
         said=catalogue(language).translated,
         words=page_words(language),
         css=Markup(static_text(STYLE)),
-        runs=[{"id": name, "base64": base64.b64encode(each).decode()} for name, each in content.items()],
+        runs=[{"id": name, "base64": base64.b64encode(data).decode()} for name, data in content.items()],
         modules=[{"name": name, "text": _module(name)} for name in MODULES],
     )
 
 
 @cache
 def page_words(language: str) -> dict[str, str]:
-    """What the page says in a language, by the English texts of its program; nothing for English."""
+    """Translated texts of the scripts by English text; empty for English."""
     if language == ENGLISH:
         return {}
     texts = {text for name in MODULES for text in _SAID.findall(static_text(name))}
@@ -123,14 +123,14 @@ def page_words(language: str) -> dict[str, str]:
 
 
 def in_language(run: Replay, language: str) -> Replay:
-    """A replay whose lines for the reader are in a language."""
+    """Replay with the facts for the reader in a language."""
     words = catalogue(language)
     facts = ((words.translated(name), words.with_numbers(words.translated(text))) for name, text in run.facts)
     return replace(run, facts=tuple(facts))
 
 
 def static_text(name: str) -> str:
-    """A file of the program as text."""
+    """Text of a script or style sheet."""
     return files(_PACKAGE).joinpath("static", name).read_text(encoding="utf-8")
 
 

@@ -1,4 +1,4 @@
-"""What a replay shows: a run's motion, its skis' shape and load, the groove and the slope, as plain arrays."""
+"""Arrays of a replay: motion, shape and load of the skis, groove and slope; and their geometry."""
 
 from __future__ import annotations
 
@@ -7,8 +7,11 @@ from typing import TYPE_CHECKING, Final, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
+from scipy.spatial import cKDTree
+from scipy.spatial.transform import Rotation
 
 from .._support.errors import ParameterError
+from ..simulation.sledge_body import base_lateral, base_normal, rotation
 
 if TYPE_CHECKING:
     from ..track.track import Track
@@ -21,9 +24,9 @@ SKI_NAMES: Final = ("left", "right")
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class ReplayBoots:
-    """Boots that move against the sledge: place (n, 2, 3) in space (m), and (n, 2, 4) unit quaternion w, x, y, z.
+    """Moving boots: place (n, 2, 3) in space (m), and unit quaternion w, x, y, z (n, 2, 4).
 
-    The quaternion turns x ahead, y left across the base and z off it into space.
+    The quaternion rotates x ahead, y left across the base and z off the base into space.
     """
 
     place: FloatArray
@@ -32,9 +35,9 @@ class ReplayBoots:
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class ReplaySkier:
-    """A skier in place of a sledge: the body's height (m), and its joints as they are drawn.
+    """A skier: height of the body (m), and drawn joints (n, 17, 3).
 
-    `joints` is (n, 17, 3) from the middle between the boots in the body's own axes (m), in the order of
+    The joints are relative to the middle between the boots, in the body's axes (m) and in the order of
     `skisnow.replay.skier.JOINTS`.
     """
 
@@ -49,11 +52,11 @@ class ReplayTerrain:
     Attributes
     ----------
     x, y
-        (p,) and (q,) evenly rising places (m).
+        Evenly spaced rising places (m), shapes (p,) and (q,).
     height
-        (p, q) of the snow there (m), straight between.
+        Height of the snow at these places (m), shape (p, q), linear between them.
     grade
-        Mean dz/dx and dz/dy: beyond the places the snow is drawn going on so.
+        Mean dz/dx and dz/dy, for the snow beyond these places.
     """
 
     x: FloatArray
@@ -71,7 +74,7 @@ class ReplayTerrain:
 
 
 def _cell(places: FloatArray, at: npt.ArrayLike) -> tuple[FloatArray, npt.NDArray[np.int64], FloatArray]:
-    """Share of the way to the next place, number of the place, and where one is, held within the ends."""
+    """Fraction of the distance to the next place, index of the place, and the position limited to the ends."""
     within = np.clip(np.asarray(at, dtype=float), places[0], places[-1])
     number = np.clip(np.searchsorted(places, within, side="right") - 1, 0, len(places) - 2)
     share = (within - places[number]) / (places[number + 1] - places[number])
@@ -80,28 +83,28 @@ def _cell(places: FloatArray, at: npt.ArrayLike) -> tuple[FloatArray, npt.NDArra
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class ReplaySkis:
-    """Two equal skis on a sledge; station (m) tip to tail, index of histories: time, ski (0 left, 1 right), station.
+    """Two equal skis on a sledge; histories have the indices time, ski (0 left, 1 right), station from tip to tail.
 
     Attributes
     ----------
     station, half_width, base_height
-        (m,) from the boot, half from edge to edge, height of the unloaded base above that at the boot (m).
+        Position from the boot, half of the width, height of the unloaded base above that at the boot (m), shape (m,).
     middle
-        (2, 3) of each ski's boot in the sledge's frame (m).
+        Place of each ski's boot in the sledge's frame (m), shape (2, 3).
     edge_angle
-        Of both against the sledge, positive: left edge down (rad).
+        Edge angle of both skis against the sledge, positive: left edge down (rad).
     bending, twist
-        (n, 2, m) deflection of the base away from the snow (m), growth of the edge angle (rad), against the boot.
+        Deflection of the base away from the snow (m), growth of the edge angle (rad), relative to the boot, (n, 2, m).
     edge_depth
-        (n, 2, m) of the edge that is down below the undisturbed surface; negative: above it (m).
+        Depth of the lower edge below the undisturbed surface, negative above it (m), (n, 2, m).
     force_per_length
-        (n, 2, m) normal force of the snow per length (N/m).
+        Normal force of the snow per length (N/m), (n, 2, m).
     force
-        (n, 2, 3) total force of the snow in space: normal force, shear and friction (N).
+        Total force of the snow in space: normal force, shear and friction (N), (n, 2, 3).
     normal_force
-        (n, 2) part of it along the snow's normal (N).
+        Component of the total force along the snow's normal (N), (n, 2).
     boots
-        Where they move, they say where the skis are; None: middle and edge angle do.
+        Moving boots, which determine the places of the skis (default: `middle` and `edge_angle`).
     """
 
     station: FloatArray
@@ -125,15 +128,15 @@ class ReplayGroove:
     Attributes
     ----------
     middle, left
-        (k, 3) on the undisturbed surface (m), and the unit vector along the piece to the left.
+        Place on the undisturbed surface (m), and unit vector along the piece to the left, (k, 3).
     width, depth, residual_depth
-        (k,) across, deepest that the snow was pushed, depth that stays (m).
+        Width, maximum depth, residual depth (m), (k,).
     time
-        (k,) when the boot passed it (s): the boot carries the load and cuts deepest.
+        Time when the boot, which has the load, passed the piece (s), (k,).
     ski
-        (k,) which one made it: 0 left, 1 right.
+        Index of its ski, (k,): 0 left, 1 right.
     spacing
-        Between pieces along the path (m): as far as each one reaches.
+        Distance of pieces along the path (m), which is also their length.
     """
 
     middle: FloatArray
@@ -148,7 +151,7 @@ class ReplayGroove:
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class ReplayTrack:
-    """A measured track in the run's axes: name, place (t, 3) in m, time (t,) in s on the run's clock or None."""
+    """A measured track in the run's axes: name, place (t, 3) in m, time (t,) in s on the run's clock if known."""
 
     name: str
     place: FloatArray
@@ -156,19 +159,19 @@ class ReplayTrack:
 
 
 def measured_track(track: Track, *, starts_at: float = 0.0) -> ReplayTrack:
-    """A measured track to stand beside a run; points without a place are left out.
+    """Measured track for a replay, without points that have no place.
 
     Parameters
     ----------
     track
-        In the run's axes: x down the fall line, y left, z out of the snow.
+        Track in the run's axes: x down the fall line, y left, z out of the snow.
     starts_at
-        Time of the run (s) at its first point.
+        Time of the run at the first point (s).
 
     Raises
     ------
     ParameterError
-        Its axes are east, north and up, or fewer than two of its points have a place.
+        The axes are east, north and up, or fewer than two points have a place.
     """
     if track.axes == "east_north_up":
         raise ParameterError(
@@ -182,39 +185,39 @@ def measured_track(track: Track, *, starts_at: float = 0.0) -> ReplayTrack:
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class Replay:
-    """A run as it is shown. SI, radians.
+    """A run as arrays in SI units and radians.
 
     Attributes
     ----------
     title, facts
-        In words: what it is, and lines of name and value for the reader.
+        Title, and lines of name and value for the reader.
     tilt
         Angle of the shown plane's x axis below the horizontal (rad): a plane's inclination; 0 on a profile and a
         terrain, whose axes are horizontal and vertical.
     profile
-        (p, 2) distance and height of a measured slope (m), or None.
+        Distance and height of a measured slope (m), shape (p, 2).
     terrain
-        Measured heights over the place, or None; without it and a profile the slope is the plane z = 0.
+        Measured heights over the place; without terrain and profile the slope is the plane z = 0.
     centre_of_mass_height
-        Above the bases (m).
+        Height of the centre of mass above the bases (m).
     time
-        (n,) (s).
+        Times (s), shape (n,).
     place, attitude
-        (n, 3) of the middle between the boots (m), (n, 4) unit quaternion w, x, y, z from the sledge's frame to space.
+        Place of the middle between the boots (m), (n, 3); unit quaternion w, x, y, z from sledge to space, (n, 4).
     speed, curvature, heading
-        (n,) in m/s; 1/turn radius, positive left (1/m); from the fall line, positive left (rad).
+        Speed (m/s), 1/turn radius (1/m), heading from the fall line (rad), positive left, (n,).
     depth
-        (n, 2) of the loaded edge under the boot below the undisturbed surface (m).
+        Depth of the loaded edge under the boot below the undisturbed surface (m), (n, 2).
     skis, groove
-        Their shape and load, and what they left.
+        Shape and load of the skis, and their groove.
     track
-        A measured one beside, or None.
+        Measured track.
     gates
-        (g, 3) feet of the poles of gates on the snow (m), one gate after the other, or None.
+        Feet of the gates' poles on the snow (m), (g, 3), in the order of the course.
     gate_times
-        (g,) from the run's first moment to each of them (s), NaN where its line was not crossed; None: not known.
+        Time from the start of the run to each gate (s), (g,); NaN for a gate that was not crossed.
     skier
-        Where the run has one, or None.
+        Skier of the run.
     """
 
     title: str
@@ -236,3 +239,116 @@ class Replay:
     gate_times: FloatArray | None = None
     terrain: ReplayTerrain | None = None
     skier: ReplaySkier | None = None
+
+
+def ski_edges(replay: Replay, frame: int, *, exaggeration: float = 1.0) -> FloatArray:
+    """Both edges of both skis' bases in space (m): (ski, station, edge (0 left, 1 right), 3).
+
+    Parameters
+    ----------
+    replay
+        The replay.
+    frame
+        Index of the moment, 0 to n - 1.
+    exaggeration
+        Factor of bending and twist.
+
+    Notes
+    -----
+    With x ahead, l across the base to the left and n away from the snow, a ski's base at station s has its middle at
+    s x + (h + w) n from the boot and its edges at ± b/2 (cos φ l - sin φ n): h the unloaded base, w the bending, b the
+    width, φ the twist. Bending does not shorten the distances of stations.
+    """
+    skis = replay.skis
+    place, across, away, ahead = _boots(replay, frame)
+    twist = exaggeration * skis.twist[frame][..., None]
+    height = skis.base_height + exaggeration * skis.bending[frame]
+    middle = place[:, None, :] + skis.station[:, None] * ahead[:, None] + height[..., None] * away[:, None]
+    half = skis.half_width[:, None] * (np.cos(twist) * across[:, None] - np.sin(twist) * away[:, None])
+    return np.stack([middle + half, middle - half], axis=2)
+
+
+def _boots(replay: Replay, frame: int) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+    """Place of each boot (2, 3) in space (m), and its axes across the base to the left, off it, and ahead."""
+    skis = replay.skis
+    if skis.boots is not None:
+        axes = np.stack([rotation(quaternion).T for quaternion in skis.boots.attitude[frame]])
+        return skis.boots.place[frame], axes[:, 1], axes[:, 2], axes[:, 0]
+    turn = rotation(replay.attitude[frame])
+    own = (base_lateral(skis.edge_angle), base_normal(skis.edge_angle), np.array([1.0, 0.0, 0.0]))
+    across, away, ahead = (np.broadcast_to(turn @ axis, (len(skis.middle), 3)) for axis in own)
+    return replay.place[frame] + skis.middle @ turn.T, across, away, ahead
+
+
+def nearest_frame(replay: Replay, time: float) -> int:
+    """Index of the moment nearest to a time (s)."""
+    return int(np.argmin(np.abs(replay.time - time)))
+
+
+_NEIGHBOURS: Final = 2
+
+
+def groove_times(middle: FloatArray, time: FloatArray, track: FloatArray) -> tuple[FloatArray, npt.NDArray[np.int64]]:
+    """Time (k,) at which a boot passed each piece of groove, and index (k,) of the ski with the nearest boot.
+
+    Parameters
+    ----------
+    middle
+        Places of the pieces (m), (k, 3).
+    time
+        Times of the run (s), (n,), n ≥ 1.
+    track
+        Places of the loaded edges under the boots (m), (n, 2, 3).
+
+    Notes
+    -----
+    The boot moves straight between two outputs. A piece ahead of the boot's last place, or behind its first, gets the
+    last or the first time. If a path crosses itself, the nearer passage counts.
+
+    Examples
+    --------
+    >>> track = np.array([[[0.0, 1.0, 0.0], [0.0, -1.0, 0.0]], [[2.0, 1.0, 0.0], [2.0, -1.0, 0.0]]])
+    >>> when, ski = groove_times(np.array([[0.5, -0.99, 0.0], [3.0, 1.0, 0.0]]), np.array([0.0, 1.0]), track)
+    >>> when.tolist(), ski.tolist()
+    ([0.25, 1.0], [1, 0])
+    """
+    passages = [_passage(middle, time, track[:, ski]) for ski in range(2)]
+    nearer = np.asarray(passages[1][1] < passages[0][1], dtype=np.int64)
+    return np.where(nearer == 1, passages[1][0], passages[0][0]), nearer
+
+
+def _passage(middle: FloatArray, time: FloatArray, track: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Time (k,) of the nearest passage, and its distance (k,)."""
+    if len(time) < _NEIGHBOURS or not len(middle):
+        return np.full(len(middle), time[0]), np.linalg.norm(middle - track[0], axis=1)
+    nearest = np.asarray(cKDTree(track).query(middle)[1], dtype=np.int64)
+    before = np.clip(nearest[:, None] + np.array([-1, 0]), 0, len(time) - 2)  # the step that ends there, and the next
+    start, step = track[before], track[before + 1] - track[before]
+    length2 = np.maximum(np.sum(step**2, axis=2), 1e-30)
+    share = np.clip(np.sum((middle[:, None] - start) * step, axis=2) / length2, 0.0, 1.0)
+    distance = np.linalg.norm(start + share[..., None] * step - middle[:, None], axis=2)
+    better = np.argmin(distance, axis=1)
+    rows = np.arange(len(middle))
+    chosen = before[rows, better]
+    when = time[chosen] + share[rows, better] * (time[chosen + 1] - time[chosen])
+    return when, distance[rows, better]
+
+
+def quaternions(matrices: FloatArray) -> FloatArray:
+    """Unit quaternions (n, 4), w, x, y, z, of rotation matrices (n, 3, 3); none is opposite to the one before.
+
+    Examples
+    --------
+    >>> quarter = np.array([[[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]]])  # about z, to the left
+    >>> quaternions(quarter).round(6).tolist()
+    [[0.707107, 0.0, 0.0, 0.707107]]
+    """
+    if not len(matrices):
+        return np.zeros((0, 4))
+    return continuous(np.roll(Rotation.from_matrix(np.array(matrices)).as_quat(canonical=True), 1, axis=1))
+
+
+def continuous(turns: FloatArray) -> FloatArray:
+    """The same rotations by quaternions (n, 4) of which none is opposite to the one before."""
+    turned = np.sum(turns[1:] * turns[:-1], axis=1) < 0.0
+    return np.asarray(turns * np.cumprod(np.append(1.0, np.where(turned, -1.0, 1.0)))[:, None])

@@ -1,4 +1,4 @@
-"""A replay from run.nc, whose numbers are checked."""
+"""Replay of a run from run.nc, with checks of its numbers."""
 
 from __future__ import annotations
 
@@ -49,23 +49,23 @@ _VECTORS: Final = {
 def replay_of_file(
     path: str | Path, *, title: str | None = None, ski: Ski | None = None, track: ReplayTrack | None = None
 ) -> Replay:
-    """The replay of a run that was written.
+    """Replay of a run from its file.
 
     Parameters
     ----------
     path
-        Of run.nc, or of the folder that it lies in.
+        Path of run.nc or of its folder.
     title
-        What the reader sees; left out: the folder's name.
+        Title for the reader (default: the folder's name).
     ski
-        The skis' shape; left out, it is read from where the scenario says.
+        Ski of the run (default: read from the file that the scenario names).
     track
-        A measured track in the run's axes, shown beside.
+        Measured track in the run's axes.
 
     Raises
     ------
     ParameterError
-        The file cannot be read or is no run, or a ski or profile that its scenario names is not there any more.
+        The file cannot be read or is not a run, or a file that its scenario names is missing.
     """
     path = Path(path)
     path = path / RUN_FILE if path.is_dir() else path
@@ -83,8 +83,8 @@ def replay_of_file(
     except SkisnowError as error:
         if str(path.parent) in str(error) and not isinstance(error, GivenError):
             raise
-        said = str(error).rstrip(".")
-        raise ParameterError(f"{path} is no run.nc of skisnow: {said}. Simulate it again with --out") from error
+        reason = str(error).rstrip(".")
+        raise ParameterError(f"{path} is no run.nc of skisnow: {reason}. Simulate it again with --out") from error
     except OSError as error:
         raise ParameterError(f"{path} cannot be read: {error.strerror or error}. Check the path") from error
     except _DAMAGE as error:
@@ -103,24 +103,24 @@ def _arrays(file: Any) -> dict[str, FloatArray]:
 
 
 def _boots(file: Any) -> ReplayBoots | None:
-    """The boots of a run whose boots moved."""
+    """Moving boots of a run; None if they are fixed."""
     if not getattr(file, "boots", b"").decode("utf-8").startswith("moved"):
         return None
     place = np.stack([_values(file, f"boot_{axis}") for axis in "xyz"], axis=-1)
     angles = np.stack([_values(file, f"boot_{name}") for name in ("edge_angle", "pitch", "heading")], axis=-1)
     require_finite({"boots": place, "angles of boots": angles})
-    axes = np.array([axes_of(*map(float, each)) for each in angles.reshape(-1, 3)])
+    axes = np.array([axes_of(*map(float, row)) for row in angles.reshape(-1, 3)])
     return moving_boots(place, axes.reshape(*angles.shape, 3))
 
 
 def _scenario(file: Any) -> dict[str, Any]:
-    """Its values under full names."""
+    """Values of the scenario by full name."""
     sections = json_value(file.scenario.decode("utf-8"))
     return {f"{section}.{key}": value for section, table in sections.items() for key, value in table.items()}
 
 
 def _values(file: Any, name: str) -> FloatArray:
-    """What is missing is infinite: only the turn radius of a straight path is."""
+    """Values of a variable; missing ones, which are turn radii of a straight path, are infinite."""
     variable = file.variables[name]
     values = np.array(variable[:], dtype=float)
     missing = getattr(variable, "_FillValue", None)
@@ -152,7 +152,7 @@ def _setting(path: Path, values: dict[str, Any], outcome: str, spacing: float, s
 
 def _ski(path: Path, values: dict[str, Any]) -> Ski:
     file = scenario_value(values, "ski.file")
-    return ski_named(needed_value(values, "ski.name")) if file is None else read_ski(_found(path, file, "ski"))
+    return ski_named(needed_value(values, "ski.name")) if file is None else read_ski(_locate(path, file, "ski"))
 
 
 def _slope(path: Path, values: dict[str, Any]) -> Slope:
@@ -162,29 +162,29 @@ def _slope(path: Path, values: dict[str, Any]) -> Slope:
     if kind == "grid":
         origin = {f"origin_{axis}": scenario_value(values, f"slope.origin_{axis}_m") or 0.0 for axis in "xy"}
         smoothing = scenario_value(values, "slope.smooth_m") or 0.0
-        return read_terrain(_found(path, needed_value(values, "slope.grid"), "grid"), smoothing=smoothing, **origin)
-    profile = _found(path, needed_value(values, "slope.profile"), "profile")
+        return read_terrain(_locate(path, needed_value(values, "slope.grid"), "grid"), smoothing=smoothing, **origin)
+    profile = _locate(path, needed_value(values, "slope.profile"), "profile")
     return read_profile(profile, gap=scenario_value(values, "slope.profile_gap") or "error")
 
 
 def _course(path: Path, values: dict[str, Any], slope: Slope) -> Course | None:
-    """The course in the scenario's axes; gates are there to be looked at, and one whose file is gone is not shown."""
-    said = {
+    """Course in the scenario's axes; None without a course or its file."""
+    options = {
         name.partition(".")[2]: scenario_value(values, name) for name in SCENARIO_KEYS if name.startswith("course.")
     }
-    name, file = said.pop("name", None), said.pop("file", None)
+    name, file = options.pop("name", None), options.pop("file", None)
     if name is None and file is None:
         return None
     try:
-        place = name if name is not None else _found(path, file, "course")
-        course = read_course(place, **{key: value for key, value in said.items() if value is not None})
+        place = name if name is not None else _locate(path, file, "course")
+        course = read_course(place, **{key: value for key, value in options.items() if value is not None})
     except ParameterError:
         return None
     return course_on_slope(course, slope)
 
 
-def _found(path: Path, named: str, what: str) -> Path:
-    """A file as the scenario names it, from the current folder or from the run's."""
+def _locate(path: Path, named: str, what: str) -> Path:
+    """Path of a file that the scenario names, from the current folder or that of the run."""
     for place in (Path(named), path.parent / named, path.parent.parent / named):
         if place.is_file():
             return place
@@ -195,7 +195,7 @@ def _found(path: Path, named: str, what: str) -> Path:
 
 
 LARGEST: Final = 1e9
-"""Largest number of a run in SI; also its squares are numbers in the single precision of a replay."""
+"""Largest number of a run in SI; its square is finite in single precision."""
 SMALLEST_RADIUS: Final = 1e-3
 """Smallest radius of a turn (m)."""
 _ORTHOGONAL: Final = 1e-6
@@ -227,7 +227,7 @@ def require_finite(arrays: Mapping[str, FloatArray]) -> None:
         sound = np.abs(values) >= SMALLEST_RADIUS if name == "turn_radius" else np.abs(values) <= LARGEST
         if not sound.all():
             place = np.unravel_index(int(np.argmin(sound)), values.shape)
-            raise ParameterError(f"{name} is {values[place]:g} at place {', '.join(str(each + 1) for each in place)}")
+            raise ParameterError(f"{name} is {values[place]:g} at place {', '.join(str(index + 1) for index in place)}")
 
 
 def scenario_value(values: Mapping[str, Any], name: str) -> Any:
@@ -236,7 +236,7 @@ def scenario_value(values: Mapping[str, Any], name: str) -> Any:
     Raises
     ------
     ParameterError
-        It is missing, or outside the range of its key.
+        The value is outside the range of its key.
     """
     value = values.get(name)
     if value is None:
@@ -245,7 +245,7 @@ def scenario_value(values: Mapping[str, Any], name: str) -> Any:
 
 
 def needed_value(values: Mapping[str, Any], name: str) -> Any:
-    """The same of a value that every run has."""
+    """A required value of the run's scenario by its full name; errors as in `scenario_value`, or it is missing."""
     value = scenario_value(values, name)
     if value is None:
         raise ParameterError(f"{name} is missing")

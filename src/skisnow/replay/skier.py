@@ -1,24 +1,30 @@
-"""A skier as it is drawn: joints from what the run knows of boots and body, the rest by assumption.
+"""Drawn skier: joints from boots and body of the run, and the shapes of its parts.
 
-Computed are the boots, the body's lean and its centre of mass. Assumed is how far the trunk is bent forward, where
-the hands are, that the lower legs stand in the planes of their boots as far as knees can, and the segments' lengths.
-The hips are where the masses of all segments have their centre in the run's centre of mass.
+The run gives the boots, the lean of the body and its centre of mass. The bend of the trunk, the places of the
+hands and the lengths of the segments are assumptions; lower legs are in the planes of their boots if the knees allow
+it. The hips are placed so that the centre of mass of all segments is that of the run.
 """
 
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
+from scipy.spatial.transform import Rotation
 
 from .._support.units import DEGREE
 from ..skier.segments import FOOT, FOREARM, HIP_WIDTH, SHANK, SHOULDER_WIDTH, THIGH, TRUNK, UPPER_ARM
-from .replay import ReplaySkier
+from .meshes import Mesh, linear
+from .replay import ReplaySkier, quaternions
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from ..skier.segments import Segment
+    from .replay import Replay, ReplaySkier
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 
@@ -27,9 +33,9 @@ JOINTS: Final = ("pelvis", "neck", "head", *(f"{side} {name}" for side in ("left
 """Their order in `ReplaySkier.joints`."""
 
 STAND_HEIGHT: Final = 0.07
-"""Of the boot's inner sole above the ski's base (m) (modelling assumption)."""
+"""Height of the boot's inner sole above the ski's base (m) (modelling assumption)."""
 ANKLE_BEHIND: Final = 0.05
-"""Of the boot's middle (m) (modelling assumption)."""
+"""Distance of the ankle behind the boot's middle (m) (modelling assumption)."""
 BENT: Final = 38.0 * DEGREE
 """Angle of the trunk to the body's own axis, forward (modelling assumption)."""
 STRETCHED: Final = 0.995
@@ -44,24 +50,24 @@ POLE_WAY: Final = np.array([-0.95, 0.2, -0.24])
 HEAD: Final = 0.1
 """From the middle between the shoulders to that of the head, over the height (modelling assumption)."""
 _ROUNDS: Final = 12
-"""Each brings the centre of mass about five times nearer."""
+"""Iterations; each one reduces the error of the centre of mass about five times."""
 
 
 def replay_skier(
     height: float, place: FloatArray, attitude: FloatArray, boots: tuple[FloatArray, FloatArray], centre: FloatArray
 ) -> ReplaySkier:
-    """Joints of a skier.
+    """Drawn skier of a run.
 
     Parameters
     ----------
     height
-        Of the body (m).
+        Height of the body (m).
     place, attitude
-        (n, 3) origin (m) and (n, 3, 3) axes as columns of the frame in which the joints are told.
+        Origin (n, 3) (m) and axes as columns (n, 3, 3) of the frame of the joints.
     boots
-        Their places (n, 2, 3) in m and axes (n, 2, 3, 3) as rows: ahead, left across the base, off it.
+        Places (n, 2, 3) (m) and axes as rows (n, 2, 3, 3) of the boots: ahead, left across the base, off it.
     centre
-        (n, 3) centre of mass (m).
+        Centre of mass (n, 3) (m).
     """
     body = np.moveaxis(attitude, -1, 0)
     ankle = boots[0] + (STAND_HEIGHT + FOOT.length * height) * boots[1][:, :, 2] - ANKLE_BEHIND * boots[1][:, :, 0]
@@ -71,8 +77,8 @@ def replay_skier(
         joints = _joints(height, body, pelvis, ankle, boots[1])
         pelvis = pelvis + centre - centre_of_mass(joints)
     joints = _joints(height, body, _within_reach(pelvis, ankle, body[1], height), ankle, boots[1])
-    found = np.stack([joints[name] for name in JOINTS], axis=1) - place[:, None]
-    return ReplaySkier(height=height, joints=np.einsum("nka,nab->nkb", found, attitude))
+    relative = np.stack([joints[name] for name in JOINTS], axis=1) - place[:, None]
+    return ReplaySkier(height=height, joints=np.einsum("nka,nab->nkb", relative, attitude))
 
 
 def _hip(pelvis: FloatArray, left: FloatArray, side: int, height: float) -> FloatArray:
@@ -80,7 +86,7 @@ def _hip(pelvis: FloatArray, left: FloatArray, side: int, height: float) -> Floa
 
 
 def _within_reach(pelvis: FloatArray, ankle: FloatArray, left: FloatArray, height: float) -> FloatArray:
-    """Drawn towards an ankle that is farther from its hip than a leg is long."""
+    """Pelvis moved towards an ankle that is farther from its hip than the length of a leg."""
     longest = STRETCHED * (SHANK.length + THIGH.length) * height
     for side in (0, 1, 0, 1):
         way = ankle[:, side] - _hip(pelvis, left, side, height)
@@ -92,12 +98,12 @@ def _within_reach(pelvis: FloatArray, ankle: FloatArray, left: FloatArray, heigh
 def _joints(
     height: float, body: FloatArray, pelvis: FloatArray, ankle: FloatArray, boot_axes: FloatArray
 ) -> dict[str, FloatArray]:
-    """All joints in space by name; `body` are its axes ahead, left and up, (n, 3) each."""
+    """All joints in space by name; `body`: axes ahead, left and up, each (n, 3)."""
     ahead, left, up = body
     trunk = math.cos(BENT) * up + math.sin(BENT) * ahead
     neck = pelvis + TRUNK.length * height * trunk
     upright = _unit(trunk + np.array([0.0, 0.0, 1.0]))
-    found = {"pelvis": pelvis, "neck": neck, "head": neck + HEAD * height * upright}
+    places = {"pelvis": pelvis, "neck": neck, "head": neck + HEAD * height * upright}
     for side, name in enumerate(("left", "right")):
         outward = (1.0, -1.0)[side] * left
         hip, shoulder = _hip(pelvis, left, side, height), neck + 0.5 * SHOULDER_WIDTH * height * outward
@@ -107,12 +113,12 @@ def _joints(
         tip = hand + POLE * height * np.einsum("a,anb->nb", POLE_WAY / np.linalg.norm(POLE_WAY), own)
         knee = _knee(hip, ankle[:, side], boot_axes[:, side], height)
         sided = (ankle[:, side], knee, hip, shoulder, elbow, hand, tip)
-        found |= {f"{name} {joint}": place for joint, place in zip(SIDED, sided, strict=True)}
-    return found
+        places |= {f"{name} {joint}": place for joint, place in zip(SIDED, sided, strict=True)}
+    return places
 
 
 def _knee(hip: FloatArray, ankle: FloatArray, axes: FloatArray, height: float) -> FloatArray:
-    """Ahead of hip and ankle, and as far aside that the lower leg stands in the plane of its boot, where it can."""
+    """Knee ahead of hip and ankle, with the lower leg in the plane of its boot if possible."""
     lengths = THIGH.length * height, SHANK.length * height
     straight = two_bones(hip, ankle, *lengths, axes[:, 0])
     way = _unit(ankle - hip)
@@ -126,9 +132,9 @@ def _knee(hip: FloatArray, ankle: FloatArray, axes: FloatArray, height: float) -
 
 
 def two_bones(start: FloatArray, end: FloatArray, first: float, second: float, bent_to: FloatArray) -> FloatArray:
-    """The joint (n, 3) between two bones of given lengths (m) from start to end (n, 3), bent towards (n, 3).
+    """Joint (n, 3) between two bones of given lengths (m) from start to end (n, 3), bent in a direction (n, 3).
 
-    Ends that are too near or too far for the bones are taken at the nearest distance that is not.
+    The distance of the ends is limited to that of the bones.
     """
     way = end - start
     length = np.linalg.norm(way, axis=1, keepdims=True)
@@ -148,7 +154,7 @@ def _dot(one: FloatArray, other: FloatArray) -> FloatArray:
 
 
 def centre_of_mass(joints: dict[str, FloatArray]) -> FloatArray:
-    """Centre of mass (n, 3) of a body with joints (n, 3) by name; the feet's are at the ankles."""
+    """Centre of mass (n, 3) of a body with joints (n, 3) by name; the feet are at the ankles."""
 
     def of(segment: Segment, upper: str, lower: str) -> FloatArray:
         return segment.mass * ((1.0 - segment.centre) * joints[upper] + segment.centre * joints[lower])
@@ -161,3 +167,163 @@ def centre_of_mass(joints: dict[str, FloatArray]) -> FloatArray:
             total + of(UPPER_ARM, f"{side} shoulder", f"{side} elbow") + of(FOREARM, f"{side} elbow", f"{side} hand")
         )
     return total
+
+
+DRAWN_HEIGHT: Final = 1.76
+"""Height (m) of the body whose parts have these widths."""
+AROUND: Final = 12
+"""Corners of a cross section."""
+PLASTIC, TROUSERS, JACKET, GLOVE, HELMET, VISOR, METAL = (
+    (38, 44, 52), (31, 58, 95), (200, 55, 45), (28, 30, 34), (240, 242, 244), (22, 26, 32), (120, 128, 136),
+)  # fmt: skip
+Ring: TypeAlias = tuple[float, float, float, float]
+"""Along the axis, half as wide ahead and aside, and its middle ahead (m)."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Part:
+    """A part of the skier.
+
+    Attributes
+    ----------
+    name
+        Name, such as "left thigh".
+    start, end
+        Joints at its origin and in the direction of its z axis; its y axis is to the left. A boot has "left boot" or
+        "right boot" and the axes of the boot.
+    mesh
+        Mesh in these axes (m), with colours in linear light.
+    """
+
+    name: str
+    start: str
+    end: str
+    mesh: Mesh
+
+
+def skier_parts(height: float) -> list[Part]:
+    """Parts of a skier with this height (m)."""
+    return [*_trunk_and_head(height), *(part for side in ("left", "right") for part in _sided(side, height))]
+
+
+def _trunk_and_head(height: float) -> list[Part]:
+    h, trunk, head = height / DRAWN_HEIGHT, TRUNK.length * height, HEAD * height
+    hips = [(-0.11 * h, 0.04, 0.07, 0.0), (-0.07 * h, 0.105, 0.15, -0.01), (0.03 * h, 0.115, 0.165, -0.01)]
+    chest = [
+        (0.02 * h, 0.118, 0.168, -0.01), (0.4 * trunk, 0.105, 0.15, 0.0), (0.75 * trunk, 0.125, 0.185, 0.0),
+        (0.95 * trunk, 0.1, 0.19, 0.0), (1.04 * trunk, 0.075, 0.13, 0.0), (1.08 * trunk, 0.05, 0.06, 0.0),
+    ]  # fmt: skip
+    neck = _round([(-0.02, 0.055, 0.06, 0.0), (0.8 * head, 0.055, 0.06, 0.0)], JACKET)
+    helmet = _ball((0.01, 0.0, 1.05 * head), (0.125 * h, 0.105 * h, 0.125 * h), HELMET)
+    visor = _ball((0.085 * h, 0.0, head), (0.055 * h, 0.085 * h, 0.05 * h), VISOR)
+    return [
+        Part("trunk", "pelvis", "neck", _join([_round(hips, TROUSERS), _round(chest, JACKET)])),
+        Part("head", "neck", "head", _join([neck, helmet, visor])),
+    ]
+
+
+def _sided(side: str, height: float) -> list[Part]:
+    h = height / DRAWN_HEIGHT
+    shank, thigh, arm, pole = (share * height for share in (SHANK.length, THIGH.length, UPPER_ARM.length, POLE))
+    return [
+        Part(f"{side} boot", f"{side} boot", f"{side} boot", _boot()),
+        Part(f"{side} lower leg", f"{side} ankle", f"{side} knee", _join([
+            _round([(-0.06, 0.05, 0.05, 0.0), (0.0, 0.068, 0.058, 0.0), (0.42 * shank, 0.075, 0.062, 0.0),
+                    (0.5 * shank, 0.08, 0.066, 0.0)], PLASTIC),
+            _round([(0.48 * shank, 0.066, 0.06, 0.0), (0.75 * shank, 0.07, 0.064, -0.01),
+                    (shank, 0.064, 0.062, 0.0), (1.1 * shank, 0.03, 0.03, 0.0)], TROUSERS)])),
+        Part(f"{side} thigh", f"{side} knee", f"{side} hip", _round([
+            (-0.05 * h, 0.035, 0.035, 0.0), (0.0, 0.066, 0.063, 0.0), (0.4 * thigh, 0.082, 0.078, 0.0),
+            (0.9 * thigh, 0.098, 0.092, 0.0), (1.1 * thigh, 0.05, 0.05, 0.0)], TROUSERS)),
+        Part(f"{side} upper arm", f"{side} shoulder", f"{side} elbow", _round([
+            (-0.07 * h, 0.03, 0.03, 0.0), (-0.02 * h, 0.066, 0.064, 0.0), (0.5 * arm, 0.055, 0.052, 0.0),
+            (arm, 0.045, 0.045, 0.0), (1.1 * arm, 0.025, 0.025, 0.0)], JACKET)),
+        Part(f"{side} forearm", f"{side} elbow", f"{side} hand", _join([_round([
+            (-0.04 * h, 0.025, 0.025, 0.0), (0.0, 0.046, 0.046, 0.0), (0.135 * height, 0.038, 0.038, 0.0)], JACKET),
+            _ball((0.0, 0.0, 0.15 * height), (0.055, 0.05, 0.065), GLOVE)])),
+        Part(f"{side} pole", f"{side} hand", f"{side} pole tip", _join([
+            _round([(-0.09, 0.016, 0.016, 0.0), (0.06, 0.016, 0.016, 0.0)], PLASTIC),
+            _round([(0.0, 0.0085, 0.0085, 0.0), (pole, 0.005, 0.005, 0.0)], METAL),
+            _round([(0.93 * pole, 0.035, 0.035, 0.0), (0.94 * pole, 0.03, 0.03, 0.0)], PLASTIC)])),
+    ]  # fmt: skip
+
+
+def _boot() -> Mesh:
+    """Mesh of a boot in its axes."""
+    plate = _round([(0.012, 0.2, 0.031, 0.0), (0.045, 0.18, 0.031, 0.0)], METAL, square=4.0)
+    shell = [(0.04, 0.155, 0.044, 0.0), (0.075, 0.16, 0.05, 0.0), (0.105, 0.15, 0.052, -0.005)]
+    top = STAND_HEIGHT + 0.07
+    return _join(
+        [plate, _round([*shell, (top, 0.09, 0.058, -0.05), (top + 0.03, 0.07, 0.058, -0.05)], PLASTIC, square=2.6)]
+    )
+
+
+def _round(rings: Sequence[Ring], colour: tuple[int, int, int], *, square: float = 2.0) -> Mesh:
+    """Closed surface through rings; `square` above 2 has corners (a superellipse)."""
+    angle = 2.0 * np.pi * np.arange(AROUND) / AROUND
+    cosine, sine = (np.sign(part) * np.abs(part) ** (2.0 / square) for part in (np.cos(angle), np.sin(angle)))
+    ends = [(rings[0][0], 0.0, 0.0, rings[0][3]), *rings, (rings[-1][0], 0.0, 0.0, rings[-1][3])]
+    vertices = np.concatenate(
+        [
+            np.column_stack([middle + ahead * cosine, aside * sine, np.full(AROUND, z)])
+            for z, ahead, aside, middle in ends
+        ]
+    )
+    corner, following = np.arange(AROUND), (np.arange(AROUND) + 1) % AROUND
+    first = AROUND * np.arange(len(ends) - 1)[:, None]
+    below, above = (
+        np.stack(np.broadcast_arrays(first + corner, first + following, first + AROUND + corner), -1),
+        np.stack(np.broadcast_arrays(first + following, first + AROUND + following, first + AROUND + corner), -1),
+    )
+    pieces = np.concatenate([below.reshape(-1, 3), above.reshape(-1, 3)])
+    return Mesh(vertices, np.broadcast_to(linear(colour), vertices.shape), pieces)
+
+
+def _ball(middle: tuple[float, float, float], half: tuple[float, float, float], colour: tuple[int, int, int]) -> Mesh:
+    """Mesh of an ellipsoid."""
+    polar = np.linspace(0.0, np.pi, 8)[1:-1]
+    rings = [(-half[2] * np.cos(at), half[0] * np.sin(at), half[1] * np.sin(at), 0.0) for at in polar.tolist()]
+    mesh = _round(rings, colour)
+    mesh.vertices[:AROUND, 2], mesh.vertices[-AROUND:, 2] = -half[2], half[2]
+    return Mesh(mesh.vertices + np.array(middle), mesh.colours, mesh.pieces)
+
+
+def _join(meshes: Sequence[Mesh]) -> Mesh:
+    first = np.cumsum([0, *(len(mesh.vertices) for mesh in meshes[:-1])])
+    return Mesh(
+        np.concatenate([mesh.vertices for mesh in meshes]),
+        np.concatenate([mesh.colours for mesh in meshes]),
+        np.concatenate([mesh.pieces + start for mesh, start in zip(meshes, first, strict=True)]),
+    )
+
+
+def part_poses(skier: ReplaySkier, part: Part) -> tuple[FloatArray, FloatArray]:
+    """Origin (n, 3) and unit quaternion w, x, y, z (n, 4) of a part between joints, in the frame of the joints."""
+    start, end = (skier.joints[:, JOINTS.index(joint)] for joint in (part.start, part.end))
+    z = end - start
+    z = z / np.linalg.norm(z, axis=1, keepdims=True)
+    y = np.array([0.0, 1.0, 0.0]) - z[:, 1:2] * z
+    y = y / np.maximum(np.linalg.norm(y, axis=1, keepdims=True), 1e-9)
+    return start, quaternions(np.stack([np.cross(y, z), y, z], axis=2))
+
+
+def skier_mesh(replay: Replay, frame: int) -> Mesh:
+    """Mesh of the skier of a replay at a moment, in space."""
+    skier, boots = replay.skier, replay.skis.boots
+    assert skier is not None
+    assert boots is not None
+    body = _turn(replay.attitude[frame])
+    placed = []
+    for part in skier_parts(skier.height):
+        if part.start in JOINTS:
+            start, turn = (pose[frame] for pose in part_poses(skier, part))
+            vertices = replay.place[frame] + body.apply(start + _turn(turn).apply(part.mesh.vertices))
+        else:
+            side = ("left boot", "right boot").index(part.start)
+            vertices = boots.place[frame, side] + _turn(boots.attitude[frame, side]).apply(part.mesh.vertices)
+        placed.append(Mesh(vertices, part.mesh.colours, part.mesh.pieces))
+    return _join(placed)
+
+
+def _turn(quaternion: FloatArray) -> Rotation:
+    return Rotation.from_quat(np.roll(quaternion, -1))

@@ -1,4 +1,4 @@
-"""The web lab: pages over the library, served to a browser on the same machine. No formula lives here."""
+"""Web lab: pages over the library, served to a browser. It contains no formula."""
 
 from __future__ import annotations
 

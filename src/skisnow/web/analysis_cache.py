@@ -17,78 +17,75 @@ from nicegui import run
 
 from .._support.errors import StoreError
 from ..campaign.store import Journals
-from .campaign_analysis import N_FIGURES, Choice, Numbers, Refusal, figure, numbers_of
+from .campaign_analysis import N_FIGURES, Choice, Numbers, Refusal, analyse_files, figure
 from .transfer import entry_files, kept_files
 
 if TYPE_CHECKING:
     from collections.abc import AsyncIterator
 
-    from .campaign_analysis import Shown
+    from .campaign_analysis import FigureImage
     from .settings import Lab
     from .subprocesses import Worker
 
 MOST_CAMPAIGNS: Final = 6
 MOST_CHOICES: Final = 4
-"""How many are kept in memory (modelling assumption): those of a day's work, not of a season's."""
+"""Maximum numbers of campaigns, and of choices for each, in memory: those of a day's work."""
 
 
 @dataclass(eq=False)
-class Analysed:
-    """Numbers of one choice under a key of their own, figures by language as far as drawn; None: there are no data."""
+class CachedAnalysis:
+    """Numbers of one choice with a unique key, and its figures by language as far as drawn; None for missing data."""
 
     key: str
     numbers: Numbers
-    figures: dict[str, list[Shown | None]] = field(default_factory=dict)
+    figures: dict[str, list[FigureImage | None]] = field(default_factory=dict)
     drawing: asyncio.Lock = field(default_factory=asyncio.Lock)
 
 
 class CampaignSource:
-    """A campaign as it stands, in memory, and what was computed of it.
-
-    Reports that were asked for lie in a folder, which goes when nobody holds the subject any more.
-    """
+    """One state of a campaign in memory with its analyses; its reports are in a folder that is deleted with it."""
 
     def __init__(self, lab: Lab, kind: str, id_: str) -> None:
         self._lab, self._kind, self._id = lab, kind, id_
         self.files = (kept_files if kind == "kept" else entry_files)(lab, id_)
-        self._computed = OrderedDict[Choice, Analysed]()
+        self._computed = OrderedDict[Choice, CachedAnalysis]()
         self._computing = asyncio.Lock()
 
     @cached_property
     def place(self) -> Path:
-        """The folder of its reports."""
+        """Temporary folder of the reports."""
         place = mkdtemp(prefix="skisnow-analysis-")
         weakref.finalize(self, shutil.rmtree, place, ignore_errors=True)
         return Path(place)
 
     def write_campaign(self, folder: Path) -> None:
-        """Write all files of the campaign into a new folder, as they were when it was looked at."""
+        """Write all files of this state of the campaign into a new folder."""
         if self._kind == "kept":
             self._lab.store.export(self._id, folder)
         folder.mkdir(exist_ok=True)
         for name, content in self.files.contents.items():
             (folder / name).write_bytes(content)
 
-    def known(self, choice: Choice) -> Analysed | None:
-        """What was computed of a choice before."""
+    def cached(self, choice: Choice) -> CachedAnalysis | None:
+        """Analysis of a choice if it was computed before."""
         return self._computed.get(choice)
 
-    async def analysed(self, choice: Choice) -> Analysed | Refusal:
-        """The numbers of a choice, computed where they are not known."""
+    async def analysed(self, choice: Choice) -> CachedAnalysis | Refusal:
+        """Analysis of a choice, from the cache or computed now."""
         async with self._computing:
-            if (known := self.known(choice)) is not None:
-                return known
-            found = await run.io_bound(numbers_of, self.files, choice)
-            if not isinstance(found, Numbers):
-                return found or Refusal("The lab is about to end.")
-            self._computed[choice] = made = Analysed(secrets.token_hex(8), found)
+            if (cached := self.cached(choice)) is not None:
+                return cached
+            outcome = await run.io_bound(analyse_files, self.files, choice)
+            if not isinstance(outcome, Numbers):
+                return outcome or Refusal("The lab is about to end.")
+            self._computed[choice] = result = CachedAnalysis(secrets.token_hex(8), outcome)
             while len(self._computed) > MOST_CHOICES:
                 self._computed.popitem(last=False)
-            return made
+            return result
 
 
-class Analyses:
-    """The campaigns that were looked at last, each in its last state."""
+class AnalysisCache:
+    """Cache of the campaigns that were opened last, each in its last state."""
 
     def __init__(self, lab: Lab, worker: Worker) -> None:
         self._lab = lab
@@ -96,19 +93,19 @@ class Analyses:
         self._subjects = OrderedDict[tuple[str, str], tuple[int, CampaignSource]]()
         self._opening = asyncio.Lock()
 
-    def known(self, kind: str, id_: str) -> CampaignSource | None:
-        """The campaign, where it was looked at before and nothing was entered since; None otherwise.
+    def cached(self, kind: str, id_: str) -> CampaignSource | None:
+        """The campaign if it is in the cache and nothing was entered since.
 
         Raises
         ------
         StoreError
             The store has no such campaign.
         """
-        found, state = self._subjects.get((kind, id_)), self._state(kind, id_)
-        return found[1] if found is not None and found[0] == state else None
+        entry, state = self._subjects.get((kind, id_)), self._state(kind, id_)
+        return entry[1] if entry is not None and entry[0] == state else None
 
     async def subject(self, kind: str, id_: str) -> CampaignSource:
-        """The campaign in the state that the store has it in.
+        """The campaign in its current state.
 
         Raises
         ------
@@ -116,21 +113,21 @@ class Analyses:
             The store has no such campaign.
         """
         async with self._opening:
-            if (known := self.known(kind, id_)) is not None:
+            if (cached := self.cached(kind, id_)) is not None:
                 self._subjects.move_to_end((kind, id_))
-                return known
-            state = self._state(kind, id_)  # before it is read: what comes meanwhile is looked at again
-            made = await run.io_bound(CampaignSource, self._lab, kind, id_)
-            if made is None:
+                return cached
+            state = self._state(kind, id_)  # before reading: a later entry makes the cached state old
+            source = await run.io_bound(CampaignSource, self._lab, kind, id_)
+            if source is None:
                 raise StoreError("The lab is about to end.")
-            self._subjects[(kind, id_)] = (state, made)
+            self._subjects[(kind, id_)] = (state, source)
             self._subjects.move_to_end((kind, id_))
             while len(self._subjects) > MOST_CAMPAIGNS:
                 self._subjects.popitem(last=False)
-            return made
+            return source
 
     def _state(self, kind: str, id_: str) -> int:
-        """A number that rises with each entry; the files of a kept campaign stay, but it can be corrected."""
+        """Number of entries, or of corrections of an imported campaign, whose files do not change."""
         if kind != "entry":
             stored = self._lab.store.show(id_)
             return len(Journals(self._lab.store).corrections(stored.id))
@@ -139,8 +136,8 @@ class Analyses:
             raise StoreError(f"The store has no campaign with the id {id_!r}; the list of campaigns names all.")
         return counts[id_]
 
-    async def figures(self, analysed: Analysed, language: str) -> AsyncIterator[Shown]:
-        """The figures one after another, each as soon as it is drawn, whoever had it drawn."""
+    async def figures(self, analysed: CachedAnalysis, language: str) -> AsyncIterator[FigureImage]:
+        """Figures in order, each as soon as it is drawn, also by another page."""
         numbers, drawn = analysed.numbers, analysed.figures.setdefault(language, [])
         for number in range(N_FIGURES):
             async with analysed.drawing:

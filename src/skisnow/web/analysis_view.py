@@ -1,4 +1,4 @@
-"""Tables and figures of an analysis as a page shows them, and the choice of what takes part."""
+"""Tables and figures of an analysis on a page, and the choice of included data."""
 
 from __future__ import annotations
 
@@ -14,9 +14,8 @@ from ..campaign.reading.table_forms import TABLES
 from ..report.formatting import counted
 from .campaign_analysis import Choice, Numbers, Refusal, choosable_flags
 from .elements import Words, html_words, named
-from .error_pages import error_sentence
 from .language import language_of, said, said_as_written
-from .layout import heading, sentence
+from .layout import error_sentence, heading, sentence
 
 if TYPE_CHECKING:
     from collections.abc import Awaitable, Callable, Sequence, Set
@@ -24,8 +23,8 @@ if TYPE_CHECKING:
 
     from nicegui.events import ValueChangeEventArguments
 
-    from .analysis_cache import Analysed, Analyses, CampaignSource
-    from .campaign_analysis import Shown
+    from .analysis_cache import AnalysisCache, CachedAnalysis, CampaignSource
+    from .campaign_analysis import FigureImage
 
     Chooser: TypeAlias = Callable[[ValueChangeEventArguments[bool | None]], Awaitable[None]]
 
@@ -36,28 +35,28 @@ LONG_TABLES: Final = {
 FIRST_TABLE: Final = "sites"
 MOST_LISTED: Final = 400
 NAMES_IN_FILES: Final = frozenset(TOP_KEYS).union(*(form.known for form in TABLES))
-"""Columns and keys, which are the same in every language."""
+"""Columns and keys, which are not translated."""
 
 
 class OpenAnalysis:
-    """One open page: which campaign, as it was when the page was opened, what was chosen last, what came of it."""
+    """State of an open page: campaign, its state when the page was opened, last choice and its result."""
 
     def __init__(self, kind: str, id_: str, subject: CampaignSource | None) -> None:
         self.kind = kind
         self.id = id_
         self.subject = subject
         self.choice = Choice()
-        self.analysed: Analysed | None = None
+        self.analysed: CachedAnalysis | None = None
         self.refused = ""
         self.closed = False
         self.settled = asyncio.Event()
-        """Set while `analysed`, or why there is nothing, belongs to the choice."""
+        """Set while the result, or the reason of its absence, belongs to the choice."""
 
 
 class AnalysisView:
     """Tables and figures that follow the choice."""
 
-    def __init__(self, page: OpenAnalysis, analyses: Analyses) -> None:
+    def __init__(self, page: OpenAnalysis, analyses: AnalysisCache) -> None:
         self._page = page
         self._analyses = analyses
         self._asked = 0
@@ -67,41 +66,41 @@ class AnalysisView:
         self._tables = named(ui.element("section"), "Tables")
         self._figures = named(ui.element("section"), "Figures")
 
-    def show_known(self) -> None:
-        """Show at once what was computed before."""
+    def show_cached(self) -> None:
+        """Show a cached analysis at once."""
         subject = self._page.subject
-        known = subject.known(self._page.choice) if subject is not None else None
-        if known is not None:
-            self._show(known)
+        result = subject.cached(self._page.choice) if subject is not None else None
+        if result is not None:
+            self._show(result)
 
     async def compute(self) -> None:
-        """Compute the numbers, then draw figure by figure; an older question's answer is dropped."""
+        """Compute the numbers, then draw figure by figure; results for an older choice are dropped."""
         self._asked += 1
-        asked, page = self._asked, self._page
+        number, page = self._asked, self._page
         page.settled.clear()
         try:
             page.subject = page.subject or await self._analyses.subject(page.kind, page.id)
-            found = await page.subject.analysed(page.choice)
-            if self._is_old(asked):
+            result = await page.subject.analysed(page.choice)
+            if self._is_old(number):
                 return
-            if isinstance(found, Refusal):
-                self._refuse(found)
+            if isinstance(result, Refusal):
+                self._refuse(result)
                 return
-            if found is not page.analysed:
-                self._show(found)
+            if result is not page.analysed:
+                self._show(result)
             page.settled.set()
-            await self._draw(found, asked)
+            await self._draw(result, number)
         except Exception as error:
-            if not self._is_old(asked):
+            if not self._is_old(number):
                 page.refused = error_sentence(error)
                 page.settled.set()
                 self._status.set_text(page.refused)
 
-    def _is_old(self, asked: int) -> bool:
-        return asked != self._asked or self._page.closed
+    def _is_old(self, number: int) -> bool:
+        return number != self._asked or self._page.closed
 
     def _refuse(self, refusal: Refusal) -> None:
-        """Say why there is nothing; what was shown before belongs to another choice."""
+        """Show why there is no analysis instead of the results of another choice."""
         self._page.analysed = None
         self._page.refused = f"This campaign cannot be analysed yet. {refusal.said}"
         self._page.settled.set()
@@ -113,23 +112,23 @@ class AnalysisView:
             return
         self._status.set_text("This campaign cannot be analysed yet. What is wrong in its files:")
         with self._results:
-            _list_of_errors(refusal.errors)
+            _list_errors(refusal.errors)
             if self._page.kind == "kept":
                 sentence("Put the files right and import them again. Single cells can be put right under Correct.")
 
-    def _show(self, found: Analysed) -> None:
-        first, self._page.analysed = not self._choices.default_slot.children, found
+    def _show(self, result: CachedAnalysis) -> None:
+        first, self._page.analysed = not self._choices.default_slot.children, result
         if first:
-            self._show_choices(found.numbers)
-        self._show_results(found.numbers)
-        self._show_tables(found.numbers)
-        self._status.set_text(f"{_counts(found.numbers)} Drawing the figures …")
+            self._show_choices(result.numbers)
+        self._show_results(result.numbers)
+        self._show_tables(result.numbers)
+        self._status.set_text(f"{_counts(result.numbers)} Drawing the figures …")
 
-    async def _draw(self, found: Analysed, asked: int) -> None:
-        """Show each figure as it comes; those of another choice stay until then."""
+    async def _draw(self, result: CachedAnalysis, number: int) -> None:
+        """Show each figure when it is drawn; those of another choice stay until the first one."""
         begun = False
-        async for shown in self._analyses.figures(found, language_of(self._figures.client)):
-            if self._is_old(asked):
+        async for shown in self._analyses.figures(result, language_of(self._figures.client)):
+            if self._is_old(number):
                 return
             if not begun:
                 self._figures.clear()
@@ -137,48 +136,50 @@ class AnalysisView:
                     heading("Figures")
                 begun = True
             with self._figures:
-                _figure(shown, found.numbers.names)
-        if not self._is_old(asked):
-            self._status.set_text(_counts(found.numbers))
+                _figure(shown, result.numbers.names)
+        if not self._is_old(number):
+            self._status.set_text(_counts(result.numbers))
 
-    def _show_results(self, found: Numbers) -> None:
-        """H_V and S_f first: the report's own sentences, and below them each site's."""
+    def _show_results(self, numbers: Numbers) -> None:
+        """Show the key results of the report, then the table of the sites."""
         self._results.clear()
         with self._results:
-            heading(found.results["campaign"]["name"])
+            heading(numbers.results["campaign"]["name"])
             with ui.element("ul").classes("results"):
-                for words in found.key_results:
+                for words in numbers.key_results:
                     with ui.element("li"):
-                        html_words(words, found.names)
-            for warning in found.results["penetration"]["warnings"]:
+                        html_words(words, numbers.names)
+            for warning in numbers.results["penetration"]["warnings"]:
                 sentence(warning, "quiet")
-            if FIRST_TABLE in found.tables:
-                _table(found.tables[FIRST_TABLE], found.names)
+            if FIRST_TABLE in numbers.tables:
+                _table(numbers.tables[FIRST_TABLE], numbers.names)
 
-    def _show_tables(self, found: Numbers) -> None:
+    def _show_tables(self, numbers: Numbers) -> None:
         self._tables.clear()
         with self._tables:
-            for name, html in found.tables.items():
+            for name, html in numbers.tables.items():
                 if name == FIRST_TABLE:
                     continue
                 if name in LONG_TABLES:
-                    _behind(LONG_TABLES[name], partial(_table, html, found.names))
+                    _add_folded(LONG_TABLES[name], partial(_table, html, numbers.names))
                 else:
-                    _table(html, found.names)
+                    _table(html, numbers.names)
 
-    def _show_choices(self, found: Numbers) -> None:
+    def _show_choices(self, numbers: Numbers) -> None:
         with self._choices:
             heading("Included data")
-            _behind("Exclude experiments with these quality flags", lambda: self._list_marks(found))
-            _behind("Included experiments", lambda: self._list_experiments(found))
+            _add_folded("Exclude experiments with these quality flags", lambda: self._list_marks(numbers))
+            _add_folded("Included experiments", lambda: self._list_experiments(numbers))
 
-    def _list_marks(self, found: Numbers) -> None:
+    def _list_marks(self, numbers: Numbers) -> None:
         for code, words in choosable_flags().items():
-            ui.checkbox(said(words), value=code in found.excluding, on_change=self._mark_chooser(code, found.excluding))
+            ui.checkbox(
+                said(words), value=code in numbers.excluding, on_change=self._mark_chooser(code, numbers.excluding)
+            )
 
-    def _list_experiments(self, found: Numbers) -> None:
+    def _list_experiments(self, numbers: Numbers) -> None:
         for file, kind in (("penetration.csv", "penetration"), ("shear.csv", "shear")):
-            rows = found.results[kind]["experiments"]
+            rows = numbers.results[kind]["experiments"]
             for row in rows[:MOST_LISTED]:
                 self._experiment(file, kind, row)
             if len(rows) > MOST_LISTED:
@@ -196,8 +197,10 @@ class AnalysisView:
     def _mark_chooser(self, code: str, of_campaign: frozenset[str]) -> Chooser:
         async def chosen(event: ValueChangeEventArguments[bool | None]) -> None:
             chosen_before = self._page.choice.excluding
-            now = of_campaign if chosen_before is None else chosen_before
-            await self._choose(replace(self._page.choice, excluding=now | {code} if event.value else now - {code}))
+            excluding = of_campaign if chosen_before is None else chosen_before
+            await self._choose(
+                replace(self._page.choice, excluding=excluding | {code} if event.value else excluding - {code})
+            )
 
         return chosen
 
@@ -214,16 +217,16 @@ class AnalysisView:
         await self.compute()
 
 
-def _list_of_errors(lines: Sequence[str]) -> None:
-    """With headings and cells to be copied as they are written."""
+def _list_errors(lines: Sequence[str]) -> None:
+    """List errors with headings and cells as they are in the files."""
     with ui.element("ul").classes("errors"):
         for line in lines:
             with ui.element("li"):
                 ui.label(said_as_written(line, NAMES_IN_FILES))
 
 
-def _behind(words: str, fill: Callable[[], None]) -> None:
-    """Let what is long be opened by who wants it; until then it costs nothing."""
+def _add_folded(words: str, fill: Callable[[], None]) -> None:
+    """Add a folded section that is filled when it is opened."""
     with ui.element("details") as details, ui.element("summary"):
         Words(words)
 
@@ -239,8 +242,8 @@ def _table(html: str, names: Set[str]) -> None:
     html_words(html, names)
 
 
-def _counts(found: Numbers) -> str:
-    pressed, sheared = (found.results[kind]["experiments"] for kind in ("penetration", "shear"))
+def _counts(numbers: Numbers) -> str:
+    pressed, sheared = (numbers.results[kind]["experiments"] for kind in ("penetration", "shear"))
     used = [sum(row["used"] for row in rows) for rows in (pressed, sheared)]
     return (
         f"{counted(len(pressed), 'penetration experiment')}, {used[0]} used; "
@@ -248,7 +251,7 @@ def _counts(found: Numbers) -> str:
     )
 
 
-def _figure(shown: Shown, names: Set[str]) -> None:
+def _figure(shown: FigureImage, names: Set[str]) -> None:
     with ui.element("figure"):
         with ui.element("div") as box:
             image = ui.element("img")

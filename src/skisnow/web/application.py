@@ -1,4 +1,4 @@
-"""The lab as an ASGI application, and its sockets."""
+"""The lab as an ASGI application, with its sockets."""
 
 from __future__ import annotations
 
@@ -15,10 +15,9 @@ from nicegui import core, ui
 from starlette.responses import FileResponse, RedirectResponse, Response
 
 from .._support.language import languages
-from .error_pages import LOG, add_error_pages, log_to
 from .guard import Access, Guard
 from .language import COOKIE
-from .layout import KEEPING, LANGUAGE, SCRIPT, STYLES
+from .layout import KEEPING, LANGUAGE, LOG, SCRIPT, STYLES, add_error_pages, log_to
 from .pages import INNER, PAGES
 from .settings import PING_EVERY_S, PING_WAIT_S, RECONNECT_S
 from .ski_uploads import add_ski_uploads
@@ -37,23 +36,23 @@ _HERE: Final = Path(__file__).parent
 
 
 def lab_application(lab: Lab, *, host: str, token: str | None) -> ASGIApp:
-    """Put the pages of a lab together, behind their guard. The framework holds pages per process: one lab in each.
+    """ASGI application with the pages of a lab behind the guard. NiceGUI has one set of pages per process.
 
     Parameters
     ----------
     lab
-        What the pages work with.
+        The lab.
     host
-        That the lab listens on: what a request may name as Host follows from it.
+        Host that the server listens on; it determines the allowed Host headers.
     token
-        Asked for before anything else; None where only this machine can come in.
+        Token that browsers must send (default on a loopback host: None).
     """
     log_to(lab.runs / LOG_FILE)
     outer = FastAPI(openapi_url=None, docs_url=None, redoc_url=None)
-    outer.add_api_route(STYLES, lambda: _own("lab.css", "text/css"), include_in_schema=False)
-    outer.add_api_route(SCRIPT, lambda: _own("lab.js", "text/javascript"), include_in_schema=False)
-    outer.add_api_route(KEEPING, lambda: _own("kept.js", "text/javascript"), include_in_schema=False)
-    outer.add_api_route(LANGUAGE + "/{code}", _chosen, include_in_schema=False, response_model=None)
+    outer.add_api_route(STYLES, lambda: _asset("lab.css", "text/css"), include_in_schema=False)
+    outer.add_api_route(SCRIPT, lambda: _asset("lab.js", "text/javascript"), include_in_schema=False)
+    outer.add_api_route(KEEPING, lambda: _asset("kept.js", "text/javascript"), include_in_schema=False)
+    outer.add_api_route(LANGUAGE + "/{code}", _set_language, include_in_schema=False, response_model=None)
     add_transfer(outer, lab)
     add_ski_uploads(outer, lab)
     for name in (*PAGES, *INNER):
@@ -67,17 +66,17 @@ def lab_application(lab: Lab, *, host: str, token: str | None) -> ASGIApp:
         show_welcome_message=False,
         reconnect_timeout=RECONNECT_S,
     )
-    pages_app.on_startup(use_heartbeat)
-    answer_quietly()
+    pages_app.on_startup(set_heartbeat)
+    log_socket_errors()
     pages_app.config.socket_io_js_transports = ["websocket"]
     pages_app.config.quasar_config["loadingBar"] = {
         "skipHijack": True
-    }  # a bar without a name, where the page says more
+    }  # a bar without an accessible name; the page shows the status
     return Guard(outer, Access(host, token, lab.limits.upload_bytes))
 
 
-def _chosen(code: str, back: str = "/") -> Response:
-    """Keep the language that was chosen, and go back to the page that it was chosen on."""
+def _set_language(code: str, back: str = "/") -> Response:
+    """Set the cookie of a language, and redirect to the page where it was chosen."""
     place = back if back.startswith("/") and not back.startswith(("//", "/\\")) else "/"
     answer = RedirectResponse(place, 303)
     if code in languages():
@@ -85,35 +84,35 @@ def _chosen(code: str, back: str = "/") -> Response:
     return answer
 
 
-def _own(name: str, kind: str) -> FileResponse:
+def _asset(name: str, kind: str) -> FileResponse:
     return FileResponse(_HERE / name, media_type=kind, headers={"cache-control": "no-cache"})
 
 
 _LIBRARIES: Final = ("engineio.server", "socketio.server")
 
 
-def answer_quietly() -> None:
-    """Put a net under every handler of the framework, and let its libraries write single lines into the log."""
+def log_socket_errors() -> None:
+    """Catch the errors of the framework's socket handlers, and log those of its libraries in single lines."""
     handlers: dict[str, Callable[..., Any]] = core.sio.handlers["/"]
     for name, handler in handlers.items():
         if not hasattr(handler, "__wrapped__"):
-            handlers[name] = _quiet(name, handler)
+            handlers[name] = _without_errors(name, handler)
     for library in _LIBRARIES:
         logger = logging.getLogger(library)
         logger.handlers = [_OneLine()]
         logger.propagate = False
 
 
-def _quiet(name: str, handler: Callable[..., Any]) -> Callable[..., Any]:
-    """What the framework's own pages send never raises here: what pages do with it is caught behind it."""
+def _without_errors(name: str, handler: Callable[..., Any]) -> Callable[..., Any]:
+    """Handler that logs errors from malformed messages of strangers; errors of pages are caught elsewhere."""
 
     @wraps(handler)
-    async def answered(*given: Any) -> Any:
+    async def answered(*arguments: Any) -> Any:
         try:
-            answer = handler(*given)
+            answer = handler(*arguments)
             return await answer if inspect.isawaitable(answer) else answer
-        except Exception as error:  # whatever a stranger sends
-            if type(error).__module__ == "socketio.exceptions":  # the framework's own refusal, which its page waits for
+        except Exception as error:  # any message of a stranger
+            if type(error).__module__ == "socketio.exceptions":  # a rejection that its page waits for
                 raise
             LOG.info("a socket sent a malformed %s (%s)", name, type(error).__name__)
         if name == "connect":
@@ -124,7 +123,7 @@ def _quiet(name: str, handler: Callable[..., Any]) -> Callable[..., Any]:
 
 
 class _OneLine(logging.Handler):
-    """Writes what a library reports into the lab's log, in one line."""
+    """Log handler that writes messages of a library to the lab's log in one line."""
 
     def emit(self, record: logging.LogRecord) -> None:
         kind = record.exc_info[0].__name__ if record.exc_info and record.exc_info[0] else ""
@@ -132,7 +131,7 @@ class _OneLine(logging.Handler):
         LOG.info("%s: %s %s", record.name, said, kind)
 
 
-def use_heartbeat() -> None:
+def set_heartbeat() -> None:
     """Set the heartbeat of the pages' sockets, after the framework has set its own at its start."""
     core.sio.eio.ping_interval = PING_EVERY_S
     core.sio.eio.ping_timeout = PING_WAIT_S

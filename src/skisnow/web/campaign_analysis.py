@@ -1,4 +1,4 @@
-"""Analysis of a campaign's files with a choice of data: results, tables, figures and the report."""
+"""Analysis of a campaign's files with a choice of included data: results, tables, figures and report."""
 
 from __future__ import annotations
 
@@ -39,9 +39,9 @@ class Choice:
     Attributes
     ----------
     excluding
-        Codes of the quality flags that leave an experiment out; None: those of the campaign.
+        Codes of the quality flags that exclude an experiment (default: those of the campaign).
     left_out
-        Experiments that are left out besides, by file and name.
+        Further excluded experiments by file and name.
     """
 
     excluding: frozenset[str] | None = None
@@ -50,7 +50,7 @@ class Choice:
 
 @dataclass(frozen=True, slots=True)
 class Numbers:
-    """The campaign as chosen, analysed; the report's key results and, by name, its tables, as HTML."""
+    """Analysis of a campaign with a choice, and the report's key results and tables (by name) as HTML."""
 
     analysis: Analysis
     key_results: tuple[str, ...]
@@ -58,23 +58,23 @@ class Numbers:
 
     @property
     def results(self) -> dict[str, Any]:
-        """The contents of results.json."""
+        """Contents of results.json."""
         return self.analysis.results
 
     @property
     def names(self) -> frozenset[str]:
-        """What users wrote, which no language has other words for."""
+        """Names from users, which are not translated."""
         return ReportData(self.analysis).names
 
     @property
     def excluding(self) -> frozenset[str]:
-        """Codes of the quality flags that leave an experiment out."""
+        """Codes of the quality flags that exclude an experiment."""
         return self.analysis.campaign.excluding
 
 
 @dataclass(frozen=True, slots=True)
-class Shown:
-    """A figure: name, words for who cannot see it, caption as HTML, address of its image; ``wide``: it scrolls."""
+class FigureImage:
+    """A figure with alternative text, caption as HTML, and address of its image; a ``wide`` one scrolls."""
 
     name: str
     alt: str
@@ -85,22 +85,22 @@ class Shown:
 
 @dataclass(frozen=True, slots=True)
 class Refusal:
-    """Why there is no answer, in a sentence, and where files are at fault a line for each error in them.
+    """Sentence why there is no analysis, with a line for each error in the files.
 
-    An exception would not travel between processes whole.
+    Unlike an exception it can be sent between processes.
     """
 
     said: str
     errors: tuple[str, ...] = ()
 
 
-def numbers_of(files: FilesInMemory, choice: Choice) -> Numbers | Refusal:
-    """Analyse a campaign whose files are at hand."""
+def analyse_files(files: FilesInMemory, choice: Choice) -> Numbers | Refusal:
+    """Analyse a campaign in memory."""
     try:
-        analysis = analyse(_chosen(campaign_of_files(files.contents, others=files.others), choice))
+        analysis = analyse(_select_data(campaign_of_files(files.contents, others=files.others), choice))
     except FieldDataError as error:
-        wrong = (each for each in error.problems if isinstance(each, Problem) and each.severity == "error")
-        return Refusal(str(error), tuple(lines_of(wrong)))
+        errors = (problem for problem in error.problems if isinstance(problem, Problem) and problem.severity == "error")
+        return Refusal(str(error), tuple(lines_of(errors)))
     except SkisnowError as error:
         return Refusal(str(error))
     data = ReportData(analysis)
@@ -109,43 +109,43 @@ def numbers_of(files: FilesInMemory, choice: Choice) -> Numbers | Refusal:
     return Numbers(analysis, tuple(map(str, key_results(data))), shown)
 
 
-def figure(analysis: Analysis, number: int, language: str) -> Shown | None:
-    """Draw one of the report's figures, counted from 0, of what `numbers_of` gave; None: there are no data for it."""
+def figure(analysis: Analysis, number: int, language: str) -> FigureImage | None:
+    """Image of one of the report's figures, counted from 0; None if the campaign has no data for it."""
     data = ReportData(analysis)
     with journal_style():
         drawn = DRAWERS[number](data, site_styles(data))
         if not isinstance(drawn, Drawing):
             return None
         translate_figure(drawn.figure, language, names=frozenset(map(figure_text, data.names)))
-        return Shown(drawn.name, drawn.alt, str(drawn.whole_caption), data_uri(drawing_svg(drawn)), drawn.wide)
+        return FigureImage(drawn.name, drawn.alt, str(drawn.whole_caption), data_uri(drawing_svg(drawn)), drawn.wide)
 
 
-def ready() -> None:
-    """Draw nothing: a process that was asked for this has what it needs to draw."""
+def load_drawing() -> None:
+    """Do nothing: the call imports this module, and with it Matplotlib, in the worker process."""
 
 
 def write_whole_report(analysis: Analysis, out: str, language: str) -> None:
-    """Write the report with its tables, figures and results.json."""
+    """Write the report with tables, figures and results.json to a folder."""
     write_report(analysis, Path(out), language=language)
 
 
 def choosable_flags() -> dict[str, str]:
-    """Codes of the quality flags that may be let in or left out, with their sentences."""
+    """Codes of the quality flags that users can include or exclude, with their sentences."""
     return {code: flag.sentence for code, flag in QUALITY_FLAGS.items() if code not in ALWAYS_EXCLUDE}
 
 
-def _chosen(campaign: Campaign, choice: Choice) -> Campaign:
+def _select_data(campaign: Campaign, choice: Choice) -> Campaign:
     excluding = campaign.excluding if choice.excluding is None else choice.excluding | ALWAYS_EXCLUDE
     return replace(
         campaign,
         excluding=excluding,
-        penetration=_less(campaign.penetration, "penetration.csv", choice),
-        shear=_less(campaign.shear, "shear.csv", choice),
+        penetration=_cancel_left_out(campaign.penetration, "penetration.csv", choice),
+        shear=_cancel_left_out(campaign.shear, "shear.csv", choice),
     )
 
 
-def _less(tests: Any, file: str, choice: Choice) -> Any:
-    """The tests with those cancelled that are left out: they stay in every table, with the reason."""
+def _cancel_left_out(tests: Any, file: str, choice: Choice) -> Any:
+    """Tests of which the excluded ones are cancelled with a reason, so that they stay in every table."""
     typed: PenetrationTests | ShearTests | None = tests
     if typed is None:
         return None

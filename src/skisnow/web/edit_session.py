@@ -53,7 +53,7 @@ class QuickResults:
 
 
 class EditSession:
-    """The journal of one campaign as one page sees it; what others wrote comes with `refresh`."""
+    """Journal of a campaign for one page; entries of others are added by `refresh`."""
 
     def __init__(self, lab: Lab, id_: str) -> None:
         self.id = id_
@@ -70,38 +70,38 @@ class EditSession:
 
     @property
     def described(self) -> CampaignFile:
-        """What its campaign.toml says."""
-        found: list[Problem] = []
-        described = read_campaign_file(self.campaign.description, found)
+        """Contents of campaign.toml."""
+        problems: list[Problem] = []
+        described = read_campaign_file(self.campaign.description, problems)
         assert described is not None  # it was read before it was written down
         return described
 
     def unit(self, file: str, column: str) -> str:  # noqa: ARG002
-        """Unit of the cells of a column, if it is another one than its name states; cells entered here have none."""
+        """Unit of the cells of a column if it differs from that of its name; never for entered cells."""
         return ""
 
     def refresh(self) -> None:
-        """Replay what was written since."""
+        """Replay the entries since the last call."""
         new = self._written_since()
         if new or self._campaign is None:
-            self._last = max((entry.sequence for entry in new), default=self._last)  # a sync brings older ones late
+            self._last = max((entry.sequence for entry in new), default=self._last)  # a sync can add older ones later
             self._campaign = replayed(new, before=self._campaign)
 
     def _written_since(self) -> tuple[JournalEntry, ...]:
         return self._journals.entries(self.id, after=self._last)
 
     def write_down(self, entry: NewEntry, *, seen: int) -> JournalEntry:
-        """Store an entry; when this returns it is on the disk. See `Journals.append`."""
+        """Store an entry on disk; see `Journals.append`."""
         written = self._journals.append(self.id, entry, seen=seen)
         self.refresh()
         return written
 
     def test(self, file: str, name: str) -> ReplayedTest:
-        """A test as of the last `refresh`; an empty one where there is none yet."""
+        """A test as of the last `refresh`; an empty one if it does not exist."""
         return self.campaign.test(file, name)
 
     def tests_of_site(self, site: str) -> list[ReplayedTest]:
-        """Every test made at a site, and the snow data of that site."""
+        """All tests at a site, and the snow data of the site."""
         return [test for test in self.campaign.tests.values() if test.rows and test.rows[0].cells["site"] == site]
 
     def quick_results(self, site: str) -> QuickResults:
@@ -111,13 +111,13 @@ class EditSession:
 
 
 def quick_results(campaign: Campaign, site: str) -> QuickResults:
-    """Quick results of a site, of a campaign that may have other sites too."""
+    """Quick results of one site of a campaign."""
     screened = screened_both(campaign, geometry="extended")
-    found = experiment_results(campaign, screened=screened)
+    results = experiment_results(campaign, screened=screened)
     experiments = {
         (form.file, row["experiment"]): row
         for kind, form in (("penetration", PENETRATION), ("shear", SHEAR))
-        for row in found[kind]["experiments"]
+        for row in results[kind]["experiments"]
         if row["site"] == site
     }
     curves = {
@@ -134,9 +134,11 @@ def _flag_sentences(problems: list[Problem]) -> dict[TestKey, dict[str, str]]:
     """Sentences of the quality flags of each test, by code."""
     sentences: dict[TestKey, dict[str, str]] = {}
     for problem in problems:
-        found = f" Found: {problem.value}; not flagged would be {problem.allowed}." if problem.value is not None else ""
+        details = (
+            f" Found: {problem.value}; not flagged would be {problem.allowed}." if problem.value is not None else ""
+        )
         key = problem.file, problem.experiment or ""
-        sentence = f"{QUALITY_FLAGS[problem.code].sentence}{found} {problem.action}"
+        sentence = f"{QUALITY_FLAGS[problem.code].sentence}{details} {problem.action}"
         sentences.setdefault(key, {})[problem.code] = sentence
     return sentences
 
@@ -148,7 +150,7 @@ OWN_SHEET: Final = (
 
 
 class CorrectionSession(EditSession):
-    """A kept campaign as one page sees it."""
+    """Corrections of an imported campaign for one page."""
 
     def __init__(self, lab: Lab, id_: str) -> None:
         self.stored, self._files = lab.store.contents(id_, READ_FILES)
@@ -160,21 +162,21 @@ class CorrectionSession(EditSession):
 
     @property
     def described(self) -> CampaignFile:
-        """What its campaign.toml says, or the sheets that stand for it.
+        """Contents of campaign.toml, or of the sheets in its place.
 
         Raises
         ------
         FieldDataError, StoreError
-            It cannot be read.
+            The description cannot be read.
         """
-        found: list[Problem] = []
+        problems: list[Problem] = []
         try:
             text = decode(self._tables.read(CAMPAIGN_FILE) or b"").text
         except (FileNotFoundError, UnreadableTextError) as error:
             raise StoreError(f"{CAMPAIGN_FILE} of this campaign cannot be read, so nothing in it can be.") from error
-        described = read_campaign_file(text, found)
+        described = read_campaign_file(text, problems)
         if described is None:
-            raise FieldDataError(found)
+            raise FieldDataError(problems)
         return described
 
     def _written_since(self) -> tuple[JournalEntry, ...]:
@@ -183,38 +185,38 @@ class CorrectionSession(EditSession):
         return new
 
     def test(self, file: str, name: str) -> ReplayedTest:
-        """A test with its cells by line and column as they are now, whether or not it was ever spoken of."""
+        """A test with its current cells by line and column."""
         corrected = self.campaign.test(file, name)
         if corrected.rows or name not in self.tables[file].tests:
             return corrected
-        said = JournalEntry(action="add", file=file, test=name, cells=self.standing(file, name), sequence=0, at="")
-        return ReplayedTest(file, name, rows=[ReplayedRow(said)])
+        entry = JournalEntry(action="add", file=file, test=name, cells=self.file_cells(file, name), sequence=0, at="")
+        return ReplayedTest(file, name, rows=[ReplayedRow(entry)])
 
     def unit(self, file: str, column: str) -> str:
-        """Unit of the cells of a column, if it is another one than its name states."""
-        found = self.tables[file].conversions.get(column)
-        return found.name if found is not None else ""
+        """Unit of the cells of a column if it differs from that of its name, otherwise ""."""
+        conversion = self.tables[file].conversions.get(column)
+        return conversion.name if conversion is not None else ""
 
-    def standing(self, file: str, name: str) -> dict[str, str]:
-        """Every cell of a test as the files say it."""
+    def file_cells(self, file: str, name: str) -> dict[str, str]:
+        """Cells of a test as in the files, without corrections."""
         rows = self.tables[file].tests.get(name, {})
         return {cell_key(line, column): text for line, cells in rows.items() for column, text in cells.items()}
 
     def write_down(self, entry: NewEntry, *, seen: int) -> JournalEntry:
-        """Store a correction, a cancelling or an undoing; see `Journals.correct`.
+        """Store a correction, cancellation or undo; see `Journals.correct`.
 
         Raises
         ------
         StoreError
-            As there; or the campaign's own corrections stand in a sheet, which no rows can follow.
+            As in `Journals.correct`; or the corrections are in a sheet of a workbook, which is not edited.
         """
         if CORRECTIONS.file in self._tables.places:
             raise StoreError(OWN_SHEET)
-        standing = self.standing(entry.file, entry.test)
+        standing = self.file_cells(entry.file, entry.test)
         written = self._journals.correct(self.id, entry, seen=seen, standing=standing)
         self.refresh()
         return written
 
     def quick_results(self, site: str) -> QuickResults:
-        """What the tests of a site say, by the same way that an analysis of the exported folder would take."""
+        """Quick results of a site, computed as an analysis of the exported folder would."""
         return quick_results(campaign_of_files(corrected_files(self._files, self._entries)), site)

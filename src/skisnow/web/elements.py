@@ -13,16 +13,16 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence, Set
     from typing import TypeVar
 
-    Shown = TypeVar("Shown", bound=ui.element)
+    AnyElement = TypeVar("AnyElement", bound=ui.element)
 
 FIRST: Final = "(event) => { if (event.detail < 2) emit(kept.once()); }"
-"""In the browser: the second press of a double one does nothing. Sent along: what tells it from a press of its own."""
+"""JavaScript handler that ignores the second click of a double click and sends the key of the request."""
 
 
 def field(
     label: str, value: str = "", *, numeric: bool = False, wide: bool = False, optional: bool = False
 ) -> TypedField:
-    """A field with its name above it. Numeric fields take what is typed as it is; Enter passes by an optional one."""
+    """Text field with its label above it; the Enter key skips an optional one."""
     made = TypedField(label, value=value).props("outlined stack-label autocomplete=off")
     made.classes("field wide" if wide else "field")
     if numeric:
@@ -33,19 +33,19 @@ def field(
 
 
 def choice(label: str, options: Sequence[str] | dict[str, str], value: str | None) -> ui.select:
-    """One of several; the keyboard opens it with the space bar or the arrow."""
-    made = ui.select(said_options(options), label=said(label), value=value)
+    """Menu with options as texts by value."""
+    made = ui.select(option_texts(options), label=said(label), value=value)
     return made.props("outlined stack-label").classes("field")
 
 
-def said_options(options: Sequence[str] | dict[str, str]) -> dict[str, str]:
-    """What is shown for each option, by its value."""
+def option_texts(options: Sequence[str] | dict[str, str]) -> dict[str, str]:
+    """Texts of options in the language of the page, by value."""
     shown = options if isinstance(options, dict) else {option: option for option in options}
     return {value: said(words) for value, words in shown.items()}
 
 
 def button(text: str, act: Callable[..., Any] | None, kind: str = "", *, once: bool = False) -> ui.button:
-    """A button; ``kind``: main or quiet; ``once``: what it does is done once where it is pressed twice in a row."""
+    """Button; ``kind``: main or quiet; ``once``: a double click counts once."""
     made = ui.button(said(text), on_click=None if once else act, color=None).props("no-caps unelevated")
     if once:
         made.on("click", act, js_handler=FIRST)
@@ -53,26 +53,26 @@ def button(text: str, act: Callable[..., Any] | None, kind: str = "", *, once: b
 
 
 def link(text: str, address: str, kind: str = "") -> ui.link:
-    """A link as large as a button."""
+    """Link with the size of a button."""
     return ui.link(said(text), address).classes(f"act {kind}".strip())
 
 
 class Words(ui.label):
-    """A label; ``text`` stays as it was said, in English."""
+    """Label in the language of the page; ``text`` stays English."""
 
     def _text_to_model_text(self, text: str) -> None:
         super()._text_to_model_text(said(text, self.client))
 
 
 class TypedField(ui.input):
-    """A field of one line."""
+    """Text field of one line with a label in the language of the page."""
 
     def __init__(self, label: str = "", *, value: str = "") -> None:
         super().__init__(said(label) or None, value=value)
 
 
 class StatusLine(ui.element):
-    """The outcome of the last action, with a list where there are several problems; screen readers announce it."""
+    """Outcome of the last action, with a list of problems; screen readers announce it."""
 
     def __init__(self) -> None:
         super().__init__("div")
@@ -82,7 +82,7 @@ class StatusLine(ui.element):
             self._problems = ui.element("ul").classes("refusals")
 
     def say(self, text: str, kind: str = "good", items: Sequence[str] = ()) -> None:
-        """Show a text in English, and below it items that are in the language of the page already."""
+        """Show a text, given in English, and items, given in the language of the page."""
         self._outcome.set_text(text)
         self._outcome.classes(remove="good bad", add=kind)
         self._problems.clear()
@@ -92,20 +92,20 @@ class StatusLine(ui.element):
                     ui.label(item)
 
 
-def named(element: Shown, name: str) -> Shown:
-    """Give an element the name that a screen reader says."""
+def named(element: AnyElement, name: str) -> AnyElement:
+    """Give an element a name for screen readers."""
     element.props["aria-label"] = said(name, element.client)
     return element
 
 
 def html_words(html: str, names: Set[str] = frozenset()) -> ui.html:
-    """HTML of the reports, in which all that users wrote is escaped, in the language of the page.
+    """HTML of the reports in the language of the page.
 
     Parameters
     ----------
     html
-        In English.
+        HTML in English, in which text from users is escaped.
     names
-        What users wrote and is no word of ours.
+        Names from users, which are not translated.
     """
     return ui.html(translated_html(html, language_of(), names=names), sanitize=False)

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 
 
 STATUS: Final = "skisnow.status"
-"""Key of a request's scope: the status that it is answered with, whatever the framework says."""
+"""Key in the scope of a request for the status of its answer, instead of the framework's."""
 COOKIE: Final = "skisnow_lab"
 _SAFE: Final = frozenset({"GET", "HEAD", "OPTIONS"})
 _LOOPBACK_NAMES: Final = frozenset({"localhost", "127.0.0.1", "::1"})
@@ -65,7 +65,7 @@ HEADERS: Final = {
 
 
 def is_loopback(host: str) -> bool:
-    """Whether a host name or address can be reached from this machine alone.
+    """True if a host name or address is only reachable from this machine.
 
     >>> [is_loopback(host) for host in ("127.0.0.1", "localhost", "::1", "0.0.0.0", "192.168.1.7")]
     [True, True, True, False, False]
@@ -80,7 +80,7 @@ def is_loopback(host: str) -> bool:
 
 @dataclass(frozen=True, slots=True)
 class Access:
-    """Who may ask: the host that is listened on, the token (None: none is asked for), and the largest body in bytes."""
+    """Access rules: host that the server listens on, token (None: not required), maximum size of a body in bytes."""
 
     host: str
     token: str | None
@@ -92,13 +92,13 @@ class Access:
         names = {self.host.lower(), own, f"{own}.local"} if not is_loopback(self.host) else set()
         object.__setattr__(self, "_names", _LOOPBACK_NAMES | names)
 
-    def knows(self, host: str) -> bool:
-        """Whether a request may name this host: our own names, and where others may come, any bare address.
+    def allows_host(self, host: str) -> bool:
+        """True if a request may name this host: names of this machine; on an open host also any IP address.
 
         Raises
         ------
         ValueError
-            This is no host.
+            The text is not a host.
         """
         name = (urlsplit(f"//{host}").hostname or "").lower()
         if name in self._names:
@@ -107,19 +107,19 @@ class Access:
 
     @property
     def cookie(self) -> str:
-        """What the cookie holds: made from the token, so that it outlives a restart, and not the token itself."""
+        """Value of the cookie: a hash of the token, which stays valid after a restart."""
         return hmac.new((self.token or "").encode(), b"skisnow lab", "sha256").hexdigest()
 
-    def is_let_in(self, headers: Headers) -> bool:
-        """Whether the request carries the cookie; compared in constant time."""
+    def has_access(self, headers: Headers) -> bool:
+        """True if the request has the cookie; compared in constant time."""
         if self.token is None:
             return True
-        found = cookie_parser(headers.get("cookie", "")).get(COOKIE)  # reads past what other programs have set
-        return found is not None and hmac.compare_digest(found.encode(), self.cookie.encode())
+        cookie = cookie_parser(headers.get("cookie", "")).get(COOKIE)  # ignores cookies of other programs
+        return cookie is not None and hmac.compare_digest(cookie.encode(), self.cookie.encode())
 
-    def is_token(self, said: str) -> bool:
-        """Whether this is the token; compared in constant time."""
-        return self.token is not None and hmac.compare_digest(said.encode(), self.token.encode())
+    def is_token(self, text: str) -> bool:
+        """True for the token; compared in constant time."""
+        return self.token is not None and hmac.compare_digest(text.encode(), self.token.encode())
 
 
 def _is_address(name: str) -> bool:
@@ -131,7 +131,7 @@ def _is_address(name: str) -> bool:
 
 
 class Guard:
-    """An ASGI application around another one that lets only the lab's own requests through."""
+    """ASGI application that passes only the lab's own requests to another one."""
 
     def __init__(self, app: ASGIApp, access: Access) -> None:
         self.app = app
@@ -139,23 +139,23 @@ class Guard:
         self.tries = Tries()
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Answer, refuse, or pass on."""
+        """Answer, reject or pass on a request."""
         if scope["type"] not in ("http", "websocket"):
             await self.app(scope, receive, send)
             return
         headers = Headers(scope=scope)
         answer = self._refusal(scope, headers)
-        if answer is None and scope["type"] == "http" and not self.access.is_let_in(headers):
-            answer = await self._token_asked(scope, receive)
+        if answer is None and scope["type"] == "http" and not self.access.has_access(headers):
+            answer = await self._token_answer(scope, receive)
         if scope["type"] == "websocket":
             await self._web_socket(scope, receive, send, refused=answer is not None)
         elif answer is not None:
-            await answer(scope, receive, _with_headers(send, scope))
+            await answer(scope, receive, _add_headers(send, scope))
         else:
-            await self.app(scope, _limited(receive, self.access.body_bytes), _with_headers(send, scope))
+            await self.app(scope, _limit_body(receive, self.access.body_bytes), _add_headers(send, scope))
 
     async def _web_socket(self, scope: Scope, receive: Receive, send: Send, *, refused: bool) -> None:
-        if refused or not self.access.is_let_in(Headers(scope=scope)):
+        if refused or not self.access.has_access(Headers(scope=scope)):
             await receive()
             await send({"type": "websocket.close", "code": 1008})
             return
@@ -164,7 +164,7 @@ class Guard:
     def _refusal(self, scope: Scope, headers: Headers) -> Response | None:
         host, origin = headers.get("host", ""), headers.get("origin")
         try:
-            is_own, sent_by = self.access.knows(host), None if origin is None else urlsplit(origin).netloc
+            is_own, sent_by = self.access.allows_host(host), None if origin is None else urlsplit(origin).netloc
         except ValueError:  # such as "["
             return PlainTextResponse("The Host or the Origin of this request is no address.", 400)
         if not is_own:
@@ -177,7 +177,7 @@ class Guard:
             return PlainTextResponse("This is more than the lab takes in at once.", 413)
         return None
 
-    async def _token_asked(self, scope: Scope, receive: Receive) -> Response:
+    async def _token_answer(self, scope: Scope, receive: Receive) -> Response:
         if scope["method"] == "POST" and scope["path"] == TOKEN_PATH:
             wait_s = self.tries.wait_s((scope.get("client") or ("",))[0])
             if wait_s > 0:
@@ -186,10 +186,10 @@ class Guard:
         return token_page(scope, 401)
 
 
-def _with_headers(send: Send, scope: Scope) -> Send:
-    """Add the security headers to what is answered; a stricter policy of a page's own stays.
+def _add_headers(send: Send, scope: Scope) -> Send:
+    """Add the security headers to answers, and the status of `STATUS`; a stricter policy of a page stays.
 
-    The framework answers 500 for every page that could not be shown; what the page itself says comes before that.
+    Without it the framework answers 500 for every page with an error.
     """
 
     async def sent(message: Message) -> None:
@@ -203,8 +203,8 @@ def _with_headers(send: Send, scope: Scope) -> Send:
     return sent
 
 
-def _limited(receive: Receive, most_bytes: int) -> Receive:
-    """Count a body that does not say its size, and cut it off beyond the limit."""
+def _limit_body(receive: Receive, most_bytes: int) -> Receive:
+    """Count the bytes of a body, and disconnect beyond the limit."""
     taken = 0
 
     async def received() -> Message:
@@ -219,10 +219,10 @@ def _limited(receive: Receive, most_bytes: int) -> Receive:
 TOKEN_PATH: Final = "/token"
 _LONGEST: Final = 2000
 _WAIT_S: Final = 0.5
-"""After a wrong token, so that guessing takes long (modelling assumption)."""
+"""Delay after a wrong token (s) against guessing."""
 TRIES: Final = 10
 WITHIN_S: Final = 60.0
-"""An address may try so many tokens in so many seconds (modelling assumption)."""
+"""Period (s) for `TRIES` attempts of one address."""
 _MOST_ADDRESSES: Final = 10_000
 
 _PAGE: Final = """<!doctype html><html lang="{language}"><meta charset="utf-8"><title>{token} · skisnow</title>
@@ -238,39 +238,39 @@ border:2px solid #333;border-radius:6px}}button{{background:#0b4f8a;color:#fff;b
 
 
 class Tries:
-    """The tries of the last minute, by address. Right ones count, too: nobody needs ten in a minute."""
+    """Attempts of the last minute by address, including those with the right token."""
 
-    def __init__(self, now: Callable[[], float] = time.monotonic) -> None:
-        self._now = now
+    def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
+        self._now = clock
         self._of = OrderedDict[str, deque[float]]()
 
     def wait_s(self, address: str) -> float:
-        """Count a try; how long its address must wait (s), 0 where it may be looked at."""
-        now, times = self._now(), self._of.setdefault(_network(address), deque())
+        """Count an attempt; returns the time that its address must wait (s), 0 if the attempt is allowed."""
+        time_s, times = self._now(), self._of.setdefault(_network(address), deque())
         self._of.move_to_end(_network(address))
         while len(self._of) > _MOST_ADDRESSES:
             self._of.popitem(last=False)
-        while times and times[0] <= now - WITHIN_S:
+        while times and times[0] <= time_s - WITHIN_S:
             times.popleft()
         if len(times) >= TRIES:
-            return times[0] + WITHIN_S - now
-        times.append(now)
+            return times[0] + WITHIN_S - time_s
+        times.append(time_s)
         return 0.0
 
 
 def _network(address: str) -> str:
-    """What one person has: an address, or of IPv6 the 64 bits that a network has."""
+    """Address without the host part of IPv6: one person can have all addresses of a /64 network."""
     try:
-        known = ipaddress.ip_address(address)
+        parsed = ipaddress.ip_address(address)
     except ValueError:
         return address
-    return address if known.version == 4 else str(ipaddress.ip_network((int(known) >> 64 << 64, 64)))
+    return address if parsed.version == 4 else str(ipaddress.ip_network((int(parsed) >> 64 << 64, 64)))
 
 
 def token_page(
     scope: Scope, status: int, sentence: str = "The lab asks for the token that it was started with."
 ) -> Response:
-    """The form, with a sentence above it, in the language of the request."""
+    """Page with the form for the token and a sentence above it, in the language of the request."""
     language = language_of_request(Request(scope))
     shown = {"said": sentence, "token": "Token", "open": "Open the lab"}
     words = {name: catalogue(language).translated(text) for name, text in shown.items()}
@@ -279,7 +279,7 @@ def token_page(
 
 
 def too_many_tries(scope: Scope, wait_s: float) -> Response:
-    """The form, with how long to wait."""
+    """Page with the form and the time to wait."""
     seconds = math.ceil(wait_s)
     answer = token_page(scope, 429, f"Those were {TRIES} tries in a minute. Wait {seconds} seconds, then try again.")
     answer.headers["retry-after"] = str(seconds)
@@ -289,7 +289,7 @@ def too_many_tries(scope: Scope, wait_s: float) -> Response:
 async def answer_to_token(
     scope: Scope, receive: Receive, is_token: Callable[[str], bool], cookie: tuple[str, str]
 ) -> Response:
-    """Let in with a cookie, or ask again."""
+    """Answer to a sent token: a redirect with the cookie, or the form again."""
     body = b""
     try:
         async for piece in Request(scope, receive).stream():
@@ -298,8 +298,8 @@ async def answer_to_token(
                 return token_page(scope, 413, "This is too long for a token.")
     except ClientDisconnect:
         return Response(status_code=400)
-    said = parse_qs(body.decode("utf-8", "replace")).get("token", [""])[0]
-    if not is_token(said):
+    token = parse_qs(body.decode("utf-8", "replace")).get("token", [""])[0]
+    if not is_token(token):
         await asyncio.sleep(_WAIT_S)
         return token_page(scope, 403, "This is not the token.")
     answer = RedirectResponse("/", 303)

@@ -1,4 +1,4 @@
-"""The queue and the history of jobs on a page. A card stays the same while its job goes on: no press on it is lost."""
+"""Queue and history of jobs on a page; cards are updated in place, so that no click is lost."""
 
 from __future__ import annotations
 
@@ -7,9 +7,8 @@ from typing import TYPE_CHECKING, Any, Final, Protocol
 from nicegui import ui
 
 from .._support.errors import ParameterError
-from .error_pages import error_sentence
 from .language import said
-from .layout import heading, sentence
+from .layout import error_sentence, heading, sentence
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -18,33 +17,32 @@ if TYPE_CHECKING:
     from .runs import Runs
 
     Act: TypeAlias = Callable[[Callable[[str], None], str], None]
-    """Calls a function of the queue with a job's name."""
+    """Function that calls a function of the queue with a job's name, and shows its errors."""
 
 EVERY_S: Final = 1.0
 
 
 class JobCard(Protocol):
-    """One job of the list, and what can be done with it."""
+    """Card of a job with its buttons."""
 
     place: ui.element
 
     def show(self, job: Any) -> None:
-        """Show how it stands now."""
+        """Show the state of the job."""
         ...
 
 
 class JobList:
-    """Cards of all jobs, the newest first, brought up to date each second.
+    """Cards of all jobs, the newest first, updated every second.
 
     Parameters
     ----------
     runs
         The queue.
     card
-        Makes the card of a job, from the queue, the job and what does something with it: a function of `runs` is called
-        with the job's name, and what it refuses is said.
+        Factory of the card of a job, from the queue, the job and an `Act`.
     nothing
-        What is said where there is no job yet.
+        Sentence without a job.
     """
 
     def __init__(self, runs: Any, card: Callable[[Any, Any, Act], JobCard], nothing: str) -> None:
@@ -58,7 +56,7 @@ class JobList:
         ui.timer(EVERY_S, self.show)
 
     def show(self) -> None:
-        """Show what is so now."""
+        """Update the cards."""
         jobs = self._runs.jobs()
         self._nothing.set_visibility(not jobs)
         for name in self._cards.keys() - {job.name for job in jobs}:

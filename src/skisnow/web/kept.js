@@ -1,5 +1,5 @@
 // What is typed and not stored yet, kept in the browser: it outlives a reload of the page and a restart of the lab.
-// A reading is kept under a number of its own until the lab says what became of it; the text of fields is kept for each
+// A reading is kept under its key until the lab answers; the text of fields is kept for each
 // page of this tab, with the field that it is typed in and the keys that were held.
 (() => {
   "use strict";
@@ -12,7 +12,7 @@
   let isOver = false;
   let restored = false; // nothing is written over what was kept before it was put back
   let first = null; // the form as the page was loaded
-  let onward = null; // what is kept for the page that is gone on to
+  let onward = null; // texts for the next page
 
   // A browser may forbid its storage: then nothing is kept, and all else goes on.
   const quietly = (act) => { try { return act(); } catch { return null; } };
@@ -21,7 +21,7 @@
   const forget = (store, key) => quietly(() => window[store].removeItem(key));
 
   const place = () => location.pathname + location.search;
-  const before = read("sessionStorage", PAGE + place()) ?? {}; // what was kept when the page was loaded
+  const before = read("sessionStorage", PAGE + place()) ?? {}; // texts that were kept when the page was loaded
 
   // Numbers
 
@@ -39,7 +39,7 @@
 
   const newOnce = () => `${tab()}-${opened}-${(numbered += 1)}`;
 
-  // The number of what this page asks to be stored: the same until it is stored, also after a reload.
+  // Key of this page's request: the same until it is stored, also after a reload.
   function once() {
     const page = read("sessionStorage", PAGE + place()) ?? {};
     if (!page.once) keep("sessionStorage", PAGE + place(), { ...page, once: (page.once = newOnce()) });
@@ -62,7 +62,7 @@
 
   const settled = (number) => forget("localStorage", READING + number);
 
-  // Those of this campaign that nobody has answered, in the order in which they were typed.
+  // Unanswered readings of this campaign in the order of typing.
   function readings() {
     const keys = quietly(() => Object.keys(window.localStorage)) ?? [];
     const found = keys.filter((key) => key.startsWith(READING)).map((key) => read("localStorage", key));
@@ -91,13 +91,13 @@
     else forget("sessionStorage", PAGE + here);
   }
 
-  // The page is left again before it was connected: to what was kept before comes what was held since.
+  // The page is left before it was connected: add the texts held since to the kept ones.
   function saveHeld({ held, ahead }) {
     if (!held.length) return;
     keep("sessionStorage", PAGE + place(), { ahead, ...before, held: [...(before.held ?? []), ...held] });
   }
 
-  // The rows of a form that grows, and what is chosen in them; the lab makes them anew before texts are put back.
+  // Rows of a growing form with their choices; the lab adds them again before texts are restored.
   function form() {
     const rows = [...document.querySelectorAll("[data-rows]")];
     const choices = [...document.querySelectorAll("[data-rows] [role=combobox]")];
@@ -107,7 +107,7 @@
     };
   }
 
-  // The form as it was before the page was loaded anew, where it differs from what is shown.
+  // State of the form before the page was loaded again, where it differs from the shown one.
   function missing() {
     const shown = JSON.stringify(form());
     first ??= shown;
@@ -120,7 +120,7 @@
     if (held.length) keep("sessionStorage", PAGE + address, { ...there, ahead: true, held: [...(there.held ?? []), ...held] });
   }
 
-  // What this page asked for is stored: what was typed for it is no longer kept.
+  // The request of this page is stored: remove the kept texts.
   function done() {
     forget("sessionStorage", PAGE + place());
   }
@@ -137,7 +137,7 @@
     isOver = true;
   }
 
-  // Put back what was typed; what has no field any more is given back in words. `ready`: the focus is where it was.
+  // Restore typed texts; return those without a field in words. `ready`: the focus is where it was.
   function restore() {
     const kept = before;
     const byName = Object.fromEntries([...fields(), ...thens()].map((each) => [nameOf(each), each]));
@@ -161,7 +161,7 @@
   async function tellAgain() {
     const written = fields().filter((field) => typed.has(field) && !field.readOnly);
     const texts = written.map((each) => each.value);
-    written.forEach((each, i) => write(each, `${texts[i]} `)); // the framework tells what is different alone
+    written.forEach((each, i) => write(each, `${texts[i]} `)); // the framework sends only differences
     await new Promise((told) => setTimeout(told));
     written.forEach((each, i) => write(each, texts[i]));
     await new Promise((told) => setTimeout(told));

@@ -1,17 +1,17 @@
 // The browser's side of every page. Fields are open only while the lab answers, Enter moves the focus here and not by way
-// of the server, and what is typed while an answer is on its way is held and then goes where the answer put the focus.
+// of the server; keys typed before an answer are held and then go to the field with the focus.
 (() => {
   "use strict";
 
   const HELD = ["Enter", "Backspace", "Tab"]; // besides all keys that write a letter
   const PATIENCE_MS = 150000; // an answer that has not come by then is not coming: the connection is given up before
-  const CONNECT_MS = 90000; // the framework loads the page anew where the lab has not taken a call by then
+  const CONNECT_MS = 90000; // time after which the framework reloads the page if the lab has not answered
   const PAUSE_MS = 250; // a hand that types on is quicker, one that has seen a refusal is slower
   const { language, words } = document.currentScript.dataset;
-  const SAID = JSON.parse(words); // what is said here, in the language of the page
+  const SAID = JSON.parse(words); // texts of this script in the language of the page
   const held = []; // keys typed while an answer is on its way
   let waiting = "ahead" in document.currentScript.dataset; // the page itself is the first answer, number 0
-  let refused = false; // what was asked last
+  let refused = false; // outcome of the last request
   let writing = false; // held keys are being written, or after a refusal let run out
   let own = false; // this very letter is written here
   let asked = 0; // number of the last question
@@ -22,7 +22,7 @@
   let again = null; // asks once more what was asked last
   let resuming = false; // readings or rows of before are being told to the lab
   let goingTo = ""; // the address that the page goes on to
-  let drawings = 0; // menus chosen from whose fields the lab has not drawn anew yet
+  let drawings = 0; // menus with a choice whose fields are not drawn again yet
   let toPutRight = null; // the field of the last reading, which was refused
   const telling = new Map(); // readings that the lab has not answered yet, by their numbers
 
@@ -49,7 +49,7 @@
     if (!resuming && !waiting) resume();
   }
 
-  // What was kept goes to the lab first: it answers with `resent` or `grown`. Whether there was any.
+  // Send kept readings or rows first; the lab answers with `resent` or `grown`. Returns true if there were any.
   function tellKept() {
     const form = kept.missing();
     const unanswered = kept.readings();
@@ -58,7 +58,7 @@
     return Boolean(form || unanswered.length);
   }
 
-  // What was on its way when the connection was lost may have been lost: the lab knows each thing by its number.
+  // Requests sent when the connection was lost may be lost: send them again, the lab knows each key.
   async function goneOn() {
     await kept.tellAgain();
     telling.forEach((emit) => emit());
@@ -77,14 +77,14 @@
     say("connection", SAID.lost);
   }
 
-  // The lab has answered what was sent again: those that it could not store are said in full.
+  // Answers to readings that were sent again; those that were not stored are shown in full.
   function resent(answers) {
     if (!resuming) return; // asked twice
     answers.forEach(([number]) => kept.settled(number));
     resumed(answers.map(([, why]) => why).filter(Boolean));
   }
 
-  // The form has the rows again that it had before the page was loaded anew.
+  // The form has the rows again that it had before the reload.
   function grown() {
     if (resuming) resumed([]);
   }
@@ -94,14 +94,14 @@
     if (!waiting || asked === 0) resume(refusals);
   }
 
-  // What was typed before the page was loaded anew goes where it was typed, or is said.
+  // Texts typed before the reload go to their fields or are shown.
   async function resume(refusals = []) {
     const before = kept.restore();
     if (before.held.length && (before.ready || before.ahead)) held.unshift(...before.held);
     else if (before.held.length) before.without.push(before.held.map(inWords).join(""));
     if (before.without.length) refusals.push(`${SAID.before} ${before.without.join("; ")}`);
     if (refusals.length) say("unused", refusals.join(" "));
-    await pause(0); // the fields tell what was put back before a key comes
+    await pause(0); // the fields send restored texts before a key arrives
     waiting = false;
     refused = false;
     if (!writing) writeHeld();
@@ -166,7 +166,7 @@
   }
 
   function answered(number, fine) {
-    if (number !== asked) return; // nobody waits for it any more
+    if (number !== asked) return; // an answer that is no longer awaited
     if (number === 0) return resuming || resume();
     clearTimeout(timer);
     waiting = false;
@@ -176,7 +176,7 @@
     if (!writing) writeHeld();
   }
 
-  // Another choice in a menu draws the fields below anew: they are closed until that is done, and keys wait.
+  // A choice in a menu draws the fields below again: they are disabled until then, and keys are held.
   function drawAnew(emit) {
     drawings += 1;
     close(true);
@@ -230,7 +230,7 @@
   const tellHolding = () =>
     document.documentElement.classList.toggle("holding", waiting || writing || Boolean(goingTo || drawings));
 
-  // What was meant for after a thing that was refused must not go into the field that is to be put right.
+  // Keys meant for after a rejected input must not go to the field that needs a correction.
   async function letRunOut() {
     let before = -1;
     while (before < held.length) {
@@ -296,10 +296,10 @@
     event.preventDefault();
     const next = behind(event.target, event.currentTarget).find((field) => field.checkVisibility());
     next?.focus();
-    next?.select(); // what stands there already is written over
+    next?.select(); // typing replaces the present text
   }
 
-  // In a reading: it is told to the lab, and the next one is typed meanwhile. Where there was another one before, the
+  // In a reading: send it, and let the user type the next one meanwhile. Where there was another one before, the
   // lab asks why.
   function reading(event, emit) {
     event.preventDefault(); // else it would press the button that the focus goes to
@@ -331,7 +331,7 @@
     refused = true;
   }
 
-  // A field that has to be put right: shown, with the focus in it and all of it marked.
+  // A field that needs a correction: show it, with the focus and its text selected.
   function goTo(id) {
     const place = getHtmlElement(id);
     const field = place?.matches("input") ? place : (place?.querySelector("input, [tabindex]") ?? place);

@@ -17,9 +17,9 @@ from .._support.staging import cannot_write, write_file
 from .._support.user_files import GivenError, toml_values
 from ..ski import read_ski, ski_names, write_ski
 from ..snow.measured_range import with_range_warnings
-from .number_input import typed_number
-from .subprocesses import OF_A_SKI, confined
+from .subprocesses import SKI_BOUNDS, confined
 from .uploads import Unpacking
+from .words import typed_number
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -32,33 +32,33 @@ FILE: Final = "ski.toml"
 TABLE: Final = "ski.csv"
 NOTHING: Final = "nothing"
 EDITED: Final = "the edited ski"
-"""What stands between the names of skis in the pages' lists, and so is none."""
+"""Entries of the lists of skis, which cannot be names of skis."""
 _NAME: Final = re.compile(r"[A-Za-z0-9À-ž](?:[A-Za-z0-9À-ž _-]{0,38}[A-Za-z0-9À-ž])?")
 _DEVICES: Final = re.compile(r"(?i)con|prn|aux|nul|com[0-9]|lpt[0-9]")
 _NAME_LINE: Final = re.compile(r"(?m)^name\s*=.*$")
 
 
 class LabSkis:
-    """Saved skis, each a folder with its file, and a table where it has one."""
+    """Saved skis, each a folder with a file and an optional table."""
 
     def __init__(self, runs: Path) -> None:
         self._folder = runs / FOLDER
 
     def saved(self) -> list[str]:
-        """Names of the saved ones."""
+        """Names of the saved skis."""
         return sorted((place.parent.name for place in self._folder.glob(f"*/{FILE}")), key=str.casefold)
 
     def names(self) -> list[str]:
-        """Names of all, the catalogue's first."""
+        """Names of all skis, first those of the catalogue."""
         return [*ski_names(), *(name for name in self.saved() if name not in ski_names())]
 
     def word(self, name: str) -> str:
-        """What names a ski where a ski is asked for: its name, or the path of its file.
+        """Word for a ski in scenarios and commands: its name in the catalogue, or the path of its file.
 
         Raises
         ------
         ParameterError
-            There is no such ski.
+            The lab has no such ski.
         """
         if name in ski_names():
             return name
@@ -67,7 +67,7 @@ class LabSkis:
         return str((self._folder / name / FILE).absolute())
 
     def texts(self, name: str) -> tuple[str, str]:
-        """The text of a ski's file, and of its table or nothing."""
+        """Texts of a ski's file and of its table ("" without one)."""
         place = Path(self.word(name))
         if name in ski_names():
             from importlib.resources import files
@@ -77,19 +77,19 @@ class LabSkis:
         return place.read_text(encoding="utf-8"), table.read_text(encoding="utf-8") if table.is_file() else ""
 
     def save_ski(self, name: str, ski: Ski) -> None:
-        """Save a ski as a file with a table; its name must be the one given.
+        """Save a ski with this name as a file with a table.
 
         Raises
         ------
         ParameterError
-            The name cannot be a ski's, or there is one of that name.
+            The name is not valid or exists already.
         OutputError
             The folder cannot be written.
         """
-        self._saved(name, lambda folder: write_ski(ski, folder / FILE))
+        self._save(name, lambda folder: write_ski(ski, folder / FILE))
 
     def save_texts(self, name: str, text: str, table: str) -> None:
-        """Save a ski's file as it is written, under a new name; see `save_ski`."""
+        """Save the text of a ski's file and table under a new name; see `save_ski`."""
         line = f"name = {json.dumps(name, ensure_ascii=False)}"
         named = _NAME_LINE.sub(lambda _: line, text, count=1) if _NAME_LINE.search(text) else f"{line}\n{text}"
         ski, _ = ski_of_texts(named, table)
@@ -101,10 +101,10 @@ class LabSkis:
             if table:
                 write_file(folder / TABLE, table)
 
-        self._saved(name, write)
+        self._save(name, write)
 
     def require_new(self, name: str) -> None:
-        """Refuse a name that is taken or that is no name of a folder everywhere."""
+        """Reject a name that exists or is not a valid name of a folder on every system."""
         if not _NAME.fullmatch(name) or _DEVICES.fullmatch(name):
             raise ParameterError("a ski's name has 1 to 40 letters, digits, blanks, - and _; give it another one")
         if name.casefold() in (NOTHING, EDITED):
@@ -112,7 +112,7 @@ class LabSkis:
         if name.casefold() in (other.casefold() for other in self.names()):
             raise ParameterError(f"there is a ski {name} already, and none is overwritten; give this one another name")
 
-    def _saved(self, name: str, write: Writing) -> None:
+    def _save(self, name: str, write: Writing) -> None:
         self.require_new(name)
         try:
             self._folder.mkdir(parents=True, exist_ok=True)
@@ -122,7 +122,7 @@ class LabSkis:
         try:
             write(made)
             made.chmod(0o755)
-            made.rename(self._folder / name)  # complete or not there; refused where somebody was quicker
+            made.rename(self._folder / name)  # complete or absent; fails if another request saved the name first
         except OSError as error:
             raise OutputError(f"the ski {name} cannot be saved: {error.strerror or error}. Try another name") from error
         finally:
@@ -130,12 +130,12 @@ class LabSkis:
 
 
 def ski_of_texts(text: str, table: str) -> tuple[Ski, str]:
-    """The ski of a file's text, and what the reader warned of.
+    """Ski of a file's text, with the warnings of the reader.
 
     Raises
     ------
     ParameterError
-        As `read_ski`; or the text names a file other than its table, which a page has no business with.
+        As `read_ski`; or the text names another file than its table.
     """
     _require_no_other_file(text)
     with TemporaryDirectory(prefix="skisnow-ski-") as name:
@@ -146,17 +146,17 @@ def ski_of_texts(text: str, table: str) -> tuple[Ski, str]:
         try:
             ski, warned = with_range_warnings(lambda: read_ski(place))
         except ParameterError as error:
-            raise ParameterError(_without(name, str(error))) from error
-    return ski, " ".join(_without(name, each) for each in warned)
+            raise ParameterError(_without_folder(name, str(error))) from error
+    return ski, " ".join(_without_folder(name, warning) for warning in warned)
 
 
 def check_ski_texts(text: str, table: str) -> None:
-    """Read a ski's file and forget it; errors as in `ski_of_texts`."""
+    """Check the texts of a ski; errors as in `ski_of_texts`."""
     ski_of_texts(text, table)
 
 
 def texts_of_ski(ski: Ski) -> tuple[str, str]:
-    """A ski as the text of its file and of its table."""
+    """Texts of a ski's file and table."""
     with TemporaryDirectory(prefix="skisnow-ski-") as name:
         place = Path(name) / FILE
         write_ski(ski, place)
@@ -167,7 +167,7 @@ def _require_no_other_file(text: str) -> None:
     try:
         keys = toml_values(text)
     except GivenError:
-        return  # said with its line by the reader
+        return  # the reader reports it with its line
     if "shape" in keys:
         raise ParameterError(
             f"{FILE}: a shape of another program cannot be read here. Use read_ski or the command line"
@@ -176,9 +176,9 @@ def _require_no_other_file(text: str) -> None:
         raise ParameterError(f'{FILE}: the table of a ski of the lab is in the field below it: write table = "{TABLE}"')
 
 
-def _without(folder: str, said: str) -> str:
-    """A sentence without a folder that is gone when it is read."""
-    return said.replace(f"{Path(folder) / 'x'}"[:-1], "").replace(f"{Path(folder).resolve() / 'x'}"[:-1], "")
+def _without_folder(folder: str, message: str) -> str:
+    """A message without the path of a temporary folder."""
+    return message.replace(f"{Path(folder) / 'x'}"[:-1], "").replace(f"{Path(folder).resolve() / 'x'}"[:-1], "")
 
 
 if TYPE_CHECKING:
@@ -196,7 +196,7 @@ STIFFNESS: Final = {
     "EI_N_m2": "EI (N m²) from tip to tail",
     "GJ_N_m2": "GJ (N m²) from tip to tail",
 }
-"""What the design of a shape does not know, in words."""
+"""Labels of the quantities that a design of a shape does not contain."""
 MEASURED: Final = {
     "length_mm": "Length (mm)",
     "running_length_mm": "Running length (mm)",
@@ -206,13 +206,13 @@ MEASURED: Final = {
     "tail_width_mm": "Width at the tail (mm)",
     **STIFFNESS,
 }
-"""What three widths leave to be measured, in words."""
+"""Labels of the measured quantities of a ski with three widths."""
 OPTIONAL: Final = ("camber_mm",)
 
 
 @dataclass(frozen=True, slots=True)
 class SkiTexts:
-    """A ski that was read: the name that it has, the text of its file and of its table, what the reader warned of."""
+    """A ski that was read: name, texts of its file and table, warnings of the reader."""
 
     name: str
     text: str
@@ -221,12 +221,12 @@ class SkiTexts:
 
 
 def measured_text(name: str, typed: Mapping[str, str]) -> str:
-    """The file of a ski of which three widths were measured.
+    """Text of the file of a ski with three measured widths.
 
     Raises
     ------
     ParameterError
-        A field is empty or holds no number.
+        A field is empty or not a number.
     """
     return _text({NAME: name, "source": "measured, entered in the lab"}, {key: typed.get(key, "") for key in MEASURED})
 
@@ -242,52 +242,52 @@ def _text(texts: Mapping[str, str], typed: Mapping[str, str]) -> str:
 
 
 def _numbers(words: str, text: str) -> list[float]:
-    """Several numbers with blanks or semicolons between; a comma between digits is a decimal one."""
+    """Numbers separated by blanks or semicolons, with a decimal point or comma."""
     parts = text.replace(";", " ").split()
     return [typed_number(words, part.removesuffix(",")) for part in parts or [""]]
 
 
 def add_ski(skis: LabSkis, name: str, texts: SkiTexts) -> str:
-    """Save a ski that was read, under a name or its own; gives that name.
+    """Save a ski that was read, under a name (default: its own); returns the name.
 
     Raises
     ------
     ParameterError, OutputError
         See `LabSkis.save_ski`.
     """
-    called = " ".join((name or texts.name).split())
-    skis.save_texts(called, texts.text, texts.table)
-    return called
+    saved_name = " ".join((name or texts.name).split())
+    skis.save_texts(saved_name, texts.text, texts.table)
+    return saved_name
 
 
 def ski_of_uploads(uploads: Sequence[tuple[str, IO[bytes]]], further: Mapping[str, str], limits: Limits) -> SkiTexts:
-    """Read the files of a ski in a process of its own.
+    """Read the files of a ski in a separate process.
 
     Parameters
     ----------
     uploads
-        Names and contents: a TOML file and what it names, or a design of MonkeyCAM.
+        Names and contents of a TOML file with its table, or of a design of MonkeyCAM.
     further
-        What was typed for a design, by the keys of `STIFFNESS`.
+        Typed values for a design, by the keys of `STIFFNESS`.
     limits
-        Of the upload.
+        Limits of the upload.
 
     Raises
     ------
     ParameterError
-        There is no ski in them, or not one.
+        The files do not contain exactly one ski.
     """
     with TemporaryDirectory(prefix="skisnow-ski-") as folder:
         unpacking = Unpacking(Path(folder) / "ski", limits)
         unpacking.folder.mkdir()
         for name, content in uploads:
             unpacking.take(PurePosixPath(name.replace("\\", "/")).name, content)
-        names = sorted(each.name for each in unpacking.folder.iterdir())
-        return confined(OF_A_SKI, read_ski_files, str(unpacking.folder), names, dict(further))
+        names = sorted(path.name for path in unpacking.folder.iterdir())
+        return confined(SKI_BOUNDS, read_ski_files, str(unpacking.folder), names, dict(further))
 
 
 def read_ski_files(folder: str, names: Sequence[str], further: Mapping[str, str]) -> SkiTexts:
-    """Read what `ski_of_uploads` has put into a folder."""
+    """Read the ski from a folder of `ski_of_uploads`."""
     files = [name for name in names if name.lower().endswith(".toml")]
     designs = [name for name in names if name.lower().endswith(".json")]
     if not files and len(designs) == 1:
@@ -312,14 +312,14 @@ def read_ski_files(folder: str, names: Sequence[str], further: Mapping[str, str]
             ski = read_ski(place)
         except ParameterError as error:
             raise ParameterError(str(error).replace(f"{folder}/", "")) from error
-    warned = " ".join(str(each.message).replace(f"{folder}/", "") for each in caught)
+    warned = " ".join(str(warning.message).replace(f"{folder}/", "") for warning in caught)
     is_whole = len(names) == 1 and files
     text, table = (place.read_text(encoding="utf-8-sig"), "") if is_whole else texts_of_ski(ski)
     return SkiTexts(ski.name, text, table, warned)
 
 
 def _require_own_files(place: Path, names: Sequence[str]) -> None:
-    """Refuse a file that names another one than was uploaded: the lab's own files are nobody's business."""
+    """Reject a file that names a file outside the upload."""
     keys = toml_values(place.read_text(encoding="utf-8-sig", errors="replace"))
     for key in ("table", "shape"):
         if (named := keys.get(key)) is not None and named not in names:

@@ -1,4 +1,4 @@
-"""Language of a page: the one chosen on a page before, else the one that the browser prefers. Local times."""
+"""Language of a page: the chosen one, otherwise the one that the browser prefers. Local times."""
 
 from __future__ import annotations
 
@@ -22,30 +22,30 @@ _OF_PAGES: Final = WeakKeyDictionary[Client, str]()
 
 
 def language_asked(chosen: str | None, accepted: str) -> str:
-    """The code of a language that there is.
+    """Code of an available language.
 
     Parameters
     ----------
     chosen
-        On a page before, kept in a cookie.
+        Language from the cookie.
     accepted
-        The browser's header Accept-Language, the dearest first.
+        Header Accept-Language of the browser, the preferred language first.
 
     Examples
     --------
     >>> language_asked(None, "fr-CH, de-AT;q=0.9, en;q=0.5"), language_asked("en", "de")
     ('de', 'en')
     """
-    wanted = [part.split(";")[0].strip().split("-")[0].lower() for part in accepted.split(",")]
-    return next((code for code in (chosen or "", *wanted) if code in languages()), ENGLISH)
+    preferred = [part.split(";")[0].strip().split("-")[0].lower() for part in accepted.split(",")]
+    return next((code for code in (chosen or "", *preferred) if code in languages()), ENGLISH)
 
 
 def language_of(client: Client | None = None) -> str:
-    """The code of a page's language; of the page that is being built or answered where none is given."""
+    """Code of a page's language (default: of the current page)."""
     if client is None:
         try:
             client = ui.context.client
-        except RuntimeError:  # nobody's page
+        except RuntimeError:  # outside of a page
             return ENGLISH
     if client not in _OF_PAGES:
         _OF_PAGES[client] = language_of_request(client.request)
@@ -53,7 +53,7 @@ def language_of(client: Client | None = None) -> str:
 
 
 def language_of_request(request: Request) -> str:
-    """The code of the language that a request asks for."""
+    """Code of the language of a request."""
     return language_asked(request.cookies.get(COOKIE), request.headers.get("accept-language", ""))
 
 
@@ -66,27 +66,27 @@ def said(text: str, client: Client | None = None) -> str:
 
 
 def said_template(template: str, *fields: str, client: Client | None = None) -> str:
-    """A template with ``{}`` for each field in the language of the page; the fields stay as they are."""
+    """A translated template with ``{}`` for each field; the fields are not translated."""
     return catalogue(language_of(client)).as_given(template).format(*fields)
 
 
 def decimal_mark(client: Client | None = None) -> str:
-    """Of numbers in the language of the page."""
+    """Decimal mark of the page's language."""
     return said(DECIMAL, client)[1]
 
 
 def number_said(number: str, client: Client | None = None) -> str:
-    """A stored number with the decimal mark of the page's language; the page's script takes both marks for one."""
+    """A stored number with the decimal mark of the page's language; the page accepts both marks."""
     return number.replace(".", decimal_mark(client))
 
 
 def said_as_written(text: str, names: Set[str]) -> str:
-    """A text in the language of the page; names and numbers as they stand in the file that it tells of."""
+    """A text in the language of the page, with names and numbers as in the file."""
     return catalogue(language_of()).keeping(names).translated(text)
 
 
 def said_list(text: str, client: Client | None = None) -> str:
-    """A list such as ``Load (N): 400 to 1200, 4 values; ski: mine``, its names and values each by themselves."""
+    """A translated list such as ``Load (N): 400 to 1200, 4 values; ski: mine``; names and values are separate texts."""
     return "; ".join(": ".join(said(word, client) for word in part.split(": ", 1)) for part in text.split("; "))
 
 
@@ -94,19 +94,19 @@ _MONTHS = ["Jan", "Feb", "Mar", "Apr", "May", "Jun", "Jul", "Aug", "Sep", "Oct",
 
 
 def minute_words(at: datetime | str) -> str:
-    """Day and time in the time zone of the machine that the lab runs on, as the page's language writes it.
+    """Day and time in the time zone of the server, in the format of the page's language.
 
     Parameters
     ----------
     at
-        A time, or its text as ISO 8601 has it; without a zone it is UTC.
+        A time, or an ISO 8601 text; UTC without a time zone.
     """
     time = datetime.fromisoformat(at) if isinstance(at, str) else at
     return _written((time if time.tzinfo else time.replace(tzinfo=UTC)).astimezone(), language_of())
 
 
 def _written(time: datetime, language: str) -> str:
-    """The same in words.
+    """Day and time in the format of a language.
 
     >>> _written(datetime(2026, 3, 5, 9, 7), "en"), _written(datetime(2026, 3, 5, 9, 7), "de")
     ('5 Mar 2026, 09:07', '5. 3. 2026, 09:07')

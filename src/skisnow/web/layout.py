@@ -1,23 +1,33 @@
-"""The frame that every page stands in: navigation, title, one column of content."""
+"""Frame of all pages (navigation, title, one column of content), and pages about errors."""
 
 from __future__ import annotations
 
 import json
+import logging
+import secrets
 from contextlib import contextmanager
 from html import escape
 from importlib import import_module
-from typing import TYPE_CHECKING
+from logging.handlers import RotatingFileHandler
+from typing import TYPE_CHECKING, Final
 from urllib.parse import quote
 
-from nicegui import ui
+from nicegui import app, ui
+from starlette.responses import HTMLResponse, Response
 
-from .._support.language import languages
+from .._support.errors import FieldDataError, ParameterError, SkisnowError, StoreError
+from .._support.language import catalogue, languages
 from .elements import Words, named
-from .language import language_of, said
+from .guard import STATUS
+from .language import language_of, language_of_request, said
 from .pages import PAGES
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
+    from pathlib import Path
+
+    from fastapi import FastAPI
+    from starlette.requests import Request
 
 STYLES = "/lab.css"
 SCRIPT = "/lab.js"
@@ -35,25 +45,25 @@ CONNECTING = "Connecting to the lab. The fields open as soon as it answers."
 
 @contextmanager
 def framed(title: str, *, here: str = "", ahead: bool = False, keeps: bool = False) -> Iterator[None]:
-    """Put what follows into the frame of the lab. Fields and buttons are open while the browser is connected.
+    """Frame of a page around the block. Fields and buttons are enabled while the browser is connected.
 
     Parameters
     ----------
     title
-        Heading of the page, and with the lab's name the title of its window.
+        Heading of the page and title of its window.
     here
-        ``PATH`` of the page in the navigation that this one belongs to.
+        ``PATH`` of the current page in the navigation.
     ahead
-        What is typed before the page is connected goes into the field that the page then puts the focus in.
+        True if text that is typed before the connection goes to the field with the focus.
     keeps
-        What is typed and not stored yet is there again when the page is loaded anew; so it is where ``ahead``.
+        True if unstored text is restored when the page is loaded again; implied by ``ahead``.
     """
     ui.page_title(f"{said(title)} · skisnow")
     ui.add_head_html(f'<link rel="stylesheet" href="{STYLES}">')
     ui.add_head_html(f'<script src="{KEEPING}"{" data-keeps" if keeps or ahead else ""}></script>')
-    ui.add_head_html(_script(ahead=ahead))
+    ui.add_head_html(_script_element(ahead=ahead))
     client = ui.context.client
-    client.run_javascript(CONNECTED)  # before all else that the page has to say: no focus goes into a closed field
+    client.run_javascript(CONNECTED)  # first, because a disabled field cannot get the focus
     client.on_connect(lambda: client.run_javascript(CONNECTED))
     with ui.element("a").props('href="#content"').classes("skip"):
         Words("Skip to the content")
@@ -61,8 +71,8 @@ def framed(title: str, *, here: str = "", ahead: bool = False, keeps: bool = Fal
         Words("skisnow").classes("lab-name")
         with named(ui.element("nav"), "Pages"):
             for name in PAGES:
-                _link(name, here)
-        _other_language()
+                _navigation_link(name, here)
+        _language_links()
     with (
         ui.element("div").props('id="content"'),  # inside the framework's main
         ui.element("fieldset").classes("lab").props("disabled role=none"),
@@ -76,15 +86,15 @@ def framed(title: str, *, here: str = "", ahead: bool = False, keeps: bool = Fal
         client.run_javascript("lab.answered(0, true)")
 
 
-def _script(*, ahead: bool) -> str:
-    """The element of the browser's side, with what that says in the language of the page."""
+def _script_element(*, ahead: bool) -> str:
+    """Script element with the texts of the script in the language of the page."""
     words = escape(json.dumps({key: said(text) for key, text in SAID_BY_SCRIPT.items()}, ensure_ascii=False))
     further = f'data-language="{language_of()}" data-words="{words}"{" data-ahead" if ahead else ""}'
     return f'<script src="{SCRIPT}" {further}></script>'
 
 
-def _other_language() -> None:
-    """A link for each language that the page is not in; it leads back here."""
+def _language_links() -> None:
+    """Add links to this page in the other languages."""
     request = ui.context.client.request
     back = quote(request.url.path + (f"?{request.url.query}" if request.url.query else ""), safe="")
     for code, name in languages().items():
@@ -93,7 +103,7 @@ def _other_language() -> None:
             link.props(f'hreflang={code} lang={code} title="{name}"').props["aria-label"] = name
 
 
-def _link(name: str, here: str) -> None:
+def _navigation_link(name: str, here: str) -> None:
     page = import_module(f".pages.{name}", __package__)
     link = ui.link(said(page.TITLE), page.PATH)
     if here == page.PATH:
@@ -101,11 +111,88 @@ def _link(name: str, here: str) -> None:
 
 
 def heading(text: str, level: int = 2) -> None:
-    """A heading of the page's outline."""
+    """Add a heading."""
     with ui.element(f"h{level}"):
         Words(text)
 
 
 def sentence(text: str, kind: str = "") -> ui.label:
-    """A sentence of its own; ``kind`` is a class of the stylesheet: quiet, good, bad."""
+    """Add a paragraph; ``kind``: class of the style sheet (quiet, good, bad)."""
     return Words(text).classes(f"sentence {kind}".strip())
+
+
+LOG: Final = logging.getLogger("skisnow.web")
+LOG_BYTES: Final = 2_000_000
+
+_PLAIN: Final = """<!doctype html><html lang="{language}"><meta charset="utf-8"><title>{title} · skisnow</title>
+<meta name="viewport" content="width=device-width, initial-scale=1"><link rel="stylesheet" href="/lab.css">
+<body><main class="lab"><h1>{title}</h1><p>{said}</p><p><a href="/">{back}</a></p></main></body></html>"""
+
+
+def log_to(path: Path) -> None:
+    """Write errors to this log file; one older file is kept."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    handler = RotatingFileHandler(path, maxBytes=LOG_BYTES, backupCount=1, encoding="utf-8")
+    handler.setFormatter(logging.Formatter("%(asctime)s %(levelname)s %(message)s"))
+    LOG.addHandler(handler)
+    LOG.setLevel(logging.INFO)
+    LOG.propagate = False
+
+
+def log_error(error: BaseException) -> str:
+    """Write an error to the log; returns its reference."""
+    reference = secrets.token_hex(4)
+    LOG.error("reference %s", reference, exc_info=error)
+    return reference
+
+
+def error_sentence(error: BaseException) -> str:
+    """Sentence of an error: the message of skisnow's errors, a reference to the log for others."""
+    if isinstance(error, FieldDataError):
+        return f"The campaign cannot be used as it is: {error}"
+    if isinstance(error, SkisnowError):
+        return str(error)
+    return f"Something went wrong that should not. What was shown as stored is stored. Reference: {log_error(error)}."
+
+
+def add_error_pages(outer: FastAPI) -> None:
+    """Replace the error pages and messages of the frameworks, which would show the exception."""
+    app._exception_handlers.clear()  # its only handler prints traces to the terminal
+    app.on_exception(_notify)
+    app.on_page_exception(_error_page)
+    for application in (app, outer):
+        application.add_exception_handler(404, _not_found_answer)
+        application.add_exception_handler(Exception, _error_answer)
+
+
+def _notify(error: Exception) -> None:
+    sentence_ = error_sentence(error)
+    try:
+        ui.notify(said(sentence_), type="negative", multi_line=True, timeout=0, close_button=said("Close"))
+    except RuntimeError:  # outside of a page
+        LOG.info("not shown on a page: %s", sentence_)
+
+
+def _error_page(error: Exception) -> None:
+    if isinstance(error, StoreError | ParameterError):
+        ui.context.client.request.scope[STATUS] = 404
+    with framed("This page cannot be shown"):
+        sentence(error_sentence(error), "bad")
+
+
+def plain_page(title: str, sentence: str, status: int, request: Request) -> Response:
+    """Page without scripts in the language of the request: title, sentence, and a link to the campaigns."""
+    language = language_of_request(request)
+    shown = {"title": title, "said": sentence, "back": "To the campaigns"}
+    words = {name: escape(catalogue(language).translated(text)) for name, text in shown.items()}
+    return HTMLResponse(_PLAIN.format(language=language, **words), status)
+
+
+async def _not_found_answer(request: Request, _: Exception) -> Response:
+    return plain_page("No such page", "The lab has no page at this address.", 404, request)
+
+
+async def _error_answer(request: Request, error: Exception) -> Response:
+    if isinstance(error, SkisnowError):  # shown by the page
+        return plain_page("This cannot be shown", error_sentence(error), 500, request)
+    return plain_page("This cannot be shown", f"Something went wrong. Reference: {log_error(error)}.", 500, request)

@@ -140,7 +140,7 @@ export default {
       if (behind) children.push(made("text", { x: right, y: height - 8, "text-anchor": "end", class: "end" }, ends[1]));
       const middle = (top + bottom) / 2;
       children.push(made("text", { x: 16, y: middle, "text-anchor": "middle", transform: `rotate(-90 16 ${middle})` }, panel.y));
-      // a window of its own: what is beyond the range is cut off
+      // a clip area for values beyond the range
       const inside = made("svg", { x: LEFT, y: top, width: Math.max(0, right - LEFT), height: bottom - top,
                                    viewBox: `${LEFT} ${top} ${Math.max(1, right - LEFT)} ${bottom - top}` });
       inside.append(...lines.map((line) => drawn(line, this.styles[line.style], this.across, this.up)));
@@ -152,7 +152,7 @@ export default {
       this.svg.replaceChildren(...children, inside);
       this.$el.dataset.drawn = Number(this.$el.dataset.drawn || 0) + 1;
     },
-    // What stands under the finger or the mouse, in numbers.
+    // Values at the pointer.
     read(event) {
       this.reading?.remove();
       const x = (event.clientX - this.svg.getBoundingClientRect().left);

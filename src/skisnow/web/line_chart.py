@@ -1,6 +1,6 @@
-"""A chart of lines that is light enough to follow a slider: drawn as SVG by a few lines of our own in the browser.
+"""Chart of lines that follows a slider, drawn as SVG by a small script in the browser.
 
-The large drawing library takes half a second of a laptop's browser to be loaded and 20 ms for each chart that changes.
+A large chart library takes half a second to load and 20 ms for each change of a chart on a laptop.
 """
 
 from __future__ import annotations
@@ -24,17 +24,17 @@ STYLES: Final = (
     {"colour": "#48525c", "dash": "2 4", "width": 2.5, "point": 11, "read": True},
     {"colour": "#8b96a1", "dash": "", "width": 1, "point": 6, "read": False},
 )
-"""Colour, dashes, width of a line and of a point in pixels, and whether numbers stand beside the finger or mouse."""
+"""Colour, dashes, width of a line and of a point in pixels, and whether values are shown at the pointer."""
 BEHIND: Final = 3
-"""The style of what the others are seen against."""
+"""Style of lines in the background."""
 
 
 @dataclass(frozen=True, slots=True)
 class ChartLine:
-    """Values over places, None where there is none, which breaks the line.
+    """A line of a chart; None breaks the line.
 
-    ``style`` 0, 1 or 2: the first, second or a further thing, or `BEHIND`. ``points``: points in place of a line.
-    ``name``: what the legend calls it; nothing where it has no entry of its own.
+    ``style``: 0, 1 or 2, or `BEHIND`. ``points``: True for points instead of a line. ``name``: text of the legend
+    (default: no entry).
     """
 
     x: Sequence[float | None]
@@ -50,18 +50,18 @@ class LineChart(Element, component="line_chart.js"):
     Parameters
     ----------
     x, y
-        What is along the axes, with the unit.
+        Labels of the axes with units.
     words
-        What it shows, for who cannot see it; the extent of the values is added.
+        Description for screen readers; the range of the values is added.
     height
-        In pixels of the page.
+        Height in pixels.
     ends
-        What the axis along the bottom leads to on the left and on the right.
+        Texts at the left and right ends of the horizontal axis.
     """
 
     def __init__(self, x: str, y: str, words: str, *, height: int = 240, ends: tuple[str, str] = ("", "")) -> None:
         super().__init__()
-        self._titles = {"x": said(x), "y": said(y), "ends": [said(each) for each in ends], "mark": decimal_mark()}
+        self._titles = {"x": said(x), "y": said(y), "ends": [said(end) for end in ends], "mark": decimal_mark()}
         self._words = words
         self._drawn: list[tuple[ChartLine, dict[str, Any]]] = []
         self._props["height"] = height
@@ -75,10 +75,10 @@ class LineChart(Element, component="line_chart.js"):
         range_: tuple[float, float] | None = None,
         from_zero: Literal["", "y", "xy"] = "",
     ) -> None:
-        """Draw these lines, the first one undermost.
+        """Draw lines, the first one at the bottom.
 
-        ``range_``: values at the lower and the upper end of the axis, else all of them. ``from_zero``: which axes show
-        zero whatever the values are.
+        ``range_``: values at the lower and upper ends of the vertical axis (default: all values). ``from_zero``: axes
+        that include zero.
         """
         self._drawn = [(line, self._plain(line)) for line in lines]
         self._props["panel"] = {
@@ -91,24 +91,24 @@ class LineChart(Element, component="line_chart.js"):
         self.update()
 
     def _plain(self, line: ChartLine) -> dict[str, Any]:
-        """As it is sent; what stands there already, such as hundreds of series behind one, is not rounded again."""
-        for known, plain in self._drawn:
-            if known == line:
+        """Line with rounded values for the browser; unchanged lines are not rounded again."""
+        for drawn, plain in self._drawn:
+            if drawn == line:
                 return plain
         plain = {"x": _short(line.x), "y": _short(line.y), "style": line.style, "points": line.points}
         return plain | {"name": said(line.name, self.client)}
 
     def _label(self, lines: Sequence[ChartLine]) -> str:
-        found = [value for line in lines for value in line.y if value is not None and math.isfinite(value)]
-        extent = f": {significant(min(found))} to {significant(max(found))}" if found else ": nothing yet"
+        values = [value for line in lines for value in line.y if value is not None and math.isfinite(value)]
+        extent = f": {significant(min(values))} to {significant(max(values))}" if values else ": nothing yet"
         names = ", ".join(said(line.name, self.client) for line in lines if line.name)
         return said(self._words + extent, self.client) + (f" ({names})" if names else "")
 
 
 def _short(values: Sequence[float | None]) -> list[float | None]:
-    """To a hundredth of what a screen can show, and a third of the letters on the way to it."""
-    known = [abs(value) for value in values if value is not None and math.isfinite(value)]
-    if not known or max(known) == 0.0:
+    """Values rounded to a hundredth of a pixel, which is a third of the characters to send."""
+    sizes = [abs(value) for value in values if value is not None and math.isfinite(value)]
+    if not sizes or max(sizes) == 0.0:
         return [None if value is None or not math.isfinite(value) else value for value in values]
-    digits = DIGITS - 1 - math.floor(math.log10(max(known)))
+    digits = DIGITS - 1 - math.floor(math.log10(max(sizes)))
     return [None if value is None or not math.isfinite(value) else round(value, digits) for value in values]

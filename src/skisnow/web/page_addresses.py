@@ -16,38 +16,38 @@ _ID: Final = re.compile(r"[0-9a-f]{4,64}")
 
 
 def entering(id_: str, *, table: str = "", test: str = "", head: Mapping[str, str] | None = None) -> str:
-    """Where a campaign is entered; with a table and a test: where that test is; head: what one without rows has."""
-    return f"/enter/{id_}" + _asking(table, test, **(head or {}))
+    """Address of the entry of a campaign, or of a table and test in it; ``head``: cells of a test without rows."""
+    return f"/enter/{id_}" + _query(table, test, **(head or {}))
 
 
 def correcting(id_: str, *, table: str = "", test: str = "") -> str:
-    """Where a kept campaign is corrected; with a table and a test: where that test is."""
-    return f"/correct/{id_}" + _asking(table, test)
+    """Address of the correction of an imported campaign, or of a table and test in it."""
+    return f"/correct/{id_}" + _query(table, test)
 
 
-def _asking(table: str, test: str, **further: str) -> str:
-    asked = {"table": table, "test": test, **further}
-    words = [f"{key}={quote(value, safe='')}" for key, value in asked.items() if value]
+def _query(table: str, test: str, **further: str) -> str:
+    parameters = {"table": table, "test": test, **further}
+    words = [f"{key}={quote(value, safe='')}" for key, value in parameters.items() if value]
     return "?" + "&".join(words) if words else ""
 
 
 def carving(ski: str, other: str = "") -> str:
-    """Where a ski is carved, with another one beside it."""
+    """Address of the page Carve with a ski, and another one for comparison."""
     return f"/carve?ski={quote(ski, safe='')}" + (f"&other={quote(other, safe='')}" if other else "")
 
 
 def analysis(kind: str, id_: str) -> str:
-    """Where a campaign is analysed; kind: entry or kept."""
+    """Address of the analysis of a campaign; kind: entry or kept."""
     return f"/analysis/{kind}/{id_}"
 
 
 def export(kind: str, id_: str) -> str:
-    """Where a campaign's zip comes from."""
+    """Address of a campaign's zip file."""
     return f"/export/{kind}/{id_}.zip"
 
 
 def plain_stem(called: str, otherwise: str) -> str:
-    """A file's name without folder and ending, in letters that a folder has on every system.
+    """Name of a file without folder and suffix, in characters that are valid in names of folders on every system.
 
     >>> plain_stem("Hang 3/Übungs lauf.gpx", "track"), plain_stem("雪.csv", "course")
     ('bungs-lauf', 'course')
@@ -56,14 +56,14 @@ def plain_stem(called: str, otherwise: str) -> str:
     return re.sub(r"[^A-Za-z0-9]+", "-", stem).strip("-")[:40] or otherwise
 
 
-def required_id(said: str) -> str:
-    """An id as it stands in an address.
+def required_id(text: str) -> str:
+    """Id of a campaign from an address.
 
     Raises
     ------
     StoreError
-        It is none.
+        The text is not an id.
     """
-    if not _ID.fullmatch(said):
+    if not _ID.fullmatch(text):
         raise StoreError("This address names no campaign; the list of campaigns names all.")
-    return said
+    return text

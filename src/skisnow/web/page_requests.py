@@ -26,21 +26,21 @@ ENTER: Final = "(event) => lab.enter(event, emit)"
 DRAW_ANEW: Final = "() => lab.drawAnew(emit)"
 ONWARD: Final = "(event) => lab.onward(event)"
 LONGEST: Final = 200
-"""Of a number that the browser gives to what it sends."""
+"""Maximum length of a request key."""
 
 
 @dataclass(frozen=True, slots=True)
 class PageRequest:
-    """What the browser says of what it sends.
+    """Data that the browser sends with an event.
 
     Attributes
     ----------
     number
-        Of the question that the page waits for; None where nobody waits.
+        Number of the request that the page waits for (default: it does not wait).
     once
-        What tells a thing that is sent again from a new one.
+        Key of the request, equal if it is sent again.
     text
-        What is typed in the field, where it is sent along.
+        Text of the field, if it is sent along.
     """
 
     number: int | None = None
@@ -51,39 +51,39 @@ class PageRequest:
 _NOTHING: Final = PageRequest()
 _ASKED: ContextVar[PageRequest] = ContextVar("asked", default=_NOTHING)
 _ANSWERS: Final = WeakKeyDictionary[Client, dict[int, bool]]()
-"""Of each page the answers to its questions: what was asked again is answered again, and not done again."""
+"""Answers by page and number: a repeated request is answered again without repeating the action."""
 
 
-def asked() -> PageRequest:
-    """What is being answered now."""
+def current_request() -> PageRequest:
+    """The request that is being handled."""
     return _ASKED.get()
 
 
 def answering(act: Act) -> Callable[[GenericEventArguments], None]:
-    """Tell the browser, where it waits for an act, when that is done.
+    """Handler that runs an action and sends its outcome to the waiting browser.
 
     Parameters
     ----------
     act
-        Gives False where it refused what it was given: what was typed on is then shown, and goes nowhere.
+        Action that returns False for a rejected input; the browser then keeps the typed text.
     """
-    client = ui.context.client  # the place that asked may be gone when the act is done
+    client = ui.context.client  # the element may be deleted by the action
 
     def answered(event: GenericEventArguments) -> None:
-        what, known = _asked_of(event.args), _ANSWERS.setdefault(client, {})
-        fine = known.get(what.number, False) if what.number is not None else False
+        request, answers = _parse_request(event.args), _ANSWERS.setdefault(client, {})
+        fine = answers.get(request.number, False) if request.number is not None else False
         try:
-            if what.number is None or what.number not in known:
-                fine = _done(act, what)
+            if request.number is None or request.number not in answers:
+                fine = _run_action(act, request)
         finally:
-            if what.number is not None:
-                known[what.number] = fine
-            _tell(client, what, fine=fine)
+            if request.number is not None:
+                answers[request.number] = fine
+            _send_outcome(client, request, fine=fine)
 
     return answered
 
 
-def _done(act: Act, what: PageRequest) -> bool:
+def _run_action(act: Act, what: PageRequest) -> bool:
     before = _ASKED.set(what)
     try:
         return act() is not False
@@ -91,17 +91,17 @@ def _done(act: Act, what: PageRequest) -> bool:
         _ASKED.reset(before)
 
 
-def _tell(client: Client, what: PageRequest, *, fine: bool) -> None:
+def _send_outcome(client: Client, what: PageRequest, *, fine: bool) -> None:
     if what.number is not None:
         client.run_javascript(f"lab.answered({what.number}, {'true' if fine else 'false'})")
     elif what.once is not None:
         client.run_javascript(f"lab.told({json.dumps(what.once)})")
 
 
-def _asked_of(said: Any) -> PageRequest:
-    """What came from the browser; anything else than expected counts as not said."""
-    given = said if isinstance(said, dict) else {}
-    number, once, text = (given.get(key) for key in ("number", "once", "text"))
+def _parse_request(message: Any) -> PageRequest:
+    """Request from the data of an event; unexpected values count as missing."""
+    fields = message if isinstance(message, dict) else {}
+    number, once, text = (fields.get(key) for key in ("number", "once", "text"))
     return PageRequest(
         number if isinstance(number, int) else None,
         once if isinstance(once, str) and len(once) <= LONGEST else None,
@@ -110,29 +110,29 @@ def _asked_of(said: Any) -> PageRequest:
 
 
 def asking_button(text: str, act: Act, kind: str = "") -> ui.button:
-    """A button whose answer puts the focus somewhere; see `skisnow.web.elements.button`."""
+    """Button whose action moves the focus; see `skisnow.web.elements.button`."""
     return button(text, None, kind).on("click", answering(act), js_handler=ASK)
 
 
 def row_button(text: str, act: Act) -> ui.button:
-    """A button that adds a row to a form, stores nothing, and puts the focus into the row."""
+    """Button that adds a row to a form and puts the focus on it; it stores nothing."""
     return button(text, None, "adds").on("click", answering(act), js_handler=ASK_FOR_ROW)
 
 
 def redrawn_by(menu: ui.select) -> ui.element:
-    """A group of fields that another choice in a menu draws anew; it is closed from the choice until that is done."""
+    """Group of fields that depend on a menu; they are disabled from a choice until they are drawn again."""
     client = ui.context.client
     menu.on("update:model-value", lambda: client.run_javascript("lab.drawn()"), js_handler=DRAW_ANEW)
     return ui.element("fieldset").classes("redrawn")
 
 
 def go_on(address: str) -> None:
-    """Leave the page, on which all is stored, for another one of the lab; what is typed meanwhile goes there."""
+    """Go to another page of the lab after everything is stored; text typed meanwhile goes to that page."""
     ui.run_javascript(f"lab.leave({json.dumps(address)})")
 
 
 def form(classes: str = "fields", *, sends: Act | None = None) -> ui.element:
-    """A group of fields in which Enter goes on to the next empty one and from the last one sends, where it sends."""
+    """Group of fields; Enter moves to the next empty field, and from the last one runs ``sends``."""
     made = ui.element("div").classes(classes)
     if sends is None:
         return made.on("keydown.enter", js_handler=ONWARD)

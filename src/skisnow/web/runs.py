@@ -1,7 +1,7 @@
-"""Simulated runs, one after another, each in a process and a folder of its own. The folders are queue and history.
+"""Queue of simulated runs, one after another, each in a separate process; their folders are the queue and the history.
 
-A run is the folder ``NAME`` with ``job.json``: what was asked, and how it stands. What was running when the server
-ended is begun again when it starts; what was waiting goes on waiting.
+A run is the folder ``NAME`` with ``job.json``: inputs and state. A run that was interrupted by the end of the server
+starts again with the server.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from .._support.user_files import GivenError, read_json, read_record
 if TYPE_CHECKING:
     from pathlib import Path
 
-Beside: TypeAlias = tuple[str, bytes]
+NamedFile: TypeAlias = tuple[str, bytes]
 State: TypeAlias = Literal["waiting", "running", "done", "failed", "cancelled"]
 
 JOB: Final = "job.json"
@@ -38,10 +38,10 @@ _PAUSE_S: Final = 0.3
 
 @dataclass(frozen=True, slots=True)
 class Job:
-    """One simulation: its folder's name, the scenario, changed keys, when it was asked for (UTC), how it stands.
+    """A simulation: name of its folder, scenario, changed keys, time of the request (UTC), state.
 
-    ``given`` is what was given with it by name, in words; its paths say nothing to a reader. ``took_s`` is how long it
-    took from start to report, once it is done; ``language`` is that of the report.
+    ``given``: inputs that were chosen by name, in words. ``took_s``: time from start to report of a finished job.
+    ``language``: language of the report.
     """
 
     name: str
@@ -57,7 +57,7 @@ class Job:
 
 @dataclass(frozen=True, slots=True)
 class FinishedRun:
-    """What the lab reports of a finished run, out of its summary.json."""
+    """Outcome of a finished run from its summary.json."""
 
     outcome: str
     run_length_m: float
@@ -71,21 +71,21 @@ class FinishedRun:
 
     @property
     def extent(self) -> str:
-        """Length and time."""
+        """Length and time in words."""
         return f"{self.run_length_m:.1f} m in {self.simulated_s:.2f} s"
 
 
 class Runs:
-    """The queue and the history.
+    """Queue and history of runs.
 
     Attributes
     ----------
     folder
-        Where the folders of the jobs are.
+        Folder with the folders of the jobs.
     progress
-        What the running job said last.
+        Last progress message of the running job.
     kind
-        Of the jobs.
+        Class of the jobs.
     """
 
     kind: type[Job] = Job
@@ -100,54 +100,53 @@ class Runs:
 
     def jobs(self) -> list[Job]:
         """All jobs, the newest first."""
-        found = []
+        jobs = []
         for place in self.folder.glob(f"*/{JOB}"):
-            with contextlib.suppress(GivenError):  # its folder is being taken away, or it is damaged
-                found.append(read_record(place, self.kind))
-        return sorted(found, key=lambda job: job.asked_at, reverse=True)
+            with contextlib.suppress(GivenError):  # the folder is being removed or damaged
+                jobs.append(read_record(place, self.kind))
+        return sorted(jobs, key=lambda job: job.asked_at, reverse=True)
 
     def ask(
         self,
         scenario: str,
         changes: Mapping[str, str],
         *,
-        files: Mapping[str, Beside] | None = None,
+        files: Mapping[str, NamedFile] | None = None,
         given: str = "",
         language: str = ENGLISH,
     ) -> Job:
-        """Put a simulation at the end of the queue; it is on the disk when this returns.
+        """Store a simulation at the end of the queue.
 
         Parameters
         ----------
         scenario
-            Its name.
+            Name of the scenario.
         changes
-            Texts by key, as the command line takes them.
+            Values by key as on the command line.
         files
-            By key: name and content of a file that the key is to name. It is kept with the run, so that what comes
-            later changes nothing of what was asked.
+            Names and contents of files by the key that gets their path; they are stored with the run.
         given
             See `Job`.
         language
-            Of the run's report.
+            Language of the report.
         """
-        now = datetime.now(UTC)
-        name = new_name(scenario, now)
+        asked_at = datetime.now(UTC)
+        name = new_name(scenario, asked_at)
         every = dict(changes)
         for key, (file, content) in (files or {}).items():
             write_file(self.folder / name / file, content)
             every[key] = str((self.folder / name / file).absolute())
-        job = Job(name, scenario, every, now.isoformat(), given=given, language=language)
+        job = Job(name, scenario, every, asked_at.isoformat(), given=given, language=language)
         self._keep(job)
         return job
 
     def cancel(self, name: str) -> None:
-        """Take a waiting job out of the queue, or end the running one; what it has computed is kept.
+        """Remove a waiting job from the queue, or end the running one and keep its results.
 
         Raises
         ------
         ParameterError
-            It neither waits nor runs.
+            The job is neither waiting nor running.
         """
         job = next((job for job in self.jobs() if job.name == name), None)
         if job is not None and job.state == "waiting":
@@ -160,7 +159,7 @@ class Runs:
             raise ParameterError("this run is over already; there is nothing to cancel")
 
     async def work(self) -> None:
-        """Work through the queue until `end`."""
+        """Run the jobs of the queue until `end`."""
         for job in self.jobs():
             if job.state == "running":  # the server ended meanwhile
                 self._keep(replace(job, state="waiting"))
@@ -172,7 +171,7 @@ class Runs:
                 await asyncio.sleep(_PAUSE_S)
 
     def end(self) -> None:
-        """End the running process with the server; its job is begun again next time."""
+        """End the running process with the server; its job starts again next time."""
         self._ended = True
         if self._process is not None and self._process.returncode is None:
             self._process.kill()
@@ -198,12 +197,12 @@ class Runs:
             self._keep(await self._ended_as(job, last, time.monotonic() - begun, cancelled=cancelled))
 
     def _command(self, job: Job) -> list[str]:
-        """What is computed, in words of the command line."""
+        """Arguments of the command line for a job."""
         changes = [word for key, value in job.changes.items() for word in ("--set", f"{key}={value}")]
         return ["simulate", job.scenario, *changes, "--language", job.language, "--out", str(self.folder / job.name)]
 
     async def _ended_as(self, job: Job, last: str, took_s: float, *, cancelled: bool) -> Job:
-        """How a job stands whose process has ended with these last words."""
+        """Job with its state after the end of its process, given the last message."""
         over = self._over(job, last, cancelled=cancelled)
         return replace(over, took_s=took_s if over.state == "done" else 0.0)
 
@@ -213,11 +212,11 @@ class Runs:
         while line := await process.stderr.readline():
             last = line.decode("utf-8", "replace").strip()
             if not self._cancelling:
-                self.progress = self._told(last)
+                self.progress = self._progress_of(last)
         return last[-LAST_WORDS:]
 
-    def _told(self, line: str) -> str:
-        """What is shown of a line that the running job has said."""
+    def _progress_of(self, line: str) -> str:
+        """Progress message of a line from the running job."""
         return line
 
     def _over(self, job: Job, last: str, *, cancelled: bool) -> Job:
@@ -226,61 +225,61 @@ class Runs:
             said = "Nothing was computed yet." if cancelled else last
             return replace(job, state="cancelled" if cancelled else "failed", said=said)
         try:
-            found = read_record(summary, FinishedRun, only_known=False)
+            finished = read_record(summary, FinishedRun, only_known=False)
         except GivenError as error:
             return replace(job, state="failed", said=str(error))
-        words = f"{found.outcome_in_words}: {found.extent}"
-        if found.outcome == "interrupted":  # cancelled a moment after the end it is finished all the same
+        words = f"{finished.outcome_in_words}: {finished.extent}"
+        if finished.outcome == "interrupted":  # a job that was cancelled after its end counts as finished
             return replace(job, state="cancelled", said=f"{words}. What was computed until then is kept.")
-        return replace(job, state="done", said=f"{words}. {found.remedy}".strip())
+        return replace(job, state="done", said=f"{words}. {finished.remedy}".strip())
 
     def _keep(self, job: Job) -> None:
-        """Write down how a job stands."""
+        """Store a job."""
         write_file(self.folder / job.name / JOB, json.dumps(asdict(job), ensure_ascii=False, indent=1))
 
 
-def new_name(what: str, now: datetime) -> str:
-    """Of a folder that nobody else has: when (UTC), and what for."""
-    return f"{now:%Y-%m-%d-%H%M%S}-{re.sub(r'[^A-Za-z0-9-]', '-', what)}-{secrets.token_hex(2)}"
+def new_name(what: str, time_utc: datetime) -> str:
+    """Unique name of a folder: time (UTC), subject, random digits."""
+    return f"{time_utc:%Y-%m-%d-%H%M%S}-{re.sub(r'[^A-Za-z0-9-]', '-', what)}-{secrets.token_hex(2)}"
 
 
 SLOWNESS: Final = 1.0
-"""Computing time over simulated time where no run has told it yet (modelling assumption: a laptop of 2025)."""
+"""Ratio of computing time to simulated time before the first run (laptop of 2025)."""
 AROUND_S: Final = 8.0
-"""Start, files and report of a run, where none has told it yet (modelling assumption)."""
+"""Time for start, files and report before the first run (s)."""
 LOOKED_AT: Final = 5
 _NEVER_S: Final = 1e9
-"""Thirty years: whatever is typed of such an end, no time is told for it."""
+"""Maximum simulated time (s) with an estimate."""
 
 
 def estimated_s(folder: Path, jobs: list[Job], values: Mapping[str, Any]) -> float | None:
-    """How long a run takes (s); None where its end does not say how far it goes.
+    """Estimated time of a run (s); None if its inputs do not determine its duration.
 
     Parameters
     ----------
     folder
-        Where the runs are.
+        Folder of the runs.
     jobs
-        The newest first.
+        Jobs, the newest first.
     values
-        Of the scenario, by key.
+        Values of the scenario by key.
     """
     simulated = simulated_s(values)
     if simulated is None:
         return None
-    told = _last(folder, jobs)
-    around = sum(each.took - each.wall for each in told) / len(told) if told else AROUND_S
+    runs = _last(folder, jobs)
+    around = sum(run.took - run.wall for run in runs) / len(runs) if runs else AROUND_S
     return slowness(folder, jobs, values.get("solver.method")) * simulated + around
 
 
 def slowness(folder: Path, jobs: list[Job], method: object) -> float:
-    """Computing time over simulated time of the last runs with this method."""
-    alike = [each for each in _last(folder, jobs) if each.method == method]
-    return sum(each.wall for each in alike) / sum(each.simulated for each in alike) if alike else SLOWNESS
+    """Ratio of computing time to simulated time of the last runs with this method."""
+    alike = [run for run in _last(folder, jobs) if run.method == method]
+    return sum(run.wall for run in alike) / sum(run.simulated for run in alike) if alike else SLOWNESS
 
 
 def duration_words(seconds: float) -> str:
-    """In words, as exact as it is known.
+    """Rounded duration in words.
 
     >>> duration_words(42.0), duration_words(600.0), duration_words(20_000.0)
     ('40 s', '10 min', '6 h')
@@ -291,21 +290,21 @@ def duration_words(seconds: float) -> str:
     return f"{minutes} min" if minutes < 120 else f"{round(minutes / 60)} h"
 
 
-def _last(folder: Path, jobs: list[Job]) -> list[_Told]:
-    return [found for job in jobs if (found := _told(folder, job)) is not None][:LOOKED_AT]
+def _last(folder: Path, jobs: list[Job]) -> list[_RunTime]:
+    return [run for job in jobs if (run := _run_time(folder, job)) is not None][:LOOKED_AT]
 
 
 def simulated_s(values: Mapping[str, Any]) -> float | None:
-    """How long the run goes on (s): its duration, or its length at the speed of the start, the shorter one."""
+    """Simulated time (s): the duration, or the time for the length at the start speed if it is shorter."""
     duration, length, speed = (values.get(key) for key in ("run.duration_s", "run.length_m", "start.speed_m_per_s"))
     ends = [float(duration)] if duration else []
     if length and speed:
         ends.append(float(length) / float(speed))
-    return min((end for end in ends if 0.0 < end < _NEVER_S), default=None)  # what is typed may be "inf" or "nan"
+    return min((end for end in ends if 0.0 < end < _NEVER_S), default=None)  # typed values can be "inf" or "nan"
 
 
-class _Told(NamedTuple):
-    """A finished run: how long its process took, how long of that was computing, how much was simulated (s)."""
+class _RunTime(NamedTuple):
+    """Times of a finished run (s): its process, its computation, and the simulated time."""
 
     took: float
     wall: float
@@ -313,12 +312,12 @@ class _Told(NamedTuple):
     method: str
 
 
-def _told(folder: Path, job: Job) -> _Told | None:
+def _run_time(folder: Path, job: Job) -> _RunTime | None:
     if not job.took_s:
         return None
     try:
         summary = read_json(folder / job.name / "summary.json")
         method = str(summary["scenario"]["solver"]["method"])
-        return _Told(job.took_s, float(summary["wall_s"]), float(summary["simulated_s"]), method)
+        return _RunTime(job.took_s, float(summary["wall_s"]), float(summary["simulated_s"]), method)
     except (GivenError, KeyError, TypeError, ValueError):
         return None

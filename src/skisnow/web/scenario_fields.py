@@ -1,4 +1,4 @@
-"""The inputs of a scenario as fields of a form, made from the table of inputs: each with its name, unit and range."""
+"""Fields of a scenario's inputs with name, unit and range, from their declarations."""
 
 from __future__ import annotations
 
@@ -23,14 +23,14 @@ if TYPE_CHECKING:
 ON: Final = "true"
 OFF: Final = "false"
 _OF_FILES: Final = re.compile(r'"|\b[a-z]+_[a-z]+\b|left out')
-"""A clause about the keys of a file says nothing in a form."""
+"""Clauses of a meaning about keys of a file, which do not apply to a form."""
 _COMMA: Final = re.compile(r"[-+]?\d*,\d+")
 _DIGITS: Final = 6
-"""Of a value that a scenario has computed, such as one in another unit."""
+"""Significant digits of a value in a field."""
 
 
 def called(key: Quantity) -> str:
-    """What an input is called in front of its field: label, symbol and unit.
+    """Name of an input at its field: label, symbol and unit.
 
     >>> from skisnow.scenario.keys import SCENARIO_KEYS
     >>> called(SCENARIO_KEYS["slope.angle_deg"]), called(SCENARIO_KEYS["snow.H_V_N_per_mm3"])
@@ -42,13 +42,13 @@ def called(key: Quantity) -> str:
 
 
 def range_words(key: Quantity) -> str:
-    """What it means, as far as the name does not say it, and what is allowed.
+    """Meaning of an input, unless its name states it, and allowed values.
 
     >>> from skisnow.scenario.keys import SCENARIO_KEYS
     >>> range_words(SCENARIO_KEYS["slope.angle_deg"]), range_words(SCENARIO_KEYS["snow.S_f_N_per_mm2"])
     ('Inclination of the plane. Allowed: from 0 to 75.', 'Allowed: above 0.')
     """
-    clauses = [each for each in key.meaning.split("; ") if not _OF_FILES.search(each)]
+    clauses = [clause for clause in key.meaning.split("; ") if not _OF_FILES.search(clause)]
     meaning = "; ".join(clauses)
     words = [] if not meaning or meaning.startswith(key.label) else [_as_sentence(meaning)]
     if not (key.choices or key.kind == "switch"):
@@ -57,12 +57,12 @@ def range_words(key: Quantity) -> str:
 
 
 def _as_sentence(words: str) -> str:
-    """With a large letter in front, unless that is a symbol's."""
+    """A sentence with a capital letter, unless it begins with a symbol."""
     return f"{words[0].upper()}{words[1:]}." if words[:2].isalpha() and words[:2].isascii() else f"{words}."
 
 
 def written(value: Any) -> str:
-    """A value as the command line takes it, rounded to what a field shows.
+    """A value as on the command line, rounded for a field.
 
     >>> written([6.0, 8.0]), written(True), written(0.20669325758298024)
     ('[6, 8]', 'true', '0.206693')
@@ -72,27 +72,27 @@ def written(value: Any) -> str:
     if isinstance(value, bool):
         return ON if value else OFF
     if isinstance(value, tuple | list):
-        return f"[{', '.join(written(each) for each in value)}]"
+        return f"[{', '.join(written(item) for item in value)}]"
     return f"{value:.{_DIGITS}g}" if isinstance(value, float) else str(value)
 
 
 def with_point(text: str) -> str:
-    """A number with a decimal comma as the command line takes it; anything else as it is."""
+    """A number with a decimal comma as on the command line; other texts unchanged."""
     return text.replace(",", ".") if _COMMA.fullmatch(text) else text
 
 
 class ScenarioField:
-    """One input: a field, a menu or a switch, with its range below."""
+    """Field, menu or switch of an input, with its range."""
 
     def __init__(self, key: Quantity, value: Any, typed: str | None) -> None:
         self.key = key
         self.before = written(value)
         with ui.element("div").classes("input") as self.place:
-            self.element = self._drawn(self.before if typed is None else typed)
+            self.element = self._create(self.before if typed is None else typed)
             named(self.element, called(key))
             self._range = sentence(range_words(key), "quiet range")
 
-    def _drawn(self, text: str) -> InputField:
+    def _create(self, text: str) -> InputField:
         if self.key.kind == "switch":
             return ui.switch(said(called(self.key)), value=text == ON).classes("field")
         if self.key.choices:
@@ -103,7 +103,7 @@ class ScenarioField:
 
     @property
     def text(self) -> str:
-        """What stands there now, as the command line takes it."""
+        """Current value as on the command line."""
         value = self.element.value
         if isinstance(value, bool):
             return ON if value else OFF
@@ -111,16 +111,16 @@ class ScenarioField:
 
     @property
     def is_changed(self) -> bool:
-        """Whether something else stands there than the scenario has."""
+        """True if the value differs from that of the scenario."""
         return self.text != self.before
 
     def check(self) -> InputValue:
-        """Refuse what cannot be, as far as the field alone tells; it is said at the field. Gives the value.
+        """Check the value and return it; an error is shown at the field.
 
         Raises
         ------
         ParameterError
-            What stands there is no value of this input.
+            The value is not valid for this input.
         """
         self.refuse("")
         try:
@@ -132,16 +132,16 @@ class ScenarioField:
             raise
 
     where = "the scenario"
-    """What has the value that stands there at first."""
+    """Origin of the first value, for messages."""
 
     def typed_value(self) -> object:
-        """What stands there, as a file would have it."""
+        """Current value as in a file."""
         from ..scenario.keys import parse_change
 
         return parse_change(f"{self.key.name}={self.text}")[1]
 
     def refuse(self, fault: str) -> None:
-        """Say at the field why it is refused; nothing: it is not."""
+        """Show an error at the field; "" removes it."""
         if isinstance(self.element, ui.input):
             self.element.error = said(fault, self.element.client) if fault else None
         else:
@@ -149,18 +149,18 @@ class ScenarioField:
             self._range.classes(add="bad" if fault else "", remove="" if fault else "bad")
 
     def focus(self) -> None:
-        """Put the focus here, with all that stands there marked."""
+        """Put the focus on the field and select its text."""
         client, id_ = self.element.client, self.element.id
         client.run_javascript(f"lab.goTo({id_})")
 
 
 def in_labels(message: str, *keys: Quantity) -> str:
-    """A message of the library with the names of inputs as their fields call them.
+    """A message of the library with the names of fields instead of keys.
 
     >>> from skisnow.scenario.keys import SCENARIO_KEYS
     >>> in_labels("sledge.mass_kg is -5.0; allowed is above 0 to 1000 kg", SCENARIO_KEYS["sledge.mass_kg"])
     'Mass of the sledge m (kg) is -5.0; allowed is above 0 to 1000 kg'
     """
-    for key in sorted(keys, key=lambda each: -len(each.name)):
+    for key in sorted(keys, key=lambda key: -len(key.name)):
         message = message.replace(key.name, called(key))
     return message

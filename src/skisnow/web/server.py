@@ -31,7 +31,7 @@ else:
 
 
 def require_allowed(host: str, token: str | None) -> None:
-    """Refuse to listen where others can come in without a token.
+    """Reject a host that other machines can reach without a token.
 
     Raises
     ------
@@ -49,7 +49,7 @@ def require_allowed(host: str, token: str | None) -> None:
 
 @dataclass(frozen=True, slots=True)
 class Certificate:
-    """PEM files of a certificate and of its private key; ``key`` None: it stands in the same file."""
+    """PEM files of a certificate and its private key (default: in the same file)."""
 
     file: Path
     key: Path | None = None
@@ -78,25 +78,25 @@ def serve(
     Parameters
     ----------
     lab
-        What the pages work with.
+        The lab.
     host, port
-        Where to listen; port 0 takes a free one.
+        Address to listen on; port 0 selects a free port.
     token
         See `require_allowed`.
     tell
-        Called with the address as soon as requests are answered, then with further lines where others may come.
+        Function that is called with the address when the server is ready, then with further lines on an open host.
     certificate
-        With which what goes between the machines is encrypted; None: it is not.
+        Certificate for an encrypted connection (default: not encrypted).
 
     Raises
     ------
     ParameterError
         See `require_allowed`.
     OSError
-        The port is taken.
+        The port is in use.
     """
     require_allowed(host, token)
-    with _listening(host, port) as listener:
+    with _listener(host, port) as listener:
         app = lab_application(lab, host=host, token=token)
         config = uvicorn.Config(
             app,
@@ -104,8 +104,8 @@ def serve(
             access_log=False,
             server_header=False,
             ws_max_size=4_000_000,
-            ws_ping_interval=None,  # the pages' sockets have a heartbeat of their own, which is more patient
-            http=PatientToAPoint,
+            ws_ping_interval=None,  # the sockets of the pages have a heartbeat with a longer limit
+            http=TimeLimitedProtocol,
             lifespan="on",
             ssl_certfile=None if certificate is None else certificate.file,
             ssl_keyfile=None if certificate is None else certificate.key,
@@ -116,19 +116,19 @@ def serve(
             addresses = lab_addresses(host, listener.getsockname()[1], secure=secure)
             tell(addresses[0])
             if not is_loopback(host):
-                for line in for_others(addresses, secure=secure):
+                for line in lines_for_others(addresses, secure=secure):
                     tell(line)
 
-        _Announced(config, begun).run(sockets=[listener])
+        _AnnouncingServer(config, begun).run(sockets=[listener])
 
 
-def _listening(host: str, port: int) -> socket.socket:
+def _listener(host: str, port: int) -> socket.socket:
     family = socket.AF_INET6 if ":" in host else socket.AF_INET
     return socket.create_server((host, port), family=family)
 
 
-class _Announced(uvicorn.Server):
-    """A server that says when it has begun to answer."""
+class _AnnouncingServer(uvicorn.Server):
+    """Server that calls a function when it is ready."""
 
     def __init__(self, config: uvicorn.Config, begun: Callable[[], object]) -> None:
         super().__init__(config)
@@ -140,8 +140,8 @@ class _Announced(uvicorn.Server):
             self._begun()
 
 
-EVERY: Final = ("0.0.0.0", "::")
-"""Hosts that stand for all addresses of this machine."""
+ALL_ADDRESSES: Final = ("0.0.0.0", "::")
+"""Hosts that mean all addresses of this machine."""
 IN_CLEAR: Final = (
     "What goes between the machines is not encrypted, the token neither: anybody in the same network can read it. Use "
     "a network of your own, such as this machine's hotspot, or give --certificate."
@@ -152,16 +152,16 @@ ENCRYPTED: Final = (
 
 
 def lab_addresses(host: str, port: int, *, secure: bool, own: Iterable[str] | None = None) -> list[str]:
-    """The addresses that others can open the lab at, those of home and office networks first.
+    """Addresses at which others can open the lab, those of private networks first.
 
     Parameters
     ----------
     host, port
-        That it listens on.
+        Host and port that the server listens on.
     secure
-        Whether it has a certificate.
+        True with a certificate.
     own
-        Addresses of this machine; those of its adapters where they are not given.
+        Addresses of this machine (default: those of its adapters).
 
     Examples
     --------
@@ -171,26 +171,26 @@ def lab_addresses(host: str, port: int, *, secure: bool, own: Iterable[str] | No
     ['https://127.0.0.1:80/']
     """
     hosts = [host]
-    if host in EVERY:
-        known = _adapters(host) if own is None else own
-        others = [each for each in known if not ipaddress.ip_address(each).is_loopback]
-        hosts = sorted(others, key=lambda each: not ipaddress.ip_address(each).is_private) or ["127.0.0.1"]
+    if host in ALL_ADDRESSES:
+        addresses = _adapters(host) if own is None else own
+        others = [address for address in addresses if not ipaddress.ip_address(address).is_loopback]
+        hosts = sorted(others, key=lambda address: not ipaddress.ip_address(address).is_private) or ["127.0.0.1"]
     scheme = "https" if secure else "http"
-    return [f"{scheme}://{f'[{each}]' if ':' in each else each}:{port}/" for each in hosts]
+    return [f"{scheme}://{f'[{address}]' if ':' in address else address}:{port}/" for address in hosts]
 
 
 def _adapters(host: str) -> Iterator[str]:
-    """Addresses of this machine, those that need no name of an adapter with them."""
+    """Addresses of this machine without link-local ones, which need the name of an adapter."""
     for adapter in ifaddr.get_adapters():
-        for each in adapter.ips:
-            if each.is_IPv4:
-                yield str(each.ip)
-            elif host == "::" and not ipaddress.ip_address(each.ip[0]).is_link_local:
-                yield each.ip[0]
+        for ip in adapter.ips:
+            if ip.is_IPv4:
+                yield str(ip.ip)
+            elif host == "::" and not ipaddress.ip_address(ip.ip[0]).is_link_local:
+                yield ip.ip[0]
 
 
-def for_others(addresses: list[str], *, secure: bool) -> Iterator[str]:
-    """Lines for whoever carries a phone: further addresses, a code for its camera, what is encrypted."""
+def lines_for_others(addresses: list[str], *, secure: bool) -> Iterator[str]:
+    """Lines for other machines: further addresses, a code for a phone's camera, and whether data are encrypted."""
     yield from (f"also: {address}" for address in addresses[1:])
     drawn = io.StringIO()
     segno.make(addresses[0], error="m").terminal(drawn, compact=True, border=2)
@@ -200,64 +200,64 @@ def for_others(addresses: list[str], *, secure: bool) -> Iterator[str]:
 
 
 HEAD_S: Final = 20.0
-"""For the head of a request, from the connection or from its first byte on (modelling assumption)."""
+"""Maximum time for the head of a request (s), from the connection or the first byte."""
 BODY_S: Final = 120.0
-"""For the next piece of a body (modelling assumption): a phone that sleeps while it sends."""
+"""Maximum time for the next part of a body (s)."""
 HEAD_BYTES: Final = 65_536
 
 
-class PatientToAPoint(_Protocol):
-    """The server's protocol with an end to its patience; the times are attributes, so that a test can wait for them."""
+class TimeLimitedProtocol(_Protocol):
+    """HTTP protocol that closes slow connections; its limits are attributes, so that tests can shorten them."""
 
     head_s = HEAD_S
     body_s = BODY_S
 
-    def __init__(self, *given: Any, **named: Any) -> None:
-        super().__init__(*given, **named)
+    def __init__(self, *arguments: Any, **options: Any) -> None:
+        super().__init__(*arguments, **options)
         self._closing: asyncio.TimerHandle | None = None
         self._head_bytes = 0
 
     def connection_made(self, transport: asyncio.BaseTransport) -> None:
-        """Begin to wait for a request."""
+        """Start the time limit of a request."""
         super().connection_made(cast("asyncio.Transport", transport))
-        self._wait(self.head_s)
+        self._limit_time(self.head_s)
 
     def data_received(self, data: bytes) -> None:
-        """Wait on, from the beginning where a request began."""
+        """Restart the time limit for a new request or a part of a body."""
         was_waiting = self._is_waiting()
         super().data_received(data)
-        if self.transport.get_protocol() is not self:  # a web socket by now
-            self._wait(None)
+        if self.transport.get_protocol() is not self:  # the connection became a web socket
+            self._limit_time(None)
         elif not self._is_waiting():
             self._head_bytes = 0
-            self._wait(self.body_s if self._is_in_body() else None)
+            self._limit_time(self.body_s if self._is_in_body() else None)
         else:
             self._head_bytes += len(data)
             if self._head_bytes > HEAD_BYTES:
                 self.transport.close()
             elif not was_waiting or self._closing is None:
-                self._wait(self.head_s)
+                self._limit_time(self.head_s)
 
     def on_response_complete(self) -> None:
-        """Wait for the next request on this connection; half of it may be here already."""
+        """Start the time limit of the next request on this connection."""
         super().on_response_complete()
         if not self.transport.is_closing():
-            self._wait(self.head_s)
+            self._limit_time(self.head_s)
 
     def connection_lost(self, exc: Exception | None) -> None:
-        """Wait for nothing any more."""
-        self._wait(None)
+        """Stop the time limit."""
+        self._limit_time(None)
         super().connection_lost(exc)
 
     def _is_waiting(self) -> bool:
-        """Whether no request is being answered or taken in."""
-        # typed as never None, which it is until the first request
+        """True if no request is being received or answered."""
+        # None until the first request, unlike its type
         return self.cycle is None or bool(self.cycle.response_complete)  # type: ignore[redundant-expr]
 
     def _is_in_body(self) -> bool:
         return self.cycle is not None and bool(self.cycle.more_body)  # type: ignore[redundant-expr]
 
-    def _wait(self, seconds: float | None) -> None:
+    def _limit_time(self, seconds: float | None) -> None:
         if self._closing is not None:
             self._closing.cancel()
         loop = asyncio.get_running_loop()

@@ -12,27 +12,27 @@ if TYPE_CHECKING:
 
 MEGABYTE: Final = 1_000_000
 STALL_S: Final = 60.0
-"""Longest time without an answer from browser or server that keeps the connection, in s."""
+"""Maximum time without an answer of browser or server before the connection is closed (s)."""
 PING_EVERY_S: Final = 10.0
 PING_WAIT_S: Final = STALL_S + 15.0
 RECONNECT_S: Final = 120.0
-"""Time that a page is kept after its connection was lost, in s: a walk out of reach of the network."""
+"""Time that a page is kept after its connection was lost (s)."""
 BUILD_S: Final = 2.0 * STALL_S
-"""Longest time to build a page, in s; the framework then gives up."""
+"""Maximum time to build a page (s)."""
 
 
 @dataclass(frozen=True, slots=True)
 class Limits:
-    """What an upload may hold (the largest campaign foreseen, a million readings, is 60 MB).
+    """Limits of an upload; a campaign with a million readings has 60 MB.
 
     Attributes
     ----------
     upload_bytes
-        Of one request's body.
+        Maximum size of the body of a request.
     unpacked_bytes
-        Of all files of a zip together, unpacked.
+        Maximum size of all unpacked files of a zip.
     files
-        Number of files of one upload, packed or not.
+        Maximum number of files, packed or not.
     """
 
     upload_bytes: int = 100 * MEGABYTE
@@ -42,18 +42,18 @@ class Limits:
 
 @dataclass(frozen=True, slots=True)
 class Lab:
-    """What is handed to each page's ``add_page``.
+    """Store, folder and settings of a lab, the argument of each page's ``add_page``.
 
     Attributes
     ----------
     store
-        Open.
+        Open store of campaigns.
     runs
-        The folder that runs are kept in.
+        Folder of runs, studies, skis, tracks and courses.
     limits
-        Of uploads.
+        Limits of uploads.
     scheduler
-        Who computes studies, as ``skisnow study --scheduler`` takes it; None: this machine.
+        Scheduler of studies as in ``skisnow study --scheduler`` (default: this machine).
     """
 
     store: Store

@@ -1,4 +1,4 @@
-"""The editor of a ski: factors for whole curves, values at positions along it, and the text of its file."""
+"""Editor of a ski: factors for whole curves, values at positions, and the text of its file."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from .elements import Words, button, field, named
 from .lab_skis import ski_of_texts
 from .language import said
 from .layout import heading, sentence
-from .number_input import typed_number
+from .words import typed_number
 
 if TYPE_CHECKING:
     from collections.abc import Awaitable, Callable
@@ -30,7 +30,7 @@ ONE: Final = "1"
 
 
 class SkiEditor:
-    """Fields over the file of a ski; ``changed`` is awaited after each change, to draw what the fields then say."""
+    """Editor on the page; ``changed`` is awaited after each change."""
 
     def __init__(self, skis: LabSkis, name: str, changed: Callable[[], Awaitable[None]]) -> None:
         self._skis = skis
@@ -50,11 +50,11 @@ class SkiEditor:
         self._table = ui.element("div").classes("table")
         self._text, self._csv = self._file(text, table)
         self._base = self._typed_texts()
-        self._tell(name)
+        self._show_origin(name)
 
     def _factor(self, words: str) -> ui.input:
         made = field(f"{words} ×", ONE, numeric=True)
-        made.on("change", self._follow)
+        made.on("change", self._update)
         return made
 
     def _file(self, text: str, table: str) -> tuple[ui.textarea, ui.textarea]:
@@ -77,46 +77,46 @@ class SkiEditor:
     def _typed_texts(self) -> tuple[str, str]:
         return str(self._text.value or ""), str(self._csv.value or "")
 
-    def asked(self) -> SkiAsked:
-        """What the fields say now."""
-        factors = {key: str(each.value or "") for key, each in self._factors.items()}
-        return SkiAsked(*self._base, factors, dict(self._typed))
+    def edit(self) -> SkiEditInput:
+        """Current values of the fields."""
+        factors = {key: str(factor.value or "") for key, factor in self._factors.items()}
+        return SkiEditInput(*self._base, factors, dict(self._typed))
 
     def require_drawn(self) -> None:
-        """Refuse to go on while the text of the file says something else than what is drawn."""
+        """Reject an edit while the text of the file differs from the drawn one."""
         if self._typed_texts() != self._base:
             raise ParameterError("the file below was changed since it was drawn; press Draw the file first")
 
     async def begin(self, name: str) -> None:
-        """Begin again from a ski of the lab."""
+        """Load a ski of the lab."""
         text, table = self._skis.texts(name)
         self._text.set_value(text)
         self._csv.set_value(table)
-        self._tell(name)
+        self._show_origin(name)
         await self._take_file()
 
     async def _take_file(self) -> None:
         self._base = self._typed_texts()
         self._typed.clear()
-        for each in self._factors.values():
-            each.set_value(ONE)
+        for factor in self._factors.values():
+            factor.set_value(ONE)
         await self._changed()
 
-    def _tell(self, name: str) -> None:
+    def _show_origin(self, name: str) -> None:
         self._begun.set_text(f"Begun from {name}. Nothing is saved until you give it a name of its own.")
 
-    async def _follow(self) -> None:
+    async def _update(self) -> None:
         await self._changed()
 
     def show(self, stations: tuple[float, ...], cells: Mapping[tuple[str, int], str]) -> None:
-        """Show what the curves are at the stations; what was typed there stays, and what is just being typed."""
+        """Show the values of the curves at the stations, except in cells with typed texts."""
         if stations != self._stations:
             self._stations = stations
             self._draw_table(cells)
-        for place, each in self._cells.items():
-            if (each.value or "") == self._shown[place]:
-                self._shown[place] = said(cells[place], each.client)
-                each.set_value(self._shown[place])
+        for place, cell in self._cells.items():
+            if (cell.value or "") == self._shown[place]:
+                self._shown[place] = said(cells[place], cell.client)
+                cell.set_value(self._shown[place])
 
     def _draw_table(self, cells: Mapping[tuple[str, int], str]) -> None:
         self._table.clear()
@@ -146,7 +146,7 @@ class SkiEditor:
             self._shown[place] = str(made.value or "")
             if text := str(made.value or "").strip():
                 self._typed[place] = text
-            else:  # emptied: as it was
+            else:  # an empty cell restores the value
                 self._typed.pop(place, None)
             await self._changed()
 
@@ -161,19 +161,19 @@ FACTORS: Final = {
     "GJ_N_m2": "GJ",
     "mass_per_length_kg_per_m": "Mass",
 }
-"""Curves that can be scaled, in words."""
+"""Labels of the curves with factors."""
 CELLS: Final = {
     "width_mm": "Width (mm)",
     "base_height_mm": "Base height (mm)",
     "EI_N_m2": "EI (N m²)",
     "GJ_N_m2": "GJ (N m²)",
 }
-"""Curves that can be given at stations, in words with their units."""
+"""Labels with units of the curves with values at stations."""
 
 
 @dataclass(frozen=True, slots=True)
-class SkiAsked:
-    """The file and its table as texts, factors by column, values by column and number of the station, all as typed."""
+class SkiEditInput:
+    """Typed texts of an edit: file, table, factors by column, values by column and number of the station."""
 
     text: str
     table: str = ""
@@ -182,13 +182,13 @@ class SkiAsked:
 
     @property
     def is_file(self) -> bool:
-        """Whether nothing but the file says what the ski is."""
+        """True without factors and values at stations."""
         return not self.cells and all(typed_number(FACTORS[key], text) == 1.0 for key, text in self.factors.items())
 
 
 @dataclass(frozen=True, slots=True)
-class SkiFound:
-    """The ski, what its reader warned of, where it can be edited (m), and what its columns are there, as texts."""
+class EditedSki:
+    """An edited ski, warnings of the reader, stations of the editor (m), and texts of the values there."""
 
     ski: Ski
     warned: str
@@ -196,22 +196,22 @@ class SkiFound:
     cells: Mapping[tuple[str, int], str]
 
 
-def ski_found(asked: SkiAsked, *, name: str = "") -> SkiFound:
-    """The edited ski; a name where it is to have another one.
+def edit_ski_texts(edit: SkiEditInput, *, name: str = "") -> EditedSki:
+    """Ski of an edit, with another name if one is given.
 
     Raises
     ------
     ParameterError
-        A field holds no number or one that is not allowed, or the file is none.
+        A field is not an allowed number, or the file is not valid.
     """
-    ski, warned = ski_of_texts(asked.text, asked.table)
+    ski, warned = ski_of_texts(edit.text, edit.table)
     station = edit_stations(ski)
-    factors = {key: typed_number(f"the factor of {FACTORS[key]}", text) for key, text in asked.factors.items()}
+    factors = {key: typed_number(f"the factor of {FACTORS[key]}", text) for key, text in edit.factors.items()}
     wanted = {column: np.full(station.size, np.nan) for column in EDITED_COLUMNS}
-    for (column, i), text in asked.cells.items():
+    for (column, i), text in edit.cells.items():
         wanted[column][i] = typed_number(f"{CELLS[column]} at {station[i]:.3f} m", text) * COLUMNS[column].factor
-    source = ski.source if asked.is_file else f"edited in the lab ({_in_words(asked, station)}) from: {ski.source}"
-    own = ski.name if asked.is_file else f"{ski.name}, edited"
+    source = ski.source if edit.is_file else f"edited in the lab ({_in_words(edit, station)}) from: {ski.source}"
+    own = ski.name if edit.is_file else f"{ski.name}, edited"
     edited = edited_ski(ski, SkiEdit(station, factors, wanted), name=name or own, source=source)
     shown = values_at(edited, station)
     cells = {
@@ -219,10 +219,10 @@ def ski_found(asked: SkiAsked, *, name: str = "") -> SkiFound:
         for column, values in shown.items()
         for i in range(station.size)
     }
-    return SkiFound(edited, warned, tuple(station.tolist()), {**cells, **asked.cells})
+    return EditedSki(edited, warned, tuple(station.tolist()), {**cells, **edit.cells})
 
 
-def _in_words(asked: SkiAsked, station: np.ndarray[tuple[int, ...], np.dtype[np.float64]]) -> str:
-    scaled = [f"{FACTORS[key]} × {text}" for key, text in asked.factors.items() if typed_number(key, text) != 1.0]
-    given = [f"{CELLS[column]} {text} at {station[i]:.3f} m" for (column, i), text in asked.cells.items()]
-    return "; ".join([*scaled, *given])
+def _in_words(edit: SkiEditInput, station: np.ndarray[tuple[int, ...], np.dtype[np.float64]]) -> str:
+    scaled = [f"{FACTORS[key]} × {text}" for key, text in edit.factors.items() if typed_number(key, text) != 1.0]
+    values = [f"{CELLS[column]} {text} at {station[i]:.3f} m" for (column, i), text in edit.cells.items()]
+    return "; ".join([*scaled, *values])

@@ -1,4 +1,4 @@
-"""The import of a measured ski: its form on *Skis* and the address that receives the upload."""
+"""Import of a measured ski: forms on the page Skis, and the address that receives files."""
 
 from __future__ import annotations
 
@@ -6,15 +6,10 @@ from typing import TYPE_CHECKING, Final
 from urllib.parse import quote
 
 from nicegui import run, ui
-from starlette.concurrency import run_in_threadpool
-from starlette.datastructures import FormData, UploadFile
-from starlette.exceptions import HTTPException
-from starlette.requests import Request
-from starlette.responses import RedirectResponse, Response
+from starlette.datastructures import FormData
 
-from .._support.errors import ParameterError, SkisnowError
+from .._support.errors import SkisnowError
 from .elements import Words, button, field
-from .error_pages import error_sentence, plain_page
 from .lab_skis import (
     LISTS,
     MEASURED,
@@ -28,8 +23,9 @@ from .lab_skis import (
     ski_of_uploads,
 )
 from .language import said
-from .layout import heading, sentence
-from .subprocesses import OF_A_SKI, confined
+from .layout import error_sentence, heading, sentence
+from .subprocesses import SKI_BOUNDS, confined
+from .upload_forms import add_upload, file_input, submit_button, text_input, upload_form, uploaded_files
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -38,41 +34,30 @@ if TYPE_CHECKING:
 
     from .settings import Lab
 
-UPLOAD: Final = "/skis/add"
+SKI_UPLOAD: Final = "/skis/add"
 MOST_FILES: Final = 3
 
 
 def add_ski_uploads(app: FastAPI, lab: Lab) -> None:
-    """Let an application take skis in. Where a request may come from is held by the guard around it."""
+    """Add the address that receives skis."""
 
-    async def take_in(request: Request) -> Response:
-        try:
-            async with request.form(max_files=MOST_FILES, max_fields=10) as form:
-                name = await run_in_threadpool(_added, lab, form)
-        except (SkisnowError, OSError) as error:
-            return plain_page("This was not taken in", f"Nothing was stored: {error_sentence(error)}", 400, request)
-        except HTTPException:
-            text = f"Nothing was stored: at most {MOST_FILES} files at once are taken in."
-            return plain_page("This was not taken in", text, 400, request)
-        return RedirectResponse(f"/skis?ski={quote(name, safe='')}&added=1", 303)
+    def store(form: FormData) -> str:
+        missing = "no file was chosen; choose the .toml file of a ski, or a design of MonkeyCAM"
+        files = [(file.filename or "", file.file) for file in uploaded_files(form, "files", missing)]
+        further = {key: str(form.get(key, "")) for key in STIFFNESS}
+        texts = ski_of_uploads(files, further, lab.limits)
+        name = add_ski(LabSkis(lab.runs), str(form.get(NAME, "")), texts)
+        return f"/skis?ski={quote(name, safe='')}&added=1"
 
-    app.add_api_route(UPLOAD, take_in, methods=["POST"], include_in_schema=False, response_model=None)
-
-
-def _added(lab: Lab, form: FormData) -> str:
-    uploads = [each for each in form.getlist("files") if isinstance(each, UploadFile) and each.filename]
-    if not uploads:
-        raise ParameterError("no file was chosen; choose the .toml file of a ski, or a design of MonkeyCAM")
-    further = {key: str(form.get(key, "")) for key in STIFFNESS}
-    texts = ski_of_uploads([(each.filename or "", each.file) for each in uploads], further, lab.limits)
-    return add_ski(LabSkis(lab.runs), str(form.get(NAME, "")), texts)
+    too_many = f"Nothing was stored: at most {MOST_FILES} files at once are taken in."
+    add_upload(app, SKI_UPLOAD, store, max_files=MOST_FILES, too_many=too_many)
 
 
 CALLED: Final = "Name of the ski"
 
 
-class SkiAdding:
-    """Two forms, folded: files, and three widths; ``added`` is called with the name of a ski that was typed."""
+class SkiImportForms:
+    """Folded forms for files of a ski and for three widths; ``added`` is called with the name of a typed ski."""
 
     def __init__(self, skis: LabSkis, added: Callable[[str], None]) -> None:
         self._skis = skis
@@ -100,12 +85,12 @@ class SkiAdding:
 
     async def _add(self) -> None:
         name = " ".join(str(self._name.value or "").split())
-        for each in self._fields.values():
-            each.error = None
+        for field_ in self._fields.values():
+            field_.error = None
         try:
             self._skis.require_new(name)
-            text = measured_text(name, {key: str(each.value or "") for key, each in self._fields.items()})
-            await run.io_bound(confined, OF_A_SKI, check_ski_texts, text, "")
+            text = measured_text(name, {key: str(field_.value or "") for key, field_ in self._fields.items()})
+            await run.io_bound(confined, SKI_BOUNDS, check_ski_texts, text, "")
             await run.io_bound(self._skis.save_texts, name, text, "")
         except SkisnowError as error:
             self._refuse(error_sentence(error))
@@ -114,7 +99,7 @@ class SkiAdding:
         self._added(name)
 
     def _refuse(self, why: str) -> None:
-        """Say it at the button, and where one field is at fault at that field, too, where the focus goes."""
+        """Show an error at the button and at its field, and put the focus on the field."""
         self._said.set_text(f"Not saved: {why}")
         self._said.classes(add="bad")
         for key, words in MEASURED.items():
@@ -125,29 +110,21 @@ class SkiAdding:
 
 
 def _file_form() -> None:
-    """Plain HTML, as every upload of the lab."""
+    """Form for the files of a ski."""
     sentence(
         "The .toml file of a ski and the table that it names; or the ski-def.json of MonkeyCAM, which knows neither "
         "mass nor stiffness: type those beside it.",
         "quiet",
     )
-    form = f'method=post action="{UPLOAD}" enctype="multipart/form-data"'
-    with ui.element("form").props(form):
+    with upload_form(SKI_UPLOAD):
         with ui.element("div").classes("acts"):
-            _input("files", "Files of the ski", 'type=file multiple required accept=".toml,.csv,.json"')
+            file_input("files", "Files of the ski", "ski-files", 'multiple accept=".toml,.csv,.json"')
         with ui.element("div").classes("acts"):
-            _input(NAME, "Another name for it", "")
+            text_input(NAME, "Another name for it", f"ski-{NAME}")
         with ui.element("details"):
             with ui.element("summary"):
                 Words("With a file of MonkeyCAM")
             for key, words in STIFFNESS.items():
                 with ui.element("div").classes("acts"):
-                    _input(key, words, "" if key in LISTS else "inputmode=decimal")
-        with ui.element("button").props("type=submit").classes("act"):
-            Words("Add the files")
-
-
-def _input(key: str, text: str, further: str) -> None:
-    with ui.element("label").props(f"for=ski-{key}"):
-        Words(text)
-    ui.element("input").props(f"id=ski-{key} name={key} {further}").classes("" if "file" in further else "act plain")
+                    text_input(key, words, f"ski-{key}", "" if key in LISTS else "inputmode=decimal")
+        submit_button("Add the files")

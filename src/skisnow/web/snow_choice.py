@@ -1,4 +1,4 @@
-"""The choice of a snow on a page: a published one, one site of an own campaign, or numbers."""
+"""Choice of a snow on a page: a published snow, a site of a campaign, or numbers."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ from ..campaign.store import Journals
 from ..estimation.results import results_json
 from ..report.campaign.page import RESULTS
 from ..snow import published_names, published_snow
-from .campaign_analysis import Choice, Refusal, numbers_of
+from .campaign_analysis import Choice, Refusal, analyse_files
 from .edit_session import EditSession
-from .elements import Words, choice, said_options
-from .error_pages import error_sentence
+from .elements import Words, choice, option_texts
+from .layout import error_sentence
 from .transfer import entry_files, kept_files
 from .words import estimate_words
 
@@ -35,18 +35,18 @@ ALL_SITES: Final = ""
 
 @dataclass(frozen=True, slots=True)
 class ChosenSnow:
-    """A snow that is given by a name.
+    """A snow that was chosen by name.
 
     Attributes
     ----------
     snow
-        With its intervals, as far as they are known.
+        Snow with its known intervals.
     words
-        What it is called.
+        Name for the reader.
     published
-        Name of a published one.
+        Name of a published snow.
     analysis, site
-        Where it was measured: a campaign, and the site or nothing for all of them.
+        Analysis of the campaign, and the site ("" for all sites).
     """
 
     snow: SnowProperties
@@ -57,10 +57,7 @@ class ChosenSnow:
 
 
 class SnowChoice:
-    """A menu of snows; ``changed`` is awaited when another one is chosen.
-
-    ``numbers`` is what the entry is called under which the page's own numbers hold.
-    """
+    """Menu of snows; ``changed`` is awaited after a choice. ``numbers``: name of the entry for the page's numbers."""
 
     def __init__(self, lab: Lab, numbers: str, changed: Callable[[], Awaitable[None]]) -> None:
         self._lab, self._numbers, self._changed = lab, numbers, changed
@@ -73,31 +70,31 @@ class SnowChoice:
         self._found: ChosenSnow | None = None
         self._refused = ""
         self._analysis: tuple[str, Analysis] | None = None
-        self._menu.on_value_change(self._another)
+        self._menu.on_value_change(self._choose_campaign_or_snow)
         self._site.on_value_change(self._choose)
 
     @property
     def is_numbers(self) -> bool:
-        """Whether the page's own numbers hold."""
+        """True if the numbers on the page apply."""
         return bool(self._menu.value == self._numbers)
 
     @property
     def gives_hardness(self) -> bool:
-        """Whether H_V is that of a chosen snow."""
+        """True if the chosen snow gives H_V."""
         return not self.is_numbers
 
     @property
     def gives_stress(self) -> bool:
-        """Whether S_f is: a campaign without shear tests has none."""
+        """True if the chosen snow gives S_f; a campaign without shear tests does not."""
         return self.gives_hardness and (self._found is None or self._found.snow.failure_shear_stress is not None)
 
     def chosen(self) -> ChosenSnow | None:
-        """The snow, None for the page's own numbers.
+        """The chosen snow; None for the numbers on the page.
 
         Raises
         ------
         ParameterError
-            What is chosen gives no snow.
+            The chosen campaign gives no snow.
         """
         if self.is_numbers:
             return None
@@ -105,7 +102,7 @@ class SnowChoice:
             raise ParameterError(self._refused or "the campaign is being analysed; wait a moment")
         return self._found
 
-    async def _another(self) -> None:
+    async def _choose_campaign_or_snow(self) -> None:
         key = str(self._menu.value)
         of_campaign = key in self._campaigns
         self._site.set_visibility(False)
@@ -113,7 +110,7 @@ class SnowChoice:
             return
         if of_campaign and self._analysis is not None:
             sites = sites_of(self._analysis[1])
-            self._site.set_options(said_options({ALL_SITES: "all sites"}) | {site: site for site in sites})
+            self._site.set_options(option_texts({ALL_SITES: "all sites"}) | {site: site for site in sites})
             self._site.set_visibility(len(sites) > 1)
             if self._site.value != ALL_SITES:
                 self._site.set_value(ALL_SITES)  # which chooses
@@ -162,7 +159,7 @@ class SnowChoice:
 
 
 def _campaigns(lab: Lab) -> dict[str, str]:
-    """Campaigns that can give the snow, by kind and id."""
+    """Names of the campaigns of the lab by kind and id."""
     entered = {
         f"entry-{head.id}": EditSession(lab, head.id).described.name or head.id for head in Journals(lab.store).list()
     }
@@ -177,29 +174,31 @@ def require_scenario(scenario: str, changes: Mapping[str, str], sources: Sources
     scenario, changes
         As on the command line.
     sources
-        Of skis and snows that are at hand.
+        Sources of skis and snows in memory.
 
     Raises
     ------
     ParameterError
-        A value cannot be read or is not allowed.
+        A value is not valid.
     """
     from ..scenario.keys import parse_change
     from ..scenario.reading import build_input, load_input
 
-    given = load_input(scenario).changed(dict(parse_change(f"{name}={text}") for name, text in changes.items()))
-    return build_input(given, sources=sources)
+    scenario_input = load_input(scenario).changed(
+        dict(parse_change(f"{name}={text}") for name, text in changes.items())
+    )
+    return build_input(scenario_input, sources=sources)
 
 
 def campaign_snow(lab: Lab, key: str) -> Analysis:
-    """The analysis of a campaign of the lab.
+    """Analysis of a campaign of the lab.
 
     Parameters
     ----------
     lab
-        Whose store has the campaign.
+        Lab with the campaign in its store.
     key
-        entry or kept, and the id, with - between.
+        Kind (entry or kept) and id of the campaign, joined by "-".
 
     Raises
     ------
@@ -207,52 +206,52 @@ def campaign_snow(lab: Lab, key: str) -> Analysis:
         The campaign gives no snow.
     """
     kind, id_ = key.split("-", 1)
-    found = numbers_of((kept_files if kind == "kept" else entry_files)(lab, id_), Choice())
-    if isinstance(found, Refusal):
-        raise ParameterError(f"this campaign gives no snow yet. {found.said}")
-    return found.analysis
+    numbers = analyse_files((kept_files if kind == "kept" else entry_files)(lab, id_), Choice())
+    if isinstance(numbers, Refusal):
+        raise ParameterError(f"this campaign gives no snow yet. {numbers.said}")
+    return numbers.analysis
 
 
 def sites_of(analysis: Analysis) -> list[str]:
-    """Sites that H_V was measured at."""
+    """Sites with a measured H_V."""
     return list(dict.fromkeys(row.site for row in analysis.site_means if row.quantity.startswith("H_V")))
 
 
 def results_with(analysis: Analysis, scenario: str, changes: Mapping[str, str]) -> tuple[bytes, str]:
-    """The text of results.json of a campaign, and in words the snow that the run then has.
+    """Text of results.json of a campaign, and the resulting snow of a scenario in words.
 
     Parameters
     ----------
     analysis
-        Of the campaign.
+        Analysis of the campaign.
     scenario, changes
-        What is to be simulated on its snow; ``snow.site`` names the site.
+        Scenario with changes; ``snow.site`` is the site.
 
     Raises
     ------
     ParameterError
-        A value cannot be read or is not allowed.
+        A value is not valid.
     """
     from ..ski.sources import Sources
 
     sources, site = Sources(), changes.get("snow.site") or None
     sources.take_snow(analysis.snow(site), results=RESULTS, site=site)
-    asked = require_scenario(scenario, {**changes, "snow.results": RESULTS}, sources).scenario
-    return results_json(analysis.results), snow_words(asked.contact.snow)
+    resolved = require_scenario(scenario, {**changes, "snow.results": RESULTS}, sources).scenario
+    return results_json(analysis.results), snow_words(resolved.contact.snow)
 
 
 def snow_words(snow: SnowProperties) -> str:
-    """H_V, S_f, k_u/H_V and u_y of a snow in words, with their intervals where these are known."""
+    """H_V, S_f, k_u/H_V and u_y of a snow in words, with known intervals."""
     return "; ".join(_in_words(snow))
 
 
 def _in_words(snow: SnowProperties) -> Iterator[str]:
-    known = (
+    quantities = (
         ("H_V", snow.snow_hardness, snow.snow_hardness_interval, N_PER_MM3, "N/mm³"),
         ("S_f", snow.failure_shear_stress, snow.failure_shear_stress_interval, N_PER_MM2, "N/mm²"),
         ("k_u/H_V", snow.unloading_ratio, snow.unloading_ratio_interval, 1.0, ""),
         ("u_y", snow.shear_displacement, snow.shear_displacement_interval, MM, "mm"),
     )
-    for name, value, ends, unit, word in known:
+    for name, value, ends, unit, word in quantities:
         if value is not None:
             yield f"{name} = {estimate_words(value / unit, ends and [end / unit for end in ends], word)}"

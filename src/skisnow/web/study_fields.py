@@ -1,4 +1,4 @@
-"""The question of a study: inputs that vary, ranges, and its STUDY.toml."""
+"""Inputs of a study: ranges, fields on the page, and study.toml."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ from ..carving.keys import CARVE_KEYS
 from .elements import choice, field, named
 from .language import said
 from .layout import sentence
-from .number_input import typed_number
 from .scenario_fields import called, with_point, written
+from .words import typed_number
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -27,16 +27,16 @@ if TYPE_CHECKING:
 
 
 CARVE: Final = "carved-turn"
-"""What stands for the study of carved turns where else a scenario's name stands."""
+"""Subject of a study of carved turns, instead of the name of a scenario."""
 STUDY: Final = "study.toml"
 TABLE: Final = "table.csv"
 MOST_POINTS: Final = 10_000
-"""Of a study of the lab, whose page draws them all (modelling assumption); the command takes a million."""
+"""Maximum number of points of a study in the lab, whose page draws all of them."""
 
 
 @dataclass(frozen=True, slots=True)
 class Range:
-    """The values of an input that varies: from, to, how many, and whether they are even in the logarithm."""
+    """Range of a varied input: ends, number of values, and whether the logarithms are evenly spaced."""
 
     low: float
     high: float
@@ -44,24 +44,24 @@ class Range:
     log: bool = False
 
     def toml(self) -> str:
-        """As a study's file has it."""
+        """The range as in study.toml."""
         log = ", log = true" if self.log else ""
         return f"{{ from = {self.low!r}, to = {self.high!r}, n = {self.n}{log} }}"
 
     def words(self) -> str:
-        """In words."""
+        """The range in words."""
         log = ", logarithmic" if self.log else ""
         return f"{written(self.low)} to {written(self.high)}, {self.n} values{log}"
 
     @property
     def middle(self) -> float:
-        """Of the range."""
+        """Middle of the range."""
         return (self.low + self.high) / 2.0
 
 
 @dataclass(frozen=True, slots=True)
-class StudyAsked:
-    """A study.
+class StudyQuestion:
+    """Inputs of a study.
 
     Attributes
     ----------
@@ -70,9 +70,9 @@ class StudyAsked:
     varied, fixed
         Ranges and values by key.
     beside
-        Texts of files that fixed values name, by their names.
+        Contents of the files that fixed values name, by name.
     named
-        What is given by name, in words.
+        Inputs that were chosen by name, in words.
     method, unit_s
         See `StudyJob`.
     """
@@ -86,11 +86,11 @@ class StudyAsked:
     unit_s: float = 0.0
 
     def files(self) -> dict[str, bytes]:
-        """All files of the study by name, `STUDY` among them."""
+        """Contents of all files of the study by name, including `STUDY`."""
         return {**self.beside, STUDY: self.text().encode("utf-8")}
 
     def text(self) -> str:
-        """The study's file, as the command reads it."""
+        """Text of study.toml."""
         lines = [f'out = "{TABLE}"']
         if self.of != CARVE:
             lines.append(f"scenario = {_toml(self.of)}")
@@ -99,42 +99,42 @@ class StudyAsked:
         return "\n".join([*lines, "", "[fixed]", *fixed, "", "[grid]", *varied, ""])
 
     def fixed_words(self) -> dict[str, str]:
-        """Fixed values that are no names of files."""
+        """Fixed numbers as texts by key."""
         return {name: written(value) for name, value in self.fixed.items() if name in study_keys(self.of)}
 
     def varied_words(self) -> str:
-        """What varies, and what is given by name."""
+        """Ranges, and inputs that were chosen by name, in words."""
         keys = study_keys(self.of)
         return "; ".join(
-            [*(f"{called(keys[name])}: {each.words()}" for name, each in self.varied.items()), *self.named]
+            [*(f"{called(keys[name])}: {values.words()}" for name, values in self.varied.items()), *self.named]
         )
 
 
 @cache
 def study_keys(of: str) -> Mapping[str, Quantity]:
-    """The numbers among the inputs of a carved turn or of a scenario, by name: what a study may vary."""
+    """Numbers among the inputs of a carved turn or of a scenario, which a study can vary, by name."""
     from ..scenario.keys import SCENARIO_KEYS
 
     if of != CARVE:
         return {name: key for name, key in SCENARIO_KEYS.items() if is_number(key)}
     other = SCENARIO_KEYS["snow.unloading_ratio"]
     labels = {name: key.label or other.label for name, key in CARVE_KEYS.items() if is_number(key)}
-    # what it means is said on the page of carved turns
+    # the meanings are on the page of carved turns
     return {name: replace(CARVE_KEYS[name], label=label, meaning=label) for name, label in labels.items()}
 
 
 def is_number(key: Quantity) -> bool:
-    """Whether an input is one that a range can be given for."""
+    """True for an input that can have a range."""
     return key.kind in ("number", "whole number")
 
 
-def most_points_refused(points: int) -> None:
-    """Refuse a study that the lab's page cannot show.
+def require_few_points(points: int) -> None:
+    """Reject a study with more points than the lab's page can show.
 
     Raises
     ------
     ParameterError
-        It has more points than `MOST_POINTS`.
+        The study has more points than `MOST_POINTS`.
     """
     if points > MOST_POINTS:
         raise ParameterError(
@@ -161,7 +161,7 @@ TO: Final = "To"
 VALUES: Final = "Number of values"
 LOG: Final = "Even in the logarithm"
 _USUAL: Final = "10"
-_BEGINS: Final = {
+_FIRST_RANGES: Final = {
     "edge_angle_deg": (10.0, 70.0),
     "load_N": (400.0, 1200.0),
     "H_V_N_per_mm3": (0.1, 10.0),
@@ -174,20 +174,19 @@ _BEGINS: Final = {
     "drag_area_m2": (0.3, 0.8),
     "mass_kg": (60.0, 120.0),
 }
-"""By the last part of an input's name what stands in the fields at first, to be typed over (modelling assumption: a
-skier on groomed snow)."""
+"""First ranges by the last part of the input's name: values for a skier on groomed snow (modelling assumption)."""
 
 
-def begins(key: Quantity) -> tuple[float, float] | None:
-    """Ends that an input goes through at first; of one with a default from its half to its double, as far as allowed.
+def first_range(key: Quantity) -> tuple[float, float] | None:
+    """First range of an input; from half to twice its default if it has one, within the allowed range.
 
     >>> from skisnow.parameters import Quantity
-    >>> begins(Quantity("load_N", "")), begins(Quantity("w_m", "", default=0.8, highest=1.0))
+    >>> first_range(Quantity("load_N", "")), first_range(Quantity("w_m", "", default=0.8, highest=1.0))
     ((400.0, 1200.0), (0.4, 1.0))
     """
     name = key.name.rpartition(".")[2]
-    if name in _BEGINS:
-        return _BEGINS[name]
+    if name in _FIRST_RANGES:
+        return _FIRST_RANGES[name]
     default = key.default
     if isinstance(default, bool) or not isinstance(default, int | float) or default <= 0.0:
         return key.usual
@@ -198,18 +197,18 @@ def begins(key: Quantity) -> tuple[float, float] | None:
 
 
 class AxisFields:
-    """The fields of one input that varies; `changed` is called with each change.
+    """Fields of one varied input.
 
     Parameters
     ----------
     place
-        In words: which of the inputs it is.
+        Name of the fields, such as "First input".
     keys
-        What may vary.
+        Inputs that can vary, by name.
     first
-        Its name and number of values at first; None: nothing, which can be chosen then.
+        First input with its number of values (default: no input, which is then an option).
     changed
-        See above.
+        Function that is called after each change.
     """
 
     def __init__(
@@ -224,56 +223,56 @@ class AxisFields:
         name, n = first or (NOTHING, _USUAL)
         with ui.element("div").classes("inputs varied"):
             with ui.element("div").classes("input"):
-                self._key = choice(place, {**options, **{each: called(key) for each, key in keys.items()}}, name)
+                self._key = choice(place, {**options, **{field_: called(key) for field_, key in keys.items()}}, name)
                 self._range = sentence("", "quiet range")
             self._ends = [field(words, "", numeric=True) for words in (FROM, TO)]
             self._n = field(VALUES, n, numeric=True)
             self._log = ui.switch(said(LOG)).classes("field")
-        for each, words in zip((*self._ends, self._n, self._log), (FROM, TO, VALUES, LOG), strict=True):
-            named(each, f"{place}: {words[0].lower()}{words[1:]}")
-        self._begin()
+        for field_, words in zip((*self._ends, self._n, self._log), (FROM, TO, VALUES, LOG), strict=True):
+            named(field_, f"{place}: {words[0].lower()}{words[1:]}")
+        self._set_first_range()
         for typed in (*self._ends, self._n):
             typed.on_value_change(changed)
         self._log.on_value_change(changed)
-        self._key.on_value_change(self._another)
+        self._key.on_value_change(self._change_input)
         self._show()
 
     @property
     def name(self) -> str:
-        """Of the input; nothing where none varies."""
+        """Name of the varied input, "" without one."""
         name = str(self._key.value)
         return "" if name == NOTHING else name
 
-    def _another(self) -> None:
-        self._begin()
+    def _change_input(self) -> None:
+        self._set_first_range()
         self._show()
         self._changed()
 
-    def _begin(self) -> None:
-        ends = begins(self._keys[self.name]) if self.name else None
-        for each, end in zip(self._ends, ends or (None, None), strict=True):
-            each.set_value("" if end is None else f"{end:g}")
+    def _set_first_range(self) -> None:
+        ends = first_range(self._keys[self.name]) if self.name else None
+        for field_, end in zip(self._ends, ends or (None, None), strict=True):
+            field_.set_value("" if end is None else f"{end:g}")
 
     def _show(self) -> None:
-        for each in (*self._ends, self._n, self._log):
-            each.set_visibility(bool(self.name))
+        for field_ in (*self._ends, self._n, self._log):
+            field_.set_visibility(bool(self.name))
         self._range.set_text(f"Allowed: {self._keys[self.name].allowed}." if self.name else "")
 
     def range(self) -> Range:
-        """What is typed.
+        """The typed range.
 
         Raises
         ------
         ParameterError
-            It is no range of the input.
+            The range is not valid for the input.
         """
         key = self._keys[self.name]
         words = called(key)
-        if not all(str(each.value or "").strip() for each in self._ends):
+        if not all(str(field_.value or "").strip() for field_ in self._ends):
             raise ParameterError(f"{words}: type both ends of what it goes through")
         low, high = (
-            typed_number(f"{words}, the {end} end", str(each.value or ""))
-            for each, end in zip(self._ends, ("lower", "upper"), strict=True)
+            typed_number(f"{words}, the {end} end", str(field_.value or ""))
+            for field_, end in zip(self._ends, ("lower", "upper"), strict=True)
         )
         for end in (low, high):
             try:
@@ -287,12 +286,12 @@ class AxisFields:
         return Range(low, high, self.count(), bool(self._log.value))
 
     def count(self) -> int:
-        """How many values there are; 1 where nothing varies.
+        """Number of values; 1 without a varied input.
 
         Raises
         ------
         ParameterError
-            What is typed is no such number.
+            The text is not an allowed number.
         """
         if not self.name:
             return 1

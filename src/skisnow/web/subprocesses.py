@@ -1,4 +1,4 @@
-"""Separate processes for uploads (with limits on time and memory) and for long work such as figures."""
+"""Separate processes: with limits on time and memory for uploads, and a worker for long tasks such as figures."""
 
 from __future__ import annotations
 
@@ -32,28 +32,28 @@ _LAST_WORDS: Final = 4000
 
 @dataclass(frozen=True, slots=True)
 class Bounds:
-    """What reading may take (assumption: the largest campaign foreseen takes 20 s and 1 GB on a field laptop)."""
+    """Limits on time and memory; a campaign with a million readings takes 20 s and 1 GB on a laptop."""
 
     seconds: float = 120.0
     memory_bytes: int = 3_000_000_000
 
 
 BOUNDS: Final = Bounds()
-OF_A_SKI: Final = Bounds(seconds=60.0)  # most of it is the start of the process, on a busy laptop
+SKI_BOUNDS: Final = Bounds(seconds=60.0)  # most of it is the start of the process, on a busy laptop
 
 
 def confined(bounds: Bounds, work: Callable[Given, Answer], *args: Given.args, **named: Given.kwargs) -> Answer:
-    """Call a function of a module in a process of its own; arguments and answer are sent as copies.
+    """Call a function of a module in a separate process with limits; arguments and result are copies.
 
     Raises
     ------
     ParameterError
-        It takes more than the bounds allow, or ended its process. What it raises itself is raised here, too.
+        The function exceeds the limits or ends its process. Errors of the function are raised here, too.
     """
     assert not named
     context = multiprocessing.get_context("spawn")  # never by fork: the server has threads
     hears, tells = context.Pipe(duplex=False)
-    process = context.Process(target=_work, args=(tells, bounds, work, args), daemon=True)
+    process = context.Process(target=_run_confined, args=(tells, bounds, work, args), daemon=True)
     process.start()
     tells.close()
     try:
@@ -61,7 +61,7 @@ def confined(bounds: Bounds, work: Callable[Given, Answer], *args: Given.args, *
             raise ParameterError(f"it was not read within {bounds.seconds:g} s; give less of it, or check the file")
         kind, answer, trace = hears.recv()
     except EOFError as end:
-        raise ParameterError(_ended(bounds)) from end
+        raise ParameterError(_failure_message(bounds)) from end
     finally:
         process.kill()
         process.join()
@@ -70,19 +70,19 @@ def confined(bounds: Bounds, work: Callable[Given, Answer], *args: Given.args, *
         _LOG.error("an upload could not be read: %s", trace)
     if kind is not None:
         raise kind(answer)
-    found: Answer = answer
-    return found
+    result: Answer = answer
+    return result
 
 
-def _ended(bounds: Bounds) -> str:
+def _failure_message(bounds: Bounds) -> str:
     allowed = f"{bounds.seconds:g} s and {bounds.memory_bytes // 1_000_000} MB"
     return f"reading it failed: it is damaged, nested too deep, or takes more than {allowed}; check the file"
 
 
-def _work(tells: Connection, bounds: Bounds, work: Callable[..., object], args: tuple[object, ...]) -> None:
-    """In the new process: bind it, do the work, tell what came of it."""
-    end_with_the_server()
-    _bind(bounds)
+def _run_confined(tells: Connection, bounds: Bounds, work: Callable[..., object], args: tuple[object, ...]) -> None:
+    """Function of the new process: set limits, call the function, send the result."""
+    end_with_server()
+    _set_limits(bounds)
     answer: tuple[type[SkisnowError] | None, object, str]
     try:
         answer = (None, work(*args), "")
@@ -91,13 +91,13 @@ def _work(tells: Connection, bounds: Bounds, work: Callable[..., object], args: 
     except SkisnowError as error:
         kind = type(error) if type(error) in _PLAIN else ParameterError
         answer = (kind, str(error), "")
-    except Exception:  # told by the server, which has the log
-        answer = (ParameterError, _ended(bounds), traceback.format_exc()[-_LAST_WORDS:])
+    except Exception:  # logged by the server
+        answer = (ParameterError, _failure_message(bounds), traceback.format_exc()[-_LAST_WORDS:])
     tells.send(answer)
 
 
-def _bind(bounds: Bounds) -> None:
-    """Limits of the system, where it has such; the time is watched from outside as well."""
+def _set_limits(bounds: Bounds) -> None:
+    """Set the limits of the operating system if it has them; the caller limits the time as well."""
     if sys.platform == "win32":
         return
     import resource
@@ -105,33 +105,33 @@ def _bind(bounds: Bounds) -> None:
     seconds = int(bounds.seconds) + 1
     limits = ((resource.RLIMIT_CPU, seconds), (resource.RLIMIT_DATA, bounds.memory_bytes), (resource.RLIMIT_CORE, 0))
     for kind, most in limits:
-        with contextlib.suppress(ValueError, OSError):  # lower already, or not known to this system
+        with contextlib.suppress(ValueError, OSError):  # already lower, or not supported
             resource.setrlimit(kind, (most, most))
 
 
 class Worker:
-    """Does one thing after another, in a process that is started when it is first needed."""
+    """Worker process for one task after another, started for the first one."""
 
     def __init__(self) -> None:
         self._pool: ProcessPoolExecutor | None = None
 
     async def do(self, work: Callable[Given, Answer], *args: Given.args, **named: Given.kwargs) -> Answer:
-        """Run a function of a module in the other process; arguments and answer are sent as copies."""
+        """Call a function of a module in the worker process; arguments and result are copies."""
         assert not named
         if self._pool is None:
             # never by fork: the server has threads
             context = multiprocessing.get_context("spawn")
-            self._pool = ProcessPoolExecutor(1, mp_context=context, initializer=end_with_the_server)
+            self._pool = ProcessPoolExecutor(1, mp_context=context, initializer=end_with_server)
         return await asyncio.get_running_loop().run_in_executor(self._pool, work, *args)
 
     def end(self) -> None:
-        """End the process when what it is doing is done; all else is given up."""
+        """End the process after its current task; waiting tasks are cancelled."""
         if self._pool is not None:
             self._pool.shutdown(wait=True, cancel_futures=True)
 
 
-def end_with_the_server() -> None:
-    """Leave Ctrl-C to the server, and do not outlive it if it is killed."""
+def end_with_server() -> None:
+    """Ignore Ctrl-C, which the server handles, and end with the server."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     parent = multiprocessing.parent_process()
     assert parent is not None

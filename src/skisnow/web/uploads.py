@@ -1,4 +1,4 @@
-"""Uploads to a folder: names are checked, sizes counted while reading, only plain files accepted."""
+"""Uploaded files in a folder: checked names, sizes counted while reading, only plain files."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 CHUNK_BYTES: Final = 1 << 18
 DEEPEST: Final = 32
-"""Folders within one another (modelling assumption: a campaign has two)."""
+"""Maximum depth of folders."""
 
 _METHODS: Final = (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED)
 _END_RECORD: Final = struct.Struct("<4s4H2LH")
@@ -36,7 +36,7 @@ _DAMAGED: Final = "the zip file is damaged or of a kind that is not read; pack t
 
 
 class Unpacking:
-    """Fills a folder with files of an upload, none outside of it and no more than the limits allow."""
+    """Writer of uploaded files to a folder, within the limits and never outside of the folder."""
 
     def __init__(self, folder: Path, limits: Limits) -> None:
         self.folder = folder
@@ -50,18 +50,17 @@ class Unpacking:
         Raises
         ------
         ParameterError
-            Its name leads out of the folder or cannot be used on every system, it is there already, or it is too much.
+            The name is not valid on every system, leads out of the folder or exists, or a limit is exceeded.
         """
         self._write(name, iter(lambda: content.read(CHUNK_BYTES), b""))
 
     def take_zip(self, packed: IO[bytes]) -> None:
-        """Unpack a zip file; what it says about sizes is not believed but counted.
+        """Unpack a zip file; sizes are counted while reading.
 
         Raises
         ------
         ParameterError
-            As in `take`; it is no zip file, is damaged, encrypted or packed in another way than by deflating, or holds
-            links.
+            As in `take`; or the file is not a zip file, is damaged, encrypted or not deflated, or contains links.
         """
         self._require_small_directory(packed)
         with _damage_errors():
@@ -75,7 +74,7 @@ class Unpacking:
                 self._write(member.filename, _unpacked(archive, member))
 
     def _require_small_directory(self, packed: IO[bytes]) -> None:
-        """Refuse a list of files so long that reading it alone would fill the memory."""
+        """Reject a directory of files that would fill the memory."""
         with _damage_errors():
             packed.seek(0, 2)
             size = packed.tell()
@@ -139,7 +138,7 @@ def _unpacked(archive: zipfile.ZipFile, member: zipfile.ZipInfo) -> Iterator[byt
 
 @contextmanager
 def _damage_errors() -> Iterator[None]:
-    """Only for what zipfile does by itself: it tells of damage by a dozen kinds of errors, from any of its steps."""
+    """Convert errors of zipfile inside the block, which has a dozen kinds for damaged files."""
     try:
         yield
     except Exception as error:
@@ -147,13 +146,13 @@ def _damage_errors() -> Iterator[None]:
 
 
 def shown(name: str) -> str:
-    """A file's name inside a sentence: short, and nothing that does not print."""
+    """Short printable name of a file for a message."""
     plain = "".join(letter if letter.isprintable() else "?" for letter in name)
     return repr(plain if len(plain) <= 80 else plain[:79] + "…")
 
 
 def campaign_folder(folder: Path) -> Path:
-    """Where the campaign lies in what was unpacked: the folder, or the only folder in it."""
+    """Folder of the campaign: the unpacked folder, or the only folder in it."""
     inside = list(folder.iterdir())
     while len(inside) == 1 and inside[0].is_dir():
         folder = inside[0]
@@ -162,17 +161,17 @@ def campaign_folder(folder: Path) -> Path:
 
 
 def write_zip(files: Iterable[tuple[str, bytes]], to: IO[bytes]) -> None:
-    """Pack files under their names."""
+    """Write a zip of names with contents."""
     with zipfile.ZipFile(to, "w", zipfile.ZIP_DEFLATED) as archive:
         for name, content in files:
             archive.writestr(name, content)
 
 
 def files_below(folder: Path, *, under: str = "") -> Sequence[tuple[str, bytes]]:
-    """Every file below a folder with its path as a zip has it."""
-    found = sorted(path for path in folder.rglob("*") if path.is_file())
+    """Paths and contents of all files below a folder, for a zip."""
+    paths = sorted(path for path in folder.rglob("*") if path.is_file())
     prefix = f"{under}/" if under else ""
-    return [(prefix + path.relative_to(folder).as_posix(), path.read_bytes()) for path in found]
+    return [(prefix + path.relative_to(folder).as_posix(), path.read_bytes()) for path in paths]
 
 
 UNDESCRIBED: Final = (
@@ -183,12 +182,12 @@ UNDESCRIBED: Final = (
 
 
 def add_uploaded(store: StorePlace, place: str, names: Sequence[str], limits: Limits) -> str:
-    """Keep a campaign of uploaded files, which lie in a folder under their numbers; gives its id.
+    """Store a campaign of uploaded files, which are numbered in a folder; returns its id.
 
     Raises
     ------
     ParameterError
-        A file cannot be taken in, or there is no campaign in them.
+        A file is rejected, or the files do not contain a campaign.
     StoreError
         The store cannot be written.
     """

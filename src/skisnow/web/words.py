@@ -1,10 +1,12 @@
-"""Words of the pages: what columns and tables are called, with their units as in the field."""
+"""Labels of columns and tables with their units, results in words, and typed numbers."""
 
 from __future__ import annotations
 
+import math
 import re
 from typing import Any, Final
 
+from .._support.errors import ParameterError
 from ..report.formatting import interval, significant
 
 LABELS: Final = {
@@ -35,9 +37,11 @@ TABLES: Final = {
     "drop_cone.csv": "Drop cone",
 }
 
-_CALLED: Final = {name: words for name, words in (LABELS | TABLES).items() if "_" in name or "." in name}
-"""Names that are no word of a sentence."""
-_KEYS: Final = re.compile("|".join(rf"(?<![\w.]){re.escape(name)}(?![\w.])" for name in sorted(_CALLED, key=len)[::-1]))
+_LABEL_OF_NAME: Final = {name: words for name, words in (LABELS | TABLES).items() if "_" in name or "." in name}
+"""Names of columns and tables that are replaced by labels in messages."""
+_NAMES: Final = re.compile(
+    "|".join(rf"(?<![\w.]){re.escape(name)}(?![\w.])" for name in sorted(_LABEL_OF_NAME, key=len, reverse=True))
+)
 
 
 def label(column: str, *, unit: str = "") -> str:
@@ -51,12 +55,12 @@ def label(column: str, *, unit: str = "") -> str:
 
 
 def in_words(message: str) -> str:
-    """A message of the library with the names of columns and tables as the pages call them.
+    """A message of the library with labels instead of the names of columns and tables.
 
     >>> in_words("the column depth_mm has no number")
     'the column Depth (mm) has no number'
     """
-    return _KEYS.sub(lambda key: _CALLED[key[0]], message)
+    return _NAMES.sub(lambda key: _LABEL_OF_NAME[key[0]], message)
 
 
 def hardness_words(row: dict[str, Any]) -> str:
@@ -65,7 +69,7 @@ def hardness_words(row: dict[str, Any]) -> str:
 
 
 def unloading_words(row: dict[str, Any]) -> str:
-    """k_u/H_V with its interval, from a row of ``penetration.experiments``; nothing where none was measured."""
+    """k_u/H_V with its interval, from a row of ``penetration.experiments``; "" without a measurement."""
     if not row["n_unloading"]:
         return ""
     return f"k_u/H_V = {estimate_words(row['unloading_ratio'], row['unloading_ratio_interval'])}"
@@ -77,7 +81,7 @@ def stress_words(row: dict[str, Any]) -> str:
 
 
 def displacement_words(row: dict[str, Any]) -> str:
-    """u_y with its interval, from a row of ``shear.experiments``; nothing where none was measured."""
+    """u_y with its interval, from a row of ``shear.experiments``; "" without a measurement."""
     if row["shear_displacement_mm"] is None:
         return ""
     return f"u_y = {estimate_words(row['shear_displacement_mm'], row['shear_displacement_interval_mm'], 'mm')}"
@@ -87,5 +91,22 @@ def estimate_words(value: float | None, pair: list[float] | None, unit: str = ""
     """A value with its interval."""
     if value is None:
         return "not defined"
-    known = interval(pair) if pair is not None else "interval not known"
-    return f"{significant(value)} {unit}".strip() + f", {known}"
+    interval_words = interval(pair) if pair is not None else "interval not known"
+    return f"{significant(value)} {unit}".strip() + f", {interval_words}"
+
+
+def typed_number(what: str, text: str) -> float:
+    """A finite number with a decimal point or comma.
+
+    Raises
+    ------
+    ParameterError
+        The text is not a number; the message begins with `what`.
+    """
+    try:
+        value = float(text.strip().replace(",", ".").replace("−", "-"))
+    except ValueError:
+        value = math.nan
+    if not math.isfinite(value):
+        raise ParameterError(f"{what}: {text.strip()!r} is no number. Correct it")
+    return value

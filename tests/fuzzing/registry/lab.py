@@ -15,9 +15,9 @@ from skisnow._support.errors import SkisnowError
 from skisnow._support.staging import tidied
 from skisnow.campaign.store import Journals, Store, export_corrected, replayed, sync, write_campaign
 from skisnow.web.lab_skis import read_ski_files
-from skisnow.web.replay.addresses import RunFolders, _ski_of_job
-from skisnow.web.replay.tracks import Placing, TrackFolders
-from skisnow.web.runs import Job, Runs, _told
+from skisnow.web.lab_tracks import Placing, TrackFolders
+from skisnow.web.replay_addresses import RunFolders, _ski_of_job
+from skisnow.web.runs import Job, Runs, _run_time
 from skisnow.web.settings import Limits
 from skisnow.web.uploads import add_uploaded
 from tests.campaign.store.test_journal import TOML as _ENTERED
@@ -127,7 +127,7 @@ def _job_files() -> Files:
 def _read_jobs(folder: Path) -> object:
     runs = Runs(folder)
     return [
-        (job, runs._over(Job("run-1", "", {}, ""), "x", cancelled=False), _told(folder, job)) for job in runs.jobs()
+        (job, runs._over(Job("run-1", "", {}, ""), "x", cancelled=False), _run_time(folder, job)) for job in runs.jobs()
     ], _ski_of_job(folder / "run-1/job.json")
 
 
@@ -179,14 +179,14 @@ READERS = (
     ),
     Reader(
         name="job.json", target="run-1/job.json", files=_job_files, read=_read_jobs, mutations=JSON,
-        covers=("web.runs:Runs.jobs", "web.replay.addresses:_ski_of_job"),
+        covers=("web.runs:Runs.jobs", "web.replay_addresses:_ski_of_job"),
     ),
     Reader(
         name="summary.json", target="run-1/summary.json", files=_job_files, read=_read_jobs, mutations=JSON,
-        covers=("web.runs:Runs._over", "web.runs:_told"),
+        covers=("web.runs:Runs._over", "web.runs:_run_time"),
     ),
     Reader(
         name="placing of a track", target="tracks/t-1/about.json", files=_track_files, read=_placed, mutations=JSON,
-        covers=("web.replay.tracks:TrackFolders.beside",),
+        covers=("web.lab_tracks:TrackFolders.beside",),
     ),
 )  # fmt: skip

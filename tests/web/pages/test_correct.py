@@ -384,7 +384,7 @@ def test_a_test_that_nobody_spoke_of_is_what_its_file_says(desk: Desk, id_: str)
     assert (test.history, test.last, test.rows[0].entered.sequence) == ([], 0, 0)
     assert (test.file, test.name, test.rows[0].entered.test) == ("shear.csv", "1", "1")
     assert session.test("shear.csv", "9").rows == []
-    assert session.standing("shear.csv", "9") == {}
+    assert session.file_cells("shear.csv", "9") == {}
     assert set(session.tables) == {"penetration.csv", "shear.csv"}
 
 

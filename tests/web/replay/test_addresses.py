@@ -19,8 +19,8 @@ from skisnow.replay import moving_replay_model, replay_bytes, replay_model, repl
 from skisnow.report.run.file import write_run_file
 from skisnow.scenario import scenario_values
 from skisnow.scenario.keys import in_sections
-from skisnow.web.replay.addresses import RunFolders, add_addresses, show_address
-from skisnow.web.replay.tracks import Placing, TrackFolders
+from skisnow.web.lab_tracks import Placing, TrackFolders
+from skisnow.web.replay_addresses import RunFolders, add_addresses, show_address
 
 from ...report.runs import circle_run
 from ..finished import finished
@@ -124,7 +124,7 @@ def test_a_kept_track_is_read_in_a_process_of_its_own(
     add_addresses(app, folder)
     (tmp_path / "older").symlink_to(runs / "older")
     name, _ = tracks.keep(io.BytesIO(b"time_s,x_m,y_m\n0,1,2\n1,3,4\n"), Placing("x.csv"))
-    monkeypatch.setattr("skisnow.web.replay.tracks.read_track", lambda _: pytest.fail("it is read here"))
+    monkeypatch.setattr("skisnow.web.lab_tracks.read_track", lambda _: pytest.fail("it is read here"))
     beside = folder.replay("older", name).track
     assert beside is not None and beside.place[:, :2].tolist() == [[1.0, 2.0], [3.0, 4.0]]
     (tmp_path / "tracks" / name / "track.csv").rename(tmp_path / "tracks" / name / "track.gpx")

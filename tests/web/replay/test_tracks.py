@@ -12,7 +12,7 @@ import pytest
 
 from skisnow._support.errors import SkisnowError
 from skisnow.replay import replay_of_run
-from skisnow.web.replay.tracks import LARGEST_BYTES, LONGEST_WAIT_S, MOST_POINTS, Placing, TrackFolders, number_of
+from skisnow.web.lab_tracks import LARGEST_TRACK_BYTES, LONGEST_WAIT_S, MOST_POINTS, Placing, TrackFolders, number_of
 
 from ...report.runs import circle_run
 from ..conftest import has_text
@@ -69,7 +69,7 @@ def test_metres_of_the_slope_stand_where_they_say(tmp_path: Path) -> None:
         (gpx([(0, 0)]), Placing("x.gpx", 0.0), "points"),
         (gpx([(0, 0), (1, 1)]), Placing("x.gpx", 400.0), "from −360 to 360"),
         (csv([(0, 0, 0, 0), (1, 1, 1, 0)]), Placing("x.csv", None, 1e9), "within"),
-        (b" " * (LARGEST_BYTES + 1), Placing("x.csv"), "20 MB"),
+        (b" " * (LARGEST_TRACK_BYTES + 1), Placing("x.csv"), "20 MB"),
         (csv([(i, i, 0, 0) for i in range(MOST_POINTS + 1)]), Placing("x.csv"), "Cut the turn out"),
     ],
 )
@@ -87,10 +87,10 @@ def test_what_is_no_track_is_refused_and_leaves_nothing(
 def test_what_is_just_allowed_is_taken(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """A file of the largest size, waited for as long as may be; a byte more is refused."""
     content, tracks = csv([(0, 0, 0, 0), (1, 1, 1, 0)]), TrackFolders(tmp_path)
-    monkeypatch.setattr("skisnow.web.replay.tracks.LARGEST_BYTES", len(content))
+    monkeypatch.setattr("skisnow.web.lab_tracks.LARGEST_TRACK_BYTES", len(content))
     for wait in (-LONGEST_WAIT_S, LONGEST_WAIT_S):
         assert tracks.keep(io.BytesIO(content), Placing("x.csv", None, wait))[1] == 2
-    monkeypatch.setattr("skisnow.web.replay.tracks.LARGEST_BYTES", len(content) - 1)
+    monkeypatch.setattr("skisnow.web.lab_tracks.LARGEST_TRACK_BYTES", len(content) - 1)
     with pytest.raises(SkisnowError, match="is not taken in"):
         tracks.keep(io.BytesIO(content), Placing("x.csv"))
 

@@ -11,7 +11,7 @@ export function gapAt(run, ghost, time) {
   const since = time - run.arrays.time.values[0];
   let last = -1;
   own.forEach((at, i) => {
-    if (Math.max(at, other[i]) <= since) last = i; // of a gate that was not reached the time is no number
+    if (Math.max(at, other[i]) <= since) last = i; // the time of a gate that was not reached is NaN
   });
   if (last < 0) return { name: said("Gap at the first gate"), text: said("not yet") };
   const late = own[last] - other[last];

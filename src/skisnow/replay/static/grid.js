@@ -12,7 +12,7 @@ const LINES = {
   vertex: `
     attribute vec3 beside;   // half the width, across
     attribute vec2 corner;   // -1 or 1 across
-    uniform float height;    // of the picture in pixels
+    uniform float height;    // height of the picture in pixels
     varying float across;    // from the line's middle (m)
     varying float away;
     void main() {

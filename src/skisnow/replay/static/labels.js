@@ -1,4 +1,4 @@
-// Words that stand in the picture and face the reader.
+// Words in the picture that face the reader.
 
 import * as THREE from "./three.module.min.js";
 

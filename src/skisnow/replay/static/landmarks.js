@@ -1,4 +1,4 @@
-// What stands around: poles every 10 m, gates where there are, an arrow along the fall line, hills at the horizon.
+// Landmarks: poles every 10 m, gates where there are, an arrow along the fall line, hills at the horizon.
 
 import { sprite } from "./labels.js";
 import { surfaceGrade, surfaceHeight } from "./motion.js";
@@ -9,7 +9,7 @@ import { said } from "./words.js";
 const EVERY = 10; // m
 const AROUND = 20; // m beyond the run that poles stand
 const CLEAR = 1.3; // m from the run's path that none stands
-const MOST = 600; // poles; on a longer run they stand at the run's sides alone
+const MOST = 600; // maximum number of poles; on a longer run they are only at the sides of the run
 const POLE = { radius: 0.02, height: 1.5 };
 const GATE = { radius: 0.03, height: 1.8, colours: [0xd0342c, 0x1f5fbf] };
 

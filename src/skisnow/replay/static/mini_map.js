@@ -1,4 +1,4 @@
-// The whole run from above on a small canvas: its path, where it is now, the fall line downwards, and 10 m.
+// The whole run from above on a small canvas: path, current place, fall line downwards, and a scale of 10 m.
 
 import { css, TRACK } from "./colours.js";
 import { said } from "./words.js";

@@ -110,7 +110,7 @@ export function edges(run, time, ski, exaggeration) {
   );
 }
 
-const distances = new WeakMap(); // the profile's x alone, found once
+const distances = new WeakMap(); // x of the profile, computed once
 
 /** Height of the snow's surface at x and y. */
 export function surfaceHeight(run, x, y) {

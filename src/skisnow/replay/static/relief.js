@@ -13,10 +13,10 @@ const SHADER = {
     attribute vec2 corner;   // -1 or 1 across, and ahead
     attribute vec3 tint;
     attribute float deep;    // m
-    uniform float height;    // of the picture in pixels
+    uniform float height;    // height of the picture in pixels
     uniform float least;     // width in pixels
     uniform float times;     // depth and width are drawn so often
-    uniform float widest;    // half of it (m): what is drawn wider than it is, is no wider
+    uniform float widest;    // maximum half width (m) of exaggerated shapes
     attribute float lowest;  // where it is deepest: -1 right edge, 1 left edge
     attribute float level;   // 1: a flat ski's, with a level floor
     uniform vec3 sun;        // world

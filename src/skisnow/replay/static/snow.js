@@ -1,4 +1,4 @@
-// The slope: one light surface in the sun, fading into the sky; and what is drawn flat on it.
+// The slope: one light surface in the sun that fades into the sky, and flat drawings on it.
 
 import { surfaceHeight } from "./motion.js";
 import { quads } from "./quads.js";
@@ -16,9 +16,9 @@ const LOWEST_SKY = 0.12; // rad below the horizontal: under it all is snow, or t
 export const BACKGROUND = HORIZON;
 
 const SNOW = [241, 245, 249];
-// Most of the picture is snow: where there is no graphics card, each sum of a pixel counts, and it is plain.
+// Most of the picture is snow: without a graphics card each operation per pixel counts, and the snow is plain.
 const SURFACE = {
-  // It hides as if it were a little farther away: what lies on it is drawn whole, what is behind a crest is not.
+  // Its depth is a little larger: drawings on it are complete, and things behind a crest are hidden.
   vertex: `
     varying float away;
     varying vec2 depth;
@@ -64,7 +64,7 @@ const RIBBON = {
     attribute vec3 along;    // half the length, ahead
     attribute vec2 corner;   // -1 or 1 across, and ahead
     attribute vec3 tint;
-    uniform float height;    // of the picture in pixels
+    uniform float height;    // height of the picture in pixels
     uniform float least;     // width in pixels
     varying vec3 hue;
     void main() {

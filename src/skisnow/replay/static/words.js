@@ -1,4 +1,4 @@
-// The page's words in the reader's language: what stands in the program is English, and is looked up here.
+// Texts of the page in the reader's language, by their English texts in the scripts.
 
 let known = {};
 

@@ -1,1 +1,1 @@
-"""Entering tests: forms that store each reading at once, and what the readings say beside them."""
+"""Entry of tests: forms that store each reading at once, and their results."""

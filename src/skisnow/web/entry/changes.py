@@ -1,8 +1,7 @@
-"""Below the form of a test: undo, cancel with a reason, correct with a reason, and the history."""
+"""Changes of a test below its form: undo, cancel and correct with a reason, and the history."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 from nicegui import ui
@@ -26,22 +25,9 @@ ASKED: Final = "Not corrected yet. Give the reason below."
 UNANSWERED: Final = "Not corrected yet. Correct it with a reason, or leave it as it was."
 LEFT_AS_IT_WAS: Final = "It is as it was before."
 WAITED: Final = "read once more after waiting"
-"""Why the row of a reading gets a second depth later than the first one."""
+"""Reason in the journal for a second depth of a reading."""
 _SAME: Final = ("experiment", "sample", "test", "site", "spot", "tool", "plate")
 _DONE: Final = {"add": "entered", "correct": "corrected", "cancel": "cancelled", "undo": "undid the entry before"}
-
-
-@dataclass(frozen=True, slots=True)
-class Places:
-    """Where a form draws: itself, and below what the readings say."""
-
-    form: ui.element
-    below: ui.element
-
-    def clear(self) -> None:
-        """Take away what was drawn."""
-        self.form.clear()
-        self.below.clear()
 
 
 def ask_reason(
@@ -53,22 +39,22 @@ def ask_reason(
     leave: Callable[[], object],
     focus: bool = True,
 ) -> None:
-    """Ask in a place of the page, not in a window over it: what is to happen, why, and the way back.
+    """Ask for the reason of a change, inside the page.
 
     Parameters
     ----------
     place
-        Is emptied and filled.
+        Element that is replaced by the question.
     lines
-        What is about to happen, in the language of the page.
+        Descriptions of the change in the language of the page.
     act
-        The word on the button, and what is called with the reason; False where it was refused.
+        Text of the button, and the function that is called with the reason; it returns False for a rejected change.
     usual
-        Reason that stands there already.
+        Prefilled reason.
     leave
-        Called when it is left as it was.
+        Function that is called when the change is not made.
     focus
-        Whether the reason is typed next; not where somebody is on the way to another field.
+        True to put the focus on the reason; False if the user is on the way to another field.
     """
     place.clear()
 
@@ -95,12 +81,12 @@ def ask_reason(
 
 
 def change_said(name: str, old: str, new: str) -> str:
-    """A change of a cell in the language of the page; ``name`` is in that language, "" is an empty cell."""
+    """Description of a changed cell in the language of the page; ``name`` is in that language, "" an empty cell."""
     return said_template("{}: {} becomes {}.", name, old or said("nothing"), new or said("nothing"))
 
 
 def focus_button(button: ui.button) -> None:
-    """Put the focus on a button, which knows no method for it."""
+    """Put the focus on a button, which has no method for it."""
     button.client.run_javascript(f"getHtmlElement({button.id}).focus()")
 
 
@@ -113,20 +99,20 @@ def changes(
     is_unanswered: Callable[[], bool],
     cancelled: bool = False,
 ) -> None:
-    """The buttons and the history of a test.
+    """Add the buttons and the history of a test.
 
     Parameters
     ----------
     view, test
-        Which one.
+        Table and test.
     ask
-        Where a reason is asked for.
+        Element for questions about reasons.
     changed
-        Called after something was stored.
+        Function that is called after a change is stored.
     is_unanswered
-        Tells whether a correction is typed and not confirmed, and asks for its reason again; then nothing else is done.
+        Function that returns True, and asks for the reason again, if a typed correction is not confirmed.
     cancelled
-        Whether the test is cancelled by something that is not in its history.
+        True if the test is cancelled in its file.
     """
 
     def undo() -> bool:

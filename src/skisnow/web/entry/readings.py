@@ -1,47 +1,55 @@
-"""Fields of readings: state (stored, corrected, not stored), check of typed text, problems."""
+"""Fields of readings: state, check of typed text, problems; and readings that were typed without a connection."""
 
 from __future__ import annotations
 
+import json
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final, NamedTuple, TypeAlias
+from typing import TYPE_CHECKING, Any, Final, NamedTuple, TypeAlias
 
 from nicegui import ui
 
-from ...campaign.store.stored_tables import CellError, checked_cell
+from ..._support.errors import ParameterError, StoreError
+from ...campaign.reading.table_forms import BRANCH
+from ...campaign.store import NewEntry
+from ...campaign.store.stored_tables import FORMS, CellError, checked_cell
 from ..language import number_said, said, said_template
+from ..page_requests import LONGEST
 from ..words import in_words, label
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Callable, Iterable, Mapping
+
+    from nicegui.events import GenericEventArguments
 
     from ..._support.errors import SkisnowError
     from ...campaign.reading.headings import UnitConversion
     from ...campaign.reading.table_forms import TableForm
     from ...campaign.store import ReplayedRow
+    from ..edit_session import EditSession
 
 CHANGED: Final = "changed, not stored"
 
 
 class Step(NamedTuple):
-    """A load (N, as text), and whether discs were laid on or taken off: what distinguishes readings of a series."""
+    """Load (N, as text) and branch of a reading, which identify it in a series; "" is the branch of rising loads."""
 
     load: str
     branch: str = ""
 
     @property
     def words(self) -> str:
-        """As a person says it."""
+        """The step in words."""
         return f"{self.load} N on the way back" if self.branch else f"{self.load} N"
 
     @property
-    def asked(self) -> str:
-        """Name of its field."""
+    def field_name(self) -> str:
+        """Name of the field of the step's depth."""
         return f"Depth back under {self.load} N (mm)" if self.branch else f"Depth under {self.load} N (mm)"
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ReadingField:
-    """The field of the depth under one load, the word for its state, and the element that holds both."""
+    """Field of the depth under one load, label of its state, and the element around them."""
 
     depth: ui.input
     state: ui.label
@@ -53,17 +61,17 @@ class ReadingField:
         return str(self.depth.value or "").strip()
 
     def unstored(self, row: ReplayedRow | None) -> str | None:
-        """The text to keep when the field is drawn again; None if it was stored, or if another reading is there now."""
+        """Unstored text that is kept when the field is drawn again; None if it is stored or another reading exists."""
         drawn = str(self.row.props.get("data-stored") or "")
         is_kept = is_other(self.typed, drawn) and self.differs(row) and (bool(drawn) or row is None)
         return self.typed if is_kept else None
 
     def differs(self, row: ReplayedRow | None) -> bool:
-        """True if the field has another text than the reading that is stored; with none stored: if it has any."""
+        """True if the text differs from the stored reading, or from "" without one."""
         return is_other(self.typed, stored_depth(row))
 
     def show_state(self, row: ReplayedRow | None) -> None:
-        """Say whether the text in the field is stored."""
+        """Show whether the text in the field is stored."""
         if row is None:
             show_state(self.state, "")
         elif self.differs(row):
@@ -93,7 +101,7 @@ def is_other(typed: str, stored: str) -> bool:
 
 
 def show_state(label: ui.label, words: str) -> None:
-    """Show the state of a field; a change that is not stored is marked."""
+    """Show the state of a field; mark an unstored change."""
     label.set_text(words)
     label.classes(add="changed" if words == CHANGED else "", remove="" if words == CHANGED else "changed")
 
@@ -109,13 +117,13 @@ def checked_fields(
     ``conversions`` from the units of fields to those of their columns (default: they are the same).
     """
     cells: dict[str, str] = {}
-    known = conversions or {}
-    for column, each in fields.items():
-        each.error = None
+    units = conversions or {}
+    for column, field in fields.items():
+        field.error = None
         try:
-            cells[column] = checked_cell(form, column, str(each.value or ""), conversion=known.get(column))
+            cells[column] = checked_cell(form, column, str(field.value or ""), conversion=units.get(column))
         except CellError as error:
-            each.error = problem_said(error, name=_name_said(each))
+            field.error = problem_said(error, name=_name_said(field))
     return cells if len(cells) == len(fields) else None
 
 
@@ -135,10 +143,88 @@ def _name_said(field: Field) -> str:
 
 
 def refuse(field: Field, fault: str) -> None:
-    """Show at a field why it is rejected. The typed text stays; the fault goes when something else is typed."""
+    """Show at a field why its text is rejected, until another text is typed."""
     field.error = said(in_words(fault))
 
 
 def faults(fields: Iterable[Field]) -> list[str]:
     """The problem of each rejected field, in the language of the page."""
-    return [each.error for each in fields if each.error]
+    return [field.error for field in fields if field.error]
+
+
+FILE: Final = "penetration.csv"
+HEAD: Final = ("experiment", "site", "spot", "tool", "edge_angle_deg")
+"""Columns with one value for a series."""
+READING: Final = ("load_N", "depth_mm", BRANCH)
+MOST: Final = 10_000
+
+
+def receive_offline_readings(session: EditSession, changed: Callable[[set[str]], object]) -> None:
+    """Store readings that the browser kept without a connection, each once.
+
+    Parameters
+    ----------
+    session
+        The campaign.
+    changed
+        Function that is called with the names of the changed series.
+    """
+    client = ui.context.client
+
+    def take(event: GenericEventArguments) -> None:
+        records = event.args if isinstance(event.args, list) else []
+        answers, series = [], set[str]()
+        for record in records[:MOST]:
+            once, refusal = _request_key(record), ""
+            try:
+                series.add(_stored(session, record, once))
+            except (StoreError, ParameterError) as error:
+                refusal = said_template("Not stored: {}: {}", _words_said(record), problem_said(error))
+            answers.append((once, refusal))
+        changed(series)
+        client.run_javascript(f"lab.resent({json.dumps(answers)})")
+
+    ui.on("resent", take)
+
+
+def _request_key(record: Any) -> str:
+    once = record.get("once") if isinstance(record, dict) else None
+    return once if isinstance(once, str) and 0 < len(once) <= LONGEST else ""
+
+
+def _cells(record: Any) -> dict[str, str]:
+    said = record.get("cells") if isinstance(record, dict) else None
+    if not isinstance(said, dict):
+        return {}
+    cells = {column: str(said.get(column) or "") for column in (*HEAD, *READING)}
+    return cells if cells[BRANCH] else {column: text for column, text in cells.items() if column != BRANCH}
+
+
+def _words_said(record: Any) -> str:
+    cells = _cells(record)
+    if not cells:
+        return said("a reading")
+    return said_template(
+        "{} mm under {} N in series {}", cells["depth_mm"], number_said(cells["load_N"]), cells["experiment"]
+    )
+
+
+def _stored(session: EditSession, record: Any, once: str) -> str:
+    """Store a reading; returns the name of its series."""
+    said = _cells(record)
+    if not once or not said:
+        raise ParameterError("this is no reading")
+    cells = {column: checked_cell(FORMS[FILE], column, text) for column, text in said.items()}
+    if cells["tool"] not in session.described.tools:
+        raise ParameterError(f"the campaign has no tool {cells['tool']!r}")
+    test = session.test(FILE, cells["experiment"])
+    there = test.row_under(cells["load_N"], cells.get(BRANCH, ""))
+    if there is not None and there.entered.once != once:
+        raise ParameterError(f"a reading of {there.cells['depth_mm']} mm is there already")
+    if test.rows and test.rows[0].cells["site"] != cells["site"]:
+        raise ParameterError(f"that series is at the site {test.rows[0].cells['site']}")
+    who = str(record.get("who") or "")[:LONGEST]
+    place = test.next_position
+    entry = NewEntry(action="add", file=FILE, test=test.name, cells=cells, position=place, who=who, once=once)
+    session.write_down(entry, seen=test.last)
+    return test.name

@@ -1,4 +1,4 @@
-"""A penetration series: site, tool and angle once, then a depth under each load of the campaign's discs."""
+"""Form of a penetration series: site, tool and angle, then a depth under each load of the discs."""
 
 from __future__ import annotations
 
@@ -12,30 +12,28 @@ from ..elements import Words, choice, field, named
 from ..language import number_said
 from ..layout import heading, sentence
 from ..page_addresses import entering
-from ..page_requests import answering, asked, asking_button, form
+from ..page_requests import answering, asking_button, current_request, form
 from ..words import label
-from .changes import Places, changes, focus_button
-from .offline_readings import HEAD
-from .readings import Field, ReadingField, Step, checked_fields, faults, refuse, stored_depth
+from .changes import changes, focus_button
+from .readings import HEAD, Field, ReadingField, Step, checked_fields, faults, refuse, stored_depth
 from .series_corrections import AfterWaiting, SeriesCorrections
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
     from ...campaign.store import ReplayedTest
-    from .live_results import Beside
-    from .table_view import SeriesList, TableView
+    from .table_view import LiveResults, Places, SeriesList, TableView
 
-TOLD: Final = "(event) => lab.reading(event, emit)"
-LEFT: Final = "(event) => lab.leaving(event, emit)"
+ON_ENTER: Final = "(event) => lab.reading(event, emit)"
+ON_BLUR: Final = "(event) => lab.leaving(event, emit)"
 
 
 class SeriesForm:
     """The form of one series at a time."""
 
-    def __init__(self, view: TableView, beside: Beside, places: Places, series_list: SeriesList) -> None:
+    def __init__(self, view: TableView, live_results: LiveResults, places: Places, series_list: SeriesList) -> None:
         self._view = view
-        self._beside = beside
+        self._live_results = live_results
         self._places = places
         self._head: dict[str, str] = {}
         self._readings: dict[Step, ReadingField] = {}
@@ -48,7 +46,7 @@ class SeriesForm:
     # The head of a series
 
     def begin(self) -> None:
-        """Ask for what a series has once."""
+        """Show the form of a new series: name, site, tool, angle, spot."""
         ui.navigate.history.replace(entering(self._view.session.id, table=self._view.file))
         self._shown = ""
         self._list.show("")
@@ -69,7 +67,7 @@ class SeriesForm:
             asking_button("Begin the series", lambda: self._begun(typed), "main")
         first = angle if site.value else site
         first.run_method("focus")
-        first.run_method("select")  # what stands there from the last series is written over
+        first.run_method("select")  # typing replaces the value of the last series
 
     def _begun(self, typed: dict[str, Field]) -> bool:
         head = checked_fields(self._view.form, typed)
@@ -85,14 +83,14 @@ class SeriesForm:
 
     # The readings
 
-    def follow_resent(self, series: set[str]) -> None:
-        """Show the series anew where it has readings that came again from the browser."""
+    def show_offline_readings(self, series: set[str]) -> None:
+        """Show the series again if the browser sent readings of it that were typed without a connection."""
         if self._shown in series:
             self.show(self._shown, self._head)
         self._list.show(self._shown)
 
     def show(self, name: str, head: dict[str, str] | None = None) -> None:
-        """Show a series with its readings, to be gone on with."""
+        """Show a series with the focus on its next empty field; ``head``: cells of a new series."""
         test = self._view.test(name)
         if head is None:
             head = {column: test.rows[0].cells.get(column, "") for column in HEAD}
@@ -102,23 +100,23 @@ class SeriesForm:
         self._draw(test)
         self._focus_next(test)
         if test.rows:
-            self._beside.follow(name, head["site"], in_progress=self._is_in_progress(name))
+            self._live_results.follow(name, head["site"], in_progress=self._is_in_progress(name))
 
     def _is_in_progress(self, name: str) -> bool:
-        """Whether a series is the one that was begun last."""
+        """True for the last series of the table."""
         return self._view.tests()[-1].name == name
 
     def _focus_next(self, test: ReplayedTest) -> None:
         back = any(row.cells.get(BRANCH) for row in test.rows)
         shown = self._readings.items()
-        empty = [each.depth for step, each in shown if not each.depth.value and (back or not step.branch)]
+        empty = [reading.depth for step, reading in shown if not reading.depth.value and (back or not step.branch)]
         if empty and not test.cancelled:
             empty[0].run_method("focus")
         else:
             focus_button(self._then)
 
     def _draw(self, test: ReplayedTest) -> None:
-        """Draw the series; what is typed and not stored stays."""
+        """Draw the series; unstored texts stay in their fields."""
         unstored = self._unstored() if self._shown == test.name else {}
         waiting = self._waiting.unstored if self._waiting is not None and self._shown == test.name else {}
         self._shown = test.name
@@ -132,43 +130,43 @@ class SeriesForm:
             if test.cancelled:
                 sentence(f"Cancelled: {test.cancelled}", "bad")
             loads = self._loads(test)
-            self._fields(test, map(Step, loads), unstored)
+            self._draw_fields(test, map(Step, loads), unstored)
             self._ask = ui.element("div")
             self._corrections.begin(test.name, self._ask)
             self._then = asking_button("Next series", self._next, "main then")
-            self._way_back(test, [Step(load, UNLOADING) for load in loads[-2::-1]], unstored)
+            self._unloading_fields(test, [Step(load, UNLOADING) for load in loads[-2::-1]], unstored)
             self._waiting = AfterWaiting(self._view, test.name, lambda: self.show(test.name, self._head))
             self._waiting.draw(loads, waiting, self._ask)
         with self._places.below:
             self._changes = ui.element("div")
-            self._further(test)
+            self._draw_further_load(test)
         self._show_changes()
         self._corrections.ask_again()
 
-    def _fields(self, test: ReplayedTest, steps: Iterable[Step], unstored: Mapping[Step, str]) -> None:
+    def _draw_fields(self, test: ReplayedTest, steps: Iterable[Step], unstored: Mapping[Step, str]) -> None:
         with ui.element("div").classes("readings") as readings:
             readings.props["data-head"] = json.dumps(self._head)
             for step in steps:
                 self._readings[step] = self._reading(test, step, unstored.get(step))
 
-    def _way_back(self, test: ReplayedTest, steps: list[Step], unstored: Mapping[Step, str]) -> None:
-        """Fields for discs that are taken off one by one; open where there is a reading already."""
+    def _unloading_fields(self, test: ReplayedTest, steps: list[Step], unstored: Mapping[Step, str]) -> None:
+        """Fields for the depths of unloading, folded without a reading."""
         if not steps:
             return
         begun = any(test.row_under(*step) or step in unstored for step in steps)
         with ui.element("details").props("open" if begun else ""):
             with ui.element("summary"):
                 Words("Discs taken off one by one")
-            self._fields(test, steps, unstored)
+            self._draw_fields(test, steps, unstored)
 
     def _unstored(self) -> dict[Step, str]:
-        """Texts in fields that are not stored, new readings and changed ones, by step."""
+        """Unstored texts of new and changed readings, by step."""
         test = self._test
-        texts = {step: each.unstored(test.row_under(*step)) for step, each in self._readings.items()}
+        texts = {step: reading.unstored(test.row_under(*step)) for step, reading in self._readings.items()}
         return {step: text for step, text in texts.items() if text is not None}
 
     def _next(self) -> bool:
-        """Begin the next series, where all that is typed in this one is stored."""
+        """Begin the next series if all typed texts are stored."""
         missing = [step for step in self._unstored() if self._test.row_under(*step) is None]
         if missing:
             loads = ", ".join(step.words for step in missing)
@@ -185,7 +183,7 @@ class SeriesForm:
             self._waiting.focus()
             return False
         if self._test.rows:
-            self._beside.follow(self._shown, self._head["site"])
+            self._live_results.follow(self._shown, self._head["site"])
         self.begin()
         return True
 
@@ -194,7 +192,7 @@ class SeriesForm:
         return self._view.test(self._head["experiment"])
 
     def _show_changes(self) -> None:
-        """Undo, cancel and history as they are now; the fields of the readings stay as they are."""
+        """Draw undo, cancel and history again, without the fields of the readings."""
         test = self._test
         self._changes.clear()
         with self._changes:
@@ -208,7 +206,7 @@ class SeriesForm:
         self._list.show(test.name)
 
     def _loads(self, test: ReplayedTest) -> list[str]:
-        """The disc set's loads, and those that were entered beyond or instead of them, rising."""
+        """Loads of the disc set and of entered readings, in rising order."""
         steps = [f"{load:g}" for load in self._view.session.described.load_steps]
         entered = [row.cells["load_N"] for row in test.rows]
         also = [load for load in steps if test.row_under(load) is None]
@@ -223,18 +221,18 @@ class SeriesForm:
             stored = number_said(stored_depth(row))
             typed = stored if unstored is None or test.cancelled else unstored
             depth = field(label("depth_mm"), typed, numeric=True)
-            named(depth, step.asked)
+            named(depth, step.field_name)
             depth.props("readonly" if test.cancelled else "")
             made = ReadingField(depth, Words("").classes("stored"), holder)
             if row is not None:
                 holder.props["data-stored"] = row.cells["depth_mm"]
         made.show_state(row)
         depth.on_value_change(lambda: made.show_state(self._test.row_under(*step)))
-        depth.on("keydown.enter", answering(lambda: self._entered(step)), js_handler=TOLD)
-        depth.on("blur", answering(lambda: self._entered(step, left=True)), js_handler=LEFT)
+        depth.on("keydown.enter", answering(lambda: self._entered(step)), js_handler=ON_ENTER)
+        depth.on("blur", answering(lambda: self._entered(step, left=True)), js_handler=ON_BLUR)
         return made
 
-    def _further(self, test: ReplayedTest) -> None:
+    def _draw_further_load(self, test: ReplayedTest) -> None:
         if test.cancelled:
             return
 
@@ -253,25 +251,25 @@ class SeriesForm:
                 asking_button("Store it", done)
 
     def _entered(self, step: Step, *, left: bool = False) -> bool:
-        """Take a depth: the first one is stored, another one is a correction; ``left``: its field is left already."""
+        """Store a first depth, or ask for the reason of a changed one; ``left``: the focus is in another field."""
         test, made = self._test, self._readings[step]
-        if (sent := asked().text) is not None and sent != str(made.depth.value or "").strip():
-            made.depth.set_value(sent)  # what was typed was lost on its way, and is sent again
+        if (sent := current_request().text) is not None and sent != str(made.depth.value or "").strip():
+            made.depth.set_value(sent)  # the typed text was lost on its way, and is sent again
         row, typed = test.row_under(*step), made.typed
         if not made.differs(row):
             made.row.classes(remove="refused")
             self._refused.pop(step, None)
             self._corrections.drop(step)
             return True
-        if left and typed == self._refused.get(step):  # said at its Enter; by now something else may be said
+        if left and typed == self._refused.get(step):  # shown at its Enter; by now the status may be another
             return False
         taken = self._corrections.ask(focus=not left) if row is not None else self._store(step, made)
-        if not taken and self._readings.get(step) is made:  # the series was not drawn anew meanwhile
+        if not taken and self._readings.get(step) is made:  # the series was not drawn again meanwhile
             self._refused[step] = typed
         return taken
 
     def _store(self, step: Step, made: ReadingField) -> bool:
-        """Store the first depth under a load, and show whether it is stored."""
+        """Store the first depth under a load and show its state."""
         stored = self._add(step, made.depth)
         row = self._test.row_under(*step)
         if stored and row is not None:
@@ -280,16 +278,16 @@ class SeriesForm:
             made.row.classes(remove="refused")
             made.restore(row)
             made.show_state(row)
-        elif self._readings.get(step) is made:  # the series was not drawn anew meanwhile
+        elif self._readings.get(step) is made:  # the series was not drawn again meanwhile
             made.row.classes("refused")
             made.depth.client.run_javascript(f"lab.refusedLast({made.depth.id})")
         return stored
 
     def _add(self, load: ui.input | Step, depth: ui.input) -> bool:
-        """Store a reading; what cannot be is said at its field, and stays there."""
+        """Store a reading; problems are shown at the field, whose text stays."""
         test = self._test
-        given = {"depth_mm": depth} if isinstance(load, Step) else {"load_N": load, "depth_mm": depth}
-        cells = checked_fields(self._view.form, given)
+        fields = {"depth_mm": depth} if isinstance(load, Step) else {"load_N": load, "depth_mm": depth}
+        cells = checked_fields(self._view.form, fields)
         if cells is not None and isinstance(load, Step) and load.branch and not test.rows:
             refuse(depth, "the depths under rising loads come first")
             cells = None
@@ -297,7 +295,7 @@ class SeriesForm:
             refuse(load, f"there is a reading under {cells['load_N']} N already; correct it in its own field")
             cells = None
         if cells is None:
-            self._view.say("Not stored:", "bad", faults(given.values()))
+            self._view.say("Not stored:", "bad", faults(fields.values()))
             return False
         step = load if isinstance(load, Step) else Step(cells["load_N"])
         branch = {BRANCH: step.branch} if step.branch else {}
@@ -306,7 +304,7 @@ class SeriesForm:
         stored = self._view.add(test.name, cells, position=test.next_position, seen=test.last, said=said)
         if stored:
             self._show_changes()
-            self._beside.follow(test.name, self._head["site"], in_progress=self._is_in_progress(test.name))
+            self._live_results.follow(test.name, self._head["site"], in_progress=self._is_in_progress(test.name))
         else:
             self._draw(self._test)
         return stored

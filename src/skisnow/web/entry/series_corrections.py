@@ -22,14 +22,14 @@ if TYPE_CHECKING:
 
 
 class SeriesCorrections:
-    """Asks why stored readings are changed.
+    """Corrections of stored readings of a series, with one reason for all.
 
     Parameters
     ----------
     view, readings
-        The table, and the fields of the series that is shown, by step.
+        Table, and fields of the shown series by step.
     redraw
-        Draws the series as it is stored; texts that are not stored stay in their fields.
+        Function that draws the stored series; unstored texts stay in their fields.
     """
 
     def __init__(self, view: TableView, readings: Mapping[Step, ReadingField], redraw: Callable[[], object]) -> None:
@@ -39,7 +39,7 @@ class SeriesCorrections:
         self._asked: dict[Step, str] = {}
 
     def begin(self, name: str, place: ui.element) -> None:
-        """Ask about the series of this name, in this place."""
+        """Set the series and the element for questions."""
         self._name, self._place, self._asked = name, place, {}
 
     @property
@@ -47,13 +47,13 @@ class SeriesCorrections:
         return self._view.test(self._name)
 
     def _changed(self) -> dict[Step, ReadingField]:
-        """Fields of stored readings in which another depth is typed."""
+        """Fields of stored readings with another depth, by step."""
         test = self._test
         rows = {step: test.row_under(*step) for step in self._readings}
-        return {step: each for step, each in self._readings.items() if rows[step] and each.differs(rows[step])}
+        return {step: reading for step, reading in self._readings.items() if rows[step] and reading.differs(rows[step])}
 
     def is_unanswered(self) -> bool:
-        """Ask again if a reading is changed and the change not confirmed."""
+        """True if a reading is changed and not confirmed; the question is asked again."""
         if not self._changed():
             return False
         if self.ask(focus=True):
@@ -61,21 +61,23 @@ class SeriesCorrections:
         return True
 
     def ask_again(self) -> None:
-        """Ask again after the series was drawn again, if a reading is changed."""
+        """Ask again after the series was drawn, if a reading is changed."""
         if self._changed():
             self.ask(focus=False, is_said=False)
 
     def ask(self, *, focus: bool, is_said: bool = True) -> bool:
-        """Ask once why stored readings are changed, all of them; False if one of them is not a depth.
+        """Ask for one reason for all changed readings; False if one of them is not a depth.
 
-        ``is_said``: the status line tells it, too.
+        ``is_said``: the status line shows it, too.
         """
         test, changed = self._test, self._changed()
-        cells = {step: checked_fields(self._view.form, {"depth_mm": each.depth}) for step, each in changed.items()}
-        depths = {step: found["depth_mm"] for step, found in cells.items() if found is not None}
+        cells = {
+            step: checked_fields(self._view.form, {"depth_mm": reading.depth}) for step, reading in changed.items()
+        }
+        depths = {step: row["depth_mm"] for step, row in cells.items() if row is not None}
         if len(depths) < len(changed):
             if is_said:
-                self._view.say("Not corrected:", "bad", faults(each.depth for each in changed.values()))
+                self._view.say("Not corrected:", "bad", faults(reading.depth for reading in changed.values()))
             return False
         if self._asked == depths and not focus:  # Enter, and then the field was left: one question is enough
             return True
@@ -92,7 +94,7 @@ class SeriesCorrections:
         return True
 
     def drop(self, step: Step) -> None:
-        """Ask no more about a reading whose stored depth is typed again."""
+        """Remove a reading from the question if its stored depth was typed again."""
         if step not in self._asked:
             return
         self._asked = {}
@@ -112,9 +114,9 @@ class SeriesCorrections:
         return True
 
     def _leave(self) -> None:
-        """Put the stored depths back, as was asked."""
-        for step, each in self._changed().items():
-            each.restore(self._test.row_under(*step))
+        """Restore the stored depths."""
+        for step, reading in self._changed().items():
+            reading.restore(self._test.row_under(*step))
         self._view.say(LEFT_AS_IT_WAS)
         self._redraw()
 
@@ -125,7 +127,7 @@ IS_EMPTIED: Final = "After waiting under {} N: {} mm becomes nothing."
 
 
 class AfterWaiting:
-    """A field for each load of a series; each depth is stored with the reading under its load."""
+    """Fields of the depths after waiting, one for each load of a series."""
 
     def __init__(self, view: TableView, name: str, shown: Callable[[], object]) -> None:
         self._view = view
@@ -135,9 +137,9 @@ class AfterWaiting:
 
     @property
     def unstored(self) -> dict[str, str]:
-        """What is typed and not stored, by load."""
+        """Unstored texts by load."""
         test = self._test
-        typed = {load: str(each.value or "").strip() for load, each in self._fields.items()}
+        typed = {load: str(field.value or "").strip() for load, field in self._fields.items()}
         return {load: text for load, text in typed.items() if is_other(text, _stored(test, load))}
 
     @property
@@ -145,7 +147,7 @@ class AfterWaiting:
         return self._view.test(self._name)
 
     def draw(self, loads: Iterable[str], unstored: dict[str, str], ask: ui.element) -> None:
-        """Draw the fields; they are open where a depth is stored or typed already."""
+        """Draw the fields, folded without a depth."""
         test = self._test
         stored = {load: _stored(test, load) for load in loads}
         with ui.element("details").props("open" if any(stored.values()) or unstored else ""):
@@ -160,7 +162,7 @@ class AfterWaiting:
                     asking_button("Store what was read after waiting", lambda: self._store(ask))
 
     def focus(self) -> None:
-        """Put the focus into the first field with something unstored."""
+        """Put the focus on the first unstored field."""
         self._fields[next(iter(self.unstored))].run_method("focus")
 
     def _field(self, load: str, stored: str, text: str, *, closed: bool) -> ui.input:
@@ -174,22 +176,29 @@ class AfterWaiting:
                 made.props["data-stored"] = stored
 
         def show() -> None:
-            now = _stored(self._test, load)
-            show_state(state, CHANGED if now and is_other(str(depth.value or ""), now) else "stored" if now else "")
+            depth_after = _stored(self._test, load)
+            show_state(
+                state,
+                CHANGED
+                if depth_after and is_other(str(depth.value or ""), depth_after)
+                else "stored"
+                if depth_after
+                else "",
+            )
 
         show()
         depth.on_value_change(show)
         return depth
 
     def _store(self, ask: ui.element) -> bool:
-        """Store depths that are new; ask why where one was there before."""
-        found = self._checked()
-        if found is None:
+        """Store new depths, and ask for the reason of changed ones."""
+        depths = self._checked()
+        if depths is None:
             return False
-        new = {load: text for load, text in found.items() if not _stored(self._test, load)}
-        others = {load: text for load, text in found.items() if load not in new}
-        told = ", ".join(f"{text} mm under {load} N" for load, text in new.items())
-        if not self._correct(new, WAITED, f"Stored after waiting: {told}."):
+        new = {load: text for load, text in depths.items() if not _stored(self._test, load)}
+        others = {load: text for load, text in depths.items() if load not in new}
+        listed = ", ".join(f"{text} mm under {load} N" for load, text in new.items())
+        if not self._correct(new, WAITED, f"Stored after waiting: {listed}."):
             return False
         if others:
             self._ask_correction(ask, others)
@@ -202,17 +211,17 @@ class AfterWaiting:
         return True
 
     def _checked(self) -> dict[str, str] | None:
-        """What is typed anew, by load; None where something is refused."""
-        found: dict[str, str] = {}
+        """Changed depths by load; None if one is rejected."""
+        depths: dict[str, str] = {}
         typed = {load: self._fields[load] for load in self.unstored}
-        for load, each in typed.items():
-            cells = checked_fields(self._view.form, {AFTER: each})
+        for load, depth in typed.items():
+            cells = checked_fields(self._view.form, {AFTER: depth})
             if cells is not None and self._test.row_under(load) is None:
-                refuse(each, f"the first depth under {load} N comes before it")
+                refuse(depth, f"the first depth under {load} N comes before it")
             elif cells is not None:
-                found[load] = cells[AFTER]
-        if len(found) == len(typed):
-            return found
+                depths[load] = cells[AFTER]
+        if len(depths) == len(typed):
+            return depths
         self._view.say("Not stored:", "bad", faults(typed.values()))
         return None
 

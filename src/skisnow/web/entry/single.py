@@ -1,4 +1,4 @@
-"""Tests of one row: a shear test, a density sample, a repeat of a drop cone."""
+"""Form of tests with one row: a shear test, a density sample, a repeat of a drop cone."""
 
 from __future__ import annotations
 
@@ -13,27 +13,26 @@ from ..layout import heading, sentence
 from ..page_addresses import entering
 from ..page_requests import asking_button, form
 from ..words import label
-from .changes import ASKED, LEFT_AS_IT_WAS, UNANSWERED, USUAL_REASON, Places, ask_reason, change_said, changes
+from .changes import ASKED, LEFT_AS_IT_WAS, UNANSWERED, USUAL_REASON, ask_reason, change_said, changes
 from .readings import checked_fields, faults, is_other, refuse
 
 if TYPE_CHECKING:
     from ...campaign.store import ReplayedRow, ReplayedTest
-    from .live_results import Beside
-    from .table_view import TableView
+    from .table_view import LiveResults, Places, TableView
 
 OPTIONAL: Final = {"shear.csv": ("spot", TURNING)}
 KEPT: Final = ("site", "plate", "edge_angle_deg", "lever_arm_mm")
-"""What the next test has in common with the one before: filled in already."""
+"""Columns that are prefilled with the values of the test before."""
 ONCE: Final = ("site", "spot", "plate", "edge_angle_deg", "depth_mm", "lever_arm_mm")
-"""What all rows of one shear test say, where it is a moment over turning angles."""
+"""Columns with one value for all rows of a shear test with turning angles."""
 
 
 class SingleForm:
-    """The form of one row at a time, and the rows so far."""
+    """Form of one row, with the list of rows."""
 
-    def __init__(self, view: TableView, beside: Beside, places: Places) -> None:
+    def __init__(self, view: TableView, live_results: LiveResults, places: Places) -> None:
         self._view = view
-        self._beside = beside
+        self._live_results = live_results
         self._places = places
         table = view.form
         required = [column.name for column in table.numbers if column.needed]
@@ -41,12 +40,12 @@ class SingleForm:
         self._numeric = {column.name for column in table.numbers}
         self._fields: dict[str, ui.input | ui.select] = {}
         self._begun: dict[str, str] | None = None
-        """What is typed of a new row, while another one is looked at."""
+        """Typed texts of a new row while another row is shown."""
         self._is_new = False
         self._correcting: tuple[ReplayedTest, ReplayedRow] | None = None
 
     def begin(self) -> None:
-        """Ask for a new row, or go on with the one that was begun."""
+        """Show the form of a new row, with texts that were typed before."""
         self._draw(self._begun or self._prefilled(), None)
 
     def _leave_for_new(self) -> bool:
@@ -56,14 +55,14 @@ class SingleForm:
         return True
 
     def show(self, name: str, *, row: str = "") -> None:
-        """Show the row of a test with the number of an entry (default: its first row), to be corrected."""
+        """Show a row of a test for correction; ``row``: number of its entry (default: the first row)."""
         test = self._view.test(name)
         if not test.rows:
             self.begin()
             return
-        chosen = next((each for each in test.rows if _number(each) == row), test.rows[0])
+        chosen = next((candidate for candidate in test.rows if _number(candidate) == row), test.rows[0])
         self._draw(chosen.cells, (test, chosen))
-        self._beside.follow(name, chosen.cells["site"])
+        self._live_results.follow(name, chosen.cells["site"])
 
     def _prefilled(self) -> dict[str, str]:
         tests, key = self._view.tests(), self._view.form.key
@@ -79,10 +78,10 @@ class SingleForm:
 
     def _draw(self, cells: dict[str, str], correcting: tuple[ReplayedTest, ReplayedRow] | None) -> None:
         if self._is_new and correcting is not None:
-            typed = {column: str(each.value) for column, each in self._fields.items() if each.value}
+            typed = {column: str(field_.value) for column, field_ in self._fields.items() if field_.value}
             self._begun = typed if typed.items() - self._prefilled().items() else None
         self._is_new, self._correcting = correcting is None, correcting
-        ui.navigate.history.replace(self._address())  # typed text is kept by the address: each row has its own
+        ui.navigate.history.replace(self._address())  # the browser keeps typed texts by address: each row has one
         self._places.clear()
         with self._places.form:
             heading("Correct a test" if correcting else "New test")
@@ -126,12 +125,12 @@ class SingleForm:
         return made
 
     def _focus_first(self) -> None:
-        empty = [each for each in self._fields.values() if not each.value and isinstance(each, ui.input)]
+        empty = [field_ for field_ in self._fields.values() if not field_.value and isinstance(field_, ui.input)]
         goes_on = TURNING in self._fields and bool(self._fields["depth_mm"].value)  # the next angle of the same test
         left = [column for column in OPTIONAL.get(self._view.file, ()) if not (column == TURNING and goes_on)]
-        wanted = [each for each in empty if all(each is not self._fields[column] for column in left)]
-        if wanted:
-            wanted[0].run_method("focus")
+        candidates = [field_ for field_ in empty if all(field_ is not self._fields[column] for column in left)]
+        if candidates:
+            candidates[0].run_method("focus")
 
     def _cells(self, rejected: str = "Not stored:") -> dict[str, str] | None:
         cells = checked_fields(self._view.form, self._fields)
@@ -157,15 +156,15 @@ class SingleForm:
 
     def _stored(self, name: str, site: str) -> bool:
         self._view.say(f"Stored: test {name}.")
-        self._beside.follow(name, site)
+        self._live_results.follow(name, site)
         self._begun = None
         self.begin()
         return True
 
     def _second_row_fault(self, test: ReplayedTest, cells: dict[str, str]) -> str:
         if cells.get(TURNING) and all(row.cells.get(TURNING) for row in test.rows):
-            now = test.rows[0].cells if test.rows else cells
-            changed = [column for column in ONCE if cells.get(column, "") != now.get(column, "")]
+            first = test.rows[0].cells if test.rows else cells
+            changed = [column for column in ONCE if cells.get(column, "") != first.get(column, "")]
             return f"the rows of test {test.name} have one {label(changed[0])}" if changed else ""
         if "repeat" not in cells:
             return f"there is a test {test.name} already; give this one another name"
@@ -176,12 +175,12 @@ class SingleForm:
         return ""
 
     def _is_unanswered(self) -> bool:
-        """Ask again if the row that is looked at is changed and the change not confirmed."""
+        """True if the shown row is changed and not confirmed; the question is asked again."""
         if self._correcting is None:
             return False
-        now = self._correcting[1].cells
-        typed = {column: str(each.value or "").strip() for column, each in self._fields.items()}
-        if not any(is_other(text, now.get(column, "")) for column, text in typed.items()):
+        stored = self._correcting[1].cells
+        typed = {column: str(field_.value or "").strip() for column, field_ in self._fields.items()}
+        if not any(is_other(text, stored.get(column, "")) for column, text in typed.items()):
             return False
         if self._ask_correction(*self._correcting):
             self._view.say(UNANSWERED, "bad")
@@ -191,8 +190,8 @@ class SingleForm:
         cells = self._cells("Not corrected:")
         if cells is None:
             return False
-        now = row.cells
-        changed = {column: text for column, text in cells.items() if text != now.get(column, "")}
+        stored = row.cells
+        changed = {column: text for column, text in cells.items() if text != stored.get(column, "")}
         if not changed:
             self._view.say("Nothing is different.")
             return True
@@ -203,7 +202,7 @@ class SingleForm:
             self.show(test.name, row=_number(row))
             return True
 
-        lines = [change_said(said(label(column)), now.get(column, ""), new) for column, new in changed.items()]
+        lines = [change_said(said(label(column)), stored.get(column, ""), new) for column, new in changed.items()]
         act = ("Correct it", correct)
         ask_reason(self._ask, lines, act, usual=USUAL_REASON, leave=lambda: self._leave(test, row))
         self._view.say(ASKED, "")
@@ -225,8 +224,8 @@ class SingleForm:
                         self._so_far(test, row)
 
     def _so_far(self, test: ReplayedTest, row: ReplayedRow) -> None:
-        given = [column for column in self._columns if row.cells.get(column)]
-        words = [f"{said(label(column))} {row.cells[column]}" for column in given]  # no part is looked up again
+        columns = [column for column in self._columns if row.cells.get(column)]
+        words = [f"{said(label(column))} {row.cells[column]}" for column in columns]  # already translated
         Words(" · ".join(words) + (said(f" · cancelled: {test.cancelled}") if test.cancelled else ""))
 
         def look() -> bool:

@@ -1,34 +1,55 @@
-"""One table of a campaign on a page: writer, status, storing of entries, links to tables and series."""
+"""One table of a campaign on a page: writer, status, entries, links to tables and series, live results."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Final
+from contextlib import contextmanager
+from dataclasses import dataclass
+from itertools import chain
+from typing import TYPE_CHECKING, Any, Final, TypeAlias
 
-from nicegui import ui
+from nicegui import background_tasks, run, ui
 
-from ..._support.errors import ParameterError, StoreError
+from ..._support.errors import FieldDataError, ParameterError, StoreError
 from ..._support.user_files import natural_number
+from ...campaign.reading.table_forms import PENETRATION
 from ...campaign.store import NewEntry, OvertakenError
 from ...campaign.store.stored_tables import FORMS
-from ..elements import StatusLine, link
-from ..layout import heading
+from ..elements import StatusLine, Words, choice, field, link, named
+from ..language import said
+from ..layout import error_sentence, heading
+from ..line_chart import BEHIND, ChartLine, LineChart
 from ..page_addresses import entering
-from ..page_requests import asked
-from ..words import in_words, label
+from ..page_requests import current_request
+from ..words import TABLES, displacement_words, hardness_words, in_words, label, stress_words, unloading_words
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
 
     from ...campaign.reading.table_forms import TableForm
     from ...campaign.store import ReplayedTest
-    from ..edit_session import EditSession
+    from ...report.charts import SeriesCurve
+    from ..edit_session import EditSession, QuickResults, TestKey
 
+    _Values: TypeAlias = list[float | None]
 
 WHO: Final = "Operator"
 
 
+@dataclass(frozen=True, slots=True)
+class Places:
+    """Parts of the page for a form: the form, and the changes below."""
+
+    form: ui.element
+    below: ui.element
+
+    def clear(self) -> None:
+        """Remove all elements."""
+        self.form.clear()
+        self.below.clear()
+
+
 class TableView:
-    """Writes about the tests of one table, and says aloud what came of it."""
+    """Stores entries about the tests of one table and shows the outcome."""
 
     def __init__(self, session: EditSession, file: str, who: ui.select | ui.input, status: StatusLine) -> None:
         self.session = session
@@ -38,7 +59,7 @@ class TableView:
         self._status = status
 
     def test(self, name: str) -> ReplayedTest:
-        """A test as it was at the last look."""
+        """A test as of the last refresh."""
         return self.session.test(self.file, name)
 
     def label(self, column: str) -> str:
@@ -50,12 +71,12 @@ class TableView:
         return self.session.campaign.of_file(self.file)
 
     def next_name(self) -> str:
-        """The number behind the largest one among the names."""
+        """Next number after the largest one among the names."""
         numbers = (natural_number(test.name) for test in self.tests())
         return str(max((number for number in numbers if number is not None), default=0) + 1)
 
     def add(self, name: str, cells: Mapping[str, str], *, position: int, seen: int, said: str) -> bool:
-        """Store a row; whether it is stored, now or when it was sent before."""
+        """Store a row; True if it is stored, now or by an earlier request with the same key."""
         entry = NewEntry(
             action="add",
             file=self.file,
@@ -63,13 +84,13 @@ class TableView:
             cells=cells,
             position=position,
             who=self._who.value or "",
-            once=asked().once,
+            once=current_request().once,
         )
         return self._write(entry, seen, said)
 
     def stored_before(self) -> str | None:
-        """The name of the test that was stored when what is asked for now was sent before."""
-        once = asked().once
+        """Name of the test that an earlier request with the same key stored; None without one."""
+        once = current_request().once
         sent = (entry for test in self.tests() for entry in test.history if once is not None and entry.once == once)
         return next((entry.test for entry in sent), None)
 
@@ -82,7 +103,7 @@ class TableView:
         *,
         said: str = "Corrected; the first reading is kept.",
     ) -> bool:
-        """Store a correction of the row that was entered under this sequence."""
+        """Store a correction of a row, given by the sequence of its entry."""
         if not why.strip():
             self.say("A correction needs a reason.", "bad")
             return False
@@ -98,7 +119,7 @@ class TableView:
         return self._write(entry, test.last, said)
 
     def cancel(self, test: ReplayedTest, why: str) -> bool:
-        """Store that a test does not count, and why."""
+        """Store the cancellation of a test with its reason."""
         if not why.strip():
             self.say("A test is cancelled with a reason.", "bad")
             return False
@@ -108,7 +129,7 @@ class TableView:
         return self._write(entry, test.last, f"{test.name} is cancelled; its readings are kept.")
 
     def undo(self, test: ReplayedTest) -> bool:
-        """Store that the last entry was not meant."""
+        """Store the undo of the last entry."""
         last = test.undoable
         if last is None:
             self.say("There is nothing to undo.", "bad")
@@ -138,7 +159,7 @@ MOST: Final = 40
 
 
 class SeriesList:
-    """The list below the form of a series."""
+    """List of links to series below the form."""
 
     def __init__(self, view: TableView) -> None:
         self._view = view
@@ -162,3 +183,144 @@ class SeriesList:
                     made = link(f"{name}{' (cancelled)' if cancelled else ''}", address, "small")
                     if name == current:
                         made.props('aria-current="page"')
+
+
+def table_links(tables: Mapping[str, str], here: str, further: Mapping[str, str]) -> None:
+    """Links to the tables, by file, and to further pages of the campaign, by name."""
+    with named(ui.element("nav").classes("tables"), "Kind of test"):
+        for file, address in tables.items():
+            made = ui.link(said(TABLES[file]), address)
+            if file == here:
+                made.props('aria-current="page"')
+        for name, address in further.items():
+            ui.link(said(name), address)
+
+
+@contextmanager
+def table_view(
+    session: EditSession, file: str, *, form: str, below: str
+) -> Iterator[tuple[TableView, LiveResults, Places]]:
+    """View of a table with its parts of the page; elements of the block are added below the changes.
+
+    Parameters
+    ----------
+    session, file
+        Campaign and table.
+    form, below
+        Names of the sections of the form and of the changes for screen readers.
+    """
+    who = _writer_field(session)
+    view = TableView(session, file, who, StatusLine())
+    with ui.element("div").classes("two"):
+        place = named(ui.element("section"), form)
+        live_results = LiveResults(view)
+        with named(ui.element("section").classes("below"), below):
+            yield view, live_results, Places(place, ui.element("div"))
+
+
+def _writer_field(session: EditSession) -> ui.select | ui.input:
+    """Field of the writer: a menu of the campaign's observers, or a text field."""
+    observers = list(session.described.observers)
+    with ui.element("div").classes("who") as place:
+        made = choice(WHO, observers, observers[0]) if observers else field(WHO)
+
+    def tell() -> None:
+        place.props["data-who"] = str(made.value or "")
+
+    made.on_value_change(tell)
+    tell()
+    return made
+
+
+MISSING_YET: Final = frozenset({"too_few_loads"})
+"""Flags of a series that is still being read."""
+
+
+class LiveResults:
+    """Results of one test next to its form, updated with each reading."""
+
+    def __init__(self, view: TableView) -> None:
+        self._view = view
+        self._wanted: tuple[str, str, frozenset[str]] | None = None
+        self._working = False
+        is_pressed = view.file == PENETRATION.file
+        classes = "beside" if is_pressed else "beside above"
+        with named(ui.element("section").classes(classes), "Results of the readings"):
+            self._name = Words("").classes("quiet")
+            self._value = Words("").classes("value").props("role=status")
+            self._marks = ui.element("ul").classes("marks")
+            self._chart: LineChart | None = None
+            if is_pressed:
+                words = "Load against depth of this series and the others of its site, load in N"
+                self._chart = LineChart(label("depth_mm"), label("load_N"), words, height=340)
+
+    def follow(self, name: str, site: str, *, in_progress: bool = False) -> None:
+        """Show the results of a test; results for an older state are dropped.
+
+        Parameters
+        ----------
+        name, site
+            Name and site of the test.
+        in_progress
+            True if readings are still missing: flags about missing readings are not shown.
+        """
+        self._wanted = (name, site, MISSING_YET if in_progress else frozenset())
+        if not self._working:
+            self._working = True
+            background_tasks.create(self._work(), name="beside", context=self._name.client)
+
+    async def _work(self) -> None:
+        try:
+            while self._wanted is not None:
+                (name, site, unsaid), self._wanted = self._wanted, None
+                try:
+                    results = await run.io_bound(self._view.session.quick_results, site)
+                except (FieldDataError, StoreError) as error:
+                    self._value.set_text(error_sentence(error))
+                    continue
+                if self._marks.is_deleted:  # the page was left meanwhile
+                    return
+                # another may have been wanted while this one was waited for
+                if self._wanted is None and results is not None:  # type: ignore[redundant-expr]
+                    self._show(name, results, unsaid)
+        finally:
+            self._working = False
+
+    def _show(self, name: str, results: QuickResults, unsaid: frozenset[str]) -> None:
+        key = self._view.file, name
+        row = results.experiments.get(key)
+        self._name.set_text(f"Test {name}" if row else "")
+        self._value.set_text(_value(row, pressed=self._view.file == PENETRATION.file))
+        self._marks.clear()
+        with self._marks:
+            for code, sentence in results.flags.get(key, {}).items():
+                if code not in unsaid:
+                    with ui.element("li"):
+                        Words(in_words(sentence))
+        if self._chart is not None:
+            self._chart.show(list(_lines(key, results.curves)), from_zero="xy")
+
+
+def _value(row: dict[str, Any] | None, *, pressed: bool) -> str:
+    if row is None:
+        return ""
+    if not pressed:
+        return "; ".join(filter(None, (f"S_f = {stress_words(row)}", displacement_words(row))))
+    return "; ".join(filter(None, (f"H_V = {hardness_words(row)}", unloading_words(row))))
+
+
+def _lines(key: TestKey, curves: dict[TestKey, SeriesCurve]) -> Iterator[ChartLine]:
+    """Lines with readings and law of a series, and of all other series of its site together."""
+    others = [curve for other, curve in curves.items() if other != key]
+    own = [curves[key]] if key in curves else []
+    for chosen, style in ((others, BEHIND), (own, 0)):
+        if chosen:
+            points = [(curve.depth_mm, curve.load_N) for curve in chosen]
+            laws = [((*curve.law_depth_mm, None), (*curve.law_load_N, None)) for curve in chosen]
+            yield ChartLine(*_joined(points), style, points=True)
+            yield ChartLine(*_joined(laws), style)
+
+
+def _joined(pairs: Iterable[tuple[Iterable[float | None], Iterable[float | None]]]) -> tuple[_Values, _Values]:
+    x, y = zip(*pairs, strict=True)
+    return list(chain.from_iterable(x)), list(chain.from_iterable(y))

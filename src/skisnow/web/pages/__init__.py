@@ -1,7 +1,7 @@
 """The pages of the lab, one module each.
 
-A page is a module with ``PATH`` (where it is), ``TITLE`` (its word in the navigation) and ``add_page(lab)``, which adds
-it to the application. A further page is one more module and its name in `PAGES`.
+A page is a module with ``PATH`` (its address), ``TITLE`` (its name in the navigation) and ``add_page(lab)``, which adds
+it to the application. To add a page, add a module and its name in `PAGES`.
 """
 
 from __future__ import annotations
@@ -12,4 +12,4 @@ PAGES: Final = ("campaigns", "skis", "carve", "simulate", "study", "replay")
 """Modules of this folder, in the order of the navigation."""
 
 INNER: Final = ("describe", "enter", "correct", "analysis", "study_table")
-"""Modules of pages that are reached from another page."""
+"""Modules of pages without a link in the navigation."""

@@ -1,4 +1,4 @@
-"""A campaign analysed: the nine laws, regressions, figures, and the choice of what takes part."""
+"""Page of an analysed campaign: laws, regressions, figures, and the choice of included data."""
 
 from __future__ import annotations
 
@@ -13,13 +13,12 @@ from starlette.concurrency import run_in_threadpool
 from starlette.requests import Request
 from starlette.responses import FileResponse, Response
 
-from ..analysis_cache import Analyses
+from ..analysis_cache import AnalysisCache
 from ..analysis_view import AnalysisView, OpenAnalysis
-from ..campaign_analysis import ready, write_whole_report
+from ..campaign_analysis import load_drawing, write_whole_report
 from ..elements import link
-from ..error_pages import plain_page
 from ..language import language_of_request
-from ..layout import framed
+from ..layout import framed, plain_page
 from ..page_addresses import entering, export, required_id
 from ..subprocesses import Worker
 from ..uploads import files_below, write_zip
@@ -35,13 +34,13 @@ REPORT_POLICY: Final = "default-src 'none'; style-src 'unsafe-inline'; img-src d
 def add_page(lab: Lab) -> None:
     """Add the page to the application."""
     worker, open_pages = Worker(), dict[str, OpenAnalysis]()
-    analyses = Analyses(lab, worker)
+    analyses = AnalysisCache(lab, worker)
     app.on_shutdown(worker.end)
 
     @ui.page("/analysis/{kind}/{id_}")
     def analysis(kind: str, id_: str) -> None:
-        page = OpenAnalysis(kind, id_, analyses.known(kind, required_id(id_)))
-        background_tasks.create(worker.do(ready), name="worker begins")  # while the numbers are computed
+        page = OpenAnalysis(kind, id_, analyses.cached(kind, required_id(id_)))
+        background_tasks.create(worker.do(load_drawing), name="worker begins")  # while the numbers are computed
         key = secrets.token_hex(8)
         open_pages[key] = page
 
@@ -54,7 +53,7 @@ def add_page(lab: Lab) -> None:
         with framed("Analysis", here=HERE):
             _links(kind, id_, key)
             view = AnalysisView(page, analyses)
-        view.show_known()
+        view.show_cached()
         background_tasks.create(view.compute(), name="analysis")
 
     @app.get("/report/{key}/report.html")
@@ -70,11 +69,11 @@ def add_page(lab: Lab) -> None:
         if page is None or (folder := await _report(page, worker, request)) is None or page.subject is None:
             return _no_report(page, request)
         headers = {"content-disposition": 'attachment; filename="analysis.zip"'}
-        content = await run_in_threadpool(_packed, page.subject, folder)
+        content = await run_in_threadpool(_zip_of, page.subject, folder)
         return Response(content, media_type="application/zip", headers=headers)
 
 
-def _packed(subject: CampaignSource, report: Path) -> bytes:
+def _zip_of(subject: CampaignSource, report: Path) -> bytes:
     """Campaign and report as one zip file."""
     packed = io.BytesIO()
     with TemporaryDirectory(prefix="skisnow-export-") as name:
@@ -91,7 +90,7 @@ def _no_report(page: OpenAnalysis | None, request: Request) -> Response:
 
 
 async def _report(page: OpenAnalysis | None, worker: Worker, request: Request) -> Path | None:
-    """A folder with the report of what is chosen on a page, in its language; written when it is first wanted."""
+    """Folder with the report of a page's choice in its language, written at the first request; None without one."""
     if page is not None:
         await page.settled.wait()
     if page is None or page.subject is None or page.analysed is None:
@@ -107,7 +106,7 @@ def _links(kind: str, id_: str, key: str) -> None:
     with ui.element("div").classes("acts"):
         if kind == "entry":
             link("Enter tests", entering(id_))
-        # both are asked for over the connection of the page, so that they come after what was chosen before
+        # both are requested over the connection of the page, so that earlier choices are applied first
         report = link("Open the report", f"/report/{key}/report.html").props("target=_blank")
         report.on("click.prevent", lambda: ui.navigate.to(f"/report/{key}/report.html", new_tab=True))
         everything = link("Download everything", "#")

@@ -1,4 +1,4 @@
-"""The list of campaigns: those being entered, those kept; import and export."""
+"""Page with the lists of entered and imported campaigns; import and export."""
 
 from __future__ import annotations
 
@@ -13,11 +13,12 @@ from ...campaign import write_reference
 from ...campaign.store import Journals
 from ...report.formatting import counted
 from ..edit_session import EditSession
-from ..elements import Words, button, link
+from ..elements import button, link
 from ..language import minute_words
 from ..layout import framed, heading, sentence
 from ..page_addresses import analysis, correcting, entering, export
 from ..transfer import IMPORT
+from ..upload_forms import file_input, submit_button, upload_form
 
 if TYPE_CHECKING:
     from ...campaign.store import StoredCampaign
@@ -47,12 +48,12 @@ def add_page(lab: Lab) -> None:
                 link("New campaign", "/describe", "main")
                 if is_first:
                     button("Look at a sample campaign", lambda: _add_sample(lab), once=True)
-            _in_entry(lab)
-            _kept(lab)
+            _list_drafts(lab)
+            _list_imported(lab)
             _import_form(lab)
 
 
-def _in_entry(lab: Lab) -> None:
+def _list_drafts(lab: Lab) -> None:
     heads = Journals(lab.store).list()
     heading("Drafts")
     if not heads:
@@ -61,7 +62,7 @@ def _in_entry(lab: Lab) -> None:
         try:
             session = EditSession(lab, head.id)
         except StoreError as error:
-            _damaged(head.id, error)
+            _add_damaged(head.id, error)
             continue
         tests = [test for test in session.campaign.tests.values() if test.rows]
         with ui.element("section").classes("card"):
@@ -74,13 +75,13 @@ def _in_entry(lab: Lab) -> None:
                 link("Export", export("entry", head.id))
 
 
-def _damaged(id_: str, error: StoreError) -> None:
+def _add_damaged(id_: str, error: StoreError) -> None:
     with ui.element("section").classes("card"):
         heading(id_, 3)
         sentence(str(error), "bad")
 
 
-def _kept(lab: Lab) -> None:
+def _list_imported(lab: Lab) -> None:
     heading("Imported")
     stored = lab.store.list()
     if not stored:
@@ -88,27 +89,27 @@ def _kept(lab: Lab) -> None:
     for campaign in reversed(stored):
         with ui.element("section").classes("card"):
             heading(campaign.name, 3)
-            sentence(f"{campaign.id} · added {minute_words(campaign.added_at)} · {_checked(campaign)}", "quiet")
+            sentence(f"{campaign.id} · added {minute_words(campaign.added_at)} · {_check_result(campaign)}", "quiet")
             with ui.element("div").classes("acts"):
                 link("Correct", correcting(campaign.id))
                 link("Analysis", analysis("kept", campaign.id))
                 link("Export", export("kept", campaign.id))
 
 
-def _checked(campaign: StoredCampaign) -> str:
+def _check_result(campaign: StoredCampaign) -> str:
     if campaign.n_errors is None or campaign.n_warnings is None:
         return "not checked"
     return f"{counted(campaign.n_errors, 'error')}, {counted(campaign.n_warnings, 'warning')}"
 
 
 async def _add_sample(lab: Lab) -> None:
-    """Store a synthetic campaign, and show its analysis."""
-    id_ = await run.io_bound(_stored_sample, lab)
+    """Store a synthetic campaign and show its analysis."""
+    id_ = await run.io_bound(_store_sample, lab)
     if id_ is not None:
         ui.navigate.to(analysis("kept", id_))
 
 
-def _stored_sample(lab: Lab) -> str:
+def _store_sample(lab: Lab) -> str:
     with TemporaryDirectory(prefix="skisnow-sample-") as name:
         folder = Path(name) / "sample"
         write_reference(folder, seed=SAMPLE_SEED)
@@ -124,10 +125,6 @@ def _import_form(lab: Lab) -> None:
         "quiet",
     )
     for id_, text, further in (("folder", "Folder", "webkitdirectory"), ("files", "Files or zip", "")):
-        form = f'method=post action="{IMPORT}" enctype="multipart/form-data"'
-        with ui.element("form").props(form).classes("acts"):
-            with ui.element("label").props(f"for=import-{id_}"):
-                Words(text)
-            ui.element("input").props(f"type=file name=files multiple required id=import-{id_} {further}")
-            with ui.element("button").props("type=submit").classes("act"):
-                Words(f"Import {text.lower()}")
+        with upload_form(IMPORT).classes("acts"):
+            file_input("files", text, f"import-{id_}", f"multiple {further}")
+            submit_button(f"Import {text.lower()}")

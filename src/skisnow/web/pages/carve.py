@@ -1,4 +1,4 @@
-"""A carved turn under the hand: edge angle, load and snow by sliders, and how the ski stands in the snow."""
+"""Page of a carved turn: sliders for edge angle, load and snow, and the ski in the snow."""
 
 from __future__ import annotations
 
@@ -33,14 +33,14 @@ TITLE: Final = "Carve"
 SKIS: Final = "/skis"
 ALONG: Final = "Along the ski (m), boot = 0"
 ENDS: Final = ("tail", "tip")
-"""Where the axis leads to: stations count forward from the boot."""
+"""Texts at the ends of the axis; stations count forward from the boot."""
 PANELS: Final = {
     "edge_depth_mm": "Depth of the edge (mm)",
     "force_per_length_N_per_m": "Normal force per length (N/m)",
     "bending_mm": "Deflection (mm)",
     "twist_deg": "Twist (°)",
 }
-# Stops of the sliders and where they stand first (assumption): whole numbers of the field, over what was measured.
+# Stops and first positions of the sliders: round numbers over the measured ranges.
 ANGLES: Final = tuple(str(angle) for angle in range(0, 86))
 LOADS: Final = tuple(str(load) for load in range(100, 3001, 50))
 _SOFT: Final = (0.04, 0.05, 0.06, 0.08, 0.1, 0.12, 0.15, 0.2, 0.25, 0.3, 0.4, 0.5, 0.6, 0.8, 1, 1.2, 1.5, 2)
@@ -58,14 +58,14 @@ MOVED: Final = """(event) => {
   event.target.setAttribute('aria-valuetext', STOPS[event.target.value]);
   emit(event.target.value);
 }"""
-"""In the browser: were the slider drawn anew by the server, it would jump back under a quick hand."""
+"""JavaScript handler: if the server drew the slider again, it would jump back during a quick movement."""
 COMPUTING: Final = "Computing …"
 PATIENCE_S: Final = 0.5
-"""After which it is said that what is shown belongs to where the sliders stood before (s)."""
+"""Time (s) after which the page shows that the results belong to older positions of the sliders."""
 ABOVE_MM: Final = 3.0
-"""How much of the edge above the snow the chart of depths shows (mm)."""
+"""Height above the snow that the chart of depths shows (mm)."""
 HEADLINE: Final = "turn_radius_boot_m"
-"""The number that a carve is for; the others stand below."""
+"""Key of the main result; the other results are in the table below."""
 OF_SNOW: Final = ("H_V_N_per_mm3", "S_f_N_per_mm2")
 NUMBERS: Final = "the sliders"
 FACTS: Final = {
@@ -93,16 +93,16 @@ def add_page(lab: Lab) -> None:
 
 
 class _Solver:
-    """Answers one question at a time; skis are read once. Imported late: what computes is heavy."""
+    """Solver of carve questions, one at a time; it reads each ski once, and its slow imports are late."""
 
     def __init__(self) -> None:
         self._lock = threading.Lock()
         self._sources: Sources | None = None
 
     def answers(self, questions: Sequence[dict[str, object]], snow: ChosenSnow | None) -> list[dict[str, Any]] | str:
-        """The JSON of `skisnow carve` for each question, or why there is none, in a sentence.
+        """JSON of `skisnow carve` for each question, or the message of an error.
 
-        ``snow`` is that of a campaign, where the questions name its results.
+        ``snow``: snow of a campaign if the questions name its results.
         """
         from ...carving.answer import answered
         from ...carving.answer_dict import answer_dict
@@ -114,15 +114,17 @@ class _Solver:
             if snow is not None and snow.analysis is not None:
                 self._sources.take_snow(snow.snow, results=RESULTS, site=snow.site or None)
             try:
-                return [answer_dict(answered(carve_question(each), sources=self._sources)) for each in questions]
+                return [
+                    answer_dict(answered(carve_question(question), sources=self._sources)) for question in questions
+                ]
             except SkisnowError as error:
                 return str(error)
 
 
 class _Carve:
-    """The sliders and what follows them; while one answer is computed only the latest question waits."""
+    """Sliders and results; only the latest question waits while an answer is computed."""
 
-    def __init__(self, lab: Lab, solver: _Solver, skis: LabSkis, asked: tuple[str, str]) -> None:
+    def __init__(self, lab: Lab, solver: _Solver, skis: LabSkis, names_in_address: tuple[str, str]) -> None:
         self._solver = solver
         self._skis = skis
         self._values: dict[str, str] = {key: start for key, (_, _, start) in SLIDERS.items()}
@@ -130,14 +132,15 @@ class _Carve:
         self._working = False
         names = skis.names()
         first, other = (
-            name if name in names else otherwise for name, otherwise in zip(asked, (names[0], NOTHING), strict=True)
+            name if name in names else otherwise
+            for name, otherwise in zip(names_in_address, (names[0], NOTHING), strict=True)
         )
         self._headline = named(ui.element("section").classes("headline above"), "Carved radius")
         with ui.element("div").classes("fields large"):
             self._ski = choice("Ski", names, first)
             self._other = choice("Compared with", [NOTHING, *names], other)
             self._ratio = choice("Unloading ratio k_u/H_V", RATIOS, "10")
-            self._snow = SnowChoice(lab, NUMBERS, self._other_snow)
+            self._snow = SnowChoice(lab, NUMBERS, self._update_snow)
         link("Add or change a ski", SKIS)
         self._of_snow: dict[str, ui.element] = {}
         with ui.element("div").classes("sliders"):
@@ -153,8 +156,8 @@ class _Carve:
             self._charts = {
                 key: LineChart(ALONG, title, f"{title} along the ski", ends=ENDS) for key, title in PANELS.items()
             }
-        for each in (self._ski, self._other, self._ratio):
-            each.on_value_change(self.ask)
+        for menu in (self._ski, self._other, self._ratio):
+            menu.on_value_change(self.ask)
 
     def _slider(self, key: str) -> None:
         words, stops, start = SLIDERS[key]
@@ -169,20 +172,20 @@ class _Carve:
                 shown.set_text(f"{called}: {self._values[key]}")
                 self.ask()
 
-            # the browser's own slider: arrow keys, touch and screen readers know it
+            # the browser's own slider supports arrow keys, touch and screen readers
             made = ui.element("input").props(f"type=range min=0 max={len(stops) - 1} step=1")
             named(made, words)
             made.props(f'aria-valuetext="{start}"')
-            made.props["^value"] = str(stops.index(start))  # as an attribute, which a later drawing does not put back
+            made.props["^value"] = str(stops.index(start))  # as an attribute, which a later update does not reset
             made.on("input", moved, js_handler=MOVED.replace("STOPS", json.dumps(stops)))
 
-    async def _other_snow(self) -> None:
-        for key, given in zip(OF_SNOW, (self._snow.gives_hardness, self._snow.gives_stress), strict=True):
-            self._of_snow[key].set_visibility(not given)
+    async def _update_snow(self) -> None:
+        for key, is_given in zip(OF_SNOW, (self._snow.gives_hardness, self._snow.gives_stress), strict=True):
+            self._of_snow[key].set_visibility(not is_given)
         self.ask()
 
     def ask(self) -> None:
-        """Ask for the answer to where the sliders stand now."""
+        """Request the answer for the current positions of the sliders."""
         self._waiting = True
         if not self._working:
             self._working = True
@@ -194,17 +197,17 @@ class _Carve:
                 self._waiting = False
                 try:
                     snow = self._snow.chosen()
-                except ParameterError:  # said where it is chosen
+                except ParameterError:  # shown at the menu
                     continue
                 questions = self._questions(snow)
                 answers = asyncio.ensure_future(run.io_bound(self._solver.answers, questions, snow))
                 if not (await asyncio.wait((answers,), timeout=PATIENCE_S))[0]:
                     self._status.set_text(COMPUTING)
-                found = await answers
-                if isinstance(found, str):
-                    self._status.set_text(found)
-                elif found is not None and not self._status.is_deleted:  # the page may have been left meanwhile
-                    self._show(found)
+                result = await answers
+                if isinstance(result, str):
+                    self._status.set_text(result)
+                elif result is not None and not self._status.is_deleted:  # the page may be closed meanwhile
+                    self._show(result)
         finally:
             self._working = False
 
@@ -213,8 +216,8 @@ class _Carve:
         if snow is not None:
             site = {"site": snow.site} if snow.site else {}
             where = {"published": snow.published} if snow.published else {"results": RESULTS, **site}
-            given = OF_SNOW if self._snow.gives_stress else OF_SNOW[:1]
-            numbers = {key: value for key, value in numbers.items() if key not in given} | where
+            replaced = OF_SNOW if self._snow.gives_stress else OF_SNOW[:1]
+            numbers = {key: value for key, value in numbers.items() if key not in replaced} | where
         skis = [str(name) for name in (self._ski.value, self._other.value) if name != NOTHING]
         return [
             {"ski": self._skis.word(name), **numbers, "unloading_ratio": float(str(self._ratio.value))} for name in skis
@@ -227,7 +230,7 @@ class _Carve:
             self._named = names
             self._facts.clear()
             with self._facts:
-                self._cells = _table(names)
+                self._cells = _add_table(names)
             self._headline.clear()
             with self._headline:
                 self._radii = [_headline(number) for number in range(len(names))]
@@ -236,17 +239,17 @@ class _Carve:
         for key, (_, unit) in FACTS.items():
             for cell, answer in zip(self._cells[key], answers, strict=True):
                 cell.set_text("–" if answer[key] is None else f"{significant(answer[key])} {unit}".rstrip())
-        for key, each in self._charts.items():
+        for key, chart in self._charts.items():
             lines = [
                 ChartLine(a["station_m"], a[key], number, name=a["ski"]["name"])
                 for number, a in enumerate(answers)
                 if a[key] is not None
             ]
-            each.show(lines, range_=_range(key, answers))
+            chart.show(lines, range_=_range(key, answers))
 
 
 def _range(key: str, answers: list[dict[str, Any]]) -> tuple[float, float] | None:
-    """Depth counts downwards, and the shovel high above the snow would leave no room for what is in it."""
+    """Range of the chart of depths, which grow downwards; the height above the snow is limited."""
     depths = [depth for answer in answers for depth in (answer[key] or ()) if depth is not None]
     return (1.1 * max(depths), -ABOVE_MM) if key == "edge_depth_mm" and depths else None
 
@@ -256,7 +259,7 @@ def _headline(number: int) -> Words:
 
 
 def _radius(answer: dict[str, Any]) -> str:
-    """The ski, its radius and whether the snow holds it, in a line."""
+    """Line with the ski, its radius, and whether the snow holds it."""
     name, radius = answer["ski"]["name"], answer[HEADLINE]
     if radius is None:
         return f"{name}: no carved radius"
@@ -271,8 +274,8 @@ def _in_words(answer: dict[str, Any]) -> str:
     return f"{words}{remedy}.{warned}"
 
 
-def _table(names: list[str]) -> dict[str, list[ui.label]]:
-    """A row for each fact, a column for each ski; gives the labels of the cells."""
+def _add_table(names: list[str]) -> dict[str, list[ui.label]]:
+    """Add a table with a row for each fact and a column for each ski; returns the labels of its cells."""
     cells: dict[str, list[ui.label]] = {}
     with ui.element("table"):
         with ui.element("thead"), ui.element("tr"):

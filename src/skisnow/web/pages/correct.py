@@ -1,21 +1,30 @@
-"""The page on which a kept campaign is corrected."""
+"""Page for corrections of an imported campaign; its files stay unchanged."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 from nicegui import run, ui
 
 from ..._support.errors import ParameterError
+from ...campaign.store.stored_tables import cell_key
 from ..edit_session import CorrectionSession
-from ..elements import link
-from ..entry.imported_test import KeptForm, list_tests
-from ..entry.table_frame import table_links, table_view_of
-from ..layout import framed, sentence
+from ..elements import Words, choice, field, link
+from ..entry.changes import ASKED, LEFT_AS_IT_WAS, UNANSWERED, USUAL_REASON, ask_reason, change_said, changes
+from ..entry.readings import Field, checked_fields, faults
+from ..entry.table_view import table_links, table_view
+from ..language import said
+from ..layout import framed, heading, sentence
 from ..page_addresses import analysis, correcting, export, required_id
+from ..page_requests import asking_button, form
 from ..settings import BUILD_S
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+
+    from ...campaign.store import ReplayedTest
+    from ..edit_session import CorrectionSession
+    from ..entry.table_view import LiveResults, Places, TableView
     from ..settings import Lab
 
 HERE = "/"
@@ -30,7 +39,7 @@ def add_page(lab: Lab) -> None:
     @ui.page("/correct/{id_}", response_timeout=BUILD_S)
     async def correct(id_: str, table: str = "", test: str = "") -> None:
         session = await run.io_bound(CorrectionSession, lab, required_id(id_))
-        if session is None:  # the lab is being closed
+        if session is None:  # the lab is shutting down
             return
         file = table or next(iter(session.tables), "")
         if file not in session.tables:
@@ -38,17 +47,161 @@ def add_page(lab: Lab) -> None:
         with framed(session.stored.name or "Campaign", here=HERE, keeps=True):
             sentence("Imported: its files stay as they came in. What is corrected here stands beside them.", "quiet")
             further = {"Analysis": analysis("kept", session.id), "Export": export("kept", session.id)}
-            table_links({each: correcting(session.id, table=each) for each in session.tables}, file, further)
+            table_links({name: correcting(session.id, table=name) for name in session.tables}, file, further)
             if test in session.tables[file].tests:
-                _test(session, file, test)
+                _show_test(session, file, test)
             else:
                 list_tests(session, file)
 
 
-def _test(session: CorrectionSession, file: str, name: str) -> None:
+def _show_test(session: CorrectionSession, file: str, name: str) -> None:
     with (
-        table_view_of(session, file, form="Cells", below="Changes") as (view, beside, places),
+        table_view(session, file, form="Cells", below="Changes") as (view, live_results, places),
         ui.element("div").classes("acts"),
     ):
         link("Another test", correcting(session.id, table=file))
-    KeptForm(session, view, beside, places).show(name)
+    ImportedTestForm(session, view, live_results, places).show(name)
+
+
+ONCE: Final = ("site", "spot", "tool", "plate", "edge_angle_deg")
+"""Columns with one value for a test, which each row repeats."""
+LEFT_ALONE: Final = ("time", "remark", "snow_type", "status")
+FEW: Final = 40
+
+
+class ImportedTestForm:
+    """Form of one test: fields of the columns with one value, and of each row."""
+
+    def __init__(self, session: CorrectionSession, view: TableView, live_results: LiveResults, places: Places) -> None:
+        self._desk = session
+        self._view = view
+        self._live_results = live_results
+        self._places = places
+        self._table = session.tables[view.file]
+        columns = (column for column in view.form.known if column in self._table.columns)
+        self._columns = [column for column in columns if column not in (view.form.key, *LEFT_ALONE)]
+        self._fields: dict[tuple[int, ...], dict[str, Field]] = {}
+
+    def show(self, name: str) -> None:
+        """Show the current cells of a test."""
+        test, rows = self._view.test(name), self._table.tests[name]
+        cells = test.rows[0].cells
+        cancelled = next(filter(None, (cells.get(cell_key(line, "status"), "") for line in rows)), "")
+        self._places.clear()
+        with self._places.form:
+            heading(f"Test {name}")
+            if test.cancelled or cancelled:
+                sentence(f"Cancelled: {test.cancelled or cancelled}", "bad")
+            with form("", sends=lambda: self._ask_correction(name)):
+                self._draw(tuple(rows), cells)
+            self._ask = ui.element("div")
+            asking_button("Correct", lambda: self._ask_correction(name), "main")
+        with self._places.below:
+            changes(
+                self._view,
+                test,
+                self._ask,
+                lambda: self.show(name),
+                is_unanswered=lambda: self._is_unanswered(name),
+                cancelled=bool(cancelled),
+            )
+        self._live_results.follow(name, cells.get(cell_key(min(rows), "site"), ""))  # a file may lack the column
+
+    def _draw(self, lines: tuple[int, ...], cells: Mapping[str, str]) -> None:
+        once = [column for column in self._columns if column in ONCE and self._is_once(lines, column, cells)]
+        self._fields = {lines: {}}
+        with ui.element("div").classes("fields"):
+            for column in once:
+                self._fields[lines][column] = self._field(column, cells[cell_key(lines[0], column)])
+        for line in lines:
+            own = self._fields.setdefault((line,), {})
+            with ui.element("div").classes("fields row"):
+                for column in self._columns:
+                    if column not in once:
+                        row = line if len(lines) > 1 else None
+                        own[column] = self._field(column, cells[cell_key(line, column)], row=row)
+
+    def _is_once(self, lines: Iterable[int], column: str, cells: Mapping[str, str]) -> bool:
+        return len({cells[cell_key(line, column)] for line in lines}) == 1
+
+    def _field(self, column: str, text: str, *, row: int | None = None) -> Field:
+        words = self._view.label(column) + (f", row {row}" if row is not None else "")
+        described = self._desk.described
+        if column in ("tool", "plate"):
+            names = sorted({text, *(described.tools if column == "tool" else described.plates)})
+            return choice(words, names, text)
+        numeric = any(rule.name == column for rule in self._view.form.numbers)
+        return field(words, text, numeric=numeric, optional=not text)
+
+    def _is_unanswered(self, name: str) -> bool:
+        """True if a cell is changed and not confirmed, or rejected; the question is asked again."""
+        changed = self._changed(self._view.test(name).rows[0].cells)
+        if changed and self._ask_correction(name):
+            self._view.say(UNANSWERED, "bad")
+        return changed is None or bool(changed)
+
+    def _ask_correction(self, name: str) -> bool:
+        test = self._view.test(name)
+        stored = test.rows[0].cells
+        changed = self._changed(stored)
+        if changed is None:
+            return False
+        if not changed:
+            self._view.say("Nothing is different.")
+            return True
+
+        def correct(why: str) -> bool:
+            if not self._view.correct(test, test.rows[0].entered.sequence, changed, why):
+                return False
+            self.show(name)
+            return True
+
+        columns = {key: said(self._view.label(key.split("/", 1)[1])) for key in changed}
+        lines = list(dict.fromkeys(change_said(columns[key], stored[key], new) for key, new in changed.items()))
+        act = ("Correct it", correct)
+        ask_reason(self._ask, lines, act, usual=USUAL_REASON, leave=lambda: self._leave(name))
+        self._view.say(ASKED, "")
+        return True
+
+    def _leave(self, name: str) -> None:
+        self._view.say(LEFT_AS_IT_WAS)
+        self.show(name)
+
+    def _changed(self, stored: Mapping[str, str]) -> dict[str, str] | None:
+        """Changed cells by key; None if one is rejected."""
+        changed: dict[str, str] = {}
+        refused: list[str] = []
+        for lines, fields in self._fields.items():
+            typed = {
+                column: field_
+                for column, field_ in fields.items()
+                if str(field_.value or "").strip() != stored[cell_key(lines[0], column)]
+            }
+            cells = checked_fields(self._view.form, typed, conversions=self._table.conversions)
+            refused += faults(typed.values())
+            changed |= {cell_key(line, column): text for column, text in (cells or {}).items() for line in lines}
+        if refused:
+            self._view.say("Not corrected:", "bad", refused)
+            return None
+        return changed
+
+
+def list_tests(session: CorrectionSession, file: str) -> None:
+    """List links to the tests of a table by site; changed ones are marked."""
+    sites: dict[str, list[str]] = {}
+    for name, rows in session.tables[file].tests.items():
+        sites.setdefault(next(iter(rows.values())).get("site", ""), []).append(name)
+    heading("Tests")
+    for site, names in sites.items():
+        with ui.element("details").props("open" if len(sites) == 1 and len(names) <= FEW else ""):
+            with ui.element("summary"):
+                Words(f"{site or 'No site'}: {len(names)}")
+            with ui.element("div").classes("acts so-far"):
+                for name in names:
+                    link(_link_text(session.test(file, name)), correcting(session.id, table=file, test=name), "small")
+
+
+def _link_text(test: ReplayedTest) -> str:
+    if test.cancelled:
+        return f"{test.name} (cancelled)"
+    return f"{test.name} (corrected)" if test.rows[0].corrections else test.name

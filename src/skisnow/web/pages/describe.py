@@ -1,4 +1,4 @@
-"""A new campaign, or the description of one that is being entered: name, people, gauge, discs, tools, plates."""
+"""Page for the description of a new or entered campaign: name, people, gauges, discs, tools, plates."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ from ..edit_session import EditSession
 from ..elements import StatusLine, choice, field
 from ..language import said
 from ..layout import framed, heading, sentence
-from ..number_input import typed_number
 from ..page_addresses import entering, required_id
-from ..page_requests import asked, asking_button, form, go_on, row_button
+from ..page_requests import asking_button, current_request, form, go_on, row_button
+from ..words import typed_number
 
 if TYPE_CHECKING:
     from nicegui.events import GenericEventArguments
@@ -38,7 +38,7 @@ LENGTHS: Final = {"length_mm": "Length (mm)", "width_mm": "Width (mm)", "diamete
 LENGTHS_OF_SHAPES: Final = LENGTHS | {"radius_mm": "Radius (mm)"}
 _SHAPE: Final = "Shape of tool {}"
 MOST_ROWS: Final = 200
-"""That come back when a page is loaded anew."""
+"""Maximum number of rows that are restored when a page is loaded again."""
 SHAPE_WORDS: Final = {"ski": "piece of ski", "disc": "disc", "cylinder": "cylinder on its side"}
 
 
@@ -55,7 +55,7 @@ def add_page(lab: Lab) -> None:
 
             def done() -> bool:
                 try:
-                    id_ = _stored(lab, session, described.text(), asked().once)
+                    id_ = _store(lab, session, described.text(), current_request().once)
                 except SkisnowError as error:
                     _show_refusal(status, error)
                     return False
@@ -64,20 +64,19 @@ def add_page(lab: Lab) -> None:
 
             with ui.element("div").classes("acts end"):
                 asking_button("Store and enter tests", done, "main")
-            _take_kept(described)
+            _restore_rows_on_reload(described)
 
 
 def _show_refusal(status: StatusLine, error: SkisnowError) -> None:
     if isinstance(error, FieldDataError):
-        errors = [each for each in error.problems if isinstance(each, Problem) and each.severity == "error"]
-        status.say("Not stored:", "bad", [said(str(each)) for each in errors])
+        errors = [problem for problem in error.problems if isinstance(problem, Problem) and problem.severity == "error"]
+        status.say("Not stored:", "bad", [said(str(problem)) for problem in errors])
     else:
         status.say(str(error) if isinstance(error, OvertakenError) else f"Not stored: {error}", "bad")
     status.run_method("scrollIntoView")
 
 
-def _take_kept(described: DescriptionForm) -> None:
-    """Let the form have the rows again that the browser kept when the page was loaded anew."""
+def _restore_rows_on_reload(described: DescriptionForm) -> None:
     client = ui.context.client
 
     def grow(event: GenericEventArguments) -> None:
@@ -87,7 +86,7 @@ def _take_kept(described: DescriptionForm) -> None:
     ui.on("grow", grow)
 
 
-def _stored(lab: Lab, session: EditSession | None, text: str, once: str | None) -> str:
+def _store(lab: Lab, session: EditSession | None, text: str, once: str | None) -> str:
     if session is None:
         return Journals(lab.store).begin(text, once=once)
     _require_used_names(session, toml_values(text))
@@ -98,48 +97,48 @@ def _stored(lab: Lab, session: EditSession | None, text: str, once: str | None) 
 
 
 def _require_used_names(session: EditSession, described: dict[str, Any]) -> None:
-    """Refuse a description without the tools and plates that tests were made with."""
+    """Reject a description without the tools and plates of tests."""
     for kind in ("tool", "plate"):
-        known = {each["name"] for each in described.get(kind, ())}
+        names = {entry["name"] for entry in described.get(kind, ())}
         for test in session.campaign.tests.values():
-            gone = {row.cells[kind] for row in test.rows if kind in row.cells} - known
-            if gone:
+            missing = {row.cells[kind] for row in test.rows if kind in row.cells} - names
+            if missing:
                 raise ParameterError(
-                    f"test {test.name} was made with the {kind} {min(gone)}: leave that name as it is, and give"
+                    f"test {test.name} was made with the {kind} {min(missing)}: leave that name as it is, and give"
                     f" another {kind} an entry of its own"
                 )
 
 
 class DescriptionForm:
-    """The fields of campaign.toml; a key that the form does not know, such as the screening's, is kept."""
+    """Form of campaign.toml; the keys of the screening are kept."""
 
     def __init__(self, described: dict[str, Any] | None) -> None:
-        given = _usual() if described is None else described
-        self._given = given
+        values = _default_description() if described is None else described
+        self._given = values
         with ui.element("div").classes("fields"):
-            self._name = field("Name of the campaign", given.get("name", ""), wide=True)
-            self._place = field("Place", given.get("place", ""), wide=True)
-            self._observers = field("Observers, with commas between", ", ".join(given.get("observers", ())), wide=True)
+            self._name = field("Name of the campaign", values.get("name", ""), wide=True)
+            self._place = field("Place", values.get("place", ""), wide=True)
+            self._observers = field("Observers, with commas between", ", ".join(values.get("observers", ())), wide=True)
         if described is None:
             self._name.run_method("focus")
         heading("Discs and gauges")
         sentence("What is left empty counts as 0, and the report says so.", "quiet")
-        loads = " ".join(f"{load:g}" for load in given.get("load_steps_N", ()))
+        loads = " ".join(f"{load:g}" for load in values.get("load_steps_N", ()))
         with ui.element("div").classes("fields"):
             self._loads = field("Disc loads (N), with blanks between", loads, wide=True)
-            self._numbers = {key: field(words, _shown(given.get(key)), numeric=True) for key, words in NUMBERS.items()}
-        self._tools = _Entries("Tools", "tool", given.get("tool", ()))
-        self._plates = _Entries("Plates of the shear test", "plate", given.get("plate", ()))
+            self._numbers = {key: field(words, _text(values.get(key)), numeric=True) for key, words in NUMBERS.items()}
+        self._tools = EntryRows("Tools", "tool", values.get("tool", ()))
+        self._plates = EntryRows("Plates of the shear test", "plate", values.get("plate", ()))
 
-    def grow(self, kept: Any) -> None:
-        """Have as many rows as the browser kept, with what was chosen in them; anything else counts as not said."""
-        said = kept if isinstance(kept, dict) else {}
-        rows, choices = (each if isinstance(each, dict) else {} for each in (said.get("rows"), said.get("choices")))
+    def grow(self, state: Any) -> None:
+        """Add rows as in the browser's state, with their chosen shapes; unexpected values are ignored."""
+        fields = state if isinstance(state, dict) else {}
+        rows, choices = (part if isinstance(part, dict) else {} for part in (fields.get("rows"), fields.get("choices")))
         for entries in (self._tools, self._plates):
             entries.grow(rows.get(entries.kind), choices)
 
     def text(self) -> str:
-        """The text of campaign.toml; errors as `description_text` raises them."""
+        """Text of campaign.toml; errors as in `description_text`."""
         observers = [name.strip() for name in (self._observers.value or "").split(",") if name.strip()]
         loads = [typed_number("the loads", word) for word in (self._loads.value or "").replace(";", " ").split()]
         values: dict[str, Any] = {"name": (self._name.value or "").strip(), "place": (self._place.value or "").strip()}
@@ -147,26 +146,26 @@ class DescriptionForm:
             raise ParameterError("the campaign has no name")
         values |= {"observers": observers or None, "load_steps_N": loads or None}
         values |= {
-            key: typed_number(NUMBERS[key], each.value or "") for key, each in self._numbers.items() if each.value
+            key: typed_number(NUMBERS[key], number.value or "") for key, number in self._numbers.items() if number.value
         }
         text = description_text(Description(values, self._tools.values(), self._plates.values()))
         return text + _screening(self._given)
 
 
-class _Entries:
-    """Tools or plates: a name and lengths each, as many as are needed."""
+class EntryRows:
+    """Rows of tools or plates with name and lengths."""
 
-    def __init__(self, title: str, kind: str, given: Any) -> None:
+    def __init__(self, title: str, kind: str, entries: Any) -> None:
         self.kind = kind
         self._rows: list[tuple[TypedField, ui.select | None, dict[str, TypedField]]] = []
         heading(title)
         self._place = ui.element("div").props(f"data-rows={kind}")
-        for entry in list(given) or [dict[str, Any]()]:
+        for entry in list(entries) or [dict[str, Any]()]:
             self._add(entry)
-        row_button(f"Another {kind}", self._another)
+        row_button(f"Another {kind}", self._add_focused_row)
 
     def grow(self, count: Any, choices: dict[Any, Any]) -> None:
-        """Have at least so many rows, and the shapes that are chosen by the names of their fields."""
+        """Add rows up to a count, and set shapes by the names of their fields."""
         while isinstance(count, int) and len(self._rows) < min(count, MOST_ROWS):
             self._add({})
         shapes = {said(words): shape for shape, words in SHAPE_WORDS.items()}
@@ -175,21 +174,21 @@ class _Entries:
             if shape is not None and isinstance(word, str) and word in shapes:
                 shape.set_value(shapes[word])
 
-    def _another(self) -> None:
+    def _add_focused_row(self) -> None:
         self._add({})
         name = self._rows[-1][0]
-        name.client.run_javascript(f"getHtmlElement({name.id}).focus()")  # its own focus() waits for a menu to close
+        name.client.run_javascript(f"getHtmlElement({name.id}).focus()")  # focus() waits for a menu to close
 
-    def _add(self, given: dict[str, Any]) -> None:
+    def _add(self, values: dict[str, Any]) -> None:
         number = len(self._rows) + 1
         with self._place, ui.element("div").classes("fields row"):
-            name = field(f"Name of {self.kind} {number}", given.get("name", ""))
+            name = field(f"Name of {self.kind} {number}", values.get("name", ""))
             shape = None
             if self.kind == "tool":
-                shape = choice(_SHAPE.format(number), SHAPE_WORDS, given.get("shape", "ski"))
+                shape = choice(_SHAPE.format(number), SHAPE_WORDS, values.get("shape", "ski"))
             keys = LENGTHS_OF_SHAPES if shape is not None else {"length_mm": LENGTHS["length_mm"]}
             lengths = {
-                key: field(f"{words} of {self.kind} {number}", _shown(given.get(key)), numeric=True)
+                key: field(f"{words} of {self.kind} {number}", _text(values.get(key)), numeric=True)
                 for key, words in keys.items()
             }
         self._rows.append((name, shape, lengths))
@@ -198,11 +197,11 @@ class _Entries:
             _show_lengths(shape, lengths)
 
     def values(self) -> list[dict[str, Any]]:
-        """The entries that have a name; one with lengths alone is refused."""
-        found = []
+        """Entries with a name; lengths without a name are an error."""
+        entries = []
         for number, (name, shape, lengths) in enumerate(self._rows, start=1):
             if not (name.value or "").strip():
-                if any((each.value or "").strip() for each in lengths.values()):
+                if any((length.value or "").strip() for length in lengths.values()):
                     raise ParameterError(f"{self.kind} {number} has lengths and no name; give it one, or empty them")
                 continue
             entry: dict[str, Any] = {"name": name.value.strip()}
@@ -213,17 +212,17 @@ class _Entries:
                 key: typed_number(f"{LENGTHS_OF_SHAPES[key]} of {entry['name']}", lengths[key].value or "")
                 for key in used
             }
-            found.append(entry)
-        return found
+            entries.append(entry)
+        return entries
 
 
 def _show_lengths(shape: ui.select, lengths: dict[str, TypedField]) -> None:
-    for key, each in lengths.items():
-        each.set_visibility(key in SHAPES[shape.value].argument_of_key)
+    for key, length in lengths.items():
+        length.set_visibility(key in SHAPES[shape.value].argument_of_key)
 
 
-def _usual() -> dict[str, Any]:
-    """What stands in the form of a new campaign: discs and tool of the published method."""
+def _default_description() -> dict[str, Any]:
+    """Values of the form of a new campaign: discs and tool of the published method."""
     return {
         "load_steps_N": (12, 92, 172, 252, 332, 412, 492),
         "tool": ({"name": said("ski piece"), "shape": "ski", "length_mm": 200, "width_mm": 62},),
@@ -231,10 +230,10 @@ def _usual() -> dict[str, Any]:
     }
 
 
-def _shown(value: float | None) -> str:
+def _text(value: float | None) -> str:
     return "" if value is None else f"{value:.12g}"
 
 
-def _screening(given: dict[str, Any]) -> str:
-    codes = given.get("screening", {}).get("exclude")
+def _screening(description: dict[str, Any]) -> str:
+    codes = description.get("screening", {}).get("exclude")
     return "" if codes is None else f"\n[screening]\nexclude = {codes!r}\n"

@@ -1,4 +1,4 @@
-"""The page on which tests are entered."""
+"""Page for the entry of tests."""
 
 from __future__ import annotations
 
@@ -9,19 +9,16 @@ from nicegui import ui
 from ..._support.errors import ParameterError
 from ...campaign.store.stored_tables import checked_cell
 from ..edit_session import EditSession
-from ..entry.offline_readings import FILE, take_resent
+from ..entry.readings import FILE, receive_offline_readings
 from ..entry.series import SeriesForm
 from ..entry.single import SingleForm
-from ..entry.table_frame import table_links, table_view_of
-from ..entry.table_view import SeriesList
+from ..entry.table_view import SeriesList, table_links, table_view
 from ..layout import framed
 from ..page_addresses import analysis, entering, required_id
 from ..words import TABLES
 
 if TYPE_CHECKING:
-    from ..entry.changes import Places
-    from ..entry.live_results import Beside
-    from ..entry.table_view import TableView
+    from ..entry.table_view import LiveResults, Places, TableView
     from ..settings import Lab
 
 HERE = "/"
@@ -47,37 +44,37 @@ def add_page(lab: Lab) -> None:
         with framed(session.described.name or "Campaign", here=HERE, ahead=True):
             further = {"Analysis": analysis("entry", id_), "Campaign": f"/describe?entry={id_}"}
             table_links({file: entering(id_, table=file) for file in TABLES}, table, further)
-            with table_view_of(session, table, form="Entry", below="Changes, and what was entered") as (
+            with table_view(session, table, form="Entry", below="Changes, and what was entered") as (
                 view,
-                beside,
+                live_results,
                 places,
             ):
                 series_list = SeriesList(view) if view.file == FILE else None
             head = {"experiment": test, "site": site, "spot": spot, "tool": tool, "edge_angle_deg": edge_angle_deg}
-            _begin(view, (test, row), head, (beside, places), series_list)
+            _show_form(view, (test, row), head, (live_results, places), series_list)
 
 
-def _begin(
+def _show_form(
     view: TableView,
     shown: tuple[str, str],
     head: dict[str, str],
-    where: tuple[Beside, Places],
+    where: tuple[LiveResults, Places],
     series_list: SeriesList | None,
 ) -> None:
-    """Show the form of a test and of its row, or of a new one."""
+    """Show the form of a test and its row, or of a new test."""
     test, row = shown
     if series_list is not None:
         series = SeriesForm(view, *where, series_list)
-        take_resent(view.session, series.follow_resent)
+        receive_offline_readings(view.session, series.show_offline_readings)
         if test and not view.test(test).history and _is_head(view, head):
-            series.show(test, head)  # begun, and loaded anew before its first reading
+            series.show(test, head)  # a new series, loaded again before its first reading
         elif test and view.test(test).rows:
             series.show(test)
         else:
             series.begin()
     else:
         single = SingleForm(view, *where)
-        take_resent(view.session, lambda _: None)
+        receive_offline_readings(view.session, lambda _: None)
         if test:
             single.show(test, row=row)
         else:
@@ -86,7 +83,7 @@ def _begin(
 
 def _is_head(view: TableView, head: dict[str, str]) -> bool:
     try:
-        said = {column: checked_cell(view.form, column, text) for column, text in head.items()}
+        cells = {column: checked_cell(view.form, column, text) for column, text in head.items()}
     except ParameterError:
         return False
-    return said == head and head["tool"] in view.session.described.tools
+    return cells == head and head["tool"] in view.session.described.tools

@@ -1,4 +1,4 @@
-"""Replay: the runs that are kept, each to be watched, alone or with another one laid over it."""
+"""Page with the list of runs and links to their replays, alone or with another run or track."""
 
 from __future__ import annotations
 
@@ -9,11 +9,21 @@ from nicegui import app, ui
 from ..._support.user_files import GivenError, read_record
 from ...report.formatting import counted
 from ..elements import Words, link, named
+from ..lab_tracks import LARGEST_TRACK_BYTES, MOST_POINTS, TrackFolders
 from ..language import said
 from ..layout import framed, heading, sentence
-from ..replay.addresses import GATES, LIST, SHOW, UPLOAD, RunFolders, add_addresses, add_uploads, show_address
-from ..replay.tracks import LARGEST_BYTES, MOST_POINTS, TrackFolders
+from ..replay_addresses import (
+    GATES,
+    LIST,
+    SHOW,
+    TRACK_UPLOAD,
+    RunFolders,
+    add_addresses,
+    add_track_uploads,
+    show_address,
+)
 from ..runs import FinishedRun
+from ..upload_forms import file_input, submit_button, text_input, upload_form
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -26,10 +36,10 @@ NONE: Final = "none"
 
 
 def add_page(lab: Lab) -> None:
-    """Add the page, and the addresses that its pictures are fetched from."""
+    """Add the page and the addresses of the replay."""
     runs, tracks = RunFolders(lab.runs), TrackFolders(lab.runs)
     add_addresses(app, runs)
-    add_uploads(app, tracks)
+    add_track_uploads(app, tracks)
 
     @ui.page(PATH)
     def replay(track: str = "") -> None:
@@ -43,13 +53,13 @@ def add_page(lab: Lab) -> None:
             if not names:
                 sentence("Simulate one, then it can be watched here.")
             if names:
-                _together(names, tracks.names(), track)
-            _upload()
+                _side_by_side_form(names, tracks.names(), track)
+            _track_form()
             for name in names:
-                _run(runs.place(name), name)
+                _add_run(runs.place(name), name)
 
 
-def _run(place: Path, name: str) -> None:
+def _add_run(place: Path, name: str) -> None:
     with ui.element("section").classes("card"):
         heading(name, 2)
         sentence(_in_words(place), "quiet")
@@ -58,7 +68,7 @@ def _run(place: Path, name: str) -> None:
 
 
 def _in_words(place: Path) -> str:
-    """What summary.json says of a run in a line; nothing where there is none."""
+    """Line with the extent and outcome of a run from summary.json."""
     try:
         run = read_record(place / "summary.json", FinishedRun, only_known=False)
         return f"{run.extent}, {run.outcome_in_words}"
@@ -66,8 +76,8 @@ def _in_words(place: Path) -> str:
         return "without a readable summary"
 
 
-def _together(names: list[str], tracks: list[str], track: str) -> None:
-    """A form that puts a run, another one and a track together: plain HTML, so that it works by keyboard everywhere."""
+def _side_by_side_form(names: list[str], tracks: list[str], track: str) -> None:
+    """Form for a run, a second one and a measured track that are shown together."""
     if len(names) == 1 and not tracks:
         return
     heading("Side by side", 2)
@@ -76,10 +86,8 @@ def _together(names: list[str], tracks: list[str], track: str) -> None:
         other = names[1] if len(names) > 1 and not track else NONE
         _select("ghost", "Laid over it, translucent", [NONE, *names], other)
         _select("track", "Measured track beside it", [NONE, *tracks], track or NONE)
-        with ui.element("button").props("type=submit").classes("act main"):
-            Words("Watch together")
-        with ui.element("button").props(f'type=submit formaction="{GATES}"').classes("act"):
-            Words("Compare times at gates")
+        submit_button("Watch together", kind="main")
+        submit_button("Compare times at gates", address=GATES)
 
 
 def _select(key: str, text: str, names: list[str], chosen: str) -> None:
@@ -88,37 +96,30 @@ def _select(key: str, text: str, names: list[str], chosen: str) -> None:
     with ui.element("select").props(f"id=replay-{key} name={key}").classes("act"):
         for name in names:
             shown = _quoted(said(NONE) if name == NONE else name)
-            told = f'value="{_quoted("" if name == NONE else name)}" label="{shown}"'
-            ui.element("option").props(told + (" selected" if name == chosen else ""))
+            properties = f'value="{_quoted("" if name == NONE else name)}" label="{shown}"'
+            ui.element("option").props(properties + (" selected" if name == chosen else ""))
 
 
-def _upload() -> None:
-    """A form that takes a measured track in."""
+def _track_form() -> None:
+    """Form for a measured track."""
     with ui.element("details"):
         with ui.element("summary"):
             Words("Add a measured track")
         sentence(
-            f"CSV, GPX, FIT, NMEA, UBX or RTKLIB, up to {LARGEST_BYTES // 1_000_000} MB and {MOST_POINTS} points. A "
-            "track in latitude and longitude needs the compass direction in which the slope falls; it begins where the "
-            "run begins. One in the run's own axes (x down the fall line, y left, z out of the snow, in m) needs none, "
-            "and stands where it says. Nothing is fitted.",
+            f"CSV, GPX, FIT, NMEA, UBX or RTKLIB, up to {LARGEST_TRACK_BYTES // 1_000_000} MB and {MOST_POINTS} "
+            "points. A track in latitude and longitude needs the compass direction in which the slope falls; it begins "
+            "where the run begins. One in the run's own axes (x down the fall line, y left, z out of the snow, in m) "
+            "needs none, and stands where it says. Nothing is fitted.",
             "quiet",
         )
-        form = f'method=post action="{UPLOAD}" enctype="multipart/form-data"'
-        with ui.element("form").props(form).classes("acts"):
-            _input("file", "Track", "type=file required")
-            _input("azimuth", "Direction of the fall line (°), clockwise from north", "inputmode=decimal")
-            _input("start", "Time of the run at its first point (s)", "inputmode=decimal value=0")
-            with ui.element("button").props("type=submit").classes("act"):
-                Words("Add the track")
-
-
-def _input(key: str, text: str, further: str) -> None:
-    with ui.element("label").props(f"for=track-{key}"):
-        Words(text)
-    ui.element("input").props(f"id=track-{key} name={key} {further}").classes("" if "file" in further else "act plain")
+        with upload_form(TRACK_UPLOAD).classes("acts"):
+            azimuth = "Direction of the fall line (°), clockwise from north"
+            file_input("file", "Track", "track-file")
+            text_input("azimuth", azimuth, "track-azimuth", "inputmode=decimal")
+            text_input("start", "Time of the run at its first point (s)", "track-start", "inputmode=decimal value=0")
+            submit_button("Add the track")
 
 
 def _quoted(name: str) -> str:
-    """A name inside the quotes of a property."""
+    """A name with escaped quotes for a property."""
     return name.replace("\\", "\\\\").replace('"', '\\"')

@@ -1,28 +1,31 @@
-"""Simulations: a form made from the table of inputs, a snow, a ski, the queue with progress, the history."""
+"""Page for simulations: form of a scenario with snow, ski and course, queue and history."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, Final
+from urllib.parse import quote
 
 from nicegui import app, background_tasks, run, ui
 
 from ..._support.errors import ParameterError, SkisnowError
 from ...replay.run_file import RUN_FILE
 from ..elements import Words, button, choice, link, named
-from ..error_pages import error_sentence
 from ..job_list import JobList
-from ..lab_courses import UPLOAD, LabCourses, add_course_uploads
 from ..lab_skis import LabSkis
+from ..lab_tracks import LabCourses
 from ..language import language_of
-from ..layout import framed, heading, sentence
+from ..layout import error_sentence, framed, heading, sentence
 from ..page_requests import redrawn_by
-from ..replay.addresses import show_address
+from ..replay_addresses import show_address
 from ..runs import Job, Runs, duration_words, estimated_s
 from ..scenario_fields import ScenarioField, called, in_labels
 from ..snow_choice import SnowChoice, require_scenario, results_with, snow_words
+from ..upload_forms import add_upload, file_input, submit_button, upload_form, uploaded_files
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
+
+    from starlette.datastructures import FormData
 
     from ..job_list import Act
     from ..settings import Lab
@@ -30,17 +33,18 @@ if TYPE_CHECKING:
 
 PATH: Final = "/simulate"
 TITLE: Final = "Simulate"
+COURSE_UPLOAD: Final = f"{PATH}/course"
 GIVEN: Final = "as in the scenario"
 NUMBERS: Final = "the numbers below"
 GIVEN_BY_NAME: Final = ("ski.file", "course.file", "course.name", "snow.results", "snow.site", "snow.published")
 _FOR_COURSE: Final = "slalom-20-gates"
-"""The scenario that a course which was just uploaded is for, until another one is chosen."""
+"""First scenario after the upload of a course."""
 SNOW_FILE: Final = "snow.json"
 OF_SNOW: Final = ("snow.H_V_N_per_mm3", "snow.S_f_N_per_mm2")
 CHOSEN_ABOVE: Final = ("snow.results", "snow.site", "snow.published", "ski.name", "ski.file", "course.name")
-"""Keys that the menus of snow, ski and course give."""
+"""Keys that are set by the menus of snow, ski and course."""
 WITH_FILES: Final = ("slope.kind", "slope.profile_gap", "slope.smooth_m", "slope.origin_x_m", "slope.origin_y_m")
-"""Keys that go with files of the machine that the lab runs on: those are for the command line."""
+"""Keys that need files on the server; they are only available on the command line."""
 BASIC: Final = (
     *OF_SNOW,
     "snow.unloading_ratio",
@@ -54,9 +58,9 @@ BASIC: Final = (
     "run.duration_s",
     "run.length_m",
 )
-"""What a first run is asked about; all else has a value that most runs keep."""
+"""Keys of the basic form; the values of the others fit most runs."""
 BASIC_OF_SKIER: Final = ("skier.steers", "skier.turn_time_s", "skier.turns", "skier.pole_clearance_m")
-"""The same of a scenario with a skier."""
+"""Further keys of the basic form of a scenario with a skier."""
 SECTION_WORDS: Final = {
     "slope": "Slope",
     "snow": "Snow",
@@ -74,22 +78,22 @@ SECTION_WORDS: Final = {
 
 
 def add_page(lab: Lab) -> None:
-    """Add the page to the application, and begin to work through the queue with it."""
+    """Add the page to the application and start the queue."""
     runs = Runs(lab.runs)
     app.on_startup(lambda: background_tasks.create(runs.work(), name="runs"))
     app.on_shutdown(runs.end)
-    add_course_uploads(app, LabCourses(lab.runs))
+    add_upload(app, COURSE_UPLOAD, lambda form: _keep_course(LabCourses(lab.runs), form), max_fields=2)
 
     @ui.page(PATH)
     def simulate(course: str = "") -> None:
         with framed("Simulate", here=PATH):
             _Form(lab, runs, course)
-            _upload()
+            _course_form()
             JobList(runs, _Card, "Nothing was simulated yet.")
 
 
 class _Form:
-    """The inputs of a scenario; what differs from the scenario's own value is handed on."""
+    """Form of a scenario; values that differ from it become changes."""
 
     def __init__(self, lab: Lab, runs: Runs, course: str) -> None:
         from ...scenario import scenario_names
@@ -103,7 +107,7 @@ class _Form:
             self._scenario = choice("Scenario", names, _FOR_COURSE if is_known else names[0])
             self._course = choice("Course", [GIVEN, *self._courses.names()], course if is_known else GIVEN)
             self._ski = choice("Ski", [GIVEN, *self._skis.names()], GIVEN)
-            self._snow = SnowChoice(lab, NUMBERS, self._other_snow)
+            self._snow = SnowChoice(lab, NUMBERS, self._update_snow)
         self._scenario.on_value_change(self._draw)
         with redrawn_by(self._scenario):
             self._basic = ui.element("div").classes("inputs")
@@ -120,21 +124,21 @@ class _Form:
         from ...scenario.keys import SCENARIO_KEYS, SECTIONS
 
         values = scenario_file(str(self._scenario.value)).values
-        kept = self._typed()
+        typed = self._typed()
         self._fields = {}
         self._basic.clear()
         self._expert.clear()
 
         def add(name: str) -> None:
-            made = self._fields[name] = ScenarioField(SCENARIO_KEYS[name], values.get(name), kept.get(name))
-            made.element.on_value_change(self._tell_estimate)
+            made = self._fields[name] = ScenarioField(SCENARIO_KEYS[name], values.get(name), typed.get(name))
+            made.element.on_value_change(self._show_estimate)
 
         with self._basic:
             for name in basic(values):
                 add(name)
         with (
             self._expert,
-            ui.element("details").classes("expert").props("open" if kept.keys() - set(basic(values)) else ""),
+            ui.element("details").classes("expert").props("open" if typed.keys() - set(basic(values)) else ""),
         ):
             with ui.element("summary"):
                 Words("Expert inputs")
@@ -146,27 +150,27 @@ class _Form:
                         for name in names:
                             add(name)
         self._show_numbers()
-        self._tell_estimate()
+        self._show_estimate()
 
     def _typed(self) -> dict[str, str]:
-        """What stands in place of the scenario's own values."""
-        return {name: each.text for name, each in self._fields.items() if each.is_changed and each.place.visible}
+        """Visible values that differ from the scenario, by key."""
+        return {name: field.text for name, field in self._fields.items() if field.is_changed and field.place.visible}
 
     def _changed(self) -> dict[str, str]:
-        """What is typed; one number of the snow goes with the other one that stands beside it."""
+        """Changes of the scenario; if one number of the snow is changed, both are included."""
         typed = self._typed()
         if self._snow.is_numbers and not typed.keys().isdisjoint(OF_SNOW):
             typed = {name: self._fields[name].text for name in OF_SNOW if self._fields[name].text} | typed
         return typed
 
-    async def _other_snow(self) -> None:
+    async def _update_snow(self) -> None:
         self._show_numbers()
 
     def _show_numbers(self) -> None:
-        for name, given in zip(OF_SNOW, (self._snow.gives_hardness, self._snow.gives_stress), strict=True):
-            self._fields[name].place.set_visibility(not given)
+        for name, is_given in zip(OF_SNOW, (self._snow.gives_hardness, self._snow.gives_stress), strict=True):
+            self._fields[name].place.set_visibility(not is_given)
 
-    def _tell_estimate(self) -> None:
+    def _show_estimate(self) -> None:
         from ...scenario import scenario_file
 
         values: dict[str, Any] = dict(scenario_file(str(self._scenario.value)).values)
@@ -180,9 +184,9 @@ class _Form:
         self._estimate.set_text("" if seconds is None else f"Will take about {duration_words(seconds)}.")
 
     async def ask(self) -> None:
-        """Put the simulation into the queue, when its values can be read."""
+        """Add the simulation to the queue if its values are valid."""
         try:
-            job = await self._asked(str(self._scenario.value), self._changed())
+            job = await self._add_job(str(self._scenario.value), self._changed())
         except SkisnowError as error:
             self._refuse(error)
             return
@@ -190,44 +194,44 @@ class _Form:
         self._status.classes(remove="bad")
 
     def _refuse(self, error: SkisnowError) -> None:
-        """Say what is wrong at the button and at the field that has it, and put the focus there."""
+        """Show an error at the button and at its field, and put the focus on the field."""
         wrong = error_sentence(error)
-        faulty = next((each for name, each in self._fields.items() if name in wrong), None)
-        told = in_labels(wrong, *(each.key for each in self._fields.values()))
+        faulty = next((field for name, field in self._fields.items() if name in wrong), None)
+        words = in_labels(wrong, *(field.key for field in self._fields.values()))
         if faulty is not None:
-            faulty.refuse(told)
+            faulty.refuse(words)
             faulty.focus()
-        self._status.set_text(f"Not begun: {told}")
+        self._status.set_text(f"Not begun: {words}")
         self._status.classes(add="bad")
 
-    async def _asked(self, scenario: str, changes: dict[str, str]) -> Job:
-        for each in self._fields.values():
-            each.refuse("")
+    async def _add_job(self, scenario: str, changes: dict[str, str]) -> Job:
+        for field in self._fields.values():
+            field.refuse("")
         for name in changes:
             self._fields[name].check()
-        ski, snow, given = str(self._ski.value), self._snow.chosen(), list[str]()
+        ski, snow, chosen = str(self._ski.value), self._snow.chosen(), list[str]()
         if ski != GIVEN:
             word = self._skis.word(ski)
             changes["ski.name" if word == ski else "ski.file"] = word
-            given.append(f"ski: {ski}")
+            chosen.append(f"ski: {ski}")
         if self._course.value != GIVEN:
-            given.append(self._give_course(str(self._course.value), changes))
+            chosen.append(self._give_course(str(self._course.value), changes))
         files: dict[str, tuple[str, bytes]] = {}
         if snow is not None and snow.analysis is not None:
             results, words = await self._results(snow, scenario, changes)
             files = {"snow.results": (SNOW_FILE, results)}
-            given.append(f"snow: {snow.words}, {words}")
+            chosen.append(f"snow: {snow.words}, {words}")
         else:
             if snow is not None:
                 changes["snow.published"] = snow.published
-                given.append(f"snow: {snow.words}, {snow_words(snow.snow)}")
+                chosen.append(f"snow: {snow.words}, {snow_words(snow.snow)}")
             await run.io_bound(require_scenario, scenario, changes)
         return self._runs.ask(
-            scenario, changes, files=files, given="; ".join(given), language=language_of(self._ski.client)
+            scenario, changes, files=files, given="; ".join(chosen), language=language_of(self._ski.client)
         )
 
     def _give_course(self, course: str, changes: dict[str, str]) -> str:
-        """Let the changes name a course; a skier goes through it unless something else was chosen. It in words."""
+        """Add a course to the changes, and let a skier steer by its gates by default; returns it in words."""
         key, word = self._courses.change(course)
         changes[key] = word
         if "skier.steers" in self._fields:
@@ -235,27 +239,27 @@ class _Form:
         return f"course: {course}"
 
     async def _results(self, snow: ChosenSnow, scenario: str, changes: dict[str, str]) -> tuple[bytes, str]:
-        """Let the changes name site and stress of a campaign's snow; the file of its results, and it in words."""
+        """Add the snow of a campaign to the changes; returns the file of its results, and the snow in words."""
         if snow.site:
             changes["snow.site"] = snow.site
         if not self._snow.gives_stress:
             changes[OF_SNOW[1]] = self._fields[OF_SNOW[1]].text
         assert snow.analysis is not None
-        found = await run.io_bound(results_with, snow.analysis, scenario, changes)
-        if found is None:
+        results = await run.io_bound(results_with, snow.analysis, scenario, changes)
+        if results is None:
             raise ParameterError("the lab is about to end")
-        return found
+        return results
 
 
 def basic(values: Mapping[str, Any]) -> list[str]:
-    """Keys that a first run of a scenario with these values is asked about: a skier sets the edge angle itself."""
+    """Keys of the basic form of a scenario; without the edge angle for a skier, who sets it."""
     if not _has_skier(values):
         return list(BASIC)
     return [*BASIC_OF_SKIER, *(name for name in BASIC if name != "sledge.edge_angle_deg")]
 
 
 def expert(values: Mapping[str, Any]) -> list[str]:
-    """All other keys that the form has for such a scenario."""
+    """Keys of the expert form of a scenario."""
     from ...scenario.keys import PATH_KEYS, SCENARIO_KEYS
 
     elsewhere = {*basic(values), *CHOSEN_ABOVE, *WITH_FILES, *PATH_KEYS}
@@ -267,8 +271,14 @@ def _has_skier(values: Mapping[str, Any]) -> bool:
     return values.get("skier.steers") is not None
 
 
-def _upload() -> None:
-    """A form that takes a course in: plain HTML, so that it works by keyboard everywhere."""
+def _keep_course(courses: LabCourses, form: FormData) -> str:
+    """Store an uploaded course; returns the address of the page with this course."""
+    upload = uploaded_files(form, "file", "no file was chosen; choose the file of a course")[0]
+    return f"{PATH}?course={quote(courses.keep((upload.filename or '')[:200], upload.file), safe='')}"
+
+
+def _course_form() -> None:
+    """Form for a course."""
     with ui.element("details"):
         with ui.element("summary"):
             Words("Add a course")
@@ -278,35 +288,32 @@ def _upload() -> None:
             "Expert inputs. What was typed above is lost.",
             "quiet",
         )
-        with ui.element("form").props(f'method=post action="{UPLOAD}" enctype="multipart/form-data"').classes("acts"):
-            with ui.element("label").props("for=course-file"):
-                Words("Course")
-            ui.element("input").props("id=course-file name=file type=file required accept=.csv,.gpx")
-            with ui.element("button").props("type=submit").classes("act"):
-                Words("Add the course")
+        with upload_form(COURSE_UPLOAD).classes("acts"):
+            file_input("file", "Course", "course-file", "accept=.csv,.gpx")
+            submit_button("Add the course")
 
 
-def _in_labels(changes: dict[str, str]) -> str:
+def _changes_in_words(changes: dict[str, str]) -> str:
     from ...scenario.keys import SCENARIO_KEYS
 
     return ", ".join(f"{called(SCENARIO_KEYS[key])}: {value}" for key, value in changes.items())
 
 
 class _Card:
-    """One run of the list, and what can be done with it."""
+    """Card of a run with its buttons."""
 
     def __init__(self, runs: Runs, job: Job, act: Act) -> None:
         self._runs = runs
         with ui.element("section").classes("card") as self.place:
             heading(job.name, 3)
             self._words = sentence("", "quiet").props("aria-live=polite")
-            self._progress = sentence("", "quiet progress")  # a number that rises each second is not read aloud
+            self._progress = sentence("", "quiet progress")  # not announced, as it changes each second
             with ui.element("div").classes("acts"):
                 self._cancel = named(button("Cancel", lambda: act(runs.cancel, job.name)), f"Cancel {job.name}")
                 self._watch = named(link("Watch", show_address(job.name), "main"), f"Watch {job.name}")
 
     def show(self, job: Job) -> None:
-        changed = _in_labels({key: value for key, value in job.changes.items() if key not in GIVEN_BY_NAME})
+        changed = _changes_in_words({key: value for key, value in job.changes.items() if key not in GIVEN_BY_NAME})
         self._words.set_text(" · ".join(filter(None, (job.scenario, changed, job.given, job.state, job.said))))
         self._progress.set_text(self._runs.progress if job.state == "running" else "")
         self._progress.set_visibility(bool(self._progress.text))

@@ -1,4 +1,4 @@
-"""Skis: the catalogue and those of the lab, two compared, and an editor with the drawing beside it."""
+"""Page of the skis: comparison of two skis, and an editor with a drawing."""
 
 from __future__ import annotations
 
@@ -9,17 +9,16 @@ from nicegui import run, ui
 
 from ..._support.errors import SkisnowError
 from ...report.charts import SkiDrawing, ski_drawing
-from ..elements import Words, button, choice, field, link, named, said_options
-from ..error_pages import error_sentence
+from ..elements import Words, button, choice, field, link, named, option_texts
 from ..lab_skis import EDITED, FILE, NOTHING, TABLE, LabSkis, check_ski_texts, texts_of_ski
 from ..language import said
-from ..layout import framed, heading, sentence
+from ..layout import error_sentence, framed, heading, sentence
 from ..line_chart import STYLES, ChartLine, LineChart
 from ..page_addresses import carving
 from ..settings import BUILD_S
-from ..ski_editor import SkiAsked, SkiEditor, SkiFound, ski_found
-from ..ski_uploads import SkiAdding
-from ..subprocesses import OF_A_SKI, confined
+from ..ski_editor import EditedSki, SkiEditInput, SkiEditor, edit_ski_texts
+from ..ski_uploads import SkiImportForms
+from ..subprocesses import SKI_BOUNDS, confined
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -47,23 +46,23 @@ def add_page(lab: Lab) -> None:
         with framed("Skis", here=PATH):
             page = _Skis(skis, ski)
         if added and ski in skis.saved():
-            page.tell_added(ski)
+            page.show_added(ski)
         await page.draw()
 
 
-def _checked_apart(text: str, table: str) -> None:
-    confined(OF_A_SKI, check_ski_texts, text, table)
+def _check_confined(text: str, table: str) -> None:
+    confined(SKI_BOUNDS, check_ski_texts, text, table)
 
 
 class _Skis:
-    """Two skis over each other; the second one may be the edited one, or none."""
+    """Comparison of a ski with another one, with the edited ski, or with nothing."""
 
     def __init__(self, skis: LabSkis, ski: str = "") -> None:
         self._skis = skis
         self._asked = 0
         names = skis.names()
         chosen = ski if ski in names else names[0]
-        SkiAdding(skis, lambda name: ui.navigate.to(f"{PATH}?ski={quote(name, safe='')}&added=1"))
+        SkiImportForms(skis, lambda name: ui.navigate.to(f"{PATH}?ski={quote(name, safe='')}&added=1"))
         self._told = ui.element("div")
         with ui.element("div").classes("fields"):
             self._first = choice("Ski", names, chosen)
@@ -79,11 +78,11 @@ class _Skis:
             with named(ui.element("section"), "Editor"):
                 self._editor = SkiEditor(skis, chosen, self._follow)
                 self._checked = skis.texts(chosen)
-                self._saving()
+                self._add_saving()
         self._first.on_value_change(self.draw)
         self._second.on_value_change(self.draw)
 
-    def _saving(self) -> None:
+    def _add_saving(self) -> None:
         with ui.element("div").classes("acts"):
             button("Begin again from the ski above", self._begin)
         heading("Save it", 3)
@@ -99,41 +98,41 @@ class _Skis:
         await self._editor.begin(str(self._first.value))
 
     async def _follow(self) -> None:
-        """The editor's fields changed: show what they say."""
+        """Show the edited ski after a change of the editor's fields."""
         if self._second.value == EDITED:
             await self.draw()
         else:
             self._second.set_value(EDITED)  # which draws
 
     async def draw(self) -> None:
-        """Draw what is chosen; what is wrong with an edited ski is said. An older question's answer is dropped."""
+        """Draw the chosen skis, or show an error of the edited ski; results of older requests are dropped."""
         self._asked += 1
-        number, asked = self._asked, self._editor.asked()
-        words = [str(each) for each in (self._first.value, self._second.value) if each != NOTHING]
+        number, edit = self._asked, self._editor.edit()
+        words = [str(item) for item in (self._first.value, self._second.value) if item != NOTHING]
         try:
-            await self._check(asked)
-            found = await run.io_bound(self._found, words, asked)
+            await self._check(edit)
+            loaded = await run.io_bound(self._load, words, edit)
         except SkisnowError as error:
             if number == self._asked:
-                _show(self._status, error_sentence(error), bad=True)
+                _show_status(self._status, error_sentence(error), bad=True)
             return
-        if found is None or number != self._asked:  # the server ends, or something else is wanted by now
+        if loaded is None or number != self._asked:  # the server ends, or a newer request exists
             return
-        skis, edited = found
-        _show(self._status, " ".join(each.warned for each in skis if each.warned), bad=False)
+        skis, edited = loaded
+        _show_status(self._status, " ".join(item.warned for item in skis if item.warned), bad=False)
         self._editor.show(edited.station, edited.cells)
-        self._show([ski_drawing(each.ski) for each in skis])
+        self._show([ski_drawing(item.ski) for item in skis])
 
-    async def _check(self, asked: SkiAsked) -> None:
-        """Read a text that was not read before where it can do no harm."""
-        texts = (asked.text, asked.table)
+    async def _check(self, edit: SkiEditInput) -> None:
+        """Check a new text of a ski in a separate process with limits."""
+        texts = (edit.text, edit.table)
         if texts != self._checked:
-            await run.io_bound(_checked_apart, *texts)
+            await run.io_bound(_check_confined, *texts)
             self._checked = texts
 
-    def _found(self, words: list[str], asked: SkiAsked) -> tuple[list[SkiFound], SkiFound]:
-        edited = ski_found(asked)
-        others = (edited if word == EDITED else ski_found(SkiAsked(*self._skis.texts(word))) for word in words)
+    def _load(self, words: list[str], edit: SkiEditInput) -> tuple[list[EditedSki], EditedSki]:
+        edited = edit_ski_texts(edit)
+        others = (edited if word == EDITED else edit_ski_texts(SkiEditInput(*self._skis.texts(word))) for word in words)
         return list(others), edited
 
     def _show(self, drawn: list[SkiDrawing]) -> None:
@@ -144,83 +143,83 @@ class _Skis:
             chart.show(list(_lines(key, drawn)), from_zero="y" if key in STIFFNESSES else "")
 
     async def _save(self) -> None:
-        name, asked = " ".join(str(self._name.value or "").split()), self._editor.asked()
+        name, edit = " ".join(str(self._name.value or "").split()), self._editor.edit()
         try:
             self._editor.require_drawn()
-            await run.io_bound(self._keep, name, asked)
+            await run.io_bound(self._save_edited, name, edit)
         except SkisnowError as error:
-            _show(self._saved, f"Not saved: {error_sentence(error)}", bad=True)
+            _show_status(self._saved, f"Not saved: {error_sentence(error)}", bad=True)
             return
         names = self._skis.names()
         self._first.set_options(names)
-        self._second.set_options(said_options([NOTHING, EDITED, *names]))
+        self._second.set_options(option_texts([NOTHING, EDITED, *names]))
         self._second.set_value(name)  # which draws it
-        _show(self._saved, f"Saved: {name}. Carve and Simulate have it too.", bad=False)
+        _show_status(self._saved, f"Saved: {name}. Carve and Simulate have it too.", bad=False)
         first = str(self._first.value)
         self._next.clear()
         with self._next:
             link("Carve both side by side", carving(first, name), "main")
 
-    def tell_added(self, name: str) -> None:
-        """Say that a measured ski was taken in, and what can be done with it."""
+    def show_added(self, name: str) -> None:
+        """Show that a measured ski was added."""
         with self._told:
             sentence(
                 f"The ski {name} is added. Carve and Simulate have it too; below it can be changed.", "good"
             ).props("role=status")
 
-    def _keep(self, name: str, asked: SkiAsked) -> None:
+    def _save_edited(self, name: str, edit: SkiEditInput) -> None:
         self._skis.require_new(name)
-        found = ski_found(asked, name=name)
-        if asked.is_file:
-            self._skis.save_texts(name, asked.text, asked.table)
+        edited = edit_ski_texts(edit, name=name)
+        if edit.is_file:
+            self._skis.save_texts(name, edit.text, edit.table)
         else:
-            self._skis.save_ski(name, found.ski)
+            self._skis.save_ski(name, edited.ski)
 
     async def _download(self) -> None:
         try:
             self._editor.require_drawn()
-            files = await run.io_bound(_files, self._editor.asked())
+            files = await run.io_bound(_files, self._editor.edit())
         except SkisnowError as error:
-            _show(self._saved, error_sentence(error), bad=True)
+            _show_status(self._saved, error_sentence(error), bad=True)
             return
         for name, text in (files or {}).items():
             ui.download(text.encode(), name)
 
 
-def _show(label: ui.label, text: str, *, bad: bool) -> None:
+def _show_status(label: ui.label, text: str, *, bad: bool) -> None:
     label.set_text(text)
     label.classes(add="bad" if bad else "good", remove="good" if bad else "bad")
 
 
-def _files(asked: SkiAsked) -> dict[str, str]:
-    """The file of the edited ski, and its table where it has one."""
-    found = ski_found(asked)
-    text, table = (asked.text, asked.table) if asked.is_file else texts_of_ski(found.ski)
+def _files(edit: SkiEditInput) -> dict[str, str]:
+    """Texts of the edited ski's file and table by file name."""
+    edited = edit_ski_texts(edit)
+    text, table = (edit.text, edit.table) if edit.is_file else texts_of_ski(edited.ski)
     return {FILE: text, **({TABLE: table} if table else {})}
 
 
 def _lines(key: str, drawn: list[SkiDrawing]) -> Iterator[ChartLine]:
-    for number, each in enumerate(drawn):
-        values = getattr(each, key)
-        yield ChartLine(each.station_m, values, number, name=each.name)
+    for number, ski in enumerate(drawn):
+        values = getattr(ski, key)
+        yield ChartLine(ski.station_m, values, number, name=ski.name)
         if key == "half_width_mm":
-            yield ChartLine(each.station_m, [-value for value in values], number)
+            yield ChartLine(ski.station_m, [-value for value in values], number)
 
 
 def _table(drawn: list[SkiDrawing]) -> None:
     with ui.element("table"):
         with ui.element("thead"), ui.element("tr"):
             ui.element("td")
-            for number, each in enumerate(drawn):
+            for number, ski in enumerate(drawn):
                 with ui.element("th").props("scope=col").style(f"color: {STYLES[number]['colour']}"):
-                    Words(each.name)
+                    Words(ski.name)
         with ui.element("tbody"):
             for key in drawn[0].facts:
                 with ui.element("tr"):
                     with ui.element("th").props("scope=row"):
                         Words(key)
-                    for number, each in enumerate(drawn):
+                    for number, ski in enumerate(drawn):
                         with ui.element("td").style(f"color: {STYLES[number]['colour']}"):
-                            Words(each.facts[key])
-    for each in drawn:
-        sentence(f"{each.name}: {said(each.source)}", "quiet")
+                            Words(ski.facts[key])
+    for ski in drawn:
+        sentence(f"{ski.name}: {said(ski.source)}", "quiet")

@@ -1,4 +1,4 @@
-"""Studies: a carved turn or a scenario over ranges of one or two inputs; the queue, and what was computed."""
+"""Page for studies of carved turns or scenarios over ranges of one or two inputs; queue and history."""
 
 from __future__ import annotations
 
@@ -9,19 +9,18 @@ from nicegui import app, background_tasks, run, ui
 from ..._support.errors import ParameterError, SkisnowError
 from ...estimation.results import results_json
 from ...report.campaign.page import RESULTS
-from ..elements import Words, button, choice, link, named, said_options
-from ..error_pages import error_sentence
+from ..elements import Words, button, choice, link, named, option_texts
 from ..job_list import JobList
 from ..lab_skis import FILE, TABLE, LabSkis
 from ..language import language_of, said_list
-from ..layout import framed, heading, sentence
-from ..number_input import typed_number
+from ..layout import error_sentence, framed, heading, sentence
 from ..page_requests import redrawn_by
 from ..runs import Runs
 from ..scenario_fields import ScenarioField, called, in_labels
 from ..snow_choice import SnowChoice
 from ..studies import Studies, StudyJob, estimate_words, unit_s
-from ..study_fields import CARVE, AxisFields, StudyAsked, study_keys
+from ..study_fields import CARVE, AxisFields, StudyQuestion, study_keys
+from ..words import typed_number
 from .carve import OF_SNOW as CARVE_SNOW
 from .carve import SLIDERS
 from .simulate import GIVEN, NUMBERS, SECTION_WORDS, basic, expert
@@ -41,13 +40,13 @@ FIRST: Final = {
     CARVE: ("edge_angle_deg", "13"),
     OTHER: ("start.speed_m_per_s", "7"),
 }
-"""What varies at first: input, number of values (modelling assumption)."""
+"""First varied input with its number of values."""
 UNLOADING: Final = "unloading_ratio"
 TIMES: Final = ("run.duration_s", "run.length_m", "start.speed_m_per_s")
 
 
 def add_page(lab: Lab) -> None:
-    """Add the page to the application, and begin to work through its queue."""
+    """Add the page to the application and start the queue."""
     studies = Studies(lab.runs, lab.scheduler)
     app.on_startup(lambda: background_tasks.create(studies.work(), name="studies"))
     app.on_shutdown(studies.end)
@@ -60,17 +59,17 @@ def add_page(lab: Lab) -> None:
 
 
 class _CarveField(ScenarioField):
-    """A number of a carved turn."""
+    """Field of a number of a carved turn."""
 
     where = "a turn usually"
 
     def typed_value(self) -> object:
-        """The number; "inf" is one."""
+        """The number, which can be "inf"."""
         return float("inf") if self.text == "inf" else typed_number(called(self.key), self.text)
 
 
 class _Form:
-    """What is studied, what varies and what is fixed."""
+    """Form of a study: subject, varied inputs and fixed inputs."""
 
     def __init__(self, lab: Lab, studies: Studies) -> None:
         from ...scenario import scenario_names
@@ -82,7 +81,7 @@ class _Form:
         with ui.element("div").classes("fields"):
             self._of = choice("What is studied", {CARVE: CARVED, **{name: name for name in scenario_names()}}, CARVE)
             self._ski = choice("Ski", self._skis.names(), self._skis.names()[0])
-            self._snow = SnowChoice(lab, NUMBERS, self._other_snow)
+            self._snow = SnowChoice(lab, NUMBERS, self._update_snow)
         self._of.on_value_change(self._draw)
         with redrawn_by(self._of):
             heading("What varies", 2)
@@ -104,9 +103,9 @@ class _Form:
     def _draw(self) -> None:
         of = str(self._of.value)
         names = self._skis.names() if self._is_carve else [GIVEN, *self._skis.names()]
-        self._ski.set_options(said_options(names), value=names[0])
-        for each in (self._varied, self._inputs):
-            each.clear()
+        self._ski.set_options(option_texts(names), value=names[0])
+        for place in (self._varied, self._inputs):
+            place.clear()
         keys = study_keys(of)
         if not self._is_carve:
             values = self._values()
@@ -156,19 +155,19 @@ class _Form:
 
         return {} if self._is_carve else dict(scenario_file(str(self._of.value)).values)
 
-    async def _other_snow(self) -> None:
+    async def _update_snow(self) -> None:
         self._follow()
 
-    def _of_snow(self) -> dict[str, bool]:
-        """Whether a chosen snow gives each number of the snow."""
+    def _numbers_from_snow(self) -> dict[str, bool]:
+        """True for each number of the snow that the chosen snow gives, by key."""
         names = CARVE_SNOW if self._is_carve else SCENARIO_SNOW
         return dict(zip(names, (self._snow.gives_hardness, self._snow.gives_stress), strict=True))
 
     def _follow(self) -> None:
-        """Show the fields that count, and how long the study will take."""
-        varied, given = {axis.name for axis in self._axes}, self._of_snow()
-        for name, each in self._fields.items():
-            each.place.set_visibility(name not in varied and not given.get(name))
+        """Show the fields that apply, and the estimated time of the study."""
+        varied, from_snow = {axis.name for axis in self._axes}, self._numbers_from_snow()
+        for name, field in self._fields.items():
+            field.place.set_visibility(name not in varied and not from_snow.get(name))
         try:
             points = self._axes[0].count() * self._axes[1].count()
         except ParameterError:
@@ -181,7 +180,7 @@ class _Form:
         self._estimate.set_text(words)
 
     def _unit(self) -> tuple[str, float]:
-        """Solver and how long a point takes, see `unit_s`; of what varies the middle counts."""
+        """Solver, and time of a point with the middles of the ranges, see `unit_s`."""
         if self._is_carve:
             return "", unit_s(CARVE, {})
         values = self._values()
@@ -199,12 +198,12 @@ class _Form:
         return self._fields["solver.method"].text, unit_s(str(self._of.value), values)
 
     async def ask(self) -> None:
-        """Put the study into the queue, when it can be one."""
+        """Add the study to the queue if it is valid."""
         try:
-            asked = self._asked()
-            job = await run.io_bound(self._studies.ask_for, asked, language_of())
+            question = self._question()
+            job = await run.io_bound(self._studies.ask_for, question, language_of())
         except SkisnowError as error:
-            keys = [each.key for each in self._fields.values()]
+            keys = [field.key for field in self._fields.values()]
             self._status.set_text(f"Not begun: {in_labels(error_sentence(error), *keys)}")
             self._status.classes(add="bad")
             return
@@ -212,48 +211,48 @@ class _Form:
             self._status.set_text(f"{job.name} is in the queue.")
             self._status.classes(remove="bad")
 
-    def _asked(self) -> StudyAsked:
+    def _question(self) -> StudyQuestion:
         axes = [axis for axis in self._axes if axis.name]
         if len({axis.name for axis in axes}) < len(axes):
             raise ParameterError("the first and the second input are the same; choose another one")
         varied = {axis.name: axis.range() for axis in axes}
-        given = self._of_snow()
+        from_snow = self._numbers_from_snow()
         for name in varied:
-            if given.get(name):
+            if from_snow.get(name):
                 raise ParameterError(
                     f"{called(study_keys(str(self._of.value))[name])} varies and the chosen snow gives it; choose the "
                     "numbers below as the snow"
                 )
-        fixed = {name: each.check() for name, each in self._fields.items() if self._counts(name, each)}
+        fixed = {name: field.check() for name, field in self._fields.items() if self._counts(name, field)}
         files, named_words = dict[str, bytes](), list[str]()
-        for values, beside, words in (self._chosen_ski(), self._chosen_snow()):
+        for values, further_files, words in (self._chosen_ski(), self._chosen_snow()):
             fixed |= values
-            files |= beside
+            files |= further_files
             named_words += words
         method, unit = self._unit()
-        return StudyAsked(str(self._of.value), varied, fixed, files, tuple(named_words), method, unit)
+        return StudyQuestion(str(self._of.value), varied, fixed, files, tuple(named_words), method, unit)
 
-    def _counts(self, name: str, each: ScenarioField) -> bool:
-        """Whether a field fixes its input: of a scenario where it is changed; of its two snow numbers both or none."""
-        if not each.place.visible:
+    def _counts(self, name: str, field: ScenarioField) -> bool:
+        """True if a field fixes its input: a changed field of a scenario, or both snow numbers if one is changed."""
+        if not field.place.visible:
             return False
-        if self._is_carve or each.is_changed:
+        if self._is_carve or field.is_changed:
             return True
-        pair = [self._fields[one] for one in SCENARIO_SNOW]
+        pair = [self._fields[other] for other in SCENARIO_SNOW]
         varied = {axis.name for axis in self._axes} & set(SCENARIO_SNOW)
-        return name in SCENARIO_SNOW and bool(each.text) and (bool(varied) or any(one.is_changed for one in pair))
+        return name in SCENARIO_SNOW and bool(field.text) and (bool(varied) or any(other.is_changed for other in pair))
 
     def _chosen_ski(self) -> tuple[dict[str, InputValue], dict[str, bytes], list[str]]:
         ski = str(self._ski.value)
         if ski == GIVEN:
             return {}, {}, []
         word, table = self._skis.word(ski), ""
-        beside = dict[str, bytes]()
+        texts = dict[str, bytes]()
         if word != ski:
             text, table = self._skis.texts(ski)
-            beside = {f"ski/{FILE}": text.encode("utf-8")} | ({f"ski/{TABLE}": table.encode("utf-8")} if table else {})
+            texts = {f"ski/{FILE}": text.encode("utf-8")} | ({f"ski/{TABLE}": table.encode("utf-8")} if table else {})
         key = "ski" if self._is_carve else "ski.name" if word == ski else "ski.file"
-        return {key: ski if word == ski else f"ski/{FILE}"}, beside, [f"ski: {ski}"]
+        return {key: ski if word == ski else f"ski/{FILE}"}, texts, [f"ski: {ski}"]
 
     def _chosen_snow(self) -> tuple[dict[str, InputValue], dict[str, bytes], list[str]]:
         snow, lead = self._snow.chosen(), "" if self._is_carve else "snow."
@@ -268,7 +267,7 @@ class _Form:
 
 
 class _Card:
-    """One study of the list, and what can be done with it."""
+    """Card of a study with its buttons."""
 
     def __init__(self, studies: Studies, job: StudyJob, act: Act) -> None:
         self._studies = studies
@@ -284,10 +283,10 @@ class _Card:
                 self._table = named(table, f"Table and figure of {job.name}")
 
     def show(self, job: StudyJob) -> None:
-        """Show how it stands now."""
+        """Show the state of the study."""
         of = CARVED if job.scenario == CARVE else job.scenario
-        given = said_list(job.given, self._words.client)
-        self._words.set_text(" · ".join(filter(None, (of, given, job.state, job.said))))
+        varied = said_list(job.given, self._words.client)
+        self._words.set_text(" · ".join(filter(None, (of, varied, job.state, job.said))))
         self._progress.set_text(self._studies.progress if job.state == "running" else "")
         self._progress.set_visibility(bool(self._progress.text))
         self._cancel.set_visibility(job.state in ("waiting", "running"))

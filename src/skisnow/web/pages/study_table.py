@@ -1,4 +1,4 @@
-"""What a study has found: a chart of a result over what varies, the command's map and table, the files."""
+"""Page with the results of a study: chart, map, table and files."""
 
 from __future__ import annotations
 
@@ -15,9 +15,8 @@ from ..._support.errors import ParameterError
 from ..._support.language import ENGLISH
 from ...report.formatting import significant
 from ..elements import Words, choice, link, named
-from ..error_pages import error_sentence, plain_page
 from ..language import language_of, said, said_list
-from ..layout import framed, heading, sentence
+from ..layout import error_sentence, framed, heading, plain_page, sentence
 from ..line_chart import BEHIND, ChartLine, LineChart
 from ..scenario_fields import called, written
 from ..studies import FIGURE, Studies
@@ -33,7 +32,7 @@ HERE: Final = "/study"
 FILES: Final = f"{HERE}/files"
 ALL: Final = "study.zip"
 ROWS: Final = 200
-"""That the page shows (modelling assumption); the file has all of them."""
+"""Maximum number of rows on the page; the file has all."""
 OF_CARVES: Final = {
     "turn_radius_boot_m": "Carved radius (m)",
     "side_force_N": "Side force (N)",
@@ -55,7 +54,7 @@ NO_SCRIPTS: Final = "default-src 'none'; style-src 'unsafe-inline'; sandbox"
 
 
 def table_address(name: str) -> str:
-    """The page of a study."""
+    """Address of the page of a study."""
     return f"{HERE}/{quote(name, safe='')}"
 
 
@@ -64,23 +63,23 @@ def _file_address(name: str, file: str) -> str:
 
 
 def add_page(lab: Lab) -> None:
-    """Add the page, and the addresses of its files."""
+    """Add the page and the addresses of its files."""
     studies = Studies(lab.runs, lab.scheduler)
 
     @ui.page(f"{HERE}/{{name}}")
     async def study_table(name: str) -> None:
-        found = await run.io_bound(studies.table, name)
-        if found is None:
+        result = await run.io_bound(studies.table, name)
+        if result is None:
             raise ParameterError("the lab is about to end")
         with framed("Study", here=HERE):
             job = next((job for job in studies.jobs() if job.name == name), None)
-            _asked(job)
+            _show_inputs(job)
             with ui.element("div").classes("acts"):
                 link("Download everything", _file_address(name, ALL), "main")
                 link("Download the table", _file_address(name, TABLE))
-            _Found(*found)
+            _ResultsView(*result)
             if (studies.folder / name / FIGURE).is_file():
-                _map(name, job.language if job is not None else ENGLISH)
+                _show_map(name, job.language if job is not None else ENGLISH)
 
     @app.get(f"{FILES}/{{name}}/{{file}}")
     async def files(request: Request, name: str, file: str) -> Response:
@@ -97,15 +96,15 @@ def add_page(lab: Lab) -> None:
         return Response(packed.getvalue(), media_type="application/zip", headers=headers)
 
 
-def _asked(job: Job | None) -> None:
-    """What varies, and the numbers that are fixed."""
+def _show_inputs(job: Job | None) -> None:
+    """Show the varied and the fixed inputs."""
     if job is not None:
         keys = study_keys(job.scenario)
         sentence(said_list(job.given), "quiet")
         sentence(said_list("; ".join(f"{called(keys[name])}: {value}" for name, value in job.changes.items())), "quiet")
 
 
-def _map(name: str, language: str) -> None:
+def _show_map(name: str, language: str) -> None:
     with named(ui.element("figure").classes("map").props("tabindex=0 role=region"), "Map"):
         ui.element("img").props(f'src="{_file_address(name, FIGURE)}"').props["alt"] = said(
             "Turn radius over the inputs that vary, as skisnow study draws it"
@@ -114,8 +113,8 @@ def _map(name: str, language: str) -> None:
         sentence("Figures and the report are in English.", "quiet")
 
 
-class _Found:
-    """A result over the input with more values, a line for each value of the other one; and the rows."""
+class _ResultsView:
+    """Chart of a result over the input with more values, with lines for the other input; and the rows."""
 
     def __init__(self, study: Study, table: StudyTable) -> None:
         self._table = table
@@ -141,7 +140,7 @@ class _Found:
         chart.show([self._line(number, result) for number in self._order()])
 
     def _order(self) -> list[int]:
-        """The lines that are named last, over the others: the first, a middle one and the last."""
+        """Order of drawing: the first, middle and last lines, which have names, are on top."""
         count = len(self._lines)
         named = list(dict.fromkeys((0, count // 2, count - 1)))
         return [*(number for number in range(count) if number not in named), *named]
@@ -150,10 +149,10 @@ class _Found:
         value, count = self._lines[number], len(self._lines)
         rows = [row for row in self._table.rows if not self._other or row[self._other] == value]
         rows.sort(key=lambda row: row[self._x])
-        styles = {each: style for style, each in enumerate(dict.fromkeys((0, count // 2, count - 1)))}
+        styles = {column: style for style, column in enumerate(dict.fromkeys((0, count // 2, count - 1)))}
         other = f"{said(called(self._keys[self._other]))}: {_short(value)}" if self._other else ""
         name = other if number in styles else ""
-        x, y = ([row[each] for row in rows] for each in (self._x, result))
+        x, y = ([row[column] for row in rows] for column in (self._x, result))
         return ChartLine(x, y, styles.get(number, BEHIND), name=name)
 
     def _rows(self, study: Study) -> None:
@@ -167,7 +166,7 @@ class _Found:
                         Words(words)
             with ui.element("tbody"):
                 for row in self._table.rows[:ROWS]:
-                    _row(row, list(columns))
+                    _add_row(row, list(columns))
         if len(self._table.rows) > ROWS:
             sentence(
                 f"The first {ROWS} of {len(self._table.rows)} rows; the file has all of them and all columns.", "note"
@@ -175,11 +174,11 @@ class _Found:
 
 
 def _short(value: Any) -> str:
-    """A value of what varies, to four digits as in the map."""
+    """A value of a varied input with four digits as in the map."""
     return f"{value:.4g}" if isinstance(value, float) else written(value)
 
 
-def _row(row: dict[str, Any], columns: list[str]) -> None:
+def _add_row(row: dict[str, Any], columns: list[str]) -> None:
     outcome = str(row["outcome"]).replace("_", " ") + (f": {row['reason']}" if row["outcome"] == "error" else "")
     with ui.element("tr"):
         for name in columns:

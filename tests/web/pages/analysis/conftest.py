@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from skisnow.web import analysis_cache as analyses_module
-from skisnow.web.campaign_analysis import Shown
+from skisnow.web.campaign_analysis import FigureImage
 from skisnow.web.pages import analysis as page_module
 from skisnow.web.subprocesses import Worker
 
@@ -22,10 +22,10 @@ def drawing(monkeypatch: pytest.MonkeyPatch) -> Drawing:
     made = Drawing()
     made.gate.set()
 
-    def drawn(analysis: Any, number: int, _language: str) -> Shown | None:
+    def drawn(analysis: Any, number: int, _language: str) -> FigureImage | None:
         if number == 1:
             return None
-        return Shown(
+        return FigureImage(
             f"fig{number}", f"{points(analysis)} points", f"<b>Figure {number}.</b> A", f"data:{number}", number == 2
         )
 

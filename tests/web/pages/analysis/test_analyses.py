@@ -14,9 +14,9 @@ from skisnow.campaign.store import Journals
 from skisnow.report.campaign.page import DRAWERS
 from skisnow.web import analysis_cache as analyses_module
 from skisnow.web import campaign_analysis as analysing
-from skisnow.web.analysis_cache import Analysed, Analyses, CampaignSource
+from skisnow.web.analysis_cache import AnalysisCache, CachedAnalysis, CampaignSource
 from skisnow.web.analysis_view import AnalysisView, OpenAnalysis
-from skisnow.web.campaign_analysis import Choice, Numbers, Refusal, figure, numbers_of
+from skisnow.web.campaign_analysis import Choice, Numbers, Refusal, analyse_files, figure
 from skisnow.web.subprocesses import Worker
 
 from .shared import COUNTED, FILES, FLAGS, PENETRATION, TOML, WRONG, Drawing, kept
@@ -31,7 +31,7 @@ class View:
     def __init__(self, desk: Desk, kind: str, id_: str, analyses: Any = None) -> None:
         self.desk, self.sheet = desk, desk.open("/replay")
         self.page = OpenAnalysis(kind, id_, None)
-        self._analyses = analyses or Analyses(desk.lab, Worker())
+        self._analyses = analyses or AnalysisCache(desk.lab, Worker())
         self.before = len(self.sheet.outline())
         self.view: AnalysisView = desk.do(self._made, self.sheet.client)
 
@@ -82,7 +82,7 @@ def test_a_refusal_takes_away_what_was_shown_before(
     view.compute()  # nothing is different
     assert view.lines == shown
     told = Refusal("it is so", ("a.csv, row 2: wrong",))
-    monkeypatch.setattr(analyses_module, "numbers_of", lambda *_: told)
+    monkeypatch.setattr(analyses_module, "analyse_files", lambda *_: told)
     view.page.choice = Choice(frozenset())
     view.compute()
     wrong = "[status] This campaign cannot be analysed yet. What is wrong in its files:"
@@ -90,13 +90,13 @@ def test_a_refusal_takes_away_what_was_shown_before(
     assert view.lines == [wrong, "a.csv, row 2: wrong", *chooser]
     assert view.page.refused == "This campaign cannot be analysed yet. it is so"
     assert vars(view.page)["analysed"] is None
-    monkeypatch.setattr(analyses_module, "numbers_of", lambda *_: Refusal("it is so"))
+    monkeypatch.setattr(analyses_module, "analyse_files", lambda *_: Refusal("it is so"))
     view.compute()
     assert view.lines == ["[status] This campaign cannot be analysed yet. it is so", *chooser]
-    view.view.show_known()
+    view.view.show_cached()
     assert view.lines[1:] == chooser
     view.page.choice = Choice()
-    view.view.show_known()
+    view.view.show_cached()
     assert view.lines[:2] == [f"[status] {COUNTED} Drawing the figures …", "h2 Desk"]
     assert view.lines.count("h2 Included data") == 1
     assert drawing.asked
@@ -104,11 +104,11 @@ def test_a_refusal_takes_away_what_was_shown_before(
 
 def test_a_page_without_a_campaign_in_memory_shows_nothing_at_first(desk: Desk) -> None:
     view = View(desk, "kept", "ffffffffffff")
-    view.view.show_known()
+    view.view.show_cached()
     assert view.lines == ["[status] Computing …"]
 
 
-def looked_at(desk: Desk, analyses: Analyses, *campaigns: tuple[str, str]) -> list[CampaignSource]:
+def looked_at(desk: Desk, analyses: AnalysisCache, *campaigns: tuple[str, str]) -> list[CampaignSource]:
     async def done() -> list[CampaignSource]:
         return [await analyses.subject(*each) for each in campaigns]
 
@@ -119,17 +119,17 @@ def test_the_campaigns_that_were_looked_at_last_are_known(
     desk: Desk, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(analyses_module, "MOST_CAMPAIGNS", 2)
-    analyses, journals = Analyses(desk.lab, Worker()), Journals(desk.lab.store)
+    analyses, journals = AnalysisCache(desk.lab, Worker()), Journals(desk.lab.store)
     first, second = (("entry", journals.begin(TOML)) for _ in range(2))
     third = ("kept", kept(desk, tmp_path / "kept"))
     one, two, again, three = looked_at(desk, analyses, first, second, first, third)
     assert one is again
-    assert analyses.known(*first) is one
-    assert analyses.known(*second) is None
-    assert analyses.known(*third) is three
+    assert analyses.cached(*first) is one
+    assert analyses.cached(*second) is None
+    assert analyses.cached(*third) is three
     assert two is not one
     with pytest.raises(StoreError) as found:
-        analyses.known("entry", "ffffffffffff")
+        analyses.cached("entry", "ffffffffffff")
     told = "The store has no campaign with the id 'ffffffffffff'; the list of campaigns names all."
     assert str(found.value) == told
     assert set(three.files.contents) == set(FILES)
@@ -145,7 +145,7 @@ def test_the_choices_that_were_made_last_are_known(desk: Desk, tmp_path: Path, m
         return [await subject.analysed(each) for each in (*choices, choices[2])]
 
     found = desk.wait(done())
-    assert [subject.known(each) for each in choices] == [None, *found[1:3]]
+    assert [subject.cached(each) for each in choices] == [None, *found[1:3]]
     assert found[3] is found[2]
     assert len({each.key for each in found}) == 3
     assert {len(each.key) for each in found} == {16}
@@ -153,7 +153,7 @@ def test_the_choices_that_were_made_last_are_known(desk: Desk, tmp_path: Path, m
 
 def test_a_lab_that_is_about_to_end_says_so(desk: Desk, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     id_ = kept(desk, tmp_path / "kept")
-    subject, analyses = CampaignSource(desk.lab, "kept", id_), Analyses(desk.lab, Worker())
+    subject, analyses = CampaignSource(desk.lab, "kept", id_), AnalysisCache(desk.lab, Worker())
 
     async def nothing(*_: Any) -> None:
         return None
@@ -165,7 +165,7 @@ def test_a_lab_that_is_about_to_end_says_so(desk: Desk, tmp_path: Path, monkeypa
 
 
 def numbers(choice: Choice, files: dict[str, str] | None = None) -> Numbers:
-    found = numbers_of(FilesInMemory({name: text.encode() for name, text in (files or FILES).items()}), choice)
+    found = analyse_files(FilesInMemory({name: text.encode() for name, text in (files or FILES).items()}), choice)
     assert isinstance(found, Numbers)
     return found
 
@@ -208,7 +208,7 @@ def test_tables_are_those_of_the_page_that_have_rows() -> None:
 def test_only_errors_are_listed_in_a_refusal() -> None:
     """A mark of quality beside them is no error."""
     files = {name: text.encode() for name, text in WRONG.items()}
-    found = numbers_of(FilesInMemory(files), Choice())
+    found = analyse_files(FilesInMemory(files), Choice())
     assert isinstance(found, Refusal)
     assert len(found.errors) == 1
     assert "-40" in found.errors[0]
@@ -221,9 +221,9 @@ def test_a_campaign_without_tests_is_refused_without_a_list(monkeypatch: pytest.
 
     monkeypatch.setattr(analysing, "analyse", refused)
     files = FilesInMemory({name: text.encode() for name, text in FILES.items()})
-    assert numbers_of(files, Choice()) == Refusal("there is nothing to analyse")
+    assert analyse_files(files, Choice()) == Refusal("there is nothing to analyse")
     monkeypatch.setattr(analysing, "analyse", refused_in_words)
-    assert numbers_of(files, Choice()) == Refusal("it is so")
+    assert analyse_files(files, Choice()) == Refusal("it is so")
 
 
 def refused_in_words(_: Any) -> None:
@@ -268,4 +268,4 @@ def test_the_worker_does_one_thing_after_another_in_a_process_of_its_own(desk: D
 
 def test_two_analyses_of_the_same_numbers_are_two() -> None:
     found = numbers(Choice())
-    assert Analysed("a", found) != Analysed("a", found)
+    assert CachedAnalysis("a", found) != CachedAnalysis("a", found)

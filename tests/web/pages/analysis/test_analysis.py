@@ -21,7 +21,7 @@ from skisnow.report.campaign.data import ReportData
 from skisnow.report.campaign.key_results import key_results
 from skisnow.web import analysis_cache as analyses_module
 from skisnow.web import analysis_view
-from skisnow.web.campaign_analysis import Choice, Refusal, numbers_of
+from skisnow.web.campaign_analysis import Choice, Refusal, analyse_files
 from skisnow.web.pages import analysis as page_module
 
 from .shared import COUNTED, FLAGS, SHEAR, TOML, WRONG, Drawing, kept, status
@@ -105,7 +105,7 @@ def test_numbers_tables_and_figures_stand_in_their_order(desk: Desk, tmp_path: P
     tags = [element.tag for element in page.of() if element.tag in ("figure", "figcaption")]
     assert tags == ["figure", "figcaption"] * 2
     assert [each for each in drawing.asked if each[0] == "drawn"] == [("drawn", number, "en") for number in range(3)]
-    assert [each[0] for each in drawing.asked].count("ready") == 1
+    assert [each[0] for each in drawing.asked].count("load_drawing") == 1
     assert [each.text for each in page.of() if each.props.get("aria-current") == "page"] == ["Campaigns"]
 
 
@@ -120,7 +120,7 @@ def test_what_was_computed_is_there_with_the_page(desk: Desk, tmp_path: Path, dr
     assert f"{COUNTED} Drawing the figures …" in again.html
     finally_says(again, COUNTED)  # they are drawn
     assert figures(again) == [("data:0", "3 points"), ("data:2", "3 points")]
-    assert drawing.asked[asked:] == [("ready",)]
+    assert drawing.asked[asked:] == [("load_drawing",)]
     german = desk.open(f"/analysis/kept/{id_}", "de")
     desk.do(drawing.gate.set)
     german.until(lambda: figures(german))
@@ -240,14 +240,14 @@ def test_what_is_wrong_in_files_is_listed_and_where_it_can_be_put_right(
     assert "<h1>No report yet</h1><p>This campaign cannot be analysed yet. " in answer.text
     assert "-40" in answer.text
     assert desk.get(f"/report/{report_key(page)}/analysis.zip").text == answer.text
-    assert drawing.asked == [("ready",)]
+    assert drawing.asked == [("load_drawing",)]
 
 
 def test_a_campaign_that_has_nothing_yet_says_so(desk: Desk, drawing: Drawing) -> None:
     id_ = Journals(desk.lab.store).begin(TOML)
     page = desk.open(f"/analysis/entry/{id_}")
     page.until(lambda: status(page) != "Computing …")
-    refusal = numbers_of(FilesInMemory({"campaign.toml": TOML.encode()}), Choice())
+    refusal = analyse_files(FilesInMemory({"campaign.toml": TOML.encode()}), Choice())
     assert isinstance(refusal, Refusal)
     (wrong,) = refusal.errors
     assert page.outline() == [
@@ -259,7 +259,7 @@ def test_a_campaign_that_has_nothing_yet_says_so(desk: Desk, drawing: Drawing) -
         "[status] This campaign cannot be analysed yet. What is wrong in its files:",
         wrong,
     ]
-    assert drawing.asked == [("ready",)]
+    assert drawing.asked == [("load_drawing",)]
 
 
 def test_report_and_zip_are_of_what_is_chosen(desk: Desk, tmp_path: Path, drawing: Drawing) -> None:
@@ -301,10 +301,10 @@ def test_a_report_waits_for_the_numbers_of_the_choice(
 
     def late(*what: Any) -> Any:
         assert asked.wait(60)
-        return numbers_of(*what)
+        return analyse_files(*what)
 
     monkeypatch.setattr(page_module, "_report", report)
-    monkeypatch.setattr(analyses_module, "numbers_of", late)
+    monkeypatch.setattr(analyses_module, "analyse_files", late)
     page = desk.open(f"/analysis/kept/{kept(desk, tmp_path / 'kept')}")
     path = f"/report/{report_key(page)}/report.html"
     assert desk.get(path).text == "[True, True, True, False, False]"

@@ -16,10 +16,10 @@ from starlette.datastructures import Headers
 from starlette.requests import Request
 
 from skisnow._support.errors import FieldDataError, OutputError, ParameterError, StoreError
-from skisnow.web import error_pages
-from skisnow.web.analysis_cache import Analyses
-from skisnow.web.error_pages import _failed, _notified, error_sentence, log_to, plain_page, reported
+from skisnow.web import layout
+from skisnow.web.analysis_cache import AnalysisCache
 from skisnow.web.guard import CONTENT_POLICY, COOKIE, Access, Guard
+from skisnow.web.layout import _error_answer, _notify, error_sentence, log_error, log_to, plain_page
 
 from .shared import greeting
 
@@ -147,29 +147,29 @@ def test_the_token_is_asked_for_until_the_cookie_is_there(desk: Desk) -> None:
 
 def test_what_lets_in() -> None:
     alone, shared = Access("127.0.0.1", None, 1), Access("0.0.0.0", "snow", 1)
-    assert alone.is_let_in(Headers({}))
+    assert alone.has_access(Headers({}))
     assert not alone.is_token("")
     assert (shared.is_token("snow"), shared.is_token("Snow"), shared.is_token("")) == (True, False, False)
     for cookie in ("", f"{COOKIE}=ü", "other=1", f"{COOKIE}=", "\x00=;;", "a/b=1"):
-        assert shared.is_let_in(Headers(raw=[(b"cookie", cookie.encode("latin-1"))])) is False
-    assert shared.is_let_in(Headers({"cookie": f"{COOKIE}={shared.cookie}"}))
+        assert shared.has_access(Headers(raw=[(b"cookie", cookie.encode("latin-1"))])) is False
+    assert shared.has_access(Headers({"cookie": f"{COOKIE}={shared.cookie}"}))
 
 
 @pytest.mark.parametrize("other", ["a/b=1", "user[theme]=dark", '{"a": 1}', "é=é", "=", ";"])
 def test_a_cookie_of_another_program_on_the_machine_keeps_nobody_out(other: str) -> None:
     access = Access("127.0.0.1", "snow", 1)
     for cookies in (f"{other}; {COOKIE}={access.cookie}", f"{COOKIE}={access.cookie}; {other}"):
-        assert access.is_let_in(Headers(raw=[(b"cookie", cookies.encode("latin-1"))]))
+        assert access.has_access(Headers(raw=[(b"cookie", cookies.encode("latin-1"))]))
 
 
 def test_names_of_this_machine_are_known_where_others_may_come(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(socket, "gethostname", lambda: "Hut")
     alone, shared = Access("127.0.0.1", None, 1), Access("Lab.Example", "snow", 1)
     names = ("hut", "HUT.local:80", "lab.example:8765", "192.168.1.7", "[fe80::1]:80", "localhost", "127.0.0.1", "::1")
-    assert [shared.knows(name) for name in names[:7]] == [True] * 7
-    assert [alone.knows(name) for name in names[:7]] == [False] * 5 + [True] * 2
-    assert not shared.knows("evil.example")
-    assert not shared.knows("")
+    assert [shared.allows_host(name) for name in names[:7]] == [True] * 7
+    assert [alone.allows_host(name) for name in names[:7]] == [False] * 5 + [True] * 2
+    assert not shared.allows_host("evil.example")
+    assert not shared.allows_host("")
     assert shared.cookie != Access("Lab.Example", "ice", 1).cookie
 
 
@@ -177,7 +177,7 @@ def test_names_of_this_machine_are_known_where_others_may_come(monkeypatch: pyte
 def log(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
     """A log file of its own."""
     made = logging.getLogger("skisnow.test-of-what-is-guarded")
-    monkeypatch.setattr(error_pages, "LOG", made)
+    monkeypatch.setattr(layout, "LOG", made)
     log_to(tmp_path / "new" / "lab.log")
     yield tmp_path / "new" / "lab.log"
     for handler in made.handlers[:]:
@@ -186,10 +186,10 @@ def log(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
 
 
 def test_the_log_keeps_its_last_two_files(log: Path) -> None:
-    (handler,) = (each for each in error_pages.LOG.handlers if isinstance(each, RotatingFileHandler))
+    (handler,) = (each for each in layout.LOG.handlers if isinstance(each, RotatingFileHandler))
     assert (handler.maxBytes, handler.backupCount, handler.encoding) == (2_000_000, 1, "utf-8")
-    assert (error_pages.LOG.level, error_pages.LOG.propagate) == (logging.INFO, False)
-    reference = reported(ValueError("ü"))
+    assert (layout.LOG.level, layout.LOG.propagate) == (logging.INFO, False)
+    reference = log_error(ValueError("ü"))
     assert len(reference) == 8
     line, *trace = log.read_text(encoding="utf-8").splitlines()
     assert line.endswith(f" ERROR reference {reference}")
@@ -199,7 +199,7 @@ def test_the_log_keeps_its_last_two_files(log: Path) -> None:
 
 def test_an_error_is_said_in_the_corner_of_its_page(desk: Desk) -> None:
     page = desk.open("/replay")
-    desk.do(lambda: _notified(StoreError("The disk is full.")), page.client)
+    desk.do(lambda: _notify(StoreError("The disk is full.")), page.client)
     page.told("notify ")
     told = page.scripts[-1]
     for part in ("'message': 'The disk is full.'", "'type': 'negative'", "'multiLine': True", "'timeout': 0"):
@@ -222,7 +222,7 @@ def test_a_page_that_cannot_be_shown_says_why(
     def known(*_: object) -> None:
         raise error
 
-    monkeypatch.setattr(Analyses, "known", known)
+    monkeypatch.setattr(AnalysisCache, "cached", known)
     answer = desk.get("/analysis/kept/ffff")
     assert answer.status_code == status
     assert told in answer.text and "This page cannot be shown" in answer.text
@@ -244,10 +244,10 @@ def test_there_is_no_page_at_a_wrong_address(desk: Desk) -> None:
 
 def test_an_answer_that_failed_says_what_it_may(desk: Desk, log: Path) -> None:
     request = Request({"type": "http", "headers": []})
-    said = desk.wait(_failed(request, StoreError("it is <full>")))
+    said = desk.wait(_error_answer(request, StoreError("it is <full>")))
     assert said.status_code == 500
     assert "<h1>This cannot be shown</h1><p>it is &lt;full&gt;</p>" in bytes(said.body).decode()
-    other = desk.wait(_failed(request, ValueError("secret")))
+    other = desk.wait(_error_answer(request, ValueError("secret")))
     text = bytes(other.body).decode()
     assert other.status_code == 500
     assert "<h1>This cannot be shown</h1><p>Something went wrong. Reference: " in text

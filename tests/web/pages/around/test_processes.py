@@ -18,9 +18,9 @@ from skisnow.web.server import (
     ENCRYPTED,
     IN_CLEAR,
     Certificate,
-    PatientToAPoint,
-    for_others,
+    TimeLimitedProtocol,
     lab_addresses,
+    lines_for_others,
     require_allowed,
     serve,
 )
@@ -99,7 +99,7 @@ def test_what_comes_of_another_process(
         assert (type(found.value), str(found.value)) == (error, told)
     begun = ["spawn", False, "start", "tells closed", 2.5]
     assert ends.done == [*begun, "kill", "join", "hears closed"]
-    assert (ends.process["target"], ends.process["daemon"]) == (subprocesses._work, True)
+    assert (ends.process["target"], ends.process["daemon"]) == (subprocesses._run_confined, True)
     assert ends.process["args"][1:] == (bounds, len, ("ab",))
     traced = isinstance(answer, tuple) and answer[2]
     assert logged == ([("an upload could not be read: %s", "a trace")] if traced else [])
@@ -122,20 +122,20 @@ class SpecialError(ParameterError):
 )
 def test_what_another_process_tells(monkeypatch: pytest.MonkeyPatch, work: Callable[..., object], told: Any) -> None:
     done: list[Any] = []
-    monkeypatch.setattr(subprocesses, "end_with_the_server", lambda: done.append("watched"))
-    monkeypatch.setattr(subprocesses, "_bind", done.append)
+    monkeypatch.setattr(subprocesses, "end_with_server", lambda: done.append("watched"))
+    monkeypatch.setattr(subprocesses, "_set_limits", done.append)
     bounds = Bounds(2.5, 3_000_000)
-    subprocesses._work(cast(Any, SimpleNamespace(send=done.append)), bounds, work, ("ab",))
+    subprocesses._run_confined(cast(Any, SimpleNamespace(send=done.append)), bounds, work, ("ab",))
     assert done == ["watched", bounds, told]
 
 
 def test_an_unforeseen_error_of_another_process_has_a_trace(monkeypatch: pytest.MonkeyPatch) -> None:
     told: list[Any] = []
-    monkeypatch.setattr(subprocesses, "end_with_the_server", lambda: None)
-    monkeypatch.setattr(subprocesses, "_bind", lambda _: None)
+    monkeypatch.setattr(subprocesses, "end_with_server", lambda: None)
+    monkeypatch.setattr(subprocesses, "_set_limits", lambda _: None)
     for letters in (1, 9000):
         work = raising(ValueError("x" * letters))
-        subprocesses._work(cast(Any, SimpleNamespace(send=told.append)), Bounds(2.5, 3_000_000), work, ())
+        subprocesses._run_confined(cast(Any, SimpleNamespace(send=told.append)), Bounds(2.5, 3_000_000), work, ())
     assert [each[:2] for each in told] == [(ParameterError, ENDED)] * 2
     assert told[0][2].startswith("Traceback") and told[0][2].endswith("ValueError: x\n")
     assert len(told[1][2]) == 4000 and told[1][2].endswith("xx\n")
@@ -151,13 +151,13 @@ def test_a_process_is_bound_by_the_system(monkeypatch: pytest.MonkeyPatch) -> No
             raise (ValueError if kind == resource.RLIMIT_CPU else OSError)("lower already")
 
     monkeypatch.setattr(resource, "setrlimit", held_to)
-    subprocesses._bind(Bounds(2.5, 3_000_000))
+    subprocesses._set_limits(Bounds(2.5, 3_000_000))
     assert held == [
         (resource.RLIMIT_CPU, (3, 3)),
         (resource.RLIMIT_DATA, (3_000_000, 3_000_000)),
         (resource.RLIMIT_CORE, (0, 0)),
     ]
-    bounds = (subprocesses.BOUNDS, subprocesses.OF_A_SKI)
+    bounds = (subprocesses.BOUNDS, subprocesses.SKI_BOUNDS)
     assert bounds == (Bounds(120.0, 3_000_000_000), Bounds(60.0, 3_000_000_000))
 
 
@@ -175,7 +175,7 @@ def test_a_process_ends_with_its_server(monkeypatch: pytest.MonkeyPatch) -> None
     signals = SimpleNamespace(signal=lambda *what: done.append(what), SIGINT="ctrl-c", SIG_IGN="left out")
     monkeypatch.setattr(subprocesses, "signal", signals)
     monkeypatch.setattr(subprocesses, "wait", done.append)
-    subprocesses.end_with_the_server()
+    subprocesses.end_with_server()
     assert done == [("ctrl-c", "left out"), True, [7], "ends with 1"]
 
 
@@ -221,7 +221,7 @@ class Announced:
 def announced(monkeypatch: pytest.MonkeyPatch) -> list[Any]:
     """Servers that were begun; the application is what it was asked with."""
     monkeypatch.setattr(Announced, "made", [])
-    monkeypatch.setattr(server, "_Announced", Announced)
+    monkeypatch.setattr(server, "_AnnouncingServer", Announced)
     monkeypatch.setattr(server, "lab_application", lambda *what, **named: (*what, *named.values()))
     return Announced.made
 
@@ -236,7 +236,7 @@ def test_the_lab_is_served_to_this_machine(desk: Desk, announced: list[Any]) -> 
     assert config.app == (desk.lab, "127.0.0.1", None)
     assert (config.log_level, config.access_log, config.server_header) == ("critical", False, False)
     assert (config.ws_max_size, config.ws_ping_interval, config.lifespan) == (4_000_000, None, "on")
-    assert config.http is PatientToAPoint
+    assert config.http is TimeLimitedProtocol
     assert (config.ssl_certfile, config.ssl_keyfile) == (None, None)
     with pytest.raises(ParameterError):
         serve(desk.lab, host="0.0.0.0", port=0, token=None, tell=told.append)
@@ -282,7 +282,7 @@ def test_a_server_is_announced_once_it_answers(desk: Desk, monkeypatch: pytest.M
         made.started = started
 
     monkeypatch.setattr(uvicorn.Server, "startup", startup)
-    made = server._Announced(uvicorn.Config(greeting), lambda: heard.append("begun"))
+    made = server._AnnouncingServer(uvicorn.Config(greeting), lambda: heard.append("begun"))
     desk.wait(made.startup([7]))  # type: ignore[list-item]
     assert heard == ([[7], "begun"] if started else [[7]])
 
@@ -341,7 +341,7 @@ def test_addresses_of_this_machine_need_no_name_of_an_adapter(
 
 def test_a_phone_is_shown_the_way() -> None:
     """A code of 25 modules with an edge of 2, two rows to a line."""
-    lines = list(for_others(["http://10.0.0.2:80/", "http://10.0.0.3:80/"], secure=True))
+    lines = list(lines_for_others(["http://10.0.0.2:80/", "http://10.0.0.3:80/"], secure=True))
     assert lines[0] == "also: http://10.0.0.3:80/"
     code = lines[1].splitlines()
     assert {len(line) for line in code} == {29} and len(code) == 15
@@ -350,4 +350,4 @@ def test_a_phone_is_shown_the_way() -> None:
         "What goes between the machines is encrypted. A browser asks once whether it may trust a certificate of your "
         "own.",
     ]
-    assert list(for_others(["http://10.0.0.2:80/"], secure=False))[-1] == IN_CLEAR
+    assert list(lines_for_others(["http://10.0.0.2:80/"], secure=False))[-1] == IN_CLEAR

@@ -16,7 +16,7 @@ from skisnow.campaign.store import Journals, NewEntry, Store, sync
 from skisnow.report.charts import SeriesCurve
 from skisnow.web import page_requests as answering
 from skisnow.web.edit_session import EditSession, QuickResults
-from skisnow.web.entry.live_results import Beside
+from skisnow.web.entry.table_view import LiveResults
 from skisnow.web.line_chart import BEHIND
 from skisnow.web.page_requests import PageRequest
 
@@ -47,13 +47,13 @@ def curve(name: str, *, law: bool = True) -> SeriesCurve:
     return SeriesCurve(name, (at, at + 1), (10 * at, 10 * at + 1), (0.0, at) if law else (), (0.0, at) if law else ())
 
 
-def beside(page: Sheet, answer: Callable[[str], QuickResults]) -> Beside:
+def beside(page: Sheet, answer: Callable[[str], QuickResults]) -> LiveResults:
     """What follows the readings, on a page of its own."""
     view: Any = SimpleNamespace(file=PENETRATION, session=SimpleNamespace(quick_results=answer))
 
-    def made() -> Beside:
+    def made() -> LiveResults:
         with page.content:
-            return Beside(view)
+            return LiveResults(view)
 
     return page.desk.do(made, page.client)
 
@@ -143,7 +143,7 @@ def test_nothing_is_shown_when_the_lab_is_being_closed(desk: Desk, monkeypatch: 
     async def nothing(_act: object, site: str) -> None:
         asked.append(site)
 
-    monkeypatch.setattr("skisnow.web.entry.live_results.run.io_bound", nothing)
+    monkeypatch.setattr("skisnow.web.entry.table_view.run.io_bound", nothing)
     made = beside(page, lambda _: found())
     desk.do(lambda: made.follow("a", "A"), page.client)
     page.until(lambda: asked and not made._working)
@@ -183,7 +183,7 @@ def answered(desk: Desk, act: Callable[[], bool | None], *said: object) -> tuple
         handler = answering.answering(act)
         for each in said:
             handler(SimpleNamespace(args=each))  # type: ignore[arg-type]
-            after.append(answering.asked())
+            after.append(answering.current_request())
 
     desk.do(done, page.client)
     return page.scripts, after
@@ -194,7 +194,7 @@ def test_a_question_is_done_once_and_answered_each_time(desk: Desk, result: bool
     done: list[PageRequest] = []
 
     def act() -> bool | None:
-        done.append(answering.asked())
+        done.append(answering.current_request())
         return result
 
     asked = {"number": 3, "once": "a", "text": "1.5"}
@@ -220,7 +220,7 @@ def test_what_the_browser_says_is_taken_as_far_as_it_is_expected(
     desk: Desk, said: object, taken: PageRequest, told: list[str]
 ) -> None:
     done: list[PageRequest] = []
-    assert answered(desk, lambda: done.append(answering.asked()), said)[0] == told
+    assert answered(desk, lambda: done.append(answering.current_request()), said)[0] == told
     assert done == [taken]
 
 

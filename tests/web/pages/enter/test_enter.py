@@ -10,7 +10,7 @@ from nicegui import ui
 
 from skisnow.campaign.store import NewEntry
 from skisnow.web.elements import StatusLine
-from skisnow.web.entry.series import LEFT, TOLD
+from skisnow.web.entry.series import ON_BLUR, ON_ENTER
 from skisnow.web.language import minute_words
 
 from .shared import (
@@ -154,9 +154,9 @@ def test_a_series_begins_with_its_head_and_asks_for_a_depth_under_each_load(desk
     assert heads == [{"experiment": "1", "site": "A", "spot": "p", "tool": "ski piece", "edge_angle_deg": "30.5"}] * 2
     assert not any("open" in each.props for each in page.tagged("details"))
     first = page.field("Depth under 20 N (mm)")._event_listeners.values()
-    assert {each.type: each.js_handler for each in first if each.js_handler in (TOLD, LEFT)} == {
-        "keydown.enter": TOLD,
-        "blur": LEFT,
+    assert {each.type: each.js_handler for each in first if each.js_handler in (ON_ENTER, ON_BLUR)} == {
+        "keydown.enter": ON_ENTER,
+        "blur": ON_BLUR,
     }
 
 

@@ -17,9 +17,9 @@ from uvicorn.server import ServerState
 
 import skisnow.web
 from skisnow._support.language import languages
-from skisnow.web.application import _chosen, use_heartbeat
+from skisnow.web.application import _set_language, set_heartbeat
 from skisnow.web.guard import Tries, answer_to_token, token_page, too_many_tries
-from skisnow.web.server import PatientToAPoint
+from skisnow.web.server import TimeLimitedProtocol
 from skisnow.web.settings import RECONNECT_S
 
 from ...finished import finished
@@ -66,7 +66,7 @@ def test_the_framework_is_set_up_for_pages_that_last(desk: Desk) -> None:
     assert (config.tailwind, config.show_welcome_message, config.reconnect_timeout) == (False, False, RECONNECT_S)
     assert config.socket_io_js_transports == ["websocket"]
     assert config.quasar_config["loadingBar"] == {"skipHijack": True}
-    assert use_heartbeat in pages_app._startup_handlers
+    assert set_heartbeat in pages_app._startup_handlers
     assert all(hasattr(each, "__wrapped__") for each in core.sio.handlers["/"].values())
     guard: Any = vars(desk._browser._transport)["app"]
     access = guard.access
@@ -92,13 +92,13 @@ def test_a_language_is_chosen_at_an_address(desk: Desk) -> None:
     ],
 )
 def test_a_language_is_kept_and_leads_back_to_a_page_of_the_lab(back: str, place: str) -> None:
-    answer = _chosen("de", back)
+    answer = _set_language("de", back)
     assert (answer.status_code, answer.headers["location"]) == (303, place)
     parts = answer.headers["set-cookie"].split("; ")
     assert parts[0] == "skisnow-language=de"
     assert sorted(parts[1:]) == ["HttpOnly", "Max-Age=31536000", "Path=/", "SameSite=lax"]
-    assert all(code in _chosen(code).headers["set-cookie"] for code in languages())
-    assert "set-cookie" not in _chosen("xx").headers
+    assert all(code in _set_language(code).headers["set-cookie"] for code in languages())
+    assert "set-cookie" not in _set_language("xx").headers
 
 
 def scope_of(language: str = "en", scheme: str = "http") -> Scope:
@@ -299,7 +299,7 @@ class Patience:
         vars(loop)["call_later"] = call_later
         config = uvicorn.Config(hi, ws="none", lifespan="off", log_level="critical")
         config.load()
-        self.protocol = PatientToAPoint(config, self.state, {})
+        self.protocol = TimeLimitedProtocol(config, self.state, {})
         self.wire.set_protocol(self.protocol)
         self.protocol.connection_made(self.wire)
 
@@ -409,7 +409,7 @@ def test_a_web_socket_may_be_silent() -> None:
 
 
 def test_a_timer_that_ends_closes_the_connection() -> None:
-    class Hasty(PatientToAPoint):
+    class Hasty(TimeLimitedProtocol):
         head_s = 0.0
 
     async def talk() -> bool:
@@ -422,4 +422,4 @@ def test_a_timer_that_ends_closes_the_connection() -> None:
         return True
 
     assert finished(talk())
-    assert (PatientToAPoint.head_s, PatientToAPoint.body_s) == (20.0, 120.0)
+    assert (TimeLimitedProtocol.head_s, TimeLimitedProtocol.body_s) == (20.0, 120.0)

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 from nicegui import ui
 
-from skisnow.web.elements import FIRST, TypedField, Words, button, choice, field, html_words, link, named, said_options
+from skisnow.web.elements import FIRST, TypedField, Words, button, choice, field, html_words, link, named, option_texts
 from skisnow.web.layout import SAID_BY_SCRIPT, heading, sentence
 from skisnow.web.line_chart import STYLES, ChartLine, LineChart
 
@@ -153,7 +153,7 @@ def test_a_choice_shows_words_for_values(desk: Desk) -> None:
     assert (one.value, one.props["label"], one.classes) == ("mine", "Verglichen mit", ["field"])
     assert one.options == {"nothing": "nichts", "mine": "mine"}
     assert made(desk, lambda: choice("Ski", {"a": "nothing"}, None), "de").options == {"a": "nichts"}
-    assert said_options({"a": "b"}) == {"a": "b"}
+    assert option_texts({"a": "b"}) == {"a": "b"}
 
 
 def test_a_button_that_acts_once_tells_presses_apart(desk: Desk) -> None:

@@ -358,6 +358,6 @@ def test_a_study_that_another_process_still_writes_is_begun_again(
 def test_of_what_a_study_says_its_points_are_shown(tmp_path: Path) -> None:
     studies = Studies(tmp_path)
     studies.progress = "starting"
-    assert studies._told("12 of 13 points, 3 s") == "12 of 13 points, 3 s"
+    assert studies._progress_of("12 of 13 points, 3 s") == "12 of 13 points, 3 s"
     for line in ("a warning", "so: 12 of 13 points", "x of 13 points"):
-        assert studies._told(line) == "starting"
+        assert studies._progress_of(line) == "starting"

@@ -12,7 +12,7 @@ import pytest
 from skisnow.web import job_list
 from skisnow.web import studies as studies_module
 from skisnow.web.runs import Job, duration_words, estimated_s, simulated_s, slowness
-from skisnow.web.studies import Studies, StudyJob, estimate_words, learned, unit_s
+from skisnow.web.studies import Studies, StudyJob, estimate_words, measured_slowness, unit_s
 from skisnow.web.study_fields import CARVE
 
 from .shared import TURNS
@@ -88,14 +88,14 @@ def study_done(**what: Any) -> StudyJob:
 
 
 def test_of_studies_the_last_five_of_a_kind_tell_how_long_they_take() -> None:
-    assert learned([study_done()], "") == 4.0  # 10 s on two cores for 5 s
-    assert learned([study_done(method="fast")], "fast") == 4.0
-    assert learned([study_done(method="fast")], "") is None
+    assert measured_slowness([study_done()], "") == 4.0  # 10 s on two cores for 5 s
+    assert measured_slowness([study_done(method="fast")], "fast") == 4.0
+    assert measured_slowness([study_done(method="fast")], "") is None
     every = [study_done(took_s=8.0), study_done(state="failed"), study_done(workers=0), study_done(unit_s=0.0)]
-    assert learned(every, "") is None
-    assert learned([*every, *[study_done()] * 5, study_done(took_s=999.0)], "") == 4.0
-    assert learned([*[study_done()] * 4, study_done(took_s=28.0)], "") == pytest.approx((4 * 20 + 40) / 25)
-    assert learned([study_done(points=0)], "") is None
+    assert measured_slowness(every, "") is None
+    assert measured_slowness([*every, *[study_done()] * 5, study_done(took_s=999.0)], "") == 4.0
+    assert measured_slowness([*[study_done()] * 4, study_done(took_s=28.0)], "") == pytest.approx((4 * 20 + 40) / 25)
+    assert measured_slowness([study_done(points=0)], "") is None
 
 
 def test_how_long_a_study_takes_in_words(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -28,4 +28,4 @@ def run_files(tmp_path_factory: pytest.TempPathFactory) -> dict[str, bytes]:
 @pytest.fixture
 def here(monkeypatch: pytest.MonkeyPatch) -> list[Any]:
     """What was sent is read in this process; gives limits, work and what it is given."""
-    return in_this_process(monkeypatch, "replay.addresses")
+    return in_this_process(monkeypatch, "replay_addresses")

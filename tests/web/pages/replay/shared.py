@@ -7,7 +7,7 @@ import os
 from pathlib import Path
 from typing import Any
 
-from skisnow.web.replay.tracks import Placing, TrackFolders
+from skisnow.web.lab_tracks import Placing, TrackFolders
 
 TRACK = b"time_s,x_m,y_m,z_m\n0,1,2,0.1\n1,4,6,0.2\n"
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from skisnow.web.replay.tracks import TrackFolders
+from skisnow.web.lab_tracks import TrackFolders
 
 from ...replay.test_tracks import gpx
 from .shared import TRACK, keep, keep_track

@@ -19,10 +19,10 @@ from skisnow.replay.page import in_language, static_text
 from skisnow.report.race.folder import gaps_of_folders
 from skisnow.ski import read_ski
 from skisnow.track.read import read_track
+from skisnow.web import lab_tracks, replay_addresses
 from skisnow.web.lab_skis import LabSkis
-from skisnow.web.replay import addresses, tracks
-from skisnow.web.replay.addresses import RunFolders, program_file, show_address, show_page
-from skisnow.web.replay.tracks import Placing, TrackFolders, points_of_track, track_on_slope
+from skisnow.web.lab_tracks import Placing, TrackFolders, points_of_track, track_on_slope
+from skisnow.web.replay_addresses import RunFolders, program_file, show_address, show_page
 
 from ....report.runs import circle_run
 from ...replay.test_tracks import gpx
@@ -58,7 +58,7 @@ def test_a_track_keeps_an_ending_that_says_how_it_is_read(tmp_path: Path) -> Non
 
 
 def test_no_more_tracks_than_the_lab_can_list(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(tracks, "MOST", 1)
+    monkeypatch.setattr(lab_tracks, "MOST_TRACKS", 1)
     keep_track(tmp_path)
     with pytest.raises(ParameterError) as found:
         keep_track(tmp_path)
@@ -73,7 +73,7 @@ def test_tracks_of_a_folder_that_cannot_be_written_are_refused(tmp_path: Path) -
 
 def test_a_track_is_no_longer_and_no_larger_than_allowed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     rows = b"".join(b"%d,%d,0,0\n" % (i, i) for i in range(3))
-    monkeypatch.setattr(tracks, "MOST_POINTS", 3)
+    monkeypatch.setattr(lab_tracks, "MOST_POINTS", 3)
     folders = TrackFolders(tmp_path)
     content = b"time_s,x_m,y_m,z_m\n" + rows
     assert folders.keep(io.BytesIO(content), Placing("x.csv"))[1] == 3
@@ -83,8 +83,8 @@ def test_a_track_is_no_longer_and_no_larger_than_allowed(tmp_path: Path, monkeyp
     (tmp_path / "long.csv").write_bytes(content + b"3,3,0,0\n")
     with pytest.raises(ParameterError, match="4 points"):
         track_on_slope(tmp_path / "long.csv", Placing("x.csv"), 0.0)
-    monkeypatch.setattr(tracks, "LARGEST_BYTES", 2_000_000)
-    monkeypatch.setattr(tracks, "_CHUNK", 1_500_000)
+    monkeypatch.setattr(lab_tracks, "LARGEST_TRACK_BYTES", 2_000_000)
+    monkeypatch.setattr(lab_tracks, "_CHUNK", 1_500_000)
     counted = folders.keep(io.BytesIO(bytes(2_000_000)), Placing("x.csv"), count=lambda place, _: place.stat().st_size)
     assert counted[1] == 2_000_000
     with pytest.raises(ParameterError, match=r"^a track of more than 2 MB is not taken in$"):
@@ -131,7 +131,7 @@ def test_a_track_is_placed_by_what_it_is_in(tmp_path: Path) -> None:
     assert str(found.value) == expected
     slope = replace(read_track(tmp_path / "own.csv"), axes="slope")
     with pytest.MonkeyPatch.context() as patched:
-        patched.setattr(tracks, "read_track", lambda _: slope)
+        patched.setattr(lab_tracks, "read_track", lambda _: slope)
         with pytest.raises(ParameterError) as found:
             points_of_track(tmp_path / "own.csv", Placing("mine.csv", 90.0))
     assert str(found.value) == "mine.csv is in the axes of the slope already: leave the direction out"
@@ -172,7 +172,7 @@ def test_a_run_is_fetched_with_its_track_and_in_the_readers_language(
     assert answer.headers["cache-control"] == "no-cache"
     assert desk.get("/replay/data/mine", "de").content == replay_bytes(in_language(alone, "de"))
     assert here == []
-    track = tracks.track_on_slope(
+    track = lab_tracks.track_on_slope(
         desk.lab.runs / "tracks" / name / "track.csv", Placing("measured.csv", None, 2.0), 0.0
     )
     beside = replay_of_file(desk.lab.runs / "mine", title="mine", track=track)
@@ -258,7 +258,7 @@ def test_times_at_gates_are_asked_of_both_folders(
         given.append((most.seconds, work, *what))
         return "<p>so</p>"
 
-    monkeypatch.setattr(addresses, "confined", page)
+    monkeypatch.setattr(replay_addresses, "confined", page)
     answer = desk.get("/replay/gates?run=mine&ghost=theirs", "de")
     assert (answer.status_code, answer.text, answer.headers["content-type"]) == (
         200, "<p>so</p>", "text/html; charset=utf-8",

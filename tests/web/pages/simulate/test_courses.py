@@ -11,8 +11,8 @@ import pytest
 
 from skisnow._support.errors import OutputError, ParameterError
 from skisnow.track.course import course_names
-from skisnow.web import lab_courses
-from skisnow.web.lab_courses import LabCourses, gates_of
+from skisnow.web import lab_tracks
+from skisnow.web.lab_tracks import LabCourses, gates_of
 
 from ..desk import in_this_process
 from .shared import GIVEN, asked
@@ -26,7 +26,7 @@ COURSE = b"gate,x_m,y_m,side\n1,12,1.5,left\n2,22,-1.5,right\n3,32,1.5,left\n"
 @pytest.fixture
 def here(monkeypatch: pytest.MonkeyPatch) -> None:
     """Courses are read in this process."""
-    in_this_process(monkeypatch, "lab_courses")
+    in_this_process(monkeypatch, "lab_tracks")
 
 
 def test_a_course_is_sent_by_a_form_that_needs_no_script(desk: Desk) -> None:
@@ -94,11 +94,11 @@ def test_courses_are_listed_the_newest_first_without_what_is_none(tmp_path: Path
 
 def test_what_is_just_allowed_of_courses_is_taken(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     courses = LabCourses(tmp_path)
-    monkeypatch.setattr(lab_courses, "confined", lambda *_: 3)
+    monkeypatch.setattr(lab_tracks, "confined", lambda *_: 3)
     with pytest.raises(ParameterError, match="a course of more than 1 MB is not taken in"):
         courses.keep("a.csv", io.BytesIO(bytes(1_000_001)))
     courses.keep("a.csv", io.BytesIO(bytes(1_000_000)))
-    monkeypatch.setattr(lab_courses, "MOST", 2)
+    monkeypatch.setattr(lab_tracks, "MOST_COURSES", 2)
     courses.keep("a.csv", io.BytesIO(COURSE))
     told = "2 courses are kept already; take some out of the folder courses of the lab"
     with pytest.raises(ParameterError, match=told):
@@ -118,7 +118,7 @@ def test_a_course_is_read_with_the_limits_of_uploads_and_a_full_disk_is_said(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     given: list[Any] = []
-    monkeypatch.setattr(lab_courses, "confined", lambda *what: given.append(what))
+    monkeypatch.setattr(lab_tracks, "confined", lambda *what: given.append(what))
     LabCourses(tmp_path).keep("a.csv", io.BytesIO(COURSE))
     ((bounds, work, _),) = given
     assert (bounds.seconds, work) == (120.0, gates_of)

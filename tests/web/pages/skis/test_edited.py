@@ -17,8 +17,8 @@ from skisnow._support.errors import ParameterError
 from skisnow.ski import read_ski, ski_names
 from skisnow.ski.editing import SkiEdit, edit_stations, edited_ski
 from skisnow.web.lab_skis import LabSkis, check_ski_texts, ski_of_texts
-from skisnow.web.ski_editor import SkiAsked
-from skisnow.web.subprocesses import OF_A_SKI
+from skisnow.web.ski_editor import SkiEditInput
+from skisnow.web.subprocesses import SKI_BOUNDS
 
 from .shared import CARVER, HEAVY, SLALOM, TEXT, cells_of, opened, saved_place, source_words
 
@@ -142,9 +142,9 @@ def test_an_answer_to_an_older_question_is_dropped(desk: Desk, monkeypatch: pyte
     page = opened(desk)
     asked, answered = threading.Event(), threading.Event()
     drawn = skis_of(page)
-    find = drawn._found
+    find = drawn._load
 
-    def held(words: list[str], what: SkiAsked) -> object:
+    def held(words: list[str], what: SkiEditInput) -> object:
         if words == ["carver"]:
             asked.set()
             assert answered.wait(60)
@@ -152,7 +152,7 @@ def test_an_answer_to_an_older_question_is_dropped(desk: Desk, monkeypatch: pyte
                 raise ParameterError("too late")
         return find(words, what)
 
-    monkeypatch.setattr(drawn, "_found", held)
+    monkeypatch.setattr(drawn, "_load", held)
 
     async def begun() -> asyncio.Task[None]:
         with page.client:
@@ -271,7 +271,7 @@ def test_a_text_is_drawn_when_it_is_asked_for(desk: Desk, confined_words: list[t
     assert downloads(page) == {}
     page.press("Draw the file")
     page.shows("100 to 460 (carver, longer)")
-    assert confined_words == [(OF_A_SKI, check_ski_texts, longer, "")]
+    assert confined_words == [(SKI_BOUNDS, check_ski_texts, longer, "")]
     lines = page.outline()
     assert lines[lines.index("Length") : lines.index("Running length")] == ["Length", "1.755 m", "1.800 m"]
     assert "field EI × = '1' numeric" in lines

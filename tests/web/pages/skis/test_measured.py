@@ -22,7 +22,7 @@ from skisnow.web import lab_skis as measured_ski
 from skisnow.web.lab_skis import (
     LabSkis,
     SkiTexts,
-    _without,
+    _without_folder,
     add_ski,
     check_ski_texts,
     measured_text,
@@ -33,8 +33,8 @@ from skisnow.web.lab_skis import (
 )
 from skisnow.web.pages import skis as skis_page
 from skisnow.web.settings import Limits
-from skisnow.web.ski_editor import CELLS, FACTORS, SkiAsked, ski_found
-from skisnow.web.subprocesses import OF_A_SKI
+from skisnow.web.ski_editor import CELLS, FACTORS, SkiEditInput, edit_ski_texts
+from skisnow.web.subprocesses import SKI_BOUNDS
 
 from ...test_measured_ski import DESIGN, TABLE, TYPED, WITH_TABLE
 from .shared import CARVER, HEAVY, TEXT, files, opened, saved_place
@@ -70,7 +70,7 @@ def test_three_widths_become_a_ski_of_the_lab(desk: Desk, confined_words: list[t
         "EI_N_m2 = [100.0, 250.0, 440.0, 260.5, 100.0]",
         "GJ_N_m2 = [60.0, 140.0, 175.0, 140.0, 60.0]",
     ]
-    assert confined_words == [(OF_A_SKI, check_ski_texts, text, "")]
+    assert confined_words == [(SKI_BOUNDS, check_ski_texts, text, "")]
     assert not any("Not saved" in line for line in page.outline())
 
 
@@ -112,7 +112,7 @@ def test_files_are_taken_in_from_the_form(desk: Desk, confined_words: list[tuple
     answer = desk.post("/skis/add", files=files(mine_toml=WITH_TABLE, rows_csv=TABLE), data={"name": ""})
     assert (answer.status_code, answer.headers["location"]) == (303, "/skis?ski=my%20slalom&added=1")
     ((bounds, work, _, names, further),) = confined_words
-    assert bounds is OF_A_SKI
+    assert bounds is SKI_BOUNDS
     assert (work, names) == (read_ski_files, ["mine.toml", "rows.csv"])
     assert further == dict.fromkeys(("mass_kg", "camber_mm", "EI_N_m2", "GJ_N_m2"), "")
     assert read_ski(saved_place(desk, "my slalom")).name == "my slalom"
@@ -232,7 +232,7 @@ def test_uploads_are_named_without_their_folders(confined_words: list[tuple[obje
     found = ski_of_uploads(uploads, {"mass_kg": "1"}, Limits())
     assert found.name == "my slalom"
     ((bounds, _, folder, names, further),) = confined_words
-    assert bounds is OF_A_SKI
+    assert bounds is SKI_BOUNDS
     assert (names, further) == (["mine.toml", "rows.csv"], {"mass_kg": "1"})
     assert not Path(str(folder)).exists()
     with pytest.raises(ParameterError, match="more than 1 files at once"):
@@ -382,7 +382,7 @@ def test_a_folder_that_is_gone_is_not_named(tmp_path: Path) -> None:
     (tmp_path / "real").mkdir()
     (tmp_path / "link").symlink_to(tmp_path / "real")
     told = f"{tmp_path}/link/ski.toml and {tmp_path}/real/ski.csv in {tmp_path}"
-    assert _without(f"{tmp_path}/link", told) == f"ski.toml and ski.csv in {tmp_path}"
+    assert _without_folder(f"{tmp_path}/link", told) == f"ski.toml and ski.csv in {tmp_path}"
 
 
 def test_a_ski_that_was_read_is_checked_alone() -> None:
@@ -407,19 +407,19 @@ ONES = dict.fromkeys(FACTORS, "1")
 def test_whether_only_the_file_says_what_the_ski_is(
     factors: dict[str, str], cells: dict[tuple[str, int], str], *, is_file: bool
 ) -> None:
-    asked = SkiAsked(TEXT, factors=factors, cells=cells)
+    asked = SkiEditInput(TEXT, factors=factors, cells=cells)
     assert asked.is_file is is_file
-    found = ski_found(asked)
+    found = edit_ski_texts(asked)
     assert found.ski.name == ("carver" if is_file else "carver, edited")
     assert (found.ski.source == CARVER.source) is is_file
-    assert ski_found(asked, name="mine").ski.name == "mine"
+    assert edit_ski_texts(asked, name="mine").ski.name == "mine"
 
 
 def test_an_edit_is_what_the_library_makes_of_it() -> None:
     stations = edit_stations(CARVER)
     factors = {key: str(1.0 + 0.1 * i) for i, key in enumerate(FACTORS)}
     cells = {("width_mm", 3): "85,5", ("base_height_mm", 2): "−2", ("EI_N_m2", 4): "500", ("GJ_N_m2", 8): "70"}
-    found = ski_found(SkiAsked(HEAVY, "", factors, cells))
+    found = edit_ski_texts(SkiEditInput(HEAVY, "", factors, cells))
     assert found.warned.startswith("ski.toml: mass_kg is 20")
     assert found.station == tuple(stations)
     values = {column: np.full(9, np.nan) for column in CELLS}
@@ -446,5 +446,5 @@ def test_an_edit_is_what_the_library_makes_of_it() -> None:
 def test_the_page_reads_a_text_in_its_own_process_before_its_own(monkeypatch: pytest.MonkeyPatch) -> None:
     heard: list[tuple[object, ...]] = []
     monkeypatch.setattr(skis_page, "confined", lambda *words: heard.append(words))
-    skis_page._checked_apart("text", "table")
-    assert heard == [(OF_A_SKI, check_ski_texts, "text", "table")]
+    skis_page._check_confined("text", "table")
+    assert heard == [(SKI_BOUNDS, check_ski_texts, "text", "table")]

@@ -1,4 +1,4 @@
-"""*Study*: where an input begins, how long it takes, what goes with the study."""
+"""*Study*: where an input first_range, how long it takes, what goes with the study."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from skisnow.scenario.keys import SCENARIO_KEYS
 from skisnow.ski import read_ski
 from skisnow.web.lab_skis import LabSkis
 from skisnow.web.studies import Studies
-from skisnow.web.study_fields import CARVE, begins, study_keys
+from skisnow.web.study_fields import CARVE, first_range, study_keys
 
 from ...campaign_texts import HARD, SHEARED, SOFT, pressed
 from .shared import (
@@ -70,7 +70,7 @@ def campaign(desk: Desk, folder: Path) -> str:
     ],
 )
 def test_an_input_begins_around_what_it_usually_is(key: Quantity, ends: tuple[float, float] | None) -> None:
-    assert begins(key) == ends
+    assert first_range(key) == ends
 
 
 @pytest.mark.parametrize(
@@ -88,7 +88,7 @@ def test_what_varies_of_a_turn_has_ends_to_begin_with(desk: Desk, name: str, end
     page = desk.open("/study")
     page.fill(SECOND, name)
     assert (page.field(FROM_2).value, page.field(TO_2).value) == ends
-    assert begins(study_keys(CARVE)[name]) == tuple(map(float, ends))
+    assert first_range(study_keys(CARVE)[name]) == tuple(map(float, ends))
 
 
 @pytest.mark.parametrize(
@@ -102,7 +102,7 @@ def test_what_varies_of_a_turn_has_ends_to_begin_with(desk: Desk, name: str, end
     ],
 )
 def test_what_varies_of_a_run_has_ends_to_begin_with(name: str, ends: tuple[float, float]) -> None:
-    assert begins(SCENARIO_KEYS[name]) == ends
+    assert first_range(SCENARIO_KEYS[name]) == ends
 
 
 @pytest.mark.parametrize(

@@ -12,7 +12,7 @@ import pytest
 from skisnow.report.formatting import significant
 from skisnow.web.pages import study as study_page
 from skisnow.web.studies import Studies, StudyJob
-from skisnow.web.study_fields import CARVE, Range, StudyAsked
+from skisnow.web.study_fields import CARVE, Range, StudyQuestion
 
 from .shared import ANGLE, HARDNESS, LOAD, RATIO, SPEED, STRESS, TURN, asked
 
@@ -39,7 +39,7 @@ OF_RUNS = {
 }
 
 
-def finished(desk: Desk, what: StudyAsked, rows: Sequence[Mapping[str, object]], **job: object) -> str:
+def finished(desk: Desk, what: StudyQuestion, rows: Sequence[Mapping[str, object]], **job: object) -> str:
     """The name of a study that is done, with this table."""
     made = Studies(desk.lab.runs).ask_for(what)
     folder = desk.lab.runs / "studies" / made.name
@@ -133,7 +133,7 @@ def test_the_queue_begins_and_ends_with_the_server(desk: Desk, monkeypatch: pyte
 
 
 def test_a_table_of_turns_over_one_input(desk: Desk) -> None:
-    what = StudyAsked(CARVE, {"edge_angle_deg": Range(10.0, 70.0, 3)}, TURN, named=("ski: carver",))
+    what = StudyQuestion(CARVE, {"edge_angle_deg": Range(10.0, 70.0, 3)}, TURN, named=("ski: carver",))
     rows = [
         {"edge_angle_deg": 70.0, "turn_radius_boot_m": 5.0474, "side_force_N": 2197.98, "outcome": "slips"},
         {"edge_angle_deg": 10.0, "turn_radius_boot_m": 13.0018, "side_force_N": 141.06, "outcome": "equilibrium"},
@@ -185,7 +185,7 @@ def test_of_two_inputs_the_one_with_more_values_is_along_the_axis(desk: Desk) ->
         for load in (400.0, 500.0, 600.0, 700.0, 800.123)
         for angle in (60.0, 50.0, 40.0, 30.0, 20.0, 10.0)
     ]
-    page = desk.open(f"/study/{finished(desk, StudyAsked(CARVE, varied, fixed), rows)}")
+    page = desk.open(f"/study/{finished(desk, StudyQuestion(CARVE, varied, fixed), rows)}")
     lines = page.charts()["Carved radius (m)"]["lines"]
     assert page.charts()["Carved radius (m)"]["x"] == ANGLE
     assert [(line["style"], line["name"]) for line in lines] == [
@@ -208,7 +208,7 @@ def test_of_two_inputs_with_as_many_values_the_first_is_along_the_axis(desk: Des
         for load in (400.0, 800.0)
         for elements in (40, 80)
     ]
-    page = desk.open(f"/study/{finished(desk, StudyAsked(CARVE, varied, fixed), rows)}")
+    page = desk.open(f"/study/{finished(desk, StudyQuestion(CARVE, varied, fixed), rows)}")
     chart = page.charts()["Carved radius (m)"]
     assert chart["x"] == {"load_N": LOAD, "elements": "Elements"}[first]
     other = {"load_N": ["Elements: 40", "Elements: 80"], "elements": [f"{LOAD}: 400", f"{LOAD}: 800"]}[first]
@@ -216,7 +216,7 @@ def test_of_two_inputs_with_as_many_values_the_first_is_along_the_axis(desk: Des
 
 
 def test_a_table_of_runs(desk: Desk) -> None:
-    what = StudyAsked("carved-46m", {"start.speed_m_per_s": Range(6.0, 9.0, 2)}, {"sledge.mass_kg": 90.0})
+    what = StudyQuestion("carved-46m", {"start.speed_m_per_s": Range(6.0, 9.0, 2)}, {"sledge.mass_kg": 90.0})
     result = {"run_length_m": 30.0, "simulated_s": 5.0, "end_speed_m_per_s": 6.5, "turn_radius_median_m": 12.0}
     rows = [{"start.speed_m_per_s": speed, **result, "outcome": "left_course"} for speed in (6.0, 9.0)]
     page = desk.open(f"/study/{finished(desk, what, rows)}")
@@ -233,7 +233,7 @@ def test_a_table_of_runs(desk: Desk) -> None:
 @pytest.mark.parametrize("count", [200, 201])
 def test_a_long_table_is_shown_in_part(desk: Desk, count: int) -> None:
     rows = [{"edge_angle_deg": 10.0 + n, "outcome": "equilibrium"} for n in range(count)]
-    what = StudyAsked(CARVE, {"edge_angle_deg": Range(10.0, 70.0, 2)}, TURN)
+    what = StudyQuestion(CARVE, {"edge_angle_deg": Range(10.0, 70.0, 2)}, TURN)
     page = desk.open(f"/study/{finished(desk, what, rows)}")
     assert len(page.tagged("tr")) == 201
     more = ["[note] The first 200 of 201 rows; the file has all of them and all columns."]
@@ -251,7 +251,7 @@ def test_a_long_table_is_shown_in_part(desk: Desk, count: int) -> None:
     ],
 )
 def test_the_map_stands_above_the_table(desk: Desk, language: str, of_map: str, said: list[str]) -> None:
-    what = StudyAsked(CARVE, {"edge_angle_deg": Range(10.0, 70.0, 2)}, TURN)
+    what = StudyQuestion(CARVE, {"edge_angle_deg": Range(10.0, 70.0, 2)}, TURN)
     name = finished(desk, what, [{"edge_angle_deg": 10.0, "outcome": "equilibrium"}], language=of_map)
     assert desk.open(f"/study/{name}").tagged("img") == []
     (desk.lab.runs / "studies" / name / "map.svg").write_text("<svg/>", encoding="utf-8")
@@ -266,7 +266,7 @@ def test_the_map_stands_above_the_table(desk: Desk, language: str, of_map: str, 
 
 
 def test_the_files_of_a_study(desk: Desk) -> None:
-    what = StudyAsked(CARVE, {"edge_angle_deg": Range(10.0, 70.0, 2)}, TURN)
+    what = StudyQuestion(CARVE, {"edge_angle_deg": Range(10.0, 70.0, 2)}, TURN)
     name = finished(desk, what, [{"edge_angle_deg": 10.0, "outcome": "equilibrium"}])
     folder = desk.lab.runs / "studies" / name
     (folder / "map.svg").write_text("<svg/>", encoding="utf-8")
@@ -286,7 +286,7 @@ def test_the_files_of_a_study(desk: Desk) -> None:
 
 @pytest.mark.parametrize("file", ["job.json", "study.zip", "map.svg"])
 def test_a_file_that_is_not_there_is_told(desk: Desk, file: str) -> None:
-    name = Studies(desk.lab.runs).ask_for(StudyAsked(CARVE, {"edge_angle_deg": Range(1.0, 7.0, 2)}, TURN)).name
+    name = Studies(desk.lab.runs).ask_for(StudyQuestion(CARVE, {"edge_angle_deg": Range(1.0, 7.0, 2)}, TURN)).name
     answer = desk.get(f"/study/files/{name}/{file}")
     assert answer.status_code == 404
     missing = "table.csv" if file == "study.zip" else file
@@ -295,7 +295,7 @@ def test_a_file_that_is_not_there_is_told(desk: Desk, file: str) -> None:
 
 
 def test_a_study_without_a_table_has_no_page_yet(desk: Desk) -> None:
-    name = Studies(desk.lab.runs).ask_for(StudyAsked(CARVE, {"edge_angle_deg": Range(1.0, 7.0, 2)}, TURN)).name
+    name = Studies(desk.lab.runs).ask_for(StudyQuestion(CARVE, {"edge_angle_deg": Range(1.0, 7.0, 2)}, TURN)).name
     told = f"there is no 'table.csv' of a study '{name}' here. Choose one from the list"
     assert desk.get(f"/study/{name}").status_code == 404
     assert [str(error) for error in desk.failures] == [told]
@@ -304,7 +304,7 @@ def test_a_study_without_a_table_has_no_page_yet(desk: Desk) -> None:
 
 def test_values_stand_in_the_file_as_the_command_reads_them() -> None:
     fixed = {"shear.law": 'a "b" ü', "solver.fixed": True, "sledge.inertia_kg_m2": (6.0, 8.0), "ski.name": "x"}
-    what = StudyAsked("carved-46m", {"friction.mu_0": Range(0.1, 1.0, 3, log=True)}, fixed)
+    what = StudyQuestion("carved-46m", {"friction.mu_0": Range(0.1, 1.0, 3, log=True)}, fixed)
     assert what.text() == (
         'out = "table.csv"\nscenario = "carved-46m"\n\n[fixed]\n"shear.law" = "a \\"b\\" ü"\n"solver.fixed" = true\n'
         '"sledge.inertia_kg_m2" = [6.0, 8.0]\n"ski.name" = "x"\n\n[grid]\n'

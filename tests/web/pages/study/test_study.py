@@ -11,7 +11,7 @@ from skisnow.scenario import scenario_names
 from skisnow.ski import ski_names
 from skisnow.studies import read_study
 from skisnow.web.lab_skis import LabSkis
-from skisnow.web.study_fields import CARVE, most_points_refused
+from skisnow.web.study_fields import CARVE, require_few_points
 
 from .shared import (
     ANGLE,
@@ -276,9 +276,9 @@ def test_as_many_points_as_the_lab_takes_are_taken(desk: Desk) -> None:
     page.fill(SECOND, "load_N")
     page.fill(VALUES_2, "5000")
     assert asked(desk, page)[0]["points"] == 10_000
-    most_points_refused(10_000)
+    require_few_points(10_000)
     with pytest.raises(ParameterError, match="has 10001 points"):
-        most_points_refused(10_001)
+        require_few_points(10_001)
 
 
 def test_a_whole_number_varies_as_one(desk: Desk) -> None:

@@ -1,4 +1,4 @@
-"""Addresses of the replay: program, bytes of a run, model, page, and upload of a measured track."""
+"""Addresses of the replay: scripts, data of runs, models, pages, and upload of measured tracks."""
 
 from __future__ import annotations
 
@@ -8,32 +8,31 @@ from typing import TYPE_CHECKING, Final
 from urllib.parse import quote
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
-from starlette.concurrency import run_in_threadpool
-from starlette.datastructures import FormData, UploadFile
-from starlette.exceptions import HTTPException
+from starlette.datastructures import FormData
 from starlette.requests import Request
-from starlette.responses import HTMLResponse, PlainTextResponse, RedirectResponse, Response
+from starlette.responses import HTMLResponse, PlainTextResponse, Response
 
-from ..._support.errors import ParameterError, SkisnowError
-from ..._support.language import ENGLISH, catalogue
-from ..._support.user_files import read_json
-from ...replay.binary import replay_bytes
-from ...replay.model import moving_replay_model, replay_model
-from ...replay.page import MODULES, STYLE, in_language, page_words, static_text
-from ...replay.run_file import RUN_FILE, replay_of_file
-from ...report.race.folder import gaps_of_folders
-from ...ski import read_ski
-from ..error_pages import error_sentence, plain_page
-from ..language import language_of_request
-from ..runs import JOB
-from ..subprocesses import BOUNDS, confined
-from .tracks import Placing, TrackFolders, number_of, points_of_track, track_on_slope
+from .._support.errors import ParameterError
+from .._support.language import ENGLISH, catalogue
+from .._support.user_files import read_json
+from ..replay.binary import replay_bytes
+from ..replay.model import moving_replay_model, replay_model
+from ..replay.page import MODULES, STYLE, in_language, page_words, static_text
+from ..replay.run_file import RUN_FILE, replay_of_file
+from ..report.race.folder import gaps_of_folders
+from ..ski import read_ski
+from .lab_tracks import Placing, TrackFolders, number_of, points_of_track, track_on_slope
+from .language import language_of_request
+from .layout import plain_page
+from .runs import JOB
+from .subprocesses import BOUNDS, confined
+from .upload_forms import add_upload, uploaded_files
 
 if TYPE_CHECKING:
     from fastapi import FastAPI
 
-    from ...replay.replay import Replay
-    from ...ski import Ski
+    from ..replay.replay import Replay
+    from ..ski import Ski
 
 LIST: Final = "/replay"
 SHOW: Final = f"{LIST}/show"
@@ -48,39 +47,38 @@ _LARGEST_FACTOR: Final = 20.0
 
 @dataclass(frozen=True, slots=True)
 class RunFolders:
-    """Runs kept in a folder, each in a folder of its own with a run.nc in it, known by that folder's name."""
+    """Runs in a folder, each in a subfolder with run.nc whose name is that of the run."""
 
     folder: Path
 
     def names(self) -> list[str]:
-        """Of all runs, the newest first."""
+        """Names of all runs, the newest first."""
         if not self.folder.is_dir():
             return []
-        found = [place for place in self.folder.iterdir() if (place / RUN_FILE).is_file()]
-        return [place.name for place in sorted(found, key=lambda place: -(place / RUN_FILE).stat().st_mtime)]
+        folders = [place for place in self.folder.iterdir() if (place / RUN_FILE).is_file()]
+        return [place.name for place in sorted(folders, key=lambda place: -(place / RUN_FILE).stat().st_mtime)]
 
     def place(self, name: str) -> Path:
-        """The folder of a run; a name that is none of `names` is refused, wherever it would lead.
+        """Folder of a run; only names of `names` are accepted.
 
         Raises
         ------
         ParameterError
-            There is no such run.
+            The lab has no such run.
         """
         if name not in self.names():
             raise ParameterError(f"there is no run {name!r} here. Choose one from the list")
         return self.folder / name
 
     def replay(self, name: str, track: str = "") -> Replay:
-        """The replay of a run, with a measured track beside it where one is named.
+        """Replay of a run, with a measured track if one is named.
 
-        The ski of a run of the lab is where its job says: the run itself knows the name alone. The track, which was
-        uploaded, is read in a process of its own.
+        The file of the ski is given in the run's job. The uploaded track is read in a separate process.
 
         Raises
         ------
         ParameterError
-            There is no such run, or it cannot be shown.
+            The lab has no such run, or it cannot be shown.
         """
         place = self.place(name)
         ski = _ski_of_job(place / JOB)
@@ -102,7 +100,7 @@ def _ski_of_job(job: Path) -> Ski | None:
 
 
 def add_addresses(app: FastAPI, runs: RunFolders) -> None:
-    """Let an application answer for the replays of these runs."""
+    """Add the addresses of the replays of these runs."""
 
     def show(request: Request, run: str, ghost: str = "", track: str = "") -> Response:
         try:
@@ -121,14 +119,14 @@ def add_addresses(app: FastAPI, runs: RunFolders) -> None:
 
     def model(name: str, time: float = 0.0, exaggeration: float = 1.0) -> Response:
         try:
-            content = replay_model(runs.replay(name), time, exaggeration=_possible(exaggeration))
+            content = replay_model(runs.replay(name), time, exaggeration=_limit_exaggeration(exaggeration))
         except ParameterError as error:
             return PlainTextResponse(str(error), 404)
         return _model_file(content, f"{name}-{time:.2f}s")
 
     def moving_model(name: str, exaggeration: float = 1.0) -> Response:
         try:
-            content = moving_replay_model(runs.replay(name), exaggeration=_possible(exaggeration))
+            content = moving_replay_model(runs.replay(name), exaggeration=_limit_exaggeration(exaggeration))
         except ParameterError as error:
             return PlainTextResponse(str(error), 404)
         return _model_file(content, name)
@@ -147,8 +145,8 @@ def add_addresses(app: FastAPI, runs: RunFolders) -> None:
         app.add_api_route(address, of_run, include_in_schema=False, response_model=None)
 
 
-def _possible(exaggeration: float) -> float:
-    """The nearest factor that the page's slider has; 1 for what is no number."""
+def _limit_exaggeration(exaggeration: float) -> float:
+    """Nearest exaggeration of the page's slider; 1 for NaN."""
     return min(max(1.0, exaggeration), _LARGEST_FACTOR)  # in this order: of 1 and nan the first is taken
 
 
@@ -158,7 +156,7 @@ def _model_file(content: bytes, name: str) -> Response:
 
 
 def program_file(name: str) -> Response:
-    """A file of the program in the browser; nothing else of the package is given out."""
+    """A script or style sheet of the replay; other files of the package are rejected."""
     if name not in (*MODULES, STYLE):
         return PlainTextResponse("The replay has no such file.", 404)
     kind = _TYPES[name[name.rindex(".") :]]
@@ -166,7 +164,7 @@ def program_file(name: str) -> Response:
 
 
 def show_page(run: str, ghost: str | None, track: str = "", language: str = ENGLISH) -> str:
-    """The HTML that fetches a run, a second one to lay over it and a track beside it, by their names."""
+    """HTML of the replay of a run, with a second run and a measured track if they are named."""
     environment = Environment(
         loader=PackageLoader("skisnow.replay", "static"), autoescape=True, undefined=StrictUndefined
     )
@@ -185,36 +183,22 @@ def show_page(run: str, ghost: str | None, track: str = "", language: str = ENGL
 
 
 def show_address(run: str, ghost: str | None = None) -> str:
-    """Where a run is shown, with a second one over it."""
+    """Address of the replay of a run, with a second run if it is named."""
     return f"{SHOW}?run={quote(run, safe='')}" + (f"&ghost={quote(ghost, safe='')}" if ghost else "")
 
 
-UPLOAD: Final = "/replay/track"
-_BACK: Final = "/replay"
+TRACK_UPLOAD: Final = f"{LIST}/track"
 
 
-def add_uploads(app: FastAPI, tracks: TrackFolders) -> None:
-    """Let an application take tracks in. Where a request may come from is held by the guard around it."""
+def add_track_uploads(app: FastAPI, tracks: TrackFolders) -> None:
+    """Add the address that receives measured tracks."""
 
-    async def take_in(request: Request) -> Response:
-        try:
-            async with request.form(max_files=1, max_fields=4) as form:
-                name, _ = await run_in_threadpool(_kept, tracks, form)
-        except (SkisnowError, OSError) as error:
-            return plain_page("This was not taken in", f"Nothing was stored: {error_sentence(error)}", 400, request)
-        except HTTPException:
-            text = "Nothing was stored: one file at a time is taken in."
-            return plain_page("This was not taken in", text, 400, request)
-        return RedirectResponse(f"{_BACK}?track={quote(name, safe='')}", 303)
+    def store(form: FormData) -> str:
+        upload = uploaded_files(form, "file", "no file was chosen; choose the file of a track")[0]
+        azimuth = number_of(str(form.get("azimuth", "")), "the direction of the fall line")
+        start = number_of(str(form.get("start", "")), "the time at the first point")
+        placing = Placing((upload.filename or "")[:200], azimuth, start or 0.0)
+        name, _ = tracks.keep(upload.file, placing, count=lambda *what: confined(BOUNDS, points_of_track, *what))
+        return f"{LIST}?track={quote(name, safe='')}"
 
-    app.add_api_route(UPLOAD, take_in, methods=["POST"], include_in_schema=False, response_model=None)
-
-
-def _kept(tracks: TrackFolders, form: FormData) -> tuple[str, int]:
-    upload = form.get("file")
-    if not isinstance(upload, UploadFile) or not upload.filename:
-        raise ParameterError("no file was chosen; choose the file of a track")
-    azimuth = number_of(str(form.get("azimuth", "")), "the direction of the fall line")
-    start = number_of(str(form.get("start", "")), "the time at the first point")
-    placing = Placing(upload.filename[:200], azimuth, start or 0.0)
-    return tracks.keep(upload.file, placing, count=lambda *what: confined(BOUNDS, points_of_track, *what))
+    add_upload(app, TRACK_UPLOAD, store, max_fields=4)

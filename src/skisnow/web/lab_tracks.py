@@ -1,0 +1,296 @@
+"""Uploaded tracks and courses of the lab, kept as files that are never overwritten."""
+
+from __future__ import annotations
+
+import json
+import secrets
+import shutil
+from dataclasses import asdict, dataclass, replace
+from pathlib import Path, PurePosixPath
+from tempfile import mkdtemp
+from typing import IO, TYPE_CHECKING, Final
+
+from .._support.errors import FieldDataError, ParameterError
+from .._support.staging import cannot_write, write_file
+from .._support.units import DEGREE
+from .._support.user_files import read_record
+from ..replay.replay import measured_track
+from ..track.course import course_names, read_course
+from ..track.read import SUFFIXES, read_track
+from ..track.slope_frame import in_slope_frame
+from .page_addresses import plain_stem
+from .subprocesses import BOUNDS, confined
+from .words import typed_number
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from typing import TypeAlias
+
+    from ..replay.replay import Replay, ReplayTrack
+    from ..track.track import Track
+
+    Count: TypeAlias = Callable[[Path, "Placing"], int]
+    Read: TypeAlias = Callable[[Path, "Placing", float | None], ReplayTrack]
+
+TRACKS_FOLDER: Final = "tracks"
+ABOUT: Final = "about.json"
+LARGEST_TRACK_BYTES: Final = 20_000_000
+"""Maximum size of a track: an hour at 100 points per second as GPX."""
+MOST_POINTS: Final = 20_000
+MOST_TRACKS: Final = 200
+LONGEST_WAIT_S: Final = 36_000.0
+_CHUNK: Final = 1 << 18
+_FILE: Final = "track"
+
+
+@dataclass(frozen=True, slots=True)
+class Placing:
+    """Position of a track relative to a run.
+
+    Attributes
+    ----------
+    called
+        Name of the uploaded file.
+    fall_line_azimuth_deg
+        Compass direction of the fall line; None for a track in the axes of the slope.
+    starts_at_s
+        Time of the run at the first point of the track (s).
+    """
+
+    called: str
+    fall_line_azimuth_deg: float | None = None
+    starts_at_s: float = 0.0
+
+
+class TrackFolders:
+    """Uploaded tracks of a lab, each in a separate folder."""
+
+    def __init__(self, runs: Path) -> None:
+        self._folder = runs / TRACKS_FOLDER
+
+    def names(self) -> list[str]:
+        """Names of all tracks, the newest first."""
+        paths = sorted(self._folder.glob(f"*/{ABOUT}"), key=lambda place: -place.stat().st_mtime)
+        return [place.parent.name for place in paths if not place.parent.name.startswith(".")]
+
+    def keep(self, content: IO[bytes], placing: Placing, *, count: Count | None = None) -> tuple[str, int]:
+        """Store a track that can be read and placed; returns its name and number of points.
+
+        Parameters
+        ----------
+        content
+            Contents of the file.
+        placing
+            Position relative to a run.
+        count
+            Function that checks the file and counts the points (default: `points_of_track` in this process).
+
+        Raises
+        ------
+        ParameterError
+            The track is too large, there are too many, a number is not allowed, or it cannot be placed on a slope.
+        FieldDataError
+            The file cannot be read as a track.
+        OutputError
+            The folder cannot be written.
+        """
+        _require_allowed(placing)
+        if len(self.names()) >= MOST_TRACKS:
+            raise ParameterError(
+                f"{MOST_TRACKS} tracks are kept already; take some out of the folder {TRACKS_FOLDER} of the lab"
+            )
+        try:
+            self._folder.mkdir(parents=True, exist_ok=True)
+            made = Path(mkdtemp(prefix=".partial-", dir=self._folder))
+        except OSError as error:
+            raise cannot_write(self._folder, error) from error
+        try:
+            suffix = PurePosixPath(placing.called.lower()).suffix
+            place = made / (_FILE + (suffix if suffix in SUFFIXES else ""))
+            _copy_limited(content, place)
+            n_points = (count or points_of_track)(place, placing)
+            write_file(made / ABOUT, json.dumps(asdict(placing), ensure_ascii=False, indent=1))
+            name = f"{plain_stem(placing.called, 'track')}-{secrets.token_hex(2)}"
+            made.rename(self._folder / name)
+        finally:
+            shutil.rmtree(made, ignore_errors=True)
+        return name, n_points
+
+    def beside(self, name: str, replay: Replay, *, read: Read | None = None) -> ReplayTrack:
+        """A track in the axes of a run.
+
+        Parameters
+        ----------
+        name
+            One of `names`.
+        replay
+            The run.
+        read
+            Function that reads the track (default: `track_on_slope` in this process).
+
+        Raises
+        ------
+        ParameterError
+            The lab has no such track, or it cannot be placed.
+        """
+        if name not in self.names():
+            raise ParameterError(f"there is no track {name!r} here. Choose one from the list")
+        placing = read_record(self._folder / name / ABOUT, Placing)
+        _require_allowed(placing)
+        places = [path for path in (self._folder / name).iterdir() if path.name != ABOUT]
+        if len(places) != 1:
+            raise ParameterError(f"the folder of the track {name} is damaged. Remove it and upload the track again")
+        angle = replay.tilt if replay.profile is None else None
+        return (read or track_on_slope)(places[0], placing, angle)
+
+
+def points_of_track(place: Path, placing: Placing) -> int:
+    """Number of points of a track that can be drawn with a run; errors as in `TrackFolders.keep`."""
+    track = _to_slope_axes(_read_named(place, placing), placing, slope_angle=0.0)
+    _require_few_points(track)
+    measured_track(track)  # rejects a track with too few places
+    return len(track.time)
+
+
+def track_on_slope(place: Path, placing: Placing, slope_angle: float | None) -> ReplayTrack:
+    """Track in the axes of a slope with an angle (rad), None for a profile; errors as in `TrackFolders.keep`."""
+    track = _to_slope_axes(_read_named(place, placing), placing, slope_angle=slope_angle)
+    _require_few_points(track)
+    return measured_track(track, starts_at=placing.starts_at_s)
+
+
+def _require_allowed(placing: Placing) -> None:
+    azimuth, start = placing.fall_line_azimuth_deg, placing.starts_at_s
+    if azimuth is not None and not -360.0 <= azimuth <= 360.0:
+        raise ParameterError(f"the fall line's direction is {azimuth:g}°; it must be from −360 to 360")
+    if not abs(start) <= LONGEST_WAIT_S:
+        raise ParameterError(
+            f"the start of the track is {start:g} s; it must be within {LONGEST_WAIT_S:g} s of the run's"
+        )
+
+
+def _require_few_points(track: Track) -> None:
+    if len(track.time) > MOST_POINTS:
+        raise ParameterError(
+            f"{track.name} has {len(track.time)} points; at most {MOST_POINTS} are drawn beside a run. Cut the turn out"
+        )
+
+
+def _copy_limited(content: IO[bytes], place: Path) -> None:
+    taken = 0
+    with place.open("xb") as file:
+        while piece := content.read(_CHUNK):
+            taken += len(piece)
+            if taken > LARGEST_TRACK_BYTES:
+                raise ParameterError(f"a track of more than {LARGEST_TRACK_BYTES // 1_000_000} MB is not taken in")
+            file.write(piece)
+
+
+def _read_named(place: Path, placing: Placing) -> Track:
+    """Read a track with the name of the uploaded file."""
+    try:
+        return replace(read_track(place), name=placing.called)
+    except FieldDataError as error:
+        message = str(error).replace(str(place), placing.called).replace(place.name, placing.called)
+        raise ParameterError(message) from error
+
+
+def _to_slope_axes(track: Track, placing: Placing, *, slope_angle: float | None) -> Track:
+    """Track in the axes of a slope; one in latitude and longitude begins at the start of the run."""
+    azimuth = placing.fall_line_azimuth_deg
+    if azimuth is None:
+        if track.axes == "east_north_up":
+            raise ParameterError(
+                f"{placing.called} is in latitude and longitude: say in which compass direction the slope falls"
+            )
+        return track
+    if track.axes == "slope":
+        raise ParameterError(f"{placing.called} is in the axes of the slope already: leave the direction out")
+    return in_slope_frame(track, fall_line_azimuth=azimuth * DEGREE, slope_angle=slope_angle, missing_height="on_slope")
+
+
+def number_of(text: str, words: str) -> float | None:
+    """Number from a field; None for an empty field.
+
+    Raises
+    ------
+    ParameterError
+        The text is not a number.
+    """
+    return typed_number(words, text) if text.strip() else None
+
+
+COURSES_FOLDER: Final = "courses"
+COURSE_SUFFIXES: Final = (".csv", ".gpx")
+LARGEST_COURSE_BYTES: Final = 1_000_000
+"""Maximum size of a course: ten thousand gates."""
+MOST_COURSES: Final = 200
+
+
+class LabCourses:
+    """Uploaded courses, each a file."""
+
+    def __init__(self, runs: Path) -> None:
+        self._folder = runs / COURSES_FOLDER
+
+    def kept(self) -> list[str]:
+        """Names of the uploaded courses, the newest first."""
+        paths = [place for place in self._folder.glob("[!.]*") if place.suffix in COURSE_SUFFIXES]
+        return [place.name for place in sorted(paths, key=lambda place: -place.stat().st_mtime)]
+
+    def names(self) -> list[str]:
+        """Names of all courses, first the built-in ones."""
+        return [*course_names(), *self.kept()]
+
+    def change(self, name: str) -> tuple[str, str]:
+        """Key and value of a scenario for this course.
+
+        Raises
+        ------
+        ParameterError
+            The lab has no such course.
+        """
+        if name in course_names():
+            return "course.name", name
+        if name not in self.kept():
+            raise ParameterError(f"the lab has no course named {name!r}. Choose one from the list")
+        return "course.file", str((self._folder / name).absolute())
+
+    def keep(self, called: str, content: IO[bytes]) -> str:
+        """Store a course that can be read; returns its name.
+
+        Raises
+        ------
+        ParameterError
+            The file is not a course, is too large, or there are too many.
+        OutputError
+            The folder cannot be written.
+        """
+        suffix = PurePosixPath(called.lower()).suffix
+        if suffix not in COURSE_SUFFIXES:
+            raise ParameterError(f"{called} is no course: choose a .csv or .gpx file")
+        if len(self.kept()) >= MOST_COURSES:
+            raise ParameterError(
+                f"{MOST_COURSES} courses are kept already; take some out of the folder {COURSES_FOLDER} of the lab"
+            )
+        data = content.read(LARGEST_COURSE_BYTES + 1)
+        if len(data) > LARGEST_COURSE_BYTES:
+            raise ParameterError(f"a course of more than {LARGEST_COURSE_BYTES // 1_000_000} MB is not taken in")
+        place = self._folder / f"{plain_stem(called, 'course')}-{secrets.token_hex(2)}{suffix}"
+        made = place.with_name(f".partial-{place.name}")
+        write_file(made, data)
+        try:
+            confined(BOUNDS, gates_of, made)
+            made.rename(place)
+        except OSError as error:
+            raise cannot_write(place, error) from error
+        except ParameterError as error:
+            raise ParameterError(str(error).replace(str(made), called).replace(made.name, called)) from error
+        finally:
+            made.unlink(missing_ok=True)
+        return place.name
+
+
+def gates_of(place: Path) -> int:
+    """Number of gates of a course; errors as in `skisnow.read_course`."""
+    return len(read_course(place).gates)
