@@ -212,3 +212,22 @@ def test_weather_becomes_csv_and_plain_smet(tmp_path: Path, capsys: pytest.Captu
     source.write_text(SMET.replace("TA RH", "HS PSUM"))
     assert main(["convert", str(source), str(tmp_path / "none.csv")]) == 1
     assert "none of the fields TA, RH" in told(capsys)[1]
+
+
+def test_densities_beside_experiments_reach_caaml_once(campaign: Path, tmp_path: Path) -> None:
+    """450 is a sample of density.csv, too; 480 is not."""
+    table = campaign / "penetration.csv"
+    head, *rows = PENETRATION.splitlines()
+    densities = {"pA1": "480", "pA2": "450", "pB1": "310", "pB2": "310"}
+    noted = [f"{row},{densities[row.split(',')[0]]}" for row in rows]
+    table.write_text("\n".join([f"{head},snow_density_kg_per_m3", *noted]) + "\n", encoding="utf-8")
+    for site, expected in (("A", [450.0, 470.0, 480.0]), ("B", [300.0, 310.0])):
+        assert (
+            main(["convert", str(campaign), str(tmp_path / "out.caaml"), "--site", site, "--time", "2026-02-01"]) == 0
+        )
+        assert [layer.snow_density for layer in read_caaml(tmp_path / "out.caaml").densities] == expected
+
+
+def test_a_campaign_becomes_netcdf(campaign: Path, tmp_path: Path) -> None:
+    assert main(["convert", str(campaign), str(tmp_path / "out.nc")]) == 0
+    assert (tmp_path / "out.nc").read_bytes()[:4] == b"CDF\x02"

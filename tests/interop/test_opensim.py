@@ -340,7 +340,7 @@ def test_what_c3d_cannot_hold_is_refused(tmp_path: Path, monkeypatch: pytest.Mon
         (at(TIME + 0.0045), "markers at 0.0045 s are not at a frame of 100 Hz from 0 s on"),
         (at(TIME - 0.02), r"frames are -2 to 1; \.c3d counts frames from 0 to 65534"),
         (at(TIME + 655.32), "frames are 65532 to 65535"),
-        (at(TIME, count=256), "there are 256 markers"),
+        (at(TIME, count=256), "markers has 256 names"),
     ):
         with pytest.raises(ParameterError, match=words):
             write_c3d(markers, out)

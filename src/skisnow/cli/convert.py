@@ -14,11 +14,11 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     """Add the command to the program's."""
     parser = commands.add_parser(
         "convert",
-        help="files between formats: CAAML, SnowMicroPen, SMET, SnowEx, OpenSim",
+        help="files between formats: CAAML, NetCDF, SnowMicroPen, SMET, SnowEx, OpenSim",
         description="Read IN, a campaign (folder or .xlsx), a snow pit in CAAML (.caaml, .xml) or a recording of a "
         "SnowMicroPen (.pnt), and write OUT in the format that its ending tells: CAAML 6.0.3 (.caaml, .xml) or CSV "
-        "with the column names of SnowEx (.csv). Weather in SMET (.smet) becomes SMET 1.1 in SI, or CSV; .mot and .sto "
-        "each other, markers (.trc, .c3d) each other.",
+        "with the column names of SnowEx (.csv). A campaign also becomes NetCDF (.nc) with its readings. Weather in "
+        "SMET (.smet) becomes SMET 1.1 in SI, or CSV; .mot and .sto each other, markers (.trc, .c3d) each other.",
     )
     parser.add_argument("source", type=Path, metavar="IN", help="what is read")
     parser.add_argument("target", type=Path, metavar="OUT", help="what is written; SnowEx's tables add to the name")

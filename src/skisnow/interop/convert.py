@@ -17,6 +17,7 @@ from ..campaign.smet import read_smet
 from ..campaign.snow_pit import ForceProfile, SnowPit
 from ..parameters import nearest
 from .caaml import write_caaml
+from .campaign_netcdf import write_campaign_netcdf
 from .opensim import read_c3d, read_motion, read_trc, write_c3d, write_motion, write_trc
 from .site_pit import site_pit, sites_of
 from .smet import write_smet, write_weather_csv
@@ -27,6 +28,7 @@ if TYPE_CHECKING:
 
 CAMPAIGN: Final = "campaign"
 CSV: Final = "CSV"
+NETCDF: Final = "NetCDF"
 ENDINGS: Final[Mapping[str, str]] = {
     ".caaml": "CAAML",
     ".xml": "CAAML",
@@ -39,6 +41,7 @@ ENDINGS: Final[Mapping[str, str]] = {
     ".sto": "OpenSim table",
     ".trc": "TRC markers",
     ".c3d": "C3D markers",
+    ".nc": NETCDF,
 }
 """Kind of a file by its ending; a folder is a campaign."""
 
@@ -175,6 +178,11 @@ def _to_snowex(read: Callable[[Path, ConvertOptions], SnowPit]) -> Conversion:
     return lambda source, target, options: write_snowex_pit(_completed(read(source, options), options), target)
 
 
+def _to_netcdf(source: Path, target: Path, _: ConvertOptions) -> tuple[Path, ...]:
+    write_campaign_netcdf(read_campaign(source), target)
+    return (target,)
+
+
 def _motion(source: Path, target: Path, _: ConvertOptions) -> tuple[Path, ...]:
     write_motion(read_motion(source), target)
     return (target,)
@@ -207,6 +215,7 @@ if TYPE_CHECKING:
 CONVERSIONS: Final[dict[tuple[str, str], Conversion]] = {
     (CAMPAIGN, "CAAML"): _to_caaml(_pit_of_campaign),
     (CAMPAIGN, CSV): _to_snowex(_pit_of_campaign),
+    (CAMPAIGN, NETCDF): _to_netcdf,
     ("CAAML", "CAAML"): _to_caaml(lambda source, _: read_caaml(source)),
     ("CAAML", CSV): _to_snowex(lambda source, _: read_caaml(source)),
     ("SnowMicroPen", "CAAML"): _to_caaml(lambda source, _: _pit_of_recording(source)),

@@ -14,7 +14,7 @@ from ..estimation.observations import HARDNESS_KEY, STRESS_KEY
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
-    from ..campaign.records import Campaign
+    from ..campaign.records import Campaign, DensitySamples, PenetrationTests, ShearTests
     from ..campaign.snow_micro_pen import SnowMicroPenProfile
     from ..estimation import Analysis
     from ..estimation.snow_micro_pen import EvaluatedRecording
@@ -27,8 +27,9 @@ _NO_DEPTH: Final = "Densities and temperatures were noted without a depth and st
 def site_pit(analysis: Analysis, site: str) -> SnowPit:
     """What a campaign knows of one of its sites.
 
-    Densities of density.csv and the mean ``snow_temperature_C`` have no depth in a campaign and stand at the surface,
-    which the comment says. Forces are those of the used recordings of a SnowMicroPen, from the surface on.
+    Densities of density.csv and beside experiments, and the mean ``snow_temperature_C``, have no depth in a campaign
+    and are put at the surface, which the comment says. Forces are those of the used recordings of a SnowMicroPen, from
+    the surface on.
 
     Raises
     ------
@@ -43,7 +44,7 @@ def site_pit(analysis: Analysis, site: str) -> SnowPit:
             code="no_data",
         )
     temperatures, air = _notes(campaign, site, "snow_temperature_C"), _notes(campaign, site, "air_temperature_C")
-    densities = () if campaign.density is None else tuple(_densities(campaign, site))
+    densities = tuple(_densities(campaign, site))
     profiles = tuple(_recordings(analysis, site))
     first = profiles[0][0] if profiles else None
     return SnowPit(
@@ -103,11 +104,18 @@ def _times(campaign: Campaign, site: str) -> list[str]:
 
 
 def _densities(campaign: Campaign, site: str) -> Iterator[LayerDensity]:
-    samples = campaign.density
-    if samples is not None:
-        for name, density, why in zip(samples.site, samples.snow_density.tolist(), samples.cancelled, strict=True):
-            if name == site and not why:
-                yield LayerDensity(0.0, density)
+    """Every sample of density.csv; then densities beside experiments that are not one of them, each once."""
+    tables = campaign.density, campaign.penetration, campaign.shear
+    sampled, *beside = ([] if table is None else list(_densities_of(table, site)) for table in tables)
+    others = {density: None for densities in beside for density in densities if density not in sampled}
+    for density in (*sampled, *others):
+        yield LayerDensity(0.0, density)
+
+
+def _densities_of(table: DensitySamples | PenetrationTests | ShearTests, site: str) -> Iterator[float]:
+    for name, density, reason in zip(table.site, table.snow_density.tolist(), table.cancelled, strict=True):
+        if name == site and not reason and math.isfinite(density):
+            yield density
 
 
 def _recordings(analysis: Analysis, site: str) -> Iterator[tuple[SnowMicroPenProfile, EvaluatedRecording]]:
