@@ -32,6 +32,8 @@ def imported(path: Path, modules: set[str]) -> Iterator[str]:
 
 UPWARD = {
     ("skisnow.estimation.analysis", "skisnow.estimation.results"),
+    ("skisnow.estimation.analysis", "skisnow.report.campaign.objects"),
+    ("skisnow.estimation.analysis", "skisnow.report.campaign.page"),
     ("skisnow.report.turn.chain", "skisnow.report.turn.page"),
     ("skisnow.report.turn.chain", "skisnow.report.turn.sentences"),
     ("skisnow.scenario.scenario", "skisnow.scenario.building"),

@@ -134,6 +134,69 @@ class Analysis(Shown):
         """
         return site_snow(self.campaign, self.penetration, self.shear, site, unloading_ratio)
 
+    def plot(self, what: str = "force_depth") -> Any:
+        """One figure of the report.
+
+        Parameters
+        ----------
+        what
+            Name of the figure, such as "force_depth", "model_rmse", "residuals", "hardness_density" or "stress_angle".
+
+        Returns
+        -------
+        matplotlib.figure.Figure
+            A new figure; no window is opened.
+
+        Raises
+        ------
+        ParameterError
+            Unknown figure (code ``unknown_figure``), or no data for it (``no_data``).
+        """
+        from ..report.campaign.objects import analysis_figure
+
+        return analysis_figure(self, what)
+
+    def report(self, folder: str | Path, *, language: str = "en") -> Path:
+        """Write report.html with its figures, tables and results.json; see `skisnow.write_report`.
+
+        Returns
+        -------
+        Path
+            Path of report.html.
+        """
+        from ..report.campaign.page import write_report
+
+        return write_report(self, folder, language=language)
+
+    def to_dataframe(self, kind: str = "penetration") -> Any:
+        """Experiments with their results, units in the names of the columns; needs pandas (``skisnow[pandas]``).
+
+        Parameters
+        ----------
+        kind
+            "penetration" or "shear".
+
+        Returns
+        -------
+        pandas.DataFrame
+            One row per experiment; the ends of a 95 % interval are the columns with `low` and `high` in their names.
+        """
+        from ..report.campaign.objects import analysis_dataframe
+
+        return analysis_dataframe(self, kind)
+
+    def to_xarray(self) -> Any:
+        """All experiments with their results, units as attributes; needs xarray (``skisnow[xarray]``).
+
+        Returns
+        -------
+        xarray.Dataset
+            Over the dimensions ``penetration_experiment`` and ``shear_experiment``.
+        """
+        from ..report.campaign.objects import analysis_dataset
+
+        return analysis_dataset(self)
+
     def _facts(self) -> Facts:
         selected = self.penetration.selected if self.penetration is not None else None
         rows = [
