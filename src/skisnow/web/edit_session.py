@@ -11,15 +11,14 @@ from ..campaign.reading import READ_FILES, FilesInMemory, unfolded
 from ..campaign.reading.campaign_file import CAMPAIGN_FILE, read_campaign_file
 from ..campaign.reading.table_forms import CORRECTIONS, PENETRATION, SHEAR
 from ..campaign.reading.text import UnreadableTextError, decode
-from ..campaign.store import Journals, corrected_files, replayed, stored_tables
+from ..campaign.store import Journals, campaign_in_memory, corrected_files, replayed, stored_tables
 from ..campaign.store.journal_entry import JournalEntry
-from ..campaign.store.replayed import ReplayedRow, ReplayedTest
+from ..campaign.store.replayed import Reading, ReplayedTest
 from ..campaign.store.stored_tables import cell_key
 from ..estimation import quality_flags
 from ..estimation.result_rows import experiment_hardness, experiment_results
 from ..estimation.screening import screened_both
 from ..report.charts import SeriesCurve, series_curves
-from .transfer import replayed_in_memory
 from .words import TABLES
 
 if TYPE_CHECKING:
@@ -106,8 +105,7 @@ class EditSession:
 
     def quick_results(self, site: str) -> QuickResults:
         """Quick results of a site, computed as an analysis of the exported folder would."""
-        files = replayed_in_memory(self.campaign, of=self.tests_of_site(site))
-        return quick_results(campaign_of_files(files.contents), site)
+        return quick_results(campaign_in_memory(self.campaign, of=self.tests_of_site(site)), site)
 
 
 def quick_results(campaign: Campaign, site: str) -> QuickResults:
@@ -190,7 +188,7 @@ class CorrectionSession(EditSession):
         if corrected.rows or name not in self.tables[file].tests:
             return corrected
         entry = JournalEntry(action="add", file=file, test=name, cells=self.file_cells(file, name), sequence=0, at="")
-        return ReplayedTest(file, name, rows=[ReplayedRow(entry)])
+        return ReplayedTest(file, name, rows=[Reading(entry)])
 
     def unit(self, file: str, column: str) -> str:
         """Unit of the cells of a column if it differs from that of its name, otherwise ""."""

@@ -23,11 +23,10 @@ from .upload_forms import add_upload, uploaded_files
 from .uploads import add_uploaded, files_below, write_zip
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Sequence
 
     from fastapi import FastAPI
 
-    from ..campaign.store import ReplayedCampaign, ReplayedTest
     from .settings import Lab
 
 IMPORT: Final = "/import"
@@ -81,12 +80,8 @@ def _zip(write: Writing) -> bytes:
 
 def entry_files(lab: Lab, id_: str) -> FilesInMemory:
     """Files of an entered campaign in its current state."""
-    return replayed_in_memory(replayed(Journals(lab.store).entries(required_id(id_))))
-
-
-def replayed_in_memory(campaign: ReplayedCampaign, *, of: Iterable[ReplayedTest] | None = None) -> FilesInMemory:
-    """Files of a replayed campaign, with all or some of its tests."""
-    return FilesInMemory({name: text.encode("utf-8") for name, text in campaign_files(campaign, of=of).items()})
+    files = campaign_files(replayed(Journals(lab.store).entries(required_id(id_))))
+    return FilesInMemory({name: text.encode("utf-8") for name, text in files.items()})
 
 
 def kept_files(lab: Lab, id_: str) -> FilesInMemory:

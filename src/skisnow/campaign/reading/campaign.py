@@ -26,7 +26,7 @@ from .experiments import density_samples, drop_cone_tests, penetration_tests, sh
 from .headings import Headings
 from .row_checks import check_rows
 from .table_forms import CORRECTIONS, DENSITY, DROP_CONE, PENETRATION, SHEAR, SNOW_MICRO_PEN, TABLES
-from .tables import read_table
+from .tables import read_table, table_of_cells
 from .text import UnreadableTextError, decode, inspect_csv
 from .workbook_files import is_workbook, unfolded
 
@@ -40,6 +40,7 @@ if TYPE_CHECKING:
     from .columns import Table
     from .corrections import RowCorrections
     from .table_forms import TableForm
+    from .tables import Cells
 
 CAMPAIGN_FILES: Final = (CAMPAIGN_FILE, CORRECTIONS.file, *(form.file for form in TABLES))
 """Names of the files of a campaign, in the order of reading; workbooks can replace them."""
@@ -109,6 +110,39 @@ def campaign_of_files(files: Mapping[str, bytes], *, others: tuple[str, ...] = (
         As `read_campaign`.
     """
     return _require_valid(_read(FilesInMemory(files, others), None))
+
+
+def campaign_of_cells(
+    description: str, cells: Mapping[str, Cells], corrections: tuple[AppliedCorrection, ...] = ()
+) -> Campaign:
+    """Check a campaign whose tables are in memory.
+
+    Parameters
+    ----------
+    description
+        Text of campaign.toml.
+    cells
+        Tables by file, with their corrections applied.
+    corrections
+        These corrections.
+
+    Raises
+    ------
+    FieldDataError
+        As `read_campaign`.
+    """
+    problems: list[Problem] = []
+    described = read_campaign_file(description, problems)
+    headings = described.headings if described is not None else Headings()
+    tables: dict[str, Table] = {}
+    for form in TABLES:
+        table = table_of_cells(form, cells[form.file], headings, problems) if form.file in cells else None
+        if table is not None:
+            tables[form.file] = table
+            problems.extend(check_rows(table, described))
+    if not {PENETRATION.file, SHEAR.file} & set(cells):
+        problems.append(_missing_measurements())
+    return _require_valid(_Contents(Path("campaign"), described, tables, {}, _sort_problems(problems), corrections))
 
 
 def check_campaign(folder: str | Path) -> tuple[Problem, ...]:

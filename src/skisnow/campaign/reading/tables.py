@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from itertools import chain
 from typing import TYPE_CHECKING, Final
 
@@ -15,7 +16,7 @@ from .headings import Headings
 from .text import SEPARATOR_NAMES, CsvText, UnreadableTextError
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Callable, Iterator, Sequence
 
     from ..problems import Problem
     from ..records import IntArray
@@ -32,6 +33,25 @@ DATES: Final = ("time", "when")
 """Names of columns with days and times."""
 MOST_ERRORS: Final = 10_000
 """Number of errors above which the rest of a table is not read."""
+
+
+@dataclass(frozen=True, slots=True)
+class Cells:
+    """A table in memory: its columns, and the text of each cell.
+
+    Attributes
+    ----------
+    columns
+        Names of the columns.
+    lines
+        Line of each row in the file that an export of the table writes.
+    rows
+        Cells of each row, with a decimal point.
+    """
+
+    columns: tuple[str, ...]
+    lines: Sequence[int]
+    rows: Sequence[list[str]]
 
 
 def read_table(
@@ -77,7 +97,9 @@ def read_table(
                 header = split_header(lines, rows)
                 units = column_units(form, header, headings, files.problems)
                 renamed = header.renamed(form, headings)
-                reading = _TableReading(form, renamed, text, corrections, files.problems, header.columns, units)
+                mark = decimal_mark_of(form, renamed, text)
+                files.problems.extend(_format_notes(form.file, text.separator, mark))
+                reading = _TableReading(form, renamed, mark, corrections, files.problems, header.columns, units)
             if reading is not None and rows:
                 reading.take(lines, rows)
                 if progress is not None:
@@ -86,6 +108,31 @@ def read_table(
         files.report_unreadable(form.file, failure)
         readable = False
     return _table_or_empty(form, reading, files.problems, readable=readable)
+
+
+def table_of_cells(form: TableForm, cells: Cells, headings: Headings, problems: list[Problem]) -> Table | None:
+    """Check each cell of a table in memory, whose corrections are applied.
+
+    Parameters
+    ----------
+    form
+        Required and allowed columns.
+    cells
+        The table.
+    headings
+        Mapping of headings to columns.
+    problems
+        Takes every problem.
+
+    Returns
+    -------
+    The table. After an error its columns can have gaps.
+    """
+    header = Header(cells.columns, 1)
+    units = column_units(form, header, headings, problems)
+    reading = _TableReading(form, header.renamed(form, headings), ".", {}, problems, header.columns, units)
+    reading.take(list(cells.lines), list(cells.rows))
+    return _table_or_empty(form, reading, problems, readable=True)
 
 
 def _too_many_errors(line: int, errors: int) -> UnreadableTextError:
@@ -122,7 +169,7 @@ class _TableReading:
         self,
         form: TableForm,
         header: Header,
-        text: CsvText,
+        mark: str,
         corrections: RowCorrections,
         problems: list[Problem],
         headings: tuple[str, ...],
@@ -132,8 +179,6 @@ class _TableReading:
         self._form = form
         self._problems = problems
         self._file_header = header
-        mark = decimal_mark_of(form, header, text)
-        problems.extend(_format_notes(form.file, text.separator, mark))
         problems.extend(check_header(form, header))
         self._header = header_with_status(form, header, corrections)
         self._corrector = Corrector(form, self._header, corrections, mark=mark, problems=problems)

@@ -13,7 +13,15 @@ from .export import (
 )
 from .journal import JournalHead, Journals, OvertakenError
 from .journal_entry import JournalEntry, NewEntry
-from .replayed import ReplayedCampaign, ReplayedRow, ReplayedTest, campaign_files, replayed, write_campaign
+from .replayed import (
+    Reading,
+    ReplayedCampaign,
+    ReplayedTest,
+    campaign_files,
+    campaign_in_memory,
+    replayed,
+    write_campaign,
+)
 from .server import ServerAddress, StorePlace, store_place
 from .store import AddedCampaign, Finding, Store, StoredCampaign, StoredFile, default_path
 from .stored_tables import StoredTable, stored_tables
@@ -30,8 +38,8 @@ __all__ = [
     "Journals",
     "NewEntry",
     "OvertakenError",
+    "Reading",
     "ReplayedCampaign",
-    "ReplayedRow",
     "ReplayedTest",
     "ServerAddress",
     "Side",
@@ -43,6 +51,7 @@ __all__ = [
     "SyncResult",
     "add_corrections",
     "campaign_files",
+    "campaign_in_memory",
     "corrected_files",
     "default_path",
     "entered_files",

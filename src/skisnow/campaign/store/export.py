@@ -14,7 +14,7 @@ from ..reading.text import UnreadableTextError, inspect_csv
 from .engine import database_errors, file_errors, reading
 from .folder import StoredFile, new_folder, no_progress
 from .journal import JournalHead, Journals
-from .replayed import COLUMNS, campaign_files, correction_row, csv_text, replayed, write_campaign
+from .replayed import COLUMNS, campaign_files, correction_cells, correction_of_cell, csv_text, replayed, write_campaign
 from .rows import ID_DIGITS, NamedId, StoredCampaign, ambiguous_id_error, campaign_ids, required_digits
 from .stored_tables import cell_of
 
@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
     from pathlib import Path
 
+    from ..problems import AppliedCorrection
     from .folder import Progress
     from .journal_entry import JournalEntry
     from .replayed import ReplayedTest
@@ -72,7 +73,7 @@ def add_corrections(folder: Path, entries: Iterable[JournalEntry], *, before: by
         That file cannot be read.
     """
     place = folder / CORRECTIONS.file
-    rows = list(_rows(entries))
+    rows = list(_corrections(entries))
     if before is None:
         before = place.read_bytes() if place.is_file() else b""
     if rows:
@@ -92,19 +93,20 @@ def corrected_files(files: Mapping[str, bytes], entries: Iterable[JournalEntry])
     StoreError
         The corrections.csv of the campaign cannot be read.
     """
-    rows = list(_rows(entries))
+    rows = list(_corrections(entries))
     if not rows:
         return dict(files)
     return {**files, CORRECTIONS.file: _combine_corrections(files.get(CORRECTIONS.file, b""), rows).encode("utf-8")}
 
 
-def _combine_corrections(before: bytes, rows: list[dict[str, str]]) -> str:
+def _combine_corrections(before: bytes, rows: list[AppliedCorrection]) -> str:
     """Text of corrections.csv: the original rows with all their columns, then the new ones."""
     records = _records(before) if before.strip() else []
     header = [cell.strip() for cell in records.pop(0)] if records else []
     header += [column for column in COLUMNS if column not in header]
     came = ([*cells, *[""] * (len(header) - len(cells))] for cells in records)
-    ours = ([row.get(column, "") for column in header] for row in rows)
+    cells_of_rows = (dict(zip(COLUMNS, correction_cells(row), strict=True)) for row in rows)
+    ours = ([cells.get(column, "") for column in header] for cells in cells_of_rows)
     return csv_text([header, *came, *ours])
 
 
@@ -118,19 +120,19 @@ def _records(data: bytes) -> list[list[str]]:
         ) from error
 
 
-def _rows(entries: Iterable[JournalEntry]) -> Iterator[dict[str, str]]:
-    """Rows of corrections.csv, test by test, in the order of the first correction of each test."""
+def _corrections(entries: Iterable[JournalEntry]) -> Iterator[AppliedCorrection]:
+    """Corrections, test by test, in the order of the first correction of each test."""
     for test in sorted(replayed(entries).tests.values(), key=_first_manual_entry):
         if test.rows:
-            yield from _rows_of_test(test)
+            yield from _corrections_of_test(test)
 
 
 def _first_manual_entry(test: ReplayedTest) -> str:
     return min((entry.uid for entry in test.history if not entry.is_from_file), default="")
 
 
-def _rows_of_test(test: ReplayedTest) -> Iterator[dict[str, str]]:
-    """Rows of corrections.csv about one test, in the order of the entries."""
+def _corrections_of_test(test: ReplayedTest) -> Iterator[AppliedCorrection]:
+    """Corrections of one test, in the order of the entries."""
     cells_now = dict(test.rows[0].entered.cells)
     first = min(cell_of(key)[0] for key in cells_now)
     for entry in test.history:
@@ -139,7 +141,7 @@ def _rows_of_test(test: ReplayedTest) -> Iterator[dict[str, str]]:
         cells = entry.cells if entry.action == "correct" else {f"{first}/{STATUS}": entry.why}
         for key, new in cells.items():
             line, column = cell_of(key)
-            yield dict(zip(COLUMNS, correction_row(entry, line, column, cells_now.get(key, ""), new), strict=True))
+            yield correction_of_cell(entry, line, column, cells_now.get(key, ""), new)
             cells_now[key] = new
 
 

@@ -6,15 +6,18 @@ import csv
 import io
 import json
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import astuple, dataclass, field, fields, replace
 from typing import TYPE_CHECKING, Final, TypeAlias
 
 from ..._support.errors import FieldDataError
 from ..._support.spreadsheet_text import guarded
+from ..problems import AppliedCorrection
+from ..reading.campaign import campaign_of_cells
 from ..reading.campaign_file import read_campaign_file
 from ..reading.columns import is_unloading_cell
 from ..reading.corrections import STATUS
 from ..reading.table_forms import BRANCH, CORRECTIONS, TABLES
+from ..reading.tables import Cells
 from .journal_entry import DESCRIPTION
 
 if TYPE_CHECKING:
@@ -23,12 +26,13 @@ if TYPE_CHECKING:
 
     from ..problems import Problem
     from ..reading.table_forms import TableForm
+    from ..records import Campaign
     from .journal_entry import JournalEntry
 
 
 @dataclass(slots=True)
-class ReplayedRow:
-    """A row of a table: its entry and the corrections since then."""
+class Reading:
+    """A reading of a test, or a sample: its entry and the corrections since then."""
 
     entered: JournalEntry
     corrections: list[JournalEntry] = field(default_factory=list)
@@ -48,7 +52,7 @@ class ReplayedTest:
 
     file: str
     name: str
-    rows: list[ReplayedRow] = field(default_factory=list)
+    rows: list[Reading] = field(default_factory=list)
     cancelling: JournalEntry | None = None
     history: list[JournalEntry] = field(default_factory=list)
     undone: set[int] = field(default_factory=set)
@@ -69,7 +73,7 @@ class ReplayedTest:
         counting = (entry for entry in reversed(self.history) if entry.action != "undo" and not entry.is_from_file)
         return next((entry for entry in counting if entry.sequence not in self.undone), None)
 
-    def row_under(self, load: str, branch: str = "") -> ReplayedRow | None:
+    def row_under(self, load: str, branch: str = "") -> Reading | None:
         """Reading of a series under a load (N), of the loading or the unloading branch; None without one."""
         taken_off = is_unloading_cell(branch)
         return next(
@@ -133,7 +137,7 @@ def _test(key: tuple[str, str], history: list[JournalEntry]) -> ReplayedTest:
     for entry in reversed(history):  # an undoing can be undone
         if entry.action == "undo" and entry.about is not None and entry.sequence not in test.undone:
             test.undone.add(entry.about)
-    rows: dict[int, ReplayedRow] = {}
+    rows: dict[int, Reading] = {}
     for entry in history:
         if entry.sequence not in test.undone:
             _apply_entry(test, rows, entry)
@@ -141,7 +145,7 @@ def _test(key: tuple[str, str], history: list[JournalEntry]) -> ReplayedTest:
     return test
 
 
-def _order(row: ReplayedRow) -> tuple[bool, float, int, int]:
+def _order(row: Reading) -> tuple[bool, float, int, int]:
     """Sort key of a row: entered readings by rising load, then unloading by falling load; rows of a file stay."""
     position, load = row.entered.position, row.cells.get("load_N")
     if not load or position is None:
@@ -150,9 +154,9 @@ def _order(row: ReplayedRow) -> tuple[bool, float, int, int]:
     return taken_off, -float(load) if taken_off else float(load), position, row.entered.sequence
 
 
-def _apply_entry(test: ReplayedTest, rows: dict[int, ReplayedRow], entry: JournalEntry) -> None:
+def _apply_entry(test: ReplayedTest, rows: dict[int, Reading], entry: JournalEntry) -> None:
     if entry.action == "add":
-        rows[entry.sequence] = ReplayedRow(entry)
+        rows[entry.sequence] = Reading(entry)
         test.rows.append(rows[entry.sequence])
     elif entry.action == "correct" and entry.about in rows:
         rows[entry.about].corrections.append(entry)
@@ -160,12 +164,18 @@ def _apply_entry(test: ReplayedTest, rows: dict[int, ReplayedRow], entry: Journa
         test.cancelling = entry
 
 
-COLUMNS: Final = ("file", "experiment", "row", "column", "old", "new", "who", "when", "why")
+COLUMNS: Final = tuple(column.name for column in fields(AppliedCorrection))
+"""Columns of corrections.csv."""
 
 
-def correction_row(entry: JournalEntry, line: int, column: str, old: str, new: str) -> tuple[str, ...]:
-    """Row of corrections.csv with `COLUMNS` for one cell of an entry."""
-    return (entry.file, entry.test, str(line), column, old, new, entry.who, entry.at, entry.why)
+def correction_of_cell(entry: JournalEntry, line: int, column: str, old: str, new: str) -> AppliedCorrection:
+    """Correction of one cell by an entry, in the given line of the exported file."""
+    return AppliedCorrection(entry.file, entry.test, line, column, old, new, entry.who, entry.at, entry.why)
+
+
+def correction_cells(correction: AppliedCorrection) -> tuple[str, ...]:
+    """Row of corrections.csv with `COLUMNS`."""
+    return tuple(map(str, astuple(correction)))
 
 
 def csv_text(rows: Iterable[Sequence[str]]) -> str:
@@ -192,17 +202,61 @@ def campaign_files(campaign: ReplayedCampaign, *, of: Iterable[ReplayedTest] | N
     of
         Tests to include (default: all).
     """
-    chosen = list(campaign.tests.values() if of is None else of)
     files = {DESCRIPTION: campaign.description}
-    corrections: list[tuple[str, ...]] = []
+    corrections: list[AppliedCorrection] = []
+    for form, tests in _tests_by_table(campaign, of):
+        columns = _columns(form, tests)
+        rows = [_cells(row.entered.at, row.entered.cells, columns) for test in tests for row in test.rows]
+        files[form.file] = csv_text([columns, *rows])
+        corrections.extend(_corrections(tests))
+    if corrections:
+        files[CORRECTIONS.file] = csv_text([COLUMNS, *map(correction_cells, corrections)])
+    return files
+
+
+def campaign_in_memory(campaign: ReplayedCampaign, *, of: Iterable[ReplayedTest] | None = None) -> Campaign:
+    """Campaign as `read_campaign` reads it from the exported folder, but for the hashes of its files.
+
+    Parameters
+    ----------
+    campaign
+        Current state.
+    of
+        Tests to include (default: all).
+
+    Raises
+    ------
+    FieldDataError
+        As `read_campaign`.
+    """
+    tables: dict[str, Cells] = {}
+    corrections: list[AppliedCorrection] = []
+    for form, tests in _tests_by_table(campaign, of):
+        columns = _columns(form, tests)
+        if STATUS not in columns and any(test.cancelling for test in tests):
+            columns.append(STATUS)
+        rows = [_cells(reading.entered.at, cells, columns) for test in tests for reading, cells in _readings(test)]
+        tables[form.file] = Cells(tuple(columns), range(2, len(rows) + 2), rows)
+        corrections.extend(_corrections(tests))
+    return campaign_of_cells(campaign.description, tables, tuple(corrections))
+
+
+def _tests_by_table(
+    campaign: ReplayedCampaign, of: Iterable[ReplayedTest] | None
+) -> Iterator[tuple[TableForm, list[ReplayedTest]]]:
+    """Tests of each table that has rows."""
+    chosen = list(campaign.tests.values() if of is None else of)
     for form in TABLES:
         tests = [test for test in chosen if test.file == form.file and test.rows]
         if tests:
-            files[form.file] = _table(form, tests)
-            corrections.extend(_corrections(tests))
-    if corrections:
-        files[CORRECTIONS.file] = csv_text([COLUMNS, *corrections])
-    return files
+            yield form, tests
+
+
+def _readings(test: ReplayedTest) -> Iterator[tuple[Reading, Mapping[str, str]]]:
+    """Readings of a test with their current cells; the first states why the test was cancelled."""
+    for index, reading in enumerate(test.rows):
+        cancelled = index == 0 and test.cancelling is not None
+        yield reading, reading.cells | {STATUS: test.cancelled} if cancelled else reading.cells
 
 
 def write_campaign(campaign: ReplayedCampaign, folder: Path, *, of: Iterable[ReplayedTest] | None = None) -> None:
@@ -211,30 +265,30 @@ def write_campaign(campaign: ReplayedCampaign, folder: Path, *, of: Iterable[Rep
         (folder / name).write_text(text, encoding="utf-8", newline="")
 
 
-def _table(form: TableForm, tests: Sequence[ReplayedTest]) -> str:
+def _columns(form: TableForm, tests: Sequence[ReplayedTest]) -> list[str]:
     rows = [row for test in tests for row in test.rows]
     present = {column for row in rows for column in row.entered.cells} | {_TIME}
     present |= {column for row in rows for correction in row.corrections for column in correction.cells}
-    columns = [column for column in form.known if column in present or column in form.required]
-    return csv_text([columns, *(_cells(row, columns) for row in rows)])
+    return [column for column in form.known if column in present or column in form.required]
 
 
-def _cells(row: ReplayedRow, columns: Sequence[str]) -> list[str]:
-    entered = {_TIME: row.entered.at, **row.entered.cells}
-    return [entered.get(column, "") for column in columns]
+def _cells(at: str, cells: Mapping[str, str], columns: Sequence[str]) -> list[str]:
+    """Cells of a row in the order of the columns; the time of the entry where the cells have none."""
+    cells = {_TIME: at, **cells}
+    return [cells.get(column, "") for column in columns]
 
 
-def _corrections(tests: Sequence[ReplayedTest]) -> Iterator[tuple[str, ...]]:
+def _corrections(tests: Sequence[ReplayedTest]) -> Iterator[AppliedCorrection]:
     line = 1  # the header
     for test in tests:
         if test.cancelling is not None:
-            yield correction_row(test.cancelling, line + 1, STATUS, "", test.cancelled)
+            yield correction_of_cell(test.cancelling, line + 1, STATUS, "", test.cancelled)
         for row in test.rows:
             line += 1
             cells = dict(row.entered.cells)
             for entry in row.corrections:
                 for column, new in entry.cells.items():
-                    yield correction_row(entry, line, column, cells.get(column, ""), new)
+                    yield correction_of_cell(entry, line, column, cells.get(column, ""), new)
                     cells[column] = new
 
 

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from ..._support.errors import SkisnowError
     from ...campaign.reading.headings import UnitConversion
     from ...campaign.reading.table_forms import TableForm
-    from ...campaign.store import ReplayedRow
+    from ...campaign.store import Reading
     from ..edit_session import EditSession
 
 CHANGED: Final = "changed, not stored"
@@ -60,17 +60,17 @@ class ReadingField:
         """The text in the field."""
         return str(self.depth.value or "").strip()
 
-    def unstored(self, row: ReplayedRow | None) -> str | None:
+    def unstored(self, row: Reading | None) -> str | None:
         """Unstored text that is kept when the field is drawn again; None if it is stored or another reading exists."""
         drawn = str(self.row.props.get("data-stored") or "")
         is_kept = is_other(self.typed, drawn) and self.differs(row) and (bool(drawn) or row is None)
         return self.typed if is_kept else None
 
-    def differs(self, row: ReplayedRow | None) -> bool:
+    def differs(self, row: Reading | None) -> bool:
         """True if the text differs from the stored reading, or from "" without one."""
         return is_other(self.typed, stored_depth(row))
 
-    def show_state(self, row: ReplayedRow | None) -> None:
+    def show_state(self, row: Reading | None) -> None:
         """Show whether the text in the field is stored."""
         if row is None:
             show_state(self.state, "")
@@ -81,12 +81,12 @@ class ReadingField:
         else:
             show_state(self.state, "stored")
 
-    def restore(self, row: ReplayedRow | None) -> None:
+    def restore(self, row: Reading | None) -> None:
         """Put the stored depth back into the field."""
         self.depth.set_value(number_said(stored_depth(row), self.depth.client))
 
 
-def stored_depth(row: ReplayedRow | None) -> str:
+def stored_depth(row: Reading | None) -> str:
     """The depth of a reading (mm, as text); "" if there is no reading."""
     return "" if row is None else row.cells["depth_mm"]
 

@@ -17,7 +17,7 @@ from .changes import ASKED, LEFT_AS_IT_WAS, UNANSWERED, USUAL_REASON, ask_reason
 from .readings import checked_fields, faults, is_other, refuse
 
 if TYPE_CHECKING:
-    from ...campaign.store import ReplayedRow, ReplayedTest
+    from ...campaign.store import Reading, ReplayedTest
     from .table_view import LiveResults, Places, TableView
 
 OPTIONAL: Final = {"shear.csv": ("spot", TURNING)}
@@ -42,7 +42,7 @@ class SingleForm:
         self._begun: dict[str, str] | None = None
         """Typed texts of a new row while another row is shown."""
         self._is_new = False
-        self._correcting: tuple[ReplayedTest, ReplayedRow] | None = None
+        self._correcting: tuple[ReplayedTest, Reading] | None = None
 
     def begin(self) -> None:
         """Show the form of a new row, with texts that were typed before."""
@@ -76,7 +76,7 @@ class SingleForm:
             cells |= {column: before.get(column, "") for column in (key, *ONCE)}
         return cells
 
-    def _draw(self, cells: dict[str, str], correcting: tuple[ReplayedTest, ReplayedRow] | None) -> None:
+    def _draw(self, cells: dict[str, str], correcting: tuple[ReplayedTest, Reading] | None) -> None:
         if self._is_new and correcting is not None:
             typed = {column: str(field_.value) for column, field_ in self._fields.items() if field_.value}
             self._begun = typed if typed.items() - self._prefilled().items() else None
@@ -186,7 +186,7 @@ class SingleForm:
             self._view.say(UNANSWERED, "bad")
         return True
 
-    def _ask_correction(self, test: ReplayedTest, row: ReplayedRow) -> bool:
+    def _ask_correction(self, test: ReplayedTest, row: Reading) -> bool:
         cells = self._cells("Not corrected:")
         if cells is None:
             return False
@@ -208,7 +208,7 @@ class SingleForm:
         self._view.say(ASKED, "")
         return True
 
-    def _leave(self, test: ReplayedTest, row: ReplayedRow) -> None:
+    def _leave(self, test: ReplayedTest, row: Reading) -> None:
         self._view.say(LEFT_AS_IT_WAS)
         self._draw(row.cells, (test, row))
 
@@ -223,7 +223,7 @@ class SingleForm:
                     with ui.element("li"):
                         self._so_far(test, row)
 
-    def _so_far(self, test: ReplayedTest, row: ReplayedRow) -> None:
+    def _so_far(self, test: ReplayedTest, row: Reading) -> None:
         columns = [column for column in self._columns if row.cells.get(column)]
         words = [f"{said(label(column))} {row.cells[column]}" for column in columns]  # already translated
         Words(" · ".join(words) + (said(f" · cancelled: {test.cancelled}") if test.cancelled else ""))
@@ -237,5 +237,5 @@ class SingleForm:
         named(asking_button("Correct", look, "small"), f"Correct {' '.join(test.name.split())}")
 
 
-def _number(row: ReplayedRow) -> str:
+def _number(row: Reading) -> str:
     return str(row.entered.sequence)

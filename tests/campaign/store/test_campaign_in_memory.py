@@ -1,0 +1,132 @@
+"""A campaign in memory is the one that an export of its journal gives."""
+
+from __future__ import annotations
+
+from dataclasses import fields, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pytest
+
+from skisnow._support.errors import FieldDataError
+from skisnow.campaign import campaign_of_files
+from skisnow.campaign.store import Journals, NewEntry, ReplayedCampaign, campaign_files, campaign_in_memory, replayed
+
+from .test_journal import TOML, reading
+
+if TYPE_CHECKING:
+    from skisnow.campaign.store import Store
+
+
+def shear_test(name: str, depth: str) -> NewEntry:
+    cells = {"experiment": name, "site": "A", "plate": "p", "edge_angle_deg": "90", "depth_mm": depth}
+    cells |= {"lever_arm_mm": "250", "moment_Nm": "1.25", "remark": "=windy, cold"}
+    return NewEntry(action="add", file="shear.csv", test=name, position=0, cells=cells, who="Ada")
+
+
+def sample(name: str, density: str) -> NewEntry:
+    cells = {"sample": name, "site": "A", "snow_density_kg_per_m3": density}
+    return NewEntry(action="add", file="density.csv", test=name, position=0, cells=cells, who="Ada")
+
+
+class Entered:
+    """A journal that the tests append to."""
+
+    def __init__(self, store: Store) -> None:
+        self._journals = Journals(store)
+        self._id = self._journals.begin(TOML)
+        self._seen: dict[tuple[str, str], int] = {}
+
+    def append(self, entry: NewEntry) -> int:
+        key = entry.file, entry.test
+        self._seen[key] = self._journals.append(self._id, entry, seen=self._seen.get(key, 0)).sequence
+        return self._seen[key]
+
+    @property
+    def campaign(self) -> ReplayedCampaign:
+        return replayed(self._journals.entries(self._id))
+
+
+@pytest.fixture
+def entered(store: Store) -> Entered:
+    entered = Entered(store)
+    for name, depths in {"1": ("1.5", "2.25", "3"), "2": ("1.4", "2.2", "2.9")}.items():
+        for position, depth in enumerate(depths):
+            entered.append(reading(name, position, str(20 * (position + 1)), depth))
+    entered.append(shear_test("1", "5"))
+    entered.append(sample("1", "300"))
+    return entered
+
+
+def cancellation(test: str) -> NewEntry:
+    return NewEntry(action="cancel", file="penetration.csv", test=test, who="Ada", why="-tilted")
+
+
+def exported(campaign: ReplayedCampaign) -> dict[str, bytes]:
+    return {name: text.encode() for name, text in campaign_files(campaign).items()}
+
+
+def assert_equal(ours: Any, theirs: Any) -> None:
+    """Compare records, field by field where they hold arrays."""
+    for each in fields(theirs):
+        one, other = getattr(ours, each.name), getattr(theirs, each.name)
+        if hasattr(other, "__dataclass_fields__"):
+            assert_equal(one, other)
+        elif isinstance(other, np.ndarray):
+            np.testing.assert_array_equal(one, other)
+        elif each.name != "file_hashes":
+            assert one == other, each.name
+
+
+def test_tables_problems_and_corrections_are_those_of_the_exported_files(entered: Entered) -> None:
+    wrong = entered.append(reading("2", 3, "80", "33"))
+    correction = NewEntry(
+        action="correct",
+        file="penetration.csv",
+        test="2",
+        about=wrong,
+        cells={"depth_mm": "3.3"},
+        who="Bea",
+        why="decimal point",
+    )
+    entered.append(correction)
+    entered.append(cancellation("1"))
+    ours = campaign_in_memory(entered.campaign)
+    assert [each.new for each in ours.corrections] == ["-tilted", "3.3"]
+    assert ours.penetration is not None and ours.shear is not None and ours.density is not None
+    assert_equal(ours, campaign_of_files(exported(entered.campaign)))
+
+
+def test_an_undone_cancellation_has_no_effect(entered: Entered) -> None:
+    about = entered.append(cancellation("1"))
+    undo = NewEntry(action="undo", file="penetration.csv", test="1", about=about, who="Ada")
+    entered.append(undo)
+    assert campaign_in_memory(entered.campaign).corrections == ()
+    assert_equal(campaign_in_memory(entered.campaign), campaign_of_files(exported(entered.campaign)))
+
+
+def test_only_the_chosen_tests_are_in_it(entered: Entered) -> None:
+    campaign = campaign_in_memory(entered.campaign, of=[entered.campaign.test("shear.csv", "1")])
+    assert campaign.penetration is None
+    assert campaign.shear is not None
+
+
+@pytest.mark.parametrize("depth, tool", [("1,5x", "piece"), ("", "piece"), ("-1", "piece"), ("1.5", "another tool")])
+def test_errors_are_those_of_the_exported_files(entered: Entered, depth: str, tool: str) -> None:
+    entry = reading("3", 0, "20", depth)
+    entered.append(replace(entry, cells={**entry.cells, "tool": tool}))
+    with pytest.raises(FieldDataError) as theirs:
+        campaign_of_files(exported(entered.campaign))
+    with pytest.raises(FieldDataError) as ours:
+        campaign_in_memory(entered.campaign)
+    assert ours.value.problems == theirs.value.problems
+
+
+def test_without_measurements_the_error_is_that_of_the_exported_files(store: Store) -> None:
+    entered = Entered(store)
+    entered.append(sample("1", "300"))
+    with pytest.raises(FieldDataError) as theirs:
+        campaign_of_files(exported(entered.campaign))
+    with pytest.raises(FieldDataError) as ours:
+        campaign_in_memory(entered.campaign)
+    assert ours.value.problems == theirs.value.problems
