@@ -14,6 +14,7 @@ FILES = (
     "dynamics/dynamics.cpp",
     "dynamics/moving_boots.cpp",
     "dynamics/statics.cpp",
+    "dynamics/steps.cpp",
     "beam/along.cpp",
     "contact/tangent_kernels.hpp",
 )

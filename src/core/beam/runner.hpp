@@ -1,14 +1,12 @@
 // A runner in the snow: the shape of a ski's base, its pose, its motion.
 #pragma once
 
-#include <array>
 #include <vector>
 
 #include "support/columns.hpp"
+#include "support/vectors.hpp"
 
 namespace skisnow {
-
-using Vector3 = std::array<double, 3>;
 
 // Shape of a base along the ski. Positions along the ski count from the boot, positive ahead (m).
 struct Runner {
@@ -44,7 +42,7 @@ struct Motion {
 
 // The pose a share (0 to 1) of the way from one to another: rotation about the axis that leads from one to the other at
 // a steady rate, along the arc that goes with it.
-void interpolate(const Pose& from, const Pose& to, double share, Pose& out);
+void interpolate(const Pose& from, const Pose& to, double share, Pose& middle);
 
 void rotation_matrix(const Vector3& v, double (&out)[3][3]);  // from a rotation vector
 

@@ -3,42 +3,11 @@
 
 #include "carve/equations.hpp"
 #include "linear_algebra/banded.hpp"
+#include "linear_algebra/dense.hpp"
 
 namespace skisnow {
 
 namespace {
-
-// LU factors of n rows with `stride` between them, with row pivots, in place; not finite where singular.
-void factor_dense(std::vector<double>& matrix, std::vector<int>& order, int n, int stride) {
-  order.resize(std::size_t(n));
-  for (int k = 0; k < n; k++) {
-    double* row = matrix.data() + k * stride;
-    int best = k;
-    for (int i = k + 1; i < n; i++)
-      if (std::fabs(matrix[std::size_t(i * stride + k)]) > std::fabs(matrix[std::size_t(best * stride + k)])) best = i;
-    order[std::size_t(k)] = best;
-    if (best != k) std::swap_ranges(row, row + n, matrix.data() + best * stride);
-    const double pivot = 1.0 / row[k];
-    for (int i = k + 1; i < n; i++) {
-      double* below = matrix.data() + i * stride;
-      const double ratio = below[k] * pivot;
-      below[k] = ratio;
-      if (ratio == 0.0) continue;
-      for (int j = k + 1; j < n; j++) below[j] -= ratio * row[j];
-    }
-  }
-}
-
-void solve_dense(const std::vector<double>& factors, const std::vector<int>& order, int stride, double* right) {
-  const int n = int(order.size());
-  for (int k = 0; k < n; k++) std::swap(right[k], right[order[std::size_t(k)]]);
-  for (int i = 0; i < n; i++)
-    for (int j = 0; j < i; j++) right[i] -= factors[std::size_t(i * stride + j)] * right[j];
-  for (int i = n - 1; i >= 0; i--) {
-    for (int j = i + 1; j < n; j++) right[i] -= factors[std::size_t(i * stride + j)] * right[j];
-    right[i] /= factors[std::size_t(i * stride + i)];
-  }
-}
 
 bool all_finite(const double* values, int count) {
   for (int i = 0; i < count; i++)
@@ -61,7 +30,8 @@ void CarveFactors::factor(const CarvedSki& ski, CarveEquations& system) {
   schur_.assign(std::size_t(used_ * tiles_ * BAND_TILE), 0.0);
   add_border(system);
   add_links();
-  factor_dense(schur_, order_, used_, tiles_ * BAND_TILE);
+  order_.resize(std::size_t(used_));
+  factor_dense(schur_.data(), used_, tiles_ * BAND_TILE, order_.data());
 }
 
 // A link whose groove only stations behind the clamp meet does not act on the ski before the clamp.
@@ -139,7 +109,7 @@ void CarveFactors::solve_border(const CarveEquations& system, const double* u) {
       right[1] -= link.twist[a] * at[TURNS[a]];
     }
   }
-  solve_dense(schur_, order_, tiles_ * BAND_TILE, y);
+  solve_dense(schur_.data(), used_, tiles_ * BAND_TILE, order_.data(), y);
 }
 
 bool CarveFactors::correct(const CarvedSki& ski, const CarveEquations& system, CarveState& step) {

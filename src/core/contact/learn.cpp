@@ -10,8 +10,6 @@ namespace {
 
 constexpr double SPARE = 0.01;  // (m) beside a ski: no look of a step lies that far from the pose foreseen for it
 
-double dot(const Vector3& a, const Vector3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-
 // How far a ski reaches across from its straight axis (m), however it is rolled.
 double room_of(const Runner& runner, const Pose& pose) {
   double bent = 0.0;
@@ -39,9 +37,7 @@ struct Extent {
   }
 };
 
-Vector3 along(const Vector3& origin, const Vector3& lateral, double place) {
-  return {origin[0] + place * lateral[0], origin[1] + place * lateral[1], origin[2] + place * lateral[2]};
-}
+Vector3 along(const Vector3& origin, const Vector3& lateral, double place) { return origin + place * lateral; }
 
 std::vector<GrooveEnds> ends_of(const GrooveLines& lines) {
   std::vector<GrooveEnds> out;
@@ -74,7 +70,7 @@ bool may_cross(const GrooveEnds& before, const GrooveEnds& after, const Vector3&
   double along[2] = {1e300, -1e300}, across[2] = {1e300, -1e300};
   for (const GrooveEnds* each : {&before, &after})
     for (const Vector3& end : each->ends) {
-      const Vector3 there{end[0] - origin[0], end[1] - origin[1], end[2] - origin[2]};
+      const Vector3 there = end - origin;
       const double x = dot(there, ahead), y = dot(there, lateral);
       along[0] = std::min(along[0], x), along[1] = std::max(along[1], x);
       across[0] = std::min(across[0], y), across[1] = std::max(across[1], y);

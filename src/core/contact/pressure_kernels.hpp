@@ -99,7 +99,7 @@ V inside(V x, V low, V high) {
 // the cut the deeper of both.
 template <class V>
 SKISNOW_INLINE void add_piece(const CutGround<V>& cut, V low, V high, V lift, V rise, Pressure<V>& out) {
-  const MaskOf<V> old = low == low;
+  const MaskOf<V> old = all_lanes<V>(true);
   if (!any((cut.from < high) & (cut.to > low) & (cut.from < cut.to))) {
     out.add(low, high, lift, rise, old);
     return;
@@ -120,7 +120,7 @@ SKISNOW_INLINE void add_piece(const CutGround<V>& cut, V low, V high, V lift, V 
 // [press_line] Pressure of the ground's pieces; what was cut within the step counts where it lies deeper.
 template <class V>
 SKISNOW_INLINE void add_ground(const GrooveLines& lines, int j, V edge, V wet_from, V wet_to, const CutGround<V>& cut,
-                Pressure<V>& out) {
+                               Pressure<V>& out) {
   int most = 0;
   for (int lane = 0; lane < WIDTH<V>; lane++) most = std::max<int>(most, lines.knots[std::size_t(j + lane)]);
   const double* place = lines.place.data() + lines.tile(j, 0);
@@ -129,7 +129,7 @@ SKISNOW_INLINE void add_ground(const GrooveLines& lines, int j, V edge, V wet_fr
   // over the cut: the part before the ground's first knot, the pieces, the part behind the last one
   const auto cut_piece = [&](V a, V b) {
     const V low = inside(a, cut.from, cut.to), high = inside(b, cut.from, cut.to);
-    out.add(low, maximum(low, high), V{}, cut.slope - out.fall, low != low);
+    out.add(low, maximum(low, high), V{}, cut.slope - out.fall, all_lanes<V>(false));
   };
   const bool cuts = any(cut.to > cut.from);
   V a = load<V>(place) - edge;

@@ -9,14 +9,7 @@ namespace {
 
 constexpr int LOWER = HALF_BAND + 1;
 
-Vector3 cross(const Vector3& a, const Vector3& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-
-Vector3 part(const Numbers& numbers, int first) {
-  const auto i = std::size_t(first);
-  return {numbers[i], numbers[i + 1], numbers[i + 2]};
-}
+Vector3 part(const Numbers& numbers, int first) { return vector_at(numbers.data() + first); }
 
 // xᵀ A x of the numbers of one beam.
 double quadratic(const Body& body, const BeamColumns& band, const double* x) {
@@ -46,6 +39,27 @@ Vector3 air_velocity(const Body& body, const BodyState& state) {
 }
 
 }  // namespace
+
+Vector3 FlexibleSki::in_body(const Vector3& v) const {
+  Vector3 out{};
+  for (std::size_t c = 0; c < 3; c++) out = out + v[c] * axes[c];
+  return out;
+}
+
+void FlexibleSki::fill_freedoms(double (&by_body)[BODY][BORDER_ROW]) const {
+  for (std::size_t c = 0; c < 3; c++) {
+    const Vector3 turning = cross(boot, axes[c]);
+    for (std::size_t a = 0; a < 3; a++) {
+      by_body[c][a] = by_body[c + 3][a + 3] = axes[c][a];
+      by_body[c][a + 3] = turning[a], by_body[c + 3][a] = 0.0;
+    }
+  }
+}
+
+void FlexibleSki::add_wrench(const double* force, const double* moment, Numbers& out) const {
+  const Vector3 push = in_body(vector_at(force)), turn = in_body(vector_at(moment)) + cross(boot, push);
+  for (std::size_t a = 0; a < 3; a++) out[a] += push[a], out[a + 3] += turn[a];
+}
 
 void FlexibleSki::prepare() {
   mass_columns = BeamColumns(mass);
@@ -109,8 +123,7 @@ Vector3 BodyState::in_space(const Vector3& in_body) const {
 }
 
 void move(const BodyState& from, const Numbers& increment, BodyState& out) {
-  const Vector3 way = from.in_space(part(increment, 0));
-  for (std::size_t a = 0; a < 3; a++) out.position[a] = from.position[a] + way[a];
+  out.position = from.position + from.in_space(part(increment, 0));
   double turn[3][3];
   rotation_matrix(part(increment, 3), turn);
   for (int a = 0; a < 3; a++)
@@ -122,9 +135,8 @@ void move(const BodyState& from, const Numbers& increment, BodyState& out) {
 }
 
 Vector3 rotated(const double* rotation, const double* vector, double share) {
-  const Vector3 r{share * rotation[0], share * rotation[1], share * rotation[2]}, v{vector[0], vector[1], vector[2]};
-  const Vector3 once = cross(r, v), twice = cross(r, once);
-  return {v[0] + once[0] + 0.5 * twice[0], v[1] + once[1] + 0.5 * twice[1], v[2] + once[2] + 0.5 * twice[2]};
+  const Vector3 r = share * vector_at(rotation), v = vector_at(vector), once = cross(r, v);
+  return v + once + 0.5 * cross(r, once);
 }
 
 void add_mass(const Body& body, const Layout& layout, const Numbers& x, double scale, Numbers& out) {
@@ -154,7 +166,6 @@ void add_stiffness(const Body& body, const Layout& layout, const Numbers& x, con
 
 void add_forces(const Body& body, const Layout& layout, const BodyState& state, Numbers& out) {
   const Vector3 v = part(state.rate, 0), o = part(state.rate, 3), g = state.in_body(body.gravity);
-  const Vector3 turning = cross(v, o);
   double momentum[BODY] = {}, bending[BODY] = {};
   for (int a = 0; a < BODY; a++)
     for (int b = 0; b < BODY; b++) momentum[a] += body.inertia[a][b] * state.rate[std::size_t(b)];
@@ -162,29 +173,22 @@ void add_forces(const Body& body, const Layout& layout, const BodyState& state, 
     const FlexibleSki& ski = body.skis[std::size_t(k)];
     body.kernels->add_coupled(ski.coupling_columns, state.rate.data() + layout.first(k), bending);
     // gravity, and what a beam feels of the turning of the velocity
-    const double pulled[BODY] = {g[0] + turning[0], g[1] + turning[1], g[2] + turning[2], 0.0, 0.0, 0.0};
+    const Vector3 pull = g + cross(v, o);
+    const double pulled[BODY] = {pull[0], pull[1], pull[2], 0.0, 0.0, 0.0};
     body.kernels->add_coupling(ski.coupling_columns, pulled, 1.0, out.data() + layout.first(k));
   }
   for (int a = 0; a < BODY; a++) momentum[a] += bending[a];
-  const Vector3 p{momentum[0], momentum[1], momentum[2]}, l{momentum[3], momentum[4], momentum[5]};
-  const Vector3 b{bending[0], bending[1], bending[2]};
-  const Vector3 air = air_velocity(body, state);
-  const double drag = -body.drag * std::sqrt(air[0] * air[0] + air[1] * air[1] + air[2] * air[2]);
-  const Vector3 pull{drag * air[0], drag * air[1], drag * air[2]};
-  const Vector3 arm{0.0, 0.0, body.drag_height};
-  const Vector3 force = cross(o, p), own = cross(o, b), weight = cross(body.first_moment, g), lever = cross(arm, pull);
-  const Vector3 pushed = state.in_body(body.push), pushed_lever = cross(body.push_at, pushed);
-  const Vector3 gyration = cross(o, l), carried = cross(v, p), beams = cross(v, b);
-  for (std::size_t a = 0; a < 3; a++) {
-    out[a] += body.mass * g[a] + pull[a] - force[a] - own[a];
-    out[a + 3] += weight[a] + lever[a] - gyration[a] - carried[a] + beams[a];
-    out[a] += pushed[a], out[a + 3] += pushed_lever[a];
-  }
+  const Vector3 p = vector_at(momentum), l = vector_at(momentum + 3), b = vector_at(bending);
+  const Vector3 air = air_velocity(body, state), drag = -body.drag * std::sqrt(dot(air, air)) * air;
+  const Vector3 pushed = state.in_body(body.push), arm{0.0, 0.0, body.drag_height};
+  const Vector3 force = body.mass * g + drag + pushed - cross(o, p) - cross(o, b);
+  const Vector3 moment = cross(body.first_moment, g) + cross(arm, drag) + cross(body.push_at, pushed) - cross(o, l) -
+                         cross(v, p) + cross(v, b);
+  for (std::size_t a = 0; a < 3; a++) out[a] += force[a], out[a + 3] += moment[a];
 }
 
 void fill_pose(const FlexibleSki& ski, const BodyState& state, int first, Pose& out) {
-  const Vector3 boot = state.in_space(ski.boot);
-  for (std::size_t a = 0; a < 3; a++) out.position[a] = state.position[a] + boot[a];
+  out.position = state.position + state.in_space(ski.boot);
   for (int c = 0; c < 3; c++) {
     const Vector3 axis = state.in_space(ski.axes[c]);
     for (std::size_t a = 0; a < 3; a++) out.rotation[a][c] = axis[a];
@@ -196,11 +200,9 @@ void fill_pose(const FlexibleSki& ski, const BodyState& state, int first, Pose& 
 }
 
 void fill_motion(const FlexibleSki& ski, const BodyState& state, int first, Motion& out) {
-  const Vector3 v = part(state.rate, 0), o = part(state.rate, 3), by_turning = cross(o, ski.boot);
-  const Vector3 &moves = ski.velocity, &turns = ski.turning;
-  out.velocity = state.in_space(
-      {v[0] + by_turning[0] + moves[0], v[1] + by_turning[1] + moves[1], v[2] + by_turning[2] + moves[2]});
-  out.turning = state.in_space({o[0] + turns[0], o[1] + turns[1], o[2] + turns[2]});
+  const Vector3 v = part(state.rate, 0), o = part(state.rate, 3);
+  out.velocity = state.in_space(v + cross(o, ski.boot) + ski.velocity);
+  out.turning = state.in_space(o + ski.turning);
   out.beam.resize(3 * ski.unknown.size());
   for (std::size_t j = 0; j < ski.unknown.size(); j++)
     for (std::size_t c = 0; c < 3; c++)
@@ -229,14 +231,11 @@ Energies energies(const Body& body, const Layout& layout, const BodyState& state
 
 double drag_power(const Body& body, const BodyState& state) {
   const Vector3 v = air_velocity(body, state);
-  const double square = v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
-  return body.drag * square * std::sqrt(square);
+  return body.drag * dot(v, v) * std::sqrt(dot(v, v));
 }
 
 double push_power(const Body& body, const BodyState& state) {
-  const Vector3 v = part(state.rate, 0), by = cross(part(state.rate, 3), body.push_at);
-  const Vector3 velocity = state.in_space({v[0] + by[0], v[1] + by[1], v[2] + by[2]});
-  return body.push[0] * velocity[0] + body.push[1] * velocity[1] + body.push[2] * velocity[2];
+  return dot(body.push, state.in_space(part(state.rate, 0) + cross(part(state.rate, 3), body.push_at)));
 }
 
 double damping_power(const Body& body, const Layout& layout, const BodyState& state) {

@@ -32,6 +32,9 @@ struct FlexibleSki {
   std::vector<int> held_places;  // in rows of all nodes' unknowns: columns of nodes that are held or do not exist
 
   void prepare();
+  Vector3 in_body(const Vector3& v) const;                        // a vector of the ski's axes
+  void fill_freedoms(double (&by_body)[BODY][BORDER_ROW]) const;  // of its clamp, in its axes, by the body's
+  void add_wrench(const double* force, const double* moment, Numbers& out) const;  // on its clamp, in its axes
   int size() const { return int(mass.size()) / (HALF_BAND + 1); }
 
  private:

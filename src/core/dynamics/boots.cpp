@@ -7,45 +7,18 @@ namespace skisnow {
 
 namespace {
 
-Vector3 cross(const Vector3& a, const Vector3& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-
 // A vector of the carrier's frame in the ski's axes.
 Vector3 in_axes(const FlexibleSki& ski, const Vector3& v) {
-  Vector3 out{};
-  for (std::size_t c = 0; c < 3; c++)
-    for (std::size_t a = 0; a < 3; a++) out[c] += ski.axes[c][a] * v[a];
-  return out;
-}
-
-Vector3 out_of_axes(const FlexibleSki& ski, const Vector3& v) {
-  Vector3 out{};
-  for (std::size_t c = 0; c < 3; c++)
-    for (std::size_t a = 0; a < 3; a++) out[a] += ski.axes[c][a] * v[c];
-  return out;
-}
-
-// The ski's rates, in its own axes, by its carrier's: [ski][carrier].
-void carried(const FlexibleSki& ski, double (&by)[BODY][BODY]) {
-  for (std::size_t c = 0; c < 3; c++) {
-    const Vector3 turning = cross(ski.boot, ski.axes[c]);
-    for (std::size_t a = 0; a < 3; a++) {
-      by[c][a] = by[c + 3][a + 3] = ski.axes[c][a];
-      by[c][a + 3] = turning[a];
-      by[c + 3][a] = 0.0;
-    }
-  }
+  return {dot(ski.axes[0], v), dot(ski.axes[1], v), dot(ski.axes[2], v)};
 }
 
 // Angular velocity in the turned axes, of a rotation vector and its rate: the right Jacobian of the exponential.
 Vector3 angular_velocity(const Vector3& turn, const Vector3& rate) {
-  const double square = turn[0] * turn[0] + turn[1] * turn[1] + turn[2] * turn[2], angle = std::sqrt(square);
+  const double square = dot(turn, turn), angle = std::sqrt(square);
   const double once = angle > 1e-4 ? (1.0 - std::cos(angle)) / square : 0.5 - square / 24.0;
   const double twice = angle > 1e-4 ? (angle - std::sin(angle)) / (square * angle) : 1.0 / 6.0 - square / 120.0;
-  const Vector3 first = cross(turn, rate), second = cross(turn, first);
-  return {rate[0] - once * first[0] + twice * second[0], rate[1] - once * first[1] + twice * second[1],
-          rate[2] - once * first[2] + twice * second[2]};
+  const Vector3 first = cross(turn, rate);
+  return rate - once * first + twice * cross(turn, first);
 }
 
 }  // namespace
@@ -53,13 +26,10 @@ Vector3 angular_velocity(const Vector3& turn, const Vector3& rate) {
 // [boots] p = Σ pᵢ τⁱ and A = A₀ exp [Σ φᵢ τⁱ]×, with their rates.
 void BootMotion::set(double time, FlexibleSki& stage) const {
   const double t = time - start;
-  Vector3 angle{}, rate{};
-  for (std::size_t a = 0; a < 3; a++) {
-    stage.boot[a] = place[0][a] + t * (place[1][a] + t * (place[2][a] + t * place[3][a]));
-    stage.velocity[a] = place[1][a] + t * (2.0 * place[2][a] + t * 3.0 * place[3][a]);
-    angle[a] = t * (turn[0][a] + t * (turn[1][a] + t * turn[2][a]));
-    rate[a] = turn[0][a] + t * (2.0 * turn[1][a] + t * 3.0 * turn[2][a]);
-  }
+  stage.boot = place[0] + t * (place[1] + t * (place[2] + t * place[3]));
+  stage.velocity = place[1] + t * (2.0 * place[2] + t * 3.0 * place[3]);
+  const Vector3 angle = t * (turn[0] + t * (turn[1] + t * turn[2]));
+  const Vector3 rate = turn[0] + t * (2.0 * turn[1] + t * 3.0 * turn[2]);
   double turned[3][3];
   rotation_matrix(angle, turned);
   for (std::size_t c = 0; c < 3; c++)
@@ -67,15 +37,12 @@ void BootMotion::set(double time, FlexibleSki& stage) const {
       stage.axes[c][a] = 0.0;
       for (std::size_t m = 0; m < 3; m++) stage.axes[c][a] += axes[m][a] * turned[m][c];
     }
-  stage.turning = out_of_axes(stage, angular_velocity(angle, rate));
+  stage.turning = stage.in_body(angular_velocity(angle, rate));
 }
 
 void carry_rates(const FlexibleSki& stage, const Numbers& rates, double* out) {
-  const Vector3 v{rates[0], rates[1], rates[2]}, o{rates[3], rates[4], rates[5]}, by = cross(o, stage.boot);
-  const Vector3 velocity{v[0] + by[0] + stage.velocity[0], v[1] + by[1] + stage.velocity[1],
-                         v[2] + by[2] + stage.velocity[2]};
-  const Vector3 turning{o[0] + stage.turning[0], o[1] + stage.turning[1], o[2] + stage.turning[2]};
-  const Vector3 a = in_axes(stage, velocity), b = in_axes(stage, turning);
+  const Vector3 v = vector_at(rates.data()), o = vector_at(rates.data() + 3);
+  const Vector3 a = in_axes(stage, v + cross(o, stage.boot) + stage.velocity), b = in_axes(stage, o + stage.turning);
   std::copy(a.begin(), a.end(), out);
   std::copy(b.begin(), b.end(), out + 3);
 }
@@ -100,10 +67,9 @@ MovingSki::MovingSki(const FlexibleSki& stage, const double* inertia, const Body
 }
 
 void MovingSki::follow(const FlexibleSki& stage, const BodyState& carrier, int first) {
-  const Vector3 boot = carrier.in_space(stage.boot);
-  for (std::size_t a = 0; a < 3; a++) state_.position[a] = carrier.position[a] + boot[a];
+  state_.position = carrier.position + carrier.in_space(stage.boot);
   for (std::size_t c = 0; c < 3; c++) {
-    const Vector3 axis = carrier.in_space({stage.axes[c][0], stage.axes[c][1], stage.axes[c][2]});
+    const Vector3 axis = carrier.in_space(stage.axes[c]);
     for (std::size_t a = 0; a < 3; a++) state_.rotation[a][c] = axis[a];
   }
   carry_rates(stage, carrier.rate, state_.rate.data());
@@ -140,17 +106,16 @@ double MovingSki::power(const FlexibleSki& stage) const {
 }
 
 void MovingSki::add_to(Body& carrier, const FlexibleSki& stage, double sign) const {
-  double by[BODY][BODY], half[BODY][BODY] = {};
-  carried(stage, by);
+  double by[BODY][BORDER_ROW], half[BODY][BODY] = {};
+  stage.fill_freedoms(by);
   for (int a = 0; a < BODY; a++)
     for (int b = 0; b < BODY; b++)
       for (int m = 0; m < BODY; m++) half[a][b] += body_.inertia[a][m] * by[m][b];
   for (int a = 0; a < BODY; a++)
     for (int b = 0; b < BODY; b++)
       for (int m = 0; m < BODY; m++) carrier.inertia[a][b] += sign * by[m][a] * half[m][b];
-  const Vector3 centre = out_of_axes(stage, body_.first_moment);
   carrier.mass += sign * body_.mass;
-  for (std::size_t a = 0; a < 3; a++) carrier.first_moment[a] += sign * (centre[a] + body_.mass * stage.boot[a]);
+  carrier.first_moment = carrier.first_moment + sign * (stage.in_body(body_.first_moment) + body_.mass * stage.boot);
 }
 
 }  // namespace skisnow

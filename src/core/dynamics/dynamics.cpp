@@ -1,7 +1,6 @@
 #include "dynamics/dynamics.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -19,16 +18,8 @@ constexpr double LEAST_ERROR = 0.1;  // minimum of a step's own error, as a shar
 constexpr double OVERSHOOT = 0.3;    // work of the residual along a change, of the other sign, to go back for
 constexpr double LEAST_SHARE_BACK = 0.1, MOST_SHARE_BACK = 0.9;  // shares of the change that may be kept
 constexpr int MOST_BACKTRACKS = 2;                               // for one change
-constexpr double LEAST_SHARE = 1.0 / 64;                 // smallest part of a fixed step that is not solved whole
-constexpr double FARTHEST = 1.0;                         // way (m), turn (rad), bend beyond which a step has diverged
-constexpr double SAFETY = 0.85, UP = 1.35, DOWN = 0.93;  // safety and hysteresis of the choice of steps
-constexpr std::chrono::milliseconds LONGEST_STAY(50);    // within the core, before it pauses to hear an interrupt
-constexpr double ROUNDING = 1e-9;                        // share of a step's length
-// share of the energy exchanged by which a balance may be open before steps get shorter; and the smallest open energy
-// (J)
-constexpr double MOST_OPEN = 2e-3, LEAST_OPEN = 0.01;
-constexpr int MOST_NARROWED = 12;  // rungs by which steps get shorter: three octaves
-constexpr double MILNE = 0.35;     // error of BDF2 over its distance from the predictor, at equal steps 8/23
+constexpr double FARTHEST = 1.0;  // way (m), turn (rad), bend beyond which a step has diverged
+constexpr double MILNE = 0.35;    // error of BDF2 over its distance from the predictor, at equal steps 8/23
 
 }  // namespace
 
@@ -77,16 +68,7 @@ void Dynamics::add_snow(Numbers& out, bool with_tangent) {
   for (std::size_t k = 0; k < body_.skis.size(); k++) {
     const FlexibleSki& ski = body_.skis[k];
     const Wrench& snow = contact_->look(int(k), end_.poses[k], end_.motions[k], with_tangent);
-    Vector3 force{}, moment{};
-    for (std::size_t c = 0; c < 3; c++)
-      for (std::size_t a = 0; a < 3; a++) {
-        force[a] += ski.axes[c][a] * snow.force[c];
-        moment[a] += ski.axes[c][a] * snow.moment[c];
-      }
-    const Vector3& at = ski.boot;
-    const Vector3 lever{at[1] * force[2] - at[2] * force[1], at[2] * force[0] - at[0] * force[2],
-                        at[0] * force[1] - at[1] * force[0]};
-    for (std::size_t a = 0; a < 3; a++) out[a] += force[a], out[a + 3] += moment[a] + lever[a];
+    ski.add_wrench(snow.force, snow.moment, out);
     double* beam = out.data() + layout_.first(int(k));
     for (std::size_t j = 0; j < ski.unknown.size(); j++)
       for (int c = 0; c < 3 && ski.unknown[j] >= 0; c++) beam[ski.unknown[j] + c] += snow.beam[3 * j + std::size_t(c)];
@@ -106,19 +88,6 @@ void Dynamics::find_residual(const Formula& f, bool with_tangent) {
   add_mass(body_, layout_, difference_, -1.0, residual_);
 }
 
-// The freedoms of a ski's clamp, in the ski's axes, by the body's.
-void fill_clamp(const FlexibleSki& ski, double (&by_body)[BODY][BORDER_ROW]) {
-  const Vector3& r = ski.boot;
-  for (int c = 0; c < 3; c++) {
-    const Vector3& e = ski.axes[c];
-    const Vector3 turning{r[1] * e[2] - r[2] * e[1], r[2] * e[0] - r[0] * e[2], r[0] * e[1] - r[1] * e[0]};
-    for (std::size_t a = 0; a < 3; a++) {
-      by_body[c][a] = by_body[c + 3][a + 3] = e[a];
-      by_body[c][a + 3] = turning[a], by_body[c + 3][a] = 0.0;
-    }
-  }
-}
-
 // The rows of the beams: mass, stiffness and coupling by their weights, and the snow's tangent.
 void Dynamics::fill_beams(const BeamWeights& weights) {
   const auto combine = body_.kernels->combine;
@@ -127,7 +96,7 @@ void Dynamics::fill_beams(const BeamWeights& weights) {
     contact_->find_tangent(int(k), end_.poses[k], weights.snow_stiffness, weights.snow_damping, tangent_);
     BorderedSystem::Clamp& clamp = system_.clamp(int(k));
     std::copy_n(&tangent_.body[0][0], BODY * BORDER_ROW, &clamp.own[0][0]);
-    fill_clamp(ski, clamp.by_body);
+    ski.fill_freedoms(clamp.by_body);
     for (const int place : ski.held_places) tangent_.beam[std::size_t(place)] = 0.0;
     const double stiffness = weights.stiffness + weights.damping * ski.damping;
     for (const FlexibleSki::FreeNodes& nodes : ski.free) {
@@ -270,27 +239,6 @@ void Dynamics::add_losses(double pressure, double shear) {
   store_ = now;
 }
 
-// [balance] BDF2 damps vibrations that its steps do not resolve. The open balance of energy shows by how much. Where it
-// exceeds its share of the energy exchanged, steps get shorter by a rung of the ladder; they get longer again where it
-// is well below.
-void Dynamics::follow_balance() {
-  const Energies now = total_energies();
-  const Work& w = work_;
-  const double taken = w.shear + w.friction - w.normal + w.drag + w.damping - w.boots - w.push;
-  const double open =
-      std::fabs(now.kinetic + now.potential + now.elastic - start_.kinetic - start_.potential - start_.elastic + taken);
-  const double fallen = std::max(start_.potential - now.potential, 0.0);
-  const double most = MOST_OPEN * (start_.kinetic + std::max(taken, 0.0) + fallen) + LEAST_OPEN;
-  if (open > most)
-    narrowed_ = std::min(narrowed_ + 1, MOST_NARROWED);
-  else if (open < 0.5 * most)
-    narrowed_ = std::max(narrowed_ - 1, 0);
-}
-
-double Dynamics::tolerance() const { return rule_.tolerance * std::exp2(-0.75 * narrowed_); }
-
-double Dynamics::longest() const { return rule_.longest * std::exp2(-0.25 * narrowed_); }
-
 void Dynamics::observe() {
   along_.clear();
   touches_ = false;
@@ -330,10 +278,6 @@ bool Dynamics::is_sound(double h) const {
   return std::isfinite(total) && farthest <= FARTHEST;
 }
 
-double Dynamics::on_ladder(double h) const {
-  return rule_.longest * std::exp2(0.25 * std::floor(4.0 * std::log2(h / rule_.longest) + 1e-6));
-}
-
 void Dynamics::begin() {
   place_boots(0.0);
   next_ = state;
@@ -357,66 +301,6 @@ void Dynamics::begin() {
   time = 0.0;
   share_ = 1.0;
   step_ = rule_.fixed ? rule_.first : on_ladder(rule_.first);
-}
-
-// Take back the step that was tried.
-void Dynamics::reject() {
-  contact_->take_back();
-  counts_.rejected++;
-}
-
-// After a fixed step: halved where it was not solved, and so on.
-Dynamics::Tried Dynamics::after_fixed(bool solved) {
-  if (solved) {
-    share_ = std::min(1.0, 2.0 * share_);
-    return Tried::TAKEN;
-  }
-  reject();
-  share_ *= 0.5;
-  return share_ < LEAST_SHARE ? Tried::GIVEN_UP : Tried::AGAIN;
-}
-
-// After a step h under error control: the next one's length.
-Dynamics::Tried Dynamics::after_controlled(const Formula& f, double h, bool solved) {
-  const double wanted = solved ? SAFETY * std::cbrt(tolerance() / std::max(error(f), 1e-30)) : 0.5;
-  if (!solved || wanted < SAFETY) {
-    reject();
-    step_ = on_ladder(h * std::clamp(wanted, 0.1, 0.8));
-    return step_ < rule_.shortest ? Tried::GIVEN_UP : Tried::AGAIN;
-  }
-  if (h * wanted > UP * step_)
-    step_ = std::min(longest(), on_ladder(step_ * 1.19));
-  else if (h * wanted < DOWN * step_)
-    step_ = on_ladder(h * wanted);
-  step_ = std::min(step_, longest());
-  return Tried::TAKEN;
-}
-
-Advance Dynamics::advance(double until, long most) {
-  const auto entered = std::chrono::steady_clock::now();
-  for (long tries = 0; time < until; tries++) {
-    if (tries == most) return Advance::PAUSED;
-    if (tries > 0 && std::chrono::steady_clock::now() - entered > LONGEST_STAY) return Advance::PAUSED;
-    const double left = until - time;
-    // equal steps on the time that is left
-    double h = left / std::max(1.0, std::ceil(left / step_ - ROUNDING));
-    if (std::fabs(h - last_step_) < ROUNDING * h) h = last_step_;
-    h *= share_;
-    const Formula f = formula(h);
-    place_boots(time + h);
-    predict(f);
-    fill_end();
-    end_.dt = h;
-    contact_->begin(end_);
-    const bool solved = solve_step(f) && is_sound(h);
-    const Tried tried = rule_.fixed ? after_fixed(solved) : after_controlled(f, h, solved);
-    if (tried == Tried::GIVEN_UP) return rule_.fixed ? Advance::NOT_FINITE : Advance::STEP_TOO_SMALL;
-    if (tried == Tried::AGAIN) continue;
-    const bool reached = h >= left * (1.0 - ROUNDING);
-    time = reached ? until : time + h;
-    accept(f, reached);
-  }
-  return Advance::REACHED;
 }
 
 }  // namespace skisnow

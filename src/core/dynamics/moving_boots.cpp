@@ -53,16 +53,7 @@ void Dynamics::find_moving_residual(double newest, double now, double before, bo
     const FlexibleSki& stage = body_.skis[k];
     ski.find_residual(contact_->look(int(k), end_.poses[k], end_.motions[k], with_tangent), newest, now, before);
     const Numbers& left = ski.residual();
-    Vector3 force{}, moment{};
-    for (std::size_t c = 0; c < 3; c++)
-      for (std::size_t a = 0; a < 3; a++) {
-        force[a] += stage.axes[c][a] * left[c];
-        moment[a] += stage.axes[c][a] * left[c + 3];
-      }
-    const Vector3& at = stage.boot;
-    const Vector3 lever{at[1] * force[2] - at[2] * force[1], at[2] * force[0] - at[0] * force[2],
-                        at[0] * force[1] - at[1] * force[0]};
-    for (std::size_t a = 0; a < 3; a++) out[a] += force[a], out[a + 3] += moment[a] + lever[a];
+    stage.add_wrench(left.data(), left.data() + 3, out);
     std::copy_n(left.data() + ski.layout().first(0), stage.size(), out.data() + layout_.first(int(k)));
   }
   add_forces(trunk_, Layout(), next_, out);

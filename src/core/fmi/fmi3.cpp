@@ -1,113 +1,87 @@
 // The functions of FMI 3.0 for co-simulation (fmi-standard.org), declared here as far as they are used.
 #include <cstdint>
-#include <exception>
 #include <string>
 
 #include "fmi/fmu_instance.hpp"
 
-#if defined(_WIN32)
-#define FMI3_FUNCTION extern "C" __declspec(dllexport)
-#else
-#define FMI3_FUNCTION extern "C" __attribute__((visibility("default")))
-#endif
-
+using skisnow::FMU_OK;
 using skisnow::FmuInstance;
 using skisnow::FmuStatus;
 
 namespace {
 
-using Status = int;
 using Reference = std::uint32_t;
-using Logger = void (*)(void* environment, Status, const char* category, const char* message);
-
-constexpr Status OK = 0;
-
-Status said(FmuStatus status) { return Status(status); }
+using Logger = void (*)(void* environment, FmuStatus, const char* category, const char* message);
 
 FmuInstance& of(void* instance) { return *static_cast<FmuInstance*>(instance); }
 
 }  // namespace
 
-FMI3_FUNCTION const char* fmi3GetVersion() { return "3.0"; }
-FMI3_FUNCTION Status fmi3SetDebugLogging(void*, bool, std::size_t, const char* const*) { return OK; }
+FMI_FUNCTION const char* fmi3GetVersion() { return "3.0"; }
+FMI_FUNCTION FmuStatus fmi3SetDebugLogging(void*, bool, std::size_t, const char* const*) { return FMU_OK; }
 
-FMI3_FUNCTION void* fmi3InstantiateCoSimulation(const char*, const char* token, const char* resources, bool, bool,
-                                                bool events, bool, const Reference*, std::size_t, void* environment,
-                                                Logger logger, void*) {
+FMI_FUNCTION void* fmi3InstantiateCoSimulation(const char*, const char* token, const char* resources, bool, bool,
+                                               bool events, bool, const Reference*, std::size_t, void* environment,
+                                               Logger logger, void*) {
   FmuInstance::Log log;
   if (logger != nullptr)
     log = [logger, environment](FmuStatus status, const std::string& words) {
-      logger(environment, said(status), "logStatusError", words.c_str());
+      logger(environment, status, "logStatusError", words.c_str());
     };
-  try {
-    if (events) throw std::invalid_argument("this FMU has no event mode");
-    if (token == nullptr || resources == nullptr) throw std::invalid_argument("token or place of resources is NULL");
-    return new FmuInstance(resources, token, log);
-  } catch (const std::exception& wrong) {
-    if (log) log(FmuStatus::ERROR, wrong.what());
-    return nullptr;
-  }
+  return FmuInstance::make(resources, token, events ? "this FMU has no event mode" : nullptr, log);
 }
 
-FMI3_FUNCTION void fmi3FreeInstance(void* c) { delete static_cast<FmuInstance*>(c); }
+FMI_FUNCTION void fmi3FreeInstance(void* c) { delete static_cast<FmuInstance*>(c); }
 
-FMI3_FUNCTION Status fmi3EnterInitializationMode(void* c, bool, double, double start, bool, double) {
+FMI_FUNCTION FmuStatus fmi3EnterInitializationMode(void* c, bool, double, double start, bool, double) {
   const FmuStatus begun = of(c).set_up(start);
-  return said(begun == FmuStatus::OK ? of(c).enter_initialization() : begun);
+  return begun == FMU_OK ? of(c).enter_initialization() : begun;
 }
-FMI3_FUNCTION Status fmi3ExitInitializationMode(void* c) { return said(of(c).exit_initialization()); }
-FMI3_FUNCTION Status fmi3EnterStepMode(void*) { return OK; }
-FMI3_FUNCTION Status fmi3Terminate(void* c) { return said(of(c).terminate()); }
-FMI3_FUNCTION Status fmi3Reset(void* c) { return said(of(c).reset()); }
+FMI_FUNCTION FmuStatus fmi3ExitInitializationMode(void* c) { return of(c).exit_initialization(); }
+FMI_FUNCTION FmuStatus fmi3EnterStepMode(void*) { return FMU_OK; }
+FMI_FUNCTION FmuStatus fmi3Terminate(void* c) { return of(c).terminate(); }
+FMI_FUNCTION FmuStatus fmi3Reset(void* c) { return of(c).reset(); }
 
-FMI3_FUNCTION Status fmi3GetFloat64(void* c, const Reference* reference, std::size_t count, double* value,
-                                    std::size_t values) {
-  if (count != values) return said(of(c).refuse("every variable of this model is one number"));
-  return said(of(c).get(reference, count, value));
+FMI_FUNCTION FmuStatus fmi3GetFloat64(void* c, const Reference* reference, std::size_t count, double* value,
+                                      std::size_t values) {
+  if (count != values) return of(c).refuse("every variable of this model is one number");
+  return of(c).get(reference, count, value);
 }
-FMI3_FUNCTION Status fmi3SetFloat64(void* c, const Reference* reference, std::size_t count, const double* value,
-                                    std::size_t values) {
-  if (count != values) return said(of(c).refuse("every variable of this model is one number"));
-  return said(of(c).set(reference, count, value));
+FMI_FUNCTION FmuStatus fmi3SetFloat64(void* c, const Reference* reference, std::size_t count, const double* value,
+                                      std::size_t values) {
+  if (count != values) return of(c).refuse("every variable of this model is one number");
+  return of(c).set(reference, count, value);
 }
 
-FMI3_FUNCTION Status fmi3DoStep(void* c, double now, double step, bool, bool* events, bool* terminate, bool* early,
-                                double* last) {
+FMI_FUNCTION FmuStatus fmi3DoStep(void* c, double now, double step, bool, bool* events, bool* terminate, bool* early,
+                                  double* last) {
   const FmuStatus ended = of(c).step(now, step);
   *events = *terminate = *early = false;
   *last = of(c).time();
-  return said(ended);
+  return ended;
 }
 
-FMI3_FUNCTION Status fmi3GetFMUState(void* c, void** state) {
-  return said(of(c).keep(reinterpret_cast<FmuInstance::State**>(state)));
-}
-FMI3_FUNCTION Status fmi3SetFMUState(void* c, void* state) {
-  return said(of(c).take(static_cast<const FmuInstance::State*>(state)));
-}
-FMI3_FUNCTION Status fmi3FreeFMUState(void*, void** state) {
-  delete static_cast<FmuInstance::State*>(*state);
-  *state = nullptr;
-  return OK;
-}
+FMI_FUNCTION FmuStatus fmi3GetFMUState(void* c, void** state) { return of(c).keep(state); }
+FMI_FUNCTION FmuStatus fmi3SetFMUState(void* c, void* state) { return of(c).take(state); }
+FMI_FUNCTION FmuStatus fmi3FreeFMUState(void*, void** state) { return FmuInstance::free_state(state); }
 
-FMI3_FUNCTION Status fmi3SerializedFMUStateSize(void* c, void* state, std::size_t* size) {
-  return said(of(c).size(static_cast<const FmuInstance::State*>(state), size));
+FMI_FUNCTION FmuStatus fmi3SerializedFMUStateSize(void* c, void* state, std::size_t* size) {
+  return of(c).size(state, size);
 }
-FMI3_FUNCTION Status fmi3SerializeFMUState(void* c, void* state, std::uint8_t* bytes, std::size_t size) {
-  return said(of(c).write(static_cast<const FmuInstance::State*>(state), bytes, size));
+FMI_FUNCTION FmuStatus fmi3SerializeFMUState(void* c, void* state, std::uint8_t* bytes, std::size_t size) {
+  return of(c).write(state, bytes, size);
 }
-FMI3_FUNCTION Status fmi3DeserializeFMUState(void* c, const std::uint8_t* bytes, std::size_t size, void** state) {
-  return said(of(c).read(bytes, size, reinterpret_cast<FmuInstance::State**>(state)));
+FMI_FUNCTION FmuStatus fmi3DeserializeFMUState(void* c, const std::uint8_t* bytes, std::size_t size, void** state) {
+  return of(c).read(bytes, size, state);
 }
 
 // There are no variables of other kinds; none of them is all that can be asked for.
-#define NO_VARIABLES(kind, type)                                                                               \
-  FMI3_FUNCTION Status fmi3Get##kind(void* c, const Reference*, std::size_t count, type*, std::size_t) {       \
-    return count == 0 ? OK : said(of(c).refuse("all variables of this model are Float64"));                    \
-  }                                                                                                            \
-  FMI3_FUNCTION Status fmi3Set##kind(void* c, const Reference*, std::size_t count, type const*, std::size_t) { \
-    return count == 0 ? OK : said(of(c).refuse("all variables of this model are Float64"));                    \
+#define NO_VARIABLES(kind, type)                                                                                 \
+  FMI_FUNCTION FmuStatus fmi3Get##kind(void* c, const Reference*, std::size_t count, type*, std::size_t) {       \
+    return count == 0 ? FMU_OK : of(c).refuse("all variables of this model are Float64");                        \
+  }                                                                                                              \
+  FMI_FUNCTION FmuStatus fmi3Set##kind(void* c, const Reference*, std::size_t count, type const*, std::size_t) { \
+    return count == 0 ? FMU_OK : of(c).refuse("all variables of this model are Float64");                        \
   }
 NO_VARIABLES(Float32, float)
 NO_VARIABLES(Int8, std::int8_t)
@@ -123,9 +97,9 @@ NO_VARIABLES(String, const char*)
 
 // modelDescription.xml says that these are not offered; an importer may still look for their names.
 #define NOT_OFFERED(name) \
-  FMI3_FUNCTION Status name(void* c, ...) { return said(of(c).refuse(#name " is not offered")); }
-#define NO_INSTANCE(name) /* NOLINT(bugprone-macro-parentheses): a name */ \
-  FMI3_FUNCTION void* name(...) { return nullptr; }
+  FMI_FUNCTION FmuStatus name(void* c, ...) { return of(c).refuse(#name " is not offered"); }
+#define NO_INSTANCE(name) \
+  FMI_FUNCTION void* name(...) { return nullptr; }  // NOLINT(bugprone-macro-parentheses)
 NO_INSTANCE(fmi3InstantiateModelExchange)
 NO_INSTANCE(fmi3InstantiateScheduledExecution)
 NOT_OFFERED(fmi3GetBinary)

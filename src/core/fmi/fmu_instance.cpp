@@ -5,6 +5,7 @@
 #include <fstream>
 #include <sstream>
 #include <stdexcept>
+#include <utility>
 
 namespace skisnow {
 
@@ -25,6 +26,11 @@ Fields data_in(const std::string& resources, const std::string& token) {
   return Fields::read(text.str());
 }
 
+const FmuInstance::State& state_at(const void* state) {
+  if (state == nullptr) throw std::invalid_argument("the state is NULL");
+  return *static_cast<const FmuInstance::State*>(state);
+}
+
 }  // namespace
 
 FmuInstance::FmuInstance(const std::string& resources, const std::string& token, Log log)
@@ -33,9 +39,20 @@ FmuInstance::FmuInstance(const std::string& resources, const std::string& token,
       model_(FmuModel::of(data_)),
       log_(std::move(log)) {}
 
+FmuInstance* FmuInstance::make(const char* resources, const char* token, const char* objection, const Log& log) {
+  try {
+    if (objection != nullptr) throw std::invalid_argument(objection);
+    if (token == nullptr || resources == nullptr) throw std::invalid_argument("token or place of resources is NULL");
+    return new FmuInstance(resources, token, log);
+  } catch (const std::exception& wrong) {
+    if (log) log(FMU_ERROR, wrong.what());
+    return nullptr;
+  }
+}
+
 FmuStatus FmuInstance::refuse(const std::string& what) const {
-  if (log_) log_(FmuStatus::ERROR, what);
-  return FmuStatus::ERROR;
+  if (log_) log_(FMU_ERROR, what);
+  return FMU_ERROR;
 }
 
 template <class Work>
@@ -43,10 +60,10 @@ FmuStatus FmuInstance::guarded(const Work& work) const noexcept {
   try {
     try {
       work();
-      return FmuStatus::OK;
+      return FMU_OK;
     } catch (const std::exception& wrong) { return refuse(wrong.what()); }
   } catch (...) {  // no memory even for the words
-    return FmuStatus::FATAL;
+    return FMU_FATAL;
   }
 }
 
@@ -126,56 +143,60 @@ FmuStatus FmuInstance::set(const unsigned* reference, std::size_t count, const d
   });
 }
 
-FmuStatus FmuInstance::keep(State** state) const {
+void FmuInstance::replace(void** state, std::unique_ptr<State> by) {
+  delete static_cast<State*>(*state);
+  *state = by.release();
+}
+
+FmuStatus FmuInstance::keep(void** state) const {
+  return guarded([&] { replace(state, std::make_unique<State>(State{model_->copy(), stage_, start_time_})); });
+}
+
+FmuStatus FmuInstance::free_state(void** state) {
+  replace(state, nullptr);
+  return FMU_OK;
+}
+
+FmuStatus FmuInstance::take(const void* state) {
   return guarded([&] {
-    auto kept = std::make_unique<State>(State{model_->copy(), stage_, start_time_});
-    delete *state;
-    *state = kept.release();
+    const State& kept = state_at(state);
+    model_ = kept.model->copy();
+    stage_ = kept.stage, start_time_ = kept.start_time;
   });
 }
 
-FmuStatus FmuInstance::take(const State* state) {
-  return guarded([&] {
-    if (state == nullptr) throw std::invalid_argument("the state is NULL");
-    model_ = state->model->copy();
-    stage_ = state->stage, start_time_ = state->start_time;
-  });
-}
-
-Bytes FmuInstance::bytes(const State* state) const {
-  if (state == nullptr) throw std::invalid_argument("the state is NULL");
-  if (state->stage == Stage::FAILED)
-    throw std::logic_error("a state after a step that has failed has no form in bytes");
+Bytes FmuInstance::bytes(const void* state) const {
+  const State& kept = state_at(state);
+  if (kept.stage == Stage::FAILED) throw std::logic_error("a state after a step that has failed has no form in bytes");
   ByteWriter out;
-  out.put(token_), out.whole(std::int64_t(state->stage)), out.number(state->start_time);
-  state->model->write(out);
+  out.put(token_), out.whole(std::int64_t(kept.stage)), out.number(kept.start_time);
+  kept.model->write(out);
   return out.sealed(STATE);
 }
 
-FmuStatus FmuInstance::size(const State* state, std::size_t* size) const {
+FmuStatus FmuInstance::size(const void* state, std::size_t* size) const {
   return guarded([&] { *size = bytes(state).size(); });
 }
 
-FmuStatus FmuInstance::write(const State* state, unsigned char* to, std::size_t size) const {
+FmuStatus FmuInstance::write(const void* state, void* to, std::size_t size) const {
   return guarded([&] {
     const Bytes from = bytes(state);
     if (to == nullptr || size < from.size())
       throw std::invalid_argument("the state takes " + std::to_string(from.size()) + " bytes; there is room for " +
                                   std::to_string(to == nullptr ? 0 : size));
-    std::copy(from.begin(), from.end(), to);
+    std::copy(from.begin(), from.end(), static_cast<unsigned char*>(to));
   });
 }
 
-FmuStatus FmuInstance::read(const unsigned char* bytes, std::size_t size, State** state) const {
+FmuStatus FmuInstance::read(const void* bytes, std::size_t size, void** state) const {
   return guarded([&] {
-    ByteReader in = ByteReader::opened(STATE, bytes, size);
+    ByteReader in = ByteReader::opened(STATE, static_cast<const unsigned char*>(bytes), size);
     if (in.take() != token_) refuse_bytes("they are that of another model");
     const auto stage = Stage(in.whole(0, std::int64_t(Stage::TERMINATED)));
     auto read = std::make_unique<State>(State{FmuModel::of(data_), stage, in.number()});
     read->model->read(in);
     in.require_end();
-    delete *state;
-    *state = read.release();
+    replace(state, std::move(read));
   });
 }
 

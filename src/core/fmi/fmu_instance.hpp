@@ -9,8 +9,14 @@
 
 namespace skisnow {
 
+#if defined(_WIN32)
+#define FMI_FUNCTION extern "C" __declspec(dllexport)
+#else
+#define FMI_FUNCTION extern "C" __attribute__((visibility("default")))
+#endif
+
 // Both standards number them so.
-enum class FmuStatus { OK = 0, WARNING = 1, DISCARD = 2, ERROR = 3, FATAL = 4 };
+enum FmuStatus : int { FMU_OK = 0, FMU_DISCARD = 2, FMU_ERROR = 3, FMU_FATAL = 4 };
 
 class FmuInstance {
  public:
@@ -18,6 +24,8 @@ class FmuInstance {
 
   // From the folder of the FMU's resources; throws where its data are not those that `token` names.
   FmuInstance(const std::string& resources, const std::string& token, Log log);
+  // The same, or null after a line in the log. `objection`: to what an importer asks for, or null.
+  static FmuInstance* make(const char* resources, const char* token, const char* objection, const Log& log);
 
   FmuStatus set_up(double start_time);
   FmuStatus enter_initialization();
@@ -35,12 +43,14 @@ class FmuInstance {
     Stage stage;
     double start_time;
   };
-  FmuStatus keep(State** state) const;  // into *state, where that is one already
-  FmuStatus take(const State* state);
+  // States as both standards hand them over: pointers without a type.
+  FmuStatus keep(void** state) const;  // into *state, where that is one already
+  FmuStatus take(const void* state);
+  static FmuStatus free_state(void** state);
   // A state as bytes, and back into a new one, of any instance of the same FMU.
-  FmuStatus size(const State* state, std::size_t* size) const;
-  FmuStatus write(const State* state, unsigned char* to, std::size_t size) const;
-  FmuStatus read(const unsigned char* bytes, std::size_t size, State** state) const;
+  FmuStatus size(const void* state, std::size_t* size) const;
+  FmuStatus write(const void* state, void* to, std::size_t size) const;
+  FmuStatus read(const void* bytes, std::size_t size, void** state) const;
   FmuStatus refuse(const std::string& what) const;  // an error, in words
 
  private:
@@ -54,7 +64,8 @@ class FmuInstance {
   template <class Work>
   FmuStatus guarded(const Work& work) const noexcept;
   void require(Stage stage, const char* what) const;
-  Bytes bytes(const State* state) const;
+  Bytes bytes(const void* state) const;
+  static void replace(void** state, std::unique_ptr<State> by);
 };
 
 }  // namespace skisnow

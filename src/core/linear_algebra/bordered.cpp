@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
+
+#include "linear_algebra/dense.hpp"
 
 namespace skisnow {
 
@@ -40,23 +41,6 @@ BeamRows BorderedSystem::rows(int beam) const {
   return {layout_.size(beam), self->band(beam, 0), self->border(beam, 0), self->border_column(beam, 0)};
 }
 
-bool BorderedSystem::factor_corner() {
-  for (int i = 0; i < BODY; i++) order_[i] = i;
-  for (int i = 0; i < BODY; i++) {
-    int best = i;
-    for (int r = i + 1; r < BODY; r++)
-      if (std::fabs(corner[r][i]) > std::fabs(corner[best][i])) best = r;
-    if (!(std::fabs(corner[best][i]) > 0.0)) return false;
-    std::swap(order_[i], order_[best]);
-    for (int c = 0; c < BODY; c++) std::swap(corner[i][c], corner[best][c]);
-    for (int r = i + 1; r < BODY; r++) {
-      corner[r][i] /= corner[i][i];
-      for (int c = i + 1; c < BODY; c++) corner[r][c] -= corner[r][i] * corner[i][c];
-    }
-  }
-  return true;
-}
-
 bool BorderedSystem::factor() {
   for (int beam = 0; beam < layout_.beams(); beam++) {
     Clamp& clamp = clamps_[std::size_t(beam)];
@@ -65,20 +49,10 @@ bool BorderedSystem::factor() {
   }
   for (int a = 0; a < BODY; a++)
     for (int b = 0; b < BODY && held[a]; b++) corner[a][b] = corner[b][a] = a == b ? 1.0 : 0.0;
-  return factor_corner();
-}
-
-void BorderedSystem::solve_corner(double* right) const {
-  double x[BODY];
-  for (int i = 0; i < BODY; i++) {
-    x[i] = right[order_[i]];
-    for (int c = 0; c < i; c++) x[i] -= corner[i][c] * x[c];
-  }
-  for (int i = BODY - 1; i >= 0; i--) {
-    for (int c = i + 1; c < BODY; c++) x[i] -= corner[i][c] * x[c];
-    x[i] /= corner[i][i];
-  }
-  std::copy_n(x, BODY, right);
+  factor_dense(&corner[0][0], BODY, BORDER_ROW, order_);
+  for (int a = 0; a < BODY; a++)
+    if (!(std::fabs(corner[a][a]) > 0.0)) return false;
+  return true;
 }
 
 void BorderedSystem::solve(Numbers& vector) const {
@@ -93,7 +67,7 @@ void BorderedSystem::solve(Numbers& vector) const {
   }
   for (int a = 0; a < BODY; a++)
     if (held[a]) right[a] = 0.0;
-  solve_corner(right);
+  solve_dense(&corner[0][0], BODY, BORDER_ROW, order_, right);
   std::copy_n(right, BODY, vector.data());
   for (int beam = 0; beam < layout_.beams(); beam++) {
     double at_clamp[BORDER_ROW] = {};

@@ -103,8 +103,6 @@ class BorderedSystem {
 
   std::size_t at(int beam, int row) const { return std::size_t(layout_.first(beam) + row); }
   BeamRows rows(int beam) const;
-  bool factor_corner();
-  void solve_corner(double* right) const;
 };
 
 }  // namespace skisnow

@@ -9,8 +9,6 @@ namespace skisnow {
 
 namespace {
 
-double dot(const Vector3& a, const Vector3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-
 Vector3 minus(const Vector3& a, const Vector3& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
 
 Vector3 along(const Vector3& origin, const Vector3& direction, double y) {

@@ -1,7 +1,6 @@
 // Tracks left behind: lines that a runner has left, joined into strips, found again by place.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <unordered_map>
 #include <unordered_set>
@@ -10,10 +9,9 @@
 #include "snow/delayed.hpp"
 #include "snow/groove.hpp"
 #include "support/bytes.hpp"
+#include "support/vectors.hpp"
 
 namespace skisnow {
-
-using Vector3 = std::array<double, 3>;
 
 // A line that was left: where it lies, and its ground.
 struct Track {

@@ -10,20 +10,11 @@ namespace {
 constexpr double MARGIN = 0.12;      // (m) before tip and behind tail in which lines are laid: more than a step's way
 constexpr double EDGE_ASIDE = 0.04;  // half a ski's width (m), about: where an edge will cross; no accuracy hangs on it
 constexpr int NEWTON_STEPS = 3;      // to the place on a curved surface
-constexpr double MOST_TURN = 0.3;     // (rad) between a line's direction ahead and the ski
-constexpr double MOST_OFF = 2e-4;     // (m) between a line and the surface under the ski
-constexpr double FURTHER = 0.03;      // (m) beyond what is needed, over which older tracks are searched for
+constexpr double MOST_TURN = 0.3;    // (rad) between a line's direction ahead and the ski
+constexpr double MOST_OFF = 2e-4;    // (m) between a line and the surface under the ski
+constexpr double FURTHER = 0.03;     // (m) beyond what is needed, over which older tracks are searched for
 
-double dot(const Vector3& a, const Vector3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-
-Vector3 cross(const Vector3& a, const Vector3& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-
-Vector3 unit(const Vector3& a) {
-  const double size = 1.0 / std::sqrt(dot(a, a));
-  return {a[0] * size, a[1] * size, a[2] * size};
-}
+Vector3 unit(const Vector3& a) { return 1.0 / std::sqrt(dot(a, a)) * a; }
 
 Vector3 get(const GrooveLines& lines, LineField first, int slot) {
   return {lines.values[first][slot], lines.values[LineField(first + 1)][slot],

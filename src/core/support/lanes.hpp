@@ -59,6 +59,11 @@ SKISNOW_INLINE V all(double value) {
 }
 
 template <class V>
+SKISNOW_INLINE MaskOf<V> all_lanes(bool value) {
+  return all<V>(value ? 1.0 : 0.0) > 0.5;
+}
+
+template <class V>
 SKISNOW_INLINE V select(MaskOf<V> mask, V yes, V no) {
   return mask ? yes : no;
 }
