@@ -55,7 +55,8 @@ def glide(length: float) -> list[tuple[float, float, float, float]]:
         (place, turned), motion = moved(place, turned, new), new
         contact.update(place + FEET @ turned.T, np.array([turned, turned]), DT)
         sections = (contact.sections(0), contact.sections(1))
-        work += DT * sum(float(np.sum(s.friction * s.normal_force * s.sliding)) for s in sections)
+        rubbed = (s.mu * s.normal_force * (s.rub * s.sliding + s.rub_aside * s.sliding_aside) for s in sections)
+        work += DT * float(sum(np.sum(each) for each in rubbed))
         rows.append((place[0], motion[0], 0.5 * motion @ inertia @ motion - MASS * GRAVITY @ place, work))
     return rows
 

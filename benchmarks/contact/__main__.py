@@ -37,7 +37,7 @@ KEYS: list[tuple[str, str, dict[str, Any]]] = [
         "2°",
         {"1°": {"edge_blend_angle": math.radians(1)}, "4°": {"edge_blend_angle": math.radians(4)}},
     ),
-    ("fade_speed", "0.01 m/s", {"0.005": {"fade_speed": 0.005}, "0.02": {"fade_speed": 0.02}}),
+    ("stick_displacement", "0.02 mm", {"0.01": {"stick_displacement": 1e-5}, "0.04": {"stick_displacement": 4e-5}}),
 ]
 
 

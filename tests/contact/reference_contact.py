@@ -33,6 +33,7 @@ class Line:
     above: tuple[float, float] | None = None
     marked: tuple[float, float] | None = None
     slipped: float = 0.0
+    stuck: tuple[float, float, float] | None = None  # along the ski and across where friction is 0; the point's arm
     side: float = 0.0  # where across the base the shear acted, as a share of the half width
     strength: float = 0.0  # of the edge that holds (Pa), and its depth
     held_depth: float = 0.0
@@ -95,12 +96,12 @@ class ReferenceRunner:
         ahead = np.array([x[0], x[1], 0.0])
         return Line(origin, ahead / np.linalg.norm(ahead), np.array([0.0, 0.0, 1.0]))
 
-    def force(self, pose: Pose) -> tuple[FloatArray, FloatArray]:
-        """Wrench (6,) about the boot and beam loads (nodes, 3)."""
+    def force(self, pose: Pose, dt: float) -> tuple[FloatArray, FloatArray]:
+        """Wrench (6,) about the boot and beam loads (nodes, 3), a time (s) after the last update."""
         wrench, loads = np.zeros(6), np.zeros((2 if self.runner.nodes is None else len(self.runner.nodes), 3))
         for section in self._sections(pose):
             if section.share > 0.0 and section.touch.deepest > 0.0:
-                section.add(wrench, loads)
+                section.add(wrench, loads, dt)
         return wrench, loads
 
     def _sections(self, pose: Pose) -> list[_Section]:
@@ -119,6 +120,8 @@ class ReferenceRunner:
             touch, before = section.touch, line.marked
             held, strength = (section.anchor(), section.strength()[0]) if touch.deepest > 0.0 else (0.0, 0.0)
             line.marked, line.strength = None, 0.0
+            if touch.deepest <= 0.0:
+                line.stuck = None
             if section.share <= 0.0:
                 continue
             if touch.deepest <= 0.0:
@@ -135,6 +138,7 @@ class ReferenceRunner:
             line.anchor = float(np.clip(held, touch.edge - reach, touch.edge + reach))
             line.slipped += abs(line.anchor - held)
             line.above, line.side = None, section.side
+            line.stuck = section.held_back()
             line.strength, line.held_depth = strength, touch.depth
 
 
@@ -146,7 +150,7 @@ class _Section:
         self.x, across, up = pose.rotation.T
         n, y, ahead = line.out, line.left, line.ahead
         to_line = line.origin - pose.position
-        gap = float(to_line @ ahead / (self.x @ ahead))
+        self.gap = gap = float(to_line @ ahead / (self.x @ ahead))
         blend = math.sin(whole.snow.edge_blend_angle)
         down = _edge_side(-(across @ n) / blend)
         half, height, flare, slope = (float(np.interp(gap, whole.table, column)) for column in whole.columns)
@@ -225,7 +229,34 @@ class _Section:
         left = max(thrust / strength * (line.held_depth - self.touch.depth), 0.0)
         return math.copysign(max(abs(displacement) - left, 0.0), displacement)
 
-    def add(self, wrench: FloatArray, loads: FloatArray) -> None:
+    @property
+    def _sliding_axes(self) -> FloatArray:
+        """Along the edge, and aside in the surface or, where friction acts on what presses on the base, in the base."""
+        forwards = np.cross(self.u, self.line.out)
+        aside = self.u if self.whole.snow.friction_acts_on == "snow-normal" else np.cross(self.base, forwards)
+        return np.array([forwards, aside / np.linalg.norm(aside)])
+
+    def _ways(self) -> FloatArray:
+        """Of the base since it stuck, along the ski and over the line: the point at the same arm, seen from there."""
+        assert self.line.stuck is not None
+        station, place, arm = self.line.stuck
+        return np.array([station - self.gap, self.touch.edge + (arm - self.reach) / self.wide - place])
+
+    def _way(self) -> FloatArray:
+        return self._ruled(self._sliding_axes @ (self._ways() @ [self.x, self.line.left]))
+
+    def _ruled(self, parts: FloatArray) -> FloatArray:
+        return parts * [1.0, 0.0 if self.whole.snow.friction_direction == "along-ski" else 1.0]
+
+    def held_back(self) -> tuple[float, float, float]:
+        """Where friction is 0 from here on."""
+        if self.line.stuck is None:
+            return self.gap, self.touch.edge, self.reach
+        share = min(1.0, self.whole.snow.stick_displacement / max(float(np.linalg.norm(self._way())), 1e-300))
+        on, over = share * self._ways()
+        return self.gap + on, self.touch.edge - over, self.reach
+
+    def add(self, wrench: FloatArray, loads: FloatArray, dt: float) -> None:
         snow, line, touch = self.whole.snow, self.line, self.touch
         n, y = line.out, line.left
         force, moment = (self.share * value for value in _pressure(line, touch, snow))
@@ -236,25 +267,26 @@ class _Section:
         moves -= float(self.twists @ self.rate) * arm * self.r
         forwards = np.cross(self.u, n)
         # Coulomb's law: against the sliding velocity in the surface, or in the base's plane where it acts on its load
-        aside = self.u if snow.friction_acts_on == "snow-normal" else np.cross(self.base, forwards)
-        axes = np.array([forwards, aside / np.linalg.norm(aside)])
-        slides = axes @ moves
-        if snow.friction_direction == "along-ski":
-            slides[1] = 0.0
+        axes = self._sliding_axes
+        slides = self._ruled(axes @ moves)
+        way, full = (slides, snow.stick_displacement / dt if dt else 0.0)
+        if line.stuck is not None:
+            way, full = self._way(), snow.stick_displacement
+        used = way / max(float(np.linalg.norm(way)), full)
         speed = float(np.linalg.norm(slides))
         by_twist = self.twist_s * moment / (1.0 - self.sine**2) * self.per_length
         resist = force * float(self.base @ forwards) + by_twist if snow.compaction_resistance else 0.0
-        used = (self.anchor() - touch.edge) / snow.shear_displacement
+        held = (self.anchor() - touch.edge) / snow.shear_displacement
         strength, thrust = self.strength()
         area = touch.deepest * self.share
-        shear = strength * area * min(max(used, -1.0), 1.0) * self.u + thrust * area * min(abs(used), 1.0) * n
+        shear = strength * area * min(max(held, -1.0), 1.0) * self.u + thrust * area * min(abs(held), 1.0) * n
         # its load: what presses square on the base, snow's normal and side force together, or the snow's normal alone
         pressing, at_edge = force, 0.0
         if snow.friction_acts_on == "base-normal":
             pressing = force * float(n @ self.r)
             at_edge = max(float(shear @ self.r), -pressing)
         mu = float(snow.friction.coefficient(speed)) if hasattr(snow.friction, "coefficient") else snow.friction
-        rub = -mu * slides / math.hypot(speed, snow.fade_speed)
+        rub = -mu * used
         if isinstance(snow.shear, MachiningShear):  # it has a friction across of its own
             rub[1] = 0.0
         push = force * n + resist * forwards + pressing * rub @ axes

@@ -79,7 +79,7 @@ class Snow(ctypes.Structure):
         *((name, ctypes.c_double) for name in ("snow_hardness", "failure_shear_stress", "unloading_ratio")),
         ("friction_along_ski", ctypes.c_int),
         *((f"friction_{name}", ctypes.c_double) for name in ("constant", "linear", "square", "film", "film_speed")),
-        *((name, ctypes.c_double) for name in ("fade_speed", "shear_displacement")),
+        *((name, ctypes.c_double) for name in ("stick_displacement", "shear_displacement")),
         ("compaction_resistance", ctypes.c_int),
         *(
             (name, ctypes.c_double)
@@ -159,7 +159,8 @@ def test_what_c_takes_for_granted_is_what_python_does(library: ctypes.CDLL) -> N
     snow = Snow()
     library.skisnow_snow_defaults(ctypes.byref(snow))
     usual = {each.name: each.default for each in fields(SnowField)}
-    for name in ("shear_displacement", "compaction_resistance", "fade_speed", "knot_area", "part_along", "part_across"):
+    ways = ("shear_displacement", "stick_displacement", "part_along", "part_across")
+    for name in (*ways, "compaction_resistance", "knot_area"):
         assert getattr(snow, name) == usual[name], name
     assert snow.edge_blend_angle == pytest.approx(usual["edge_blend_angle"], rel=1e-15)
     assert snow.spacing == SPACING

@@ -125,9 +125,9 @@ def test_friction_acts_on_what_presses_on_the_base(degrees: float) -> None:
     aside = -math.copysign(0.8 * 0.5e-3, angle)  # the snow then pushes to the side of the edge that is down
     loads: dict[ActsOn, float] = {"base-normal": normal / math.cos(angle), "snow-normal": normal}
     for acts_on, load in loads.items():
-        snow = SnowField(H, strength, 1.0, mu, friction_acts_on=acts_on, shear_displacement=0.5e-3)
+        snow = SnowField(H, strength, 1.0, mu, acts_on, "along-ski", shear_displacement=0.5e-3)
         contact = pressed(snow, placed(angle, e))
-        found = wrench(contact, placed(angle, e, y=aside), gliding)
+        found = wrench(contact, placed(angle, e, x=8.0 * 5e-4, y=aside), gliding)
         assert found[1] == pytest.approx(normal * math.tan(angle), rel=1e-9)
         assert found[0] == pytest.approx(-mu * load, rel=1e-5)
         assert contact.sections().friction_load.sum() == pytest.approx(load, rel=1e-9)

@@ -29,8 +29,8 @@ def flown(body: Body, velocity: FloatArray, control: StepControl, duration: floa
     assert dynamics.advance(duration) is Ended.REACHED
     assert not dynamics.touches
     assert dynamics.work[:3] == (0.0, 0.0, 0.0)
-    assert dynamics.snow_energies == (0.0, 0.0, 0.0)
-    assert dynamics.snow_losses == (0.0, 0.0, 0.0, 0.0)
+    assert dynamics.snow_energies == (0.0, 0.0, 0.0, 0.0)
+    assert dynamics.snow_losses == (0.0, 0.0, 0.0, 0.0, 0.0)
     return dynamics
 
 

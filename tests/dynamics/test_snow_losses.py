@@ -33,9 +33,10 @@ def moments(changes: dict[str, Any], count: int = 40) -> dict[str, FloatArray]:
     for n in range(count):
         if n > 0 and dynamics.advance(INTERVAL * n) != 0:
             break
-        shear, _, normal, *_ = dynamics.work
-        rows.append((shear, normal, *dynamics.snow_energies, *dynamics.snow_losses))
-    names = ("work", "normal", "pressure", "held", "delayed", "penetration", "shear", "rate", "owed")
+        shear, rubbed, normal, *_ = dynamics.work
+        rows.append((shear, rubbed, normal, *dynamics.snow_energies, *dynamics.snow_losses))
+    stores = ("pressure", "held", "stuck", "delayed")
+    names = ("work", "rubbed", "normal", *stores, "penetration", "shear", "friction", "rate", "owed")
     return dict(zip(names, np.array(rows).T, strict=True))
 
 
@@ -56,6 +57,9 @@ def test_losses_never_fall_and_add_up(changes: dict[str, Any]) -> None:
     found = moments(changes)
     losses = np.array([found[name] for name in ("penetration", "shear", "rate")])
     assert (np.diff(losses) >= 0.0).all()
+    assert (np.diff(found["friction"]) >= 0.0).all()
+    taken = found["rubbed"] - (found["stuck"] - found["stuck"][0])
+    assert found["friction"] == pytest.approx(taken, rel=1e-12, abs=1e-3 * found["stuck"].max())
     stored = found["pressure"] + found["held"] + found["delayed"]
     taken = found["work"] - found["normal"] - (stored - stored[0])
     assert (losses.sum(axis=0) - found["owed"] <= taken + 1e-9).all()

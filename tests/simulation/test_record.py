@@ -54,14 +54,14 @@ def test_what_is_under_the_boot_lies_between_its_neighbours(node: list[float], a
 
 
 def test_stored_and_lost_energies_are_separate() -> None:
-    """Stored: kinetic, potential, skis, snow with its edges, delayed depth; then losses and energies given."""
+    """Stored: kinetic, potential, skis, snow with what sticks, delayed depth; then losses and energies given."""
     dynamics: Any = SimpleNamespace(
-        snow_energies=(5.0, 3.0, 0.5), energies=(100.0, 200.0, 7.0), work=(10.0, 20.0, -30.0, 4.0, 5.0, 6.0),
-        snow_losses=(19.5, 9.0, 6.5, 0.0), work_given=(8.0, 9.0), body=SimpleNamespace(skis=()), time=0.0,
+        snow_energies=(5.0, 3.0, 0.25, 0.5), energies=(100.0, 200.0, 7.0), work=(10.0, 20.0, -30.0, 4.0, 5.0, 6.0),
+        snow_losses=(19.5, 9.0, 19.75, 6.5, 0.0), work_given=(8.0, 9.0), body=SimpleNamespace(skis=()), time=0.0,
         position=np.zeros(3), rotation=np.eye(3), boots=None, boot_wrench=None, beam_dofs=np.zeros((0, 0)),
     )  # fmt: skip
     setup: Any = SimpleNamespace(dynamics=dynamics, place=np.zeros(3), attitude=np.eye(3), velocity=np.zeros(3))
-    stored, lost = (100.0, 200.0, 7.0, 8.0, 0.5), (19.5, 9.0, 20.0, 4.0, 5.0, 6.5)
+    stored, lost = (100.0, 200.0, 7.0, 8.25, 0.5), (19.5, 9.0, 19.75, 4.0, 5.0, 6.5)
     assert Record(setup)._present().energies == (*stored, *lost, 8.0, 9.0)
 
 

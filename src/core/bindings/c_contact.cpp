@@ -91,7 +91,7 @@ std::shared_ptr<Snow> snow_of(const skisnow_snow& given) {
   require_above(given.snow_hardness, "snow_hardness");
   require_least(given.failure_shear_stress, 0.0, "failure_shear_stress");
   require_least(given.unloading_ratio, 1.0, "unloading_ratio");
-  require_above(given.shear_displacement, "shear_displacement"), require_above(given.fade_speed, "fade_speed");
+  require_above(given.shear_displacement, "shear_displacement"), require_above(given.stick_displacement, "stick_displacement");
   require_above(given.edge_blend_angle, "edge_blend_angle"), require_least(given.knot_area, 0.0, "knot_area");
   require_above(given.part_along, "part_along"), require_above(given.part_across, "part_across");
   require_above(given.spacing, "spacing"), require_above(given.friction_film_speed, "friction_film_speed");
@@ -109,7 +109,7 @@ std::shared_ptr<Snow> snow_of(const skisnow_snow& given) {
                    friction[2],
                    friction[3],
                    given.friction_film_speed,
-                   given.fade_speed,
+                   given.stick_displacement,
                    given.friction_along_ski == 0};
   out->knot_area = given.knot_area, out->part_along = given.part_along, out->part_across = given.part_across;
   return out;
@@ -215,7 +215,7 @@ void skisnow_snow_defaults(skisnow_snow* snow) {
   const Snow usual;
   const FrictionLaw& mu = usual.friction;
   *snow = {};
-  snow->friction_film_speed = mu.film_speed, snow->fade_speed = mu.fade_speed;
+  snow->friction_film_speed = mu.film_speed, snow->stick_displacement = mu.stick;
   snow->shear_displacement = usual.shear_displacement;
   snow->compaction_resistance = usual.compaction_resistance ? 1 : 0;
   snow->edge_blend_angle = std::asin(usual.edge_blend_sine);

@@ -120,12 +120,12 @@ nb::tuple work_of(const Dynamics& self) {
 
 nb::tuple snow_store_of(const Dynamics& self) {
   const SnowStore& s = self.snow_store();
-  return nb::make_tuple(s.pressure, s.shear, s.delayed);
+  return nb::make_tuple(s.pressure, s.shear, s.friction, s.delayed);
 }
 
 nb::tuple snow_losses_of(const Dynamics& self) {
   const SnowAccount& s = self.snow_losses();
-  return nb::make_tuple(s.penetration.total, s.shear.total, s.rate.total, s.owed());
+  return nb::make_tuple(s.penetration.total, s.shear.total, s.friction.total, s.rate.total, s.owed());
 }
 
 nb::tuple counts_of(const Dynamics& self) {

@@ -12,9 +12,6 @@
 #include "bindings/arrays.hpp"
 #include "contact/contact.hpp"
 
-#define SKISNOW_LANES alone
-#include "contact/force_kernels.hpp"
-
 namespace nb = nanobind;
 
 namespace skisnow {
@@ -78,9 +75,8 @@ struct PythonLaws {
     if (!friction.is_none()) {
       const auto mu = nb::cast<Array>(friction(array(speed, {n})));
       if (mu.size() != n) throw std::invalid_argument("a friction law must give one value for each speed");
-      for (std::size_t i = 0; i < n; i++)
-        alone::Rubbing<double>(rule, s[SLIDING][i], s[SLIDING_ASIDE][i], speed[i], mu.data()[i], 0.0)
-            .store_at(s.sliding, int(i));
+      std::copy_n(mu.data(), n, s.sliding[MU]);
+      std::fill_n(s.sliding[MU_GROWTH], n, 0.0);
     }
     if (!shear.is_none()) {
       const auto found = nb::cast<Array>(shear(array(depth, {n}), array(angle, {n})));
@@ -131,8 +127,9 @@ nb::dict sections_of(const SnowContact& contact, int k) {
                                                           {"push_off", s[PUSH_OFF]},
                                                           {"sliding", s[SLIDING]},
                                                           {"sliding_aside", s[SLIDING_ASIDE]},
-                                                          {"friction", s[FRICTION]},
-                                                          {"friction_aside", s[FRICTION_ASIDE]},
+                                                          {"mu", s[MU]},
+                                                          {"rub", s[RUB]},
+                                                          {"rub_aside", s[RUB_ASIDE]},
                                                           {"friction_load", s[FRICTION_LOAD]},
                                                           {"strength", s[EDGE_STRENGTH]},
                                                           {"shear_used", s[SHEAR_USED]}};
@@ -195,7 +192,7 @@ void bind_laws(nb::module_& m) {
       .def_rw("square", &FrictionLaw::square)
       .def_rw("film", &FrictionLaw::film)
       .def_rw("film_speed", &FrictionLaw::film_speed)
-      .def_rw("fade_speed", &FrictionLaw::fade_speed)
+      .def_rw("stick", &FrictionLaw::stick)
       .def_rw("is_vector", &FrictionLaw::is_vector)
       .def_rw("acts_across", &FrictionLaw::acts_across);
 
@@ -270,8 +267,8 @@ nb::tuple tangent(SnowContact& self, const Array& position, const Array& rotatio
   return nb::make_tuple(array(stiffness, {count, 6, 6}), array(damping, {count, 6, 6}));
 }
 
-void set_laws(SnowContact& self, nb::object friction, nb::object shear, const FrictionLaw& rule) {
-  self.laws = PythonLaws{std::move(friction), std::move(shear), rule};
+void set_laws(SnowContact& self, nb::object friction, nb::object shear) {
+  self.laws = PythonLaws{std::move(friction), std::move(shear)};
 }
 
 void set_penetration(SnowContact& self, const nb::object& law, const Array& bends, bool along_base_normal) {
@@ -307,7 +304,7 @@ void bind_contact(nb::module_& m) {
            [](SnowContact& self, const nb::bytes& given) {
              take_bytes(self, static_cast<const unsigned char*>(given.data()), given.size());
            })
-      .def("set_laws", &set_laws, nb::arg("friction").none(), nb::arg("shear").none(), nb::arg("rule"))
+      .def("set_laws", &set_laws, nb::arg("friction").none(), nb::arg("shear").none())
       .def("set_penetration", &set_penetration, nb::arg("law"), nb::arg("bends"), nb::arg("along_base_normal"));
 }
 

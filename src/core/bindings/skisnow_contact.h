@@ -44,8 +44,9 @@ typedef struct skisnow_snow {
   double unloading_ratio;      /* k_u/H_V, >= 1 */
   /* friction acts against the sliding velocity in the surface; 1: only by its part along the ski, and along the ski */
   int friction_along_ski;
-  /* mu = constant + linear v + square v^2 + film/(1 + v/film_speed); it fades below fade_speed (m/s) */
-  double friction_constant, friction_linear, friction_square, friction_film, friction_film_speed, fade_speed;
+  /* mu = constant + linear v + square v^2 + film/(1 + v/film_speed); stick_displacement (m): way of the base to full
+   * friction, until which it sticks */
+  double friction_constant, friction_linear, friction_square, friction_film, friction_film_speed, stick_displacement;
   double shear_displacement;      /* of an edge across to its full strength (m), > 0 */
   int compaction_resistance;      /* whether snow that is pressed down resists along the edge */
   double edge_blend_angle;        /* (rad) below which the shear moves from the edge to the middle, > 0 */

@@ -113,7 +113,7 @@ const Wrench& SnowContact::evaluate(int k, const GrooveLines& lines, const Pose&
   kernels_->press(*snow_, lines, s.base, grows, s.pressure, s.edge);
   if (bearing_) bearing_->press(lines, s);
   if (!rated_.empty()) rated_[std::size_t(k)].press(*snow_, lines, pose, motion, dt_, s);
-  kernels_->slide(motion, pose, *snow_, s.base, s.pressure, s.sliding);
+  kernels_->slide(motion, pose, dt_, *snow_, lines, s.base, s.pressure, s.sliding);
   if (snow_->shear.by_angle()) strengthen(snow_->shear, s);
   if (laws) laws(k, s);
   if (strength_varies()) ease(*snow_, lines, s);
@@ -167,11 +167,11 @@ void SnowContact::find_tangent(int k, const Pose& pose, double stiffness, double
   const double lean = pose.rotation[2][1], sense = lean < 0.0 ? -1.0 : 1.0;  // in the mirror the other way
   out.clear(runner(k).nodes());
   differ(k, sense, std::fabs(lean) < LEVEL);  // a level base has two tangents: between them
-  kernels_->add_stiffness(s, differences_, stiffness, std::max(damping, 0.0), bends, out);
+  kernels_->add_stiffness(s, differences_, stiffness, stiffness, std::max(damping, 0.0), bends, out);
   out.add_turning(wrenches_[std::size_t(k)], stiffness);
   if (!(damping > 0.0 && snow_->rate.damping > 0.0)) return;
   rated_[std::size_t(k)].differ_rates(*snow_, lines(k), s, sense, differences_);
-  kernels_->add_stiffness(s, differences_, damping, 0.0, bends, out);
+  kernels_->add_stiffness(s, differences_, damping, 0.0, 0.0, bends, out);
 }
 
 // The lines at the end of a step, before its end is remembered: those that stand, or where that changes them a copy.
@@ -309,7 +309,8 @@ ContactPower SnowContact::power(int k, const Pose& pose, const Motion& motion) c
     const double across = velocity[0] * s[ACROSS_0][i] + velocity[1] * s[ACROSS_1][i] + velocity[2] * s[ACROSS_2][i];
     out.shear += s[SHEAR][i] * across;
     if (!rated_.empty()) out.damping += s[RATE_POWER][i];
-    out.friction -= (s[FRICTION][i] * s[SLIDING][i] + s[FRICTION_ASIDE][i] * s[SLIDING_ASIDE][i]) * s[FRICTION_LOAD][i];
+    const double rubbed = s[RUB][i] * s[SLIDING][i] + s[RUB_ASIDE][i] * s[SLIDING_ASIDE][i];
+    out.friction -= s[MU][i] * rubbed * s[FRICTION_LOAD][i];
   }
   out.normal = all - out.shear - out.friction;
   return out;
@@ -335,6 +336,17 @@ double SnowContact::held_energy() const {
       if (!s.touches(i)) continue;
       const double used = std::clamp(s[SHEAR_USED][i], -1.0, 1.0);
       total += 0.5 * snow_->shear_displacement * s[SHEAR][i] * used;
+    }
+  return total;
+}
+
+double SnowContact::stuck_energy() const {
+  double total = 0.0;
+  for (const Sections& s : sections_)
+    for (int i = 0; i < s.count(); i++) {
+      if (!s.touches(i) || s[RUB_BY_WAY][i] == 0.0) continue;
+      const double square = s[RUB][i] * s[RUB][i] + s[RUB_ASIDE][i] * s[RUB_ASIDE][i];
+      total += 0.5 * snow_->friction.stick * s[MU][i] * s[FRICTION_LOAD][i] * square;
     }
   return total;
 }

@@ -80,6 +80,7 @@ class SnowContact {
 
   double groove_energy() const;   // lost in grooves, those under the runners included (J)
   double held_energy() const;     // in the displaced shear of the edges at the last situation looked at (J)
+  double stuck_energy() const;    // in the friction of the bases that stick, at that situation (J)
   double elastic_energy() const;  // in the snow at the last situation looked at (J)
   double delayed_stored() const;  // in the springs of its delayed depth, under the runners (J)
   double delayed_energy() const { return state_.delayed_energy; }  // that its delayed depth has taken so far (J)

@@ -79,39 +79,54 @@ Vector<V> aside_of(const Cut<V>& c, const Snow& snow) {
   return scaled(raw, 1.0 / root(dot(raw, raw)));
 }
 
-// Coulomb's friction over its load, along the edge and aside, of a base that slides with these velocities; how its
-// parts grow with them: along with along, each with the other, aside with aside.
+// Way of the base over a line, along the edge and aside, from where the friction was 0. The place of the base is told
+// by where the ski's axis passes the line, and by where a point does that is `arm` across from the axis.
 template <class V>
-struct Rubbing {
-  V along, aside, along_slope, skew, aside_slope;
+struct Way {
+  V ahead, aside;
 
-  Rubbing(const FrictionLaw& law, V ahead, V to_side, V speed, V mu, V growth) {
-    const V size = 1.0 / root(speed * speed + law.fade_speed * law.fade_speed), held = mu * size;
-    const MaskOf<V> moves = speed > 0.0;
-    const V turned = (select(moves, growth, V{}) / select(moves, speed, all<V>(1.0)) - held * size) * size;
-    const double across = law.is_vector && law.acts_across ? 1.0 : 0.0;
-    along = held * ahead, aside = across * held * to_side;
-    along_slope = held + turned * ahead * ahead;
-    skew = across * turned * ahead * to_side, aside_slope = across * (held + turned * to_side * to_side);
+  Way(const Cut<V>& c, const Vector<V>& to_side, V station, V place, V arm) {
+    const V on = station - station_of(c), over = c.place + (arm - c.reach) / c.widening - place;
+    ahead = on * c.along.x + over * dot(c.left, c.along), aside = on * to_side.x + over * dot(c.left, to_side);
   }
 
-  void store_at(Sliding& out, int i) const {
-    store(out[FRICTION] + i, along), store(out[FRICTION_ASIDE] + i, aside);
-    store(out[FRICTION_SLOPE] + i, along_slope), store(out[FRICTION_SKEW] + i, skew);
-    store(out[FRICTION_ASIDE_SLOPE] + i, aside_slope);
+  static V station_of(const Cut<V>& c) { return c.from.x + (c.from.y * c.ahead.y + c.from.z * c.ahead.z) / c.ahead.x; }
+};
+
+// Coulomb's friction over μ and its load: a spring up to `full`, of the way or of the velocity; and its growth.
+template <class V>
+struct Rubbing {
+  V along, aside, slope, skew, aside_slope;
+
+  Rubbing(V ahead, V to_side, V full) {
+    const V far = root(ahead * ahead + to_side * to_side), larger = maximum(far, full);
+    const MaskOf<V> moves = larger > 0.0;
+    const V per_way = select(moves, all<V>(1.0), V{}) / select(moves, larger, all<V>(1.0));
+    along = ahead * per_way, aside = to_side * per_way;
+    const V turns = select(far < full, V{}, per_way);
+    slope = per_way - turns * along * along, skew = -turns * along * aside;
+    aside_slope = per_way - turns * aside * aside;
+  }
+
+  void store_at(Sliding& out, int i, bool acts_across) const {
+    const double across = acts_across ? 1.0 : 0.0;
+    store(out[RUB] + i, along), store(out[RUB_ASIDE] + i, across * aside), store(out[RUB_SLOPE] + i, slope);
+    store(out[RUB_SKEW] + i, across * skew), store(out[RUB_ASIDE_SLOPE] + i, across * aside_slope);
   }
 };
 
-// [slide] Velocity at the centre of pressure along the edge and aside, and the law's μ.
+// [slide] Velocity at the centre of pressure along the edge and aside, and the law's μ; the share of it in use by the
+// way since the base stuck, or where a line was not under it yet, by the way of this step.
 template <class V>
-void slide(const Motion& motion, const Pose& pose, const Snow& snow, const Base& base, const Pressures& pressure,
-           Sliding& out) {
+void slide(const Motion& motion, const Pose& pose, double dt, const Snow& snow, const GrooveLines& lines,
+           const Base& base, const Pressures& pressure, Sliding& out) {
   const BootMotion m(motion, pose);
   const FrictionLaw& law = snow.friction;
-  for (int i = 0; i < base.count(); i += WIDTH<V>) {
+  const V at_once = all<V>(dt > 0.0 ? law.stick / dt : 0.0);  // speed (m/s) of full friction on a new line
+  for_lanes<V>(base, lines, [&](int i, int j) {
     if (!any(load<V>(base[SHARE] + i) > 0.0)) {  // beyond tip and tail
       for (int field = 0; field < SLIDING_FIELDS; field++) store(out[SlidingField(field)] + i, V{});
-      continue;
+      return;
     }
     const Cut<V> c = Cut<V>::stored(base, i);
     const Centre<V> centre(c, load<V>(pressure[FORCE] + i), load<V>(pressure[MOMENT] + i));
@@ -122,16 +137,23 @@ void slide(const Motion& motion, const Pose& pose, const Snow& snow, const Base&
                              m.v[1] + m.o[2] * centre.at.x - m.o[0] * centre.at.z - c.sp * turning,
                              m.v[2] + m.o[0] * centre.at.y - m.o[1] * centre.at.x + deflecting - c.cp * turning};
     const Vector<V> aside = aside_of(c, snow);
-    const V ahead = dot(velocity, c.along), to_side = law.is_vector ? dot(velocity, aside) : V{};
+    const double vector = law.is_vector ? 1.0 : 0.0;
+    const V ahead = dot(velocity, c.along), to_side = vector * dot(velocity, aside);
     const V speed = root(ahead * ahead + to_side * to_side), film = 1.0 / (1.0 + speed / law.film_speed);
     const V of_law = law.constant + speed * (law.linear + law.square * speed) + law.film * film;
-    const V mu = maximum(of_law, V{});  // friction never drives the ski
     const V growth_of_law = law.linear + 2.0 * law.square * speed - law.film / law.film_speed * film * film;
-    const V growth = select(of_law > 0.0, growth_of_law, V{});
     store(out[SLIDING] + i, ahead), store(out[SLIDING_ASIDE] + i, to_side);
+    store(out[MU] + i, maximum(of_law, V{}));  // friction never drives the ski
+    store(out[MU_GROWTH] + i, select(of_law > 0.0, growth_of_law, V{}));
     store(out[ASIDE_0] + i, aside.x), store(out[ASIDE_1] + i, aside.y), store(out[ASIDE_2] + i, aside.z);
-    Rubbing<V>(law, ahead, to_side, speed, mu, growth).store_at(out, i);
-  }
+    const MaskOf<V> stuck = load<V>(lines.values[STUCK] + j) > 0.5;
+    const auto at_zero = [&](LineField field) { return load<V>(lines.values[field] + j); };
+    const Way<V> way(c, aside, at_zero(STUCK_STATION), at_zero(STUCK_PLACE), at_zero(STUCK_ARM));
+    const Rubbing<V> rubbing(select(stuck, way.ahead, ahead), select(stuck, vector * way.aside, to_side),
+                             select(stuck, all<V>(law.stick), at_once));
+    rubbing.store_at(out, i, law.is_vector && law.acts_across);
+    store(out[RUB_BY_WAY] + i, select(stuck, all<V>(1.0), V{}));
+  });
 }
 
 // The loads on a section: the snow's force and its moment about the edge, μ along and aside with their signs, shear
@@ -209,10 +231,14 @@ void push(const Snow& snow, const Base& base, const Pressures& pressure, const E
       for (int field = 0; field < FORCE_FIELDS; field++) store(forces[ForceField(field)] + i, V{});
       continue;
     }
-    const Acting<V> by{
-        load<V>(base[SHARE] + i),       load<V>(pressure[FORCE] + i),         load<V>(pressure[MOMENT] + i),
-        load<V>(sliding[FRICTION] + i), load<V>(sliding[FRICTION_ASIDE] + i), load<V>(edge[EDGE_STRENGTH] + i),
-        load<V>(edge[EDGE_THRUST] + i), load<V>(edge[SHEAR_USED] + i)};
+    const Acting<V> by{load<V>(base[SHARE] + i),
+                       load<V>(pressure[FORCE] + i),
+                       load<V>(pressure[MOMENT] + i),
+                       load<V>(sliding[MU] + i) * load<V>(sliding[RUB] + i),
+                       load<V>(sliding[MU] + i) * load<V>(sliding[RUB_ASIDE] + i),
+                       load<V>(edge[EDGE_STRENGTH] + i),
+                       load<V>(edge[EDGE_THRUST] + i),
+                       load<V>(edge[SHEAR_USED] + i)};
     const Pushed<V> pushed(Cut<V>::stored(base, i), by, snow);
     for (int k = 0; k < Pushed<V>::PARTS; k++) store(forces[ForceField(FORCE_0 + k)] + i, pushed.parts[k]);
     for (int k = 0; k < 6; k++) sums[k].add(i % BLOCK, pushed.parts[k]);
@@ -238,7 +264,8 @@ void differ(const Snow& snow, const GrooveLines& lines, const Sections& s, doubl
     const PressedGrowth<V> growth(s.pressure, i);
     Acting<V> by;
     by.share = load<V>(s[SHARE] + i);
-    by.friction = load<V>(s[FRICTION] + i), by.friction_aside = load<V>(s[FRICTION_ASIDE] + i);
+    const V mu = load<V>(s[MU] + i);
+    by.friction = mu * load<V>(s[RUB] + i), by.friction_aside = mu * load<V>(s[RUB_ASIDE] + i);
     by.strength = load<V>(s[EDGE_STRENGTH] + i), by.thrust = load<V>(s[EDGE_THRUST] + i);
     for (int change = 0; change < CHANGES; change++) {
       const int sides = is_level && change != SectionDifferences::OFF ? 2 : 1;

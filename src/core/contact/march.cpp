@@ -4,6 +4,9 @@
 
 #include "contact/contact.hpp"
 
+#define SKISNOW_LANES alone
+#include "contact/force_kernels.hpp"
+
 namespace skisnow {
 
 void SnowContact::Before::keep_anchors(const GrooveLines& of) {
@@ -121,11 +124,28 @@ void keep_anchor(const Base& s, int i, double eased, const Snow& snow, GrooveLin
   v[ANCHORED][slot] = 1.0;
 }
 
+// Keep where friction is 0: not farther off than the way to full friction, on a line that comes under the base here.
+void keep_stuck(const Base& s, int i, const Snow& snow, GrooveLines& lines, int slot) {
+  auto& v = lines.values;
+  const auto c = alone::Cut<double>::stored(s, i);
+  const double station = alone::Way<double>::station_of(c), stick = snow.friction.stick;
+  double most = 0.0, over = 0.0;
+  if (v[STUCK][slot] > 0.5) {
+    const double zero[] = {v[STUCK_STATION][slot], v[STUCK_PLACE][slot], v[STUCK_ARM][slot]};
+    const alone::Way<double> way(c, alone::aside_of(c, snow), zero[0], zero[1], zero[2]);
+    const double far = snow.friction.is_vector ? std::hypot(way.ahead, way.aside) : std::fabs(way.ahead);
+    most = stick / std::max(far, stick), over = c.place + (zero[2] - c.reach) / c.widening - zero[1];
+  }
+  v[STUCK][slot] = 1.0, v[STUCK_ARM][slot] = c.reach;
+  v[STUCK_STATION][slot] = station + most * (v[STUCK_STATION][slot] - station);
+  v[STUCK_PLACE][slot] = c.place - most * over;
+}
+
 // `eased`: share of the displacement by which the edge was eased, see [ease].
 void remember_section(const Base& s, int i, double eased, const Snow& snow, GrooveLines& lines, int slot) {
   auto& v = lines.values;
   if (!s.touches(i)) {
-    v[MARKED][slot] = 0.0;
+    v[MARKED][slot] = v[STUCK][slot] = 0.0;
     if (!(s[SHARE][i] > 0.0)) return;
     v[EDGE_ABOVE][slot] = s[EDGE_PLACE][i];
     v[DEPTH_ABOVE][slot] = s[DEEPEST][i];
@@ -139,6 +159,7 @@ void remember_section(const Base& s, int i, double eased, const Snow& snow, Groo
   v[EDGE_MARKED][slot] = s[EDGE_PLACE][i];
   v[DEPTH_MARKED][slot] = s[EDGE_DEPTH][i];
   keep_anchor(s, i, eased, snow, lines, slot);
+  keep_stuck(s, i, snow, lines, slot);
   v[ABOVE][slot] = 0.0;
 }
 

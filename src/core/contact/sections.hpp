@@ -52,11 +52,14 @@ enum PressureField {
 enum EdgeField { STRENGTH_LEFT, EDGE_STRENGTH, EDGE_THRUST, SHEAR_USED, SHEAR_EASED, EDGE_FIELDS };
 
 // Sliding (slide, or a law from outside), along the edge and aside: velocity of the base at the centre of pressure (m/s),
-// μ in parts, each with the sign of its velocity, and how they grow with these velocities (s/m).
+// μ and its growth with the speed (s/m), share of μ in use in parts, each with the sign of its way.
 enum SlidingField {
-  SLIDING, SLIDING_ASIDE, FRICTION, FRICTION_ASIDE,
-  FRICTION_SLOPE, FRICTION_SKEW, FRICTION_ASIDE_SLOPE,  // along by along, each by the other, aside by aside
-  ASIDE_0, ASIDE_1, ASIDE_2,                            // the direction aside, in the ski's axes
+  SLIDING, SLIDING_ASIDE, MU, MU_GROWTH, RUB, RUB_ASIDE,
+  // growth of the shares with the way since the base stuck (1/m), or with the velocity where it did not yet (s/m): along
+  // by along, each by the other, aside by aside
+  RUB_SLOPE, RUB_SKEW, RUB_ASIDE_SLOPE,
+  RUB_BY_WAY,                 // which of both (1 or 0)
+  ASIDE_0, ASIDE_1, ASIDE_2,  // the direction aside, in the ski's axes
   SLIDING_FIELDS
 };
 
@@ -142,14 +145,15 @@ struct Kernels {
   void (*find_sections)(const Runner&, const Pose&, const Snow&, const GrooveLines&, std::int64_t first, Base&);
   // with `grows` the pressure's growth
   void (*press)(const Snow&, const GrooveLines&, const Base&, bool grows, Pressures&, EdgeHold&);
-  void (*slide)(const Motion&, const Pose&, const Snow&, const Base&, const Pressures&, Sliding&);
+  void (*slide)(const Motion&, const Pose&, double dt, const Snow&, const GrooveLines&, const Base&, const Pressures&,
+                Sliding&);
   void (*push)(const Snow&, const Base&, const Pressures&, const EdgeHold&, const Sliding&, SectionForces&, Wrench&);
   // of sections whose pressure's growth is known; a step (m, rad), and its sense to the left and of the twist
   void (*differ)(const Snow&, const GrooveLines&, const Sections&, double step, double sense, bool is_level,
                  SectionDifferences&);
-  // add the sections' derivatives to a tangent, and friction by its growth with the sliding speed, both weighted
-  void (*add_stiffness)(const Sections&, const SectionDifferences&, double stiffness, double damping, bool bends,
-                        RunnerTangent&);
+  // add the sections' derivatives to a tangent, and those of friction by way and by velocity, all weighted
+  void (*add_stiffness)(const Sections&, const SectionDifferences&, double stiffness, double by_way, double by_speed,
+                        bool bends, RunnerTangent&);
   // loops over lines only, see line_kernels.hpp; all by slot
   bool (*find_unknown)(const GrooveLines&, const Pose&, double room, double* is_unknown);
   void (*square_depths)(const GrooveLines&, double* out);

@@ -19,7 +19,7 @@ struct EightSections {
   // friction with the sliding speeds: along by along, each by the other, aside by aside.
   Eight along[BLOCK], aside[BLOCK], lifted[2], twisted[2], rate[3];
 
-  EightSections(const Sections& s, int i, double damping) {
+  EightSections(const Sections& s, int i, double by_way, double by_speed) {
     const auto column = [&](auto field) { return load<Eight>(s[field] + i); };
     const Eight none{}, one = none + 1.0, station = column(STATION), to_left = column(EDGE_LEFT), up = column(EDGE_UP);
     const Eight reach = column(EDGE_REACH), sp = column(TWIST_SINE), cp = column(TWIST_COSINE);
@@ -42,9 +42,11 @@ struct EightSections {
     };
     pushed(along, 0, column(ALONG_0), column(ALONG_1), column(ALONG_2));
     pushed(aside, 1, column(ASIDE_0), column(ASIDE_1), column(ASIDE_2));
-    const Eight weight = select(presses, damping * column(FRICTION_LOAD), none);
-    rate[0] = weight * column(FRICTION_SLOPE), rate[1] = weight * column(FRICTION_SKEW);
-    rate[2] = weight * column(FRICTION_ASIDE_SLOPE);
+    const Eight load = select(presses, column(FRICTION_LOAD), none), mu = load * column(MU);
+    const Eight weight = mu * select(column(RUB_BY_WAY) > 0.5, none + by_way, none + by_speed);
+    const Eight grows = by_speed * load * column(MU_GROWTH), u = column(RUB), w = column(RUB_ASIDE);
+    rate[0] = weight * column(RUB_SLOPE) + grows * u * u, rate[1] = weight * column(RUB_SKEW) + grows * u * w;
+    rate[2] = weight * column(RUB_ASIDE_SLOPE) + grows * w * w;
   }
 
  private:
@@ -114,13 +116,13 @@ inline void add_section(const EightDifferences& minus, const EightSections& at, 
   }
 }
 
-// Weighted, of all sections that touch: their derivatives by pose, and friction by its growth with the sliding speed.
-inline void add_stiffness(const Sections& s, const SectionDifferences& minus, double stiffness, double damping,
-                          bool bends, RunnerTangent& out) {
+// Weighted, of all sections that touch: their derivatives by pose, and friction by its growth with way and velocity.
+inline void add_stiffness(const Sections& s, const SectionDifferences& minus, double stiffness, double by_way,
+                          double by_speed, bool bends, RunnerTangent& out) {
   Eight clamp[BODY] = {};
   for (int i = 0; i < s.count(); i += BLOCK) {
     if (!any((load<Eight>(s[SHARE] + i) > 0.0) & (load<Eight>(s[DEEPEST] + i) > 0.0))) continue;
-    const EightSections at(s, i, damping);
+    const EightSections at(s, i, by_way, by_speed);
     const EightDifferences weighted(minus, i, stiffness);
     for (int lane = 0; lane < BLOCK; lane++)
       if (s.touches(i + lane)) add_section(weighted, at, lane, 3 * int(s[ELEMENT][i + lane]), bends, clamp, out);

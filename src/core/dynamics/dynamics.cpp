@@ -230,12 +230,14 @@ void Dynamics::add_work(const Formula& f) {
 }
 
 // Losses to the snow in the step that was accepted last: what its forces took less what the snow has stored of that.
-// `pressure`, `shear`: energies (J) that are stored at its end.
-void Dynamics::add_losses(double pressure, double shear) {
-  const SnowStore now{pressure, shear, contact_->delayed_stored(), contact_->delayed_energy()}, &before = store_;
+// `pressure`, `shear`, `friction`: energies (J) that are stored at its end.
+void Dynamics::add_losses(double pressure, double shear, double friction) {
+  const SnowStore now{pressure, shear, friction, contact_->delayed_stored(), contact_->delayed_energy()},
+      &before = store_;
   const double by_rate = last_work_.snow_damping + now.delayed_taken - before.delayed_taken;
   losses_.add(-last_work_.normal - (pressure - before.pressure) - by_rate, last_work_.shear - (shear - before.shear),
               by_rate - (now.delayed - before.delayed), pressure + shear);
+  losses_.add_friction(last_work_.friction - (friction - before.friction));
   store_ = now;
 }
 
@@ -255,10 +257,11 @@ void Dynamics::accept(const Formula& f, bool observed) {
     follow_skis();
   add_work(f);
   const double pressure = contact_->elastic_energy(), shear = contact_->held_energy();
+  const double friction = contact_->stuck_energy();
   if (observed) observe();
   fill_end();
   contact_->accept(end_);
-  add_losses(pressure, shear);
+  add_losses(pressure, shear, friction);
   rate_before_ = state.rate;
   std::swap(state, next_);
   moved_ = increment_;
@@ -289,7 +292,7 @@ void Dynamics::begin() {
   feel_boots(0.0, 0.0, 0.0);
   for (MovingSki& each : skis_) each.begin();
   observe();
-  store_ = {contact_->elastic_energy(), contact_->held_energy(), 0.0, 0.0};
+  store_ = {contact_->elastic_energy(), contact_->held_energy(), contact_->stuck_energy(), 0.0, 0.0};
   contact_->accept(end_);
   store_.delayed = contact_->delayed_stored(), store_.delayed_taken = contact_->delayed_energy();
   work_ = last_work_ = Work();

@@ -142,7 +142,7 @@ class Dynamics {
   void accept(const Formula& f, bool observed);
   void observe();
   void add_work(const Formula& f);
-  void add_losses(double pressure, double shear);
+  void add_losses(double pressure, double shear, double friction);
   void follow_balance();
   double tolerance() const;
   double longest() const;

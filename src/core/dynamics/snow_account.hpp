@@ -5,13 +5,13 @@
 
 namespace skisnow {
 
-// Energy that the snow can give back (J): in its pressure, in the shear at the edges, and in its delayed depth; and all
-// that the delayed depth has taken so far.
+// Energy that the snow can give back (J): in its pressure, in the shear at the edges, in the friction of a base that
+// sticks, and in its delayed depth; and all that the delayed depth has taken so far.
 struct SnowStore {
-  double pressure = 0.0, shear = 0.0, delayed = 0.0, delayed_taken = 0.0;
+  double pressure = 0.0, shear = 0.0, friction = 0.0, delayed = 0.0, delayed_taken = 0.0;
 
-  static constexpr double SnowStore::* PARTS[] = {&SnowStore::pressure, &SnowStore::shear, &SnowStore::delayed,
-                                                  &SnowStore::delayed_taken};
+  static constexpr double SnowStore::* PARTS[] = {&SnowStore::pressure, &SnowStore::shear, &SnowStore::friction,
+                                                  &SnowStore::delayed, &SnowStore::delayed_taken};
 };
 
 // An account (J) that never falls. `open` is what is not entered in it: above 0 a loss that may be the error of a step,
@@ -33,7 +33,7 @@ struct Loss {
 // strength, and an edge that is pressed deeper stores more energy in its shear. If one account owes more than a share
 // of the energy that the snow stores, the others' losses of the same step pay for it, the shear first.
 struct SnowAccount {
-  Loss penetration, shear, rate;
+  Loss penetration, shear, rate, friction;
 
   void add(double by_penetration, double by_shear, double by_rate, double stored) {
     const double band = BAND * stored;
@@ -46,6 +46,8 @@ struct SnowAccount {
       }
     for (int i = 0; i < 3; i++) accounts[i]->total += due[i];
   }
+
+  void add_friction(double loss) { friction.total += friction.due(loss, 0.0); }
 
   // Energy that the snow gave beyond the energy that it had stored (J).
   double owed() const { return penetration.owed() + shear.owed() + rate.owed(); }

@@ -238,7 +238,7 @@ void Dynamics::write(ByteWriter& out) const {
   for (const Work* work : {&work_, &last_work_})
     for (const double Work::* each : Work::PARTS) out.number(work->*each);
   for (const double SnowStore::* each : SnowStore::PARTS) out.number(store_.*each);
-  for (const Loss* each : {&losses_.penetration, &losses_.shear, &losses_.rate})
+  for (const Loss* each : {&losses_.penetration, &losses_.shear, &losses_.rate, &losses_.friction})
     out.number(each->total), out.number(each->open);
   out.numbers(std::vector{start_.kinetic, start_.potential, start_.elastic}.data(), 3);
   out.whole(narrowed_);
@@ -255,7 +255,7 @@ void Dynamics::read(ByteReader& in) {
   for (Work* work : {&work_, &last_work_})
     for (double Work::* each : Work::PARTS) work->*each = in.number();
   for (double SnowStore::* each : SnowStore::PARTS) store_.*each = in.number();
-  for (Loss* each : {&losses_.penetration, &losses_.shear, &losses_.rate})
+  for (Loss* each : {&losses_.penetration, &losses_.shear, &losses_.rate, &losses_.friction})
     each->total = in.number(), each->open = in.number();
   start_.kinetic = in.number(), start_.potential = in.number(), start_.elastic = in.number();
   narrowed_ = int(in.whole(0, 64));

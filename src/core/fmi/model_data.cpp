@@ -48,7 +48,7 @@ void put_snow(const Snow& snow, Fields& out) {
   out.put("snow.edge_blend_sine", snow.edge_blend_sine);
   out.put("snow.compaction_resistance", snow.compaction_resistance ? 1.0 : 0.0);
   const FrictionLaw& mu = snow.friction;
-  out.put("snow.friction", std::vector{mu.constant, mu.linear, mu.square, mu.film, mu.film_speed, mu.fade_speed,
+  out.put("snow.friction", std::vector{mu.constant, mu.linear, mu.square, mu.film, mu.film_speed, mu.stick,
                                        mu.is_vector ? 1.0 : 0.0, mu.acts_across ? 1.0 : 0.0});
   out.put("snow.friction_on_base", snow.friction_on_base ? 1.0 : 0.0);
   const ShearLaw& shear = snow.shear;

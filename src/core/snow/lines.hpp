@@ -29,6 +29,8 @@ enum LineField {
   EDGE_SIDE,                          // share of the half width at which the shear acted at the last accepted pose
   // where the strength varies: that of the edge then (Pa), its depth, and its displacement from the anchor (m)
   STRENGTH_HELD, DEPTH_HELD, SHEAR_HELD,
+  // whether the base rubs here; where along the ski and across its friction is 0, of a point how far across the base (m)
+  STUCK, STUCK_STATION, STUCK_PLACE, STUCK_ARM,
   KNOWN_FROM, KNOWN_TO,               // where across older tracks were looked for (m)
   LINE_FIELDS
 };

@@ -10,7 +10,7 @@ namespace skisnow {
 // (m/s).
 struct FrictionLaw {
   double constant = 0.0, linear = 0.0, square = 0.0, film = 0.0, film_speed = 1.0;
-  double fade_speed = 0.01;  // below it the friction fades to zero
+  double stick = 0.02e-3;    // way of the base to full friction (m): until then it sticks, as by a spring
   bool is_vector = true;     // against the sliding velocity; else by its part along the ski alone, and along the ski
   bool acts_across = true;   // its part across the ski; else the shear law has that
 };

@@ -28,7 +28,7 @@ class FrictionLaw:
     square: float
     film: float
     film_speed: float
-    fade_speed: float
+    stick: float
     is_vector: bool
     acts_across: bool
 
@@ -93,7 +93,6 @@ class Contact:
         self,
         friction: Callable[[FloatArray], FloatArray] | None,
         shear: Callable[[FloatArray, FloatArray], FloatArray] | None,
-        rule: FrictionLaw,
     ) -> None: ...
     def set_penetration(self, law: PenetrationLaw, bends: FloatArray, along_base_normal: bool) -> None: ...
 
@@ -145,8 +144,8 @@ class Dynamics:
     velocity: FloatArray
     bend: FloatArray
     next_step: float
-    snow_store: tuple[float, float, float]
-    snow_losses: tuple[float, float, float, float]
+    snow_store: tuple[float, float, float, float]
+    snow_losses: tuple[float, float, float, float, float]
     touches: bool
     energies: tuple[float, float, float]
     work: tuple[float, float, float, float, float, float, float, float]

@@ -66,9 +66,9 @@ class Sections(Shown):
     normal_force, shear, push, push_across, push_off
         Forces of the pressure, of the edge across, along the edge, and of friction across it in the surface and off the
         surface (N).
-    sliding, sliding_aside, friction, friction_aside, friction_load
-        Velocity along the edge and aside (m/s), the parts of μ with the signs of these, and the load that they act on
-        (N). Aside is across the edge in the surface, or at right angles to it in the base's plane.
+    sliding, sliding_aside, mu, rub, rub_aside, friction_load
+        Velocity along the edge and aside (m/s), μ, the parts of it in use with the signs of the way, and the load that
+        it acts on (N). Aside is across the edge in the surface, or at right angles to it in the base's plane.
     strength, shear_used
         S_f (N/m²), and the share of the displacement to full strength in use (beyond ±1: slips).
     """
@@ -85,8 +85,9 @@ class Sections(Shown):
     push_off: FloatArray
     sliding: FloatArray
     sliding_aside: FloatArray
-    friction: FloatArray
-    friction_aside: FloatArray
+    mu: FloatArray
+    rub: FloatArray
+    rub_aside: FloatArray
     friction_load: FloatArray
     strength: FloatArray
     shear_used: FloatArray
@@ -160,7 +161,7 @@ class SnowContact(Shown):
         self._shear = None if shear is None else AskedStrength(shear)
         if friction is not None or shear is not None:
             called = None if friction is None else AskedFriction(friction)
-            self.compiled.set_laws(called, self._shear, snow.compiled.friction)
+            self.compiled.set_laws(called, self._shear)
         if snow.penetration is not None:
             law = snow.penetration
             self.compiled.set_penetration(AskedPressure(law), np.array(law.bends, float), law.along_base_normal)

@@ -27,8 +27,8 @@ FloatArray: TypeAlias = npt.NDArray[np.float64]
 
 EDGE_BLEND: Final = math.radians(2.0)
 """Edge angle (rad) above which the shear acts only at the edge; below, it moves to the middle (assumption)."""
-FADE_SPEED: Final = 0.01
-"""Sliding speed (m/s) below which friction fades to zero (modelling assumption): Coulomb's law, regularised."""
+STICK_DISPLACEMENT: Final = 0.02e-3
+"""Way of the base (m) to full friction, until which it sticks (modelling assumption): Coulomb's law, regularised."""
 KNOT_AREA: Final = 1e-4
 """Share of a contact's depth times width below which a knot of the groove is dropped (modelling assumption)."""
 PART_ALONG: Final = 0.01
@@ -78,7 +78,7 @@ class SnowField(Shown):
         Whether the snow that is pressed down resists along the edge.
     shear_displacement
         Of an edge across to its full strength (m), > 0: a penalty stiffness in front of Coulomb-like slip.
-    edge_blend_angle, fade_speed, knot_area, part_along, part_across, delayed_spacing
+    edge_blend_angle, stick_displacement, knot_area, part_along, part_across, delayed_spacing
         Numerics, see the constants of this module for what each does.
 
     Raises
@@ -109,7 +109,7 @@ class SnowField(Shown):
     compaction_resistance: bool = True
     shear_displacement: float = SHEAR_DISPLACEMENT
     edge_blend_angle: float = EDGE_BLEND
-    fade_speed: float = FADE_SPEED
+    stick_displacement: float = STICK_DISPLACEMENT
     knot_area: float = KNOT_AREA
     part_along: float = PART_ALONG
     part_across: float = PART_ACROSS
@@ -158,7 +158,7 @@ class SnowField(Shown):
             "slip_weakening",
             "shear_displacement",
             "edge_blend_angle",
-            "fade_speed",
+            "stick_displacement",
             "part_along",
             "part_across",
             "retardation_time",
@@ -233,7 +233,7 @@ class SnowField(Shown):
     def _friction(self) -> core.FrictionLaw:
         """Coefficients of μ = c₀ + c₁ v + c₂ v² + a/(1 + v/v₀), which the laws of `forces.friction` are."""
         law, out = self.friction, core.FrictionLaw()
-        out.fade_speed = self.fade_speed
+        out.stick = self.stick_displacement
         out.is_vector = self.friction_direction == "vector"
         out.acts_across = not isinstance(self.shear, MachiningShear)
         if isinstance(law, ConstantFriction):

@@ -298,13 +298,13 @@ class Dynamics:
         return self._core.energies
 
     @property
-    def snow_energies(self) -> tuple[float, float, float]:
-        """Energies that the snow can give back: pressure, shear at the edges, delayed depth (J)."""
+    def snow_energies(self) -> tuple[float, float, float, float]:
+        """Energies that the snow can give back: pressure, shear at edges, friction that sticks, delayed depth (J)."""
         return self._core.snow_store
 
     @property
-    def snow_losses(self) -> tuple[float, float, float, float]:
-        """Losses since `begin` (J): penetration, shear, damping with delayed depth; then the energy owed.
+    def snow_losses(self) -> tuple[float, float, float, float, float]:
+        """Losses since `begin` (J): penetration, shear, friction, damping with delayed depth; then the energy owed.
 
         A loss never falls. Owed is the energy that the snow gave beyond the energy that it had stored.
         """

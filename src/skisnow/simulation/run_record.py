@@ -107,11 +107,11 @@ class Record:
     def _energies(self) -> tuple[float, ...]:
         """Stored energies, losses since the start and energies given (J)."""
         dynamics = self.setup.dynamics
-        pressure, sheared, delayed = dynamics.snow_energies
-        _, friction, _, drag, damping, _ = dynamics.work
-        penetration, shear, rate, _ = dynamics.snow_losses
+        pressure, sheared, stuck, delayed = dynamics.snow_energies
+        _, _, _, drag, damping, _ = dynamics.work
+        penetration, shear, friction, rate, _ = dynamics.snow_losses
         lost = (penetration, shear, friction, drag, damping, rate)
-        return (*dynamics.energies, pressure + sheared, delayed, *lost, *dynamics.work_given)
+        return (*dynamics.energies, pressure + sheared + stuck, delayed, *lost, *dynamics.work_given)
 
     @property
     def gains_energy(self) -> bool:

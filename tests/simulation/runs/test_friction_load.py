@@ -69,12 +69,12 @@ def test_in_balance_it_is_the_closed_form_of_a_leaning_skier() -> None:
         angle = math.atan(square / (radius * GRAVITY))
         depth = math.sqrt(2.0 * weight * math.tan(angle) / (hardness * 1.6))
         strength = 2.0 * weight * math.tan(angle) / (1.6 * depth)
-        snow = SnowField(hardness, strength, 1.0, FRICTION, friction_acts_on="base-normal", shear_displacement=reach)
+        snow = SnowField(hardness, strength, 1.0, FRICTION, "base-normal", "along-ski", shear_displacement=reach)
         contact = SnowContact(snow, [straight()])
         height, turned = 0.03 * math.sin(angle) - depth, edged(angle)[None]
         contact.update([[0.0, 0.0, height]], turned, 1e-3)
         motion = [[math.sqrt(square), 0, 0, 0, 0, 0]]
-        found = contact.force([[0.0, -0.5 * reach, height]], turned, motion, 1e-3).wrench[0]
+        found = contact.force([[1e-3 * math.sqrt(square), -0.5 * reach, height]], turned, motion, 1e-3).wrench[0]
         assert found[1:3] == pytest.approx([weight * math.tan(angle), weight], rel=1e-9)
         return float(2.0 * GRAVITY * found[0] / weight)  # dv²/ds
 

@@ -78,7 +78,7 @@ def _energies() -> list[RunVariable]:
         "kinetic": "kinetic energy",
         "potential": "potential energy in the field of gravity",
         "elastic_ski": "elastic energy of both skis",
-        "elastic_snow": "elastic energy of the snow, in its pressure and in the shear at the edges",
+        "elastic_snow": "elastic energy of the snow: of pressure, of the shear at the edges, of friction that sticks",
         "delayed_snow": "energy stored in the delayed depth of the snow under the skis",
     }
     lost = {
