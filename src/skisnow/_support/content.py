@@ -21,9 +21,9 @@ def pieces_of(thing: object) -> Iterator[bytes]:
     """
     if is_dataclass(thing) and not isinstance(thing, type):
         yield type(thing).__qualname__.encode()
-        for each in fields(thing):
-            if each.init:
-                yield from pieces_of(getattr(thing, each.name))
+        for field in fields(thing):
+            if field.init:
+                yield from pieces_of(getattr(thing, field.name))
     elif isinstance(thing, tuple | list):
         for part in thing:
             yield from pieces_of(part)

@@ -89,14 +89,14 @@ def ends(values: Any, unit: str = "", *, factor: float = 1.0) -> str:
     >>> ends([0.001, 0.003, float("nan")], "mm", factor=1e-3)
     '1 to 3 mm'
     """
-    known = np.asarray(values, float)
-    known = known[np.isfinite(known)] / factor
-    return span(float(known.min()), float(known.max()), unit) if known.size else "none"
+    finite = np.asarray(values, float)
+    finite = finite[np.isfinite(finite)] / factor
+    return span(float(finite.min()), float(finite.max()), unit) if finite.size else "none"
 
 
 def field_facts(thing: Any, units: dict[str, str], *, title: str = "") -> Facts:
     """One row for each field of a dataclass: an array by its size and ends, in the unit given, all else in short."""
-    rows = [(each.name, _short(getattr(thing, each.name), units.get(each.name, ""))) for each in fields(thing)]
+    rows = [(field.name, _short(getattr(thing, field.name), units.get(field.name, ""))) for field in fields(thing)]
     return Facts(title, tuple(rows))
 
 
@@ -108,7 +108,7 @@ def name_with_values(thing: object) -> str:
     ('ConstantFriction(friction_coefficient=0.04)', 'sqrt')
     """
     if is_dataclass(thing) and not isinstance(thing, type):
-        values = ", ".join(f"{each.name}={getattr(thing, each.name)!r}" for each in fields(thing) if each.repr)
+        values = ", ".join(f"{field.name}={getattr(thing, field.name)!r}" for field in fields(thing) if field.repr)
         return f"{type(thing).__qualname__}({' '.join(values.split())})"
     name: str = getattr(thing, "__qualname__", type(thing).__qualname__)
     return name

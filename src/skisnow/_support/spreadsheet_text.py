@@ -163,13 +163,13 @@ def with_decimal_point(cell: str) -> str:
     return cell if is_number(cell, ".") and "." not in cell else cell.replace(".", "·").replace(",", ".")
 
 
-def column_names(cells: Iterable[str], known: Iterable[str]) -> list[str]:
+def column_names(cells: Iterable[str], columns: Iterable[str]) -> list[str]:
     """Names of a header, the known ones as they are written; the case of letters does not matter.
 
     >>> column_names([" X_M", "Gate", "Colour"], ["gate", "x_m"])
     ['x_m', 'gate', 'Colour']
     """
-    names = {name.casefold(): name for name in known}
+    names = {name.casefold(): name for name in columns}
     return [names.get(cell.strip().casefold(), cell.strip()) for cell in cells]
 
 
@@ -329,5 +329,5 @@ def _rows(
                 code="too_many_cells",
             )
         if any(cell.strip() for cell in cells):
-            found = {name: cells[at].strip() if at < len(cells) else "" for name, at in places.items()}
-            yield CsvRow(path, row, found, action, mark)
+            values = {name: cells[at].strip() if at < len(cells) else "" for name, at in places.items()}
+            yield CsvRow(path, row, values, action, mark)

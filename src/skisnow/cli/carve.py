@@ -91,21 +91,21 @@ def run(options: argparse.Namespace) -> int:
         fonts_listed()
     answers = _answers(options)
     _warn(answers)
-    found = answers_dict(answers)
+    result = answers_dict(answers)
     if options.figure is not None:
         from ..report.carving_figure import carved_skis
         from ..report.figures.figure_files import write_figure
         from ..report.summaries import answers_of, ski_titles
 
-        names = frozenset(ski_titles(answers_of(found)))
-        write_figure(options.figure, lambda: carved_skis(found), language=options.language, names=names)
+        names = frozenset(ski_titles(answers_of(result)))
+        write_figure(options.figure, lambda: carved_skis(result), language=options.language, names=names)
         print(f"Figure: {options.figure}", file=sys.stderr)
     if options.json:
-        print(json.dumps(found, ensure_ascii=False, allow_nan=False, indent=1))
+        print(json.dumps(result, ensure_ascii=False, allow_nan=False, indent=1))
     else:
         from ..report.summaries import carve_summary
 
-        print(carve_summary(found))
+        print(carve_summary(result))
     return _status(answers)
 
 
@@ -125,8 +125,8 @@ def _answers(options: argparse.Namespace) -> list[CarveAnswer]:
         from ..carving.keys import CARVE_KEYS
         from ..carving.question import carve_question
 
-        given = {name: value for name, value in vars(options).items() if name in CARVE_KEYS and value is not None}
-        return [answered(carve_question(given | {"ski": ski})) for ski in options.ski]
+        question = {name: value for name, value in vars(options).items() if name in CARVE_KEYS and value is not None}
+        return [answered(carve_question(question | {"ski": ski})) for ski in options.ski]
 
 
 def _warn(answers: list[CarveAnswer]) -> None:

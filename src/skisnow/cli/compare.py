@@ -80,13 +80,13 @@ def run(options: argparse.Namespace) -> int:
         )
     if options.out is not None:
         ready(options.out)
-    found = _compared(options)
+    comparison = _compared(options)
     from ..comparison import comparison_dict
     from ..track.course.gates_table import gap_rows, read_gate_gaps
 
     gaps = read_gate_gaps(options.simulated, options.measured)
-    answer = comparison_dict(found) | ({} if gaps is None else {"gates": gap_rows(gaps)})
-    for text in found.warnings:
+    answer = comparison_dict(comparison) | ({} if gaps is None else {"gates": gap_rows(gaps)})
+    for text in comparison.warnings:
         print(f"warning: {text}", file=sys.stderr)
     text = json.dumps(answer, ensure_ascii=False, allow_nan=False, indent=1)
     if options.json:
@@ -98,9 +98,9 @@ def run(options: argparse.Namespace) -> int:
         if gaps is not None:
             from ..report.race.folder import gaps_text
 
-            print(f"\n{gaps_text(gaps, found.names)}", flush=True)
+            print(f"\n{gaps_text(gaps, comparison.names)}", flush=True)
     if options.out is not None:
-        _write(options.out, found, text, options.language, gaps)
+        _write(options.out, comparison, text, options.language, gaps)
     return 0
 
 
@@ -171,7 +171,7 @@ def _in_slope(track: Track, options: argparse.Namespace, slope_angle: float | No
     )
 
 
-def _write(folder: Path, found: Comparison, text: str, language: str, gaps: tuple[GateGap, ...] | None) -> None:
+def _write(folder: Path, comparison: Comparison, text: str, language: str, gaps: tuple[GateGap, ...] | None) -> None:
     from .._support.staging import staged, write_file
     from ..report.figures.figure_files import write_pictures
     from ..report.race.folder import FILES, write_gaps
@@ -180,9 +180,13 @@ def _write(folder: Path, found: Comparison, text: str, language: str, gaps: tupl
     with staged(folder, last="compare.json") as stage:
         stage.stale += FILES
         if gaps is not None:
-            write_gaps(gaps, found.names, stage.path, language=language)
+            write_gaps(gaps, comparison.names, stage.path, language=language)
         write_file(stage.path / "compare.json", f"{text}\n")
         write_pictures(
-            map(comparison_drawing, [found]), stage.path, every=(), language=language, names=frozenset(found.names)
+            map(comparison_drawing, [comparison]),
+            stage.path,
+            every=(),
+            language=language,
+            names=frozenset(comparison.names),
         )
     print(f"Figure: {folder / 'track_comparison.png'}, and as SVG, PDF and EPS", file=sys.stderr)

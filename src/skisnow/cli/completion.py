@@ -63,16 +63,16 @@ def run(options: argparse.Namespace) -> int:
     if options.shell != WORDS:
         print(_SCRIPTS[options.shell], end="")
         return 0
-    given = options.given[1:] if options.given[:1] == ["--"] else options.given
-    print("\n".join(candidates(options.program, given[:-1], (given or [""])[-1])))
+    words = options.given[1:] if options.given[:1] == ["--"] else options.given
+    print("\n".join(candidates(options.program, words[:-1], (words or [""])[-1])))
     return 0
 
 
-def candidates(parser: argparse.ArgumentParser, given: Sequence[str], begun: str) -> list[str]:
+def candidates(parser: argparse.ArgumentParser, words: Sequence[str], begun: str) -> list[str]:
     """What a word may become that is begun behind others; empty where a file or a number belongs."""
     waiting: argparse.Action | None = None
     places = _positionals(parser)
-    for word in given:
+    for word in words:
         option = parser._option_string_actions.get(word)
         if waiting is not None:
             waiting = None
@@ -87,16 +87,16 @@ def candidates(parser: argparse.ArgumentParser, given: Sequence[str], begun: str
             places = places[1:]
     if waiting is not None:
         return _values(waiting)
-    return _values(places[0]) if places and not begun.startswith("-") else _options(parser, given)
+    return _values(places[0]) if places and not begun.startswith("-") else _options(parser, words)
 
 
 def _positionals(parser: argparse.ArgumentParser) -> list[argparse.Action]:
     return [action for action in parser._actions if not action.option_strings]
 
 
-def _options(parser: argparse.ArgumentParser, given: Iterable[str]) -> list[str]:
+def _options(parser: argparse.ArgumentParser, words: Iterable[str]) -> list[str]:
     """Long names of options that are not there yet, or may be there several times."""
-    there = set(given)
+    there = set(words)
     several = argparse._AppendAction
     actions = [
         action for action in parser._actions if isinstance(action, several) or not there & set(action.option_strings)

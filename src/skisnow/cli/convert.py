@@ -46,14 +46,14 @@ def run(options: argparse.Namespace) -> int:
         from ..interop.convert import ConvertOptions, convert
 
         height = options.snow_height_cm
-        asked = ConvertOptions(
+        convert_options = ConvertOptions(
             site=options.site,
             time=options.time,
             snow_height=None if height is None else height * CM,
             forces=options.forces,
             report=lambda text: print(f"note: {text}", file=sys.stderr),
         )
-        written = convert(options.source, options.target, asked)
+        written = convert(options.source, options.target, convert_options)
     for path in written:
         print(path)
     return 0

@@ -62,11 +62,13 @@ def _fmu(options: argparse.Namespace) -> int:
         from ..scenario import scenario_file
         from ..scenario.keys import parse_change
 
-        asked = scenario_file(options.scenario, changes=dict(parse_change(word) for word in options.changes)).scenario
+        scenario = scenario_file(
+            options.scenario, changes=dict(parse_change(word) for word in options.changes)
+        ).scenario
         if options.contact:
-            written = write_contact_fmu(asked, options.out, fmi=options.fmi, skis=options.skis or 2)
+            written = write_contact_fmu(scenario, options.out, fmi=options.fmi, skis=options.skis or 2)
         else:
-            written = write_sledge_fmu(asked, options.out, fmi=options.fmi)
+            written = write_sledge_fmu(scenario, options.out, fmi=options.fmi)
     print(written)
     return 0
 

@@ -77,12 +77,12 @@ def run(options: argparse.Namespace) -> int:
     """Identify, print, write; 0 with an answer, 1 with too few points or without convergence, 130 when interrupted."""
     if options.resume and options.out is None:
         options.parser.error("--resume goes on with what is kept in --out DIR; name it")
-    asked = _prepared(options)
+    scenario_input = _prepared(options)
     with ending_is_an_interrupt() as ending:
-        found = _identified(options)
+        result = _identified(options)
         with ending.finishing():
-            _tell(options, found, asked)
-    return _status(found, ending)
+            _tell(options, result, scenario_input)
+    return _status(result, ending)
 
 
 def _prepared(options: argparse.Namespace) -> ScenarioFile:
@@ -94,12 +94,12 @@ def _prepared(options: argparse.Namespace) -> ScenarioFile:
         require_bootstrap(options.bootstrap, options.bootstrap_by)
         if options.posterior:
             require_emcee()
-        asked = scenario_file(options.scenario, changes=_changes(options))
+        scenario_input = scenario_file(options.scenario, changes=_changes(options))
     if options.out is not None:
         ready(options.out)
-    for text in asked.warnings:
+    for text in scenario_input.warnings:
         print(f"warning: {text}", file=sys.stderr)
-    return asked
+    return scenario_input
 
 
 def _changes(options: argparse.Namespace) -> dict[str, object]:
@@ -134,35 +134,35 @@ def _identified(options: argparse.Namespace) -> Identification:
         )
 
 
-def _tell(options: argparse.Namespace, found: Identification, asked: ScenarioFile) -> None:
+def _tell(options: argparse.Namespace, result: Identification, scenario_input: ScenarioFile) -> None:
     from ..identification import identification_dict
 
-    contents = identification_dict(found, files=(*asked.files, *options.data))
-    for text in found.warnings:
+    contents = identification_dict(result, files=(*scenario_input.files, *options.data))
+    for text in result.warnings:
         print(f"warning: {text}", file=sys.stderr)
     if options.json:
         print(json.dumps(contents, ensure_ascii=False, allow_nan=False, indent=1), flush=True)
     else:
         from ..report.summaries import identify_summary
 
-        print(identify_summary(found), flush=True)
+        print(identify_summary(result), flush=True)
     if options.out is not None:
         from ..report.identification import write_identify_report
 
         with Progress() as progress:
             page = write_identify_report(
-                found,
+                result,
                 contents,
                 options.out,
                 language=options.language,
                 progress=lambda doing: progress(f"writing {doing}"),
             )
         print(f"Report: {page}", file=sys.stderr)
-    if found.outcome == "interrupted" and options.out is not None:
+    if result.outcome == "interrupted" and options.out is not None:
         print("The same command with --resume goes on with the simulations that are kept.", file=sys.stderr)
 
 
-def _status(found: Identification, ending: Ending) -> int:
-    if ending.asked or ending.pressed or found.outcome == "interrupted":
+def _status(result: Identification, ending: Ending) -> int:
+    if ending.asked or ending.pressed or result.outcome == "interrupted":
         return ending.status()
-    return 1 if found.outcome in ("too_few_points", "not_converged") else 0
+    return 1 if result.outcome in ("too_few_points", "not_converged") else 0

@@ -49,7 +49,9 @@ def _commands(parser: argparse.ArgumentParser) -> Iterator[tuple[str, argparse.A
 
 def _help_of(parser: argparse.ArgumentParser, name: str) -> str:
     actions = (action for action in parser._actions if isinstance(action, argparse._SubParsersAction))
-    return next((each.help or "" for action in actions for each in action._choices_actions if each.dest == name), "")
+    return next(
+        (choice.help or "" for action in actions for choice in action._choices_actions if choice.dest == name), ""
+    )
 
 
 def _command(parser: argparse.ArgumentParser, about: str) -> Iterator[str]:

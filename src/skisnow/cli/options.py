@@ -115,8 +115,8 @@ def number(
         try:
             return float(word)
         except ValueError:
-            found = _BEGINS_AS_NUMBER.match(word.strip())
-            example = f", such as {found[0].replace(',', '.')}" if found else ""
+            match = _BEGINS_AS_NUMBER.match(word.strip())
+            example = f", such as {match[0].replace(',', '.')}" if match else ""
             where = f" in {unit}, without the unit" if unit else ""
             raise argparse.ArgumentTypeError(
                 f"{_shown(word)} is no number; write one with a decimal point{where}{example}"
@@ -177,18 +177,18 @@ def scheduler_of(options: argparse.Namespace) -> str | None:
     ParameterError
         It is no scheduler, its file cannot be read, or Dask is not installed.
     """
-    asked: str | None = options.scheduler
-    if asked is not None and asked not in LOCAL and options.workers is not None:
+    scheduler: str | None = options.scheduler
+    if scheduler is not None and scheduler not in LOCAL and options.workers is not None:
         from .._support.errors import ParameterError
 
         raise ParameterError(
             Message("--workers counts processes of this computer; a scheduler has its own. Leave one of them out"),
             code="contradiction",
         )
-    return checked_scheduler(asked)
+    return checked_scheduler(scheduler)
 
 
-def checked_scheduler(asked: str | None) -> str | None:
+def checked_scheduler(scheduler: str | None) -> str | None:
     """The same of what was given to the option.
 
     Raises
@@ -196,12 +196,14 @@ def checked_scheduler(asked: str | None) -> str | None:
     ParameterError
         As of `scheduler_of`.
     """
-    if asked is None or asked in LOCAL:
-        return asked
+    if scheduler is None or scheduler in LOCAL:
+        return scheduler
     from .._support.processes.dask_cluster import is_plain, require_scheduler
 
-    require_scheduler(asked)
-    if is_plain(asked):
-        told = "what is sent to the workers is not encrypted, and whoever reaches it can run programs on them"
-        print(f"{asked}: {told}: for trusted networks alone. tls:// with certificates is for others.", file=sys.stderr)
-    return asked
+    require_scheduler(scheduler)
+    if is_plain(scheduler):
+        risk = "what is sent to the workers is not encrypted, and whoever reaches it can run programs on them"
+        print(
+            f"{scheduler}: {risk}: for trusted networks alone. tls:// with certificates is for others.", file=sys.stderr
+        )
+    return scheduler

@@ -64,13 +64,13 @@ class Progress:
 
     def __call__(self, text: str) -> None:
         """Take note of what is being done."""
-        now = time.monotonic()
-        if now < self._next:
+        time_s = time.monotonic()
+        if time_s < self._next:
             return
-        self._next = now + self._pause
-        self._line.show(text + self._left(text, now))
+        self._next = time_s + self._pause
+        self._line.show(text + self._left(text, time_s))
 
-    def _left(self, text: str, now: float) -> str:
+    def _left(self, text: str, time_s: float) -> str:
         """The time left of work that is counted, "3 of 15", from the second text of its kind on."""
         counted = _COUNTED.search(text)
         if counted is None or "left" in text:
@@ -78,11 +78,11 @@ class Progress:
         done, total = int(counted[1]), int(counted[2])
         kind = (text[: counted.start()], total)
         if self._begun is None or self._begun[0] != kind:
-            self._begun = (kind, now, done)
+            self._begun = (kind, time_s, done)
         _, begun, before = self._begun
         if not before < done < total:
             return ""
-        return f", about {(now - begun) * (total - done) / (done - before):.0f} s left"
+        return f", about {(time_s - begun) * (total - done) / (done - before):.0f} s left"
 
     def __enter__(self) -> Self:
         """Start."""

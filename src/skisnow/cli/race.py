@@ -136,20 +136,21 @@ def _raced(options: argparse.Namespace) -> _Raced:
     ready(options.out)
     computing: dict[str, Any] = {"workers": options.workers, "executor": scheduler_of(options)}
     with Progress() as progress:
-        found = quickest_line(
+        fastest = quickest_line(
             scenario.with_(method="fast"), gates=options.gates, model=options.model, start=start,
             evaluations=options.evaluations, search=options.search, settled=options.settled,
             window=options.window, step=options.step, ahead=options.ahead, room=options.room, seed=options.seed,
             checkpoint=options.out / KEPT, progress=progress, **computing,
         )  # fmt: skip
-        checked, run = _checked(found, scenario, progress)
+        checked, run = _checked(fastest, scenario, progress)
         worth: tuple[Worth, ...] = ()
         if variants:
+            fast = {name: variant.with_(method="fast") for name, variant in variants.items()}
             worth = compared(
-                found.scenario, {name: each.with_(method="fast") for name, each in variants.items()}, found.line, snows,
+                fastest.scenario, fast, fastest.line, snows,
                 model=options.model, checkpoint=options.out / KEPT_WORTH, progress=progress, **computing,
             )  # fmt: skip
-    return _Raced(found, checked, run, worth)
+    return _Raced(fastest, checked, run, worth)
 
 
 def _asked(options: argparse.Namespace) -> tuple[Scenario, dict[str, Scenario]]:
@@ -158,13 +159,13 @@ def _asked(options: argparse.Namespace) -> tuple[Scenario, dict[str, Scenario]]:
     from ..scenario import scenario_file
     from ..scenario.keys import parse_change
 
-    asked = scenario_file(options.scenario, changes=dict(parse_change(word) for word in options.changes))
-    for text in asked.warnings:
+    scenario_input = scenario_file(options.scenario, changes=dict(parse_change(word) for word in options.changes))
+    for text in scenario_input.warnings:
         print(f"warning: {text}", file=sys.stderr)
-    variants = {name: asked.scenario.with_(ski=name) for name in options.against}
+    variants = {name: scenario_input.scenario.with_(ski=name) for name in options.against}
     if options.worth:
-        variants |= worth_changes(asked.scenario)
-    return asked.scenario, variants
+        variants |= worth_changes(scenario_input.scenario)
+    return scenario_input.scenario, variants
 
 
 def _start(options: argparse.Namespace, scenario: Scenario) -> RacingLine | None:
@@ -176,31 +177,35 @@ def _start(options: argparse.Namespace, scenario: Scenario) -> RacingLine | None
     return read_line(options.line, course_of(scenario), (scenario.start.x, scenario.start.y))
 
 
-def _checked(found: QuickestLine, scenario: Scenario, progress: Progress) -> tuple[list[tuple[str, Score]], Run | None]:
+def _checked(
+    fastest: QuickestLine, scenario: Scenario, progress: Progress
+) -> tuple[list[tuple[str, Score]], Run | None]:
     """Both lines raced as the scenario says it, where the search raced by a quicker method; the run on the quickest."""
     from ..racing.racers import run_score, skied
 
-    if found.model == "point":
+    if fastest.model == "point":
         return [], None
     progress("racing again: the quickest line")
-    run = skied(scenario, found.line)
+    run = skied(scenario, fastest.line)
     checked = [("quickest line, computed as the scenario says", run_score(run))]
     if scenario.solver.method == "fast":
         return [], run
     progress("racing again: where it began")
-    return [*checked, ("where it began", run_score(skied(scenario, found.start)))], run
+    return [*checked, ("where it began", run_score(skied(scenario, fastest.start)))], run
 
 
 def _tell(options: argparse.Namespace, raced: _Raced) -> None:
     from ..report.race.folder import race_dict, race_summary, worth_summary, write_race
 
-    found, checked, worth = raced.found, raced.checked, raced.worth
-    place = write_race(found, options.out, checked=checked, worth=worth, run=raced.run, against=tuple(options.against))
+    fastest, checked, worth = raced.found, raced.checked, raced.worth
+    place = write_race(
+        fastest, options.out, checked=checked, worth=worth, run=raced.run, against=tuple(options.against)
+    )
     if options.json:
-        contents = race_dict(found, checked, worth)
+        contents = race_dict(fastest, checked, worth)
         print(json.dumps(contents, ensure_ascii=False, allow_nan=False, indent=1), flush=True)
     else:
-        print(race_summary(found, checked), flush=True)
+        print(race_summary(fastest, checked), flush=True)
         if worth:
             print(f"\n{worth_summary(worth)}", flush=True)
     print(f"Race: {place}", file=sys.stderr)

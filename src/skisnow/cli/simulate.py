@@ -63,17 +63,17 @@ def run(options: argparse.Namespace) -> int:
         from ..scenario import scenario_file
         from ..scenario.keys import parse_change
 
-        asked = scenario_file(options.scenario, changes=dict(parse_change(word) for word in options.changes))
-    _prepare(options, asked)
+        scenario_input = scenario_file(options.scenario, changes=dict(parse_change(word) for word in options.changes))
+    _prepare(options, scenario_input)
     with ending_is_an_interrupt() as ending:
-        found, refinements = _computed(asked, verify=options.verify)
+        result, refinements = _computed(scenario_input, verify=options.verify)
         with ending.finishing():
-            _tell(options, asked, found, refinements)
-    return _status(found, ending)
+            _tell(options, scenario_input, result, refinements)
+    return _status(result, ending)
 
 
-def _status(found: Run, ending: Ending) -> int:
-    return ending.status() if ending.asked or ending.pressed or found.outcome == "interrupted" else 0
+def _status(result: Run, ending: Ending) -> int:
+    return ending.status() if ending.asked or ending.pressed or result.outcome == "interrupted" else 0
 
 
 def _list(name: str | None) -> int:
@@ -83,7 +83,7 @@ def _list(name: str | None) -> int:
     return 0
 
 
-def _prepare(options: argparse.Namespace, asked: ScenarioFile) -> None:
+def _prepare(options: argparse.Namespace, scenario_input: ScenarioFile) -> None:
     """What can be refused is refused before the work."""
     if options.boots_out is not None:
         from ..simulation.run_tables import require_ending
@@ -91,63 +91,65 @@ def _prepare(options: argparse.Namespace, asked: ScenarioFile) -> None:
         require_ending(options.boots_out)
     if options.out is not None:
         ready(options.out)
-    for text in asked.warnings:
+    for text in scenario_input.warnings:
         print(f"warning: {text}", file=sys.stderr)
 
 
-def _computed(asked: ScenarioFile, *, verify: bool) -> tuple[Run, tuple[Refinement, ...] | None]:
+def _computed(scenario_input: ScenarioFile, *, verify: bool) -> tuple[Run, tuple[Refinement, ...] | None]:
     with ExitStack() as loading, Progress() as progress, warnings.catch_warnings():
         warnings.simplefilter("ignore", ModelLimitWarning)  # printed among those of the scenario
         loading.enter_context(announced(LOADING))
         from ..simulation.simulated_run import simulate
 
-        found = simulate(asked.scenario, progress=_Pace(progress, begun=loading.close))
+        result = simulate(scenario_input.scenario, progress=_Pace(progress, begun=loading.close))
         loading.close()
-        if not verify or found.outcome == "interrupted":
-            return found, None
-        return found, _verified(found, progress)
+        if not verify or result.outcome == "interrupted":
+            return result, None
+        return result, _verified(result, progress)
 
 
-def _verified(found: Run, progress: Progress) -> tuple[Refinement, ...]:
+def _verified(result: Run, progress: Progress) -> tuple[Refinement, ...]:
     from ..simulation.simulated_run import simulate
     from ..simulation.verification import repetitions, verify
 
-    keys = iter(repetitions(found))
+    keys = iter(repetitions(result))
 
     def finer(scenario: Scenario) -> Run:
         return simulate(scenario, progress=_Pace(progress, f"again, {next(keys)}: "))
 
-    return verify(found, finer)
+    return verify(result, finer)
 
 
 def _tell(
-    options: argparse.Namespace, asked: ScenarioFile, found: Run, refinements: tuple[Refinement, ...] | None
+    options: argparse.Namespace, scenario_input: ScenarioFile, result: Run, refinements: tuple[Refinement, ...] | None
 ) -> None:
     from ..simulation.run_summary import run_warnings, summary_dict
     from ..simulation.verification import limit_warnings, verification_dict
 
     verification = None if refinements is None else verification_dict(refinements)
-    near = limit_warnings(found, refinements or ())
-    warned = (*asked.warnings, *near)
-    summary = summary_dict(found, asked.values, files=asked.files, warnings=warned, verification=verification)
+    near = limit_warnings(result, refinements or ())
+    warned = (*scenario_input.warnings, *near)
+    summary = summary_dict(
+        result, scenario_input.values, files=scenario_input.files, warnings=warned, verification=verification
+    )
     if options.json:
         print(json.dumps(summary, ensure_ascii=False, allow_nan=False, indent=1), flush=True)
     else:
         from ..report.summaries import simulate_summary
 
-        print(simulate_summary(summary, title=asked.title), flush=True)
-    for text in (*near, *run_warnings(found)):
+        print(simulate_summary(summary, title=scenario_input.title), flush=True)
+    for text in (*near, *run_warnings(result)):
         print(f"warning: {text}", file=sys.stderr)
     if options.boots_out is not None:
         from ..simulation.run_tables import write_boots
 
-        write_boots(found, options.boots_out)
+        write_boots(result, options.boots_out)
         print(f"Boots: {options.boots_out}", file=sys.stderr)
     if options.out is not None:
-        _write(options, found, summary, replay_title=asked.title if options.replay else None)
+        _write(options, result, summary, replay_title=scenario_input.title if options.replay else None)
 
 
-def _write(options: argparse.Namespace, found: Run, summary: dict[str, Any], *, replay_title: str | None) -> None:
+def _write(options: argparse.Namespace, result: Run, summary: dict[str, Any], *, replay_title: str | None) -> None:
     from ..report.run.folder import write_run
     from ..report.run.page import REPLAY
 
@@ -157,11 +159,11 @@ def _write(options: argparse.Namespace, found: Run, summary: dict[str, Any], *, 
         if replay_title is not None:
             from ..replay import write_replay
 
-            write_replay(found, place / REPLAY, title=replay_title, language=options.language)
+            write_replay(result, place / REPLAY, title=replay_title, language=options.language)
 
     with Progress() as progress:
         page = write_run(
-            found,
+            result,
             folder,
             summary=summary,
             write_more=replay,
@@ -183,12 +185,12 @@ class _Pace:
         self._begun: tuple[float, float] | None = None
 
     def __call__(self, simulated_s: float, share: float) -> None:
-        now = time.monotonic()
+        time_s = time.monotonic()
         if self._begun is None:
             self._tell_begun()
-            self._begun = (now, simulated_s)
+            self._begun = (time_s, simulated_s)
         start, before = self._begun
-        rate = (simulated_s - before) / max(now - start, 1e-9)
+        rate = (simulated_s - before) / max(time_s - start, 1e-9)
         self._progress(
             f"{self._prefix}{simulated_s:.2f} s simulated, {100.0 * share:.0f} %, {rate:.3g} times real time"
         )

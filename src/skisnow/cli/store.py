@@ -113,11 +113,11 @@ def _list(store: Store, _: argparse.Namespace) -> Answer:
 def _show(store: Store, args: argparse.Namespace) -> Answer:
     from ..campaign.store import JournalHead, entered_files, find_campaign
 
-    found = find_campaign(store, args.id)
-    if isinstance(found, JournalHead):
-        first, as_json, files = _entered_line(found), asdict(found), entered_files(store, found.id)
+    campaign = find_campaign(store, args.id)
+    if isinstance(campaign, JournalHead):
+        first, as_json, files = _entered_line(campaign), asdict(campaign), entered_files(store, campaign.id)
     else:
-        first, as_json, files = _line(found), _as_json(found), found.files
+        first, as_json, files = _line(campaign), _as_json(campaign), campaign.files
     lines = [first, *(f"{file.sha256}  {file.size:>12}  {file.path}" for file in files)]
     return {**as_json, "files": list(map(asdict, files))}, "\n".join(lines), 0
 
@@ -125,9 +125,9 @@ def _show(store: Store, args: argparse.Namespace) -> Answer:
 def _export(store: Store, args: argparse.Namespace) -> Answer:
     from ..campaign.store import ExportedCampaign, JournalHead, export_corrected, find_campaign
 
-    found = find_campaign(store, args.id)
-    if isinstance(found, JournalHead):
-        return _export_entered(store, found, args)
+    campaign = find_campaign(store, args.id)
+    if isinstance(campaign, JournalHead):
+        return _export_entered(store, campaign, args)
     with _share_shown("exporting") as progress:
         if args.as_added:
             exported = ExportedCampaign(store.export(args.id, args.out, progress=progress), 0)

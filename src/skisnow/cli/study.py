@@ -139,12 +139,12 @@ def _tell_state(study: Study) -> None:
 
 
 def _tell(place: Path, table: StudyTable) -> None:
-    found = table.tally()
-    counts = ", ".join(f"{outcome} {count}" for outcome, count in found.counts().items())
-    print(f"{place}: points {found.rows} ({counts})")
+    tally = table.tally()
+    counts = ", ".join(f"{outcome} {count}" for outcome, count in tally.counts().items())
+    print(f"{place}: points {tally.rows} ({counts})")
     for number, first, what in (
-        (found.failed, found.first_failed, "could not be asked"),
-        (found.warned, found.first_warned, "carry warnings"),
+        (tally.failed, tally.first_failed, "could not be asked"),
+        (tally.warned, tally.first_warned, "carry warnings"),
     ):
         if first is not None:
             row, text = first
@@ -173,8 +173,8 @@ class _Pace:
     def __call__(self, done: int, total: int) -> None:
         if self._kept is None:
             self._kept = done
-            kept = f"{done} of {total} points are finished already; " if done else ""
-            self._progress(f"{kept}starting the workers")
+            finished = f"{done} of {total} points are finished already; " if done else ""
+            self._progress(f"{finished}starting the workers")
         elif self._begun is None:
             self._begun = (time.monotonic(), done)
         else:

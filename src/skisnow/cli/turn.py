@@ -85,24 +85,26 @@ def run(options: argparse.Namespace) -> int:
 
         priors = [prior_of(word) for word in options.priors]
         changes = dict(parse_change(word) for word in options.changes)
-        asked = scenario_file(options.scenario, changes=changes)
-    for text in asked.warnings:
+        scenario_input = scenario_file(options.scenario, changes=changes)
+    for text in scenario_input.warnings:
         print(f"warning: {text}", file=sys.stderr)
     if options.out is not None:
         ready(options.out)
     names = ("unloading_ratio", "runs", "seed", "workers")
-    given = _given(changes, asked.scenario.contact)
-    chosen = given | {name: getattr(options, name) for name in names if getattr(options, name) is not None}
+    numbers = _given(changes, scenario_input.scenario.contact)
+    chosen = numbers | {name: getattr(options, name) for name in names if getattr(options, name) is not None}
     with Progress() as progress:
-        found = turn(options.campaign, options.site, asked.scenario, priors=priors, progress=progress, **chosen)
-        page = None if options.out is None else found.report(options.out, language=options.language)
+        chain = turn(
+            options.campaign, options.site, scenario_input.scenario, priors=priors, progress=progress, **chosen
+        )
+        page = None if options.out is None else chain.report(options.out, language=options.language)
     if options.json:
         from ..report.turn.numbers import turn_dict
 
-        print(json.dumps(turn_dict(found), ensure_ascii=False, allow_nan=False, indent=1), flush=True)
+        print(json.dumps(turn_dict(chain), ensure_ascii=False, allow_nan=False, indent=1), flush=True)
     else:
-        print(f"snow: {found.snow.in_words}", *found.sentences, sep="\n")
-    for text in found.warnings:
+        print(f"snow: {chain.snow.in_words}", *chain.sentences, sep="\n")
+    for text in chain.warnings:
         print(f"warning: {text}", file=sys.stderr)
     if page is not None:
         print(f"The whole chain: {page}", file=sys.stderr)

@@ -97,8 +97,8 @@ class Grid(ShownFields):
         at = np.broadcast_arrays(np.asarray(x, float), np.asarray(y, float))
         steps, first = self.steps, (self.x[0], self.y[0])
         counts = self.values.shape
-        where = [(each.ravel() - start) / step for each, start, step in zip(at, first, steps, strict=True)]
-        inside = [np.clip(each, 0.0, count - 1.0) for each, count in zip(where, counts, strict=True)]
+        where = [(coordinate.ravel() - start) / step for coordinate, start, step in zip(at, first, steps, strict=True)]
+        inside = [np.clip(coordinate, 0.0, count - 1.0) for coordinate, count in zip(where, counts, strict=True)]
         value, per_x, per_y = patched(self.values, *inside)
         beyond = (where[0] - inside[0]) * per_x + (where[1] - inside[1]) * per_y
         shape = at[0].shape

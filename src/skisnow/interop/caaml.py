@@ -175,9 +175,9 @@ def _custom(pit: SnowPit) -> Iterator[str]:
         ("snowHardness", "N mm-3", pit.snow_hardness),
         ("failureShearStress", "N mm-2", pit.failure_shear_stress),
     )
-    known = "".join(_plate_value(name, unit, value) for name, unit, value in values if value is not None)
-    if known:
-        yield _nested("customData", known)
+    elements = "".join(_plate_value(name, unit, value) for name, unit, value in values if value is not None)
+    if elements:
+        yield _nested("customData", elements)
 
 
 def _plate_value(name: str, unit: str, value: PlateValue) -> str:
@@ -189,10 +189,10 @@ def _nested(path: str, inner: str, **attributes: str) -> str:
     """Elements within each other, the attributes on the last."""
     *outer, last = path.split("/")
     words = "".join(f" {name}={quoteattr(value)}" for name, value in attributes.items())
-    found = f"<caaml:{last}{words}>{inner}</caaml:{last}>"
+    element = f"<caaml:{last}{words}>{inner}</caaml:{last}>"
     for name in reversed(outer):
-        found = f"<caaml:{name}>{found}</caaml:{name}>"
-    return found
+        element = f"<caaml:{name}>{element}</caaml:{name}>"
+    return element
 
 
 def _text(name: str, text: str, *, uom: str | None = None) -> str:

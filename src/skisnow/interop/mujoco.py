@@ -244,14 +244,14 @@ class SnowForces:
     _accepted: float | None
 
     def _site(self, model: Any, name: str) -> int:
-        found = int(self._engine.mj_name2id(model, self._engine.mjtObj.mjOBJ_SITE, name))
-        if found < 0:
+        index = int(self._engine.mj_name2id(model, self._engine.mjtObj.mjOBJ_SITE, name))
+        if index < 0:
             names = ", ".join(model.site(i).name for i in range(model.nsite))
             raise ParameterError(
                 Message("SnowForces: there is no site {name}; there are {known}", name=name, known=names or "-"),
                 code="unknown_name",
             )
-        return found
+        return index
 
     def __call__(self, model: Any, data: Any) -> None:
         """Add the forces at the present pose to the passive ones; a pose at a new time enters the snow's history."""
@@ -273,10 +273,10 @@ class SnowForces:
 
     def _velocities(self, data: Any) -> FloatArray:
         """Of the sites and about them, in the world's axes; MuJoCo gives the angular one first."""
-        out, found = np.empty((len(self._sites), 6)), np.empty(6)
+        out, velocity = np.empty((len(self._sites), 6)), np.empty(6)
         for k, site in enumerate(self._sites):
-            self._engine.mj_objectVelocity(self.model, data, self._engine.mjtObj.mjOBJ_SITE, site, found, 0)
-            out[k, :3], out[k, 3:] = found[3:], found[:3]
+            self._engine.mj_objectVelocity(self.model, data, self._engine.mjtObj.mjOBJ_SITE, site, velocity, 0)
+            out[k, :3], out[k, 3:] = velocity[3:], velocity[:3]
         return out
 
     @contextmanager

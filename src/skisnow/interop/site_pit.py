@@ -59,7 +59,7 @@ def site_pit(analysis: Analysis, site: str) -> SnowPit:
         air_temperature_C=math.fsum(air) / len(air) if air else _station_air(analysis, site),
         densities=densities,
         temperatures=(DepthTemperature(0.0, math.fsum(temperatures) / len(temperatures)),) if temperatures else (),
-        forces=tuple(_forces(profile, found) for profile, found in profiles),
+        forces=tuple(_forces(profile, evaluated) for profile, evaluated in profiles),
         snow_hardness=_plate_value(analysis, HARDNESS_KEY, site),
         failure_shear_stress=_plate_value(analysis, STRESS_KEY, site),
     )
@@ -121,14 +121,14 @@ def _densities_of(table: DensitySamples | PenetrationTests | ShearTests, site: s
 def _recordings(analysis: Analysis, site: str) -> Iterator[tuple[SnowMicroPenProfile, EvaluatedRecording]]:
     pen = analysis.snow_micro_pen
     if pen is not None:
-        for index, found in enumerate(pen.evaluated):
-            if pen.recordings.site[index] == site and found.is_used:
-                yield pen.recordings.profile(index), found
+        for index, evaluated in enumerate(pen.evaluated):
+            if pen.recordings.site[index] == site and evaluated.is_used:
+                yield pen.recordings.profile(index), evaluated
 
 
-def _forces(profile: SnowMicroPenProfile, found: EvaluatedRecording) -> ForceProfile:
+def _forces(profile: SnowMicroPenProfile, evaluated: EvaluatedRecording) -> ForceProfile:
     size = max(round(BLOCK / profile.sample_distance), 1)
-    force = profile.force[round(found.surface / profile.sample_distance) :]
+    force = profile.force[round(evaluated.surface / profile.sample_distance) :]
     means = force[: len(force) // size * size].reshape(-1, size).mean(axis=1)
     depths = (profile.depth[: len(means) * size : size]) + 0.5 * size * profile.sample_distance
     return ForceProfile("SnowMicroPen", depths, means.clip(min=0.0))  # CAAML knows no pull

@@ -45,19 +45,19 @@ def write_weather_csv(series: StationSeries, path: str | Path) -> Path:
     OutputError
         The file cannot be written.
     """
-    known = {key: made for key, made in QUANTITIES.items() if made[0] in series.fields}
-    if not known:
+    available = {key: made for key, made in QUANTITIES.items() if made[0] in series.fields}
+    if not available:
         wanted = ", ".join(name for name, *_ in QUANTITIES.values())
         raise ParameterError(
             Message("{file} has none of the fields {wanted}; nothing was written", file=series.file, wanted=wanted),
             code="no_data",
         )
-    columns = [(series.fields[name] * factor + offset).tolist() for name, factor, offset in known.values()]
+    columns = [(series.fields[name] * factor + offset).tolist() for name, factor, offset in available.values()]
     rows = (
         ",".join((when, *("" if math.isnan(value) else f"{value:.10g}" for value in values)))
         for when, *values in zip(_times(series, zone=True), *columns, strict=True)
     )
-    write_file(path, "\n".join((",".join(("time", *known)), *rows)) + "\n")
+    write_file(path, "\n".join((",".join(("time", *available)), *rows)) + "\n")
     return Path(path)
 
 

@@ -62,14 +62,14 @@ def write_snowex_pit(pit: SnowPit, path: str | Path) -> tuple[Path, ...]:
             ),
             code="unknown_name",
         )
-    found = {name: (columns, rows) for name, columns, rows in _tables(pit, height) if rows}
-    if not found:
+    tables = {name: (columns, rows) for name, columns, rows in _tables(pit, height) if rows}
+    if not tables:
         raise ParameterError(
             Message("{name!r} has no layers, densities or temperatures; nothing was written", name=pit.name),
             code="no_data",
         )
     written = []
-    for name, (columns, rows) in found.items():
+    for name, (columns, rows) in tables.items():
         written.append(path.with_name(f"{path.stem}_{name}.csv"))
         write_file(written[-1], _csv((*_header(pit), columns, *rows)))
     return tuple(written)
@@ -84,7 +84,7 @@ def write_snowex_force(profile: SnowMicroPenProfile, path: str | Path) -> Path:
         The file cannot be written.
     """
     depth, force = (profile.depth / MM).tolist(), profile.force.tolist()
-    rows = ((f"{where:.6f}", f"{each:.6f}") for where, each in zip(depth, force, strict=True))
+    rows = ((f"{where:.6f}", f"{newtons:.6f}") for where, newtons in zip(depth, force, strict=True))
     head = [("# Name", profile.name), ("# Date", profile.recorded_on.isoformat() if profile.recorded_on else NO_DATA)]
     head += [("# Latitude", _known(profile.latitude_deg)), ("# Longitude", _known(profile.longitude_deg))]
     write_file(path, _csv((*head, FORCE, *rows)))
@@ -106,28 +106,28 @@ def _tables(pit: SnowPit, height: float) -> Iterable[tuple[str, Sequence[str], l
         "density",
         DENSITY,
         [
-            (*_limits(height, each.top, each.thickness), f"{each.snow_density:g}", NO_DATA, NO_DATA)
-            for each in pit.densities
+            (*_limits(height, density.top, density.thickness), f"{density.snow_density:g}", NO_DATA, NO_DATA)
+            for density in pit.densities
         ],
     )
     yield (
         "temperature",
         TEMPERATURE,
-        [(_cm(height - each.depth), f"{each.temperature_C:g}") for each in pit.temperatures],
+        [(_cm(height - temperature.depth), f"{temperature.temperature_C:g}") for temperature in pit.temperatures],
     )
     yield (
         "stratigraphy",
         STRATIGRAPHY,
         [
             (
-                *_limits(height, each.top, each.thickness),
-                NO_DATA if each.grain_size is None else f"{each.grain_size / MM:g}",
-                each.grain_form or NO_DATA,
-                "/".join(filter(None, (each.hardness, each.hardness_bottom))) or NO_DATA,
+                *_limits(height, layer.top, layer.thickness),
+                NO_DATA if layer.grain_size is None else f"{layer.grain_size / MM:g}",
+                layer.grain_form or NO_DATA,
+                "/".join(filter(None, (layer.hardness, layer.hardness_bottom))) or NO_DATA,
                 NO_DATA,
-                each.comment,
+                layer.comment,
             )
-            for each in pit.layers
+            for layer in pit.layers
         ],
     )
 

@@ -80,14 +80,14 @@ class _Slot(NamedTuple):
 
 def own_quantities(owner: type) -> tuple[Quantity, ...]:
     """The quantities of a dataclass's own fields, in their order."""
-    return tuple(each for slot in _slots(owner) for each in slot.own)
+    return tuple(quantity for slot in _slots(owner) for quantity in slot.own)
 
 
 def quantities(owner: type) -> tuple[Quantity, ...]:
     """The quantities of a dataclass and of the dataclasses that it holds, by section in the order of first sight."""
-    found = list(_all(owner))
-    sections = list(dict.fromkeys(_section(each) for each in found))
-    return tuple(sorted(found, key=lambda each: sections.index(_section(each))))
+    listed = list(_all(owner))
+    sections = list(dict.fromkeys(_section(quantity) for quantity in listed))
+    return tuple(sorted(listed, key=lambda quantity: sections.index(_section(quantity))))
 
 
 def require_declared(thing: Any) -> None:
@@ -149,16 +149,16 @@ def made(owner: type[T], values: Mapping[str, Any], *, section: str = "", **part
         Other fields, in SI; they go before.
     """
     several: dict[str, list[tuple[int, Any]]] = {}
-    for each in own_quantities(owner):
-        value = values.get(_full(section, each.name))
-        if isinstance(each, Word):
+    for quantity in own_quantities(owner):
+        value = values.get(_full(section, quantity.name))
+        if isinstance(quantity, Word):
             continue
-        if each.index is not None:
-            several.setdefault(each.field, []).append(
-                (each.index, each.in_si(each.default if value is None else value))
+        if quantity.index is not None:
+            several.setdefault(quantity.field, []).append(
+                (quantity.index, quantity.in_si(quantity.default if value is None else value))
             )
         elif value is not None:
-            parts.setdefault(each.field, each.in_si(value))
+            parts.setdefault(quantity.field, quantity.in_si(value))
     for slot in _slots(owner):
         if len(slot.parts) == 1 and slot.field.name not in parts:
             parts[slot.field.name] = made(slot.parts[0], values, section=slot.section.name)
@@ -178,23 +178,23 @@ def changed(thing: T, values: Mapping[str, Any], *, section: str = "") -> T:
     """
     parts: dict[str, Any] = {}
     for slot in _slots(type(thing)):
-        now = getattr(thing, slot.field.name)
-        for each in slot.own:
-            name = _full(section, each.name)
-            if isinstance(each, Word) or name not in values:
-                if _loses_effect(each, values):
+        current = getattr(thing, slot.field.name)
+        for quantity in slot.own:
+            name = _full(section, quantity.name)
+            if isinstance(quantity, Word) or name not in values:
+                if _loses_effect(quantity, values):
                     parts[slot.field.name] = slot.field.default
                 continue
-            value = each.in_si(each.in_range(values[name]))
-            if each.index is None:
+            value = quantity.in_si(quantity.in_range(values[name]))
+            if quantity.index is None:
                 parts[slot.field.name] = value
             else:
-                several = list(parts.get(slot.field.name, now))
-                several[each.index] = value
+                several = list(parts.get(slot.field.name, current))
+                several[quantity.index] = value
                 parts[slot.field.name] = tuple(several)
-        if slot.parts and now is not None:
-            inside = changed(now, values, section=slot.section.name)
-            if inside is not now:
+        if slot.parts and current is not None:
+            inside = changed(current, values, section=slot.section.name)
+            if inside is not current:
                 parts[slot.field.name] = inside
     return replace(thing, **parts) if parts else thing  # type: ignore[type-var]
 
@@ -207,15 +207,17 @@ def _loses_effect(quantity: Quantity, values: Mapping[str, Any]) -> bool:
 
 def values_of(thing: Any, *, section: str = "") -> dict[str, Any]:
     """The values of a dataclass and of what it holds, by name, in the units that the names say."""
-    found: dict[str, Any] = {}
+    values: dict[str, Any] = {}
     for slot in _slots(type(thing)):
         value = getattr(thing, slot.field.name)
-        for each in slot.own:
-            single = value if each.index is None else value[each.index]
-            found[_full(section, each.name)] = each.word_of(value) if isinstance(each, Word) else each.in_unit(single)
+        for quantity in slot.own:
+            single = value if quantity.index is None else value[quantity.index]
+            values[_full(section, quantity.name)] = (
+                quantity.word_of(value) if isinstance(quantity, Word) else quantity.in_unit(single)
+            )
         if slot.parts and value is not None:
-            found |= values_of(value, section=slot.section.name)
-    return found
+            values |= values_of(value, section=slot.section.name)
+    return values
 
 
 _WIDEST: Final = 160
@@ -251,8 +253,10 @@ def _all(owner: type) -> Iterator[Quantity]:
         yield from slot.own
         otherwise = slot.section.otherwise
         for part in slot.parts:
-            for each in quantities(part):
-                yield replace(each, name=_full(slot.section.name, each.name), needed=each.needed and not otherwise)
+            for quantity in quantities(part):
+                yield replace(
+                    quantity, name=_full(slot.section.name, quantity.name), needed=quantity.needed and not otherwise
+                )
 
 
 def _full(section: str, name: str) -> str:
@@ -278,15 +282,22 @@ def _slot(owner: type, field: Field[Any]) -> _Slot:
         hint = eval(hint, dict(vars(sys.modules[owner.__module__])))
     marks = hint.__metadata__ if get_origin(hint) is Annotated else ()
     members = _members(get_args(hint)[0] if marks else hint)
-    section = next((each for each in marks if isinstance(each, Section)), Section(""))
-    declared = [each for each in marks if isinstance(each, Quantity)]
-    otherwise = any(isinstance(each, Word) for each in declared)
+    section = next((mark for mark in marks if isinstance(mark, Section)), Section(""))
+    declared = [mark for mark in marks if isinstance(mark, Quantity)]
+    otherwise = any(isinstance(declaration, Word) for declaration in declared)
     needed = not otherwise and field.default is MISSING and field.default_factory is MISSING and NoneType not in members
     inside = () if APART in marks else members
-    parts = tuple(each for each in inside if isinstance(each, type) and is_dataclass(each) and quantities(each))
+    parts = tuple(
+        declaration
+        for declaration in inside
+        if isinstance(declaration, type) and is_dataclass(declaration) and quantities(declaration)
+    )
     return _Slot(
         field,
-        tuple(each if isinstance(each, Word) else _resolved(each, field, members, needed) for each in declared),
+        tuple(
+            declaration if isinstance(declaration, Word) else _resolved(declaration, field, members, needed)
+            for declaration in declared
+        ),
         parts,
         section._replace(otherwise=section.otherwise or otherwise),
         NoneType in members,
@@ -309,7 +320,7 @@ def _members(hint: Any) -> tuple[Any, ...]:
 
 def _resolved(quantity: Quantity, field: Field[Any], members: tuple[Any, ...], needed: bool) -> Quantity:
     """With what the field says: kind, choices, default."""
-    (type_,) = (each for each in members if each is not NoneType)
+    (type_,) = (member for member in members if member is not NoneType)
     choices = get_args(type_) if get_origin(type_) is Literal else ()
     kind = "text" if choices else "number" if quantity.index is not None else _KINDS[type_]
     default = quantity.default
@@ -338,7 +349,7 @@ def checked_table(owner: type, table: Mapping[str, Any], place: str) -> dict[str
     ParameterError
         A key is unknown (the nearest is named) or missing, or a value is of another kind or outside its range.
     """
-    keys = {each.name: each for each in own_quantities(owner)}
+    keys = {quantity.name: quantity for quantity in own_quantities(owner)}
     for name in table:
         if name not in keys:
             raise ParameterError(f"{place}: there is no {name!r}. {nearest(name, keys)}")

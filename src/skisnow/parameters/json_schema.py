@@ -36,13 +36,13 @@ def schema_of(quantity: Quantity) -> Schema:
 def table_schema(quantities: Iterable[Quantity]) -> Schema:
     """The schema of a table of a file: its keys, no others, and which of them are needed."""
     listed = list(quantities)
-    own = [each.name.rpartition(".")[2] for each in listed]
-    needed = [name for name, each in zip(own, listed, strict=True) if each.needed]
+    own = [quantity.name.rpartition(".")[2] for quantity in listed]
+    needed = [name for name, quantity in zip(own, listed, strict=True) if quantity.needed]
     return {
         "type": "object",
         "additionalProperties": False,
         **({"required": needed} if needed else {}),
-        "properties": {name: schema_of(each) for name, each in zip(own, listed, strict=True)},
+        "properties": {name: schema_of(quantity) for name, quantity in zip(own, listed, strict=True)},
     }
 
 
@@ -51,14 +51,14 @@ def output_schema(quantities: Iterable[Quantity], *, every_null: bool = False) -
 
     With `every_null` also a key that has a default, or must be given, may have none in force.
     """
-    found = {}
-    for each in quantities:
-        schema = schema_of(each)
-        if every_null or not (each.needed or each.default is not None):
+    properties = {}
+    for quantity in quantities:
+        schema = schema_of(quantity)
+        if every_null or not (quantity.needed or quantity.default is not None):
             words = {"enum": [*schema["enum"], None]} if "enum" in schema else {}
             schema = {**schema, "type": [schema["type"], "null"], **words}
-        found[each.name.rpartition(".")[2]] = schema
-    return {"type": "object", "additionalProperties": False, "required": list(found), "properties": found}
+        properties[quantity.name.rpartition(".")[2]] = schema
+    return {"type": "object", "additionalProperties": False, "required": list(properties), "properties": properties}
 
 
 def schema_text(schema: Schema) -> str:
@@ -134,5 +134,5 @@ USUAL_COLUMNS: Final = ("key", "unit", "range", "default", "where default or ran
 def page_table(quantities: Iterable[Quantity], columns: Iterable[str] = USUAL_COLUMNS) -> str:
     """A table in Markdown with a row for each quantity."""
     named = tuple(columns)
-    rows = [named, ("---",) * len(named), *(tuple(_CELLS[name](each) for name in named) for each in quantities)]
+    rows = [named, ("---",) * len(named), *(tuple(_CELLS[name](quantity) for name in named) for quantity in quantities)]
     return "".join("|" + "|".join(f" {cell} " if cell else " " for cell in row) + "|\n" for row in rows)

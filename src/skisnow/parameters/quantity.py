@@ -210,9 +210,9 @@ class Quantity:
             return value.strip()
         if self.kind == "three numbers" and isinstance(value, list | tuple) and len(value) == 3:
             one = replace(self, kind="number")
-            return tuple(float(one.of_kind(each)) for each in value)  # type: ignore[arg-type]
+            return tuple(float(one.of_kind(number)) for number in value)  # type: ignore[arg-type]
         if self.kind == "numbers" and isinstance(value, list | tuple) and (value or self.default is not None):
-            return tuple(float(one.of_kind(each)) for one, each in self.each_of(value))  # type: ignore[arg-type]
+            return tuple(float(one.of_kind(number)) for one, number in self.each_of(value))  # type: ignore[arg-type]
         if self.infinite and value == "inf":
             return math.inf
         if self.kind in ("number", "whole number") and isinstance(value, int | float) and not isinstance(value, bool):
@@ -241,8 +241,8 @@ class Quantity:
 
     def each_of(self, values: Iterable[object]) -> Iterator[tuple[Quantity, object]]:
         """The numbers of a list, each with the quantity that it is by its place."""
-        for place, each in enumerate(values, start=1):
-            yield replace(self, kind="number", name=f"{self.name}[{place}]"), each
+        for place, value in enumerate(values, start=1):
+            yield replace(self, kind="number", name=f"{self.name}[{place}]"), value
 
     def in_range(self, value: object) -> InputValue:
         """Give the value in its kind.
@@ -254,8 +254,8 @@ class Quantity:
         """
         checked = self.of_kind(value)
         if self.kind == "numbers" and isinstance(value, list | tuple):
-            for one, each in self.each_of(value):
-                one.in_range(each)
+            for one, element in self.each_of(value):
+                one.in_range(element)
         if not self._allows(checked):
             unit = f" {self.unit}" if self.unit else ""
             raise ParameterError(f"{self.name} is {_shown(value)}; allowed is {self.allowed}{unit}")
@@ -273,7 +273,7 @@ class Quantity:
         0.0005
         """
         if self.kind in ("numbers", "three numbers"):
-            return tuple(each * self._held for each in value)
+            return tuple(number * self._held for number in value)
         return value * self._held if self.kind == "number" else value
 
     def in_unit(self, value: Any) -> Any:
@@ -283,7 +283,7 @@ class Quantity:
         0.2
         """
         if self.kind in ("numbers", "three numbers") and value is not None:
-            return [each / self._held for each in value]
+            return [number / self._held for number in value]
         return value / self._held if self.kind == "number" and value is not None else value
 
     def require(self, value: object) -> None:
@@ -295,7 +295,7 @@ class Quantity:
             As `in_range`, with the value in the unit of the name.
         """
         if self.kind in ("numbers", "three numbers") and isinstance(value, list | tuple):
-            self.in_range([_plain(each, self._held) for each in value])
+            self.in_range([_plain(number, self._held) for number in value])
         elif self.kind in ("number", "whole number"):
             self.in_range(_plain(value, self._held))
         elif self.in_range(value) != value:  # a file's text may have blanks around it
@@ -307,7 +307,7 @@ class Quantity:
         if isinstance(value, bool):
             return True
         if isinstance(value, tuple):
-            return all(self._allows(each) for each in value)
+            return all(self._allows(number) for number in value)
         if math.isinf(value):
             return self.infinite and value > 0
         at_end = (self.above and value == self.lowest) or (self.below and value == self.highest)

@@ -77,15 +77,15 @@ def inputs_with(priors: Iterable[Prior], turn: Scenario) -> tuple[Measured | Pri
     ParameterError
         One is of what the campaign measures.
     """
-    measured = {each.key: each for each in measured_of(turn.contact.snow)}
-    found = {each.key: measured.get(each.key, each) for each in PRIORS}
+    measured = {uncertain.key: uncertain for uncertain in measured_of(turn.contact.snow)}
+    inputs = {prior.key: measured.get(prior.key, prior) for prior in PRIORS}
     if turn.ski.base is None or turn.ski.base.camber == 0.0:
-        del found[CAMBER_ROUNDING]
-    for each in priors:
-        if each.key in MEASURED:
-            raise ParameterError(f"{each.key} has no prior here: its interval comes from the campaign")
-        found[each.key] = each
-    return tuple(found.values())
+        del inputs[CAMBER_ROUNDING]
+    for prior in priors:
+        if prior.key in MEASURED:
+            raise ParameterError(f"{prior.key} has no prior here: its interval comes from the campaign")
+        inputs[prior.key] = prior
+    return tuple(inputs.values())
 
 
 def simulate_fast(scenario: Scenario) -> dict[str, Any]:
@@ -100,7 +100,7 @@ def drawn_scenarios(nominal: Scenario, inputs: Sequence[Measured | Prior], count
     shares = latin_hypercube(count, 2 + len(inputs), np.random.default_rng(seed))
     snows = drawn_snows(nominal.contact.snow, shares[:, :2])
     own = values_of(nominal)
-    columns = {each.key: each.at(shares[:, 2 + j], own[each.key]) for j, each in enumerate(inputs)}
+    columns = {source.key: source.at(shares[:, 2 + j], own[source.key]) for j, source in enumerate(inputs)}
     return [
         nominal.with_(snow=snow, **{key: float(values[i]) for key, values in columns.items()})
         for i, snow in enumerate(snows)
@@ -119,17 +119,17 @@ def ensemble_of(
 ) -> tuple[list[EnsembleRun], float, tuple[str, ...]]:  # fmt: skip
     """The runs of an ensemble; how far (m) the fast solver moves the nominal run's end; warnings of that run."""
     nudged = {key: pair for key, pair in nudged_scenarios(nominal).items() if key in NUDGED}
-    points = [nominal.scenario, *scenarios, *(scenario for each in nudged.values() for scenario in each)]
+    points = [nominal.scenario, *scenarios, *(scenario for nudges in nudged.values() for scenario in nudges)]
 
     def tell(done: int, count: int) -> None:
         progress(f"run {done} of {count}")
 
     first, *rows = run_batch(points, simulate_fast, workers=workers, progress=tell)
     moved = _apart(first, [[column[-1]] for column in nominal.place[:, :2].T])
-    found = [_ensemble_run(scenario, row, inputs) for scenario, row in zip(scenarios, rows, strict=False)]
+    runs = [_ensemble_run(scenario, row, inputs) for scenario, row in zip(scenarios, rows, strict=False)]
     beside = iter(rows[len(scenarios) :])
-    moves = {key: max(_apart(next(beside), first["track"][1:]) for _ in each) for key, each in nudged.items()}
-    return found, moved, limit_sentences(moves, nominal.run_length)
+    moves = {key: max(_apart(next(beside), first["track"][1:]) for _ in nudges) for key, nudges in nudged.items()}
+    return runs, moved, limit_sentences(moves, nominal.run_length)
 
 
 def _ensemble_run(scenario: Scenario, row: Row, inputs: Sequence[Measured | Prior]) -> EnsembleRun:
@@ -138,7 +138,7 @@ def _ensemble_run(scenario: Scenario, row: Row, inputs: Sequence[Measured | Prio
         snow=scenario.contact.snow,
         outcome=row["outcome"],
         track=TimedTrack(*map(np.array, row["track"])),
-        values={key: float(values[key]) for key in (*MEASURED, *(each.key for each in inputs))},
+        values={key: float(values[key]) for key in (*MEASURED, *(source.key for source in inputs))},
         slips=row["slips"],
     )
 

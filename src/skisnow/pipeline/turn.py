@@ -107,8 +107,8 @@ def turn(
     _require(unloading_ratio, shear_displacement, runs)
     workers = workers_in_force(workers)
     say = progress or _silent
-    found = campaign if isinstance(campaign, Analysis) else _analysed(campaign, site, progress)
-    snow = found.snow(site, unloading_ratio=unloading_ratio)
+    analysis = campaign if isinstance(campaign, Analysis) else _analysed(campaign, site, progress)
+    snow = analysis.snow(site, unloading_ratio=unloading_ratio)
     if snow.unloading_ratio is None:
         snow = replace(snow, unloading_ratio=UNLOADING_RATIO)
     if shear_displacement is not None:
@@ -126,18 +126,18 @@ def turn(
     nominal = next(iter(simulated.values()))
     ensemble, moved, warnings = ensemble_of(nominal, drawn, every, workers=workers, progress=say)
     return TurnChain(
-        campaign=found.campaign.name,
-        site=site_in_words(site_of_campaign(found.campaign, site)),
-        synthetic=is_synthetic(found.campaign.name),
+        campaign=analysis.campaign.name,
+        site=site_in_words(site_of_campaign(analysis.campaign, site)),
+        synthetic=is_synthetic(analysis.campaign.name),
         snow=snow,
         runs=simulated,
         ensemble=ensemble,
         seed=seed,
         ensemble_error=moved,
-        measured=tuple(each for each in measured_of(snow) if each in every or each.key in MEASURED),
-        priors=tuple(each for each in every if isinstance(each, Prior)),
+        measured=tuple(source for source in measured_of(snow) if source in every or source.key in MEASURED),
+        priors=tuple(source for source in every if isinstance(source, Prior)),
         warnings=warnings,
-        analysis=found,
+        analysis=analysis,
     )
 
 

@@ -118,11 +118,11 @@ class RacingLine(Shown):
     @property
     def breaks(self) -> list[float]:
         """Places down the slope (m), rising, between which the line is smooth."""
-        found = []
+        places = []
         for i in range(len(self._x) - 1):
             way = self._x[i + 1] - self._x[i]
-            found += [self._x[i], self._x[i] + self._share[i] * way, self._x[i + 1] - self._share[i + 1] * way]
-        return [*found, self._x[-1]]
+            places += [self._x[i], self._x[i] + self._share[i] * way, self._x[i + 1] - self._share[i + 1] * way]
+        return [*places, self._x[-1]]
 
     def at(self, x: float) -> tuple[float, float, float]:
         """Place aside (m), slope and second derivative (1/m) of the line at a place down the slope (m)."""

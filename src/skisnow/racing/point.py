@@ -134,7 +134,7 @@ class PointRacer:
         x, square, time = self.motion(line, [*line.breaks, last + BEHIND])
         if len(x) < 2:
             return None, line.start
-        y, slope = np.array([line.at(float(each))[:2] for each in x]).T
+        y, slope = np.array([line.at(float(place_x))[:2] for place_x in x]).T
         ahead = np.stack([np.ones_like(slope), slope], axis=1) / np.sqrt(1.0 + slope**2)[:, None]
         place, velocity = np.stack([x, y], axis=1), np.sqrt(square)[:, None] * ahead
         left = self.half_width * np.stack([-ahead[:, 1], ahead[:, 0]], axis=1)
@@ -144,13 +144,13 @@ class PointRacer:
     def score(self, line: RacingLine) -> Score:
         """How good a line is; too tight a one fails."""
         result, end = self.raced(line)
-        found = score_of(result, end, finished=True, words="finished")
+        own_score = score_of(result, end, finished=True, words="finished")
         tight = self.least_radius * line.greatest_curvature() - 1.0
-        found = replace(found, margins=(*found.margins, -tight))
+        own_score = replace(own_score, margins=(*own_score.margins, -tight))
         if tight > 0.0:
-            failed = NOT_PASSED if found.time is not None else found.value
-            return replace(found, value=failed + tight, time=None, words="the line is too tight")
-        return found
+            failed = NOT_PASSED if own_score.time is not None else own_score.value
+            return replace(own_score, value=failed + tight, time=None, words="the line is too tight")
+        return own_score
 
 
 def _columns(rows: list[tuple[float, float, float]]) -> tuple[FloatArray, FloatArray, FloatArray]:

@@ -183,18 +183,18 @@ def quickest_line(
     racer = Racer(scenario, model, room)
     tell = progress or _silent
     settings = (evaluations, search, population, spread, settled, window, step, ahead, seed)
-    kept = KeptRows() if checkpoint is None else KeptRows.opened(checkpoint, _fingerprint(racer, begun, settings))
+    rows = KeptRows() if checkpoint is None else KeptRows.opened(checkpoint, _fingerprint(racer, begun, settings))
     advice = Message("Finished evaluations are kept. Start again, with fewer workers.")
     try:
         with Pool(ScoredLine(racer), workers_in_force(workers), advice=advice, executor=executor) as pool:
-            made = Evaluations(pool, kept, [])
+            made = Evaluations(pool, rows, [])
             how = How(search, evaluations, population, spread, settled, seed, tell)
-            found = Windows(made, how, window, step, ahead).searched(begun)
+            searched = Windows(made, how, window, step, ahead).searched(begun)
     finally:
-        kept.close()
+        rows.close()
     return QuickestLine(
-        scenario=scenario, model=model, line=RacingLine(begun.course, begun.start, turns_in(found.row)),
-        score=score_in(found.row), start=begun, start_score=score_in(made.done[0].row), history=tuple(made.done),
+        scenario=scenario, model=model, line=RacingLine(begun.course, begun.start, turns_in(searched.row)),
+        score=score_in(searched.row), start=begun, start_score=score_in(made.done[0].row), history=tuple(made.done),
         seed=seed,
     )  # fmt: skip
 

@@ -116,15 +116,15 @@ class ScoredLine:
 
     def __call__(self, point: LinePoint) -> dict[str, Any]:
         """The score with the place and the numbers of all turns."""
-        found = self.racer.score(point.line)
+        result = self.racer.score(point.line)
         return {
             "place": list(point.place),
-            "value": found.value,
-            "time": found.time,
-            "passed": found.passed,
-            "words": found.words,
-            "gates": [list(gate) for gate in found.gates],
-            "margins": list(found.margins),
+            "value": result.value,
+            "time": result.time,
+            "passed": result.passed,
+            "words": result.words,
+            "gates": [list(gate) for gate in result.gates],
+            "margins": list(result.margins),
             "turns": [[turn.aside, turn.along, turn.turning] for turn in point.line.turns],
         }
 

@@ -65,16 +65,16 @@ class Evaluations:
     kept: KeptRows
     done: list[Evaluated]
 
-    def of(self, asked: Sequence[tuple[Any, FloatArray]]) -> Iterator[int]:
+    def of(self, candidates: Sequence[tuple[Any, FloatArray]]) -> Iterator[int]:
         """Evaluate points, each with its place, telling how many are finished; at the end they stand in `done`."""
         first = len(self.done)
-        points = {first + i: point for i, (point, _) in enumerate(asked)}
+        points = {first + i: point for i, (point, _) in enumerate(candidates)}
         missing = [(number, point) for number, point in points.items() if number not in self.kept]
         finished = len(points) - len(missing)
         for rows in self.pool.rows(missing, len(missing)):
             finished += self.kept.add(rows)
             yield finished
-        for number, (_, place) in zip(points, asked, strict=True):
+        for number, (_, place) in zip(points, candidates, strict=True):
             row = self.kept.row(number)
             if row["place"] != place.tolist():
                 raise ParameterError(
@@ -113,7 +113,7 @@ class Batches:
     @property
     def least(self) -> Evaluated:
         """The first of the least so far."""
-        return min(self.found, key=lambda each: _finite(each.value))
+        return min(self.found, key=lambda evaluation: _finite(evaluation.value))
 
     def evaluate(self, batch: Sequence[FloatArray]) -> None:
         """A batch of places."""
@@ -171,10 +171,10 @@ def least_of(
         return batches.least
     optimiser = _optimiser(start, population, spread, seed)
     while len(batches.found) < count and not optimiser.should_stop():
-        asked = [optimiser.ask() for _ in range(optimiser.population_size)]
-        batches.evaluate(asked)
-        values = [_finite(each.value) for each in batches.found[-len(asked) :]]
-        optimiser.tell(list(zip(asked, values, strict=True)))
+        candidates = [optimiser.ask() for _ in range(optimiser.population_size)]
+        batches.evaluate(candidates)
+        values = [_finite(evaluation.value) for evaluation in batches.found[-len(candidates) :]]
+        optimiser.tell(list(zip(candidates, values, strict=True)))
         if max(values) - min(values) < settled:
             break
     return batches.least

@@ -83,9 +83,9 @@ class Surrogate:
         def misfit(logs: FloatArray) -> float:
             lengths = np.tile(np.exp(logs[:kinds]), places.shape[1] // kinds)
             factor = _factored(places, lengths, math.exp(logs[kinds]))
-            known = 0.5 * np.sum(standard * cho_solve(factor, standard))
-            known += columns * np.sum(np.log(np.diag(factor[0])))
-            return float(known + 0.1 * np.sum((logs[:kinds] - math.log(0.7)) ** 2))
+            likelihood = 0.5 * np.sum(standard * cho_solve(factor, standard))
+            likelihood += columns * np.sum(np.log(np.diag(factor[0])))
+            return float(likelihood + 0.1 * np.sum((logs[:kinds] - math.log(0.7)) ** 2))
 
         bounds = [(math.log(low), math.log(high)) for low, high in (*(LENGTHS,) * kinds, NOISE)]
         begin = np.array([math.log(0.7)] * kinds + [math.log(0.05)])
@@ -116,11 +116,11 @@ class Surrogate:
     def with_mean_at(self, place: FloatArray) -> Surrogate:
         """Surrogate with one more evaluation whose value is the mean expected there (Kriging believer)."""
         expected = (self.at(place[None, :])[0] - self.level) / self.scale
-        known = (
+        variance = (
             _kernel(self.places, self.places, self.lengths) @ self._weights + (self.noise**2 + SMALLEST) * self._weights
         )
         return self._with(
-            np.vstack([self.places, place]), np.concatenate([known, expected]), self.lengths, self.level, self.scale,
+            np.vstack([self.places, place]), np.concatenate([variance, expected]), self.lengths, self.level, self.scale,
             self.noise,
         )  # fmt: skip
 
@@ -166,7 +166,7 @@ class Prospects:
     @classmethod
     def of(cls, evaluations: Sequence[Evaluated], kinds: int) -> Prospects:
         """What evaluations say, two at least, whose places have `kinds` numbers a turn."""
-        places = np.array([each.place for each in evaluations])
+        places = np.array([evaluation.place for evaluation in evaluations])
         times, margins = times_of(evaluations), margins_of(evaluations)
         time = Surrogate.of(places, times, kinds)
         passed = passed_of(evaluations)
@@ -204,27 +204,27 @@ class Prospects:
 
 def passed_of(evaluations: Sequence[Evaluated]) -> npt.NDArray[np.bool_]:
     """Which came through (n,)."""
-    return np.array([each.value < NOT_PASSED for each in evaluations])
+    return np.array([evaluation.value < NOT_PASSED for evaluation in evaluations])
 
 
 def times_of(evaluations: Sequence[Evaluated]) -> FloatArray:
     """Times (n,) (s) at the last gate, of failures too; those that never came there count as slow."""
-    given = np.array([_time(each) for each in evaluations])
-    known = np.isfinite(given)
-    if not known.any():
-        return np.array([math.log(min(each.value, 1e6)) for each in evaluations])
-    low, middle, high = np.quantile(given[known], [0.25, 0.5, 0.75])
-    return np.minimum(np.where(known, given, np.inf), middle + MOST_TIME * max(high - low, 1e-6))
+    times = np.array([_time(evaluation) for evaluation in evaluations])
+    finite = np.isfinite(times)
+    if not finite.any():
+        return np.array([math.log(min(evaluation.value, 1e6)) for evaluation in evaluations])
+    low, middle, high = np.quantile(times[finite], [0.25, 0.5, 0.75])
+    return np.minimum(np.where(finite, times, np.inf), middle + MOST_TIME * max(high - low, 1e-6))
 
 
 def margins_of(evaluations: Sequence[Evaluated]) -> FloatArray:
     """Margins (n, q) (m) of evaluations whose rows have some, and -1 or 1 for failing where they have none."""
     if not evaluations[0].row.get("margins"):
         return np.where(passed_of(evaluations), 1.0, -1.0)[:, None]
-    count = max(len(each.row["margins"]) for each in evaluations)
+    count = max(len(evaluation.row["margins"]) for evaluation in evaluations)
     out = np.full((len(evaluations), count), -MOST_MARGIN)
-    for i, each in enumerate(evaluations):
-        for j, margin in enumerate(each.row["margins"]):
+    for i, evaluation in enumerate(evaluations):
+        for j, margin in enumerate(evaluation.row["margins"]):
             if margin is not None:
                 out[i, j] = min(max(margin, -MOST_MARGIN), MOST_MARGIN)
     return out

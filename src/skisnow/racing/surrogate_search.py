@@ -135,30 +135,30 @@ class SurrogateSearch:
 
     def _chosen(self, directions: FloatArray, box: float, phase: int) -> list[FloatArray]:
         """A batch, each place as if those before it had given what is expected."""
-        found = self.batches.found
-        known = Prospects.of(found, self.kinds)
-        centre = self._numbers(directions, np.array(self._centre(known).place))
+        evaluations = self.batches.found
+        prospects = Prospects.of(evaluations, self.kinds)
+        centre = self._numbers(directions, np.array(self._centre(prospects).place))
         chosen: list[FloatArray] = []
         for daring in BATCH:
-            seed = (*self.seed, phase, len(found), len(chosen))
+            seed = (*self.seed, phase, len(evaluations), len(chosen))
             free = np.random.default_rng(seed).random(len(centre)) >= daring.held
             if free.sum() < 2:  # CMA-ES needs two numbers
                 free[:] = True
             moved = directions[:, free]
             rest = directions @ np.where(free, 0.0, centre)
-            place = rest + moved @ _best_within(known, moved, rest, centre[free], box, daring, seed)
+            place = rest + moved @ _best_within(prospects, moved, rest, centre[free], box, daring, seed)
             chosen.append(place)
-            known = known.with_mean_at(place)
+            prospects = prospects.with_mean_at(place)
         return chosen
 
     def _centre(self, prospects: Prospects) -> Evaluated:
         """What came through and is expected to be the quickest; where nothing did, what failed by the least."""
-        found = self.batches.found
-        passed = passed_of(found)
+        evaluations = self.batches.found
+        passed = passed_of(evaluations)
         if not passed.any():
             return self.batches.least
-        expected = prospects.time.at(np.array([each.place for each in found]))[0]
-        return found[int(np.argmin(np.where(passed, expected, np.inf)))]
+        expected = prospects.time.at(np.array([evaluation.place for evaluation in evaluations]))[0]
+        return evaluations[int(np.argmin(np.where(passed, expected, np.inf)))]
 
     @staticmethod
     def _numbers(directions: FloatArray, place: FloatArray) -> FloatArray:
@@ -175,11 +175,11 @@ def _best_within(
     optimiser = optimiser_within(limits, np.clip(centre, *limits.T), 0.4 * box, seed)
     best, most = centre, -math.inf
     for _ in range(ASKED):
-        asked = np.array([optimiser.ask() for _ in range(optimiser.population_size)])
-        values = prospects.worth(rest + asked @ directions.T, daring.curiosity, daring.caution)
-        optimiser.tell(list(zip(asked, (-values).tolist(), strict=True)))
+        candidates = np.array([optimiser.ask() for _ in range(optimiser.population_size)])
+        values = prospects.worth(rest + candidates @ directions.T, daring.curiosity, daring.caution)
+        optimiser.tell(list(zip(candidates, (-values).tolist(), strict=True)))
         if values.max() > most:
-            best, most = asked[int(np.argmax(values))], float(values.max())
+            best, most = candidates[int(np.argmax(values))], float(values.max())
         if optimiser.should_stop():
             break
     return best

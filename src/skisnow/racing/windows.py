@@ -69,11 +69,11 @@ class Windows:
         first, end = 0, min(self.window + self.ahead, count)
         while True:
             last = min(first + self.window, count)
-            found = self._part(line, first, last, end)
-            if found.value < NOT_PASSED:
-                line = _as_found(line, found)
-                if end == count and found.value < best.value:
-                    best = found
+            part = self._part(line, first, last, end)
+            if part.value < NOT_PASSED:
+                line = _as_found(line, part)
+                if end == count and part.value < best.value:
+                    best = part
                 if last == count:
                     return best
                 first, end = first + self.step, min(first + self.step + self.window + self.ahead, count)
@@ -84,12 +84,12 @@ class Windows:
 
     def _whole(self, begun: RacingLine) -> Evaluated:
         """Of the whole course: all turns alike, where they begin so and a process says where; else as it begins."""
-        asked = self._batches(begun, 0, len(begun.turns), len(begun.turns))
-        search, place = self._surrogate(asked, 0), _place(begun, 0, len(begun.turns))
+        batches = self._batches(begun, 0, len(begun.turns), len(begun.turns))
+        search, place = self._surrogate(batches, 0), _place(begun, 0, len(begun.turns))
         if self.how.search == "surrogate" and search.begins_alike(place):
             return search.least_alike(place, self.how.evaluations)
-        asked.evaluate([place])
-        return asked.least
+        batches.evaluate([place])
+        return batches.least
 
     def _part(self, line: RacingLine, first: int, last: int, end: int) -> Evaluated:
         """The least over the turns from a gate on and before another, raced up to an end."""

@@ -66,14 +66,14 @@ class Worth(Shown):
     @property
     def mean(self) -> float | None:
         """Of the differences (s)."""
-        found = self.differences
-        return float(found.mean()) if len(found) else None
+        differences = self.differences
+        return float(differences.mean()) if len(differences) else None
 
     @property
     def deviation(self) -> float | None:
         """Standard deviation of the differences over the snows (s); None of fewer than two."""
-        found = self.differences
-        return float(found.std(ddof=1)) if len(found) > 1 else None
+        differences = self.differences
+        return float(differences.std(ddof=1)) if len(differences) > 1 else None
 
     @property
     def faster(self) -> int:
@@ -137,22 +137,25 @@ def compared(
     if not snows or not others:
         raise ParameterError("a comparison needs one snow or more, and one variant or more")
     named = {AS_IT_IS: scenario, **others}
-    points = [_on(each, scenario, snow) for each in named.values() for snow in snows]
-    kept = None
+    points = [_on(variant, scenario, snow) for variant in named.values() for snow in snows]
+    finished_rows = None
     if checkpoint is not None:
-        kept = KeptRows.opened(checkpoint, _fingerprint(points, line, model))
+        finished_rows = KeptRows.opened(checkpoint, _fingerprint(points, line, model))
     tell = progress or (lambda _: None)
     try:
         rows = run_batch(
-            points, ScoredScenario(line, model), kept=kept, workers=workers, executor=executor,
+            points, ScoredScenario(line, model), kept=finished_rows, workers=workers, executor=executor,
             progress=lambda done, total: tell(f"race {done} of {total}"),
         )  # fmt: skip
     finally:
-        if kept is not None:
-            kept.close()
+        if finished_rows is not None:
+            finished_rows.close()
     scores = [tuple(map(score_in, rows[i : i + len(snows)])) for i in range(0, len(rows), len(snows))]
     base = scores[0]
-    return tuple(Worth(name=name, scores=found, base=base) for name, found in zip(others, scores[1:], strict=True))
+    return tuple(
+        Worth(name=name, scores=variant_scores, base=base)
+        for name, variant_scores in zip(others, scores[1:], strict=True)
+    )
 
 
 @dataclass(frozen=True, slots=True)

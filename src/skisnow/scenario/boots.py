@@ -108,8 +108,8 @@ class Boots(Shown):
         try:
             with np.errstate(over="raise", divide="raise", invalid="raise"):
                 rotations = (Rotation.from_matrix(turned[:, ski].copy()) for ski in range(2))
-                splines = tuple(RotationSpline(self.at, each) for each in rotations)
-                furthest = max(float((np.abs(each.interpolator.c) * powers).sum(axis=0).max()) for each in splines)
+                splines = tuple(RotationSpline(self.at, rotation) for rotation in rotations)
+                furthest = max(float((np.abs(spline.interpolator.c) * powers).sum(axis=0).max()) for spline in splines)
         except (ValueError, FloatingPointError, np.linalg.LinAlgError) as error:
             furthest, cause = math.inf, error
         if furthest > FURTHEST_TURN:
@@ -158,8 +158,8 @@ class Boots(Shown):
         """Places (2, 3), axes (2, 3, 3), velocities and angular velocities (2, 3), in the frame, per unit of ``at``."""
         within = float(np.clip(at, self.at[0], self.at[-1]))
         rest = 0.0 if at != within else 1.0
-        axes = np.array([np.swapaxes(each(within).as_matrix(), -1, -2) for each in self._axes])
-        turning = np.array([own.T @ each(within, 1) for own, each in zip(axes, self._axes, strict=True)])
+        axes = np.array([np.swapaxes(ax(within).as_matrix(), -1, -2) for ax in self._axes])
+        turning = np.array([own.T @ ax(within, 1) for own, ax in zip(axes, self._axes, strict=True)])
         return self._place(within), axes, rest * self._place(within, 1), rest * turning
 
 
@@ -277,17 +277,19 @@ def _known(head: list[str]) -> tuple[str, ...]:
 
 
 def _require_columns(path: Path, head: list[str]) -> None:
-    known, counts = _known(head), Counter(head)
+    motion_columns, counts = _known(head), Counter(head)
     for name in head:
-        if _is_read(name) and name not in known:
-            raise ParameterError(f"{path}: there is no column {name}. {meant(name, known)}There are {', '.join(known)}")
+        if _is_read(name) and name not in motion_columns:
+            raise ParameterError(
+                f"{path}: there is no column {name}. {meant(name, motion_columns)}There are {', '.join(motion_columns)}"
+            )
         if counts[name] > 1:
             raise ParameterError(f"{path}: the column {name} is there twice; leave one out")
     clocks = [name for name in CLOCKS if name in head]
     if len(clocks) != 1:
         raise ParameterError(f"{path}: it needs one of the columns time_s (time in .mot) and distance_m")
     if not any(_is_read(name) and name not in clocks for name in head):
-        raise ParameterError(f"{path}: no column is one of a boot. There are {', '.join(known[3:])}")
+        raise ParameterError(f"{path}: no column is one of a boot. There are {', '.join(motion_columns[3:])}")
     needed = [f"{side}_{name}" for side in SIDES for name in (*OF_SLOPE, *ANGLES)] if "left_x_m" in head else []
     for name in needed:
         if name not in head:
@@ -337,7 +339,7 @@ def _column(path: Path, rows: list[Row], head: list[str], place: int) -> npt.NDA
 def _axes(table: Mapping[str, Any], missing: Mapping[str, float]) -> npt.NDArray[np.float64]:
     n = len(next(iter(table.values())))
     angles = [[table.get(f"{side}_{name}", np.full(n, missing[name])) * DEGREE for name in ANGLES] for side in SIDES]
-    return np.array([[axes_of(*(float(each[i]) for each in of_ski)) for of_ski in angles] for i in range(n)])
+    return np.array([[axes_of(*(float(row[i]) for row in of_ski)) for of_ski in angles] for i in range(n)])
 
 
 def _of_slope(table: Mapping[str, Any]) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:

@@ -43,10 +43,10 @@ class Site:
     height_m: Annotated[float | None, Quantity("height_m", "of that place above the ellipsoid")] = None
 
 
-GIVEN: Final = tuple(each.name for each in quantities(Sought))
+GIVEN: Final = tuple(quantity.name for quantity in quantities(Sought))
 NO_KEYS: Final = ("runs", "site", "clock")
 """Entries of ``[identify]`` that are no parameters."""
-SITE: Final = tuple(each.name for each in quantities(Site))
+SITE: Final = tuple(quantity.name for quantity in quantities(Site))
 CLOCKS: Final = ("start", "free")
 
 
@@ -80,7 +80,7 @@ def given_parameters(section: Mapping[str, Any]) -> dict[str, dict[str, float]]:
     ParameterError
         A key or a word is unknown (near ones are named), or a value is no finite number.
     """
-    found: dict[str, dict[str, float]] = {}
+    parameters: dict[str, dict[str, float]] = {}
     for word, table in section.items():
         if word in NO_KEYS:
             continue
@@ -91,8 +91,8 @@ def given_parameters(section: Mapping[str, Any]) -> dict[str, dict[str, float]]:
                 f'identify."{word}" is {table!r}; it must be a table with {", ".join(GIVEN)}, begun by the line '
                 f'[identify."{key}"]. A value of the scenario stands in its own section, [{key.partition(".")[0]}]'
             )
-        found[key] = checked_table(Sought, table, f'[identify."{key}"]')
-    return found
+        parameters[key] = checked_table(Sought, table, f'[identify."{key}"]')
+    return parameters
 
 
 def _key(word: str, place: str, meant: str = "") -> str:
@@ -218,12 +218,12 @@ def measured_of(snow: SnowProperties) -> tuple[Measured, ...]:
 
 
 def _measured(snow: SnowProperties) -> Iterator[Measured]:
-    known = (
+    measured = (
         ("snow.H_V_N_per_mm3", snow.snow_hardness, snow.snow_hardness_interval, N_PER_MM3),
         ("snow.S_f_N_per_mm2", snow.failure_shear_stress, snow.failure_shear_stress_interval, N_PER_MM2),
         ("snow.unloading_ratio", snow.unloading_ratio, snow.unloading_ratio_interval, 1.0),
         ("snow.shear_displacement_mm", snow.shear_displacement, snow.shear_displacement_interval, MM),
     )
-    for key, value, interval, unit in known:
+    for key, value, interval, unit in measured:
         if value is not None and interval is not None and interval[0] > 0.0:
             yield Measured(key=key, value=value / unit, low=interval[0] / unit, high=interval[1] / unit)

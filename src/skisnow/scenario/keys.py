@@ -121,8 +121,8 @@ def scenario_values(scenario: Scenario) -> dict[str, Any]:
     Also of a scenario that was built in Python: its snow stands as numbers, a ski that is not in the catalogue and a
     profile under the name and the source they have.
     """
-    found = values_of(scenario)
-    return {name: found.get(name) for name in SCENARIO_KEYS}
+    values = values_of(scenario)
+    return {name: values.get(name) for name in SCENARIO_KEYS}
 
 
 def in_sections(values: Mapping[str, Any]) -> dict[str, dict[str, Any]]:
@@ -164,11 +164,11 @@ def _forms(key: str) -> tuple[str, str, str, str]:
 
 
 def _by_word() -> Mapping[str, tuple[str, ...]]:
-    found: dict[str, tuple[str, ...]] = {}
+    keys_by_word: dict[str, tuple[str, ...]] = {}
     for key in SCENARIO_KEYS:
         for word in dict.fromkeys(_forms(key)):
-            found[word] = (*found.get(word, ()), key)
-    return found
+            keys_by_word[word] = (*keys_by_word.get(word, ()), key)
+    return keys_by_word
 
 
 _KEYS_BY_WORD: Final = _by_word()
@@ -236,7 +236,7 @@ def _why_not(key: str) -> str:
 def _near(word: str) -> str:
     small = {form.lower(): form for key in FREE_KEYS for form in (_forms(key)[3], _forms(key)[1], key)}
     like = difflib.get_close_matches(word.lower(), small, n=4, cutoff=0.5)
-    keys = dict.fromkeys(_KEYS_BY_WORD[small[each]][0] for each in like)
+    keys = dict.fromkeys(_KEYS_BY_WORD[small[spelling]][0] for spelling in like)
     if keys:
         return f"Near are {', '.join(list(keys)[:3])}"
     return f"There are {', '.join(short_name(key) for key in FREE_KEYS)}"

@@ -68,8 +68,8 @@ class MapSystem:
     @property
     def name(self) -> str:
         """The first quoted name of the description."""
-        found = re.search(r'"([^"]*)"', self.text)
-        return found[1] if found else " ".join(self.text.split()[:2])
+        match = re.search(r'"([^"]*)"', self.text)
+        return match[1] if match else " ".join(self.text.split()[:2])
 
 
 def length_unit(name: str) -> float | None:
@@ -133,12 +133,12 @@ def require_true_lengths(path: object, system: MapSystem, x: float, y: float) ->
     ParameterError
         A metre on the ground is longer or shorter than a metre on the map by more than `TRUE_LENGTHS`.
     """
-    found = _scale(system, x, y)
-    if found is None:
+    true_scale = _scale(system, x, y)
+    if true_scale is None:
         if _MERCATOR.search(system.text):
             raise ParameterError(_stretched(path, system, "by 1/cos of the latitude", "the UTM zone of the place"))
         return
-    scales, target = found
+    scales, target = true_scale
     worst = max(scales, key=lambda scale: abs(scale - 1.0))
     if not abs(worst - 1.0) <= TRUE_LENGTHS:
         raise ParameterError(_stretched(path, system, f"by a factor of {worst:.4g}", target))

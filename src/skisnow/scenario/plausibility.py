@@ -42,14 +42,14 @@ def _like_radians(scenario: Scenario) -> list[str]:
     angles = {"sledge.edge_angle_deg": scenario.sledge.edge_angle}
     if isinstance(scenario.slope, Plane):
         angles["slope.angle_deg"] = scenario.slope.angle
-    found = []
+    texts = []
     for name, angle in angles.items():
-        given = math.degrees(angle)
-        meant = in_degrees_if_radians(abs(given))
+        degrees_read = math.degrees(angle)
+        meant = in_degrees_if_radians(abs(degrees_read))
         if meant is not None:
-            degrees = math.copysign(meant, given)
-            found.append(f"{name} is {given:.4g}: that looks like radians. If it is, write {degrees:.4g}")
-    return found
+            degrees = math.copysign(meant, degrees_read)
+            texts.append(f"{name} is {degrees_read:.4g}: that looks like radians. If it is, write {degrees:.4g}")
+    return texts
 
 
 def _like_another_unit(scenario: Scenario) -> list[str]:
@@ -99,7 +99,7 @@ def _outside_ranges(scenario: Scenario) -> list[str]:
             GLIDE_FRICTION.warn_outside(contact.friction + contact.friction_by_speed * scenario.start.speed, ABOUT)
         if scenario.air.drag_area > 0.0:
             DRAG_AREA.warn_outside(scenario.air.drag_area, ABOUT)
-    return [" ".join(str(each.message).split()) for each in caught if issubclass(each.category, RangeWarning)]
+    return [" ".join(str(warning.message).split()) for warning in caught if issubclass(warning.category, RangeWarning)]
 
 
 FLAT: Final = 3.0 * DEGREE

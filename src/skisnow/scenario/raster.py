@@ -219,7 +219,7 @@ def _require_heights(raster: Raster, heights: FloatArray) -> None:
     bad = ~((heights >= _HEIGHT.lowest) & (heights <= _HEIGHT.highest))
     if not bad.any():
         return
-    row, column = (int(each) for each in np.argwhere(bad)[0])
+    row, column = (int(index) for index in np.argwhere(bad)[0])
     value = heights[row, column]
     what = "no height (NODATA)" if np.isnan(value) else f"{value:g} m is not a height"
     raise ParameterError(

@@ -169,16 +169,16 @@ def _refuse(path: str | Path, what: str) -> NoReturn:
 
 def _header(path: str | Path, text: str) -> tuple[dict[str, float], int]:
     """Numbers by lower-case word, and the place in the text at which the values begin."""
-    found: dict[str, float] = {}
+    header: dict[str, float] = {}
     at = 0
     while (entry := _ENTRY.match(text, at)) and entry[1].lower() in _WORDS:
         try:
-            found[entry[1].lower()] = float(entry[2])
+            header[entry[1].lower()] = float(entry[2])
         except ValueError:
             line = text.count("\n", 0, entry.start(2)) + 1
             raise ParameterError(f"{path}, line {line}: {entry[1]} is {entry[2]!r}. Allowed: a number.") from None
         at = entry.end()
-    return found, at
+    return header, at
 
 
 def _cell(path: str | Path, header: Mapping[str, float], word: str) -> float:
@@ -199,10 +199,10 @@ def _lower_left(path: str | Path, header: Mapping[str, float], axis: str, size: 
     corner, middle = (header.get(f"{axis}ll{word}") for word in ("corner", "center"))
     if corner is None and middle is None:
         _refuse(path, f"The header has no {axis}llcorner and no {axis}llcenter. Add the one that the grid begins with")
-    found = middle if middle is not None else (corner or 0.0) + size / 2.0
-    if not math.isfinite(found):
-        _refuse(path, f"{axis} of the lower left is {found}. Allowed: a finite number in m")
-    return found
+    corner_place = middle if middle is not None else (corner or 0.0) + size / 2.0
+    if not math.isfinite(corner_place):
+        _refuse(path, f"{axis} of the lower left is {corner_place}. Allowed: a finite number in m")
+    return corner_place
 
 
 def _values(path: str | Path, text: str, first: int, counts: tuple[int, int], no_data: float | None) -> FloatArray:
@@ -227,10 +227,10 @@ def _values(path: str | Path, text: str, first: int, counts: tuple[int, int], no
     return values.reshape(counts[1], counts[0])
 
 
-def _refuse_number(path: str | Path, found: int, counts: tuple[int, int]) -> NoReturn:
+def _refuse_number(path: str | Path, count: int, counts: tuple[int, int]) -> NoReturn:
     _refuse(
         path,
-        f"The file has {found} values. Allowed: ncols × nrows = {counts[0]} × {counts[1]} = {counts[0] * counts[1]}. "
+        f"The file has {count} values. Allowed: ncols × nrows = {counts[0]} × {counts[1]} = {counts[0] * counts[1]}. "
         "Export it again",
     )
 
@@ -304,24 +304,24 @@ def _even(
         raise ParameterError(f"{path}, column {column}: there is only {_listed(different)}; a grid needs two or more")
     step = float(np.min(np.diff(different)))
     close = np.diff(different) > ROUNDED * (different[-1] - different[0]) / len(different)
-    kept = different[np.append(True, close)]  # places that differ by rounding are one
-    step = float(kept[-1] - kept[0]) / (len(kept) - 1)
-    number = np.rint((places - kept[0]) / step).astype(np.intp)
-    off = np.abs(places - kept[0] - number * step)
+    distinct = different[np.append(True, close)]  # places that differ by rounding are one
+    step = float(distinct[-1] - distinct[0]) / (len(distinct) - 1)
+    number = np.rint((places - distinct[0]) / step).astype(np.intp)
+    off = np.abs(places - distinct[0] - number * step)
     worst = int(np.argmax(off))
     if off[worst] > ROUNDED * step:
         raise rows[worst].refused(
             column,
             Message(
                 "This is off the even places from {first:g} to {last:g} m, which are {step:.6g} m apart on average.",
-                first=kept[0],
-                last=kept[-1],
+                first=distinct[0],
+                last=distinct[-1],
                 step=step,
             ),
             code="uneven_places",
             action=Message("Interpolate onto evenly spaced places, or add what is missing."),
         )
-    return kept[0] + step * np.arange(len(kept)), number
+    return distinct[0] + step * np.arange(len(distinct)), number
 
 
 def _listed(values: FloatArray) -> str:
@@ -345,7 +345,7 @@ def _require_each_once(
     count = np.bincount(place, minlength=len(x) * len(y))
     if np.any(count > 1):
         twice = np.flatnonzero(place == int(np.argmax(count > 1)))[:2]
-        first, again = (rows[int(each)] for each in twice)
+        first, again = (rows[int(index)] for index in twice)
         raise ParameterError(
             f"{path}, row {again.row}: x_m = {again.cells['x_m']}, y_m = {again.cells['y_m']} stand in row "
             f"{first.row}, too; keep one of them"

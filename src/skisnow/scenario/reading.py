@@ -149,7 +149,7 @@ def _parse(title: str, file: Path | None, text: str) -> ScenarioInput:
     return ScenarioInput(title, file, (Layer(values, file.parent if file else Path()),), identify)
 
 
-def build_input(given: ScenarioInput, *, sources: Sources | None = None) -> ScenarioFile:
+def build_input(scenario_input: ScenarioInput, *, sources: Sources | None = None) -> ScenarioFile:
     """Resolve and build a scenario.
 
     Parameters
@@ -164,11 +164,15 @@ def build_input(given: ScenarioInput, *, sources: Sources | None = None) -> Scen
     ParameterError
         As `load_scenario`.
     """
-    scenario, messages, resolution = _built(given, sources or Sources())
-    expected = _warnings_of_built_in(given.title) if given.file is None and given.base is None else ()
+    scenario, messages, resolution = _built(scenario_input, sources or Sources())
+    expected = (
+        _warnings_of_built_in(scenario_input.title)
+        if scenario_input.file is None and scenario_input.base is None
+        else ()
+    )
     messages = (*messages, *(text for text in implausible_values(scenario) if text not in expected))
-    files = (*((given.file,) if given.file is not None else ()), *resolution.files.values())
-    return ScenarioFile(given.title, _values(given, resolution, scenario), scenario, files, messages)
+    files = (*((scenario_input.file,) if scenario_input.file is not None else ()), *resolution.files.values())
+    return ScenarioFile(scenario_input.title, _values(scenario_input, resolution, scenario), scenario, files, messages)
 
 
 @cache
@@ -177,35 +181,39 @@ def _warnings_of_built_in(name: str) -> tuple[str, ...]:
     return implausible_values(_built(load_input(name), Sources())[0])
 
 
-def _built(given: ScenarioInput, sources: Sources) -> tuple[Scenario, tuple[str, ...], Resolution]:
-    if given.base is not None:
-        return changed_scenario(given.base, given.values), (), Resolution(given.values, {}, None, None)
+def _built(scenario_input: ScenarioInput, sources: Sources) -> tuple[Scenario, tuple[str, ...], Resolution]:
+    if scenario_input.base is not None:
+        return (
+            changed_scenario(scenario_input.base, scenario_input.values),
+            (),
+            Resolution(scenario_input.values, {}, None, None),
+        )
     try:
-        resolution = resolve(given, sources)
+        resolution = resolve(scenario_input, sources)
         return (*build(resolution, sources), resolution)
     except ContradictionError as error:
-        raise ContradictionError(error.keys, f"{given.title}: {error}") from error
+        raise ContradictionError(error.keys, f"{scenario_input.title}: {error}") from error
     except ParameterError as error:
-        raise ParameterError(f"{given.title}: {error}") from error
+        raise ParameterError(f"{scenario_input.title}: {error}") from error
 
 
-def _values(given: ScenarioInput, resolution: Resolution, scenario: Scenario) -> dict[str, Any]:
+def _values(scenario_input: ScenarioInput, resolution: Resolution, scenario: Scenario) -> dict[str, Any]:
     """Every key with its value; a given value keeps its digits, which a conversion to SI and back could change."""
     values = {name: list(value) if isinstance(value, tuple) else value for name, value in resolution.values.items()}
-    if given.base is not None:
+    if scenario_input.base is not None:
         return {**scenario_values(scenario), **values}
     return {**scenario_values(scenario), "ski.name": None, "ski.file": None, **values}
 
 
-def input_files(given: ScenarioInput) -> tuple[Path, ...]:
+def input_files(scenario_input: ScenarioInput) -> tuple[Path, ...]:
     """The scenario's file and every file that a layer names."""
     paths = {
         name: layer.folder / str(layer.values[name])
-        for layer in given.layers
+        for layer in scenario_input.layers
         for name in PATH_KEYS
         if name in layer.values
     }
-    return (*((given.file,) if given.file is not None else ()), *paths.values())
+    return (*((scenario_input.file,) if scenario_input.file is not None else ()), *paths.values())
 
 
 _FOLDER: Final = files(__package__) / "catalogue"
@@ -260,19 +268,25 @@ def scenario_text(name: str) -> str:
     head, *parts = _SECTION.split(text)
     written = dict(zip(parts[::2], parts[1::2], strict=True))
     defaults = _defaults(text)
-    there = (each for each in SECTIONS if each in written or (defaults[each] and each not in _BY_PRESENCE))
-    sections = (f"[{each}]\n{written.get(each, '').rstrip()}\n{defaults[each]}" for each in there)
+    there = (
+        section for section in SECTIONS if section in written or (defaults[section] and section not in _BY_PRESENCE)
+    )
+    sections = (
+        f"[{own_section}]\n{written.get(own_section, '').rstrip()}\n{defaults[own_section]}" for own_section in there
+    )
     return head + "\n".join(section.replace("]\n\n", "]\n") for section in sections)
 
 
 def _defaults(text: str) -> dict[str, str]:
     """By section, the lines of the keys that the text does not name and that have a default."""
-    given = {f"{section}.{key}": value for section, table in toml_values(text).items() for key, value in table.items()}
-    values = {name: key.default for name, key in SCENARIO_KEYS.items()} | given
+    file_values = {
+        f"{section}.{key}": value for section, table in toml_values(text).items() for key, value in table.items()
+    }
+    values = {name: key.default for name, key in SCENARIO_KEYS.items()} | file_values
     unused = {name for name, condition in CONDITIONS.items() if not condition.holds(values[condition.key])}
     lines = dict.fromkeys(SECTIONS, "")
     for name, key in SCENARIO_KEYS.items():
-        if key.default is not None and name not in given and name not in unused:
+        if key.default is not None and name not in file_values and name not in unused:
             section, own = name.split(".")
             line = f"{own} = {json.dumps(key.default)}"
             lines[section] += f"{line:<{_COMMENTS_FROM}}# default, {key.origin}\n"

@@ -145,7 +145,7 @@ class Resolution:
     snow_map: SnowMap | None
 
 
-def resolve(given: ScenarioInput, sources: Sources) -> Resolution:
+def resolve(scenario_input: ScenarioInput, sources: Sources) -> Resolution:
     """Decide which values count, by the two rules of this module.
 
     Raises
@@ -159,12 +159,14 @@ def resolve(given: ScenarioInput, sources: Sources) -> Resolution:
     latest: dict[str, int] = {}
     snows: dict[Provider, SnowProperties | SnowMap] = {}
     files: dict[str, Path] = {}
-    for number, layer in enumerate(given.layers):
+    for number, layer in enumerate(scenario_input.layers):
         for name in layer.values:
             latest[name] = number
             if name in PATH_KEYS:
                 files[name] = layer.folder / str(layer.values[name])
-        values = {name: value for name, value in given.values.items() if latest.get(name, number + 1) <= number}
+        values = {
+            name: value for name, value in scenario_input.values.items() if latest.get(name, number + 1) <= number
+        }
         replaced = "snow.results" not in values or providers.get(H_V, (-1, ""))[0] > latest["snow.results"]
         if "snow.site" in layer.values and replaced:
             raise ContradictionError(("snow.site", H_V), "snow.site goes with snow.results. Change one of them")
@@ -174,7 +176,9 @@ def resolve(given: ScenarioInput, sources: Sources) -> Resolution:
             providers[quantity] = (number, _strongest(quantity, names, layer))
     snow_provider, measured = _named_snow(providers, snows)
     counting = {name for _, name in providers.values() if name not in NAMED_SNOWS} | {snow_provider[1]}
-    values = {name: value for name, value in given.values.items() if name in counting or not _replaceable(name)}
+    values = {
+        name: value for name, value in scenario_input.values.items() if name in counting or not _replaceable(name)
+    }
     if UNLOADING in counting and values[UNLOADING] != 1.0 and values.get("snow.penetration") == "elastic":
         del values["snow.penetration"]  # the number comes from a later layer, else the two contradict each other
     values = dict(_with_effect(values, latest, providers)) | measured

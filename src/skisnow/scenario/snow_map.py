@@ -188,8 +188,8 @@ def _positive(row: CsvRow) -> CsvRow:
 
 
 def _grids(path: str | Path, names: Sequence[str]) -> dict[str, Grid]:
-    found = read_grid_table(path, names, action=_ACTION)
-    return {name: Grid(found.x, found.y, SIZES[name] * values) for name, values in found.columns.items()}
+    table = read_grid_table(path, names, action=_ACTION)
+    return {name: Grid(table.x, table.y, SIZES[name] * values) for name, values in table.columns.items()}
 
 
 def _along(path: str | Path, rows: Sequence[CsvRow], names: Sequence[str]) -> dict[str, Grid]:

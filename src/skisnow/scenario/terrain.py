@@ -144,7 +144,7 @@ def _require_no_cliff(surface: Grid) -> None:
     """At the places and in the middles between them."""
     for shift in (0.0, 0.5):
         x, y = (places + shift * step for places, step in zip((surface.x, surface.y), surface.steps, strict=True))
-        rows = [np.hypot(*surface.gradients(each, y)) for each in x]
+        rows = [np.hypot(*surface.gradients(column, y)) for column in x]
         steepest = np.array([row.max() for row in rows])
         i = int(np.argmax(steepest))
         if steepest[i] > math.tan(math.radians(STEEPEST_DEG)):
@@ -178,10 +178,10 @@ def read_terrain(path: str | Path, *, smoothing: float = 0.0, origin_x: float = 
     ParameterError
         The file cannot be read or is no grid; file, row, column and value are named.
     """
-    found = _placed(Path(path))
+    raster = _placed(Path(path))
     try:
         return Terrain(
-            found.x, found.y, found.columns[HEIGHT],
+            raster.x, raster.y, raster.columns[HEIGHT],
             source=str(path), smoothing=smoothing, origin_x=origin_x, origin_y=origin_y,
         )  # fmt: skip
     except ParameterError as error:

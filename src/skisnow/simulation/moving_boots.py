@@ -56,7 +56,7 @@ class BootMoment(Shown):
         speed, bears = float(np.linalg.norm(self.velocity[:3])), np.linalg.norm(self.wrench[:, :3], axis=1)
         rows = (
             ("run", f"{amount(self.distance, 'm')}, now at {amount(speed, 'm/s')}"),
-            ("forces", ", ".join(amount(float(each), "N") for each in bears)),
+            ("forces", ", ".join(amount(float(bear), "N") for bear in bears)),
         )
         return Facts(f"at {amount(self.time, 's')}, for {amount(self.until, 's')}", rows)
 
@@ -128,7 +128,7 @@ class BootDrive:
         if push is not None:
             dynamics.push(*push(moment))
         count = len(dynamics.body.skis)
-        if len(poses) != count or not all(isinstance(each, BootPose) for each in poses):
+        if len(poses) != count or not all(isinstance(pose, BootPose) for pose in poses):
             raise ParameterError(f"boots: the control gave {poses!r}; it must give {count} BootPose")
         return poses
 

@@ -308,9 +308,9 @@ class Run(Shown):
 
     def _facts(self) -> Facts:
         error, radius = self.energy_balance_error, self.turn_radius_quantile(0.5)
-        given = ", ".join(f"{name} {law.partition('(')[0]}" for name, law in self.given_laws.items() if law)
+        law_names = ", ".join(f"{name} {law.partition('(')[0]}" for name, law in self.given_laws.items() if law)
         rows = (
-            *([("laws", f"given in Python: {given}")] if given else []),
+            *([("laws", f"given in Python: {law_names}")] if law_names else []),
             ("run length", f"{amount(self.run_length, 'm')} in {amount(self.simulated_s, 's')}"),
             ("speed", f"{span(float(self.speed[0]), float(self.speed[-1]), 'm/s')}, maximum {_most(self.speed)}"),
             ("heading", span(float(self.heading[0]) / DEGREE, float(self.heading[-1]) / DEGREE, "°")),
@@ -371,5 +371,5 @@ class Run(Shown):
 
 
 def _most(values: FloatArray) -> str:
-    known = values[np.isfinite(values)]
-    return amount(float(known.max()) if known.size else None, "m/s")
+    finite = values[np.isfinite(values)]
+    return amount(float(finite.max()) if finite.size else None, "m/s")

@@ -68,8 +68,8 @@ def racer_parts(run: Run) -> dict[str, MovingPoint]:
     if run.boots is not None:
         return feet_and_tips(run.time, run.boots.place, run.boots.place + tip * run.boots.axes[:, :, 0])
     beside = np.array([[0.0, side, 0.0], [0.0, -side, 0.0]])
-    feet, tips = (run.place[:, None] + np.einsum("nab,kb->nka", run.attitude, each)
-                  for each in (beside, beside + np.array([tip, 0.0, 0.0])))  # fmt: skip
+    feet, tips = (run.place[:, None] + np.einsum("nab,kb->nka", run.attitude, offsets)
+                  for offsets in (beside, beside + np.array([tip, 0.0, 0.0])))  # fmt: skip
     return feet_and_tips(run.time, feet, tips)
 
 

@@ -117,9 +117,9 @@ class Record:
     def gains_energy(self) -> bool:
         """Whether motion, height and deflection have more energy than at the start: numbers have diverged."""
         first, last = self._moments[0].energies, self._moments[-1].energies
-        given = sum(last[-len(GIVEN) :])
-        gained = sum(last[:_MECHANICAL]) - sum(first[:_MECHANICAL]) - given
-        exchanged = first[0] + max(0.0, first[1] - last[1]) + abs(given)
+        energy_given = sum(last[-len(GIVEN) :])
+        gained = sum(last[:_MECHANICAL]) - sum(first[:_MECHANICAL]) - energy_given
+        exchanged = first[0] + max(0.0, first[1] - last[1]) + abs(energy_given)
         return not gained <= GAINED_SHARE * exchanged + GAINED
 
     def drop(self) -> None:
@@ -131,7 +131,7 @@ class Record:
     def histories(self) -> dict[str, Any]:
         """The arrays of a `Run`."""
         time, place, attitude, velocity, energies, along, push, dofs = (
-            np.array([getattr(each, name) for each in self._moments]) for name in _ARRAYS
+            np.array([getattr(moment, name) for moment in self._moments]) for name in _ARRAYS
         )
         normal = normals_of(self.setup.scenario.slope, place[:, 0], place[:, 1])
         bent = at_nodes(dofs, self.setup.dynamics.body.skis[0].unknown)
@@ -175,8 +175,8 @@ class Record:
     def _boots(self) -> BootHistory:
         """The boots in space."""
         forward, height = self.setup.scenario.sledge.centre_of_mass
-        origin, axes = (np.array([each.body[part] for each in self._moments]) for part in (0, 1))
-        boots, wrench = (np.array([getattr(each, name) for each in self._moments]) for name in ("boots", "wrench"))
+        origin, axes = (np.array([moment.body[part] for moment in self._moments]) for part in (0, 1))
+        boots, wrench = (np.array([getattr(moment, name) for moment in self._moments]) for name in ("boots", "wrench"))
         return BootHistory(
             place=origin[:, None] + np.einsum("nab,nkb->nka", axes, boots[:, :, 0]),
             axes=np.einsum("nab,nkcb->nkca", axes, boots[:, :, 1:4]),

@@ -67,7 +67,7 @@ class Setup:
     @property
     def drives(self) -> tuple[BootDrive | StrengthDrive, ...]:
         """Controls of the run, each with its own period."""
-        return tuple(each for each in (self.drive, self.strength) if each is not None)
+        return tuple(drive for drive in (self.drive, self.strength) if drive is not None)
 
     def advance(self, until: float, distance: float, *, is_over: Callable[[], bool] = lambda: False) -> Ended:
         """Step to a time (s).
@@ -88,10 +88,10 @@ class Setup:
         if not drives:
             return self.dynamics.advance(until)
         while until - self.time > SAME_TIME:
-            for each in drives:
-                if self.time > each.until - SAME_TIME:
-                    each.move(self.dynamics, distance)
-            due = min(each.until for each in drives)
+            for drive in drives:
+                if self.time > drive.until - SAME_TIME:
+                    drive.move(self.dynamics, distance)
+            due = min(drive.until for drive in drives)
             if due > until + SAME_TIME:
                 self._before_output = self._before_output or self.dynamics.state()
                 return self.dynamics.advance(until)

@@ -75,8 +75,8 @@ def energies_dict(run: Run) -> dict[str, float | None]:
     """Energies (J) at the end and at the start, what was lost between, and given by boots that move and by pushes."""
     stored = {f"{name}_J": json_number(run.energies[name][-1]) for name in STORED}
     start = {f"{name}_start_J": json_number(run.energies[name][0]) for name in STORED}
-    given = {f"given_{name}_J": json_number(run.energies[name][-1]) for name in GIVEN if name in run.energies}
-    return stored | start | {f"lost_{name}_J": json_number(run.energies[name][-1]) for name in LOST} | given
+    energies_given = {f"given_{name}_J": json_number(run.energies[name][-1]) for name in GIVEN if name in run.energies}
+    return stored | start | {f"lost_{name}_J": json_number(run.energies[name][-1]) for name in LOST} | energies_given
 
 
 def end_dict(run: Run) -> dict[str, float | None]:
@@ -94,8 +94,8 @@ def end_dict(run: Run) -> dict[str, float | None]:
 
 def least_turn_radius(run: Run) -> float | None:
     """The tightest turn radius (m), positive left; None of a straight run."""
-    known = run.turn_radius[np.isfinite(run.turn_radius)]
-    return float(known[np.argmin(np.abs(known))]) if known.size else None
+    finite = run.turn_radius[np.isfinite(run.turn_radius)]
+    return float(finite[np.argmin(np.abs(finite))]) if finite.size else None
 
 
 def radii_dict(run: Run) -> dict[str, float | None]:
@@ -126,10 +126,10 @@ def _gates(run: Run) -> dict[str, Any]:
 
 
 def _moments(run: Run) -> dict[str, Any]:
-    known = run.speed[np.isfinite(run.speed)]
+    finite = run.speed[np.isfinite(run.speed)]
     return {
         "end": end_dict(run),
-        "greatest_speed_m_per_s": float(known.max()) if known.size else None,
+        "greatest_speed_m_per_s": float(finite.max()) if finite.size else None,
         "least_turn_radius_m": least_turn_radius(run),
         **radii_dict(run),
     }

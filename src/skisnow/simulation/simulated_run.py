@@ -192,16 +192,16 @@ def _loop(setup: Setup, record: Record, progress: Progress | None) -> Outcome:
     length = math.inf if stop.length is None else stop.length
     number, nearing, watch = 0, False, _Watch(setup)
     while watch.outcome is None:
-        now = setup.time
-        if duration - now <= SAME_TIME:
+        time = setup.time
+        if duration - time <= SAME_TIME:
             return "finished"
         left = length - record.run_length
         if left <= _REACHED:
             return "distance_reached"
         moment = min((number + 1) * interval, duration)
-        was_near, nearing = nearing, setup.speed * (moment - now) > left
+        was_near, nearing = nearing, setup.speed * (moment - time) > left
         if nearing:
-            moment = now + max(left / setup.speed, 2.0 * SAME_TIME)
+            moment = time + max(left / setup.speed, 2.0 * SAME_TIME)
         ended = record.advance(moment, replace=was_near, is_over=watch.look)
         number = math.floor((setup.time + 2.0 * SAME_TIME) / interval)  # a time just below an output has reached it
         if record.gains_energy:

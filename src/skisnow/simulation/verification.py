@@ -91,20 +91,20 @@ def nudged_scenarios(run: Run) -> dict[str, tuple[Scenario, ...]]:
     Half of u_y only where a scenario may have it; an input that is 0 is not nudged.
     """
     scenario = run.scenario
-    found: dict[str, tuple[Scenario, ...]] = {}
+    scenarios: dict[str, tuple[Scenario, ...]] = {}
     displacement = _given(scenario, DISPLACEMENT)
     if displacement / FINER >= SCENARIO_KEYS[DISPLACEMENT].lowest:
-        found[DISPLACEMENT] = (scenario.with_(**{DISPLACEMENT: displacement / FINER}),)
+        scenarios[DISPLACEMENT] = (scenario.with_(**{DISPLACEMENT: displacement / FINER}),)
     for key in NUDGED:
         value = _given(scenario, key)
         if value:
-            found[key] = tuple(scenario.with_(**{key: value * (1.0 + sign * NUDGE)}) for sign in (1.0, -1.0))
-    return found
+            scenarios[key] = tuple(scenario.with_(**{key: value * (1.0 + sign * NUDGE)}) for sign in (1.0, -1.0))
+    return scenarios
 
 
 def repetitions(run: Run) -> tuple[str, ...]:
     """Keys of the runs that `verify` makes, in their order."""
-    nudged = (key for key, each in nudged_scenarios(run).items() for _ in each)
+    nudged = (key for key, scenarios in nudged_scenarios(run).items() for _ in scenarios)
     return (*refined_solvers(run), *nudged)
 
 
@@ -140,13 +140,15 @@ def verify(run: Run, simulate: Simulate | None = None) -> tuple[Refinement, ...]
 
 def refine(run: Run, simulate: Simulate) -> tuple[Refinement, ...]:
     """The part of `verify` that makes the solver finer."""
-    found: list[Refinement] = []
+    refinements: list[Refinement] = []
     for key, solver in refined_solvers(run).items():
         finer = simulate(replace(run.scenario, solver=solver))
         if finer.outcome == "interrupted":
             break
-        found.append(Refinement(key, _in_force(run, key), _chosen(solver, key), _distance(run, finer), finer.outcome))
-    return tuple(found)
+        refinements.append(
+            Refinement(key, _in_force(run, key), _chosen(solver, key), _distance(run, finer), finer.outcome)
+        )
+    return tuple(refinements)
 
 
 def _nudge(run: Run, simulate: Simulate) -> Iterator[Refinement]:
@@ -156,14 +158,14 @@ def _nudge(run: Run, simulate: Simulate) -> Iterator[Refinement]:
             other = simulate(scenario)
             if other.outcome == "interrupted":
                 return
-            was, now = _given(run.scenario, key), _given(scenario, key)
-            moved.append(Refinement(key, was, now, _distance(run, other), other.outcome))
-        yield max(moved, key=lambda each: math.inf if each.end_moves is None else each.end_moves)
+            was, value = _given(run.scenario, key), _given(scenario, key)
+            moved.append(Refinement(key, was, value, _distance(run, other), other.outcome))
+        yield max(moved, key=lambda refinement: math.inf if refinement.end_moves is None else refinement.end_moves)
 
 
 def limit_warnings(run: Run, refinements: Iterable[Refinement]) -> tuple[str, ...]:
     """A sentence where a thousandth of an input moves the end by more than five thousandths of the run."""
-    return limit_sentences({each.key: each.end_moves or 0.0 for each in refinements}, run.run_length)
+    return limit_sentences({refinement.key: refinement.end_moves or 0.0 for refinement in refinements}, run.run_length)
 
 
 def limit_sentences(moves: Mapping[str, float], length: float) -> tuple[str, ...]:
@@ -186,13 +188,13 @@ def _alike(run: Run) -> Simulate:
 def verification_dict(refinements: tuple[Refinement, ...]) -> dict[str, dict[str, Any]]:
     """The entry ``verification`` of summary.json: under each key what was refined and how far the end moved."""
     return {
-        each.key: {
-            "was": each.was,
-            "now": each.now,
-            "end_moves_cm": None if each.end_moves is None else each.end_moves / CM,
-            "outcome": each.outcome,
+        refinement.key: {
+            "was": refinement.was,
+            "now": refinement.now,
+            "end_moves_cm": None if refinement.end_moves is None else refinement.end_moves / CM,
+            "outcome": refinement.outcome,
         }
-        for each in refinements
+        for refinement in refinements
     }
 
 

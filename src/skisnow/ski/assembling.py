@@ -88,12 +88,12 @@ class SkiParts:
         )
 
     def _grid(self) -> FloatArray:
-        given = np.empty(0) if self.stations is None else self.stations
-        if given.size and np.max(-np.diff(given)) <= GREATEST_SPACING + _SAME_PLACE:
-            return given
+        own_stations = np.empty(0) if self.stations is None else self.stations
+        if own_stations.size and np.max(-np.diff(own_stations)) <= GREATEST_SPACING + _SAME_PLACE:
+            return own_stations
         layout = self.layout
         own = [layout.tip, *layout.widest_points, *layout.contact_points, layout.middle, 0.0, layout.tail]
-        places = np.unique(np.clip([*own, *given], layout.tail, layout.tip))[::-1]
+        places = np.unique(np.clip([*own, *own_stations], layout.tail, layout.tip))[::-1]
         places = places[np.append(True, -np.diff(places) > _SAME_PLACE)]
         counts = np.ceil(-np.diff(places) / GREATEST_SPACING - _SAME_PLACE).astype(int)
         pieces = [

@@ -148,16 +148,16 @@ def lowest_eigenvalue(stiffness: FloatArray, mass: FloatArray, start: FloatArray
     from scipy.linalg import cho_solve_banded, cholesky_banded, eigh
 
     factor = cholesky_banded(_columns(stiffness), lower=True, check_finite=False)
-    force, found = _product(mass, start), np.inf
+    force, eigenvalue = _product(mass, start), np.inf
     for _ in range(_MOST_ITERATIONS):
         shape = cho_solve_banded((factor, True), force, check_finite=False)
         moved = _product(mass, shape)
         values, mixed = eigh(shape.T @ force, shape.T @ moved, check_finite=False)
-        before, found = found, float(values[0])
-        if before - found <= _CLOSE * found:
+        before, eigenvalue = eigenvalue, float(values[0])
+        if before - eigenvalue <= _CLOSE * eigenvalue:
             break
         force = moved @ mixed
-    return found
+    return eigenvalue
 
 
 def _columns(matrix: FloatArray) -> FloatArray:

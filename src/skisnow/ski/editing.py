@@ -56,8 +56,8 @@ class SkiEdit:
 
     def __post_init__(self) -> None:
         factors = (*EDITED_COLUMNS, MASS, SIDECUT)
-        for what, given, columns in (("factors", self.factors, factors), ("values", self.values, (*EDITED_COLUMNS,))):
-            for column in given:
+        for what, edits, columns in (("factors", self.factors, factors), ("values", self.values, (*EDITED_COLUMNS,))):
+            for column in edits:
                 if column not in columns:
                     raise ParameterError(
                         Message(

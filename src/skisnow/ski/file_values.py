@@ -141,13 +141,13 @@ def checked(file: Path, value: object, quantity: Quantity) -> InputValue:
 
 def _remedy(value: object, quantity: Quantity) -> Message:
     numbers: list[Any] = value if isinstance(value, list) else [value]
-    if any(isinstance(each, bool) or not isinstance(each, int | float) for each in numbers):
+    if any(isinstance(number, bool) or not isinstance(number, int | float) for number in numbers):
         if quantity.kind in ("text", "switch"):
             return Message("Correct it.")
         if quantity.kind == "numbers":
             return Message("Put the numbers in brackets, no quotes.")
         return Message("Write a number with a decimal point, no quotes.")
-    units = [unit for each in numbers if (unit := _likely_unit(float(each), quantity))]
+    units = [unit for number in numbers if (unit := _likely_unit(float(number), quantity))]
     return joined([Message("Correct it."), *units[:1]])
 
 
@@ -201,13 +201,13 @@ def file_values(path: Path) -> FileValues:
                 ),
                 code="unknown_name",
             )
-    given = {key: checked(path, value, SKI_KEYS[key]) for key, value in values.items()}
-    for key, value in given.items():
+    checked_values = {key: checked(path, value, SKI_KEYS[key]) for key, value in values.items()}
+    for key, value in checked_values.items():
         if isinstance(value, tuple):
-            warn_of_unusual(path, {f"{key}[{n}]": each for n, each in enumerate(value, start=1)}, SKI_KEYS[key])
+            warn_of_unusual(path, {f"{key}[{n}]": element for n, element in enumerate(value, start=1)}, SKI_KEYS[key])
         elif isinstance(value, float):
             warn_of_unusual(path, {key: value}, SKI_KEYS[key])
-    return FileValues(path, values, made(SkiFile, given))
+    return FileValues(path, values, made(SkiFile, checked_values))
 
 
 def shown(value: object, limit: int = 80) -> str:

@@ -111,7 +111,7 @@ class Ski(Shown):
 
     @property
     def _tables(self) -> SkiSections:
-        return SkiSections(*(getattr(self, each.name) for each in fields(SkiSections)))
+        return SkiSections(*(getattr(self, field.name) for field in fields(SkiSections)))
 
     def at(self, station: npt.ArrayLike) -> SkiSections:
         """Give the cross sections at stations (m, any shape), interpolated linearly.

@@ -163,16 +163,16 @@ def snow_dict(snow: SnowProperties) -> dict[str, Any]:
     def interval(ends: tuple[float, float] | None, unit: float) -> list[float] | None:
         return None if ends is None else [end / unit for end in ends]
 
-    told = {
+    entries = {
         "source": snow.source,
         "H_V_interval_N_per_mm3": interval(snow.snow_hardness_interval, N_PER_MM3),
         "S_f_interval_N_per_mm2": interval(snow.failure_shear_stress_interval, N_PER_MM2),
     }
     if snow.unloading_ratio_interval is not None:
-        told["unloading_ratio_interval"] = list(snow.unloading_ratio_interval)
+        entries["unloading_ratio_interval"] = list(snow.unloading_ratio_interval)
     if snow.shear_displacement_interval is not None:
-        told["shear_displacement_interval_mm"] = interval(snow.shear_displacement_interval, MM)
-    return told
+        entries["shear_displacement_interval_mm"] = interval(snow.shear_displacement_interval, MM)
+    return entries
 
 
 def published_names() -> tuple[str, ...]:
@@ -238,18 +238,18 @@ def published_snow(name: str) -> SnowProperties:
     >>> round(snow.snow_hardness / 1e9, 2), round(snow.failure_shear_stress / 1e6, 2)  # N/mm³ and N/mm²
     (0.21, 0.52)
     """
-    known = _by_name()
-    if name not in known:
-        near = get_close_matches(str(name).strip().lower().replace("_", "-").replace(" ", "-"), known, n=1, cutoff=0.4)
+    snows = _by_name()
+    if name not in snows:
+        near = get_close_matches(str(name).strip().lower().replace("_", "-").replace(" ", "-"), snows, n=1, cutoff=0.4)
         problem = (
             Message("no published snow is named {name!r}; did you mean {similar!r}?", name=name, similar=near[0])
             if near
             else Message("no published snow is named {name!r}.", name=name)
         )
         raise ParameterError(
-            Message("{problem} There are {names}", problem=problem, names=list(known)), code="unknown_name"
+            Message("{problem} There are {names}", problem=problem, names=list(snows)), code="unknown_name"
         )
-    return known[name]
+    return snows[name]
 
 
 def _by_name() -> dict[str, SnowProperties]:

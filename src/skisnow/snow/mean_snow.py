@@ -90,10 +90,10 @@ def site_named(site: str | None, sites: Iterable[str]) -> str | None:
     >>> site_named("C", ["site A", "site C"]), site_named("site C", ["site C"]), site_named("Z", ["site C"])
     ('site C', 'site C', 'Z')
     """
-    known = set(sites)
-    if site is None or site in known:
+    names = set(sites)
+    if site is None or site in names:
         return site
-    alike = [each for each in known if each.casefold() == f"site {site}".casefold()]
+    alike = [name for name in names if name.casefold() == f"site {site}".casefold()]
     return alike[0] if len(alike) == 1 else site
 
 

@@ -102,7 +102,7 @@ def with_range_warnings(act: Callable[[], T]) -> tuple[T, tuple[str, ...]]:
     for other in caught:
         if not issubclass(other.category, RangeWarning):
             warnings.warn_explicit(other.message, other.category, other.filename, other.lineno)
-    return value, tuple(str(each.message) for each in caught if issubclass(each.category, RangeWarning))
+    return value, tuple(str(warning.message) for warning in caught if issubclass(warning.category, RangeWarning))
 
 
 @contextmanager

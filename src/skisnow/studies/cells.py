@@ -44,7 +44,7 @@ def readers(columns: Sequence[str], keys: Mapping[str, Quantity], mark: str) -> 
     return [_reader(name, keys, mark) for name in columns]
 
 
-def row_of(place: str, columns: Sequence[str], cells: Sequence[str], each: Sequence[Reader]) -> Row:
+def row_of(place: str, columns: Sequence[str], cells: Sequence[str], readers: Sequence[Reader]) -> Row:
     """A row by the names of its columns.
 
     Raises
@@ -57,10 +57,10 @@ def row_of(place: str, columns: Sequence[str], cells: Sequence[str], each: Seque
             f"{place}: a row of this table has {len(columns)} cells, this line has {len(cells)}. Remove the line"
         )
     try:
-        return {name: read(text) for name, text, read in zip(columns, cells, each, strict=True)}
+        return {name: read(text) for name, text, read in zip(columns, cells, readers, strict=True)}
     except (ValueError, TypeError):
         name, text = next(
-            (name, text) for name, text, read in zip(columns, cells, each, strict=True) if _fails(read, text)
+            (name, text) for name, text, read in zip(columns, cells, readers, strict=True) if _fails(read, text)
         )
         raise ParameterError(f"{place}: {name} is {text!r}; it must be a number. Correct or remove it") from None
 
@@ -117,7 +117,7 @@ def _reader(name: str, keys: Mapping[str, Quantity], mark: str) -> Reader:
 
 def _switch_or_list(text: str) -> bool | list[float]:
     if text.startswith("["):
-        return [float(each) for each in json_value(text)]
+        return [float(number) for number in json_value(text)]
     if text.lower() not in ("true", "false"):
         raise ValueError(text)
     return text.lower() == "true"

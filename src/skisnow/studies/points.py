@@ -154,8 +154,8 @@ class Column:
 
     def values(self, first: int, last: int) -> list[Any]:
         """The values of the points from `first` to before `last`."""
-        found = self.numbers[first:last].tolist()
-        return [self.listed[place] for place in found] if self.listed else found
+        numbers = self.numbers[first:last].tolist()
+        return [self.listed[place] for place in numbers] if self.listed else numbers
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -198,7 +198,7 @@ class SampledPoints(Points):
                 [f"{json.dumps(name)}: {text}" for text in map(json.dumps, column.values(first, last))]
                 for name, column in self.columns.items()
             ]
-            yield ", ".join(f"{{{head}{', '.join(each)}}}" for each in zip(*pairs, strict=True))
+            yield ", ".join(f"{{{head}{', '.join(pair)}}}" for pair in zip(*pairs, strict=True))
 
 
 def _fixed(fixed: Mapping[str, Any], name: str) -> list[Any]:
@@ -261,8 +261,10 @@ class Axis:
         values = value if isinstance(value, list) and not _is_one(key, value) else [value]
         if not values:
             raise ParameterError(f"{key.name} is an empty list; write at least one value")
-        checked = tuple(key.of_kind(each) for each in values)
-        repeated = next((each for place, each in enumerate(checked) if each in checked[:place]), None)
+        checked = tuple(key.of_kind(value) for value in values)
+        repeated = next(
+            (checked_value for place, checked_value in enumerate(checked) if checked_value in checked[:place]), None
+        )
         if repeated is not None:
             raise ParameterError(f"{key.name} holds {repeated!r} twice; write each value once")
         return cls(key, checked)
@@ -271,15 +273,15 @@ class Axis:
     def _of_range(cls, key: Quantity, table: Mapping[str, Any]) -> Self:
         if key.kind not in ("number", "whole number"):
             raise ParameterError(f"{key.name} has no range; write a list such as {key.name} = [...]")
-        asked = made(Range, checked_table(Range, table, key.name))
-        low, high, log = asked.first, asked.last, asked.log
+        limits = made(Range, checked_table(Range, table, key.name))
+        low, high, log = limits.first, limits.last, limits.log
         if log and not (low > 0 and high > 0):
             raise ParameterError(f"{key.name}: a logarithmic range needs both ends above 0; they are {low:g}, {high:g}")
         if low > high:
             raise ParameterError(f"{key.name}: from is {low:g} and to is {high:g}; from must be the smaller one")
         if low == high:
             raise ParameterError(f"{key.name}: from and to are both {low:g}; write the value under [fixed]")
-        return cls(key, ends=(low, high), n=asked.n, log=log)
+        return cls(key, ends=(low, high), n=limits.n, log=log)
 
     def on_grid(self) -> list[Any]:
         """The values of a grid."""
@@ -334,4 +336,4 @@ def require_count(n: int) -> None:
 
 def _is_one(key: Quantity, value: list[Any]) -> bool:
     """Whether a list is one value: three numbers."""
-    return key.kind == "three numbers" and not any(isinstance(each, list) for each in value)
+    return key.kind == "three numbers" and not any(isinstance(number, list) for number in value)

@@ -167,11 +167,11 @@ class DatabaseRows(StoredRows):
 
     def _row(self, place: int, values: Sequence[Any]) -> Row:
         try:
-            found = dict(zip(self.columns, map(_natural, values, self._kinds), strict=True))
+            row = dict(zip(self.columns, map(_natural, values, self._kinds), strict=True))
         except ValueError as error:
             raise _no_table(self._path, f"row {place}: {error}") from error
-        require_kinds(f"{self._path}, row {place}", found, self._texts)
-        return found
+        require_kinds(f"{self._path}, row {place}", row, self._texts)
+        return row
 
 
 def _no_table(path: Path, why: object) -> ParameterError:

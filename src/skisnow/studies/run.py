@@ -63,8 +63,8 @@ def standing(
         table = read_table(out, keys)
     except ParameterError as error:
         raise ParameterError(f"{error}. It is not replaced: name another place in out, or move it away") from error
-    found = table.tally()
-    same = found.rows == points and found.studies == {fingerprint}
+    tally = table.tally()
+    same = tally.rows == points and tally.studies == {fingerprint}
     return (StudyState.FINISHED if same else StudyState.ANOTHER), table
 
 
@@ -124,18 +124,18 @@ def run_study(
         if study.partial.exists():  # a kill between writing the one and removing the other
             kept_rows(study, study.partial, fingerprint).remove()
         return replace(table, varied=study.varied)
-    kept = kept_rows(study, study.partial, fingerprint)
+    finished_rows = kept_rows(study, study.partial, fingerprint)
     try:
         if _stamp(study.out) != before:
             raise OutputError(f"{study.out} was just written by another run. Start again to see its table")
         rows = StudyRows.of(study)
-        compute_missing(study.points, rows, kept, workers=workers, executor=executor, progress=progress)
+        compute_missing(study.points, rows, finished_rows, workers=workers, executor=executor, progress=progress)
         previous = study.place_for_previous() if state is StudyState.ANOTHER else None
-        found = written(study.out, kept, fingerprint, study.subject.keys, previous=previous)
-        kept.remove()
+        study_table = written(study.out, finished_rows, fingerprint, study.subject.keys, previous=previous)
+        finished_rows.remove()
     finally:
-        kept.close()
-    return replace(found, varied=study.varied)
+        finished_rows.close()
+    return replace(study_table, varied=study.varied)
 
 
 def kept_rows(study: Study, path: Path, fingerprint: str, **about: str) -> KeptRows:
@@ -202,8 +202,8 @@ def written(
         stored = large_csv(out, file, keys, begins)
     else:
         deque(rows(), maxlen=0)
-    found = stored[1] if stored is not None else rows.held or []
-    return StudyTable(columns, found, (), rows.counted)
+    study_rows = stored[1] if stored is not None else rows.held or []
+    return StudyTable(columns, study_rows, (), rows.counted)
 
 
 class _Rows:
@@ -230,10 +230,10 @@ class _Rows:
 def _stamp(path: Path) -> tuple[int, int, int] | None:
     """Another one where a file was written anew."""
     try:
-        found = path.stat()
+        status = path.stat()
     except OSError:
         return None
-    return found.st_ino, found.st_size, found.st_mtime_ns
+    return status.st_ino, status.st_size, status.st_mtime_ns
 
 
 def _move(table: Path, place: Path) -> None:

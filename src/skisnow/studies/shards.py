@@ -52,8 +52,8 @@ class Shard:
         ParameterError
             It is none.
         """
-        found = _SHARD.fullmatch(text)
-        shard = cls(int(found[1]), int(found[2])) if found else None
+        match = _SHARD.fullmatch(text)
+        shard = cls(int(match[1]), int(match[2])) if match else None
         if shard is None or not 1 <= shard.number <= shard.count <= MOST_SHARDS:
             raise ParameterError(
                 f"shard is {text!r}; it is written i/n, from 1/n to n/n, such as 2/8 for the second of eight; n is "
@@ -110,15 +110,15 @@ def run_shard(
     shard = Shard.of(shard) if isinstance(shard, str) else shard
     study = study if isinstance(study, Study) else read_study(study)
     place = shard.place(study)
-    kept = kept_rows(study, place, study.fingerprint(), core=own_identity().core)
+    finished_rows = kept_rows(study, place, study.fingerprint(), core=own_identity().core)
     try:
         numbers = shard.points(len(study.points))
         rows = StudyRows.of(study)
         compute_missing(
-            study.points, rows, kept, numbers=numbers, workers=workers, executor=executor, progress=progress
+            study.points, rows, finished_rows, numbers=numbers, workers=workers, executor=executor, progress=progress
         )
     finally:
-        kept.close()
+        finished_rows.close()
     return place
 
 
@@ -154,11 +154,11 @@ def merge_shards(out: str | Path, parts: Sequence[str | Path]) -> StudyTable:
     if not places:
         raise ParameterError("no part is named; name the files of all parts of the study")
     with ExitStack() as opened:
-        kept = []
+        shard_rows = []
         for place in dict.fromkeys(places):
-            kept.append(KeptRows.read(place))
-            opened.callback(kept[-1].close)
-        return _merged(out, _Parts(kept))
+            shard_rows.append(KeptRows.read(place))
+            opened.callback(shard_rows[-1].close)
+        return _merged(out, _Parts(shard_rows))
 
 
 def _merged(out: Path, parts: _Parts) -> StudyTable:
@@ -178,7 +178,8 @@ class _Parts:
         about = [part.about() for part in parts]
         for name, what in (("fingerprint", "another study"), ("core", "this study, computed by another core")):
             odd = next(
-                (part for part, each in zip(parts, about, strict=True) if each.get(name) != about[0].get(name)), None
+                (part for part, entries in zip(parts, about, strict=True) if entries.get(name) != about[0].get(name)),
+                None,
             )
             if odd is not None:
                 raise ParameterError(f"{odd.path} is a part of {what} than {parts[0].path}. Leave one of them out")
@@ -201,12 +202,12 @@ class _Parts:
     def texts(self) -> Iterator[NumberedText]:
         """Points with their rows as they are kept, in rising order, each once."""
         last: NumberedText | None = None
-        for each in heapq.merge(*(part.texts() for part in self._parts)):
-            if last is None or each[0] != last[0]:
-                yield each
-            elif each[1] != last[1]:
-                raise ParameterError(f"two parts have different rows for point {each[0] + 1}. Compute one of them anew")
-            last = each
+        for text in heapq.merge(*(part.texts() for part in self._parts)):
+            if last is None or text[0] != last[0]:
+                yield text
+            elif text[1] != last[1]:
+                raise ParameterError(f"two parts have different rows for point {text[0] + 1}. Compute one of them anew")
+            last = text
 
     def values(self) -> Iterator[list[Any]]:
         """The values of the columns of every point."""
@@ -214,14 +215,14 @@ class _Parts:
 
     def require_whole(self) -> None:
         """Refuse parts in which points are missing."""
-        found = bytearray(self.count)
+        numbers_seen = bytearray(self.count)
         for part in self._parts:
             for number in part.numbers():
                 if 0 <= number < self.count:  # all others are rejected with their row
-                    found[number] = True
-        missing = found.count(0)
+                    numbers_seen[number] = True
+        missing = numbers_seen.count(0)
         if missing:
-            first = found.index(0)
+            first = numbers_seen.index(0)
             raise ParameterError(
                 f"{missing} of {self.count} points are in none of the parts, the first is point {first + 1}. Compute "
                 "or name the missing parts"

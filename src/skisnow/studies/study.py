@@ -186,17 +186,17 @@ def _study(path: Path, values: Mapping[str, Any], subject: ModelReader) -> Study
     for key in values:
         if key not in TOP_KEYS:
             raise ParameterError(f"{key} is no key of a study. {nearest(key, TOP_KEYS)}")
-    asked = _subject(path, values, subject)
+    subject_ = _subject(path, values, subject)
     form = _form(values)
-    fixed = _fixed(asked.named(_table(values, "fixed")), asked.keys)
+    fixed = _fixed(subject_.named(_table(values, "fixed")), subject_.keys)
     varying = _table(values, form)
-    inputs = asked.named({name: value for name, value in varying.items() if name not in OWN_KEYS[form]})
-    axes = [_axis(form, name, value, asked.keys, fixed) for name, value in inputs.items()]
+    inputs = subject_.named({name: value for name, value in varying.items() if name not in OWN_KEYS[form]})
+    axes = [_axis(form, name, value, subject_.keys, fixed) for name, value in inputs.items()]
     if not axes:
         raise ParameterError(f"[{form}] holds no input that varies; write one, such as edge_angle_deg = [30, 45, 60]")
     points = grid_points(axes, fixed) if form == "grid" else hypercube_points(axes, fixed, *_sample(varying))
-    asked.require_sound(points, fixed)
-    return Study(path, _out(path, values), asked, tuple(axis.key.name for axis in axes), points)
+    subject_.require_sound(points, fixed)
+    return Study(path, _out(path, values), subject_, tuple(axis.key.name for axis in axes), points)
 
 
 def _subject(path: Path, values: Mapping[str, Any], subject: ModelReader) -> StudyModel:
@@ -211,8 +211,8 @@ def _subject(path: Path, values: Mapping[str, Any], subject: ModelReader) -> Stu
 def _form(values: Mapping[str, Any]) -> str:
     forms = [form for form in FORMS if form in values]
     if len(forms) != 1:
-        found = "both are there" if forms else "neither is there"
-        raise ParameterError(f"a study has either [grid] or [latin_hypercube]; {found}")
+        problem = "both are there" if forms else "neither is there"
+        raise ParameterError(f"a study has either [grid] or [latin_hypercube]; {problem}")
     return forms[0]
 
 
@@ -254,15 +254,15 @@ def _require_key(table: str, name: str, keys: Collection[str]) -> None:
 
 def _sample(table: Mapping[str, Any]) -> tuple[int, int]:
     own = {name: table[name] for name in ("n", "seed") if name in table}
-    asked = made(Sample, checked_table(Sample, own, "[latin_hypercube]"))
-    return asked.n, asked.seed
+    sample = made(Sample, checked_table(Sample, own, "[latin_hypercube]"))
+    return sample.n, sample.seed
 
 
 def _out(path: Path, values: Mapping[str, Any]) -> Path:
     out = values.get("out")
     if not isinstance(out, str) or not out.strip():
-        found = "is missing" if out is None else f"is {out!r}"
-        raise ParameterError(f'out {found}; it is the place of the table, such as out = "table.csv"')
+        problem = "is missing" if out is None else f"is {out!r}"
+        raise ParameterError(f'out {problem}; it is the place of the table, such as out = "table.csv"')
     if Path(out).suffix.lower() not in WRITERS:
         raise ParameterError(f"out is {out!r}; the name of the table must end in {', '.join(WRITERS)}")
     return path.parent / out

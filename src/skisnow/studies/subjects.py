@@ -162,8 +162,8 @@ def _carve_row(answer: CarveAnswer) -> Row:
 
 
 def _failure(point: Point, reason: str) -> Row:
-    given: dict[str, Any] = {name: key.default for name, key in CARVE_KEYS.items()} | point
-    return {**given, **dict.fromkeys(CARVE_RESULTS), "outcome": "error", "warnings": "", "reason": reason}
+    values: dict[str, Any] = {name: key.default for name, key in CARVE_KEYS.items()} | point
+    return {**values, **dict.fromkeys(CARVE_RESULTS), "outcome": "error", "warnings": "", "reason": reason}
 
 
 @dataclass(slots=True, repr=False)
@@ -199,16 +199,16 @@ class ScenarioModel(ShownFields):
 
     def named(self, table: Mapping[str, Any]) -> dict[str, Any]:
         """Values of a table of the study under full names: sections, dotted names, and names without their section."""
-        found: dict[str, Any] = {}
+        values: dict[str, Any] = {}
         for name, value in table.items():
             in_section = name in SECTIONS and isinstance(value, dict)
-            parts = {f"{name}.{key}": each for key, each in value.items()} if in_section else {name: value}
-            for part, each in parts.items():
+            parts = {f"{name}.{key}": part_value for key, part_value in value.items()} if in_section else {name: value}
+            for part, part_value in parts.items():
                 full = full_name(part)
-                if full in found:
+                if full in values:
                     raise ParameterError(f"{full} is given twice. Remove one of them")
-                found[full] = each
-        return found
+                values[full] = part_value
+        return values
 
     def require_sound(self, points: Points, fixed: Point) -> None:  # noqa: ARG002 - points hold what is fixed
         """Refuse a study of which none of the first points can be asked, with what is wrong with the first."""
@@ -234,26 +234,26 @@ class ScenarioModel(ShownFields):
         from ..simulation.simulated_run import simulate
 
         try:
-            asked = self._asked(point)
-            run = simulate(asked.scenario)
+            scenario_file = self._asked(point)
+            run = simulate(scenario_file.scenario)
         except SkisnowError as error:
             return self._failure(point, str(error))
         except Exception as error:  # a study never stops for one point
             return self._failure(point, f"unexpected {type(error).__name__}: {error}")
         if run.outcome == "interrupted":  # half a run does not count: the study is what was interrupted
             raise KeyboardInterrupt
-        return _run_row(asked, run)
+        return _run_row(scenario_file, run)
 
     def _asked(self, point: Point) -> ScenarioFile:
         return build_input(self._base.changed(point, folder=self.folder), sources=self._sources)
 
     def _failure(self, point: Point, reason: str) -> Row:
-        given = {name: self._base.values.get(name, key.default) for name, key in SCENARIO_KEYS.items()} | point
-        return {**given, **dict.fromkeys(RUN_RESULTS), "outcome": "error", "warnings": "", "reason": reason}
+        values = {name: self._base.values.get(name, key.default) for name, key in SCENARIO_KEYS.items()} | point
+        return {**values, **dict.fromkeys(RUN_RESULTS), "outcome": "error", "warnings": "", "reason": reason}
 
 
 def _run_row(scenario: ScenarioFile, run: Run) -> Row:
-    known = run.speed[np.isfinite(run.speed)]
+    finite = run.speed[np.isfinite(run.speed)]
     depth = run.skis.edge_depth[np.isfinite(run.skis.edge_depth)]
     energies = {name: value for name, value in energies_dict(run).items() if name in RUN_RESULTS}
     return {
@@ -262,7 +262,7 @@ def _run_row(scenario: ScenarioFile, run: Run) -> Row:
         "run_length_m": json_number(run.run_length),
         **{f"end_{name}": value for name, value in end_dict(run).items() if name != "time_s"},
         "simulated_s": json_number(run.simulated_s),
-        "greatest_speed_m_per_s": float(known.max()) if known.size else None,
+        "greatest_speed_m_per_s": float(finite.max()) if finite.size else None,
         "least_turn_radius_m": least_turn_radius(run),
         **radii_dict(run),
         "greatest_edge_depth_mm": float(depth.max()) / MM if depth.size else None,

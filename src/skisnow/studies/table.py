@@ -123,8 +123,8 @@ def stored_rows(
     """Columns and rows that are read as they are used; None of a small CSV file, and of one of another program."""
     ending = path.suffix.lower()
     if ending in (".sqlite", ".parquet"):
-        found = DatabaseRows(path, keys) if ending == ".sqlite" else ParquetRows(path, keys)
-        return found.columns, found
+        rows = DatabaseRows(path, keys) if ending == ".sqlite" else ParquetRows(path, keys)
+        return rows.columns, rows
     try:
         if begins is None and path.stat().st_size <= MOST_BYTES_HELD:
             return None
@@ -151,13 +151,13 @@ def large_csv(
         As `write_csv` gave it; None: looked for.
     """
     try:
-        found = _large_csv(path, file, keys, begins)
+        rows = _large_csv(path, file, keys, begins)
     except BaseException:
         file.close()
         raise
-    if found is None:
+    if rows is None:
         file.close()
-    return found
+    return rows
 
 
 def _large_csv(
@@ -171,12 +171,12 @@ def _large_csv(
     if not {"outcome", "study"} <= set(columns) or "\ufeff" in head:
         return None
     begins = _begins(file) if begins is None else begins
-    each = readers(columns, keys, ".")
+    cell_readers = readers(columns, keys, ".")
     whole = max(len(begins) - 2, 0)
     file.seek(begins[whole])
-    last = csv_block(path, file.read(), columns, each, whole * ROWS_OF_A_BLOCK)
+    last = csv_block(path, file.read(), columns, cell_readers, whole * ROWS_OF_A_BLOCK)
     count = whole * ROWS_OF_A_BLOCK + len(last)
-    return columns, CsvRows(path, file, columns, each, begins, count)
+    return columns, CsvRows(path, file, columns, cell_readers, begins, count)
 
 
 def _begins(file: IO[bytes]) -> array[int]:
@@ -210,8 +210,8 @@ def _read_at_once(path: Path, keys: Mapping[str, Quantity]) -> tuple[tuple[str, 
     except (NoTextError, csv.Error) as error:
         raise ParameterError(f"{path} is no table of a study: {error}") from error
     mark = "." if separator == "," else decimal_mark([chain.from_iterable(row for _, row in lines)], separator=";")
-    each = readers(columns, keys, mark)
-    return columns, [row_of(f"{path}, line {line}", columns, cells, each) for line, cells in lines]
+    cell_readers = readers(columns, keys, mark)
+    return columns, [row_of(f"{path}, line {line}", columns, cells, cell_readers) for line, cells in lines]
 
 
 def _unreadable(path: Path, error: OSError) -> ParameterError:
@@ -248,10 +248,10 @@ class Tally:
     @classmethod
     def of(cls, rows: Iterable[Mapping[str, Any]]) -> Tally:
         """Of rows by names."""
-        found = cls()
+        tally = cls()
         for row in rows:
-            found.take(row["outcome"], row.get("warnings"), row.get("reason"), row.get("study"))
-        return found
+            tally.take(row["outcome"], row.get("warnings"), row.get("reason"), row.get("study"))
+        return tally
 
     @property
     def rows(self) -> int:

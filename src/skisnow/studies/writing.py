@@ -160,11 +160,11 @@ def _arrow_type(arrow: Any, kinds: frozenset[type]) -> Any:
 
 def _kinds(columns: Sequence[str], rows: Iterable[list[Any]]) -> dict[str, frozenset[type]]:
     """The types of the values of each column, without None."""
-    found: list[set[type]] = [set() for _ in columns]
+    types_of_columns: list[set[type]] = [set() for _ in columns]
     for row in rows:
-        for kinds, value in zip(found, row, strict=True):
+        for kinds, value in zip(types_of_columns, row, strict=True):
             kinds.add(type(value))
-    return {name: frozenset(kinds - {type(None)}) for name, kinds in zip(columns, found, strict=True)}
+    return {name: frozenset(kinds - {type(None)}) for name, kinds in zip(columns, types_of_columns, strict=True)}
 
 
 WRITERS: Final[Mapping[str, Writer]] = {

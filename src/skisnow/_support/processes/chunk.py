@@ -72,7 +72,7 @@ def computed(function: PointFunction, points: Sequence[Numbered]) -> Done:
     return Done(rows, (time.perf_counter() - start) / max(len(rows), 1))
 
 
-def computed_elsewhere(packed: bytes, asked: Identity, folder: str, points: Sequence[Numbered]) -> Done:
+def computed_elsewhere(packed: bytes, identity: Identity, folder: str, points: Sequence[Numbered]) -> Done:
     """The rows of some points by a function that was sent; a worker keeps the last few that it was sent.
 
     Parameters
@@ -91,13 +91,13 @@ def computed_elsewhere(packed: bytes, asked: Identity, folder: str, points: Sequ
     SkisnowError
         Another skisnow is installed here, or the function's files are others here.
     """
-    if asked != own_identity():
+    if identity != own_identity():
         raise SkisnowError(
             Message(
                 "The worker on {node} has {installed}, this computer has {expected}. Install the same on both.",
                 node=platform.node(),
                 installed=own_identity(),
-                expected=asked,
+                expected=identity,
             ),
             code="different_versions",
         )

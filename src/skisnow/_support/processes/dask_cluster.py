@@ -80,11 +80,11 @@ def require_scheduler(scheduler: str | Path) -> None:
         Dask is not installed, the address, the file or a certificate cannot be read, or an option of the batch system
         is unknown (code ``unknown_option``).
     """
-    asked = scheduler_of(scheduler)
+    settings = scheduler_of(scheduler)
     _distributed()
-    _require_certificates(asked.tls or {})
-    if asked.system is not None:
-        _require_options(asked.system, asked.options or {})
+    _require_certificates(settings.tls or {})
+    if settings.system is not None:
+        _require_options(settings.system, settings.options or {})
 
 
 def _require_options(system: str, options: Mapping[str, Any]) -> None:
@@ -96,7 +96,9 @@ def _require_options(system: str, options: Mapping[str, Any]) -> None:
         for cls in classes
         if cls is not object and "__init__" in vars(cls)
     ]
-    names = {name for each in parameters for name, parameter in each.items() if parameter.kind is not _ANY} - {"self"}
+    names = {
+        name for signature in parameters for name, parameter in signature.items() if parameter.kind is not _ANY
+    } - {"self"}
     for name in options:
         if name not in names:
             raise ParameterError(
@@ -110,8 +112,8 @@ def is_plain(scheduler: str | Path) -> bool:
     return not _is_encrypted(scheduler_of(scheduler))
 
 
-def _is_encrypted(asked: SchedulerFile) -> bool:
-    return bool(asked.tls) or (asked.address or "").startswith(("tls://", "wss://"))
+def _is_encrypted(settings: SchedulerFile) -> bool:
+    return bool(settings.tls) or (settings.address or "").startswith(("tls://", "wss://"))
 
 
 def scheduler_of(scheduler: str | Path) -> SchedulerFile:
@@ -140,11 +142,11 @@ def scheduler_of(scheduler: str | Path) -> SchedulerFile:
 
 
 def _of_table(table: Mapping[str, Any], folder: Path) -> SchedulerFile:
-    known = ("address", "wait_s", "tls", *BATCH_SYSTEMS)
+    keys = ("address", "wait_s", "tls", *BATCH_SYSTEMS)
     for key in table:
-        if key not in known:
+        if key not in keys:
             raise ParameterError(
-                Message("{key} is not a key of a scheduler. {allowed}", key=key, allowed=nearest(key, known)),
+                Message("{key} is not a key of a scheduler. {allowed}", key=key, allowed=nearest(key, keys)),
                 code="unknown_key",
             )
     places = [key for key in table if key == "address" or key in BATCH_SYSTEMS]
@@ -173,15 +175,15 @@ def _of_table(table: Mapping[str, Any], folder: Path) -> SchedulerFile:
     return _of_batch_system(place, table[place], wait, tls)
 
 
-def _of_batch_system(system: str, given: object, wait: float, tls: Mapping[str, str] | None) -> SchedulerFile:
-    if not isinstance(given, dict):
+def _of_batch_system(system: str, entries: object, wait: float, tls: Mapping[str, str] | None) -> SchedulerFile:
+    if not isinstance(entries, dict):
         raise ParameterError(
             Message(
-                "{key} is {value!r}. It must be a table that begins with the line [{key}].", key=system, value=given
+                "{key} is {value!r}. It must be a table that begins with the line [{key}].", key=system, value=entries
             ),
             code="wrong_kind",
         )
-    options = dict(given)
+    options = dict(entries)
     jobs = options.pop("jobs", 1)
     if isinstance(jobs, bool) or not isinstance(jobs, int) or jobs < 1:
         raise ParameterError(
@@ -202,18 +204,18 @@ def _of_batch_system(system: str, given: object, wait: float, tls: Mapping[str, 
     return SchedulerFile(None, wait, tls, system, {"processes": options["cores"], **options}, jobs)
 
 
-def _tls(given: object, folder: Path) -> Mapping[str, str] | None:
+def _tls(entries: object, folder: Path) -> Mapping[str, str] | None:
     """The table of certificates, its paths from the folder that they start at."""
-    if given is None:
+    if entries is None:
         return None
-    if not isinstance(given, dict):
+    if not isinstance(entries, dict):
         raise ParameterError(
             Message(
-                "{key} is {value!r}. It must be a table that begins with the line [{key}].", key="tls", value=given
+                "{key} is {value!r}. It must be a table that begins with the line [{key}].", key="tls", value=entries
             ),
             code="wrong_kind",
         )
-    for key, value in given.items():
+    for key, value in entries.items():
         if key not in TLS_KEYS:
             raise ParameterError(
                 Message("tls.{key} is not a key of a scheduler. {allowed}", key=key, allowed=nearest(key, TLS_KEYS)),
@@ -224,7 +226,7 @@ def _tls(given: object, folder: Path) -> Mapping[str, str] | None:
                 Message(_MEANINGS.get(key, _PATH), key=key, value=value),
                 code="wrong_kind",
             )
-    return {key: value if key == "ciphers" else str(folder / value) for key, value in given.items()}
+    return {key: value if key == "ciphers" else str(folder / value) for key, value in entries.items()}
 
 
 _PATH: Final = template("tls.{key} is {value!r}. It must be the path of a PEM file.")
@@ -242,17 +244,19 @@ def crew_of_scheduler(scheduler: str | Path, function: PointFunction) -> Crew:
         It does not answer.
     """
     require_scheduler(scheduler)
-    asked = scheduler_of(scheduler)
+    settings = scheduler_of(scheduler)
     distributed = _distributed()
-    if asked.system is not None:
-        cluster = batch_cluster(asked)
-        cluster.scale(jobs=asked.jobs)
+    if settings.system is not None:
+        cluster = batch_cluster(settings)
+        cluster.scale(jobs=settings.jobs)
         client = distributed.Client(cluster)
         return crew_of_client(client, function, close=lambda: _closed(client, cluster))
     try:
-        client = distributed.Client(asked.address, timeout=asked.wait_s, security=_security(asked.tls), name="skisnow")
+        client = distributed.Client(
+            settings.address, timeout=settings.wait_s, security=_security(settings.tls), name="skisnow"
+        )
     except (OSError, ValueError, TypeError) as error:
-        raise SkisnowError(_unanswered(asked, error), code="no_scheduler") from error
+        raise SkisnowError(_unanswered(settings, error), code="no_scheduler") from error
     return crew_of_client(client, function, close=lambda: _closed(client))
 
 
@@ -276,23 +280,23 @@ def _require_certificates(tls: Mapping[str, str]) -> None:
         ) from error
 
 
-def _unanswered(asked: SchedulerFile, error: Exception) -> Message:
-    if _is_encrypted(asked):
+def _unanswered(settings: SchedulerFile, error: Exception) -> Message:
+    if _is_encrypted(settings):
         return Message(
             "No connection to the scheduler at {address} ({error}). It uses certificates. Check that it runs, that "
             "ca_file signed its certificate, and that it accepts cert and key of [tls].",
-            address=asked.address,
+            address=settings.address,
             error=error,
         )
     return Message(
         "No scheduler answers at {address} ({error}). Start one with `dask scheduler`, and workers with "
         "`dask worker`; both print their address.",
-        address=asked.address,
+        address=settings.address,
         error=error,
     )
 
 
-def batch_cluster(asked: SchedulerFile) -> Any:
+def batch_cluster(settings: SchedulerFile) -> Any:
     """A cluster of dask-jobqueue, which has no workers yet.
 
     Raises
@@ -301,13 +305,13 @@ def batch_cluster(asked: SchedulerFile) -> Any:
         An option is none of its class.
     """
     jobqueue = _jobqueue()
-    security = _security(asked.tls)
-    options = {**(asked.options or {}), **({} if security is None else {"security": security, "protocol": "tls://"})}
+    security = _security(settings.tls)
+    options = {**(settings.options or {}), **({} if security is None else {"security": security, "protocol": "tls://"})}
     try:
-        return getattr(jobqueue, BATCH_SYSTEMS[asked.system or ""])(**options)
+        return getattr(jobqueue, BATCH_SYSTEMS[settings.system or ""])(**options)
     except (TypeError, ValueError) as error:
         raise ParameterError(
-            Message("[{system}]: dask-jobqueue rejects it: {error}", system=asked.system, error=error),
+            Message("[{system}]: dask-jobqueue rejects it: {error}", system=settings.system, error=error),
             code="rejected_by_dask",
         ) from error
 
@@ -365,8 +369,8 @@ def _security(tls: Mapping[str, str] | None) -> Any:
     named = {"tls_ca_file": tls.get("ca_file"), "tls_ciphers": tls.get("ciphers")}
     for part in ("client", "scheduler", "worker"):
         named |= {f"tls_{part}_cert": tls.get("cert"), f"tls_{part}_key": tls.get("key")}
-    given = {name: value for name, value in named.items() if value is not None}
-    return _distributed().Security(require_encryption=True, **given)
+    stated = {name: value for name, value in named.items() if value is not None}
+    return _distributed().Security(require_encryption=True, **stated)
 
 
 def _distributed() -> Any:

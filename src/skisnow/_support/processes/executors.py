@@ -78,5 +78,5 @@ def require_executor(executor: ExecutorLike | None) -> None:
 def _workers_of(executor: Executor) -> int | None:
     """What executors call it: those of the standard library, MPI's of mpi4py."""
     names = ("_max_workers", "num_workers")
-    found = next((getattr(executor, name) for name in names if hasattr(executor, name)), None)
-    return found if isinstance(found, int) and found > 0 else None
+    workers = next((getattr(executor, name) for name in names if hasattr(executor, name)), None)
+    return workers if isinstance(workers, int) and workers > 0 else None

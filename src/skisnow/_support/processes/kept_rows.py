@@ -90,10 +90,10 @@ class KeptRows:
             path.parent.mkdir(parents=True, exist_ok=True)
         except OSError as error:
             raise cannot_write(path, error) from error
-        kept = {"form": _FORM, "fingerprint": fingerprint, **(about or {})}
+        entries = {"form": _FORM, "fingerprint": fingerprint, **(about or {})}
         if columns is not None:
-            kept["columns"] = json.dumps(list(columns))
-        return cls._begun(path, kept, columns)
+            entries["columns"] = json.dumps(list(columns))
+        return cls._begun(path, entries, columns)
 
     @classmethod
     def read(cls, path: Path) -> Self:
@@ -111,31 +111,31 @@ class KeptRows:
                 Message("{path} cannot be read: there is no such file. Check the path.", path=path), code="cannot_read"
             )
         with _errors(path):
-            found = cls(path)
+            rows = cls(path)
         try:
-            with found._told():
-                found._take()
-                columns = found.about().get("columns")
-            found.columns = None if columns is None else tuple(own_json(columns))
+            with rows._told():
+                rows._take()
+                columns = rows.about().get("columns")
+            rows.columns = None if columns is None else tuple(own_json(columns))
         except BaseException:
-            found.close()
+            rows.close()
             raise
-        return found
+        return rows
 
     @classmethod
     def _begun(cls, path: Path, about: Mapping[str, str], columns: Sequence[str] | None) -> Self:
         with _errors(path):
-            found = cls(path, columns=columns)
+            rows = cls(path, columns=columns)
         try:
-            with found._told():
-                found._take(about)
-                kept = found.about()
-            if kept["fingerprint"] != about["fingerprint"]:
+            with rows._told():
+                rows._take(about)
+                entries = rows.about()
+            if entries["fingerprint"] != about["fingerprint"]:
                 raise _another(path)
         except BaseException:
-            found.close()
+            rows.close()
             raise
-        return found
+        return rows
 
     def _take(self, about: Mapping[str, str] | None = None) -> None:
         """Take the file for this process alone, and begin it where it is new."""
@@ -157,10 +157,10 @@ class KeptRows:
 
     def about(self) -> dict[str, str]:
         """What was kept of the batch when it was begun."""
-        found = dict(self._selected("select name, value from about"))
-        if found.pop(_CHECKSUM, None) != _checksum_of(found):
+        entries = dict(self._selected("select name, value from about"))
+        if entries.pop(_CHECKSUM, None) != _checksum_of(entries):
             raise _damaged(self.path, "the description of the batch has changed")
-        return found
+        return entries
 
     def add(self, rows: Iterable[NumberedText]) -> int:
         """Keep rows, all of them or none: after this call a kill does not lose them. Gives their number.
@@ -232,12 +232,12 @@ class KeptRows:
     def _selected(self, query: str, *parameters: object) -> Iterator[tuple[Any, ...]]:
         with self._told():
             # `yield from` closes the cursor, which fails behind a closed database
-            for found in self._database.execute(query, parameters):  # noqa: UP028
-                yield found
+            for record in self._database.execute(query, parameters):  # noqa: UP028
+                yield record
 
     def _row(self, text: str) -> Row:
-        found = own_json(text)
-        return found if self.columns is None else dict(zip(self.columns, found, strict=True))
+        row = own_json(text)
+        return row if self.columns is None else dict(zip(self.columns, row, strict=True))
 
     def close(self) -> None:
         """Leave the file for a later start."""
@@ -289,8 +289,8 @@ def _errors(path: Path | None, database: sqlite3.Connection | None = None) -> It
             ) from None
         if place_reason(error) is not None:
             raise cannot_write(path or Path("memory"), OSError(str(error))) from error
-        found = None if database is None else first_damage(database)
-        raise _damaged(path, found or str(error)) from error
+        damage = None if database is None else first_damage(database)
+        raise _damaged(path, damage or str(error)) from error
 
 
 def _another(path: Path) -> ParameterError:

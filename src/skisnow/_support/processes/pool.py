@@ -107,11 +107,11 @@ class Pool:
                     size = max(1, min(crew.largest, int(crew.chunk_s / max(done.seconds_per_point, 1e-9))))
                     yield done.rows
         except Exception as error:
-            told = lost() if isinstance(error, SkisnowError) and error.code == LOST else crew.told(error)
-            if told is None:
+            message = lost() if isinstance(error, SkisnowError) and error.code == LOST else crew.told(error)
+            if message is None:
                 raise
             raise SkisnowError(
-                Message("{problem} {advice}", problem=told, advice=self._advice), code="pool_failed"
+                Message("{problem} {advice}", problem=message, advice=self._advice), code="pool_failed"
             ) from error
 
 

@@ -71,14 +71,14 @@ def own_json(text: str | bytes) -> Any:
 
 
 def _object(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
-    found = dict(pairs)
-    if len(found) != len(pairs):
+    entries = dict(pairs)
+    if len(entries) != len(pairs):
         twice = Counter(key for key, _ in pairs).most_common(1)[0][0]
         raise GivenError(
             Message("the key {key} is twice in one object. Remove one.", key=shown(twice)),
             code="repeated_key",
         )
-    return found
+    return entries
 
 
 def _whole(digits: str) -> int:
@@ -130,14 +130,14 @@ def read_record(path: str | Path, kind: type[T], *, only_known: bool = True) -> 
                 Message("{path} is damaged: {key!r} is not one of its keys. Remove it.", path=path, key=name[:60]),
                 code="damaged",
             )
-    known = {name: value for name, value in values.items() if name in hints}
+    fields_given = {name: value for name, value in values.items() if name in hints}
     for field in fields(kind):
-        if field.name not in known and field.default is MISSING and field.default_factory is MISSING:
+        if field.name not in fields_given and field.default is MISSING and field.default_factory is MISSING:
             raise GivenError(
                 Message("{path} is damaged: the key {key} is missing. Remove it.", path=path, key=field.name),
                 code="damaged",
             )
-    for name, value in known.items():
+    for name, value in fields_given.items():
         if not _fits(value, hints[name]):
             raise GivenError(
                 Message(
@@ -148,18 +148,18 @@ def read_record(path: str | Path, kind: type[T], *, only_known: bool = True) -> 
                 ),
                 code="damaged",
             )
-    return kind(**known)
+    return kind(**fields_given)
 
 
 def _fits(value: object, hint: Any) -> bool:
     origin = get_origin(hint)
     if origin is UnionType:
-        return any(_fits(value, each) for each in get_args(hint))
+        return any(_fits(value, argument) for argument in get_args(hint))
     if origin is Literal:
         return isinstance(value, str) and value in get_args(hint)
     if origin is not None and issubclass(origin, Mapping):
         _, inner = get_args(hint)
-        return isinstance(value, dict) and all(_fits(each, inner) for each in value.values())
+        return isinstance(value, dict) and all(_fits(entry, inner) for entry in value.values())
     if hint is float:
         return isinstance(value, int | float) and not isinstance(value, bool)
     if hint is int:

@@ -96,13 +96,13 @@ def _undamaged(doing: Callable[[], Any]) -> Any:
 
 def _rows(sheet: Any) -> Rows:
     sheet.reset_dimensions()  # what the file says of its own size is not believed
-    found: Rows = []
+    rows: Rows = []
     fractions: list[tuple[int, int]] = []
     typed = {".": 0, ",": 0}
 
     def read() -> None:
         for cells in sheet.iter_rows(values_only=True):
-            if len(found) >= MOST_ROWS:
+            if len(rows) >= MOST_ROWS:
                 raise GivenError(
                     Message(
                         "The sheet {sheet!r} has more than {limit} rows. Remove some.",
@@ -115,7 +115,7 @@ def _rows(sheet: Any) -> Rows:
             for value in cells:
                 if isinstance(value, str) and (fraction := _TYPED_FRACTION.fullmatch(value)):
                     typed[fraction[1]] += 1
-            fractions.extend((len(found), place) for place, text in enumerate(texts) if isinstance(cells[place], float))
+            fractions.extend((len(rows), place) for place, text in enumerate(texts) if isinstance(cells[place], float))
             while texts and not texts[-1]:
                 texts.pop()
             if len(texts) > MOST_COLUMNS:
@@ -123,22 +123,22 @@ def _rows(sheet: Any) -> Rows:
                     Message(
                         "Row {row} of the sheet {sheet!r} has {count} cells; at most {limit} columns are read. "
                         "Remove what is not needed.",
-                        row=len(found) + 1,
+                        row=len(rows) + 1,
                         sheet=sheet.title,
                         count=len(texts),
                         limit=MOST_COLUMNS,
                     ),
                     code="too_large",
                 )
-            found.append(texts)
+            rows.append(texts)
 
     _undamaged(read)
-    while found and not found[-1]:
-        found.pop()
+    while rows and not rows[-1]:
+        rows.pop()
     if typed[","] > typed["."]:  # then a reader would take 43.5 for a thousand
         for row, place in fractions:
-            found[row][place] = found[row][place].replace(".", ",")
-    return found
+            rows[row][place] = rows[row][place].replace(".", ",")
+    return rows
 
 
 def _text(value: object) -> str:

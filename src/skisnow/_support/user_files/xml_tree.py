@@ -27,21 +27,21 @@ class Element:
 
     def child(self, *path: str) -> Element | None:
         """The first element that local names lead to, or None."""
-        found: Element | None = self
+        element: Element | None = self
         for name in path:
-            if found is None:
+            if element is None:
                 return None
-            found = next((each for each in found.children if each.name == name), None)
-        return found
+            element = next((inner for inner in element.children if inner.name == name), None)
+        return element
 
     def every(self, name: str) -> Iterator[Element]:
         """Every child of this local name."""
-        return (each for each in self.children if each.name == name)
+        return (child for child in self.children if child.name == name)
 
     def text_of(self, *path: str) -> str:
         """The text where local names lead to, stripped; ``""`` where there is none."""
-        found = self.child(*path)
-        return "" if found is None else found.text.strip()
+        element = self.child(*path)
+        return "" if element is None else element.text.strip()
 
 
 class _Builder:

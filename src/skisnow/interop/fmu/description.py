@@ -34,10 +34,10 @@ def description(model: Model, token: str, *, fmi: Version) -> bytes:
     categories = ET.SubElement(root, "LogCategories")
     ET.SubElement(categories, "Category", name="logStatusError", description="what was refused, and why")
     ET.SubElement(root, "DefaultExperiment", startTime="0", stepSize=repr(model.step))
-    offered = [(number, each) for number, each in enumerate(model.variables) if each.offered]
+    offered = [(number, variable) for number, variable in enumerate(model.variables) if variable.offered]
     variables = ET.SubElement(root, "ModelVariables")
-    for number, each in offered:
-        (_variable_2 if fmi == 2 else _variable_3)(variables, number, each)
+    for number, exported in offered:
+        (_variable_2 if fmi == 2 else _variable_3)(variables, number, exported)
     _structure(root, offered, fmi)
     ET.indent(root)
     return b'<?xml version="1.0" encoding="UTF-8"?>\n' + ET.tostring(root, encoding="utf-8") + b"\n"
@@ -55,28 +55,30 @@ def _head(model: Model, token: str, fmi: Version) -> dict[str, str]:
     }
 
 
-def _attributes(number: int, each: Variable) -> dict[str, str]:
-    variability = "fixed" if each.causality == "parameter" else "continuous"
+def _attributes(number: int, variable: Variable) -> dict[str, str]:
+    variability = "fixed" if variable.causality == "parameter" else "continuous"
     return {
-        "name": each.name,
+        "name": variable.name,
         "valueReference": str(number),
-        "description": each.about,
-        "causality": each.causality,
+        "description": variable.about,
+        "causality": variable.causality,
         "variability": variability,
     }
 
 
-def _quantity(each: Variable) -> dict[str, str]:
-    starts = each.causality in ("parameter", "input")
-    return {"unit": each.unit} | ({"start": repr(each.start)} if starts else {})
+def _quantity(variable: Variable) -> dict[str, str]:
+    starts = variable.causality in ("parameter", "input")
+    return {"unit": variable.unit} | ({"start": repr(variable.start)} if starts else {})
 
 
-def _variable_2(variables: ET.Element, number: int, each: Variable) -> None:
-    ET.SubElement(ET.SubElement(variables, "ScalarVariable", _attributes(number, each)), "Real", _quantity(each))
+def _variable_2(variables: ET.Element, number: int, variable: Variable) -> None:
+    ET.SubElement(
+        ET.SubElement(variables, "ScalarVariable", _attributes(number, variable)), "Real", _quantity(variable)
+    )
 
 
-def _variable_3(variables: ET.Element, number: int, each: Variable) -> None:
-    ET.SubElement(variables, "Float64", _attributes(number, each) | _quantity(each))
+def _variable_3(variables: ET.Element, number: int, variable: Variable) -> None:
+    ET.SubElement(variables, "Float64", _attributes(number, variable) | _quantity(variable))
 
 
 def _structure(root: ET.Element, offered: list[tuple[int, Variable]], fmi: Version) -> None:
@@ -84,14 +86,14 @@ def _structure(root: ET.Element, offered: list[tuple[int, Variable]], fmi: Versi
     structure = ET.SubElement(root, "ModelStructure")
     outputs = [
         str(place if fmi == 2 else number)
-        for place, (number, each) in enumerate(offered, start=1)
-        if each.causality == "output"
+        for place, (number, element) in enumerate(offered, start=1)
+        if element.causality == "output"
     ]
     if fmi == 2:
         lists = ET.SubElement(structure, "Outputs"), ET.SubElement(structure, "InitialUnknowns")
-        for each in lists:
+        for element in lists:
             for place in outputs:
-                ET.SubElement(each, "Unknown", index=place)
+                ET.SubElement(element, "Unknown", index=place)
         return
     for kind in ("Output", "InitialUnknown"):
         for number in outputs:

@@ -59,15 +59,15 @@ def contact_model(scenario: Scenario, *, skis: int, step: float) -> Model:
     sides = SIDES if skis == len(SIDES) else ("ski",)
     runner = Runner.of(scenario.ski)
     contact = SnowContact(setup.snow, [runner] * skis, spacing=setup.numbers["line_spacing_m"])
-    inputs = [each for k, side in enumerate(sides) for each in _pose(side, setup, k)]
+    inputs = [variable for k, side in enumerate(sides) for variable in _pose(side, setup, k)]
     outputs = [
-        each
+        variable
         for side in sides
         for name, unit, about in (
             ("force", "N", "of the snow on the ski"),
             ("moment", "N.m", "of the snow on the ski, about its boot"),
         )
-        for each in vector(f"{side}.{name}", "output", unit, about, np.zeros(3))
+        for variable in vector(f"{side}.{name}", "output", unit, about, np.zeros(3))
     ]
     variables = (TIME, *_snow_parameters(setup.snow), *inputs, *outputs)
     data = core.contact_data(setup.snow.compiled, contact.compiled, _starts(variables))
@@ -119,7 +119,7 @@ def sledge_model(scenario: Scenario, *, step: float) -> Model:
 
 
 def _starts(variables: tuple[Variable, ...]) -> FloatArray:
-    return np.array([each.start for each in variables])
+    return np.array([variable.start for variable in variables])
 
 
 def _require_own_laws(snow: SnowField) -> None:

@@ -74,8 +74,8 @@ def boots_of_markers(
     require_choice("up", up, ("y", "z"))
     c, s = np.cos(slope_angle), np.sin(slope_angle)
     turned = np.array([[c, 0.0, -s], [0.0, 1.0, 0.0], [s, 0.0, c]]) @ (FROM_OPENSIM if up == "y" else np.eye(3))
-    poses = [_pose(markers, each, turned) for each in (left, right)]
-    place, axes = (np.stack(each, axis=1) for each in zip(*poses, strict=True))
+    poses = [_pose(markers, boot, turned) for boot in (left, right)]
+    place, axes = (np.stack(pose, axis=1) for pose in zip(*poses, strict=True))
     return Boots(markers.time, place, axes, frame="slope", source="markers")
 
 

@@ -104,16 +104,18 @@ def _labels_and_units(about: Mapping[str, Values]) -> tuple[list[str], list[str]
     labels: list[str] = []
     units: list[str] = []
     blocks = (str(number) if number > 1 else "" for number in count(1))
-    for block in takewhile(lambda each: f"LABELS{each}" in about, blocks):
+    for block in takewhile(lambda block_number: f"LABELS{block_number}" in about, blocks):
         names, of_block = _words(about, f"LABELS{block}"), _words(about, f"UNITS{block}")
         labels += names
         one = next(iter(of_block or units), "")
-        units += [each.lower() for each in (of_block if len(of_block) == len(names) else [one] * len(names))]
+        units += [
+            block_number.lower() for block_number in (of_block if len(of_block) == len(names) else [one] * len(names))
+        ]
     return labels, units
 
 
 def _words(about: Mapping[str, Values], key: str) -> list[str]:
-    return [each for each in about.get(key, ()) if isinstance(each, str)]
+    return [word for word in about.get(key, ()) if isinstance(word, str)]
 
 
 def _is_quantity(name: str, quantities: set[str]) -> bool:
@@ -324,13 +326,13 @@ def _content(data: bytes) -> C3dContent:
 
 
 def _number(parameters: Mapping[tuple[str, str], Values], key: tuple[str, str], default: float) -> float:
-    found = parameters.get(key, ())
-    return found[0] if len(found) == 1 and isinstance(found[0], float) and math.isfinite(found[0]) else default
+    numbers = parameters.get(key, ())
+    return numbers[0] if len(numbers) == 1 and isinstance(numbers[0], float) and math.isfinite(numbers[0]) else default
 
 
 def _parameters(data: bytes, at: int, processor: int) -> Iterator[tuple[tuple[str, str], Values]]:
     groups: dict[int, str] = {}
-    found: list[tuple[int, str, Values]] = []
+    parameters: list[tuple[int, str, Values]] = []
     while True:
         length, group = struct.unpack_from("bb", data, at)
         if length == 0:
@@ -345,11 +347,11 @@ def _parameters(data: bytes, at: int, processor: int) -> Iterator[tuple[tuple[st
         if group < 0:
             groups[-group] = name
         else:
-            found.append((group, name, _values(data, name, ends + 2, processor)))
+            parameters.append((group, name, _values(data, name, ends + 2, processor)))
         if distance == 0:
             break
         at = ends + distance
-    return (((groups.get(group, ""), name), values) for group, name, values in found)
+    return (((groups.get(group, ""), name), values) for group, name, values in parameters)
 
 
 def _values(data: bytes, name: str, at: int, processor: int) -> Values:
@@ -379,8 +381,8 @@ def _values(data: bytes, name: str, at: int, processor: int) -> Values:
         texts = content.decode("latin-1")
         return [texts[i : i + width].strip() for i in range(0, size, width or 1)]
     if kind == 4:
-        return [float(each) for each in _floats(content, processor)]
-    return [float(each) for each in np.frombuffer(content, code)]
+        return [float(number) for number in _floats(content, processor)]
+    return [float(number) for number in np.frombuffer(content, code)]
 
 
 def _floats(content: bytes, processor: int) -> FloatArray:

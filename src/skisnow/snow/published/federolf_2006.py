@@ -48,14 +48,14 @@ def converted(pressure_slope: float, pressure_offset: float, edge_angle: float) 
 
 def snows() -> dict[str, SnowProperties]:
     """The three snows by name, converted at 55°."""
-    found = {}
+    by_name = {}
     for name, (slope, offset) in PRESSURE_LAWS.items():
         H_V, S_f = converted(slope, offset, CONVERSION_ANGLE)
-        found[name] = SnowProperties(H_V * N_PER_MM3, S_f * N_PER_MM2, f"{SOURCE}: {name}")
-    return found
+        by_name[name] = SnowProperties(H_V * N_PER_MM3, S_f * N_PER_MM2, f"{SOURCE}: {name}")
+    return by_name
 
 
 def named_snows() -> dict[str, SnowProperties]:
     """The three snows by the names of `skisnow.snow.from_results`."""
-    found = snows()
-    return {name: found[words] for name, words in NAMES.items()}
+    by_name = snows()
+    return {name: by_name[words] for name, words in NAMES.items()}
