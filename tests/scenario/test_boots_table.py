@@ -151,7 +151,7 @@ MOT = "turn\nnRows=4\nEndHeader\n\ntime left_edge_angle_deg\n0 0\n1 10\n2 20\n3 
             "inDegrees=no, and angles of boots are in degrees; multiply",
         ),
         (MOT.replace("2 20", "2 -200"), "a.mot", r"row 8, column left_edge_angle_deg: -200 is beyond ±90"),
-        (MOT.replace("2 20", "2 2,0"), "a.mot", r"'2,0' is no finite number; write one with a decimal point$"),
+        (MOT.replace("2 20", "2 2,0"), "a.mot", r"'2,0' is no finite number; write one$"),
         ("time_s,left_up_m,left_up_m\n", "a.csv", "the column left_up_m is there twice"),
         ("time_s,time,left_up_m\n", "a.csv", "needs one of the columns time_s"),
         ("time_s,left_up_m\n0,1\n\n1\n", "a.csv", "row 4: 1 cells stand under 2 names"),

@@ -94,7 +94,7 @@ def test_a_word_that_may_mean_two_keys_is_refused(monkeypatch: pytest.MonkeyPatc
     two = ("friction.mu_0", "snow.S_f_N_per_mm2")
     monkeypatch.setattr(keys, "_KEYS_BY_WORD", {"both": two, "one": two[:1]})
     assert keys.free_key("one") == "friction.mu_0"
-    with pytest.raises(ParameterError, match=r"both may mean friction\.mu_0 or snow\.S_f_N_per_mm2\. Write one"):
+    with pytest.raises(ParameterError, match=r"both may mean one of friction\.mu_0, snow\.S_f_N_per_mm2\. Write one"):
         keys.free_key("both")
 
 

@@ -464,7 +464,7 @@ def test_a_copy_of_a_built_in_scenario_is_warned_of(tmp_path: Path) -> None:
         ("[identify]\nduration_s = 5", "run.duration_s cannot be looked for"),
         ("[identify]\nmass_kg = 90", r"A value of the scenario stands in its own section, \[sledge\]"),
         ('[identify."mu_9"]\nlower = 0', r"Near are .*friction\.mu_0"),
-        ("[identify]\nclok = 'free'", "Or is clock meant"),
+        ("[identify]\nclok = 'free'", "Or did you mean clock"),
         ("[identify]\nclock = 'fre'", 'it must be "start" or "free"'),
         ("[identify.mu_0]\nlowr = 0", "Did you mean lower"),
         ("[identify.mu_0]\nlower = nan", "lower is nan; allowed is any finite number"),

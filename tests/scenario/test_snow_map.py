@@ -97,7 +97,7 @@ def test_hardness_where_it_matters(tmp_path: Path) -> None:
     ("text", "said"),
     [
         ("y_m,H_V_N_per_mm3\n0,1\n", "row 1: column x_m is missing"),
-        ("x_m,y_m\n0,0\n", "there is no column H_V_N_per_mm3 and none S_f_N_per_mm2, or no row"),
+        ("x_m,y_m\n0,0\n", "there is none of the columns H_V_N_per_mm3, S_f_N_per_mm2, or no row"),
         ("x_m,H_V_N_per_mm3\n0,1\n1,-2\n", "row 3, column H_V_N_per_mm3: '-2'"),
         ("x_m,H_V_N_per_mm3\n0,1\n1,0\n", "row 3, column H_V_N_per_mm3: '0'"),
         ("x_m,H_V_N_per_mm3\n0,1\n1,1e308\n", "row 3, column H_V_N_per_mm3: '1e308'"),

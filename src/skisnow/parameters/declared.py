@@ -9,7 +9,7 @@ A field's annotation says what may stand there:
 ...     def __post_init__(self) -> None:
 ...         require_declared(self)
 >>> (density,) = quantities(Air)
->>> density.unit, density.default, density.allowed
+>>> density.unit, density.default, str(density.allowed)
 ('kg/m³', 1.2, '0 or more')
 >>> made(Air, {"air.density_kg_per_m3": 1.1})
 Air(density=1.1)
@@ -29,6 +29,7 @@ from types import NoneType, UnionType
 from typing import Annotated, Any, Final, Literal, NamedTuple, TypeVar, Union, get_args, get_origin
 
 from .._support.errors import ParameterError
+from .._support.messages import Message
 from .._support.nearest import nearest
 from .quantity import Kind, Quantity
 
@@ -124,8 +125,13 @@ def require_effect(thing: Any) -> None:
             continue
         if not condition.holds(values[condition.key]):
             raise ParameterError(
-                f"{quantity.name} is {_in_short(value)}; it goes with {condition.in_words}. Change one of them",
-                code="no_effect",
+                Message(
+                    "{name} is {value}; it goes with {condition}. Change one of them",
+                    name=quantity.name,
+                    value=_in_short(value),
+                    condition=condition.in_words,
+                ),
+                code="contradiction",
             )
 
 
@@ -352,11 +358,19 @@ def checked_table(owner: type, table: Mapping[str, Any], place: str) -> dict[str
     keys = {quantity.name: quantity for quantity in own_quantities(owner)}
     for name in table:
         if name not in keys:
-            raise ParameterError(f"{place}: there is no {name!r}. {nearest(name, keys)}")
+            raise ParameterError(
+                Message(
+                    "{place}: there is no {name!r}. {allowed}", place=place, name=name, allowed=nearest(name, keys)
+                ),
+                code="unknown_name",
+            )
     for name, key in keys.items():
         if key.needed and name not in table:
-            raise ParameterError(f"{place}: {name} is missing: {key.meaning}")
+            raise ParameterError(
+                Message("{place}: {name} is missing: {meaning}", place=place, name=name, meaning=key.meaning),
+                code="missing",
+            )
     try:
         return {name: keys[name].in_range(value) for name, value in table.items()}
     except ParameterError as error:
-        raise ParameterError(f"{place}: {error}") from error
+        raise error.at(place) from error

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import KW_ONLY, dataclass, replace
 from numbers import Real
-from typing import TYPE_CHECKING, Any, Literal, TypeAlias
+from typing import TYPE_CHECKING, Any, Final, Literal, TypeAlias
 
 from .._support.errors import ParameterError
+from .._support.messages import Message, template
 from .._support.units import unit_of_name
 
 if TYPE_CHECKING:
@@ -66,15 +67,17 @@ class Condition:
         return (actual == self.value) != self.differs
 
     @property
-    def in_words(self) -> str:
+    def in_words(self) -> Message:
         """The condition for a message.
 
-        >>> Condition("shear.law", "machining").in_words, Condition("snow.delayed_share", 0.0, differs=True).in_words
-        ('shear.law = "machining"', 'snow.delayed_share other than 0')
+        >>> print(Condition("shear.law", "machining").in_words)
+        shear.law = "machining"
+        >>> print(Condition("snow.delayed_share", 0.0, differs=True).in_words)
+        snow.delayed_share other than 0
         """
         if self.differs:
-            return f"{self.key} other than {self.value:g}"
-        return f'{self.key} = "{self.value}"'
+            return Message("{key} other than {value:g}", key=self.key, value=self.value)
+        return Message('{key} = "{value}"', key=self.key, value=self.value)
 
 
 @dataclass(frozen=True, slots=True)
@@ -152,25 +155,29 @@ class Quantity:
         return unit_of_name(self.name).size
 
     @property
-    def allowed(self) -> str:
+    def allowed(self) -> Message:
         """The range in words.
 
-        >>> Quantity("load_N", "load", lowest=0.0, above=True).allowed
-        'above 0'
+        >>> print(Quantity("load_N", "load", lowest=0.0, above=True).allowed)
+        above 0
         """
         if self.kind == "switch":
-            return "true or false"
+            return Message("true or false")
         if self.kind == "text":
-            return " or ".join(self.choices) or ("a text" if self.blank else "a text that is not blank")
+            return _allowed_texts(self.choices, self.blank)
         if self.kind in ("numbers", "three numbers"):
-            return f"{self.kind}, each {replace(self, kind='number').allowed}"
-        kind = "whole numbers " if self.kind == "whole number" else ""
+            each = replace(self, kind="number").allowed
+            if self.kind == "numbers":
+                return Message("numbers, each {allowed}", allowed=each)
+            return Message("three numbers, each {allowed}", allowed=each)
+        whole = self.kind == "whole number"
         if self.highest < math.inf:
-            low, high = "above" if self.above else "from", "below " if self.below else ""
-            return f"{kind}{low} {self.lowest:g} to {high}{self.highest:g}"
-        if self.lowest > -math.inf:
-            return kind + (f"above {self.lowest:g}" if self.above else f"{self.lowest:g} or more")
-        return f"any {'whole' if kind else 'finite'} number"
+            text = _RANGES[self.above, self.below, whole]
+        elif self.lowest > -math.inf:
+            text = _HALF_RANGES[self.above, whole]
+        else:
+            return Message("any whole number") if whole else Message("any finite number")
+        return Message(text, low=self.lowest, high=self.highest)
 
     @property
     def described(self) -> str:
@@ -217,13 +224,9 @@ class Quantity:
             return math.inf
         if self.kind in ("number", "whole number") and isinstance(value, int | float) and not isinstance(value, bool):
             return self._number(value)
-        wanted = {
-            "switch": "true or false without quotes",
-            "text": "a text in quotes",
-            "numbers": "a list of numbers in brackets",
-            "three numbers": "[a, b, c]",
-        }.get(self.kind, f"a {self.kind}")
-        raise ParameterError(f"{self.name} is {_shown(value)}; it must be {wanted}")
+        raise ParameterError(
+            Message(_OF_ANOTHER_KIND[self.kind], name=self.name, value=_shown(value)), code="wrong_kind"
+        )
 
     def _number(self, value: float) -> float | int:
         try:
@@ -231,12 +234,23 @@ class Quantity:
         except OverflowError:
             number = math.inf
         if number and math.isfinite(number) and not SMALLEST <= abs(number) <= LARGEST:
-            what = f"allowed are 0 and sizes from {SMALLEST:g} to {LARGEST:g}"
-            raise ParameterError(f"{self.name} is {_shown(value)}, which is no quantity; {what}")
+            raise ParameterError(
+                Message(
+                    "{name} is {value}, which is no quantity; allowed are 0 and sizes from {smallest:g} to {largest:g}",
+                    name=self.name,
+                    value=_shown(value),
+                    smallest=SMALLEST,
+                    largest=LARGEST,
+                ),
+                code="wrong_kind",
+            )
         if self.kind == "number":
             return number
         if not number.is_integer():
-            raise ParameterError(f"{self.name} is {_shown(value)}; it must be a whole number")
+            raise ParameterError(
+                Message("{name} is {value}; it must be a whole number", name=self.name, value=_shown(value)),
+                code="wrong_kind",
+            )
         return int(value)
 
     def each_of(self, values: Iterable[object]) -> Iterator[tuple[Quantity, object]]:
@@ -257,8 +271,16 @@ class Quantity:
             for one, element in self.each_of(value):
                 one.in_range(element)
         if not self._allows(checked):
-            unit = f" {self.unit}" if self.unit else ""
-            raise ParameterError(f"{self.name} is {_shown(value)}; allowed is {self.allowed}{unit}")
+            raise ParameterError(
+                Message(
+                    _NOT_ALLOWED_IN_UNIT if self.unit else _NOT_ALLOWED,
+                    name=self.name,
+                    value=_shown(value),
+                    allowed=self.allowed,
+                    unit=self.unit,
+                ),
+                code="out_of_range",
+            )
         return checked
 
     @property
@@ -299,7 +321,10 @@ class Quantity:
         elif self.kind in ("number", "whole number"):
             self.in_range(_plain(value, self._held))
         elif self.in_range(value) != value:  # a file's text may have blanks around it
-            raise ParameterError(f"{self.name} is {_shown(value)}; allowed is {self.allowed}")
+            raise ParameterError(
+                Message(_NOT_ALLOWED, name=self.name, value=_shown(value), allowed=self.allowed),
+                code="out_of_range",
+            )
 
     def _allows(self, value: InputValue) -> bool:
         if isinstance(value, str):
@@ -312,6 +337,45 @@ class Quantity:
             return self.infinite and value > 0
         at_end = (self.above and value == self.lowest) or (self.below and value == self.highest)
         return self.lowest <= value <= self.highest and not at_end
+
+
+_OF_ANOTHER_KIND: Final = {
+    "switch": template("{name} is {value}; it must be true or false without quotes"),
+    "text": template("{name} is {value}; it must be a text in quotes"),
+    "number": template("{name} is {value}; it must be a number"),
+    "whole number": template("{name} is {value}; it must be a whole number"),
+    "numbers": template("{name} is {value}; it must be a list of numbers in brackets"),
+    "three numbers": template("{name} is {value}; it must be [a, b, c]"),
+}
+_NOT_ALLOWED: Final = template("{name} is {value}; allowed is {allowed}")
+_NOT_ALLOWED_IN_UNIT: Final = template("{name} is {value}; allowed is {allowed} {unit}")
+_RANGES: Final = {
+    (False, False, False): template("from {low:g} to {high:g}"),
+    (True, False, False): template("above {low:g} to {high:g}"),
+    (False, True, False): template("from {low:g} to below {high:g}"),
+    (True, True, False): template("above {low:g} to below {high:g}"),
+    (False, False, True): template("whole numbers from {low:g} to {high:g}"),
+    (True, False, True): template("whole numbers above {low:g} to {high:g}"),
+    (False, True, True): template("whole numbers from {low:g} to below {high:g}"),
+    (True, True, True): template("whole numbers above {low:g} to below {high:g}"),
+}
+"""By whether the lowest value is excluded, the highest one, and whether only whole numbers are allowed."""
+_HALF_RANGES: Final = {
+    (False, False): template("{low:g} or more"),
+    (True, False): template("above {low:g}"),
+    (False, True): template("whole numbers {low:g} or more"),
+    (True, True): template("whole numbers above {low:g}"),
+}
+
+
+def _allowed_texts(choices: Sequence[str], blank: bool) -> Message:
+    if len(choices) > 2:
+        return Message("one of {choices}", choices=choices)
+    if len(choices) == 2:
+        return Message("{first} or {second}", first=choices[0], second=choices[1])
+    if choices:
+        return Message("{choice}", choice=choices[0])
+    return Message("a text") if blank else Message("a text that is not blank")
 
 
 def _plain(value: object, factor: float) -> object:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from .._support.errors import ParameterError
+from .._support.messages import Message
 from .._support.processes.batch import run_batch
 from ..parameters import values_of
 from ..report.turn.chain import EnsembleRun
@@ -83,7 +84,9 @@ def inputs_with(priors: Iterable[Prior], turn: Scenario) -> tuple[Measured | Pri
         del inputs[CAMBER_ROUNDING]
     for prior in priors:
         if prior.key in MEASURED:
-            raise ParameterError(f"{prior.key} has no prior here: its interval comes from the campaign")
+            raise ParameterError(
+                Message("{key} has no prior here: its interval comes from the campaign", key=prior.key), code="no_data"
+            )
         inputs[prior.key] = prior
     return tuple(inputs.values())
 

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Final
 
 from .._support.errors import ParameterError
+from .._support.messages import Message
 from .._support.processes.pool import workers_in_force
 from ..campaign import Campaign, read_campaign
 from ..estimation import Analysis, analyse
@@ -161,12 +162,24 @@ def _run(contact: str, turn: Scenario, say: Callable[[str], None]) -> Run:
 def _require(unloading_ratio: float | None, shear_displacement: float | None, runs: int) -> None:
     if unloading_ratio is not None and not unloading_ratio > ELASTIC:
         raise ParameterError(
-            f"unloading_ratio is {unloading_ratio}; k_u/H_V must be above 1 here: elastic snow is the other contact"
+            Message(
+                "unloading_ratio is {unloading_ratio}; k_u/H_V must be above 1 here: elastic snow is the other contact",
+                unloading_ratio=unloading_ratio,
+            ),
+            code="out_of_range",
         )
     if shear_displacement is not None and not shear_displacement > 0.0:
-        raise ParameterError(f"shear_displacement is {shear_displacement} m; u_y must be above 0")
+        raise ParameterError(
+            Message(
+                "shear_displacement is {shear_displacement} m; u_y must be above 0",
+                shear_displacement=shear_displacement,
+            ),
+            code="out_of_range",
+        )
     if runs < FEWEST:
-        raise ParameterError(f"runs is {runs}; a band needs {FEWEST} or more")
+        raise ParameterError(
+            Message("runs is {runs}; a band needs {fewest} or more", runs=runs, fewest=FEWEST), code="out_of_range"
+        )
 
 
 def _silent(_text: str) -> None:

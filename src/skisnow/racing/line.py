@@ -91,21 +91,39 @@ class RacingLine(Shown):
         gates = self.course.gates
         if len(self.turns) != len(gates):
             raise ParameterError(
-                f"the line has {len(self.turns)} turns and the course {len(gates)} gates; give one each"
+                Message(
+                    "the line has {n_turns} turns and the course {n_gates} gates; give one each",
+                    n_turns=len(self.turns),
+                    n_gates=len(gates),
+                ),
+                code="wrong_shape",
             )
         way = ways(self.course, self.start)
         x, y, share = [self.start[0]], [self.start[1]], [0.5]
         for gate, turn, reach in zip(gates, self.turns, way, strict=True):
             if not LEAST_TURNING <= turn.turning <= 1.0:
-                raise ParameterError(f"gate {gate.name}: turning is {turn.turning:g}; it must be from 0.2 to 1")
+                raise ParameterError(
+                    Message(
+                        "gate {name}: turning is {turning:g}; it must be from 0.2 to 1",
+                        name=gate.name,
+                        turning=turn.turning,
+                    ),
+                    code="out_of_range",
+                )
             x.append(gate.turning[0] + turn.along * reach)
             y.append(gate.turning[1] + (turn.aside if gate.side == "left" else -turn.aside))
             share.append(0.5 * turn.turning)
         for i, gate in enumerate(gates):
             if not x[i + 1] > x[i]:
                 raise ParameterError(
-                    f"gate {gate.name}: its apex at x = {x[i + 1]:g} m does not lie below the one before, {x[i]:g} m; "
-                    "a line goes down the slope"
+                    Message(
+                        "gate {name}: its apex at x = {x:g} m does not lie below the one before, {before:g} m; a "
+                        "line goes down the slope",
+                        name=gate.name,
+                        x=x[i + 1],
+                        before=x[i],
+                    ),
+                    code="out_of_range",
                 )
         for name, values in (("_x", x), ("_y", y), ("_share", share)):
             object.__setattr__(self, name, values)
@@ -191,7 +209,9 @@ def course_of(scenario: Scenario) -> Course:
         The scenario has no such part.
     """
     if scenario.course is None:
-        raise ParameterError("the scenario has no course; a race needs one: [course] name = or file =")
+        raise ParameterError(
+            Message("the scenario has no course; a race needs one: [course] name = or file ="), code="no_data"
+        )
     return scenario.course
 
 
@@ -204,7 +224,9 @@ def skier_of(scenario: Scenario) -> Skier:
         The scenario has no such part.
     """
     if scenario.skier is None:
-        raise ParameterError('the scenario has no skier; a race needs one: [skier] steers = "gates"')
+        raise ParameterError(
+            Message('the scenario has no skier; a race needs one: [skier] steers = "gates"'), code="no_data"
+        )
     return scenario.skier
 
 
@@ -272,7 +294,15 @@ def read_line(path: Path, course: Course, start: tuple[float, float]) -> RacingL
     """
     rows = list(csv_rows(path, COLUMNS[:4], action=Message("Write the line with `skisnow race` again.")))
     if not 0 < len(rows) <= len(course.gates):
-        raise ParameterError(f"{path}: it has {len(rows)} rows. Allowed: 1 to {len(course.gates)}, a row for each gate")
+        raise ParameterError(
+            Message(
+                "{path}: it has {n_rows} rows. Allowed: 1 to {n_gates}, a row for each gate",
+                path=path,
+                n_rows=len(rows),
+                n_gates=len(course.gates),
+            ),
+            code="out_of_range",
+        )
     for row, gate in zip(rows, course.gates, strict=False):
         if row.cells["gate"] != gate.name:
             raise row.refused(

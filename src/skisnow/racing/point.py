@@ -12,6 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .._support.errors import ParameterError
+from .._support.messages import Message
 from ..scenario import Plane, Scenario
 from ..skier.steering import Line
 from ..track.course import CourseResult, MovingPoint, passages
@@ -77,7 +78,10 @@ class PointRacer:
             The slope is no plane, or there is no skier.
         """
         if not isinstance(scenario.slope, Plane):
-            raise ParameterError("a point races on a plane; the scenario has a profile or a grid. Take the skier")
+            raise ParameterError(
+                Message("a point races on a plane; the scenario has a profile or a grid. Take the skier"),
+                code="not_supported",
+            )
         ski, air, contact = scenario.ski, scenario.air, scenario.contact
         return cls(
             slope_angle=scenario.slope.angle,

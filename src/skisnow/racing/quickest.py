@@ -204,28 +204,52 @@ def _begun(scenario: Scenario, gates: int | None, start: RacingLine | None) -> R
     line = follower_line(scenario) if start is None else start
     if start is not None and len(start.turns) != len(course.gates) and gates is None:
         raise ParameterError(
-            f"the line to begin from has {len(start.turns)} turns and the course {len(course.gates)} gates; say gates="
+            Message(
+                "the line to begin from has {n_turns} turns and the course {n_gates} gates; say gates=",
+                n_turns=len(start.turns),
+                n_gates=len(course.gates),
+            ),
+            code="wrong_shape",
         )
     for gate, turn in zip(course.gates, line.turns, strict=False):
         for name, (low, high) in RANGES.items():
             if not low <= getattr(turn, name) <= high:
                 raise ParameterError(
-                    f"gate {gate.name}: {name} is {getattr(turn, name):g}; a search begins within {low:g} to {high:g}"
+                    Message(
+                        "gate {gate}: {name} is {value:g}; a search begins within {low:g} to {high:g}",
+                        gate=gate.name,
+                        name=name,
+                        value=getattr(turn, name),
+                        low=low,
+                        high=high,
+                    ),
+                    code="out_of_range",
                 )
     count = len(course.gates) if gates is None else gates
     if not 2 <= count <= len(line.turns):
-        raise ParameterError(f"gates is {count}; it must be from 2 to {len(line.turns)}")
+        raise ParameterError(
+            Message("gates is {count}; it must be from 2 to {n_turns}", count=count, n_turns=len(line.turns)),
+            code="out_of_range",
+        )
     return cut(line, count)
 
 
 def _window(gates: int, window: int | None, step: int, ahead: int) -> tuple[int, int]:
     window = gates if window is None else window
     if not 2 <= window <= gates:
-        raise ParameterError(f"window is {window}; it must be from 2 to the {gates} gates of the course")
+        raise ParameterError(
+            Message(
+                "window is {window}; it must be from 2 to the {gates} gates of the course", window=window, gates=gates
+            ),
+            code="out_of_range",
+        )
     if not 1 <= step <= window:
-        raise ParameterError(f"step is {step}; it must be from 1 to the window's {window} gates")
+        raise ParameterError(
+            Message("step is {step}; it must be from 1 to the window's {window} gates", step=step, window=window),
+            code="out_of_range",
+        )
     if ahead < 0:
-        raise ParameterError(f"ahead is {ahead}; it must be 0 or more")
+        raise ParameterError(Message("ahead is {ahead}; it must be 0 or more", ahead=ahead), code="out_of_range")
     return window, step
 
 
@@ -238,15 +262,28 @@ def _search(search: Search | None, model: RacerModel) -> Search:
 
 def _require(*, evaluations: int, population: int | None, spread: float, settled: float, room: float) -> None:
     if evaluations < 1:
-        raise ParameterError(f"evaluations is {evaluations}; at least 1 is needed")
+        raise ParameterError(
+            Message("evaluations is {evaluations}; at least 1 is needed", evaluations=evaluations), code="out_of_range"
+        )
     if population is not None and population < 4:
-        raise ParameterError(f"population is {population}; at least 4 is needed")
+        raise ParameterError(
+            Message("population is {population}; at least 4 is needed", population=population), code="out_of_range"
+        )
     if not 0.0 < spread <= 1.0:
-        raise ParameterError(f"spread is {spread:g}; it must be above 0 and at most 1")
+        raise ParameterError(
+            Message("spread is {spread:g}; it must be above 0 and at most 1", spread=spread), code="out_of_range"
+        )
     if not 0.0 <= room <= 1.0:
-        raise ParameterError(f"room is {room:g}; it must be from 0 to 1")
+        raise ParameterError(Message("room is {room:g}; it must be from 0 to 1", room=room), code="out_of_range")
     if not 0.0 <= settled < NOT_PASSED:
-        raise ParameterError(f"settled is {settled:g}; it must be from 0 to below {NOT_PASSED:g}")
+        raise ParameterError(
+            Message(
+                "settled is {settled:g}; it must be from 0 to below {not_passed:g}",
+                settled=settled,
+                not_passed=NOT_PASSED,
+            ),
+            code="out_of_range",
+        )
 
 
 def _fingerprint(racer: Racer, begun: RacingLine, settings: Sequence[object]) -> str:

@@ -78,8 +78,11 @@ class Evaluations:
             row = self.kept.row(number)
             if row["place"] != place.tolist():
                 raise ParameterError(
-                    "a kept evaluation has another place than this search asks for: its numbers are of another machine "
-                    "or library. Remove the file to begin anew"
+                    Message(
+                        "a kept evaluation has another place than this search asks for: its numbers are of "
+                        "another machine or library. Remove the file to begin anew"
+                    ),
+                    code="different_versions",
                 )
             self.done.append(Evaluated(number, tuple(place.tolist()), row))
 

@@ -16,6 +16,7 @@ from scipy.stats import qmc
 from .._support.content import pieces_of
 from .._support.display import Facts, Shown, amount
 from .._support.errors import ParameterError
+from .._support.messages import Message
 from .._support.nearest import require_choice
 from .._support.processes.batch import run_batch
 from .._support.processes.executors import ExecutorLike
@@ -133,9 +134,15 @@ def compared(
     """
     require_choice("model", model, get_args(RacerModel))
     if AS_IT_IS in others:
-        raise ParameterError(f"others has the name {AS_IT_IS!r}, which the scenario itself has. Rename the variant.")
+        raise ParameterError(
+            Message(
+                "others has the name {as_it_is!r}, which the scenario itself has. Rename the variant.",
+                as_it_is=AS_IT_IS,
+            ),
+            code="repeated",
+        )
     if not snows or not others:
-        raise ParameterError("a comparison needs one snow or more, and one variant or more")
+        raise ParameterError(Message("a comparison needs one snow or more, and one variant or more"), code="missing")
     named = {AS_IT_IS: scenario, **others}
     points = [_on(variant, scenario, snow) for variant in named.values() for snow in snows]
     finished_rows = None
@@ -193,7 +200,9 @@ def drawn_for_race(snow: SnowProperties, count: int, *, spread: float | None, se
         return [snow]
     if spread is not None:
         if not 0.0 < spread <= 10.0:
-            raise ParameterError(f"spread is {spread:g}; it must be above 0 and at most 10")
+            raise ParameterError(
+                Message("spread is {spread:g}; it must be above 0 and at most 10", spread=spread), code="out_of_range"
+            )
         snow = replace(
             snow,
             snow_hardness_interval=_about(snow.snow_hardness, spread),

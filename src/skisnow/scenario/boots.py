@@ -16,13 +16,14 @@ import numpy.typing as npt
 
 from .._support.display import Facts, Shown, ends
 from .._support.errors import ParameterError
+from .._support.messages import Message
 from .._support.nearest import require_choice
 from .._support.spreadsheet_text import column_names, decimal_mark, most_frequent_separator, with_decimal_point
 from .._support.units import DEGREE
 from .._support.user_files import plain_text
 from .._support.user_files.motion_head import HEAD_END, degrees_stated, head_of_motion, require_whole
 from ..geometry.boot_axes import axes_of
-from ..parameters import meant
+from ..parameters import nearest
 
 if TYPE_CHECKING:
     from scipy.interpolate import CubicSpline
@@ -114,8 +115,11 @@ class Boots(Shown):
             furthest, cause = math.inf, error
         if furthest > FURTHEST_TURN:
             raise ParameterError(
-                "boots: no spline joins these axes: they turn too far within too short a step. Correct the rows, or "
-                "space them more evenly."
+                Message(
+                    "boots: no spline joins these axes: they turn too far within too short a step. Correct "
+                    "the rows, or space them more evenly."
+                ),
+                code="not_joined",
             ) from cause
         return splines
 
@@ -123,32 +127,65 @@ class Boots(Shown):
         n = len(self.at) if self.at.ndim == 1 else 0
         if n < FEWEST_POSES or self.place.shape != (n, 2, 3) or self.axes.shape != (n, 2, 3, 3):
             raise ParameterError(
-                f"boots need {FEWEST_POSES} rows or more, each with a place (2, 3) and axes (2, 3, 3); there are "
-                f"{self.at.shape}, {self.place.shape} and {self.axes.shape}"
+                Message(
+                    "boots need {fewest_poses} rows or more, each with a place (2, 3) and axes (2, 3, 3); "
+                    "there are {shape}, {shape_2} and {shape_3}",
+                    fewest_poses=FEWEST_POSES,
+                    shape=str(self.at.shape),
+                    shape_2=str(self.place.shape),
+                    shape_3=str(self.axes.shape),
+                ),
+                code="wrong_shape",
             )
         for name in ("at", "place", "axes"):
             if not np.isfinite(getattr(self, name)).all():
-                raise ParameterError(f"boots: {name} holds a number that is not finite")
+                raise ParameterError(
+                    Message("boots: {name} holds a number that is not finite", name=name), code="not_a_number"
+                )
             if np.abs(getattr(self, name)).max() > LARGEST:
-                raise ParameterError(f"boots: {name} has a number beyond ±{LARGEST:g}. Correct it.")
+                raise ParameterError(
+                    Message("boots: {name} has a number beyond ±{largest:g}. Correct it.", name=name, largest=LARGEST),
+                    code="out_of_range",
+                )
         if not (np.diff(self.at) > 0.0).all():
             row = int(np.argmin(np.diff(self.at) > 0.0))
             raise ParameterError(
-                f"boots: {self.over} of row {row + 2} is {self.at[row + 1]:g} after {self.at[row]:g}; it must rise"
+                Message(
+                    "boots: {over} of row {row} is {at:g} after {before:g}; it must rise",
+                    over=self.over,
+                    row=row + 2,
+                    at=self.at[row + 1],
+                    before=self.at[row],
+                ),
+                code="not_rising",
             )
         if not (np.diff(self.at) >= SHORTEST_STEP).all():
             row = int(np.argmin(np.diff(self.at) >= SHORTEST_STEP))
             raise ParameterError(
-                f"boots: {self.over} of row {row + 2} is {self.at[row + 1]:g} after {self.at[row]:g}. Allowed: steps "
-                f"of {SHORTEST_STEP:g} or more. Correct the number, or omit one of the rows."
+                Message(
+                    "boots: {over} of row {row} is {at:g} after {before:g}. Allowed: steps of "
+                    "{shortest_step:g} or more. Correct the number, or omit one of the rows.",
+                    over=self.over,
+                    row=row + 2,
+                    at=self.at[row + 1],
+                    before=self.at[row],
+                    shortest_step=SHORTEST_STEP,
+                ),
+                code="out_of_range",
             )
         off = np.abs(self.axes @ np.swapaxes(self.axes, -1, -2) - np.eye(3)).max()
         if off > 1e-9 or np.any(np.linalg.det(self.axes) < 0.0):
-            raise ParameterError(f"boots: axes are off by {off:.1e} from right-handed orthonormal ones")
+            raise ParameterError(
+                Message("boots: axes are off by {off:.1e} from right-handed orthonormal ones", off=off),
+                code="not_a_rotation",
+            )
         require_choice("boots: frame", self.frame, get_args(Frame))
         require_choice("boots: over", self.over, get_args(Over))
         if self.frame == "slope" and self.over == "distance":
-            raise ParameterError("boots in the slope's frame go over time: the distance run is what they make it")
+            raise ParameterError(
+                Message("boots in the slope's frame go over time: the distance run is what they make it"),
+                code="contradiction",
+            )
 
     def _facts(self) -> Facts:
         unit = "s" if self.over == "time" else "m"
@@ -206,7 +243,15 @@ def read_boots(path: str | Path, *, edge_angle: float = 0.0, stance_width: float
     table = {name: _column(path, rows, head, place) for place, name in enumerate(head) if _is_read(name)}
     clock = next(name for name in CLOCKS if name in table)
     if len(rows) < FEWEST_POSES:
-        raise ParameterError(f"{path}: {len(rows)} rows with poses; boots need {FEWEST_POSES} rows or more")
+        raise ParameterError(
+            Message(
+                "{path}: {n_rows} rows with poses; boots need {fewest_poses} rows or more",
+                path=path,
+                n_rows=len(rows),
+                fewest_poses=FEWEST_POSES,
+            ),
+            code="out_of_range",
+        )
     _require_rising(path, clock, rows, table[clock])
     try:
         place, axes = _of_slope(table) if "left_x_m" in head else _of_sledge(table, edge_angle, stance_width)
@@ -219,7 +264,7 @@ def read_boots(path: str | Path, *, edge_angle: float = 0.0, stance_width: float
             source=str(path),
         )
     except ParameterError as error:
-        raise ParameterError(f"{path}: {error}") from error
+        raise error.at(path) from error
 
 
 def _rows(path: Path, text: str) -> list[Row]:
@@ -230,15 +275,26 @@ def _rows(path: Path, text: str) -> list[Row]:
     elif path.suffix.lower() == ".csv":
         rows, said = _of_csv(path, text), {}
     else:
-        raise ParameterError(f"{path}: boots are read from .csv, .mot and .sto; give the file the ending of what it is")
+        raise ParameterError(
+            Message(
+                "{path}: boots are read from .csv, .mot and .sto; give the file the ending of what it is", path=path
+            ),
+            code="wrong_ending",
+        )
     if not rows:
-        raise ParameterError(f"{path}: there is no row with the names of columns")
+        raise ParameterError(
+            Message("{path}: there is no row with the names of columns", path=path), code="unknown_name"
+        )
     names = rows[0][1]
     require_whole(path, said, rows=len(rows) - 1, columns=len(names))
     if degrees_stated(path, said) is False and any(name.endswith(ANGLES) for name in names):
         raise ParameterError(
-            f"{path}: the head says inDegrees=no, and angles of boots are in degrees; multiply them by 57.29578 and "
-            "write inDegrees=yes"
+            Message(
+                "{path}: the head says inDegrees=no, and angles of boots are in degrees; multiply them "
+                "by 57.29578 and write inDegrees=yes",
+                path=path,
+            ),
+            code="in_degrees",
         )
     return rows
 
@@ -250,7 +306,9 @@ def _of_csv(path: Path, text: str) -> list[Row]:
     try:
         rows = [(table.line_num, row) for row in table if any(cell.strip() for cell in row)]
     except csv.Error as error:
-        raise ParameterError(f"{path} is no CSV text ({error})") from error
+        raise ParameterError(
+            Message("{path} is no CSV text ({error})", path=path, error=error), code="wrong_kind"
+        ) from error
     cells = (cell for _, row in rows[1:] for cell in row)
     if separator == "," or decimal_mark([cells], separator=separator) == ".":
         return rows
@@ -261,7 +319,14 @@ def _behind_head(path: Path, lines: list[str]) -> tuple[list[Row], dict[str, str
     """Rows of OpenSim's table, and what its head says."""
     ends = [i for i, line in enumerate(lines) if line.strip().lower() == HEAD_END]
     if not ends:
-        raise ParameterError(f"{path} has no line {HEAD_END}, which ends the head of a .mot or .sto file; add it")
+        raise ParameterError(
+            Message(
+                "{path} has no line {head_end}, which ends the head of a .mot or .sto file; add it",
+                path=path,
+                head_end=HEAD_END,
+            ),
+            code="no_data",
+        )
     begin = ends[0] + 1
     rows = [(number, line.split()) for number, line in enumerate(lines[begin:], begin + 1) if line.strip()]
     return rows, head_of_motion(lines[: ends[0]])
@@ -281,32 +346,71 @@ def _require_columns(path: Path, head: list[str]) -> None:
     for name in head:
         if _is_read(name) and name not in motion_columns:
             raise ParameterError(
-                f"{path}: there is no column {name}. {meant(name, motion_columns)}There are {', '.join(motion_columns)}"
+                Message(
+                    "{path}: there is no column {name}. {allowed}",
+                    path=path,
+                    name=name,
+                    allowed=nearest(name, motion_columns),
+                ),
+                code="missing",
             )
         if counts[name] > 1:
-            raise ParameterError(f"{path}: the column {name} is there twice; leave one out")
+            raise ParameterError(
+                Message("{path}: the column {name} is there twice; leave one out", path=path, name=name),
+                code="repeated",
+            )
     clocks = [name for name in CLOCKS if name in head]
     if len(clocks) != 1:
-        raise ParameterError(f"{path}: it needs one of the columns time_s (time in .mot) and distance_m")
+        raise ParameterError(
+            Message("{path}: it needs one of the columns time_s (time in .mot) and distance_m", path=path),
+            code="missing",
+        )
     if not any(_is_read(name) and name not in clocks for name in head):
-        raise ParameterError(f"{path}: no column is one of a boot. There are {', '.join(motion_columns[3:])}")
+        raise ParameterError(
+            Message("{path}: no column is one of a boot. There are {known}", path=path, known=list(motion_columns[3:])),
+            code="missing",
+        )
     needed = [f"{side}_{name}" for side in SIDES for name in (*OF_SLOPE, *ANGLES)] if "left_x_m" in head else []
     for name in needed:
         if name not in head:
-            raise ParameterError(f"{path}: the column {name} is missing; boots in the slope's frame need every one")
+            raise ParameterError(
+                Message(
+                    "{path}: the column {name} is missing; boots in the slope's frame need every one",
+                    path=path,
+                    name=name,
+                ),
+                code="missing",
+            )
 
 
 def _require_rising(path: Path, clock: str, rows: list[Row], at: npt.NDArray[np.float64]) -> None:
     for (line, _), before, after in zip(rows[1:], at[:-1], at[1:], strict=True):
         if not after > before:
             raise ParameterError(
-                f"{path}, row {line}, column {clock}: {after:g} after {before:g}; it must rise. Put the rows in order, "
-                "or leave one of two with the same pose out"
+                Message(
+                    "{path}, row {line}, column {clock}: {after:g} after {before:g}; it must rise. Put the "
+                    "rows in order, or leave one of two with the same pose out",
+                    path=path,
+                    line=line,
+                    clock=clock,
+                    after=after,
+                    before=before,
+                ),
+                code="not_rising",
             )
         if after - before < SHORTEST_STEP:
             raise ParameterError(
-                f"{path}, row {line}, column {clock}: {after:g} after {before:g}. Allowed: steps of {SHORTEST_STEP:g} "
-                "or more. Correct the number, or omit one of the rows."
+                Message(
+                    "{path}, row {line}, column {clock}: {after:g} after {before:g}. Allowed: steps of "
+                    "{shortest_step:g} or more. Correct the number, or omit one of the rows.",
+                    path=path,
+                    line=line,
+                    clock=clock,
+                    after=after,
+                    before=before,
+                    shortest_step=SHORTEST_STEP,
+                ),
+                code="out_of_range",
             )
 
 
@@ -314,24 +418,55 @@ def _column(path: Path, rows: list[Row], head: list[str], place: int) -> npt.NDA
     values = np.empty(len(rows))
     for i, (line, row) in enumerate(rows):
         if len(row) != len(head):
-            raise ParameterError(f"{path}, row {line}: {len(row)} cells stand under {len(head)} names of columns")
+            raise ParameterError(
+                Message(
+                    "{path}, row {line}: {n_row} cells stand under {n_head} names of columns",
+                    path=path,
+                    line=line,
+                    n_row=len(row),
+                    n_head=len(head),
+                ),
+                code="wrong_number_of_cells",
+            )
         try:
             values[i] = float(row[place])
         except ValueError:
             values[i] = math.nan
         if not math.isfinite(values[i]):
             raise ParameterError(
-                f"{path}, row {line}, column {head[place]}: {row[place].strip()!r} is no finite number; write one"
-                f"{' with a decimal point' if ',' in row[place] else ''}"
+                Message(
+                    "{path}, row {line}, column {head}: {value!r} is no finite number; write one",
+                    path=path,
+                    line=line,
+                    head=head[place],
+                    value=row[place].strip(),
+                ),
+                code="not_a_number",
             )
         if abs(values[i]) > LARGEST:
             raise ParameterError(
-                f"{path}, row {line}, column {head[place]}: {values[i]:g} is beyond ±{LARGEST:g}. Correct the number."
+                Message(
+                    "{path}, row {line}, column {head}: {value:g} is beyond ±{largest:g}. Correct the number.",
+                    path=path,
+                    line=line,
+                    head=head[place],
+                    value=values[i],
+                    largest=LARGEST,
+                ),
+                code="out_of_range",
             )
         if head[place].endswith(_EDGE) and abs(values[i]) > _ON_ITS_SIDE:
             raise ParameterError(
-                f"{path}, row {line}, column {head[place]}: {values[i]:g} is beyond ±{_ON_ITS_SIDE:g}, a ski "
-                "on its side; put the row right or leave it out"
+                Message(
+                    "{path}, row {line}, column {head}: {value:g} is beyond ±{on_its_side:g}, a ski on its "
+                    "side; put the row right or leave it out",
+                    path=path,
+                    line=line,
+                    head=head[place],
+                    value=values[i],
+                    on_its_side=_ON_ITS_SIDE,
+                ),
+                code="out_of_range",
             )
     return values
 

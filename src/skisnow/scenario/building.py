@@ -9,8 +9,9 @@ from pathlib import Path
 from typing import Any
 
 from .._support.errors import ParameterError
+from .._support.messages import Message
 from .._support.units import N_PER_MM2, N_PER_MM3
-from ..parameters import Word, changed, made, meant, nearest, values_of
+from ..parameters import Word, changed, made, nearest, values_of
 from ..ski import Ski, read_ski, ski_names
 from ..ski.sources import Sources
 from ..snow import SnowProperties, published_snow
@@ -39,12 +40,12 @@ def build(resolution: Resolution, sources: Sources) -> tuple[Scenario, tuple[str
     values = dict(resolution.values)
     for name, key in SCENARIO_KEYS.items():
         if key.needed:
-            _require(values, name, "It has no default")
+            _require(values, name, Message("It has no default"))
     ski, ski_warnings = _ski(resolution, sources)
     slope = _slope(resolution)
     contact = _contact(resolution)
     if "run.duration_s" not in values and "run.length_m" not in values:
-        raise ParameterError("the run has no end: give run.duration_s or run.length_m")
+        raise ParameterError(Message("the run has no end: give run.duration_s or run.length_m"), code="no_data")
     values.setdefault("drag.centre_of_pressure_height_m", values["sledge.centre_of_mass_height_m"])
     course = _course(resolution, slope)
     parts: dict[str, Any] = {
@@ -59,9 +60,14 @@ def build(resolution: Resolution, sources: Sources) -> tuple[Scenario, tuple[str
     return made(Scenario, values, **parts), (*ski_warnings, *(course.warnings if course else ()))
 
 
-def _require(values: Mapping[str, Any], name: str, remedy: str) -> None:
+def _require(values: Mapping[str, Any], name: str, remedy: Message) -> None:
     if name not in values:
-        raise ParameterError(f"{name} is missing: {SCENARIO_KEYS[name].meaning}. {remedy}")
+        raise ParameterError(
+            Message(
+                "{name} is missing: {meaning}. {remedy}", name=name, meaning=SCENARIO_KEYS[name].meaning, remedy=remedy
+            ),
+            code="missing",
+        )
 
 
 def _value(values: Mapping[str, Any], name: str) -> Any:
@@ -80,9 +86,10 @@ def _slope(resolution: Resolution) -> Slope:
     values = resolution.values
     kind = _value(values, "slope.kind")
     if kind == "plane":
-        _require(values, "slope.angle_deg", 'Give it, or a measured profile: slope.kind = "profile" and slope.profile')
+        profile = Message('Give it, or a measured profile: slope.kind = "profile" and slope.profile')
+        _require(values, "slope.angle_deg", profile)
         return made(Plane, values)
-    plane = 'Give it, or a plane: slope.kind = "plane" and slope.angle_deg'
+    plane = Message('Give it, or a plane: slope.kind = "plane" and slope.angle_deg')
     if kind == "grid":
         _require(values, "slope.grid", plane)
         smoothing, x, y = (float(_value(values, f"slope.{key}")) for key in ("smooth_m", "origin_x_m", "origin_y_m"))
@@ -99,12 +106,22 @@ def _course(resolution: Resolution, slope: Slope) -> Course | None:
     if name is None and file is None:
         if options:
             raise ParameterError(
-                f"course.{next(iter(options))} is there without a course; give course.file, or leave it out"
+                Message(
+                    "course.{key} is there without a course; give course.file, or leave it out",
+                    key=next(iter(options)),
+                ),
+                code="contradiction",
             )
         return None
     if name is not None and name not in course_names():
-        names = f"{meant(str(name), course_names())}There are {', '.join(course_names())}"
-        raise ParameterError(f"course.name is {name!r}, no course of the catalogue. {names}. A path is course.file")
+        raise ParameterError(
+            Message(
+                "course.name is {name!r}, no course of the catalogue. {allowed} A path is course.file",
+                name=name,
+                allowed=nearest(str(name), course_names()),
+            ),
+            code="unknown_name",
+        )
     course = read_course(name or resolution.files["course.file"], **options)
     return course_on_slope(course, slope)
 
@@ -114,10 +131,19 @@ def _ski(resolution: Resolution, sources: Sources) -> tuple[Ski, tuple[str, ...]
         return sources.ski(str(resolution.files["ski.file"].absolute()))
     name = resolution.values.get("ski.name")
     if name is None:
-        raise ParameterError("a ski has either ski.name, of the catalogue, or ski.file; neither is there")
+        raise ParameterError(
+            Message("a ski has either ski.name, of the catalogue, or ski.file; neither is there"),
+            code="missing",
+        )
     if name not in ski_names():
-        names = f"{meant(str(name), ski_names())}There are {', '.join(ski_names())}"
-        raise ParameterError(f"ski.name is {name!r}, no ski of the catalogue. {names}. A path stands under ski.file")
+        raise ParameterError(
+            Message(
+                "ski.name is {name!r}, no ski of the catalogue. {allowed} A path stands under ski.file",
+                name=name,
+                allowed=nearest(str(name), ski_names()),
+            ),
+            code="unknown_name",
+        )
     return sources.ski(str(name))
 
 
@@ -126,8 +152,17 @@ def _contact(resolution: Resolution) -> Contact:
     ratio = ELASTIC if values.get("snow.penetration") == "elastic" else values.get(UNLOADING)
     snow = _snow(resolution).without_measured(unloading=ratio is not None, displacement=DISPLACEMENT in values)
     if ratio is None and snow.unloading_ratio is None:
-        reason = f"; {snow.source} has none that was measured" if resolution.snow else ""
-        raise ParameterError(f"{UNLOADING} is missing: {SCENARIO_KEYS[UNLOADING].meaning}{reason}. Give it")
+        fields = {"name": UNLOADING, "meaning": SCENARIO_KEYS[UNLOADING].meaning}
+        problem = (
+            Message(
+                "{name} is missing: {meaning}; {source} has none that was measured. Give it",
+                **fields,
+                source=snow.source,
+            )
+            if resolution.snow
+            else Message("{name} is missing: {meaning}. Give it", **fields)
+        )
+        raise ParameterError(problem, code="missing")
     measured: dict[str, Any] = {"unloading_ratio": snow.unloading_ratio if ratio is None else ratio}
     if snow.shear_displacement is not None:
         measured["shear_displacement"] = snow.shear_displacement
@@ -138,15 +173,23 @@ def _snow(resolution: Resolution) -> SnowProperties:
     """Named snow, numbers and map, each for the quantities that they give."""
     values, snow, snow_map = dict(resolution.values), resolution.snow, resolution.snow_map
     if "snow.site" in values and "snow.results" not in values:
-        raise ParameterError("snow.site goes with snow.results: it names one site of a campaign. Leave it out")
+        raise ParameterError(
+            Message("snow.site goes with snow.results: it names one site of a campaign. Leave it out"),
+            code="contradiction",
+        )
     if snow is None:
         if snow_map is not None:
             values.setdefault(H_V, (snow_map.mean_hardness or math.nan) / N_PER_MM3)
             values.setdefault(S_F, (snow_map.mean_stress or math.nan) / N_PER_MM2)
         if H_V not in values:
-            raise ParameterError(f"no snow is given: H_V has no default. {SNOW_CHOICES}")
+            raise ParameterError(
+                Message("no snow is given: H_V has no default. {choices}", choices=SNOW_CHOICES),
+                code="missing",
+            )
         if S_F not in values:
-            raise ParameterError(f"{S_F} is missing: the failure shear stress S_f. It has no default")
+            raise ParameterError(
+                Message("{name} is missing: the failure shear stress S_f. It has no default", name=S_F), code="missing"
+            )
         snow = made(SnowProperties, values, section="snow", source="given as numbers")
     else:
         snow = with_numbers(snow, values)
@@ -175,8 +218,12 @@ def changed_scenario(scenario: Scenario, changes: Mapping[str, object]) -> Scena
     for name in numbers:
         if isinstance(SCENARIO_KEYS[name], Word):
             raise ParameterError(
-                f"{name} is a word of a scenario's file; in Python give the part itself, such as snow=, ski= or "
-                "slope=, or read the scenario with it: skisnow.load_scenario(…, changes={…})"
+                Message(
+                    "{name} is a word of a scenario's file; in Python give the part itself, such as snow=, "
+                    "ski= or slope=, or read the scenario with it: skisnow.load_scenario(…, changes={{…}})",
+                    name=name,
+                ),
+                code="wrong_kind",
             )
     if isinstance(parts.get("ski"), str | Path):
         parts["ski"] = read_ski(parts["ski"])
@@ -198,7 +245,9 @@ def _full_name(name: str, part_names: Collection[str]) -> str:
     try:
         return full_name(name)
     except ParameterError as error:
-        raise ParameterError(f"{error} Parts: {nearest(name, part_names)}") from error
+        raise ParameterError(
+            Message("{problem} Parts: {allowed}", problem=error, allowed=nearest(name, part_names)), code="unknown_name"
+        ) from error
 
 
 def _require_effect(scenario: Scenario, numbers: Mapping[str, object]) -> None:
@@ -208,7 +257,8 @@ def _require_effect(scenario: Scenario, numbers: Mapping[str, object]) -> None:
         condition = CONDITIONS.get(name)
         if condition is not None and not condition.holds(values.get(condition.key)):
             raise ContradictionError(
-                (name, condition.key), f"{name} goes with {condition.in_words}. Change one of them"
+                (name, condition.key),
+                Message("{name} goes with {condition}. Change one of them", name=name, condition=condition.in_words),
             )
 
 
@@ -220,8 +270,12 @@ def _on_snow(contact: Contact, snow: SnowProperties | str) -> Contact:
     new = published_snow(snow) if isinstance(snow, str) else snow
     if not isinstance(new, SnowProperties):
         raise ParameterError(
-            f"snow is a {type(new).__name__}; it must be SnowProperties, as Analysis.snow and snow_from_results give "
-            "it, or the name of a published snow"
+            Message(
+                "snow is a {kind}; it must be SnowProperties, as Analysis.snow and snow_from_results "
+                "give it, or the name of a published snow",
+                kind=type(new).__name__,
+            ),
+            code="wrong_kind",
         )
     ratio = contact.unloading_ratio if new.unloading_ratio is None else new.unloading_ratio
     displacement = contact.shear_displacement if new.shear_displacement is None else new.shear_displacement
@@ -240,11 +294,21 @@ def _require_changeable(scenario: Scenario, numbers: Mapping[str, object]) -> No
     for name in numbers:
         if snow_map is not None and mapped.get(name) is not None:
             raise ParameterError(
-                f"{name} is given over the place by snow.map_file, {snow_map.source}. snow_map=None takes the map away"
+                Message(
+                    "{name} is given over the place by snow.map_file, {source}. snow_map=None takes the map away",
+                    name=name,
+                    source=snow_map.source,
+                ),
+                code="contradiction",
             )
     for name in numbers.keys() - values_of(scenario).keys():
         part = name.partition(".")[0]
         raise ParameterError(
-            f"{name} plays no part in this scenario, whose {part} is of another kind. Leave it out, or give the part "
-            f"itself: {part}="
+            Message(
+                "{name} plays no part in this scenario, whose {part} is of another kind. Leave it out, "
+                "or give the part itself: {part}=",
+                name=name,
+                part=part,
+            ),
+            code="wrong_kind",
         )

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from .._support.errors import ParameterError
+from .._support.messages import Message
 from .terrain import reach_of
 
 if TYPE_CHECKING:
@@ -36,7 +37,7 @@ def require_sound(
         The first thing that is wrong: what it is, what is allowed, what to do.
     """
     for complaint in _together(slope, sledge, ski, clamp_length, start, shear, friction):
-        raise ParameterError(complaint)
+        raise ParameterError(complaint, code="contradiction")
 
 
 def require_skier(skier: Skier | None, sledge: RigidSledge, *, has_boots: bool, has_course: bool) -> None:
@@ -52,16 +53,30 @@ def require_skier(skier: Skier | None, sledge: RigidSledge, *, has_boots: bool, 
         return
     if sledge.edge_angle != 0.0:
         raise ParameterError(
-            f"sledge.edge_angle_deg is {math.degrees(sledge.edge_angle):g}; the skier sets the edges itself: write 0"
+            Message(
+                "sledge.edge_angle_deg is {degrees:g}; the skier sets the edges itself: write 0",
+                degrees=math.degrees(sledge.edge_angle),
+            ),
+            code="contradiction",
         )
     if has_boots:
-        raise ParameterError("boots.file and [skier] both move the boots; leave one of them out")
+        raise ParameterError(
+            Message("boots.file and [skier] both move the boots; leave one of them out"), code="contradiction"
+        )
     if skier.steers == "gates" and not has_course:
-        raise ParameterError('skier.steers is "gates" without a course; give course.name or course.file')
+        raise ParameterError(
+            Message('skier.steers is "gates" without a course; give course.name or course.file'),
+            code="contradiction",
+        )
     if skier.longest_leg <= sledge.centre_of_mass[1]:
         raise ParameterError(
-            f"skier.longest_leg_m is {skier.longest_leg:g}, and sledge.centre_of_mass_height_m "
-            f"{sledge.centre_of_mass[1]:g}; the leg must be longer than that"
+            Message(
+                "skier.longest_leg_m is {longest_leg:g}, and sledge.centre_of_mass_height_m "
+                "{centre_of_mass:g}; the leg must be longer than that",
+                longest_leg=skier.longest_leg,
+                centre_of_mass=sledge.centre_of_mass[1],
+            ),
+            code="out_of_range",
         )
 
 

@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .._support.errors import ParameterError
+from .._support.messages import Message, joined
 from .._support.units import MM, N_PER_MM2, N_PER_MM3
 from ..parameters import Quantity, checked_table, nearest, quantities
 from ..snow import SnowProperties
@@ -61,13 +62,21 @@ def require_known(section: Mapping[str, Any]) -> None:
     given_parameters(section)
     clock = section.get("clock", "start")
     if clock not in CLOCKS:
-        raise ParameterError(f'[identify] clock is {clock!r}; it must be "start" or "free"')
+        raise ParameterError(
+            Message('[identify] clock is {clock!r}; it must be "start" or "free"', clock=clock), code="out_of_range"
+        )
     for name in _table(section, "site"):
         if name not in SITE:
-            raise ParameterError(f"[identify.site]: there is no {name!r}. {nearest(name, SITE)}")
+            raise ParameterError(
+                Message("[identify.site]: there is no {name!r}. {allowed}", name=name, allowed=nearest(name, SITE)),
+                code="unknown_name",
+            )
     for run, entries in _table(section, "runs").items():
         if not isinstance(entries, dict):
-            raise ParameterError(f'identify.runs."{run}" is {entries!r}; it must be a table of keys')
+            raise ParameterError(
+                Message('identify.runs."{run}" is {entries!r}; it must be a table of keys', run=run, entries=entries),
+                code="wrong_kind",
+            )
         for word in entries:
             _key(word, f'[identify.runs."{run}"]')
 
@@ -88,30 +97,47 @@ def given_parameters(section: Mapping[str, Any]) -> dict[str, dict[str, float]]:
         key = _key(own, f'[identify."{word}"]', _no_key_meant(word)) + at + run
         if not isinstance(table, dict):
             raise ParameterError(
-                f'identify."{word}" is {table!r}; it must be a table with {", ".join(GIVEN)}, begun by the line '
-                f'[identify."{key}"]. A value of the scenario stands in its own section, [{key.partition(".")[0]}]'
+                Message(
+                    'identify."{word}" is {table!r}; it must be a table with {given}, begun by the line '
+                    '[identify."{key}"]. A value of the scenario stands in its own section, [{section}]',
+                    word=word,
+                    table=table,
+                    given=list(GIVEN),
+                    key=key,
+                    section=key.partition(".")[0],
+                ),
+                code="wrong_kind",
             )
         parameters[key] = checked_table(Sought, table, f'[identify."{key}"]')
     return parameters
 
 
-def _key(word: str, place: str, meant: str = "") -> str:
+def _key(word: str, place: str, meant: Message | None = None) -> str:
     try:
         return free_key(word)
     except ParameterError as error:
-        raise ParameterError(f"{place}: {str(error).removeprefix('--free: ')}{meant}") from None
+        problem = joined([error.message, meant]) if meant else error.message
+        raise ParameterError(Message("{place}: {problem}", place=place, problem=problem), code=error.code) from None
 
 
-def _no_key_meant(word: str) -> str:
+def _no_key_meant(word: str) -> Message | None:
     near = difflib.get_close_matches(word.lower(), NO_KEYS, n=1, cutoff=0.6)
-    return f". Or is {near[0]} meant?" if near else ""
+    return Message("Or did you mean {similar}?", similar=near[0]) if near else None
 
 
 def _table(section: Mapping[str, Any], name: str) -> Mapping[str, Any]:
     table = section.get(name, {})
     if not isinstance(table, dict):
         what = f"[identify.{name}]" if name == "site" else f'[identify.{name}."NAME"]'
-        raise ParameterError(f"identify.{name} is {table!r}; it must be a table, begun by the line {what}")
+        raise ParameterError(
+            Message(
+                "identify.{name} is {table!r}; it must be a table, begun by the line {line}",
+                name=name,
+                table=table,
+                line=what,
+            ),
+            code="wrong_kind",
+        )
     return table
 
 
@@ -140,8 +166,14 @@ class Prior:
     def __post_init__(self) -> None:
         if not 0.0 < self.low <= self.high:
             raise ParameterError(
-                f"the prior of {self.key} is {self.low:g} to {self.high:g}; its ends must be above 0, the first one "
-                "not above the other"
+                Message(
+                    "the prior of {key} is {low:g} to {high:g}; its ends must be above 0, the first one not "
+                    "above the other",
+                    key=self.key,
+                    low=self.low,
+                    high=self.high,
+                ),
+                code="out_of_range",
             )
         if not self.about:
             for end in (self.low, self.high):
@@ -176,8 +208,12 @@ def prior_of(word: str) -> Prior:
         low, high = (float(end) for end in ends.split(":"))
     except ValueError:
         raise ParameterError(
-            f"{word!r} is no prior; write KEY=LOW:HIGH, such as snow.unloading_ratio=5:20, with equal ends where it is "
-            "known"
+            Message(
+                "{word!r} is no prior; write KEY=LOW:HIGH, such as snow.unloading_ratio=5:20, with equal "
+                "ends where it is known",
+                word=word,
+            ),
+            code="wrong_kind",
         ) from None
     return Prior(key=free_key(name), low=low, high=high, origin="given")
 

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import difflib
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, Final
 
 from .._support.errors import ParameterError
-from .._support.nearest import meant, most_like
+from .._support.messages import Message, joined
+from .._support.nearest import most_like, nearest
 from .._support.spreadsheet_text import is_number
 from .._support.units import without_unit
 from .._support.user_files import GivenError, toml_values
@@ -44,18 +45,23 @@ def full_name(name: str) -> str:
     if not section and key in _FULL_NAMES:
         return _FULL_NAMES[key]
     if key in _FULL_NAMES:
-        raise ParameterError(f"{name} is no key of a scenario. Did you mean {_FULL_NAMES[key]}?")
+        raise ParameterError(
+            Message("{name} is no key of a scenario. Did you mean {similar}?", name=name, similar=_FULL_NAMES[key]),
+            code="unknown_name",
+        )
     keys = [full for full in SCENARIO_KEYS if full.startswith(f"{section}.")] if section in SECTIONS else []
-    raise ParameterError(f"{name} is no key of a scenario. {_suggestion(name, key, keys)}".strip())
-
-
-def _suggestion(name: str, key: str, keys: Iterable[str]) -> str:
-    candidates = list(keys)
     short = most_like(key, _FULL_NAMES)
-    question = meant(name, candidates) or (
-        f"Did you mean {_FULL_NAMES[short]}? " if short else meant(name, SCENARIO_KEYS)
-    )
-    return f"{question}There are {', '.join(candidates)}" if candidates else question
+    similar = most_like(name, keys) or (_FULL_NAMES[short] if short else most_like(name, SCENARIO_KEYS))
+    raise ParameterError(_unknown_key(name, similar, keys), code="unknown_name")
+
+
+def _unknown_key(name: str, similar: str | None, allowed: Sequence[str]) -> Message:
+    sentences = [Message("{name} is no key of a scenario.", name=name)]
+    if similar:
+        sentences.append(Message("Did you mean {similar}?", similar=similar))
+    if allowed:
+        sentences.append(Message("Allowed: {allowed}.", allowed=allowed))
+    return joined(sentences)
 
 
 def flatten_sections(sections: Mapping[str, Any]) -> dict[str, object]:
@@ -64,10 +70,22 @@ def flatten_sections(sections: Mapping[str, Any]) -> dict[str, object]:
     for section, table in sections.items():
         if section not in SECTIONS:
             raise ParameterError(
-                f"there is no section [{section}]. {meant(section, SECTIONS)}There are {', '.join(SECTIONS)}"
+                Message(
+                    "there is no section [{section}]. {allowed}",
+                    section=section,
+                    allowed=nearest(section, SECTIONS),
+                ),
+                code="missing",
             )
         if not isinstance(table, dict):
-            raise ParameterError(f"{section} is {table!r}; it must be a table, begun by the line [{section}]")
+            raise ParameterError(
+                Message(
+                    "{section} is {table!r}; it must be a table, begun by the line [{section}]",
+                    section=section,
+                    table=table,
+                ),
+                code="wrong_kind",
+            )
         values.update({full_name(f"{section}.{key}"): value for key, value in table.items()})
     return values
 
@@ -99,7 +117,10 @@ def parse_change(text: str) -> tuple[str, object]:
     """
     name, equals, value_text = (part.strip() for part in text.partition("="))
     if not equals:
-        raise ParameterError(f"{text!r} changes nothing; write section.key=value, such as sledge.edge_angle_deg=35")
+        raise ParameterError(
+            Message("{text!r} changes nothing; write section.key=value, such as sledge.edge_angle_deg=35", text=text),
+            code="changes_nothing",
+        )
     name = full_name(name)
     is_text = SCENARIO_KEYS[name].kind == "text"
     try:
@@ -108,7 +129,12 @@ def parse_change(text: str) -> tuple[str, object]:
         if not is_text and "," in value_text and is_number(value_text, ","):
             corrected = text.replace(value_text, value_text.replace(",", "."))
             raise ParameterError(
-                f"{text!r}: numbers are written with a decimal point here. Write {corrected}"
+                Message(
+                    "{text!r}: numbers are written with a decimal point here. Write {corrected}",
+                    text=text,
+                    corrected=corrected,
+                ),
+                code="not_a_number",
             ) from None
         return name, value_text
     value = values["value"] if values.keys() == {"value"} else value_text  # a second line is not part of the value
@@ -191,14 +217,26 @@ def free_key(word: str) -> str:
     meant = _KEYS_BY_WORD.get(word, ())
     usable = tuple(key for key in meant if key in FREE_KEYS)
     if len(usable) > 1:
-        raise ParameterError(f"--free: {word} may mean {' or '.join(usable)}. Write one of them in full")
+        raise ParameterError(
+            Message("{word} may mean one of {keys}. Write one of them in full", word=word, keys=list(usable)),
+            code="ambiguous",
+        )
     if usable:
         return usable[0]
     if meant:
         raise ParameterError(
-            f"--free: {meant[0]} cannot be looked for: it is {_why_not(meant[0])}. There are {', '.join(FREE_KEYS)}"
+            Message(
+                "{key} cannot be looked for: {reason}. There are {keys}",
+                key=meant[0],
+                reason=_why_not(meant[0]),
+                keys=list(FREE_KEYS),
+            ),
+            code="not_free",
         )
-    raise ParameterError(f"--free: {word!r} is no key of a scenario. {_near(word)}")
+    raise ParameterError(
+        Message("{word!r} is no key of a scenario. {allowed}", word=word, allowed=_near(word)),
+        code="unknown_name",
+    )
 
 
 def free_keys(words: str | Iterable[str]) -> tuple[str, ...]:
@@ -210,10 +248,13 @@ def free_keys(words: str | Iterable[str]) -> tuple[str, ...]:
     ('friction.mu_0', 'drag.drag_area_m2@each', 'friction.mu_1_s_per_m@second')
     """
     listed = words.split(",") if isinstance(words, str) else list(words)
-    keys = [_key_of_run(word) for word in listed if word.strip()]
+    try:
+        keys = [_key_of_run(word) for word in listed if word.strip()]
+    except ParameterError as error:
+        raise error.at("--free") from None
     for key in keys:
         if keys.count(key) > 1:
-            raise ParameterError(f"--free: {key} is named twice. Remove one of them")
+            raise ParameterError(Message("--free: {key} is named twice. Remove one of them", key=key), code="repeated")
     return tuple(keys)
 
 
@@ -221,22 +262,37 @@ def _key_of_run(word: str) -> str:
     own, at, run = word.partition("@")
     if at and not run.strip():
         raise ParameterError(
-            f"--free: behind the @ of {word!r} a run is missing. Name one, or write {own.strip()}@{EACH}"
+            Message(
+                "behind the @ of {word!r} a run is missing. Name one, or write {own}@{each}",
+                word=word,
+                own=own.strip(),
+                each=EACH,
+            ),
+            code="missing",
         )
     return free_key(own) + at + run.strip()
 
 
-def _why_not(key: str) -> str:
+def _why_not(key: str) -> Message:
     if key.startswith(_HOW_IT_IS_COMPUTED):
-        return "how the run is computed, not what it follows from"
-    kind = SCENARIO_KEYS[key].kind
-    return "a whole table, not one number" if kind == "three numbers" else f"a {kind}, not a number"
+        return Message("it is how the run is computed, not what it follows from")
+    return _NOT_ONE_NUMBER[SCENARIO_KEYS[key].kind]
 
 
-def _near(word: str) -> str:
+_NOT_ONE_NUMBER: Final = {
+    "text": Message("it is a text, not a number"),
+    "switch": Message("it is a switch, not a number"),
+    "number": Message("it is a number that cannot vary"),
+    "whole number": Message("it is a whole number, not a number"),
+    "numbers": Message("it is a list of numbers, not one number"),
+    "three numbers": Message("it is a whole table, not one number"),
+}
+
+
+def _near(word: str) -> Message:
     small = {form.lower(): form for key in FREE_KEYS for form in (_forms(key)[3], _forms(key)[1], key)}
     like = difflib.get_close_matches(word.lower(), small, n=4, cutoff=0.5)
     keys = dict.fromkeys(_KEYS_BY_WORD[small[spelling]][0] for spelling in like)
     if keys:
-        return f"Near are {', '.join(list(keys)[:3])}"
-    return f"There are {', '.join(short_name(key) for key in FREE_KEYS)}"
+        return Message("Near are {keys}", keys=list(keys)[:3])
+    return Message("There are {keys}", keys=[short_name(key) for key in FREE_KEYS])

@@ -13,6 +13,7 @@ from typing import Any, Final
 import numpy as np
 
 from .._support.errors import ParameterError
+from .._support.messages import Message, template
 from ..track.projection import earth_centred
 
 TRUE_LENGTHS: Final = 0.005
@@ -90,7 +91,10 @@ def _factor(text: str) -> float:
         value = math.nan
     if not 0.0 < value < math.inf:
         raise ParameterError(
-            f"the description of the map system states a unit of {text[:40]!r}. Allowed: above 0, in m"
+            Message(
+                "the description of the map system states a unit of {text!r}. Allowed: above 0, in m", text=text[:40]
+            ),
+            code="out_of_range",
         )
     return value
 
@@ -136,20 +140,28 @@ def require_true_lengths(path: object, system: MapSystem, x: float, y: float) ->
     true_scale = _scale(system, x, y)
     if true_scale is None:
         if _MERCATOR.search(system.text):
-            raise ParameterError(_stretched(path, system, "by 1/cos of the latitude", "the UTM zone of the place"))
+            raise ParameterError(_stretched(_BY_LATITUDE, path, system), code="stretched")
         return
     scales, target = true_scale
     worst = max(scales, key=lambda scale: abs(scale - 1.0))
     if not abs(worst - 1.0) <= TRUE_LENGTHS:
-        raise ParameterError(_stretched(path, system, f"by a factor of {worst:.4g}", target))
+        raise ParameterError(_stretched(_BY_FACTOR, path, system, factor=worst, target=target), code="stretched")
 
 
-def _stretched(path: object, system: MapSystem, factor: str, target: str) -> str:
-    return (
-        f"{path}: The map system {system.name} stretches lengths {factor} at the grid. Allowed: at most "
-        f"{100 * TRUE_LENGTHS:g} %. Fix: warp the grid to a system with true lengths, such as "
-        f"gdalwarp -t_srs {target} -r cubic."
-    )
+_BY_LATITUDE: Final = template(
+    "{path}: The map system {system} stretches lengths by 1/cos of the latitude at the grid. Allowed: at most "
+    "{limit:g} %. "
+    "Fix: warp the grid to a system with true lengths, such as gdalwarp -t_srs the UTM zone of the place -r cubic."
+)
+_BY_FACTOR: Final = template(
+    "{path}: The map system {system} stretches lengths by a factor of {factor:.4g} at the grid. Allowed: at most "
+    "{limit:g} "
+    "%. Fix: warp the grid to a system with true lengths, such as gdalwarp -t_srs {target} -r cubic."
+)
+
+
+def _stretched(text: str, path: object, system: MapSystem, **fields: object) -> Message:
+    return Message(text, path=path, system=system.name, limit=100 * TRUE_LENGTHS, **fields)
 
 
 def utm_zone(longitude_deg: float, latitude_deg: float) -> str:

@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .._support.errors import ParameterError
+from .._support.messages import Message
 from .._support.spreadsheet_text import CsvRow
 from .map_system import MapSystem, require_true_lengths, utm_zone
 
@@ -105,8 +106,18 @@ def number_within(row: CsvRow, column: str, limits: Limits | None = None) -> flo
     allowed = limits or LIMITS[column]
     if not allowed.lowest <= value <= allowed.highest:
         raise ParameterError(
-            f"{row.path}, row {row.row}, column {column}: {row.cells[column]!r} is out of range. Allowed: from "
-            f"{allowed.lowest:g} to {allowed.highest:g}. {allowed.note}"
+            Message(
+                "{path}, row {row}, column {column}: {cell!r} is out of range. Allowed: from {lowest:g} "
+                "to {highest:g}. {note}",
+                path=row.path,
+                row=row.row,
+                column=column,
+                cell=row.cells[column],
+                lowest=allowed.lowest,
+                highest=allowed.highest,
+                note=allowed.note,
+            ),
+            code="out_of_range",
         )
     return value
 
@@ -126,10 +137,27 @@ def require_size(path: str | Path, n_columns: float, n_rows: float) -> None:
     """
     for name, count in (("ncols", n_columns), ("nrows", n_rows)):
         if not 2 <= count <= MOST_CELLS or count != int(count):
-            raise ParameterError(f"{path}: {name} is {count:g}. Allowed: whole numbers from 2 to {MOST_CELLS}.")
+            raise ParameterError(
+                Message(
+                    "{path}: {name} is {count:g}. Allowed: whole numbers from 2 to {most_cells}.",
+                    path=path,
+                    name=name,
+                    count=count,
+                    most_cells=MOST_CELLS,
+                ),
+                code="out_of_range",
+            )
     if n_columns * n_rows > MOST_CELLS:
         raise ParameterError(
-            f"{path}: The grid has {n_columns:g} × {n_rows:g} cells. Allowed: at most {MOST_CELLS}. Cut out the slope."
+            Message(
+                "{path}: The grid has {n_columns:g} × {n_rows:g} cells. Allowed: at most {most_cells}. "
+                "Cut out the slope.",
+                path=path,
+                n_columns=n_columns,
+                n_rows=n_rows,
+                most_cells=MOST_CELLS,
+            ),
+            code="out_of_range",
         )
 
 
@@ -145,19 +173,47 @@ def require_places(path: str | Path, first: tuple[float, float], step: tuple[flo
     for axis, start, size, count in zip("xy", first, step, n, strict=True):
         if not 0.0 < abs(size) <= COARSEST:
             raise ParameterError(
-                f"{path}: The cells are {size:g} m wide in {axis}. Allowed: from {FINEST:g} to {COARSEST:g} m."
+                Message(
+                    "{path}: The cells are {size:g} m wide in {axis}. Allowed: from {finest:g} to {coarsest:g} m.",
+                    path=path,
+                    size=size,
+                    axis=axis,
+                    finest=FINEST,
+                    coarsest=COARSEST,
+                ),
+                code="out_of_range",
             )
         ends += [start, start + size * (count - 1)]
         if not max(abs(ends[-2]), abs(ends[-1])) <= _PLACE.highest:
             raise ParameterError(
-                f"{path}: The grid reaches from {axis} = {ends[-2]:g} to {ends[-1]:g} m. Allowed: from "
-                f"{_PLACE.lowest:g} to {_PLACE.highest:g} m."
+                Message(
+                    "{path}: The grid reaches from {axis} = {first:g} to {last:g} m. Allowed: from {lowest:g} "
+                    "to {highest:g} m.",
+                    path=path,
+                    axis=axis,
+                    first=ends[-2],
+                    last=ends[-1],
+                    lowest=_PLACE.lowest,
+                    highest=_PLACE.highest,
+                ),
+                code="out_of_range",
             )
     fine = max(abs(size) for size in step) < FINEST
     if fine and max(map(abs, ends[:2])) <= 360.0 and max(map(abs, ends[2:])) <= 90.0:
-        raise ParameterError(_in_degrees(path, "looks like degrees", ends[0], ends[2], abs(step[0])))
+        raise ParameterError(
+            _in_degrees(path, Message("The unit of x and y looks like degrees."), ends[0], ends[2], abs(step[0])),
+            code="in_degrees",
+        )
     if min(abs(size) for size in step) < FINEST:
-        raise ParameterError(f"{path}: A cell is {min(map(abs, step)):g} m wide. Allowed: {FINEST:g} m or more.")
+        raise ParameterError(
+            Message(
+                "{path}: A cell is {step:g} m wide. Allowed: {finest:g} m or more.",
+                path=path,
+                step=min(map(abs, step)),
+                finest=FINEST,
+            ),
+            code="out_of_range",
+        )
 
 
 def placed_heights(raster: Raster, *, column: str) -> PlacedValues:
@@ -196,21 +252,41 @@ def _require_usable(raster: Raster, system: MapSystem) -> None:
         for start, size, count in zip(raster.first, raster.step, (n_columns, n_rows), strict=True)
     )
     if system.in_degrees:
-        raise ParameterError(_in_degrees(raster.path, f"is degrees ({system.name})", x, y, abs(raster.step[0])))
+        raise ParameterError(
+            _in_degrees(
+                raster.path,
+                Message("The unit of x and y is degrees ({system}).", system=system.name),
+                x,
+                y,
+                abs(raster.step[0]),
+            ),
+            code="in_degrees",
+        )
     if system.downwards:
         raise ParameterError(
-            f"{raster.path}: The vertical system of {system.name} counts downwards. Allowed: heights. Fix: change the "
-            "sign and state heights."
+            Message(
+                "{path}: The vertical system of {name} counts downwards. Allowed: heights. Fix: change "
+                "the sign and state heights.",
+                path=raster.path,
+                name=system.name,
+            ),
+            code="out_of_range",
         )
     require_true_lengths(raster.path, system, x, y)
 
 
-def _in_degrees(path: str | Path, what: str, longitude: float, latitude: float, size: float) -> str:
+def _in_degrees(path: str | Path, unit: Message, longitude: float, latitude: float, size: float) -> Message:
     target = utm_zone(longitude, latitude) if abs(latitude) <= 90.0 else "EPSG:32632"
-    return (
-        f"{path}: The unit of x and y {what}: the grid is at x = {longitude:.6g}, y = {latitude:.6g}, its cells are "
-        f"{size:.3g} wide. Allowed: metres, with cells of {FINEST:g} m or more. Fix: warp it to metres, such as "
-        f"gdalwarp -t_srs {target} -r cubic."
+    return Message(
+        "{path}: {unit} The grid is at x = {x:.6g}, y = {y:.6g}, its cells are {size:.3g} wide. Allowed: metres, with "
+        "cells of {finest:g} m or more. Fix: warp it to metres, such as gdalwarp -t_srs {target} -r cubic.",
+        path=path,
+        unit=unit,
+        x=longitude,
+        y=latitude,
+        size=size,
+        finest=FINEST,
+        target=target,
     )
 
 
@@ -221,8 +297,19 @@ def _require_heights(raster: Raster, heights: FloatArray) -> None:
         return
     row, column = (int(index) for index in np.argwhere(bad)[0])
     value = heights[row, column]
-    what = "no height (NODATA)" if np.isnan(value) else f"{value:g} m is not a height"
+    problem = Message("no height (NODATA)") if np.isnan(value) else Message("{value:g} m is not a height", value=value)
     raise ParameterError(
-        f"{raster.path}, {raster.where(row, column)}: {what}; {int(bad.sum())} of {bad.size} cells are like it. "
-        f"Allowed: from {_HEIGHT.lowest:g} to {_HEIGHT.highest:g} m. {_HEIGHT.note}"
+        Message(
+            "{path}, {where}: {problem}; {count} of {size} cells are like it. Allowed: from {lowest:g} to "
+            "{highest:g} m. {note}",
+            path=raster.path,
+            where=raster.where(row, column),
+            problem=problem,
+            count=int(bad.sum()),
+            size=bad.size,
+            lowest=_HEIGHT.lowest,
+            highest=_HEIGHT.highest,
+            note=_HEIGHT.note,
+        ),
+        code="out_of_range",
     )

@@ -34,7 +34,9 @@ def read_geotiff(path: str | Path, *, column: str) -> PlacedValues:
         lies, its rows do not run east, or the grid breaks a rule of `raster`.
     """
     if not is_file(path):
-        raise ParameterError(f"{path} cannot be read: there is no such file. Check the path.")
+        raise ParameterError(
+            Message("{path} cannot be read: there is no such file. Check the path.", path=path), code="cannot_read"
+        )
     rasterio = _rasterio(path)
     try:
         with warnings.catch_warnings(action="ignore"), rasterio.open(path) as source:  # without a place: rejected below
@@ -44,7 +46,10 @@ def read_geotiff(path: str | Path, *, column: str) -> PlacedValues:
             transform, system = source.transform, _coordinates_of_crs(source)
             unit = _height_unit(path, source.units[0], system)
     except (rasterio.errors.RasterioError, UnicodeDecodeError, MemoryError) as error:  # the second from a damaged text
-        raise ParameterError(f"{path} cannot be read as a GeoTIFF: {error}. Export it again.") from error
+        raise ParameterError(
+            Message("{path} cannot be read as a GeoTIFF: {error}. Export it again.", path=path, error=error),
+            code="cannot_read",
+        ) from error
     _require_north_up(path, transform, system)
     raster = Raster(
         path=path,
@@ -69,8 +74,14 @@ def _require_one_band(path: str | Path, source: Any) -> None:
     bands = [colour for colour in colours if colour != "alpha"]
     if len(bands) != 1 or bands[0] == "palette" or colours[0] == "alpha":
         raise ParameterError(
-            f"{path} has {len(colours)} bands ({', '.join(colours)}). Allowed: one band of heights. Fix: write the "
-            "band of the heights alone, such as by gdal_translate -b 1."
+            Message(
+                "{path} has {n_colours} bands ({colours}). Allowed: one band of heights. Fix: write the "
+                "band of the heights alone, such as by gdal_translate -b 1.",
+                path=path,
+                n_colours=len(colours),
+                colours=list(colours),
+            ),
+            code="out_of_range",
         )
 
 
@@ -78,11 +89,20 @@ def _heights(path: str | Path, source: Any) -> FloatArray:
     """The first band in its unit, NaN where it is masked."""
     band = source.read(1, masked=True)
     if np.iscomplexobj(band):
-        raise ParameterError(f"{path}: The first band has complex numbers. Allowed: heights. Export them again.")
+        raise ParameterError(
+            Message("{path}: The first band has complex numbers. Allowed: heights. Export them again.", path=path),
+            code="out_of_range",
+        )
     scale, offset = float(source.scales[0]), float(source.offsets[0])
     if not (np.isfinite([scale, offset]).all() and scale != 0.0):
         raise ParameterError(
-            f"{path}: The first band has scale {scale:g} and offset {offset:g}. Allowed: finite numbers."
+            Message(
+                "{path}: The first band has scale {scale:g} and offset {offset:g}. Allowed: finite numbers.",
+                path=path,
+                scale=scale,
+                offset=offset,
+            ),
+            code="not_a_number",
         )
     with np.errstate(over="ignore", invalid="ignore"):  # huge values are rejected as heights
         return np.asarray(np.ma.filled(band.astype(float), np.nan) * scale + offset)
@@ -100,12 +120,24 @@ def _height_unit(path: str | Path, name: str | None, system: MapSystem | None) -
     unit = length_unit(str(name))
     if unit is None:
         raise ParameterError(
-            f"{path}: The unit of the first band is {name!r}. Allowed: {', '.join(LENGTHS)}. Fix: gdal_edit -units m."
+            Message(
+                "{path}: The unit of the first band is {name!r}. Allowed: {lengths}. Fix: gdal_edit -units m.",
+                path=path,
+                name=name,
+                lengths=list(LENGTHS),
+            ),
+            code="out_of_range",
         )
     if vertical is not None and abs(unit - vertical) > 1e-4 * vertical:
         raise ParameterError(
-            f"{path}: The first band is in {name}, but one unit of its vertical system is {vertical:g} m. Fix: state "
-            "one unit, such as by gdal_edit -units or -a_srs."
+            Message(
+                "{path}: The first band is in {name}, but one unit of its vertical system is "
+                "{vertical:g} m. Fix: state one unit, such as by gdal_edit -units or -a_srs.",
+                path=path,
+                name=name,
+                vertical=vertical,
+            ),
+            code="contradiction",
         )
     return unit
 
@@ -113,11 +145,18 @@ def _height_unit(path: str | Path, name: str | None, system: MapSystem | None) -
 def _require_north_up(path: str | Path, transform: Any, system: MapSystem | None) -> None:
     if transform.b != 0.0 or transform.d != 0.0:
         raise ParameterError(
-            f"{path}: its rows do not run east; warp it, such as by gdalwarp, to a grid that is not turned"
+            Message(
+                "{path}: its rows do not run east; warp it, such as by gdalwarp, to a grid that is not turned",
+                path=path,
+            ),
+            code="wrong_kind",
         )
     if system is None and (transform.a, transform.c, transform.e, transform.f) == (1.0, 0.0, 1.0, 0.0):
         raise ParameterError(
-            f"{path}: The file does not say where it lies and how large its cells are. Export it again."
+            Message(
+                "{path}: The file does not say where it lies and how large its cells are. Export it again.", path=path
+            ),
+            code="missing",
         )
 
 
@@ -164,7 +203,7 @@ def read_esri_ascii(path: str | Path, *, column: str) -> PlacedValues:
 
 
 def _refuse(path: str | Path, what: str) -> NoReturn:
-    raise ParameterError(f"{path}: {what}")
+    raise ParameterError(Message("{path}: {what}", path=path, what=what), code="invalid")
 
 
 def _header(path: str | Path, text: str) -> tuple[dict[str, float], int]:
@@ -176,7 +215,16 @@ def _header(path: str | Path, text: str) -> tuple[dict[str, float], int]:
             header[entry[1].lower()] = float(entry[2])
         except ValueError:
             line = text.count("\n", 0, entry.start(2)) + 1
-            raise ParameterError(f"{path}, line {line}: {entry[1]} is {entry[2]!r}. Allowed: a number.") from None
+            raise ParameterError(
+                Message(
+                    "{path}, line {line}: {key} is {value!r}. Allowed: a number.",
+                    path=path,
+                    line=line,
+                    key=entry[1],
+                    value=entry[2],
+                ),
+                code="out_of_range",
+            ) from None
         at = entry.end()
     return header, at
 
@@ -241,7 +289,14 @@ def _refuse_word(path: str | Path, line: int, words: list[str]) -> NoReturn:
             float(word)
         except ValueError:
             raise ParameterError(
-                f"{path}, line {line}, column {column}: {word!r} is not a number. Use digits and a decimal point."
+                Message(
+                    "{path}, line {line}, column {column}: {word!r} is not a number. Use digits and a decimal point.",
+                    path=path,
+                    line=line,
+                    column=column,
+                    word=word,
+                ),
+                code="not_a_number",
             ) from None
     raise AssertionError(words)
 
@@ -301,7 +356,15 @@ def _even(
     """Even places and the number of each row's place among them."""
     different = np.unique(places)
     if len(different) < 2:
-        raise ParameterError(f"{path}, column {column}: there is only {_listed(different)}; a grid needs two or more")
+        raise ParameterError(
+            Message(
+                "{path}, column {column}: there is only {places}; a grid needs two or more",
+                path=path,
+                column=column,
+                places=_listed(different),
+            ),
+            code="out_of_range",
+        )
     step = float(np.min(np.diff(different)))
     close = np.diff(different) > ROUNDED * (different[-1] - different[0]) / len(different)
     distinct = different[np.append(True, close)]  # places that differ by rounding are one
@@ -338,8 +401,16 @@ def _require_each_once(
     (x, i), (y, j) = of_x, of_y
     if len(x) * len(y) > SPARSE * len(rows):
         raise ParameterError(
-            f"{path}: {len(rows)} rows have {len(x)} different x_m and {len(y)} different y_m, so that they lie on no "
-            f"grid; interpolate onto one. {action[0].upper()}{action[1:]}"
+            Message(
+                "{path}: {n_rows} rows have {n_x} different x_m and {n_y} different y_m, so that they "
+                "lie on no grid; interpolate onto one. {action}",
+                path=path,
+                n_rows=len(rows),
+                n_x=len(x),
+                n_y=len(y),
+                action=action,
+            ),
+            code="not_a_grid",
         )
     place = i * len(y) + j
     count = np.bincount(place, minlength=len(x) * len(y))
@@ -347,12 +418,27 @@ def _require_each_once(
         twice = np.flatnonzero(place == int(np.argmax(count > 1)))[:2]
         first, again = (rows[int(index)] for index in twice)
         raise ParameterError(
-            f"{path}, row {again.row}: x_m = {again.cells['x_m']}, y_m = {again.cells['y_m']} stand in row "
-            f"{first.row}, too; keep one of them"
+            Message(
+                "{path}, row {row}: x_m = {x_m}, y_m = {y_m} stand in row {first}, too; keep one of them",
+                path=path,
+                row=again.row,
+                x_m=again.cells["x_m"],
+                y_m=again.cells["y_m"],
+                first=first.row,
+            ),
+            code="repeated",
         )
     if np.any(count == 0):
         gap = int(np.argmin(count))
         raise ParameterError(
-            f"{path}: no row has x_m = {x[gap // len(y)]:g} and y_m = {y[gap % len(y)]:g}, of {len(x)} places in x and "
-            f"{len(y)} in y; {action}"
+            Message(
+                "{path}: no row has x_m = {x:g} and y_m = {y:g}, of {n_x} places in x and {n_y} in y. {action}",
+                path=path,
+                x=x[gap // len(y)],
+                y=y[gap % len(y)],
+                n_x=len(x),
+                n_y=len(y),
+                action=action,
+            ),
+            code="missing",
         )

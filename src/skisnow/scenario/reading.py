@@ -15,6 +15,7 @@ from typing import Any, Final
 
 from .._support.display import ShownFields
 from .._support.errors import ParameterError, RangeWarning
+from .._support.messages import Message
 from .._support.user_files import MOST_TOML_BYTES, is_file, plain_text, toml_values
 from ..parameters import nearest
 from ..ski.sources import Sources
@@ -102,7 +103,7 @@ def load_scenario(name_or_path: str | Path, *, changes: Mapping[str, object] = _
     """
     scenario, messages, _ = _built(load_input(name_or_path).changed(changes), Sources())
     for text in messages:
-        warnings.warn(text, RangeWarning, stacklevel=2)
+        warnings.warn(RangeWarning(text, code="unusual"), stacklevel=2)
     return scenario
 
 
@@ -130,8 +131,12 @@ def load_input(name_or_path: str | Path | Scenario) -> ScenarioInput:
     path = Path(name_or_path)
     if not (isinstance(name_or_path, Path) or path.suffix.lower() == ".toml" or path.name != word or is_file(path)):
         raise ParameterError(
-            f"there is no scenario named {word!r}. {nearest(word, scenario_names())} Any other scenario is read from "
-            "a file ending in .toml"
+            Message(
+                "there is no scenario named {word!r}. {allowed} Any other scenario is read from a file ending in .toml",
+                word=word,
+                allowed=nearest(word, scenario_names()),
+            ),
+            code="unknown_name",
         )
     return _parse(str(path), path, plain_text(path, most_bytes=MOST_TOML_BYTES))
 
@@ -140,12 +145,20 @@ def _parse(title: str, file: Path | None, text: str) -> ScenarioInput:
     sections = toml_values(text, title=title)
     identify = sections.pop(IDENTIFY, {})
     if not isinstance(identify, dict):
-        raise ParameterError(f"{title}: {IDENTIFY} is {identify!r}; it must be a table, begun by the line [{IDENTIFY}]")
+        raise ParameterError(
+            Message(
+                "{title}: {key} is {value!r}; it must be a table, begun by the line [{key}]",
+                title=title,
+                key=IDENTIFY,
+                value=identify,
+            ),
+            code="wrong_kind",
+        )
     try:
         require_known(identify)
         values = validate(flatten_sections(sections))
     except ParameterError as error:
-        raise ParameterError(f"{title}: {error}") from error
+        raise error.at(title) from error
     return ScenarioInput(title, file, (Layer(values, file.parent if file else Path()),), identify)
 
 
@@ -192,9 +205,11 @@ def _built(scenario_input: ScenarioInput, sources: Sources) -> tuple[Scenario, t
         resolution = resolve(scenario_input, sources)
         return (*build(resolution, sources), resolution)
     except ContradictionError as error:
-        raise ContradictionError(error.keys, f"{scenario_input.title}: {error}") from error
+        raise ContradictionError(
+            error.keys, Message("{place}: {problem}", place=scenario_input.title, problem=error)
+        ) from error
     except ParameterError as error:
-        raise ParameterError(f"{scenario_input.title}: {error}") from error
+        raise error.at(scenario_input.title) from error
 
 
 def _values(scenario_input: ScenarioInput, resolution: Resolution, scenario: Scenario) -> dict[str, Any]:
@@ -263,7 +278,12 @@ def scenario_text(name: str) -> str:
         There is no such scenario; the nearest is named.
     """
     if name not in scenario_names():
-        raise ParameterError(f"there is no built-in scenario {name!r}. {nearest(name, scenario_names())}")
+        raise ParameterError(
+            Message(
+                "there is no built-in scenario {name!r}. {allowed}", name=name, allowed=nearest(name, scenario_names())
+            ),
+            code="unknown_name",
+        )
     text = (_FOLDER / f"{name}.toml").read_text(encoding="utf-8")
     head, *parts = _SECTION.split(text)
     written = dict(zip(parts[::2], parts[1::2], strict=True))

@@ -20,6 +20,7 @@ from typing import Any, Final, TypeAlias
 
 from .._support.display import ShownFields
 from .._support.errors import ParameterError
+from .._support.messages import Message
 from ..parameters import InputValue
 from ..ski.sources import Sources
 from ..snow import SnowProperties
@@ -60,12 +61,12 @@ class ContradictionError(ParameterError):
         The two keys.
     """
 
-    def __init__(self, keys: tuple[str, str], message: str) -> None:
+    def __init__(self, keys: tuple[str, str], message: Message) -> None:
         super().__init__(message, code="contradiction")
         self.keys = keys
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return type(self), (self.keys, str(self))
+        return type(self), (self.keys, self.message)
 
 
 @dataclass(frozen=True, slots=True)
@@ -169,7 +170,10 @@ def resolve(scenario_input: ScenarioInput, sources: Sources) -> Resolution:
         }
         replaced = "snow.results" not in values or providers.get(H_V, (-1, ""))[0] > latest["snow.results"]
         if "snow.site" in layer.values and replaced:
-            raise ContradictionError(("snow.site", H_V), "snow.site goes with snow.results. Change one of them")
+            raise ContradictionError(
+                ("snow.site", H_V),
+                Message("{name} goes with {condition}. Change one of them", name="snow.site", condition="snow.results"),
+            )
         layer_snows = _read_snows(layer, values, files, sources)
         snows |= {(number, name): snow for name, snow in layer_snows.items()}
         for quantity, names in _providers_by_quantity(layer, layer_snows).items():
@@ -277,14 +281,24 @@ def _strongest(quantity: str, names: list[str], layer: Layer) -> str:
     if quantity == UNLOADING:
         ratio = layer.values[UNLOADING]
         raise ContradictionError(
-            (first, second), f'{UNLOADING} is {ratio:g} beside snow.penetration = "elastic", which is 1. Leave one out'
+            (first, second),
+            Message(
+                '{name} is {ratio:g} beside snow.penetration = "elastic", which is 1. Leave one out',
+                name=UNLOADING,
+                ratio=ratio,
+            ),
         )
     raise _contradiction(first, second, quantity)
 
 
 def _contradiction(first: str, second: str, quantity: str) -> ContradictionError:
-    what = SCENARIO_KEYS[quantity].label or quantity if quantity in SCENARIO_KEYS else f"the {quantity}"
-    return ContradictionError((first, second), f"{first} and {second} both give {what}. Keep one of them")
+    what = SCENARIO_KEYS[quantity].label or quantity if quantity in SCENARIO_KEYS else quantity
+    return ContradictionError(
+        (first, second),
+        Message(
+            "{first} and {second} both give {quantity}. Keep one of them", first=first, second=second, quantity=what
+        ),
+    )
 
 
 def _with_effect(
@@ -301,4 +315,7 @@ def _with_effect(
         if condition.holds(values.get(main, SCENARIO_KEYS[main].default)):
             yield name, value
         elif max(latest.get(main, -1), providers.get(main, (-1, ""))[0]) <= latest[name]:
-            raise ContradictionError((name, main), f"{name} goes with {condition.in_words}. Change one of them")
+            raise ContradictionError(
+                (name, main),
+                Message("{name} goes with {condition}. Change one of them", name=name, condition=condition.in_words),
+            )

@@ -10,6 +10,7 @@ from typing import Annotated, Any
 
 from .._support.display import Facts, Shown, amount
 from .._support.errors import ParameterError
+from .._support.messages import Message
 from .._support.units import DEGREE, STANDARD_GRAVITY
 from ..parameters import Quantity, Search, Word, require_declared
 from ..ski import Ski, ski_names
@@ -201,10 +202,14 @@ class Scenario(Shown):
     def __post_init__(self) -> None:
         if self.contact.snow.failure_shear_stress is None:
             raise ParameterError(
-                f"the snow ({self.contact.snow.source}) has no failure shear stress S_f; a turn needs it: give one"
+                Message(
+                    "the snow ({source}) has no failure shear stress S_f; a turn needs it: give one",
+                    source=self.contact.snow.source,
+                ),
+                code="no_data",
             )
         if self.stop.duration is None and self.stop.length is None:
-            raise ParameterError("the run has no end: give a duration or a length")
+            raise ParameterError(Message("the run has no end: give a duration or a length"), code="no_data")
         require_declared(self)
         if self.camber_rounding is not None:
             object.__setattr__(self, "ski", self.ski.camber_rounded(self.camber_rounding))

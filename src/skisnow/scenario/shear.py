@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import Annotated, Final, Literal, TypeAlias
 
 from .._support.errors import ParameterError, RangeWarning
+from .._support.messages import Message
 from .._support.units import DEGREE
 from ..forces.shear import AngleShear, DensityShear, MachiningShear, ShearLaw
 from ..forces.shear.slip import RESIDUAL_RATIO, SLIP_WEAKENING
@@ -134,7 +135,9 @@ class Shear:
     def __post_init__(self) -> None:
         require_declared(self)
         if self.law == "by-density" and self.snow_density is None:
-            raise ParameterError('shear.law = "by-density" needs the density: give shear.snow_density_kg_per_m3')
+            raise ParameterError(
+                Message('shear.law = "by-density" needs the density: give shear.snow_density_kg_per_m3'), code="missing"
+            )
 
     def of(self, failure_shear_stress: float) -> ShearLaw | None:
         """The law of a snow with this S_f (N/m²); None: S_f as it is."""

@@ -165,19 +165,41 @@ class Profile(Shown):
 def _require_points(x: FloatArray, height: FloatArray) -> None:
     if x.ndim != 1 or x.shape != height.shape or len(x) < FEWEST_POINTS:
         raise ParameterError(
-            f"a profile needs {FEWEST_POINTS} points or more, each with x and height; there are x of shape {x.shape} "
-            f"and heights of shape {height.shape}"
+            Message(
+                "a profile needs {fewest_points} points or more, each with x and height; there are x of "
+                "shape {shape} and heights of shape {shape_2}",
+                fewest_points=FEWEST_POINTS,
+                shape=str(x.shape),
+                shape_2=str(height.shape),
+            ),
+            code="wrong_shape",
         )
     for name, table in (("x", x), ("the height", height)):
         if not np.isfinite(table).all():
             place = int(np.argmin(np.isfinite(table)))
-            raise ParameterError(f"{name} of point {place + 1} of the profile is {table[place]}; correct it")
+            raise ParameterError(
+                Message(
+                    "{name} of point {place} of the profile is {value}; correct it",
+                    name=name,
+                    place=place + 1,
+                    value=table[place],
+                ),
+                code="not_a_number",
+            )
     rises = np.diff(x) >= SHORTEST_STEP
     if not rises.all():
         place = int(np.argmin(rises))
         raise ParameterError(
-            f"x of the profile's point {place + 2} is {x[place + 1]:g} m after {x[place]:g} m; x must rise by "
-            f"{SHORTEST_STEP:g} m or more from point to point. Sort the points, and keep one of those at the same place"
+            Message(
+                "x of the profile's point {place} is {x:g} m after {before:g} m; x must rise by "
+                "{shortest_step:g} m or more from point to point. Sort the points, and keep one of those "
+                "at the same place",
+                place=place + 2,
+                x=x[place + 1],
+                before=x[place],
+                shortest_step=SHORTEST_STEP,
+            ),
+            code="out_of_range",
         )
 
 
@@ -186,8 +208,16 @@ def _require_no_gap(x: FloatArray) -> None:
     place = int(np.argmax(widths))
     if widths[place] > LONGEST_GAP:
         raise ParameterError(
-            f"the profile has no point between x = {x[place]:g} m and {x[place + 1]:g} m, a gap of {widths[place]:.3g} "
-            f'm; at most {LONGEST_GAP:g} m are joined unasked. Add points, or write slope.profile_gap = "interpolate"'
+            Message(
+                "the profile has no point between x = {x:g} m and {end:g} m, a gap of {width:.3g} m; at "
+                "most {longest_gap:g} m are joined unasked. Add points, or write slope.profile_gap = "
+                '"interpolate"',
+                x=x[place],
+                end=x[place + 1],
+                width=widths[place],
+                longest_gap=LONGEST_GAP,
+            ),
+            code="out_of_range",
         )
 
 
@@ -203,9 +233,16 @@ def _require_no_cliff(x: FloatArray, coefficients: FloatArray) -> None:
     if steepness[worst, piece] > math.tan(math.radians(STEEPEST_DEG)):
         degrees = math.degrees(math.atan(steepness[worst, piece]))
         raise ParameterError(
-            f"the profile has a cliff of {degrees:.3g} degrees between x = {x[piece]:g} m and {x[piece + 1]:g} m; at "
-            f"most {STEEPEST_DEG:g} degrees are allowed, a ski cannot follow more. Correct its heights or "
-            "end it there"
+            Message(
+                "the profile has a cliff of {degrees:.3g} degrees between x = {x:g} m and {end:g} m; at "
+                "most {steepest_deg:g} degrees are allowed, a ski cannot follow more. Correct its "
+                "heights or end it there",
+                degrees=degrees,
+                x=x[piece],
+                end=x[piece + 1],
+                steepest_deg=STEEPEST_DEG,
+            ),
+            code="out_of_range",
         )
 
 
@@ -237,4 +274,4 @@ def read_profile(path: str | Path, *, gap: Gap = "error") -> Profile:
     try:
         return Profile(table[:, 0], table[:, 1], gap=gap, source=str(path))
     except ParameterError as error:
-        raise ParameterError(f"{path}: {error}") from error
+        raise error.at(path) from error

@@ -63,7 +63,10 @@ class SnowMap(Shown):
 
     def __post_init__(self) -> None:
         if self.hardness is None and self.failure_shear_stress is None:
-            raise ParameterError("a snow map holds neither H_V nor S_f; give one of them, or both")
+            raise ParameterError(
+                Message("a snow map holds neither H_V nor S_f; give one of them, or both"),
+                code="missing",
+            )
         for name, grid in (("H_V", self.hardness), ("S_f", self.failure_shear_stress)):
             if grid is not None:
                 _require_positive(name, grid)
@@ -105,8 +108,14 @@ def _require_positive(name: str, grid: Grid) -> None:
     i, j = np.unravel_index(int(np.argmin(grid.values)), grid.values.shape)
     if grid.values[i, j] <= 0.0:
         raise ParameterError(
-            f"{name} of the snow map is {grid.values[i, j]:g} at x = {grid.x[i]:g} m, y = {grid.y[j]:g} m; it must be "
-            "above 0"
+            Message(
+                "{name} of the snow map is {value:g} at x = {x:g} m, y = {y:g} m; it must be above 0",
+                name=name,
+                value=grid.values[i, j],
+                x=grid.x[i],
+                y=grid.y[j],
+            ),
+            code="out_of_range",
         )
     x, y = _corners_that_may_swing(grid)
     parts = np.linspace(0.0, 1.0, FINER + 1)
@@ -119,9 +128,15 @@ def _require_positive(name: str, grid: Grid) -> None:
         lowest = int(np.argmin(values))
         if values.flat[lowest] <= 0.0:
             raise ParameterError(
-                f"{name} of the snow map falls from one place to the next so steeply that the curve through its values "
-                f"goes below 0 at x = {finer_x.flat[lowest]:g} m, y = {finer_y.flat[lowest]:g} m; give more places "
-                "there"
+                Message(
+                    "{name} of the snow map falls from one place to the next so steeply that the curve "
+                    "through its values goes below 0 at x = {x:g} m, y = {y:g} m; give more places "
+                    "there",
+                    name=name,
+                    x=finer_x.flat[lowest],
+                    y=finer_y.flat[lowest],
+                ),
+                code="out_of_range",
             )
 
 
@@ -169,14 +184,22 @@ def read_snow_map(path: str | Path) -> SnowMap:
     rows = [_positive(row) for row in csv_rows(path, ("x_m",), further=("y_m", *SIZES), action=_ACTION)]
     names = [name for name in SIZES if rows and name in rows[0].cells]
     if not names:
-        raise ParameterError(f"{path}: there is no column {' and none '.join(SIZES)}, or no row; {_ACTION}")
+        raise ParameterError(
+            Message(
+                "{path}: there is none of the columns {columns}, or no row. {action}",
+                path=path,
+                columns=list(SIZES),
+                action=_ACTION,
+            ),
+            code="missing",
+        )
     grids = _grids(path, names) if "y_m" in rows[0].cells else _along(path, rows, names)
     try:
         return SnowMap(
             hardness=grids.get("H_V_N_per_mm3"), failure_shear_stress=grids.get("S_f_N_per_mm2"), source=str(path)
         )
     except ParameterError as error:
-        raise ParameterError(f"{path}: {error}") from error
+        raise error.at(path) from error
 
 
 def _positive(row: CsvRow) -> CsvRow:
@@ -196,7 +219,10 @@ def _along(path: str | Path, rows: Sequence[CsvRow], names: Sequence[str]) -> di
     """Uneven places are brought to even ones by cubics that do not overshoot."""
     x = np.array([number_within(row, "x_m") for row in rows])
     if len(x) < 2:
-        raise ParameterError(f"{path}: there are {len(x)} rows; snow that varies needs two or more")
+        raise ParameterError(
+            Message("{path}: there are {n_x} rows; snow that varies needs two or more", path=path, n_x=len(x)),
+            code="out_of_range",
+        )
     for row, step in zip(rows[1:], np.diff(x), strict=True):
         if not step > CLOSEST:
             raise row.refused(

@@ -124,7 +124,13 @@ class Terrain(Shown):
             object.__setattr__(self, name, values)
         if min(measured.values.shape) < FEWEST_PLACES:
             raise ParameterError(
-                f"a grid needs {FEWEST_PLACES} places or more in x and in y; it has {len(self.x)} and {len(self.y)}"
+                Message(
+                    "a grid needs {fewest_places} places or more in x and in y; it has {n_x} and {n_y}",
+                    fewest_places=FEWEST_PLACES,
+                    n_x=len(self.x),
+                    n_y=len(self.y),
+                ),
+                code="out_of_range",
             )
         height = smoothed(measured.values, measured.steps, cutoff=self.smoothing)
         object.__setattr__(self, "surface", Grid(self.x - self.origin_x, self.y - self.origin_y, height))
@@ -150,9 +156,16 @@ def _require_no_cliff(surface: Grid) -> None:
         if steepest[i] > math.tan(math.radians(STEEPEST_DEG)):
             j, degrees = int(np.argmax(rows[i])), math.degrees(math.atan(steepest[i]))
             raise ParameterError(
-                f"the grid has a cliff of {degrees:.3g} degrees at x = {x[i]:g} m, y = {y[j]:g} m; at most "
-                f"{STEEPEST_DEG:g} degrees are allowed, a ski cannot follow more. Correct its heights, smooth it over "
-                "more metres, or cut out a part without it"
+                Message(
+                    "the grid has a cliff of {degrees:.3g} degrees at x = {x:g} m, y = {y:g} m; at most "
+                    "{steepest_deg:g} degrees are allowed, a ski cannot follow more. Correct its heights, "
+                    "smooth it over more metres, or cut out a part without it",
+                    degrees=degrees,
+                    x=x[i],
+                    y=y[j],
+                    steepest_deg=STEEPEST_DEG,
+                ),
+                code="out_of_range",
             )
 
 
@@ -185,7 +198,7 @@ def read_terrain(path: str | Path, *, smoothing: float = 0.0, origin_x: float = 
             source=str(path), smoothing=smoothing, origin_x=origin_x, origin_y=origin_y,
         )  # fmt: skip
     except ParameterError as error:
-        raise ParameterError(f"{path}: {error}") from error
+        raise error.at(path) from error
 
 
 def _placed(path: Path) -> PlacedValues:

@@ -11,6 +11,7 @@ import numpy.typing as npt
 
 from .._support.display import Facts, Shown, amount, field_facts, name_with_values
 from .._support.errors import ParameterError
+from .._support.messages import Message
 from ..contact import SnowField
 from ..dynamics import BootMotion, BootPose, Dynamics
 from ..geometry.boot_axes import angles_of
@@ -129,7 +130,10 @@ class BootDrive:
             dynamics.push(*push(moment))
         count = len(dynamics.body.skis)
         if len(poses) != count or not all(isinstance(pose, BootPose) for pose in poses):
-            raise ParameterError(f"boots: the control gave {poses!r}; it must give {count} BootPose")
+            raise ParameterError(
+                Message("boots: the control gave {poses!r}; it must give {count} BootPose", poses=poses, count=count),
+                code="wrong_kind",
+            )
         return poses
 
 

@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from .._support.display import Facts, Shown, field_facts
 from .._support.errors import ParameterError
+from .._support.messages import Message
 from ..scenario import Plane
 from ..scenario.terrain import down_and_left, normals_of
 
@@ -37,7 +38,10 @@ def balance_of(run: Run) -> BalanceHistory:
     """
     boots = run.boots
     if boots is None:
-        raise ParameterError("this run knows nothing of its boots: it was not made by skisnow.simulate")
+        raise ParameterError(
+            Message("this run knows nothing of its boots: it was not made by skisnow.simulate"),
+            code="no_data",
+        )
     normal = normals_of(run.scenario.slope, run.place[:, 0], run.place[:, 1])
     ahead = boots.axes[:, :, 0].mean(axis=1)
     ahead = ahead - np.einsum("na,na->n", ahead, normal)[:, None] * normal

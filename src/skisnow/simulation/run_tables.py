@@ -12,6 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .._support.errors import ParameterError
+from .._support.messages import Message
 from .._support.staging import write_file
 from .._support.units import DEGREE, MM
 from ..scenario.boots import ANGLES, OF_SLOPE, SIDES
@@ -129,7 +130,14 @@ def opensim_columns(run: Run) -> dict[str, FloatArray]:
 def require_ending(path: Path) -> None:
     """ParameterError where a file's name ends in none of `ENDINGS`."""
     if path.suffix.lower() not in ENDINGS:
-        raise ParameterError(f"{path} ends in none of {', '.join(ENDINGS)}, as which boots are written; name it so")
+        raise ParameterError(
+            Message(
+                "{path} ends in none of {endings}, as which boots are written; name it so",
+                path=path,
+                endings=list(ENDINGS),
+            ),
+            code="wrong_ending",
+        )
 
 
 def boots_text(run: Run, ending: str, *, name: str = "boots") -> str:
@@ -175,5 +183,8 @@ def write_boots(run: Run, path: str | Path) -> None:
 
 def _boots(run: Run) -> BootHistory:
     if run.boots is None:
-        raise ParameterError("this run knows nothing of its boots: it was not made by skisnow.simulate")
+        raise ParameterError(
+            Message("this run knows nothing of its boots: it was not made by skisnow.simulate"),
+            code="no_data",
+        )
     return run.boots

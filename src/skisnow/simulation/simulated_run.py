@@ -132,7 +132,7 @@ def simulate(
         return replace(computed_run(setup, record, "sunk", 0.0), laws=laws, strength_along=strength_along)
     if not setup.static_residual <= AT_REST:
         setup.dynamics.contact.require_finite_laws()
-        raise SolverError(why_no_start(setup))
+        raise SolverError(why_no_start(setup), code="no_start")
     begin = time.perf_counter()
     try:
         outcome = _loop(setup, record, progress)

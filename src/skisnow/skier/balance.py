@@ -15,6 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .._support.errors import ParameterError
+from .._support.messages import Message
 from ..dynamics import BootPose
 from ..scenario import Plane, Scenario
 from ..scenario.skier import Skier
@@ -106,7 +107,9 @@ class BalancedSkier:
 
     def __post_init__(self) -> None:
         if self.scenario.skier is None:
-            raise ParameterError("BalancedSkier: the scenario has no skier; give Scenario.with_(skier=Skier())")
+            raise ParameterError(
+                Message("BalancedSkier: the scenario has no skier; give Scenario.with_(skier=Skier())"), code="no_data"
+            )
         self.skier = self.scenario.skier
         self._stand_on(self.scenario.start.x, self.scenario.start.y)
         self.edges = Edges.of(self.scenario, self._gravity, self.skier)

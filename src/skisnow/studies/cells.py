@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, Final, TypeAlias
 
 from .._support.errors import ParameterError
+from .._support.messages import Message
 from .._support.processes.kept_rows import Row
 from .._support.spreadsheet_text import guarded, unguarded
 from .._support.user_files import json_value
@@ -54,7 +55,13 @@ def row_of(place: str, columns: Sequence[str], cells: Sequence[str], readers: Se
     """
     if len(cells) != len(columns):
         raise ParameterError(
-            f"{place}: a row of this table has {len(columns)} cells, this line has {len(cells)}. Remove the line"
+            Message(
+                "{place}: a row of this table has {n_columns} cells, this line has {n_cells}. Remove the line",
+                place=place,
+                n_columns=len(columns),
+                n_cells=len(cells),
+            ),
+            code="wrong_number_of_cells",
         )
     try:
         return {name: read(text) for name, text, read in zip(columns, cells, readers, strict=True)}
@@ -62,7 +69,15 @@ def row_of(place: str, columns: Sequence[str], cells: Sequence[str], readers: Se
         name, text = next(
             (name, text) for name, text, read in zip(columns, cells, readers, strict=True) if _fails(read, text)
         )
-        raise ParameterError(f"{place}: {name} is {text!r}; it must be a number. Correct or remove it") from None
+        raise ParameterError(
+            Message(
+                "{place}: {name} is {text!r}; it must be a number. Correct or remove it",
+                place=place,
+                name=name,
+                text=text,
+            ),
+            code="wrong_kind",
+        ) from None
 
 
 def _fails(read: Reader, text: str) -> bool:
@@ -91,8 +106,17 @@ def require_kinds(place: str, row: Row, texts: Sequence[bool]) -> None:
             continue
         if not text and isinstance(value, list) and all(map(_is_number, value)):
             continue
-        kind = "a text" if text else "a number, a switch or a list of numbers"
-        raise ParameterError(f"{place}: {name} is {str(value)[:80]!r}. Allowed: {kind}. Correct or remove it")
+        kind = Message("a text") if text else Message("a number, a switch or a list of numbers")
+        raise ParameterError(
+            Message(
+                "{place}: {name} is {value!r}. Allowed: {allowed}. Correct or remove it",
+                place=place,
+                name=name,
+                value=str(value)[:80],
+                allowed=kind,
+            ),
+            code="out_of_range",
+        )
 
 
 def _is_number(value: object) -> bool:

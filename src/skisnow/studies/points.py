@@ -14,6 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .._support.errors import ParameterError
+from .._support.messages import Message
 from ..parameters import Quantity, checked_table, made
 
 Point: TypeAlias = dict[str, Any]
@@ -260,27 +261,51 @@ class Axis:
             return cls._of_range(key, value)
         values = value if isinstance(value, list) and not _is_one(key, value) else [value]
         if not values:
-            raise ParameterError(f"{key.name} is an empty list; write at least one value")
-        checked = tuple(key.of_kind(value) for value in values)
-        repeated = next(
-            (checked_value for place, checked_value in enumerate(checked) if checked_value in checked[:place]), None
-        )
+            raise ParameterError(
+                Message("{name} is an empty list; write at least one value", name=key.name), code="out_of_range"
+            )
+        checked = tuple(key.of_kind(each) for each in values)
+        repeated = next((each for place, each in enumerate(checked) if each in checked[:place]), None)
         if repeated is not None:
-            raise ParameterError(f"{key.name} holds {repeated!r} twice; write each value once")
+            raise ParameterError(
+                Message("{name} holds {repeated!r} twice; write each value once", name=key.name, repeated=repeated),
+                code="repeated",
+            )
         return cls(key, checked)
 
     @classmethod
     def _of_range(cls, key: Quantity, table: Mapping[str, Any]) -> Self:
         if key.kind not in ("number", "whole number"):
-            raise ParameterError(f"{key.name} has no range; write a list such as {key.name} = [...]")
+            raise ParameterError(
+                Message("{name} has no range; write a list such as {name} = [...]", name=key.name), code="no_data"
+            )
         limits = made(Range, checked_table(Range, table, key.name))
         low, high, log = limits.first, limits.last, limits.log
         if log and not (low > 0 and high > 0):
-            raise ParameterError(f"{key.name}: a logarithmic range needs both ends above 0; they are {low:g}, {high:g}")
+            raise ParameterError(
+                Message(
+                    "{name}: a logarithmic range needs both ends above 0; they are {low:g}, {high:g}",
+                    name=key.name,
+                    low=low,
+                    high=high,
+                ),
+                code="out_of_range",
+            )
         if low > high:
-            raise ParameterError(f"{key.name}: from is {low:g} and to is {high:g}; from must be the smaller one")
+            raise ParameterError(
+                Message(
+                    "{name}: from is {low:g} and to is {high:g}; from must be the smaller one",
+                    name=key.name,
+                    low=low,
+                    high=high,
+                ),
+                code="wrong_kind",
+            )
         if low == high:
-            raise ParameterError(f"{key.name}: from and to are both {low:g}; write the value under [fixed]")
+            raise ParameterError(
+                Message("{name}: from and to are both {low:g}; write the value under [fixed]", name=key.name, low=low),
+                code="out_of_range",
+            )
         return cls(key, ends=(low, high), n=limits.n, log=log)
 
     def on_grid(self) -> list[Any]:
@@ -288,7 +313,9 @@ class Axis:
         if self.values:
             return list(self.values)
         if self.n is None:
-            raise ParameterError(f"{self.key.name}: n, the number of values, is missing")
+            raise ParameterError(
+                Message("{name}: n, the number of values, is missing", name=self.key.name), code="missing"
+            )
         low, high = self.ends
         share = np.linspace(0.0, 1.0, self.n)
         middle = self._at(share)
@@ -300,7 +327,10 @@ class Axis:
             index = np.minimum((share * len(self.values)).astype(int), len(self.values) - 1)
             return Column(index, self.values)
         if self.n is not None:
-            raise ParameterError(f"{self.key.name}: n stands once in [latin_hypercube], not in a range")
+            raise ParameterError(
+                Message("{name}: n stands once in [latin_hypercube], not in a range", name=self.key.name),
+                code="contradiction",
+            )
         numbers = self._at(share)
         whole = self.key.kind == "whole number"
         return Column(np.array([round(x) for x in numbers.tolist()]) if whole else numbers)
@@ -331,7 +361,14 @@ def hypercube_points(axes: list[Axis], fixed: Point, n: int, seed: int) -> Sampl
 def require_count(n: int) -> None:
     """Reject a study with more points than can be computed."""
     if n > MOST_POINTS:
-        raise ParameterError(f"the study has {n} points; at most {MOST_POINTS} are allowed. Take fewer values")
+        raise ParameterError(
+            Message(
+                "the study has {n} points; at most {most_points} are allowed. Take fewer values",
+                n=n,
+                most_points=MOST_POINTS,
+            ),
+            code="out_of_range",
+        )
 
 
 def _is_one(key: Quantity, value: list[Any]) -> bool:

@@ -120,7 +120,15 @@ def csv_block(path: Path, data: bytes, columns: Sequence[str], readers: Sequence
     try:
         lines = list(csv.reader(io.StringIO(data.decode("utf-8"), newline="")))
     except (UnicodeDecodeError, csv.Error) as error:
-        raise ParameterError(f"{path} is no table of a study, from about line {first} on: {error}") from error
+        raise ParameterError(
+            Message(
+                "{path} is no table of a study, from about line {first} on: {error}",
+                path=path,
+                first=first,
+                error=error,
+            ),
+            code="unknown_name",
+        ) from error
     return [row_of(f"{path}, line {number}", columns, line, readers) for number, line in enumerate(lines, start=first)]
 
 
@@ -176,7 +184,12 @@ class DatabaseRows(StoredRows):
 
 def _no_table(path: Path, why: object) -> ParameterError:
     return ParameterError(
-        f"{path} cannot be read as a study's table: {why}. Put back a copy, or remove it and run the study again"
+        Message(
+            "{path} cannot be read as a study's table: {reason}. Put back a copy, or remove it and run the study again",
+            path=path,
+            reason=why,
+        ),
+        code="cannot_read",
     )
 
 

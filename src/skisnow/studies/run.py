@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any, Protocol, Self
 
 from .._support.errors import OutputError, ParameterError, SkisnowError
+from .._support.messages import Message
 from .._support.processes.batch import Progress, compute_missing
 from .._support.processes.executors import ExecutorLike, require_executor
 from .._support.processes.kept_rows import KeptRows, Row, json_text
@@ -62,7 +63,10 @@ def standing(
     try:
         table = read_table(out, keys)
     except ParameterError as error:
-        raise ParameterError(f"{error}. It is not replaced: name another place in out, or move it away") from error
+        raise ParameterError(
+            Message("{problem}. It is not replaced: name another place in out, or move it away", problem=error),
+            code="wrong_kind",
+        ) from error
     tally = table.tally()
     same = tally.rows == points and tally.studies == {fingerprint}
     return (StudyState.FINISHED if same else StudyState.ANOTHER), table
@@ -127,7 +131,10 @@ def run_study(
     finished_rows = kept_rows(study, study.partial, fingerprint)
     try:
         if _stamp(study.out) != before:
-            raise OutputError(f"{study.out} was just written by another run. Start again to see its table")
+            raise OutputError(
+                Message("{out} was just written by another run. Start again to see its table", out=study.out),
+                code="in_use",
+            )
         rows = StudyRows.of(study)
         compute_missing(study.points, rows, finished_rows, workers=workers, executor=executor, progress=progress)
         previous = study.place_for_previous() if state is StudyState.ANOTHER else None
@@ -283,8 +290,13 @@ class StudyRows:
         for path, wanted in self.files:
             if _hash(path) != wanted:
                 raise SkisnowError(
-                    f"the worker on {platform.node()} has not the {path} of this study. Put the study into a folder "
-                    "that all computers share"
+                    Message(
+                        "the worker on {node} has not the {path} of this study. Put the study into a folder that "
+                        "all computers share",
+                        node=platform.node(),
+                        path=path,
+                    ),
+                    code="different_files",
                 )
 
 

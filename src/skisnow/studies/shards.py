@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any, Final, Self
 
 from .._support.errors import ParameterError
+from .._support.messages import Message, template
 from .._support.processes.batch import Progress, compute_missing
 from .._support.processes.chunk import own_identity
 from .._support.processes.executors import ExecutorLike, require_executor
@@ -56,8 +57,13 @@ class Shard:
         shard = cls(int(match[1]), int(match[2])) if match else None
         if shard is None or not 1 <= shard.number <= shard.count <= MOST_SHARDS:
             raise ParameterError(
-                f"shard is {text!r}; it is written i/n, from 1/n to n/n, such as 2/8 for the second of eight; n is "
-                f"{MOST_SHARDS} at most"
+                Message(
+                    "shard is {text!r}; it is written i/n, from 1/n to n/n, such as 2/8 for the second of "
+                    "eight; n is {most_shards} at most",
+                    text=text,
+                    most_shards=MOST_SHARDS,
+                ),
+                code="out_of_range",
             )
         return shard
 
@@ -152,7 +158,7 @@ def merge_shards(out: str | Path, parts: Sequence[str | Path]) -> StudyTable:
     writer_of(out)
     places = [Path(part) for part in parts]
     if not places:
-        raise ParameterError("no part is named; name the files of all parts of the study")
+        raise ParameterError(Message("no part is named; name the files of all parts of the study"), code="unknown_name")
     with ExitStack() as opened:
         shard_rows = []
         for place in dict.fromkeys(places):
@@ -170,21 +176,33 @@ def _merged(out: Path, parts: _Parts) -> StudyTable:
     return written(out, parts, parts.fingerprint, parts.keys, previous=before)
 
 
+_OF_ANOTHER_STUDY: Final = template("{path} is a part of another study than {other}. Leave one of them out")
+_OF_ANOTHER_CORE: Final = template(
+    "{path} is a part of this study, computed by another core than {other}. Leave one of them out"
+)
+
+
 class _Parts:
     """The rows of all parts, as if they were kept in one file."""
 
     def __init__(self, parts: Sequence[KeptRows]) -> None:
         self._parts = parts
         about = [part.about() for part in parts]
-        for name, what in (("fingerprint", "another study"), ("core", "this study, computed by another core")):
+        for name, text in (("fingerprint", _OF_ANOTHER_STUDY), ("core", _OF_ANOTHER_CORE)):
             odd = next(
                 (part for part, entries in zip(parts, about, strict=True) if entries.get(name) != about[0].get(name)),
                 None,
             )
             if odd is not None:
-                raise ParameterError(f"{odd.path} is a part of {what} than {parts[0].path}. Leave one of them out")
+                raise ParameterError(
+                    Message(text, path=odd.path, other=parts[0].path),
+                    code="another_study",
+                )
         if "points" not in about[0] or parts[0].columns is None:
-            raise ParameterError(f"{parts[0].path} is no part of a study. Name the files that --shard left")
+            raise ParameterError(
+                Message("{path} is no part of a study. Name the files that --shard left", path=parts[0].path),
+                code="unknown_name",
+            )
         self.columns: tuple[str, ...] | None = parts[0].columns
         self.fingerprint = about[0]["fingerprint"]
         self.count = int(about[0]["points"])
@@ -206,7 +224,12 @@ class _Parts:
             if last is None or text[0] != last[0]:
                 yield text
             elif text[1] != last[1]:
-                raise ParameterError(f"two parts have different rows for point {text[0] + 1}. Compute one of them anew")
+                raise ParameterError(
+                    Message(
+                        "two parts have different rows for point {each}. Compute one of them anew", each=text[0] + 1
+                    ),
+                    code="contradiction",
+                )
             last = text
 
     def values(self) -> Iterator[list[Any]]:
@@ -224,6 +247,12 @@ class _Parts:
         if missing:
             first = numbers_seen.index(0)
             raise ParameterError(
-                f"{missing} of {self.count} points are in none of the parts, the first is point {first + 1}. Compute "
-                "or name the missing parts"
+                Message(
+                    "{missing} of {count} points are in none of the parts, the first is point {first}. "
+                    "Compute or name the missing parts",
+                    missing=missing,
+                    count=self.count,
+                    first=first + 1,
+                ),
+                code="missing",
             )

@@ -12,6 +12,7 @@ from typing import Annotated, Any, Final, Protocol, TypeAlias
 
 from .._support.display import Facts, Shown
 from .._support.errors import ParameterError
+from .._support.messages import Message
 from .._support.processes.kept_rows import Row
 from .._support.user_files import is_file, read_toml
 from ..parameters import InputValue, Quantity, checked_table, made, nearest
@@ -179,13 +180,16 @@ def read_study(path: str | Path, *, subject: ModelReader = CarveModel) -> Study:
     try:
         return _study(path, values, subject)
     except ParameterError as error:
-        raise ParameterError(f"{path}: {error}") from error
+        raise error.at(path) from error
 
 
 def _study(path: Path, values: Mapping[str, Any], subject: ModelReader) -> Study:
     for key in values:
         if key not in TOP_KEYS:
-            raise ParameterError(f"{key} is no key of a study. {nearest(key, TOP_KEYS)}")
+            raise ParameterError(
+                Message("{key} is no key of a study. {allowed}", key=key, allowed=nearest(key, TOP_KEYS)),
+                code="unknown_name",
+            )
     subject_ = _subject(path, values, subject)
     form = _form(values)
     fixed = _fixed(subject_.named(_table(values, "fixed")), subject_.keys)
@@ -193,7 +197,10 @@ def _study(path: Path, values: Mapping[str, Any], subject: ModelReader) -> Study
     inputs = subject_.named({name: value for name, value in varying.items() if name not in OWN_KEYS[form]})
     axes = [_axis(form, name, value, subject_.keys, fixed) for name, value in inputs.items()]
     if not axes:
-        raise ParameterError(f"[{form}] holds no input that varies; write one, such as edge_angle_deg = [30, 45, 60]")
+        raise ParameterError(
+            Message("[{form}] holds no input that varies; write one, such as edge_angle_deg = [30, 45, 60]", form=form),
+            code="missing",
+        )
     points = grid_points(axes, fixed) if form == "grid" else hypercube_points(axes, fixed, *_sample(varying))
     subject_.require_sound(points, fixed)
     return Study(path, _out(path, values), subject_, tuple(axis.key.name for axis in axes), points)
@@ -204,22 +211,35 @@ def _subject(path: Path, values: Mapping[str, Any], subject: ModelReader) -> Stu
         return subject(path.parent)
     word = values["scenario"]
     if not isinstance(word, str) or not word.strip():
-        raise ParameterError(f'scenario is {word!r}; it is a name or a file, such as scenario = "carved-46m"')
+        raise ParameterError(
+            Message('scenario is {word!r}; it is a name or a file, such as scenario = "carved-46m"', word=word),
+            code="wrong_kind",
+        )
     return ScenarioModel(path.parent, word)
 
 
 def _form(values: Mapping[str, Any]) -> str:
     forms = [form for form in FORMS if form in values]
     if len(forms) != 1:
-        problem = "both are there" if forms else "neither is there"
-        raise ParameterError(f"a study has either [grid] or [latin_hypercube]; {problem}")
+        problem = (
+            Message("a study has either [grid] or [latin_hypercube]; both are there")
+            if forms
+            else Message("a study has either [grid] or [latin_hypercube]; neither is there")
+        )
+        raise ParameterError(
+            problem,
+            code="contradiction",
+        )
     return forms[0]
 
 
 def _table(values: Mapping[str, Any], name: str) -> Mapping[str, Any]:
     table = values.get(name, {})
     if not isinstance(table, dict):
-        raise ParameterError(f"{name} is {table!r}; it must be a table, begun by the line [{name}]")
+        raise ParameterError(
+            Message("{name} is {table!r}; it must be a table, begun by the line [{name}]", name=name, table=table),
+            code="wrong_kind",
+        )
     return table
 
 
@@ -228,7 +248,14 @@ def _fixed(table: Mapping[str, Any], keys: Mapping[str, Quantity]) -> Point:
     for name, value in table.items():
         _require_key("fixed", name, keys)
         if isinstance(value, dict) or (isinstance(value, list) and keys[name].kind != "three numbers"):
-            raise ParameterError(f"fixed.{name} is {value!r}; it takes one value. What varies stands in [grid]")
+            raise ParameterError(
+                Message(
+                    "fixed.{name} is {value!r}; it takes one value. What varies stands in [grid]",
+                    name=name,
+                    value=value,
+                ),
+                code="wrong_kind",
+            )
         fixed[name] = _in_range(keys[name], value)
     return fixed
 
@@ -237,19 +264,25 @@ def _in_range(key: Quantity, value: object) -> InputValue:
     try:
         return key.in_range(value)
     except ParameterError as error:
-        raise ParameterError(f"fixed.{error}") from error
+        raise ParameterError(Message("fixed.{problem}", problem=error), code=error.code) from error
 
 
 def _axis(form: str, name: str, value: object, keys: Mapping[str, Quantity], fixed: Point) -> Axis:
     _require_key(form, name, (*OWN_KEYS[form], *keys))
     if name in fixed:
-        raise ParameterError(f"{name} stands in [{form}] and in [fixed]. Remove one of them")
+        raise ParameterError(
+            Message("{name} stands in [{form}] and in [fixed]. Remove one of them", name=name, form=form),
+            code="contradiction",
+        )
     return Axis.of(keys[name], value)
 
 
 def _require_key(table: str, name: str, keys: Collection[str]) -> None:
     if name not in keys:
-        raise ParameterError(f"{table}.{name} is no input. {nearest(name, keys)}")
+        raise ParameterError(
+            Message("{table}.{name} is no input. {allowed}", table=table, name=name, allowed=nearest(name, keys)),
+            code="unknown_name",
+        )
 
 
 def _sample(table: Mapping[str, Any]) -> tuple[int, int]:
@@ -261,8 +294,18 @@ def _sample(table: Mapping[str, Any]) -> tuple[int, int]:
 def _out(path: Path, values: Mapping[str, Any]) -> Path:
     out = values.get("out")
     if not isinstance(out, str) or not out.strip():
-        problem = "is missing" if out is None else f"is {out!r}"
-        raise ParameterError(f'out {problem}; it is the place of the table, such as out = "table.csv"')
+        problem = (
+            Message('out is missing; it is the place of the table, such as out = "table.csv"')
+            if out is None
+            else Message('out is {out!r}; it is the place of the table, such as out = "table.csv"', out=out)
+        )
+        raise ParameterError(
+            problem,
+            code="wrong_kind",
+        )
     if Path(out).suffix.lower() not in WRITERS:
-        raise ParameterError(f"out is {out!r}; the name of the table must end in {', '.join(WRITERS)}")
+        raise ParameterError(
+            Message("out is {out!r}; the name of the table must end in {writers}", out=out, writers=list(WRITERS)),
+            code="wrong_ending",
+        )
     return path.parent / out

@@ -11,6 +11,7 @@ import numpy as np
 
 from .._support.display import ShownFields
 from .._support.errors import ParameterError, SkisnowError
+from .._support.messages import Message
 from .._support.processes.kept_rows import Row
 from .._support.units import MM
 from .._support.user_files.json_text import json_number
@@ -206,7 +207,9 @@ class ScenarioModel(ShownFields):
             for part, part_value in parts.items():
                 full = full_name(part)
                 if full in values:
-                    raise ParameterError(f"{full} is given twice. Remove one of them")
+                    raise ParameterError(
+                        Message("{full} is given twice. Remove one of them", full=full), code="repeated"
+                    )
                 values[full] = part_value
         return values
 

@@ -14,6 +14,7 @@ from typing import IO, Any, Final
 
 from .._support.display import Facts, Shown
 from .._support.errors import ParameterError
+from .._support.messages import Message
 from .._support.processes.kept_rows import Row
 from .._support.spreadsheet_text import (
     SEPARATOR_NAMES,
@@ -208,19 +209,26 @@ def _read_at_once(path: Path, keys: Mapping[str, Quantity]) -> tuple[tuple[str, 
     except OSError as error:
         raise _unreadable(path, error) from error
     except (NoTextError, csv.Error) as error:
-        raise ParameterError(f"{path} is no table of a study: {error}") from error
+        raise ParameterError(
+            Message("{path} is no table of a study: {error}", path=path, error=error), code="unknown_name"
+        ) from error
     mark = "." if separator == "," else decimal_mark([chain.from_iterable(row for _, row in lines)], separator=";")
     cell_readers = readers(columns, keys, mark)
     return columns, [row_of(f"{path}, line {line}", columns, cells, cell_readers) for line, cells in lines]
 
 
 def _unreadable(path: Path, error: OSError) -> ParameterError:
-    return ParameterError(f"{path} cannot be read: {error.strerror or error}")
+    return ParameterError(
+        Message("{path} cannot be read: {reason}", path=path, reason=error.strerror or error), code="cannot_read"
+    )
 
 
 def _require_columns(path: str | Path, columns: Sequence[str]) -> None:
     if not {"outcome", "study"} <= set(columns):
-        raise ParameterError(f"{path} is no table of a study: its first line names no columns outcome and study")
+        raise ParameterError(
+            Message("{path} is no table of a study: its first line names no columns outcome and study", path=path),
+            code="unknown_name",
+        )
 
 
 @dataclass(slots=True)
