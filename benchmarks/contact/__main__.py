@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import argparse
 import json
-import math
 import os
 import re
 import shutil
@@ -32,11 +31,6 @@ KEYS: list[tuple[str, str, dict[str, Any]]] = [
     ("part_along", "10 mm", {"5": {"part_along": 0.005}, "20": {"part_along": 0.02}}),
     ("part_across", "2 mm", {"1": {"part_across": 1e-3}, "4": {"part_across": 4e-3}}),
     ("knot_area", "1e-4", {"0": {"knot_area": 0.0}, "1e-3": {"knot_area": 1e-3}}),
-    (
-        "edge_blend_angle",
-        "2°",
-        {"1°": {"edge_blend_angle": math.radians(1)}, "4°": {"edge_blend_angle": math.radians(4)}},
-    ),
     ("stick_displacement", "0.02 mm", {"0.01": {"stick_displacement": 1e-5}, "0.04": {"stick_displacement": 4e-5}}),
 ]
 
@@ -51,7 +45,6 @@ class Literal:
 
 LITERALS = [
     Literal("MARGIN", "snow/lines.cpp", "0.12", ("0.06", "0.24")),
-    Literal("EDGE_ASIDE", "snow/lines.cpp", "0.04", ("0.02", "0.08")),
     Literal("MOST_UNEVEN", "snow/lines.cpp", "0.25", ("0.12", "0.5")),
     Literal("MOST_TURN", "snow/lines.cpp", "0.3", ("0.15", "0.6")),
     Literal("MOST_OFF", "snow/lines.cpp", "2e-4", ("1e-4", "4e-4")),

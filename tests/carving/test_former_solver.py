@@ -1,7 +1,8 @@
 """Equilibria of the solver before the compiled core, recorded when it was removed.
 
 Four boot moments are of the compiled core since its matrix is exact: they moved by up to 3e-6 N m, which is 1e-11 m of
-depth, where Newton's method ends.
+depth, where Newton's method ends. On snow of 10⁻⁵ N/mm³ the ski is in it with both edges, each of which now holds by
+itself: the ski twists less, and its side force moved by 5e-4.
 """
 
 from __future__ import annotations

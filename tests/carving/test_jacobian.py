@@ -111,8 +111,10 @@ def residual(model: ClampedSki, given: Conditions, places: npt.NDArray[np.float6
                 groove[k] = deep
         edge = corner - given.bevel_width * rise if given.bevel > 0.0 else corner
         bite = edge if edge.real > 0.0 else 0j
+        other = corner - 2.0 * half * np.sin(angle)
+        turned = bite - 2.0 * other if other.real > 0.0 else bite  # the other edge holds its own depth, on its side
         normal = cosine * force + sine * border[2] * bite
-        turning = moment - half * np.cos(angle) * force - half * np.sin(angle) * border[2] * bite
+        turning = moment - half * np.cos(angle) * force - half * np.sin(angle) * border[2] * turned
         balance += weight * np.array(
             [
                 force,
@@ -135,6 +137,7 @@ def residual(model: ClampedSki, given: Conditions, places: npt.NDArray[np.float6
         (20.0, 0.21e9, 10.0, 1.0),
         (10.0, 0.005e9, 10.0, 0.0),  # the base ends in the snow
         (20.0, 0.005e9, 10.0, 1.0),
+        (3.0, 0.005e9, 10.0, 0.0),  # it lies in the snow with both edges
     ],
 )
 def test_the_matrix_is_the_derivative(angle: float, hardness: float, ratio: float, bevel: float) -> None:

@@ -22,21 +22,26 @@ _POINT, _WEIGHT = np.polynomial.legendre.leggauss(3)
 
 
 @dataclass
+class Hold:
+    """One edge on a line at the last accepted pose: place, depth, and where it held if in the snow."""
+
+    place: float
+    depth: float
+    anchor: float = math.nan
+
+
+@dataclass
 class Line:
-    """Across the path: origin, directions ahead, left and out of the snow; what was pressed; where the edge holds."""
+    """Across the path: origin, directions ahead, left and out of the snow; what was pressed; how both edges stood."""
 
     origin: FloatArray
     ahead: FloatArray
     out: FloatArray
     pressed: list[tuple[float, float, float, float]] = field(default_factory=list)
-    anchor: float | None = None
-    above: tuple[float, float] | None = None
-    marked: tuple[float, float] | None = None
+    holds: tuple[Hold, Hold] | None = None
     slipped: float = 0.0
     stuck: tuple[float, float, float] | None = None  # along the ski and across where friction is 0; the point's arm
-    side: float = 0.0  # where across the base the shear acted, as a share of the half width
-    strength: float = 0.0  # of the edge that holds (Pa), and its depth
-    held_depth: float = 0.0
+    strength: float = 0.0  # of edges that hold (Pa)
 
     @property
     def left(self) -> FloatArray:
@@ -44,18 +49,28 @@ class Line:
 
 
 @dataclass
-class Touch:
-    """Where a base meets a line: edge, its depth, fall of the depth, wet from and to, depth of the deepest edge."""
+class Edge:
+    """Of a section, to the left or to the right: its place on the line, depth, reach, position and direction across."""
 
-    edge: float
+    place: float
+    depth: float
+    reach: float
+    at: FloatArray
+    across: FloatArray
+
+
+@dataclass
+class Touch:
+    """Where a base meets a line: place and depth of the grip, fall of the depth, wet from and to."""
+
+    place: float
     depth: float
     fall: float
     low: float
     high: float
-    deepest: float
 
     def base(self, y: FloatArray | float) -> FloatArray | float:
-        return self.depth + self.fall * (y - self.edge)
+        return self.depth + self.fall * (y - self.place)
 
 
 @dataclass
@@ -86,9 +101,8 @@ class ReferenceRunner:
         return [-n * self.spacing for n in reversed(behind)] + [n * self.spacing for n in ahead]
 
     def _laid(self, pose: Pose, s: float) -> Line:
-        x, left = pose.rotation[:, 0], pose.rotation[:, 1]
-        side = float(np.clip(-left[2] / math.sin(self.snow.edge_blend_angle), -1.0, 1.0)) * 0.04
-        point = pose.position + s * x + side * left
+        x = pose.rotation[:, 0]
+        point = pose.position + s * x
         # on the surface z = 0 at this position along the ski
         level = x[0] ** 2 + x[1] ** 2
         along = point[2] * x[2] / level
@@ -100,7 +114,7 @@ class ReferenceRunner:
         """Wrench (6,) about the boot and beam loads (nodes, 3), a time (s) after the last update."""
         wrench, loads = np.zeros(6), np.zeros((2 if self.runner.nodes is None else len(self.runner.nodes), 3))
         for section in self._sections(pose):
-            if section.share > 0.0 and section.touch.deepest > 0.0:
+            if section.share > 0.0 and section.deepest > 0.0:
                 section.add(wrench, loads, dt)
         return wrench, loads
 
@@ -115,31 +129,35 @@ class ReferenceRunner:
         return sections
 
     def update(self, pose: Pose) -> None:
+        reach = self.snow.shear_displacement
         for section in self._sections(pose):
-            line = section.line
-            touch, before = section.touch, line.marked
-            held, strength = (section.anchor(), section.strength()[0]) if touch.deepest > 0.0 else (0.0, 0.0)
-            line.marked, line.strength = None, 0.0
-            if touch.deepest <= 0.0:
+            line, touch = section.line, section.touch
+            if section.deepest <= 0.0:
                 line.stuck = None
             if section.share <= 0.0:
+                line.holds, line.strength = None, 0.0
                 continue
-            if touch.deepest <= 0.0:
-                line.above, line.anchor, line.side = (touch.edge, touch.deepest), None, section.side
-                continue
-            if before is not None and abs(before[0] - touch.edge) > 1e-12:
-                line.pressed.append((*before, touch.edge, touch.depth))
-            if touch.high > touch.low:
+            for k, edge in enumerate(section.edges):
+                before = section.stood(k) if section.deepest > 0.0 else None
+                if before is not None and abs(before.place - edge.place) > 1e-12:
+                    line.pressed.append((before.place, before.depth, edge.place, edge.depth))
+            if section.deepest > 0.0 and touch.high > touch.low:
                 line.pressed.append(
                     (touch.low, float(touch.base(touch.low)), touch.high, float(touch.base(touch.high)))
                 )
-            line.marked = touch.edge, touch.depth
-            reach = self.snow.shear_displacement
-            line.anchor = float(np.clip(held, touch.edge - reach, touch.edge + reach))
-            line.slipped += abs(line.anchor - held)
-            line.above, line.side = None, section.side
-            line.stuck = section.held_back()
-            line.strength, line.held_depth = strength, touch.depth
+            holds, slipped = [], 0.0
+            for k, edge in enumerate(section.edges):
+                hold = Hold(edge.place, edge.depth)
+                if edge.depth > 0.0:
+                    held = section.anchor(k)
+                    hold.anchor = float(np.clip(held, edge.place - reach, edge.place + reach))
+                    slipped = max(slipped, abs(hold.anchor - held))
+                holds.append(hold)
+            line.strength = section.strength()[0] if section.deepest > 0.0 else 0.0
+            line.slipped += slipped
+            line.holds = holds[0], holds[1]
+            if section.deepest > 0.0:
+                line.stuck = section.held_back()
 
 
 class _Section:
@@ -151,14 +169,13 @@ class _Section:
         n, y, ahead = line.out, line.left, line.ahead
         to_line = line.origin - pose.position
         self.gap = gap = float(to_line @ ahead / (self.x @ ahead))
-        blend = math.sin(whole.snow.edge_blend_angle)
-        down = _edge_side(-(across @ n) / blend)
+        tail, tip = whole.runner.tail, whole.runner.tip
+        side = self._grip(to_line, across, up, n, min(max(gap, tail), tip))
         half, height, flare, slope = (float(np.interp(gap, whole.table, column)) for column in whole.columns)
         s, aside, above = gap, float(across @ ahead), float(up @ ahead)
         for _ in range(2):  # the shape is that at `gap` and its slopes
             edge, base = half + flare * (s - gap), height + slope * (s - gap)
-            s = gap - (down * edge * aside + base * above) / float(self.x @ ahead)
-        tail, tip = whole.runner.tail, whole.runner.tip
+            s = gap - (side * edge * aside + base * above) / float(self.x @ ahead)
         self.station = s
         s = min(max(s, tail), tip)
         half, height, flare, slope = (float(np.interp(s, whole.table, column)) for column in whole.columns)
@@ -168,23 +185,68 @@ class _Section:
         self.t, self.r = math.cos(phi) * across - math.sin(phi) * up, math.cos(phi) * up + math.sin(phi) * across
         axis = s * self.x + height * up
         depth, self.sine = float((to_line - axis) @ n), float(-self.t @ n)
-        self.half, self.reach = half, _edge_side(self.sine / blend) * half
-        along = self.x + slope * up + self.reach / half * flare * self.t - self.reach * self.twist_s * self.r
-        missing = float((to_line - axis - self.reach * self.t) @ ahead)
-        edge = float((axis + self.reach * self.t + missing / float(along @ ahead) * along - to_line) @ y)
+        self.half, self.reach, self.flare, self.slope = half, side * half, flare, slope
+        along = self._direction(side)
+        self.grip_at = axis + self.reach * self.t
+        place = self._crossing(to_line, self.grip_at, along)
         self.base = np.cross(along, self.t) / float(np.cross(along, self.t) @ n)
         fall = float(self.base @ y)
         self.wide = float(self.t @ y) + fall * self.sine
-        low, high = edge - (half + self.reach) / self.wide, edge + (half - self.reach) / self.wide
-        edge_depth = depth + self.reach * self.sine
+        grip_depth = depth + self.reach * self.sine
+        self.edges = []
+        for to in (1.0, -1.0):
+            at, direction = axis + to * half * self.t, self._direction(to)
+            crossing = self._crossing(to_line, at, direction)
+            across_edge = np.cross(n, direction)
+            self.edges.append(
+                Edge(
+                    crossing,
+                    grip_depth + fall * (crossing - place),
+                    to * half,
+                    at,
+                    across_edge / float(np.linalg.norm(across_edge)),
+                )
+            )
+        self.deepest = max(edge.depth for edge in self.edges)
+        low, high = self.edges[1].place, self.edges[0].place
         if fall > 1e-12:
-            low = max(low, edge - edge_depth / fall)
+            low = max(low, place - grip_depth / fall)
         elif fall < -1e-12:
-            high = min(high, edge - edge_depth / fall)
-        self.touch = Touch(edge, edge_depth, fall, low, high, depth + half * abs(self.sine))
+            high = min(high, place - grip_depth / fall)
+        self.touch = Touch(place, grip_depth, fall, low, high)
         u = np.cross(n, along)
         self.per_length = 1.0 / float(np.linalg.norm(u))
-        self.u, self.up, self.edge_at = u * self.per_length, up, axis + self.reach * self.t
+        self.u, self.up = u * self.per_length, up
+
+    def _grip(self, to_line: FloatArray, across: FloatArray, up: FloatArray, n: FloatArray, s: float) -> float:
+        """Mean place of the edges by their depths in the snow, over the half width, under the ski's axis at s."""
+        half, height, _, slope = (float(np.interp(s, self.whole.table, column)) for column in self.whole.columns)
+        self._bend(s)
+        phi = float(self.twists @ self.beam)
+        t = math.cos(phi) * across - math.sin(phi) * up
+        along = self.x + (slope + float(self.deflects_s @ self.beam)) * up
+        middle = to_line - s * self.x - (height + float(self.deflects @ self.beam)) * up
+        # depths of the base's plane where the edges, parallel to its middle, cross the line
+        depths = []
+        for to in (1.0, -1.0):
+            to_edge = middle - to * half * t
+            depths.append(float((to_edge - float(to_edge @ self.line.ahead / (along @ self.line.ahead)) * along) @ n))
+        left, right = (max(each, 0.0) for each in depths)
+        return (left - right) / (left + right) if left + right > 0.0 else float(np.sign(depths[0] - depths[1]))
+
+    def _direction(self, side: float) -> FloatArray:
+        """Along the base at a place across, over the half width."""
+        return (
+            self.x
+            + self.slope * self.pose.rotation[:, 2]
+            + side * self.flare * self.t
+            - side * self.half * self.twist_s * self.r
+        )
+
+    def _crossing(self, to_line: FloatArray, at: FloatArray, direction: FloatArray) -> float:
+        """Place on the line at which a point of the base crosses it along a direction."""
+        way = float((to_line - at) @ self.line.ahead / (direction @ self.line.ahead))
+        return float((at + way * direction - to_line) @ self.line.left)
 
     def _bend(self, s: float) -> None:
         nodes = self.whole.runner.nodes
@@ -204,30 +266,44 @@ class _Section:
         self.twists[[3 * e + 2, 3 * e + 5]] = 1.0 - z, z
         self.twists_s[[3 * e + 2, 3 * e + 5]] = 1.0 / h, -1.0 / h
 
-    @property
-    def side(self) -> float:
-        return self.reach / self.half
+    def stood(self, k: int) -> Hold | None:
+        """An edge at the last accepted pose, if it was in the snow."""
+        if self.line.holds is None or self.line.holds[k].depth <= 0.0:
+            return None
+        return self.line.holds[k]
 
-    def anchor(self) -> float:
-        """Where the edge holds. A roll of the base that moves the place of the shear displaces no snow."""
-        line, touch = self.line, self.touch
-        moved = (self.half * line.side - self.reach) / self.wide
-        if line.anchor is not None:
-            return touch.edge + self._eased(line.anchor - moved - touch.edge)
-        if line.above is None:
-            return touch.edge
-        before, height = line.above
-        return touch.edge + (touch.edge + moved - before) * touch.deepest / (height - touch.deepest)
+    def anchor(self, k: int) -> float:
+        """Where an edge holds: where it did, or where it came through the surface."""
+        edge = self.edges[k]
+        if self.line.holds is None:
+            return edge.place
+        before = self.line.holds[k]
+        if before.depth > 0.0:
+            return edge.place + self._eased(before, edge)
+        return edge.place + (edge.place - before.place) * edge.depth / (before.depth - edge.depth)
 
-    def _eased(self, displacement: float) -> float:
+    def _eased(self, before: Hold, edge: Edge) -> float:
         """A strength that rises leaves the force as it is; a cut that rises leaves its face."""
-        line = self.line
-        if not line.strength or line.anchor is None or line.marked is None:
+        displacement = before.anchor - edge.place
+        if not self.line.strength:
             return displacement
         strength, thrust = self.strength()
-        displacement += (line.anchor - line.marked[0]) * (min(1.0, line.strength / strength) - 1.0)
-        left = max(thrust / strength * (line.held_depth - self.touch.depth), 0.0)
+        displacement += (before.anchor - before.place) * (min(1.0, self.line.strength / strength) - 1.0)
+        left = max(thrust / strength * (before.depth - edge.depth), 0.0)
         return math.copysign(max(abs(displacement) - left, 0.0), displacement)
+
+    def held(self) -> list[FloatArray]:
+        """Force of the snow on each edge: of its wall against a motion outwards, of the base's slope inwards."""
+        strength, thrust = self.strength()
+        out = []
+        for k, edge in enumerate(self.edges):
+            deep, other = max(edge.depth, 0.0), max(self.edges[1 - k].depth, 0.0)
+            used = (self.anchor(k) - edge.place) / self.whole.snow.shear_displacement if deep > 0.0 else 0.0
+            used = min(max(used, -1.0), 1.0)
+            is_inwards = used * edge.reach > 0.0  # the snow pushes it outwards
+            area = self.share * (max(deep - other, 0.0) if is_inwards else deep)
+            out.append(area * (strength * used * edge.across + thrust * abs(used) * self.line.out))
+        return out
 
     @property
     def _sliding_axes(self) -> FloatArray:
@@ -240,7 +316,7 @@ class _Section:
         """Of the base since it stuck, along the ski and over the line: the point at the same arm, seen from there."""
         assert self.line.stuck is not None
         station, place, arm = self.line.stuck
-        return np.array([station - self.gap, self.touch.edge + (arm - self.reach) / self.wide - place])
+        return np.array([station - self.gap, self.touch.place + (arm - self.reach) / self.wide - place])
 
     def _way(self) -> FloatArray:
         return self._ruled(self._sliding_axes @ (self._ways() @ [self.x, self.line.left]))
@@ -251,17 +327,22 @@ class _Section:
     def held_back(self) -> tuple[float, float, float]:
         """Where friction is 0 from here on."""
         if self.line.stuck is None:
-            return self.gap, self.touch.edge, self.reach
+            return self.gap, self.touch.place, self.reach
         share = min(1.0, self.whole.snow.stick_displacement / max(float(np.linalg.norm(self._way())), 1e-300))
         on, over = share * self._ways()
-        return self.gap + on, self.touch.edge - over, self.reach
+        return self.gap + on, self.touch.place - over, self.reach
 
     def add(self, wrench: FloatArray, loads: FloatArray, dt: float) -> None:
         snow, line, touch = self.whole.snow, self.line, self.touch
         n, y = line.out, line.left
-        force, moment = (self.share * value for value in _pressure(line, touch, snow))
+        ways = [
+            (before.place, before.depth, edge.place, edge.depth)
+            for k, edge in enumerate(self.edges)
+            if (before := self.stood(k)) is not None
+        ]
+        force, moment = (self.share * value for value in _pressure(line, touch, ways, snow))
         off = moment / force if force > 1e-6 else 0.0  # below, lost in rounding
-        push_at, arm = self.edge_at + off * (y - touch.fall * n), self.reach + off * self.wide
+        push_at, arm = self.grip_at + off * (y - touch.fall * n), self.reach + off * self.wide
         v, omega = self.pose.velocity[:3], self.pose.velocity[3:]
         moves = v + np.cross(omega, push_at) + float(self.deflects @ self.rate) * self.up
         moves -= float(self.twists @ self.rate) * arm * self.r
@@ -276,52 +357,49 @@ class _Section:
         speed = float(np.linalg.norm(slides))
         by_twist = self.twist_s * moment / (1.0 - self.sine**2) * self.per_length
         resist = force * float(self.base @ forwards) + by_twist if snow.compaction_resistance else 0.0
-        held = (self.anchor() - touch.edge) / snow.shear_displacement
-        strength, thrust = self.strength()
-        area = touch.deepest * self.share
-        shear = strength * area * min(max(held, -1.0), 1.0) * self.u + thrust * area * min(abs(held), 1.0) * n
+        held = self.held()
         # its load: what presses square on the base, snow's normal and side force together, or the snow's normal alone
-        pressing, at_edge = force, 0.0
+        pressing, at_grip = force, 0.0
         if snow.friction_acts_on == "base-normal":
             pressing = force * float(n @ self.r)
-            at_edge = max(float(shear @ self.r), -pressing)
+            at_grip = max(float(sum(held) @ self.r), -pressing)
         mu = float(snow.friction.coefficient(speed)) if hasattr(snow.friction, "coefficient") else snow.friction
         rub = -mu * used
         if isinstance(snow.shear, MachiningShear):  # it has a friction across of its own
             rub[1] = 0.0
         push = force * n + resist * forwards + pressing * rub @ axes
-        shear = shear + at_edge * rub @ axes
-        wrench[:3] += push + shear
-        wrench[3:] += np.cross(push_at, push) + np.cross(self.edge_at, shear)
-        loads += (self.deflects * float(self.up @ (push + shear))).reshape(-1, 3)
-        loads -= (self.twists * float(self.r @ (arm * push + self.reach * shear))).reshape(-1, 3)
+        points = [(push_at, arm, push), (self.grip_at, self.reach, at_grip * rub @ axes)]
+        points += [(edge.at, edge.reach, each) for edge, each in zip(self.edges, held, strict=True)]
+        for at, lever, each in points:
+            wrench[:3] += each
+            wrench[3:] += np.cross(at, each)
+            loads += (self.deflects * float(self.up @ each)).reshape(-1, 3)
+            loads -= (self.twists * (lever * float(self.r @ each))).reshape(-1, 3)
 
     def strength(self) -> tuple[float, float]:
         """Shear strength and thrust (N/m²), less what slip has taken."""
-        snow, touch = self.whole.snow, self.touch
+        snow = self.whole.snow
         left = strength_left(self.line.slipped, residual_ratio=snow.residual_ratio, slip_weakening=snow.slip_weakening)
         if snow.shear is None:
             assert isinstance(snow.failure_shear_stress, float)
             return float(left) * snow.failure_shear_stress, 0.0
         angle = math.asin(min(abs(self.sine), 1.0))
-        stress = snow.shear.failure_stress(touch.deepest, angle)
-        thrust = snow.shear.thrust_force(touch.deepest, 1.0, angle) / touch.deepest
+        stress = snow.shear.failure_stress(self.deepest, angle)
+        thrust = snow.shear.thrust_force(self.deepest, 1.0, angle) / self.deepest
         return float(left * stress), float(left * thrust)
 
 
-def _pressure(line: Line, touch: Touch, snow: SnowField) -> tuple[float, float]:
-    """∫p dy and ∫p (y - edge) dy of p = max(0, H_V ε_max - k_u (ε_max - ε)), ε_max the deepest ever."""
+def _pressure(
+    line: Line, touch: Touch, ways: list[tuple[float, float, float, float]], snow: SnowField
+) -> tuple[float, float]:
+    """∫p dy and ∫p (y - grip) dy of p = max(0, H_V ε_max - k_u (ε_max - ε)), ε_max the deepest ever.
+
+    ``ways``: of the edges since the last accepted pose; they cut ground, too.
+    """
     hardness = snow.snow_hardness
     assert isinstance(hardness, float)
     stiff = snow.unloading_ratio * hardness
-    segments = [(a, ga, b, gb) if a < b else (b, gb, a, ga) for a, ga, b, gb in line.pressed]
-    marked = line.marked
-    if marked is not None and (touch.low - touch.edge) * (touch.high - touch.edge) == 0.0:
-        # ground that the edge has cut as it went away from its base
-        away = (marked[0] - touch.edge) * (0.5 * (touch.low + touch.high) - touch.edge)
-        if away > 0.0:
-            ends = sorted([(touch.edge, touch.depth), marked])
-            segments.append((*ends[0], *ends[1]))
+    segments = [(a, ga, b, gb) if a < b else (b, gb, a, ga) for a, ga, b, gb in [*line.pressed, *ways]]
     places = {touch.low, touch.high, *(s[0] for s in segments), *(s[2] for s in segments)}
     straight = [*segments, (touch.low, float(touch.base(touch.low)), touch.high, float(touch.base(touch.high)))]
     for one, other in itertools.combinations([s for s in straight if s[2] > s[0]], 2):
@@ -340,7 +418,7 @@ def _pressure(line: Line, touch: Touch, snow: SnowField) -> tuple[float, float]:
             ground = base if deepest is None else np.maximum(base, _at(deepest, at))
             p = hardness * ground - stiff * (ground - base)
             force += float(0.5 * (high - low) * _WEIGHT @ p)
-            moment += float(0.5 * (high - low) * _WEIGHT @ (p * (at - touch.edge)))
+            moment += float(0.5 * (high - low) * _WEIGHT @ (p * (at - touch.place)))
     return force, moment
 
 
@@ -374,9 +452,3 @@ def _bearing(
         return [(a, b)]
     zero = a + (b - a) * at_a / (at_a - at_b)
     return [(a, zero)] if at_a > 0.0 else [(zero, b)]
-
-
-def _edge_side(tilt: float) -> float:
-    """From the middle (0) to an edge (1, -1), smoothly; it stands still where the base is level."""
-    size = min(abs(float(tilt)), 1.0)
-    return math.copysign(size**2 * (3.0 - 2.0 * size), tilt)

@@ -81,10 +81,7 @@ class Snow(ctypes.Structure):
         *((f"friction_{name}", ctypes.c_double) for name in ("constant", "linear", "square", "film", "film_speed")),
         *((name, ctypes.c_double) for name in ("stick_displacement", "shear_displacement")),
         ("compaction_resistance", ctypes.c_int),
-        *(
-            (name, ctypes.c_double)
-            for name in ("edge_blend_angle", "knot_area", "part_along", "part_across", "spacing")
-        ),
+        *((name, ctypes.c_double) for name in ("knot_area", "part_along", "part_across", "spacing")),
         ("surface", ctypes.POINTER(ctypes.c_double)),
         *((f"surface_{name}", ctypes.c_int) for name in ("nx", "ny")),
         *((f"surface_{name}", ctypes.c_double) for name in ("x0", "dx", "y0", "dy")),
@@ -162,7 +159,6 @@ def test_what_c_takes_for_granted_is_what_python_does(library: ctypes.CDLL) -> N
     ways = ("shear_displacement", "stick_displacement", "part_along", "part_across")
     for name in (*ways, "compaction_resistance", "knot_area"):
         assert getattr(snow, name) == usual[name], name
-    assert snow.edge_blend_angle == pytest.approx(usual["edge_blend_angle"], rel=1e-15)
     assert snow.spacing == SPACING
     assert (snow.friction_constant, bool(snow.surface)) == (usual["friction"], False)
 
@@ -185,7 +181,7 @@ def test_what_cannot_be_is_refused_in_words(made: Made, change: dict[str, float]
 
 
 def test_a_contact_from_c_forces_tangents_states_and_neighbours(library: ctypes.CDLL, made: Made) -> None:
-    _, _, contact = made(edge_blend_angle=math.radians(2.0))
+    _, _, contact = made()
     python = SnowContact(SnowField(2e8, 3e5, 10.0), [Runner(*SHAPE)])
     rows = figure_of_eight()[:40]
     wrench, stiffness, damping, state = (

@@ -55,7 +55,7 @@ def test_snow_is_told_in_its_usual_units() -> None:
     ("changes", "words"),
     [
         *(({name: 0.0}, coded("out_of_range", name=name, value=0.0, limit=0.0)) for name in (
-            "slip_weakening", "shear_displacement", "edge_blend_angle", "stick_displacement", "part_along",
+            "slip_weakening", "shear_displacement", "stick_displacement", "part_along",
             "part_across", "retardation_time", "delayed_spacing", "strength_share",
         )),
         *(({name: -0.1}, coded("out_of_range", name=name, value=-0.1, limit=0.0)) for name in (

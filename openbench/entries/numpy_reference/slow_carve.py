@@ -236,10 +236,15 @@ class _Equations:
         case = self.case
         curvature, rate, border = self.split(z)
         edge, force, moment, angle = self.snow(z)
-        shear = border[2] * (force if case.by_reaction else np.maximum(edge, 0.0) * self.strength(edge, angle))
+        strength = border[2] * self.strength(edge, angle)
+        shear = border[2] * force if case.by_reaction else np.maximum(edge, 0.0) * strength
+        # an edge on the other side that is in the snow, too, holds its own depth of the shear
+        other = (
+            np.zeros_like(edge) if case.by_reaction else np.maximum(edge - self.width * np.sin(angle), 0.0) * strength
+        )
         bends = float(case.side_force_bending)
         normal = math.cos(case.edge_angle) * force + bends * math.sin(case.edge_angle) * shear
-        turning = moment - bends * self.width / 2.0 * np.sin(angle) * shear
+        turning = moment - bends * self.width / 2.0 * np.sin(angle) * (shear - 2.0 * other)
         k, n = case.knots + 1, len(self.front.x)
         m0, t0 = self.front.moment_and_torque(normal[:n][::-1], turning[:n][::-1])
         m1, t1 = self.rear.moment_and_torque(normal[-len(self.rear.x) :], turning[-len(self.rear.x) :])

@@ -91,8 +91,8 @@ std::shared_ptr<Snow> snow_of(const skisnow_snow& given) {
   require_above(given.snow_hardness, "snow_hardness");
   require_least(given.failure_shear_stress, 0.0, "failure_shear_stress");
   require_least(given.unloading_ratio, 1.0, "unloading_ratio");
-  require_above(given.shear_displacement, "shear_displacement"), require_above(given.stick_displacement, "stick_displacement");
-  require_above(given.edge_blend_angle, "edge_blend_angle"), require_least(given.knot_area, 0.0, "knot_area");
+  require_above(given.shear_displacement, "shear_displacement");
+  require_above(given.stick_displacement, "stick_displacement"), require_least(given.knot_area, 0.0, "knot_area");
   require_above(given.part_along, "part_along"), require_above(given.part_across, "part_across");
   require_above(given.spacing, "spacing"), require_above(given.friction_film_speed, "friction_film_speed");
   const double friction[] = {given.friction_constant, given.friction_linear, given.friction_square,
@@ -102,7 +102,6 @@ std::shared_ptr<Snow> snow_of(const skisnow_snow& given) {
   out->surface = surface_of(given);
   out->hardness = Grid(given.snow_hardness), out->strength = Grid(given.failure_shear_stress);
   out->unloading_ratio = given.unloading_ratio, out->shear_displacement = given.shear_displacement;
-  out->edge_blend_sine = std::sin(given.edge_blend_angle);
   out->compaction_resistance = given.compaction_resistance != 0;
   out->friction = {friction[0],
                    friction[1],
@@ -218,7 +217,6 @@ void skisnow_snow_defaults(skisnow_snow* snow) {
   snow->friction_film_speed = mu.film_speed, snow->stick_displacement = mu.stick;
   snow->shear_displacement = usual.shear_displacement;
   snow->compaction_resistance = usual.compaction_resistance ? 1 : 0;
-  snow->edge_blend_angle = std::asin(usual.edge_blend_sine);
   snow->knot_area = usual.knot_area, snow->part_along = usual.part_along, snow->part_across = usual.part_across;
   snow->spacing = LINE_SPACING;
 }

@@ -115,13 +115,24 @@ nb::dict sections_of(const SnowContact& contact, int k) {
   std::vector<int> rows;
   for (int i = 0; i < s.count(); i++)
     if (s[SHARE][i] > 0.0) rows.push_back(i);
+  const auto place = [&](BaseField x) {
+    std::vector<double> values;
+    for (int i = 0; i < s.count(); i++) values.push_back(s[GRIP_PLACE][i] + s[x][i]);
+    return values;
+  };
+  const std::vector<double> left_place = place(LEFT_X), right_place = place(RIGHT_X);
   const std::pair<const char*, const double*> fields[] = {{"position_along_ski", s[STATION]},
                                                           {"length", s[SHARE]},
                                                           {"depth", s[DEEPEST]},
                                                           {"edge_sine", s[EDGE_SINE]},
-                                                          {"edge_place", s[EDGE_PLACE]},
+                                                          {"left_depth", s[LEFT_DEPTH]},
+                                                          {"right_depth", s[RIGHT_DEPTH]},
+                                                          {"left_place", left_place.data()},
+                                                          {"right_place", right_place.data()},
                                                           {"normal_force", s[FORCE]},
                                                           {"shear", s[SHEAR]},
+                                                          {"left_shear", s[LEFT_SHEAR]},
+                                                          {"right_shear", s[RIGHT_SHEAR]},
                                                           {"push", s[PUSH]},
                                                           {"push_across", s[PUSH_ACROSS]},
                                                           {"push_off", s[PUSH_OFF]},
@@ -132,7 +143,8 @@ nb::dict sections_of(const SnowContact& contact, int k) {
                                                           {"rub_aside", s[RUB_ASIDE]},
                                                           {"friction_load", s[FRICTION_LOAD]},
                                                           {"strength", s[EDGE_STRENGTH]},
-                                                          {"shear_used", s[SHEAR_USED]}};
+                                                          {"left_used", s[LEFT_USED]},
+                                                          {"right_used", s[RIGHT_USED]}};
   nb::dict out;
   for (const auto& [name, field] : fields) {
     std::vector<double> values;
@@ -230,7 +242,6 @@ void bind_snow(nb::module_& m) {
       .def_rw("strength_share", &Snow::strength_share)
       .def_rw("unloading_ratio", &Snow::unloading_ratio)
       .def_rw("shear_displacement", &Snow::shear_displacement)
-      .def_rw("edge_blend_sine", &Snow::edge_blend_sine)
       .def_rw("compaction_resistance", &Snow::compaction_resistance)
       .def_rw("friction", &Snow::friction)
       .def_rw("friction_on_base", &Snow::friction_on_base)

@@ -49,7 +49,6 @@ typedef struct skisnow_snow {
   double friction_constant, friction_linear, friction_square, friction_film, friction_film_speed, stick_displacement;
   double shear_displacement;      /* of an edge across to its full strength (m), > 0 */
   int compaction_resistance;      /* whether snow that is pressed down resists along the edge */
-  double edge_blend_angle;        /* (rad) below which the shear moves from the edge to the middle, > 0 */
   double knot_area;               /* share of depth times width below which a knot of the ground is dropped */
   double part_along, part_across; /* longest way (m) over which the history advances at once, > 0 */
   double spacing;                 /* of the lines of snow along a runner (m), > 0 */

@@ -107,7 +107,8 @@ CarveSection Pass::section(const CarveStation& s) const {
 }
 
 // [load] The snow's force along its normal turns the section about its middle, with the lever W/2 cos at the edge and
-// less inwards; the shear τ e acts at the edge.
+// less inwards. The shear τ e turns it by W/2 sin. Of a base that is in the snow with both edges the other edge holds
+// its own depth e' of it, on the other side: the moment is that of e - 2 e'.
 Load Pass::load(const CarveSection& section, const StripSums& sums, const Strength& strength) const {
   const double stress = at_.border[2], lever = section.half * section.cosine;
   const double square = 1.0 + section.tangent * section.tangent;
@@ -122,15 +123,22 @@ Load Pass::load(const CarveSection& section, const StripSums& sums, const Streng
   const double bite_by_depth = reacts ? by_depth : growth;
   const double bite_by_twist = reacts ? by_twist : growth * section.edge_by_angle() + strength.by_angle * held;
   const double shears = conditions_.side_force_bending ? 1.0 : 0.0;
+  const double other = reacts ? 0.0 : std::max(section.corner - 2.0 * section.half * section.sine, 0.0);
+  const double other_by_depth = other > 0.0 ? strength.share + strength.by_depth * other : 0.0;
+  const double other_by_twist = other > 0.0 ? strength.by_depth * other * section.edge_by_angle() +
+                                                  strength.by_angle * other - strength.share * lever
+                                            : 0.0;
+  const double turned = bite - 2.0 * strength.share * other, turned_by_depth = bite_by_depth - 2.0 * other_by_depth;
+  const double turned_by_twist = bite_by_twist - 2.0 * other_by_twist;
   const double up = shears * sine_, turn = -shears * section.half * section.sine, turn_by_twist = -shears * lever;
   return {.normal = cosine_ * sums.force + up * stress * bite,
-          .moment = moment + turn * stress * bite,
+          .moment = moment + turn * stress * turned,
           .normal_by_depth = cosine_ * by_depth + up * stress * bite_by_depth,
           .normal_by_twist = cosine_ * by_twist + up * stress * bite_by_twist,
           .normal_by_stress = up * bite,
-          .moment_by_depth = moment_by_depth + turn * stress * bite_by_depth,
-          .moment_by_twist = moment_by_twist + (turn * bite_by_twist + turn_by_twist * bite) * stress,
-          .moment_by_stress = turn * bite,
+          .moment_by_depth = moment_by_depth + turn * stress * turned_by_depth,
+          .moment_by_twist = moment_by_twist + (turn * turned_by_twist + turn_by_twist * turned) * stress,
+          .moment_by_stress = turn * turned,
           .force = sums.force,
           .force_by_depth = by_depth,
           .force_by_twist = by_twist,

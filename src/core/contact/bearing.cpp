@@ -46,17 +46,18 @@ void Bearing::add_base(const GrooveLines& lines, int slot, const Cut& base) {
   sums_.push_back({std::asin(std::min(std::fabs(base.sine), 1.0)), 0.0, 0.0, 0.0});
   const double from = base.wet_from, to = std::max(base.wet_to, base.wet_from);
   Ground ground = lines.ground(slot);
-  const alone::CutGround<double> cut(lines, slot, base.place, base.edge_depth, from, to);
-  const auto cut_depth = [&](double x) { return base.edge_depth + cut.slope * x; };
-  ground.press(base.place + cut.from, cut_depth(cut.from), base.place + cut.to, cut_depth(cut.to));
+  for (int k = 0; k < 2; k++) {
+    const alone::CutGround<double> cut(lines, slot, base, k, from, to);
+    if (cut.is_there()) ground.press(base.place + cut.from, cut.at(cut.from), base.place + cut.to, cut.at(cut.to));
+  }
   double reached = from;
   const auto add = [&](double a, double b, double deepest, double deepening) {
     const double low = std::max(a, reached), high = std::min(b, to);
     if (!(high > low)) return;
-    add_straight({owner, low, high, base.edge_depth, base.fall, deepest, deepening, false});
+    add_straight({owner, low, high, base.grip_depth, base.fall, deepest, deepening, false});
     reached = high;
   };
-  const auto add_virgin = [&](double until) { add(reached, until, base.edge_depth, base.fall); };
+  const auto add_virgin = [&](double until) { add(reached, until, base.grip_depth, base.fall); };
   for (int j = 0; j + 1 < ground.count; j++) {
     const double a = ground.place[j] - base.place, b = ground.place[j + 1] - base.place;
     if (j == 0) add_virgin(a);
@@ -139,7 +140,7 @@ void Bearing::differ(const Snow& snow, const GrooveLines& lines, const Sections&
   for (int i = 0; i < s.count(); i++)
     for (int change = 0; change < CHANGES && s.touches(i); change++) {
       moved.push_back(alone::displaced(Cut<double>(s.base, i), change, way(change)));
-      moved.back().cut(snow);
+      moved.back().cut();
       add_base(lines, lines.slot(s.line(i)), moved.back());
     }
   add_up();
@@ -148,16 +149,15 @@ void Bearing::differ(const Snow& snow, const GrooveLines& lines, const Sections&
   for (int i = 0; i < s.count(); i++)
     for (int change = 0; change < CHANGES && s.touches(i); change++, next++) {
       const double share = s[SHARE][i];
-      const Acting<double> by{share,
-                              share * sums_[next].force,
-                              share * sums_[next].moment,
-                              s[MU][i] * s[RUB][i],
-                              s[MU][i] * s[RUB_ASIDE][i],
-                              s[EDGE_STRENGTH][i],
-                              s[EDGE_THRUST][i],
-                              alone::eased<double>(snow, lines, lines.slot(s.line(i)),
-                                                   alone::shear_used(snow, lines, lines.slot(s.line(i)), moved[next]),
-                                                   s[EDGE_STRENGTH][i], s[EDGE_THRUST][i], moved[next].edge_depth)};
+      Acting<double> by{share,
+                        share * sums_[next].force,
+                        share * sums_[next].moment,
+                        s[MU][i] * s[RUB][i],
+                        s[MU][i] * s[RUB_ASIDE][i],
+                        s[EDGE_STRENGTH][i],
+                        s[EDGE_THRUST][i],
+                        {}};
+      by.find_used(snow, lines, lines.slot(s.line(i)), moved[next]);
       const Pushed<double> pushed(moved[next], by, snow);
       for (int k = 0; k < Pushed<double>::PARTS; k++)
         out.column(change, k)[i] = (s[ForceField(FORCE_0 + k)][i] - pushed.parts[k]) / way(change);

@@ -5,7 +5,7 @@
 #include <utility>
 
 #define SKISNOW_LANES alone
-#include "contact/pressure_kernels.hpp"
+#include "contact/force_kernels.hpp"
 
 namespace skisnow {
 
@@ -44,13 +44,15 @@ void strengthen(const ShearLaw& law, Sections& s) {
 
 // [ease] Strength and thrust are known: the displacement of each edge, and by how much they have eased it.
 void ease(const Snow& snow, const GrooveLines& lines, Sections& s) {
-  for (int i = 0; i < s.count(); i++) {
-    if (!s.touches(i)) continue;
-    const double used = alone::eased<double>(snow, lines, lines.slot(s.line(i)), s[SHEAR_USED][i], s[EDGE_STRENGTH][i],
-                                             s[EDGE_THRUST][i], s[EDGE_DEPTH][i]);
-    s.edge[SHEAR_EASED][i] = used - s[SHEAR_USED][i];
-    s.edge[SHEAR_USED][i] = used;
-  }
+  for (int i = 0; i < s.count(); i++)
+    for (int k = 0; k < 2 && s.touches(i); k++) {
+      double& used = s.edge[of_edge(LEFT_USED, k)][i];
+      const double depth = s[of_edge(LEFT_DEPTH, k)][i], before = used;
+      if (!(depth > 0.0)) continue;
+      used = alone::eased<double>(snow, lines, lines.slot(s.line(i)), k, before, s[EDGE_STRENGTH][i], s[EDGE_THRUST][i],
+                                  depth);
+      s.edge[of_edge(LEFT_EASED, k)][i] = used - before;
+    }
 }
 
 // The same situation with one runner moved, or its motion changed, by a small step of one of its six freedoms.
@@ -109,7 +111,7 @@ void SnowContact::set_penetration(PenetrationLaw law) {
 
 const Wrench& SnowContact::evaluate(int k, const GrooveLines& lines, const Pose& pose, const Motion& motion, bool grows,
                                     Sections& s) {
-  kernels_->find_sections(runner(k), pose, *snow_, lines, lines.first, s.base);
+  kernels_->find_sections(runner(k), pose, lines, lines.first, s.base);
   kernels_->press(*snow_, lines, s.base, grows, s.pressure, s.edge);
   if (bearing_) bearing_->press(lines, s);
   if (!rated_.empty()) rated_[std::size_t(k)].press(*snow_, lines, pose, motion, dt_, s);
@@ -205,7 +207,8 @@ void SnowContact::begin(const Situation& foreseen) {
     GrooveLines& lines = state_.lines[std::size_t(k)];
     Before& before = before_[std::size_t(k)];
     before.first = lines.first, before.end = lines.end;
-    before.lines.clear(), before.anchor.clear(), before.slipped.clear();
+    before.lines.clear();
+    for (Column& each : before.slips) each.clear();
     prepare(k, lines, foreseen.poses[std::size_t(k)]);
   }
   for (int k = 0; k < runners(); k++) march_where_needed(k, foreseen);
@@ -244,7 +247,7 @@ void SnowContact::update(const Situation& to) {
     if (strength_varies())
       evaluate(k, lines, pose, to.motions[std::size_t(k)], false, sections_[std::size_t(k)]);
     else
-      kernels_->find_sections(runner(k), pose, *snow_, lines, lines.first, sections_[std::size_t(k)].base);
+      kernels_->find_sections(runner(k), pose, lines, lines.first, sections_[std::size_t(k)].base);
     settle_history(k, pose);
   }
   stand(to.poses);
@@ -294,20 +297,19 @@ ContactPower SnowContact::power(int k, const Pose& pose, const Motion& motion) c
   ContactPower out{0.0, 0.0, 0.0, 0.0};
   for (int i = 0; i < s.count(); i++) {
     if (!s.touches(i)) continue;
-    const double z = s[IN_ELEMENT][i], h = s[ELEMENT_LENGTH][i], y = 1.0 - z, reach = s[EDGE_REACH][i];
-    const double* rate = motion.beam.data() + 3 * int(s[ELEMENT][i]);
-    double lifting = 0.0, twisting = 0.0;
-    if (!motion.beam.empty()) {
-      lifting = y * y * (1.0 + 2.0 * z) * rate[0] + h * z * y * y * rate[1] + z * z * (3.0 - 2.0 * z) * rate[3] -
-                h * z * z * y * rate[4];
-      twisting = reach * (y * rate[2] + z * rate[5]);
+    double lifting, twisting;
+    alone::beam_rates(motion, s.base, i, lifting, twisting);
+    const alone::Cut<double> cut = alone::Cut<double>::stored(s.base, i);
+    for (int side = 0; side < 2; side++) {
+      const double shear = s[of_edge(LEFT_SHEAR, side)][i];
+      if (shear == 0.0) continue;
+      const alone::Edge<double> edge = cut.edge(side);
+      const double turning = edge.reach * twisting;
+      const alone::Vector<double> velocity{v[0] + o[1] * edge.up - o[2] * edge.left,
+                                           v[1] + o[2] * cut.station - o[0] * edge.up - cut.sp * turning,
+                                           v[2] + o[0] * edge.left - o[1] * cut.station + lifting - cut.cp * turning};
+      out.shear += shear * dot(velocity, edge.across);
     }
-    const double at[3] = {s[STATION][i], s[EDGE_LEFT][i], s[EDGE_UP][i]};
-    const double velocity[3] = {v[0] + o[1] * at[2] - o[2] * at[1],
-                                v[1] + o[2] * at[0] - o[0] * at[2] - s[TWIST_SINE][i] * twisting,
-                                v[2] + o[0] * at[1] - o[1] * at[0] + lifting - s[TWIST_COSINE][i] * twisting};
-    const double across = velocity[0] * s[ACROSS_0][i] + velocity[1] * s[ACROSS_1][i] + velocity[2] * s[ACROSS_2][i];
-    out.shear += s[SHEAR][i] * across;
     if (!rated_.empty()) out.damping += s[RATE_POWER][i];
     const double rubbed = s[RUB][i] * s[SLIDING][i] + s[RUB_ASIDE][i] * s[SLIDING_ASIDE][i];
     out.friction -= s[MU][i] * rubbed * s[FRICTION_LOAD][i];
@@ -334,8 +336,9 @@ double SnowContact::held_energy() const {
   for (const Sections& s : sections_)
     for (int i = 0; i < s.count(); i++) {
       if (!s.touches(i)) continue;
-      const double used = std::clamp(s[SHEAR_USED][i], -1.0, 1.0);
-      total += 0.5 * snow_->shear_displacement * s[SHEAR][i] * used;
+      for (int k = 0; k < 2; k++)
+        total += 0.5 * snow_->shear_displacement * s[of_edge(LEFT_SHEAR, k)][i] *
+                 std::clamp(s[of_edge(LEFT_USED, k)][i], -1.0, 1.0);
     }
   return total;
 }

@@ -125,7 +125,7 @@ class SnowContact {
   struct Before {  // of one runner, what `begin` has changed
     std::int64_t first, end;
     std::vector<GrooveLines::Line> lines;
-    Column anchor, slipped;  // of all slots, or empty
+    Column slips[3];  // anchors and slip of all slots, or empty
     void keep_anchors(const GrooveLines& lines);
     void put_back(GrooveLines& into) const;
   };

@@ -32,8 +32,8 @@ struct Centre {
   Centre(const Cut<V>& c, V force, V moment) {
     const MaskOf<V> presses = force > LEAST_FORCE;
     const V off = select(presses, moment, V{}) / select(presses, force, all<V>(1.0));
-    at = {c.station + off * (c.left.x - c.fall * c.normal.x), c.edge_left + off * (c.left.y - c.fall * c.normal.y),
-          c.edge_up + off * (c.left.z - c.fall * c.normal.z)};
+    at = {c.station + off * (c.left.x - c.fall * c.normal.x), c.grip_left + off * (c.left.y - c.fall * c.normal.y),
+          c.grip_up + off * (c.left.z - c.fall * c.normal.z)};
     arm = c.reach + off * c.widening;
   }
 };
@@ -156,18 +156,72 @@ void slide(const Motion& motion, const Pose& pose, double dt, const Snow& snow, 
   });
 }
 
-// The loads on a section: the snow's force and its moment about the edge, μ along and aside with their signs, shear
-// strength, thrust and the share of the displacement in use.
+// The loads on a section: the snow's force and its moment about the grip, μ along and aside with their signs, shear
+// strength, thrust and the share of the displacement in use at each edge.
 template <class V>
 struct Acting {
-  V share, force, moment, friction, friction_aside, strength, thrust, used;
+  V share, force, moment, friction, friction_aside, strength, thrust, used[2];
+
+  // That share at a section, where the base is or near it.
+  void find_used(const Snow& snow, const GrooveLines& lines, int j, const Cut<V>& c) {
+    for (int k = 0; k < 2; k++) {
+      used[k] = V{};
+      if (!any(c.depth[k] > 0.0)) continue;
+      const V now = eased(snow, lines, j, k, shear_used(snow, lines, j, c, k), strength, thrust, c.depth[k]);
+      used[k] = select(c.depth[k] > 0.0, now, V{});
+    }
+  }
+};
+
+// [edges] What the snow holds at both edges. The wall outside an edge holds it against a motion outwards, with its
+// depth e_i; against a motion inwards it is the slope of the base down to it, max(0, e_i - e_other). Together both hold
+// the depth of the deeper edge, to either side.
+template <class V>
+struct EdgeForces {
+  V shear[2], upright{};        // of each edge; the part of all that is square to the base
+  Vector<V> force{}, moment{};  // about the boot, in the ski's axes
+  V turning{};                  // moment about the ski's middle, by which the beam twists
+
+  EdgeForces(const Cut<V>& c, const Acting<V>& by, MaskOf<V> wet) {
+    shear[0] = shear[1] = V{};
+    const MaskOf<V> is_between = wet & c.is_between();
+    if (!any(is_between)) {  // both edges would give the same bits
+      const MaskOf<V> on_left = c.side > 0.0;
+      const V used = within(select(on_left, by.used[0], by.used[1]), -1.0, 1.0), area = c.deepest * by.share;
+      const V all_shear = select(wet, by.strength * area * used, V{});
+      shear[0] = select(on_left, all_shear, V{}), shear[1] = select(on_left, V{}, all_shear);
+      add(c, {c.reach, c.grip_left, c.grip_up, c.across}, all_shear,
+          select(wet, by.thrust * area * absolute(used), V{}));
+      return;
+    }
+    for (int k = 0; k < 2; k++) {
+      const V used = within(by.used[k], -1.0, 1.0), deep = maximum(c.depth[k], V{});
+      const V slope = maximum(V(deep - maximum(c.depth[1 - k], V{})), V{});
+      const V area = select(k == 0 ? used > 0.0 : used < 0.0, slope, deep) * by.share;
+      shear[k] = select(wet, by.strength * area * used, V{});
+      add(c, c.edge(k), shear[k], select(wet, by.thrust * area * absolute(used), V{}));
+    }
+  }
+
+ private:
+  void add(const Cut<V>& c, const Edge<V>& at, V shear, V thrust) {
+    const Vector<V>& n = c.normal;
+    const Vector<V> f{shear * at.across.x + thrust * n.x, shear * at.across.y + thrust * n.y,
+                      shear * at.across.z + thrust * n.z};
+    const Vector<V> m = cross({c.station, at.left, at.up}, f);
+    const V square = c.sp * f.y + c.cp * f.z;
+    upright += square;
+    force = {force.x + f.x, force.y + f.y, force.z + f.z};
+    moment = {moment.x + m.x, moment.y + m.y, moment.z + m.z};
+    turning -= at.reach * square;
+  }
 };
 
 // The forces of one section.
 template <class V>
 struct Pushed {
   static constexpr int PARTS = 8;
-  V shear, along, load, across, off;
+  V shear, edge_shear[2], along, load, across, off;
   V parts[PARTS];  // force and moment about the boot in the ski's axes; force and moment on the beam
 
   Pushed(const Cut<V>& c, const Acting<V>& by, const Snow& snow) {
@@ -177,36 +231,39 @@ struct Pushed {
     const Centre<V> centre(c, by.force, by.moment);
     const V by_twist = c.twist_slope * by.moment / (1.0 - c.sine * c.sine) * c.size;
     const V resistance = (by.force * c.climb + by_twist) * compaction;
-    const V used = within(by.used, -1.0, 1.0), area = c.deepest * by.share;
-    shear = select(wet, by.strength * area * used, none);
-    const V thrust = select(wet, by.thrust * area * absolute(used), none);
+    const EdgeForces<V> edges(c, by, wet);
+    shear = edges.shear[0] + edges.shear[1], edge_shear[0] = edges.shear[0], edge_shear[1] = edges.shear[1];
     const Vector<V>& n = c.normal;
-    // the load of friction: a part of the pressure, and a part of the forces at the edge
+    // the load of friction: a part of the pressure, and a part of the forces at the edges
     V pressing = by.force, aside = none;
     if (snow.friction_on_base) {
-      const V upright = n.y * c.sp + n.z * c.cp;
-      pressing = by.force * upright;
-      aside = maximum(thrust * upright + shear * (c.across.y * c.sp + c.across.z * c.cp), -pressing);
+      pressing = by.force * (n.y * c.sp + n.z * c.cp);
+      aside = maximum(edges.upright, -pressing);
     }
     load = pressing + aside;
     const V at_centre = select(wet, resistance - by.friction * pressing, none);
-    const V at_edge = select(wet, -by.friction * aside, none);
-    along = at_centre + at_edge;
+    const V at_grip = select(wet, -by.friction * aside, none);
+    along = at_centre + at_grip;
     const Vector<V> to_side = aside_of(c, snow);
-    const V aside_at_centre = -by.friction_aside * pressing, aside_at_edge = -by.friction_aside * aside;
-    const V rubs_aside = select(wet, aside_at_centre + aside_at_edge, none);
+    const V aside_at_centre = -by.friction_aside * pressing, aside_at_grip = -by.friction_aside * aside;
+    const V rubs_aside = select(wet, aside_at_centre + aside_at_grip, none);
     across = rubs_aside * dot(to_side, c.across), off = rubs_aside * dot(to_side, n);
     const Vector<V> a{by.force * n.x + at_centre * c.along.x + aside_at_centre * to_side.x,
                       by.force * n.y + at_centre * c.along.y + aside_at_centre * to_side.y,
                       by.force * n.z + at_centre * c.along.z + aside_at_centre * to_side.z};
-    const Vector<V> z{shear * c.across.x + thrust * n.x + at_edge * c.along.x + aside_at_edge * to_side.x,
-                      shear * c.across.y + thrust * n.y + at_edge * c.along.y + aside_at_edge * to_side.y,
-                      shear * c.across.z + thrust * n.z + at_edge * c.along.z + aside_at_edge * to_side.z};
-    const Vector<V> moment = cross(centre.at, a), edge_moment = cross({c.station, c.edge_left, c.edge_up}, z);
-    const V turning = -centre.arm * (c.sp * a.y + c.cp * a.z) - c.reach * (c.sp * z.y + c.cp * z.z);
-    const V all_parts[PARTS] = {
-        a.x + z.x, a.y + z.y, a.z + z.z, moment.x + edge_moment.x, moment.y + edge_moment.y, moment.z + edge_moment.z,
-        a.z + z.z, turning};
+    Vector<V> z = edges.force, moment = edges.moment;
+    V turning = edges.turning - centre.arm * (c.sp * a.y + c.cp * a.z);
+    if (snow.friction_on_base) {
+      const Vector<V> f{at_grip * c.along.x + aside_at_grip * to_side.x,
+                        at_grip * c.along.y + aside_at_grip * to_side.y,
+                        at_grip * c.along.z + aside_at_grip * to_side.z};
+      const Vector<V> m = cross({c.station, c.grip_left, c.grip_up}, f);
+      z = {z.x + f.x, z.y + f.y, z.z + f.z}, moment = {moment.x + m.x, moment.y + m.y, moment.z + m.z};
+      turning -= c.reach * (c.sp * f.y + c.cp * f.z);
+    }
+    const Vector<V> m = cross(centre.at, a);
+    const V all_parts[PARTS] = {a.x + z.x,      a.y + z.y,      a.z + z.z, moment.x + m.x,
+                                moment.y + m.y, moment.z + m.z, a.z + z.z, turning};
     for (int k = 0; k < PARTS; k++) parts[k] = select(wet, all_parts[k], none);
   }
 };
@@ -238,11 +295,12 @@ void push(const Snow& snow, const Base& base, const Pressures& pressure, const E
                        load<V>(sliding[MU] + i) * load<V>(sliding[RUB_ASIDE] + i),
                        load<V>(edge[EDGE_STRENGTH] + i),
                        load<V>(edge[EDGE_THRUST] + i),
-                       load<V>(edge[SHEAR_USED] + i)};
+                       {load<V>(edge[LEFT_USED] + i), load<V>(edge[RIGHT_USED] + i)}};
     const Pushed<V> pushed(Cut<V>::stored(base, i), by, snow);
     for (int k = 0; k < Pushed<V>::PARTS; k++) store(forces[ForceField(FORCE_0 + k)] + i, pushed.parts[k]);
     for (int k = 0; k < 6; k++) sums[k].add(i % BLOCK, pushed.parts[k]);
     store(forces[SHEAR] + i, pushed.shear);
+    for (int k = 0; k < 2; k++) store(forces[of_edge(LEFT_SHEAR, k)] + i, pushed.edge_shear[k]);
     store(forces[PUSH] + i, pushed.along);
     store(forces[PUSH_ACROSS] + i, pushed.across), store(forces[PUSH_OFF] + i, pushed.off);
     store(forces[FRICTION_LOAD] + i, pushed.load);
@@ -277,14 +335,14 @@ void differ(const Snow& snow, const GrooveLines& lines, const Sections& s, doubl
         V force, moment;
         if (change == SectionDifferences::TWIST) {
           c = displaced(base, change, way);
-          c.cut(snow);
+          c.cut();
           growth.between(here, c, force, moment);
         } else {
           c.move(s.base, i, change == SectionDifferences::LEFT, way);
           growth.between_moved(here, c, force, moment);
         }
         by.force = load<V>(s[FORCE] + i) + force, by.moment = load<V>(s[MOMENT] + i) + moment;
-        by.used = eased(snow, lines, j, shear_used(snow, lines, j, c), by.strength, by.thrust, c.edge_depth);
+        by.find_used(snow, lines, j, c);
         const Pushed<V> pushed(c, by, snow);
         for (int k = 0; k < PARTS; k++)
           parts[k] += per_way * (load<V>(s[ForceField(FORCE_0 + k)] + i) - pushed.parts[k]);

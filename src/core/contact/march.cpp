@@ -9,16 +9,20 @@
 
 namespace skisnow {
 
+namespace {
+
+constexpr LineField SLIPS[3] = {LEFT_ANCHOR, RIGHT_ANCHOR, SLIPPED};  // what a slip changes
+
+}  // namespace
+
 void SnowContact::Before::keep_anchors(const GrooveLines& of) {
   const auto count = std::size_t(of.capacity());
-  anchor.assign(of.values[ANCHOR], of.values[ANCHOR] + count);
-  slipped.assign(of.values[SLIPPED], of.values[SLIPPED] + count);
+  for (std::size_t i = 0; i < 3; i++) slips[i].assign(of.values[SLIPS[i]], of.values[SLIPS[i]] + count);
 }
 
 void SnowContact::Before::put_back(GrooveLines& into) const {
   into.first = first, into.end = end;
-  std::copy(anchor.begin(), anchor.end(), into.values[ANCHOR]);
-  std::copy(slipped.begin(), slipped.end(), into.values[SLIPPED]);
+  for (std::size_t i = 0; i < 3; i++) std::copy(slips[i].begin(), slips[i].end(), into.values[SLIPS[i]]);
   for (const GrooveLines::Line& line : lines) into.put_back(line);
 }
 
@@ -83,45 +87,83 @@ bool press_undelayed(const Pressing& pressing, const DelayedGround& delayed, Gro
   return ground.press(place.data(), depth.data(), int(place.size()));
 }
 
-// Keep the base that touches a line: the way of its edge since it was marked last, and everything under it.
-void press_base(const Base& s, int i, const Snow& snow, GrooveLines& lines, int slot) {
-  const double edge = s[EDGE_PLACE][i], depth = s[EDGE_DEPTH][i], fall = s[DEPTH_FALL][i];
-  const double from = s[WET_FROM][i], to = std::max(s[WET_TO][i], from);
-  const bool marked = lines.values[MARKED][slot] > 0.5;
-  const double way = marked ? lines.values[EDGE_MARKED][slot] - edge : 0.0, sense = way < 0.0 ? -1.0 : 1.0;
-  const double way_fall = std::fabs(way) > THIN ? (lines.values[DEPTH_MARKED][slot] - depth) / std::fabs(way) : 0.0;
-  Pressing pressing;
+// Of a section when its pose is accepted.
+struct Touch {
+  const Base& s;
+  int i;
+  const Snow& snow;
+  GrooveLines& lines;
+  int slot;
+
+  double edge_place(int k) const { return s[GRIP_PLACE][i] + s[of_edge(LEFT_X, k)][i]; }
+  double edge_depth(int k) const { return s[of_edge(LEFT_DEPTH, k)][i]; }
+  double& of_line(LineField left, int k) const { return lines.values[of_edge(left, k)][slot]; }
+  bool was_marked() const { return lines.values[MARKED][slot] > 0.5; }
+  // Whether an edge was in the snow at the last accepted pose.
+  bool was_in_snow(int k) const { return was_marked() && of_line(LEFT_MARK_DEPTH, k) > 0.0; }
+
+  void press_base() const;
+  double keep_anchor(int k, double eased) const;
+
+ private:
+  Pressing base_and_way(int k) const;
+  Pressing way_of(int k) const;
+};
+
+// The wet base and the way of one of its edges in the snow since it was marked last.
+Pressing Touch::base_and_way(int k) const {
+  const double fall = s[DEPTH_FALL][i], x = s[of_edge(LEFT_X, k)][i];
+  const double from = s[WET_FROM][i] - x, to = std::max(s[WET_TO][i], s[WET_FROM][i]) - x;
+  const double way = was_in_snow(k) ? of_line(LEFT_MARK, k) - edge_place(k) : 0.0, sense = way < 0.0 ? -1.0 : 1.0;
+  const double risen = was_in_snow(k) ? of_line(LEFT_MARK_DEPTH, k) - edge_depth(k) : 0.0;
+  const double way_fall = std::fabs(way) > THIN ? risen / std::fabs(way) : 0.0;
+  Pressing out;
   if (sense > 0.0)
-    pressing.fill(from, to, fall, way, way_fall);
+    out.fill(from, to, fall, way, way_fall);
   else
-    pressing.fill(-to, -from, -fall, -way, way_fall);
-  pressing.put_at(edge, depth, sense);
+    out.fill(-to, -from, -fall, -way, way_fall);
+  out.put_at(edge_place(k), edge_depth(k), sense);
+  return out;
+}
+
+// The way of an edge alone, up to where it left the snow.
+Pressing Touch::way_of(int k) const {
+  const double mark = of_line(LEFT_MARK, k), before = of_line(LEFT_MARK_DEPTH, k), depth = edge_depth(k);
+  const double left_at = mark + before / (before - std::min(depth, 0.0)) * (edge_place(k) - mark);
+  const double edge = depth < 0.0 ? left_at : edge_place(k), deep = std::max(depth, 0.0);
+  return mark < edge ? Pressing{{mark, edge}, {before, deep}, 2} : Pressing{{edge, mark}, {deep, before}, 2};
+}
+
+// Keep the base that touches a line: everything under it, and the ways of its edges. Of a base that lies in the snow
+// with both edges one after the other: left and right then have the same bits.
+void Touch::press_base() const {
   Ground ground = lines.ground(slot);
-  if (!press_undelayed(pressing, lines.delayed[std::size_t(slot)], ground)) return;
+  const DelayedGround& delayed = lines.delayed[std::size_t(slot)];
+  const double at = s[GRIP_PLACE][i], from = s[WET_FROM][i], to = std::max(s[WET_TO][i], from);
+  const bool both = edge_depth(0) > 0.0 && edge_depth(1) > 0.0;
+  const int alone = edge_depth(0) > 0.0 ? 0 : 1;
+  bool changed = press_undelayed(
+      both ? Pressing{{at + from, at + to}, {edge_depth(1), edge_depth(0)}, 2} : base_and_way(alone), delayed, ground);
+  for (int k = 0; k < 2; k++)
+    if (was_in_snow(k) && (both || k != alone)) changed = press_undelayed(way_of(k), delayed, ground) || changed;
+  if (!changed) return;
   ground.simplify(snow.knot_area * s[DEEPEST][i] * (to - from), KNOTS);
   lines.keep(slot, ground);
 }
 
-// The point of the base at which the shear acts, as a share of the half width.
-double edge_side(const Base& s, int i) { return s[HALF_WIDTH][i] > 0.0 ? s[EDGE_REACH][i] / s[HALF_WIDTH][i] : 0.0; }
-
-// Keep where the edge holds: where it came through the surface, not farther off than its full displacement. The
-// displacement is that of the point at which the shear acted before, see [material_edge].
-void keep_anchor(const Base& s, int i, double eased, const Snow& snow, GrooveLines& lines, int slot) {
-  auto& v = lines.values;
-  const double edge = s[EDGE_PLACE][i], depth = s[DEEPEST][i], reach = snow.shear_displacement;
-  const double off = s[HALF_WIDTH][i] * v[EDGE_SIDE][slot] - s[EDGE_REACH][i];
-  const double moved = off != 0.0 ? off / s[BASE_WIDENING][i] : 0.0;
-  double anchor = edge;
-  if (v[ANCHORED][slot] > 0.5)
-    anchor = v[ANCHOR][slot] - moved;
-  else if (v[ABOVE][slot] > 0.5)
-    anchor = edge - depth / (depth - v[DEPTH_ABOVE][slot]) * (edge + moved - v[EDGE_ABOVE][slot]);
+// Keep where an edge holds: where it came through the surface, not farther off than its full displacement. How far it
+// slips; `eased`: share of the displacement by which it was eased, see [ease].
+double Touch::keep_anchor(int k, double eased) const {
+  const double edge = edge_place(k), depth = edge_depth(k), reach = snow.shear_displacement;
+  const double mark = of_line(LEFT_MARK, k), before = of_line(LEFT_MARK_DEPTH, k);
+  double anchor = edge, &kept = of_line(LEFT_ANCHOR, k);
+  if (was_in_snow(k))
+    anchor = kept;
+  else if (was_marked())
+    anchor = edge - depth / (depth - before) * (edge - mark);
   anchor += reach * eased;
-  v[EDGE_SIDE][slot] = edge_side(s, i);
-  v[ANCHOR][slot] = std::clamp(anchor, edge - reach, edge + reach);
-  v[SLIPPED][slot] += std::fabs(v[ANCHOR][slot] - anchor);
-  v[ANCHORED][slot] = 1.0;
+  kept = std::clamp(anchor, edge - reach, edge + reach);
+  return std::fabs(kept - anchor);
 }
 
 // Keep where friction is 0: not farther off than the way to full friction, on a line that comes under the base here.
@@ -141,26 +183,24 @@ void keep_stuck(const Base& s, int i, const Snow& snow, GrooveLines& lines, int 
   v[STUCK_PLACE][slot] = c.place - most * over;
 }
 
-// `eased`: share of the displacement by which the edge was eased, see [ease].
-void remember_section(const Base& s, int i, double eased, const Snow& snow, GrooveLines& lines, int slot) {
-  auto& v = lines.values;
-  if (!s.touches(i)) {
-    v[MARKED][slot] = v[STUCK][slot] = 0.0;
-    if (!(s[SHARE][i] > 0.0)) return;
-    v[EDGE_ABOVE][slot] = s[EDGE_PLACE][i];
-    v[DEPTH_ABOVE][slot] = s[DEEPEST][i];
-    v[EDGE_SIDE][slot] = edge_side(s, i);
-    v[ANCHORED][slot] = 0.0;
-    v[ABOVE][slot] = 1.0;
+// `eased`: of both edges.
+void remember_section(const Touch& at, const double (&eased)[2]) {
+  double& marked = at.lines.values[MARKED][at.slot];
+  const bool touches = at.s.touches(at.i);
+  if (!touches) at.lines.values[STUCK][at.slot] = 0.0;
+  if (!(at.s[SHARE][at.i] > 0.0)) {
+    marked = 0.0;
     return;
   }
-  press_base(s, i, snow, lines, slot);
-  v[MARKED][slot] = 1.0;
-  v[EDGE_MARKED][slot] = s[EDGE_PLACE][i];
-  v[DEPTH_MARKED][slot] = s[EDGE_DEPTH][i];
-  keep_anchor(s, i, eased, snow, lines, slot);
-  keep_stuck(s, i, snow, lines, slot);
-  v[ABOVE][slot] = 0.0;
+  if (touches) at.press_base();
+  double slipped = 0.0;
+  for (int k = 0; k < 2; k++)
+    if (at.edge_depth(k) > 0.0) slipped = std::max(slipped, at.keep_anchor(k, eased[k]));
+  at.lines.values[SLIPPED][at.slot] += slipped;
+  for (int k = 0; k < 2; k++)
+    at.of_line(LEFT_MARK, k) = at.edge_place(k), at.of_line(LEFT_MARK_DEPTH, k) = at.edge_depth(k);
+  if (touches) keep_stuck(at.s, at.i, at.snow, at.lines, at.slot);
+  marked = 1.0;
 }
 
 }  // namespace
@@ -169,7 +209,8 @@ void SnowContact::remember(int k, GrooveLines& lines, bool is_eased) const {
   const Sections& s = sections(k);
   for (std::int64_t n = lines.first; n < lines.end; n++) {
     const int i = s.index(n);
-    remember_section(s.base, i, is_eased ? s[SHEAR_EASED][i] : 0.0, *snow_, lines, lines.slot(n));
+    remember_section({s.base, i, *snow_, lines, lines.slot(n)},
+                     {is_eased ? s[LEFT_EASED][i] : 0.0, is_eased ? s[RIGHT_EASED][i] : 0.0});
   }
 }
 
@@ -197,7 +238,7 @@ void SnowContact::march(int k, GrooveLines& lines, const Situation& to) {
   const int parts = this->parts(k, to);
   for (int part = 1; part < parts; part++) {
     interpolate(state_.accepted[std::size_t(k)], to.poses[std::size_t(k)], double(part) / parts, on_way_);
-    kernels_->find_sections(runner(k), on_way_, *snow_, lines, lines.first, sections_[std::size_t(k)].base);
+    kernels_->find_sections(runner(k), on_way_, lines, lines.first, sections_[std::size_t(k)].base);
     remember(k, lines, false);
   }
 }
@@ -207,10 +248,17 @@ void SnowContact::march(int k, GrooveLines& lines, const Situation& to) {
 // slips, only its anchor depends on the way.
 void SnowContact::find_needed(const GrooveLines& lines, double way, const Runner& runner, const Pose& to) {
   const auto& v = lines.values;
-  const auto marked = [&](std::int64_t n) {
-    return n >= lines.first && n < lines.end && v[MARKED][lines.slot(n)] > 0.5;
+  const auto depth = [&](std::int64_t n) {
+    return std::max(v[LEFT_MARK_DEPTH][lines.slot(n)], v[RIGHT_MARK_DEPTH][lines.slot(n)]);
   };
-  const auto depth = [&](std::int64_t n) { return v[DEPTH_MARKED][lines.slot(n)]; };
+  const auto marked = [&](std::int64_t n) {
+    return n >= lines.first && n < lines.end && v[MARKED][lines.slot(n)] > 0.5 && depth(n) > 0.0;
+  };
+  const double most = SLIPPING * snow_->shear_displacement;
+  const auto slips = [&](int slot, int k) {
+    const auto of = [&](LineField left) { return v[of_edge(left, k)][slot]; };
+    return of(LEFT_MARK_DEPTH) > 0.0 && std::fabs(of(LEFT_ANCHOR) - of(LEFT_MARK)) > most;
+  };
   const auto over = std::int64_t(std::ceil(way / lines.spacing()));
   const double reach = runner.tip + lines.spacing();  // lines that the tip does not reach stay as they are
   needed_.clear();
@@ -224,11 +272,9 @@ void SnowContact::find_needed(const GrooveLines& lines, double way, const Runner
         depth(n - over) >= depth(n - over + 1))
       deepest = n - over;
     ahead = ahead && !marked(n);
-    const double displacement = std::fabs(v[ANCHOR][slot] - v[EDGE_MARKED][slot]);
-    const bool slips = v[ANCHORED][slot] > 0.5 && displacement > SLIPPING * snow_->shear_displacement;
     if (ahead || (n >= deepest - 1 && n <= deepest + over)) {
       if (lines.station(n, to) <= reach) needed_.push_back(n);
-    } else if (slips) {
+    } else if (v[MARKED][slot] > 0.5 && (slips(slot, 0) || slips(slot, 1))) {
       slips_[std::size_t(slot)] = 1.0, rearmost_slip_ = n;
     }
   }
@@ -254,8 +300,9 @@ void SnowContact::march_where_needed(int k, const Situation& to) {
   Sections& s = sections_[std::size_t(k)];
   for (int part = 1; part < parts; part++) {
     interpolate(from, end, double(part) / parts, on_way_);
-    kernels_->find_sections(runner(k), on_way_, *snow_, lines, first, s.base);
-    for (const std::int64_t n : needed_) remember_section(s.base, s.index(n), 0.0, *snow_, lines, lines.slot(n));
+    kernels_->find_sections(runner(k), on_way_, lines, first, s.base);
+    for (const std::int64_t n : needed_)
+      remember_section({s.base, s.index(n), *snow_, lines, lines.slot(n)}, {0.0, 0.0});
     if (rearmost_slip_) kernels_->drag_anchors(*snow_, s.base, slips_.data(), lines);
   }
 }

@@ -8,17 +8,48 @@
 
 namespace skisnow::SKISNOW_LANES {
 
-// Additional sums for the derivatives, over the parts that bear on ground that was pressed deeper: integrals of x and
-// x²; of 1, x, x² and the ground's slope over ground from before the step; and what virgin snow's pressure has more
-// than the ground's, E lift at most, at the ends of the pieces.
+// The ground that an edge has cut since the last accepted pose, under the base as it went away from it: as deep as the
+// edge was when it passed. Between `from` and `to` in x, nothing where they are equal. It is straight from the edge, at
+// `edge`, to where the edge was marked, at `mark`; `depth` at the edge, `slope` and 1/(mark - edge).
+template <class V>
+struct CutGround {
+  V from{}, to{}, edge{}, mark{}, depth{}, slope{}, share{};
+
+  CutGround() = default;
+
+  // Of one edge of a base that is wet from `wet_from` to `wet_to`.
+  CutGround(const GrooveLines& lines, int j, const Cut<V>& c, int k, V wet_from, V wet_to)
+      : edge(c.x[k]), depth(c.depth[k]) {
+    const auto before = [&](LineField left) { return load<V>(lines.values[of_edge(left, k)] + j); };
+    const V deep = before(LEFT_MARK_DEPTH), way = before(LEFT_MARK) - (c.place + edge);
+    const MaskOf<V> inwards = k == 0 ? way < 0.0 : way > 0.0;
+    const MaskOf<V> cuts = was_in_snow(lines, j, k) & inwards;
+    mark = edge + way;
+    from = select(cuts, maximum(k == 0 ? mark : edge, wet_from), wet_from);
+    to = select(cuts, minimum(k == 0 ? edge : mark, wet_to), wet_from);
+    share = 1.0 / select(cuts, way, all<V>(1.0));
+    slope = (deep - depth) * share;
+  }
+
+  static MaskOf<V> was_in_snow(const GrooveLines& lines, int j, int k) {
+    return (load<V>(lines.values[MARKED] + j) > 0.5) & (load<V>(lines.values[of_edge(LEFT_MARK_DEPTH, k)] + j) > 0.0);
+  }
+  MaskOf<V> is_there() const { return from < to; }
+  V at(V x) const { return depth + slope * (x - edge); }
+};
+
+// Additional sums for the derivatives. Over the parts that bear on ground that was pressed deeper: minus the
+// derivatives of its lift by the depth of the grip and by the fall of the depth, and that by the grip's place, each
+// integrated with 1 and with x. And what virgin snow's pressure has more than the ground's, E lift at most, at the ends
+// of the pieces.
 template <class V>
 struct GrowthSums {
   V wet_from, wet_to;
-  V x1{}, x2{}, old0{}, old1{}, old2{}, slope0{}, slope1{};
+  V depth0{}, depth1{}, fall0{}, fall1{}, place0{}, place1{};
   V ends0{}, ends1{}, at_from{}, at_to{};
 };
 
-// Integrals over the wet base of one line, in x from the edge. Virgin snow bears q = H (D + f x); where the ground was
+// Integrals over the wet base of one line, in x from the grip. Virgin snow bears q = H (D + f x); where the ground was
 // pressed deeper by a lift it bears q - E lift, where that pushes (E = k_u - H_V).
 template <class V>
 struct Pressure {
@@ -27,12 +58,12 @@ struct Pressure {
   V q2{};                           // of lift, lift x and lift² over what bears there
   GrowthSums<V>* growth = nullptr;  // optional
 
-  // [press_piece] A straight piece of ground from a to b (within the wet base), its lift there `lift + slope x`; `old`:
-  // where it is ground from before the step.
-  SKISNOW_INLINE void add(V a, V b, V lift, V slope, MaskOf<V> old) {
+  // [press_piece] A straight piece of ground from a to b (within the wet base), its lift there `lift + slope x`. Ground
+  // that was cut within the step is given.
+  SKISNOW_INLINE void add(V a, V b, V lift, V slope, const CutGround<V>* cut, MaskOf<V> is_cut) {
     if (!any(a < b)) return;
     const auto [c, d, u, v] = pressed_part(a, b, depth, fall, lift, slope, hardness, excess, THIN);
-    if (growth != nullptr) grow(a, b, lift, slope, u, v, old);
+    if (growth != nullptr) grow(a, b, lift, slope, u, v, cut, is_cut);
     const V width = v - u, covered = d - c, both = v + u, ends = d + c;
     q0 += width - covered;
     q1 += width * both - covered * ends;
@@ -43,13 +74,21 @@ struct Pressure {
     l2 += width * (1.0 / 3.0) * (lift_u * lift_u + lift_u * lift_v + lift_v * lift_v);
   }
 
-  void grow(V a, V b, V lift, V slope, V u, V v, MaskOf<V> old) {
+  // Ground from before the step stays: its lift falls by 1 with the depth, by x with the fall, and grows by the
+  // ground's slope with the place. Of ground that is cut the share t = (x - edge)/(mark - edge) stays: its lift falls
+  // by t with the depth, by t mark with the fall, and grows by t slope with the place.
+  void grow(V a, V b, V lift, V slope, V u, V v, const CutGround<V>* cut, MaskOf<V> is_cut) {
     GrowthSums<V>& g = *growth;
     const V none{}, width = v - u, both = v + u, first = 0.5 * width * both;
     const V second = (1.0 / 3.0) * width * (both * both - u * v), ground = slope + fall;
-    g.x1 += first, g.x2 += second;
-    g.old0 += select(old, width, none), g.old1 += select(old, first, none), g.old2 += select(old, second, none);
-    g.slope0 += select(old, ground * width, none), g.slope1 += select(old, ground * first, none);
+    V depth0 = width, depth1 = first, fall0 = first, fall1 = second, place0 = ground * width, place1 = ground * first;
+    if (cut != nullptr) {
+      const V t0 = cut->share * (first - cut->edge * width), t1 = cut->share * (second - cut->edge * first);
+      const auto choose = [&](V of_cut, V& of_ground) { of_ground = select(is_cut, of_cut, of_ground); };
+      choose(t0, depth0), choose(t1, depth1), choose(cut->mark * t0, fall0), choose(cut->mark * t1, fall1);
+      choose(cut->slope * t0, place0), choose(cut->slope * t1, place1);
+    }
+    g.depth0 += depth0, g.depth1 += depth1, g.fall0 += fall0, g.fall1 += fall1, g.place0 += place0, g.place1 += place1;
     const auto missing = [&](V x) {
       return minimum(excess * maximum(lift + slope * x, none), hardness * (depth + fall * x));
     };
@@ -60,7 +99,7 @@ struct Pressure {
     g.at_to = select(is_piece & (b == g.wet_to), at_b, g.at_to);
   }
 
-  // [resultants] Force and moment about the edge for each metre of ski, and elastic energy, of a base wet from a to b.
+  // [resultants] Force and moment about the grip for each metre of ski, and elastic energy, of a base wet from a to b.
   void resultants(V a, V b, V& force, V& moment, V& energy) const {
     const V width = b - a, both = b + a;
     const V m0 = q0 + width, m1 = 0.5 * (q1 + width * both), m2 = (q2 + width * (both * both - b * a)) * (1.0 / 3.0);
@@ -72,106 +111,123 @@ struct Pressure {
   }
 };
 
-// The ground that an edge has cut since the last accepted pose as it went away from its base: as deep as the edge was
-// when it passed. `from` to `to` in x, none where they are equal.
-template <class V>
-struct CutGround {
-  V from, to, slope, before;  // before: where the edge was marked
-
-  CutGround(const GrooveLines& lines, int j, V edge, V depth, V wet_from, V wet_to) {
-    before = load<V>(lines.values[EDGE_MARKED] + j) - edge;
-    const MaskOf<V> marked = load<V>(lines.values[MARKED] + j) > 0.5;
-    const MaskOf<V> to_left = marked & (before > 0.0) & (wet_from == 0.0);
-    const MaskOf<V> to_right = marked & (before < 0.0) & (wet_to == 0.0);
-    const V none{};
-    from = select(to_right, maximum(before, wet_from), none);
-    to = select(to_left, minimum(before, wet_to), none);
-    slope = (load<V>(lines.values[DEPTH_MARKED] + j) - depth) / select(to_left | to_right, before, all<V>(1.0));
-  }
-};
-
 template <class V>
 V inside(V x, V low, V high) {
   return minimum(maximum(x, low), high);
 }
 
-// Add a piece of ground between two places, over the base by `lift` at the edge and `rise` more for each metre; over
-// the cut the deeper of both.
+// The ground that both edges have cut; the left one's lies to the left of the right one's.
 template <class V>
-SKISNOW_INLINE void add_piece(const CutGround<V>& cut, V low, V high, V lift, V rise, Pressure<V>& out) {
-  const MaskOf<V> old = all_lanes<V>(true);
-  if (!any((cut.from < high) & (cut.to > low) & (cut.from < cut.to))) {
-    out.add(low, high, lift, rise, old);
-    return;
-  }
-  const V first = inside(cut.from, low, high), last = inside(cut.to, low, high);
-  const V cut_rise = cut.slope - out.fall, apart = rise - cut_rise;
-  V meet = -lift / select(absolute(apart) > 1e-30, apart, all<V>(1e-30));
-  meet = inside(meet, first, last);
-  const V at_first = 0.5 * (first + meet), at_last = 0.5 * (meet + last);
-  const MaskOf<V> old_first = lift + apart * at_first > 0.0, old_last = lift + apart * at_last > 0.0;
-  const MaskOf<V> is_old[] = {old, old_first, old_last, old};
-  const V ends[] = {low, first, meet, last, high};
-  for (int part = 0; part < 4; part++)
-    out.add(ends[part], ends[part + 1], select(is_old[part], lift, V{}), select(is_old[part], rise, cut_rise),
-            is_old[part]);
-}
+struct CutGrounds {
+  CutGround<V> of[2];
 
-// [press_line] Pressure of the ground's pieces; what was cut within the step counts where it lies deeper.
+  CutGrounds(const GrooveLines& lines, int j, const Cut<V>& c, V wet_from, V wet_to) {
+    for (int k = 0; k < 2; k++)
+      if (any(CutGround<V>::was_in_snow(lines, j, k))) of[k] = CutGround<V>(lines, j, c, k, wet_from, wet_to);
+    const MaskOf<V> both = of[0].is_there() & of[1].is_there() & (of[0].from < of[1].to);
+    if (!any(both)) return;
+    const V middle = 0.5 * (of[0].from + of[1].to);
+    of[0].from = select(both, middle, of[0].from), of[1].to = select(both, middle, of[1].to);
+  }
+};
+
+// Straight pieces of ground next to each other, each over the base by `lift` at the grip and `rise` more for each
+// metre.
 template <class V>
-SKISNOW_INLINE void add_ground(const GrooveLines& lines, int j, V edge, V wet_from, V wet_to, const CutGround<V>& cut,
+struct GroundPieces {
+  static constexpr int MOST = 9;
+  V end, from[MOST], lift[MOST], rise[MOST];
+  const CutGround<V>* cut[MOST];
+  MaskOf<V> is_cut[MOST];
+  int count = 0;
+
+  // A piece between two places; over what both edges have cut the deeper of both.
+  SKISNOW_INLINE GroundPieces(const CutGrounds<V>& cuts, V low, V high, V lift, V rise, const Pressure<V>& on) {
+    end = high;
+    for (int k = 1; k >= 0; k--) {
+      const CutGround<V>& each = cuts.of[k];
+      const MaskOf<V> meets = (each.from < high) & (each.to > low) & each.is_there();
+      if (!any(meets)) continue;
+      // up to where the left edge's cut begins the right edge's counts
+      const V border = k == 0 ? high : select(cuts.of[0].is_there(), inside(cuts.of[0].from, low, high), high);
+      add_cut(each, low, border, lift, rise, on);
+      low = border;
+    }
+    if (count == 0) add(low, lift, rise);
+  }
+
+ private:
+  void add(V at, V over, V more) {
+    from[count] = at, lift[count] = over, rise[count] = more, cut[count] = nullptr, is_cut[count] = all_lanes<V>(false);
+    count++;
+  }
+
+  void add_cut(const CutGround<V>& each, V low, V high, V over, V more, const Pressure<V>& on) {
+    const V first = inside(each.from, low, high), last = inside(each.to, low, high);
+    const V cut_rise = each.slope - on.fall, cut_lift = each.at(V{}) - on.depth, apart = more - cut_rise;
+    const V meet = inside(V((cut_lift - over) / select(absolute(apart) > 1e-30, apart, all<V>(1e-30))), first, last);
+    const V ends[] = {first, meet, last};
+    add(low, over, more);
+    for (int part = 0; part < 2; part++) {
+      const MaskOf<V> deeper = over - cut_lift + apart * (0.5 * (ends[part] + ends[part + 1])) <= 0.0;
+      add(ends[part], select(deeper, cut_lift, over), select(deeper, cut_rise, more));
+      cut[count - 1] = &each, is_cut[count - 1] = deeper;
+    }
+    add(last, over, more);
+  }
+};
+
+// [press_line] Pressure of the ground's pieces; what was cut within the step counts where it lies deeper, also before
+// the first knot and behind the last one, where the snow is virgin.
+template <class V>
+SKISNOW_INLINE void add_ground(const GrooveLines& lines, int j, V edge, V wet_from, V wet_to, const CutGrounds<V>& cuts,
                                Pressure<V>& out) {
+  constexpr double VIRGIN = -1.0;  // lift (m) of ground that bears nothing
   int most = 0;
   for (int lane = 0; lane < WIDTH<V>; lane++) most = std::max<int>(most, lines.knots[std::size_t(j + lane)]);
   const double* place = lines.place.data() + lines.tile(j, 0);
   const double* depth = lines.depth.data() + lines.tile(j, 0);
   const double* slope = lines.slope.data() + lines.tile(j, 0);
-  // over the cut: the part before the ground's first knot, the pieces, the part behind the last one
-  const auto cut_piece = [&](V a, V b) {
-    const V low = inside(a, cut.from, cut.to), high = inside(b, cut.from, cut.to);
-    out.add(low, maximum(low, high), V{}, cut.slope - out.fall, all_lanes<V>(false));
-  };
-  const bool cuts = any(cut.to > cut.from);
-  V a = load<V>(place) - edge;
-  if (most < 2) {
-    if (cuts) cut_piece(cut.from, cut.to);
-    return;
-  }
-  if (cuts) cut_piece(cut.from, a);
-  for (int k = 0; k + 1 < most; k++) {
-    const V b = load<V>(place + BLOCK * (k + 1)) - edge, ground = load<V>(slope + BLOCK * k);
-    const V lift = load<V>(depth + BLOCK * k) - ground * a - out.depth, rise = ground - out.fall;
-    const V low = inside(a, wet_from, wet_to), high = inside(b, wet_from, wet_to);
+  const bool is_cut = any(cuts.of[0].is_there()) || any(cuts.of[1].is_there());
+  if (most < 2) most = 0;
+  V a = wet_from;
+  for (int k = -1; k < most || (k < 0 && most == 0); k++) {
+    const bool is_virgin = k < 0 || k + 1 >= most;
+    const V b = k + 1 < most ? V(load<V>(place + BLOCK * (k + 1)) - edge) : wet_to;
+    const V low = inside(a, wet_from, wet_to), high = inside(b, wet_from, wet_to), from = a;
     a = b;
-    if (any(low < high)) add_piece(cut, low, high, lift, rise, out);
+    if ((is_virgin && !is_cut) || !any(low < high)) continue;
+    V lift = all<V>(VIRGIN), rise{};
+    if (!is_virgin) {
+      const V ground = load<V>(slope + BLOCK * k);
+      lift = load<V>(depth + BLOCK * k) - ground * from - out.depth, rise = ground - out.fall;
+    }
+    const GroundPieces<V> pieces(cuts, low, high, lift, rise, out);
+    for (int n = 0; n < pieces.count; n++)
+      out.add(pieces.from[n], n + 1 < pieces.count ? pieces.from[n + 1] : pieces.end, pieces.lift[n], pieces.rise[n],
+              pieces.cut[n], pieces.is_cut[n]);
   }
-  if (cuts) cut_piece(a, cut.to);
 }
 
 // [pressed growth] Derivatives of force F = ∫ p and moment M = ∫ p x for each metre of ski, p = H q - E lift with
-// q = D + f x, by the depth D at the edge, the fall f, the edge's place y across the line and the ends of the wet base.
-// Where p bears on old ground, ∂lift/∂D = -1, ∂lift/∂f = -x and ∂lift/∂y is the ground's slope; the pieces' ends move
-// by -1 with y. Ground that is cut within the step rises by `cut.slope` from the edge to where it was marked, at
-// `before`: there ∂lift/∂D = -x/before and ∂lift/∂y = slope x/before.
+// q = D + f x, by the depth D at the grip, the fall f, the grip's place y across the line and the ends of the wet base.
+// The pieces' ends move by -1 with y.
 template <class V>
 struct PressedGrowth {
   static constexpr int COUNT = 8;
   V force_depth, force_fall, force_place, moment_depth, moment_fall, moment_place, force_from, force_to;
 
-  PressedGrowth(const Pressure<V>& sums, const GrowthSums<V>& g, const CutGround<V>& cut) {
-    const V none{}, from = g.wet_from, to = g.wet_to, hardness = sums.hardness, excess = sums.excess;
+  PressedGrowth(const Pressure<V>& sums, const GrowthSums<V>& g) {
+    const V from = g.wet_from, to = g.wet_to, hardness = sums.hardness, excess = sums.excess;
     const V width = to - from, both = to + from;
     const V m0 = sums.q0 + width, m1 = 0.5 * (sums.q1 + width * both);
     const V m2 = (sums.q2 + width * (both * both - from * to)) * (1.0 / 3.0);
-    const MaskOf<V> cuts = cut.from < cut.to;
-    const V share = select(cuts, 1.0 / select(cuts, cut.before, all<V>(1.0)), none), steep = cut.slope * share;
-    const V cut1 = g.x1 - g.old1, cut2 = g.x2 - g.old2;
-    force_depth = hardness * m0 + excess * (g.old0 + share * cut1);
-    moment_depth = hardness * m1 + excess * (g.old1 + share * cut2);
-    force_fall = hardness * m1 + excess * g.x1;
-    moment_fall = hardness * m2 + excess * g.x2;
-    force_place = g.ends0 - g.at_to + g.at_from - excess * (g.slope0 + steep * cut1);
-    moment_place = g.ends1 - g.at_to * to + g.at_from * from - excess * (g.slope1 + steep * cut2);
+    force_depth = hardness * m0 + excess * g.depth0;
+    moment_depth = hardness * m1 + excess * g.depth1;
+    force_fall = hardness * m1 + excess * g.fall0;
+    moment_fall = hardness * m2 + excess * g.fall1;
+    force_place = g.ends0 - g.at_to + g.at_from - excess * g.place0;
+    moment_place = g.ends1 - g.at_to * to + g.at_from * from - excess * g.place1;
     force_to = hardness * (sums.depth + sums.fall * to) - g.at_to;
     force_from = g.at_from - hardness * (sums.depth + sums.fall * from);
   }
@@ -191,7 +247,7 @@ struct PressedGrowth {
   // Growth of force and moment from one section to another that is close to it.
   void between(const Cut<V>& c, const Cut<V>& other, V& force, V& moment) const {
     const V from = c.wet_from, to = maximum(c.wet_to, from);
-    const V depth = other.edge_depth - c.edge_depth, fall = other.fall - c.fall, place = other.place - c.place;
+    const V depth = other.grip_depth - c.grip_depth, fall = other.fall - c.fall, place = other.place - c.place;
     const V by_from = force_from * (other.wet_from - from);
     const V by_to = force_to * (maximum(other.wet_to, other.wet_from) - to);
     force = force_depth * depth + force_fall * fall + force_place * place + by_from + by_to;
@@ -200,7 +256,7 @@ struct PressedGrowth {
 
   // The same where only the depth and the place of the edge differ.
   void between_moved(const Cut<V>& c, const Cut<V>& other, V& force, V& moment) const {
-    const V depth = other.edge_depth - c.edge_depth, place = other.place - c.place;
+    const V depth = other.grip_depth - c.grip_depth, place = other.place - c.place;
     force = force_depth * depth + force_place * place, moment = moment_depth * depth + moment_place * place;
   }
 };
@@ -218,33 +274,25 @@ struct Pressed {
     GrowthSums<V> more{c.wet_from, wet_to};
     Pressure<V> sums;
     sums.hardness = load<V>(lines.values[HARDNESS] + j), sums.excess = load<V>(lines.values[EXCESS] + j);
-    sums.depth = c.edge_depth, sums.fall = c.fall, sums.growth = grows ? &more : nullptr;
-    const CutGround<V> cut(lines, j, c.place, c.edge_depth, c.wet_from, wet_to);
-    if (snow.unloading_ratio > 1.0) add_ground(lines, j, c.place, c.wet_from, wet_to, cut, sums);
+    sums.depth = c.grip_depth, sums.fall = c.fall, sums.growth = grows ? &more : nullptr;
+    if (snow.unloading_ratio > 1.0)
+      add_ground(lines, j, c.place, c.wet_from, wet_to, CutGrounds<V>(lines, j, c, c.wet_from, wet_to), sums);
     sums.resultants(c.wet_from, wet_to, force, moment, energy);
-    if (grows) keep_growth(PressedGrowth<V>(sums, more, cut));
+    if (grows) keep_growth(PressedGrowth<V>(sums, more));
   }
 };
 
-// [material_edge] Place across of the point of the base at which the shear acted at the last accepted pose. While a
-// nearly level base rolls, the blend moves the shear to another point. This motion is not one of the base.
-template <class V>
-SKISNOW_INLINE V material_edge(const GrooveLines& lines, int j, const Cut<V>& c) {
-  const V moved = c.half * load<V>(lines.values[EDGE_SIDE] + j) - c.reach;
-  return any(absolute(moved) > 0.0) ? c.place + moved / c.widening : c.place;
-}
-
-// [shear_used] The share of the way to full strength by which the edge is displaced. It holds where it did before, else
+// [shear_used] The share of the way to full strength by which an edge is displaced. It holds where it did before, else
 // where it came through the surface since it was last looked at.
 template <class V>
-SKISNOW_INLINE V shear_used(const Snow& snow, const GrooveLines& lines, int j, const Cut<V>& c) {
-  const V place = material_edge(lines, j, c);
-  const V anchored = load<V>(lines.values[ANCHORED] + j);
-  const MaskOf<V> enters = (anchored <= 0.5) & (load<V>(lines.values[ABOVE] + j) > 0.5);
-  V anchor = select(anchored > 0.5, load<V>(lines.values[ANCHOR] + j), place);
+SKISNOW_INLINE V shear_used(const Snow& snow, const GrooveLines& lines, int j, const Cut<V>& c, int k) {
+  const auto before = [&](LineField left) { return load<V>(lines.values[of_edge(left, k)] + j); };
+  const V place = c.place + c.x[k], depth = c.depth[k], deep = before(LEFT_MARK_DEPTH);
+  const MaskOf<V> marked = load<V>(lines.values[MARKED] + j) > 0.5, enters = marked & (deep <= 0.0);
+  V anchor = select(marked, before(LEFT_ANCHOR), place);
   if (any(enters)) {
-    const V above = load<V>(lines.values[DEPTH_ABOVE] + j), edge_above = load<V>(lines.values[EDGE_ABOVE] + j);
-    anchor = select(enters, V(place - c.deepest / (c.deepest - above) * (place - edge_above)), anchor);
+    const V fallen = depth - deep, per_fallen = depth / select(fallen > 0.0, fallen, all<V>(1.0));
+    anchor = select(enters, V(place - per_fallen * (place - before(LEFT_MARK))), anchor);
   }
   return (anchor - place) / snow.shear_displacement;
 }
@@ -253,14 +301,16 @@ SKISNOW_INLINE V shear_used(const Snow& snow, const GrooveLines& lines, int j, c
 // this energy: the share u of the displacement shrinks so that the force stays. And the thrust of a cut presses on the
 // same face as the shear: an edge that rises by z leaves that face by z times thrust over shear.
 template <class V>
-SKISNOW_INLINE V eased(const Snow& snow, const GrooveLines& lines, int j, V used, V strength, V thrust, V edge_depth) {
-  const auto kept = [&](LineField field) { return load<V>(lines.values[field] + j); };
+SKISNOW_INLINE V eased(const Snow& snow, const GrooveLines& lines, int j, int k, V used, V strength, V thrust,
+                       V depth) {
+  const auto kept = [&](LineField left) { return load<V>(lines.values[of_edge(left, k)] + j); };
   const double per_reach = 1.0 / snow.shear_displacement;
-  const V before = kept(STRENGTH_HELD), risen = kept(DEPTH_HELD) - edge_depth, none{};
+  const V before = load<V>(lines.values[STRENGTH_HELD] + j), risen = kept(LEFT_DEPTH_HELD) - depth, none{};
   if (!any(before > 0.0)) return used;
-  const MaskOf<V> holds = (before > 0.0) & (strength > 0.0) & (kept(ANCHORED) > 0.5);
+  const MaskOf<V> marked = load<V>(lines.values[MARKED] + j) > 0.5;
+  const MaskOf<V> holds = (before > 0.0) & (strength > 0.0) & marked & (kept(LEFT_MARK_DEPTH) > 0.0);
   const V per_strength = 1.0 / select(strength > 0.0, strength, all<V>(1.0));
-  const V rest = used + kept(SHEAR_HELD) * per_reach * (minimum(before * per_strength, all<V>(1.0)) - 1.0);
+  const V rest = used + kept(LEFT_SHEAR_HELD) * per_reach * (minimum(before * per_strength, all<V>(1.0)) - 1.0);
   const V left = maximum(V(thrust * per_strength * risen * per_reach), none);
   const V size = maximum(V(absolute(rest) - left), none);
   return select(holds, select(rest < 0.0, V(none - size), size), used);
@@ -272,7 +322,7 @@ V strength_left(const ShearLaw& law, V slipped) {
   return 1.0 - (1.0 - law.residual_ratio) * minimum(slipped * (1.0 / law.weakening), all<V>(1.0));
 }
 
-// [press] What the snow answers to each section, and how far the shear at its edge is displaced; how the answers grow,
+// [press] What the snow answers to each section, and how far the shear at its edges is displaced; how the answers grow,
 // where that is wanted.
 template <class V>
 void press(const Snow& snow, const GrooveLines& lines, const Base& base, bool grows, Pressures& pressure,
@@ -280,10 +330,11 @@ void press(const Snow& snow, const GrooveLines& lines, const Base& base, bool gr
   for_lanes<V>(base, lines, [&](int i, int j) {
     const V share = load<V>(base[SHARE] + i), none{};
     const MaskOf<V> wet = (share > 0.0) & (load<V>(base[DEEPEST] + i) > 0.0);
-    store(edge[EDGE_THRUST] + i, none), store(edge[SHEAR_EASED] + i, none);
+    for (const EdgeField field : {EDGE_THRUST, LEFT_USED, RIGHT_USED, LEFT_EASED, RIGHT_EASED})
+      store(edge[field] + i, none);
     if (!any(wet)) {
       for (const PressureField field : {FORCE, MOMENT, SNOW_ENERGY}) store(pressure[field] + i, none);
-      for (const EdgeField field : {SHEAR_USED, STRENGTH_LEFT, EDGE_STRENGTH}) store(edge[field] + i, none);
+      for (const EdgeField field : {STRENGTH_LEFT, EDGE_STRENGTH}) store(edge[field] + i, none);
       return;
     }
     const Cut<V> c = Cut<V>::stored(base, i);
@@ -293,7 +344,10 @@ void press(const Snow& snow, const GrooveLines& lines, const Base& base, bool gr
     store(pressure[FORCE] + i, select(wet, share * answer.force, none));
     store(pressure[MOMENT] + i, select(wet, share * answer.moment, none));
     store(pressure[SNOW_ENERGY] + i, select(wet, share * answer.energy, none));
-    store(edge[SHEAR_USED] + i, select(wet, shear_used(snow, lines, j, c), none));
+    for (int k = 0; k < 2; k++) {
+      const MaskOf<V> holds = wet & (c.depth[k] > 0.0);
+      if (any(holds)) store(edge[of_edge(LEFT_USED, k)] + i, select(holds, shear_used(snow, lines, j, c, k), none));
+    }
     const V left = strength_left(snow.shear, load<V>(lines.values[SLIPPED] + j));
     store(edge[STRENGTH_LEFT] + i, select(wet, left, none));
     store(edge[EDGE_STRENGTH] + i, select(wet, snow.strength_share * load<V>(lines.values[STRENGTH] + j) * left, none));

@@ -36,7 +36,7 @@ Straight depth_rate(const Section& c, const BaseMotion& m) {
                        c.normal.z + c.climb * c.along.z};
   const double out[3] = {c.left.x - c.fall * c.normal.x, c.left.y - c.fall * c.normal.y,
                          c.left.z - c.fall * c.normal.z};
-  const double at[3] = {c.station, c.edge_left, c.edge_up}, *v = m.velocity, *o = m.turning;
+  const double at[3] = {c.station, c.grip_left, c.grip_up}, *v = m.velocity, *o = m.turning;
   const auto moved = [&](const double* r, const double* with, double x, double y, double z) {
     return with[0] * (x + o[1] * r[2] - o[2] * r[1]) + with[1] * (y + o[2] * r[0] - o[0] * r[2]) +
            with[2] * (z + o[0] * r[1] - o[1] * r[0]);
@@ -139,9 +139,12 @@ struct BaseOnLine {
         ground(lines.ground(slot)),
         from(base.wet_from),
         to(std::max(base.wet_to, base.wet_from)) {
-    const alone::CutGround<double> cut(lines, slot, c.place, c.edge_depth, from, to);
-    const auto left = [&](double x) { return c.edge_depth + cut.slope * x - delayed.depth_at(c.place + x); };
-    ground.press(c.place + cut.from, left(cut.from), c.place + cut.to, left(cut.to));
+    for (int k = 0; k < 2; k++) {
+      const alone::CutGround<double> cut(lines, slot, c, k, from, to);
+      if (!cut.is_there()) continue;
+      const auto left = [&](double x) { return cut.at(x) - delayed.depth_at(c.place + x); };
+      ground.press(c.place + cut.from, left(cut.from), c.place + cut.to, left(cut.to));
+    }
   }
 
   // The delayed depth at the step's end, but for what that end's own stress adds.
@@ -164,7 +167,7 @@ struct BaseOnLine {
   }
 
   double stress(double x) const {
-    return x < from || x > to ? 0.0 : law.stress(c.edge_depth + c.fall * x - known(x), deepest(knot_behind(x))(x));
+    return x < from || x > to ? 0.0 : law.stress(c.grip_depth + c.fall * x - known(x), deepest(knot_behind(x))(x));
   }
 
   Sums bear(const Straight& rate) const {
@@ -172,7 +175,7 @@ struct BaseOnLine {
     for (double x = from; x < to - THIN;) {
       const int knot = knot_behind(x);
       double next = knot < ground.count ? std::min(to, ground.place[knot] - c.place) : to;
-      Straight depth{c.edge_depth, c.fall};
+      Straight depth{c.grip_depth, c.fall};
       if (!delayed.empty()) {
         const double place = (std::floor((c.place + x) / delayed.spacing + 1e-6) + 1.0) * delayed.spacing;
         next = std::min(next, place - c.place);
@@ -190,16 +193,16 @@ struct BaseOnLine {
 Acting<double> acting(const Snow& snow, const GrooveLines& lines, const Sections& s, int i, const Section& c,
                       const Sums& sums) {
   const double share = s[SHARE][i];
-  const int slot = lines.slot(s.line(i));
-  return {share,
-          share * sums.force,
-          share * sums.moment,
-          s[MU][i] * s[RUB][i],
-          s[MU][i] * s[RUB_ASIDE][i],
-          s[EDGE_STRENGTH][i],
-          s[EDGE_THRUST][i],
-          alone::eased<double>(snow, lines, slot, alone::shear_used(snow, lines, slot, c), s[EDGE_STRENGTH][i],
-                               s[EDGE_THRUST][i], c.edge_depth)};
+  Acting<double> out{share,
+                     share * sums.force,
+                     share * sums.moment,
+                     s[MU][i] * s[RUB][i],
+                     s[MU][i] * s[RUB_ASIDE][i],
+                     s[EDGE_STRENGTH][i],
+                     s[EDGE_THRUST][i],
+                     {}};
+  out.find_used(snow, lines, lines.slot(s.line(i)), c);
+  return out;
 }
 
 void keep_differences(const Pushed<double>& pushed, const Sections& s, int i, int change, double way,
@@ -247,7 +250,7 @@ void RatedBase::differ(const Snow& snow, const GrooveLines& lines, const Section
     for (int change = 0; change < SectionDifferences::CHANGES && s.touches(i); change++) {
       const double way = change == SectionDifferences::OFF ? step : sense * step;
       Section c = alone::displaced(Section(s.base, i), change, way);
-      c.cut(snow);
+      c.cut();
       const Sums sums =
           BaseOnLine(snow, lines, lines.slot(s.line(i)), c, dt_).bear(depth_rate(c, moving_[std::size_t(i)]));
       keep_differences({c, acting(snow, lines, s, i, c, sums), snow}, s, i, change, way, out);

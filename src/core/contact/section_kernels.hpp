@@ -7,15 +7,6 @@
 
 namespace skisnow::SKISNOW_LANES {
 
-// [edge_side] From the ski's middle (0) to one of its edges (1, -1) as the edge angle grows to that of the blend. Of a
-// level base it does not move as the base rolls: the hold of the snow would be drawn along, and a run straight down
-// begin to swing by itself.
-template <class V>
-inline V edge_side_of(V tilt) {
-  const V within_one = within(tilt, -1.0, 1.0), size = absolute(within_one);
-  return within_one * size * (3.0 - 2.0 * size);
-}
-
 template <class V>
 inline V table_place(const Runner& runner, V station) {
   return within((station - runner.tail) * runner.places_per_metre(), 0.0, runner.places - 1.0);
@@ -34,38 +25,6 @@ inline void look_up_shape(const Runner& runner, V place, V (&out)[ROW]) {
     rows[lane] = here + beyond[lane] * (load<Row>(row + ROW) - here);
   }
   transpose<V>(rows, out);
-}
-
-// [take_lines, cross_axis, cross_edge] Lines in the ski's axes, and the station at which the ski's deeper edge passes
-// each of them: from the crossing of the straight axis two fixed-point steps, of which the second takes the slopes of
-// width and height instead of another row. The error falls with the sidecut's slope.
-template <class V>
-void cross_lines(const Runner& runner, const Pose& pose, const Snow& snow, const GrooveLines& lines, Base& s) {
-  const auto& R = pose.rotation;
-  const auto& c = pose.position;
-  const double per_blend = 1.0 / snow.edge_blend_sine;
-  const auto turned = [&](const Vector<V>& a) -> Vector<V> {
-    return {R[0][0] * a.x + R[1][0] * a.y + R[2][0] * a.z, R[0][1] * a.x + R[1][1] * a.y + R[2][1] * a.z,
-            R[0][2] * a.x + R[1][2] * a.y + R[2][2] * a.z};
-  };
-  const auto line3 = [&](LineField first, int j) -> Vector<V> {
-    return {load<V>(lines.values[first] + j), load<V>(lines.values[LineField(first + 1)] + j),
-            load<V>(lines.values[LineField(first + 2)] + j)};
-  };
-  for_lanes<V>(s, lines, [&](int i, int j) {
-    const Vector<V> origin = line3(ORIGIN_X, j), from = turned({origin.x - c[0], origin.y - c[1], origin.z - c[2]});
-    const Vector<V> ahead = turned(line3(AHEAD_X, j)), normal = turned(line3(NORMAL_X, j));
-    store3(s, FROM_BOOT_0, i, from);
-    store3(s, LINE_AHEAD_0, i, ahead);
-    store3(s, LINE_NORMAL_0, i, normal);
-    store3(s, LINE_LEFT_0, i, cross(normal, ahead));
-    const V forwards = 1.0 / ahead.x, crossing = from.x + (from.y * ahead.y + from.z * ahead.z) * forwards;
-    const V toward_edge = edge_side_of<V>(-normal.y * per_blend) * ahead.y * forwards, upward = ahead.z * forwards;
-    V shape[ROW];
-    look_up_shape<V>(runner, table_place(runner, crossing), shape);
-    const V off = -toward_edge * shape[0] - upward * shape[2];
-    store(s[STATION] + i, crossing + off - (toward_edge * shape[1] + upward * shape[3]) * off);
-  });
 }
 
 // [give_share] The length of ski that belongs to each line: halfway to its neighbours, and no farther than tip and
@@ -113,14 +72,16 @@ struct Shapes {
 // The base at one station of each lane, bent with the beam.
 template <class V>
 struct BentBase {
-  V shape[ROW];                     // half width, its slope, height of the base, its slope
-  V element, length, in_element;    // element of the beam, its length, place in it from the front
-  V sine{}, cosine, twist_slope{};  // sine, cosine and slope of the twist
+  V shape[ROW];                      // half width, its slope, height of the base, its slope
+  V straight_height, straight_rise;  // height of the base before it is bent, its slope
+  V element, length, in_element;     // element of the beam, its length, place in it from the front
+  V sine{}, cosine, twist_slope{};   // sine, cosine and slope of the twist
 
   SKISNOW_INLINE BentBase(const Runner& runner, const Pose& pose, V station) : cosine(all<V>(1.0)) {
     const V place = table_place(runner, station);
     const bool bends = !pose.beam.empty();
     look_up_shape<V>(runner, place, shape);
+    straight_height = shape[2], straight_rise = shape[3];
     Row nodes[WIDTH<V>], front[WIDTH<V>], rear[WIDTH<V>];
     const WholeParts<V> at(place);
     for (int lane = 0; lane < WIDTH<V>; lane++) {
@@ -154,14 +115,76 @@ struct BentBase {
   }
 };
 
+// [grip_side] Where between the edges the snow holds the base on a line, over the half width: the mean of both edges by
+// their depths in the snow. It is 1 (left) or -1 where one edge alone is in it, and above the snow where one comes
+// first. The base at the station is taken as a plane through its middle.
+template <class V>
+V grip_side(const BentBase<V>& base, V station, const Vector<V>& from, const Vector<V>& ahead,
+            const Vector<V>& normal) {
+  const V rise = base.shape[3], height = base.shape[2], x = from.x - station, z = from.z - height;
+  const V climb = (normal.x + rise * normal.z) / (ahead.x + rise * ahead.z);
+  const V middle =
+      x * normal.x + from.y * normal.y + z * normal.z - climb * (x * ahead.x + from.y * ahead.y + z * ahead.z);
+  const V tilt = base.sine * normal.z - base.cosine * normal.y + climb * (base.cosine * ahead.y - base.sine * ahead.z);
+  const V left = maximum(V(middle + base.shape[0] * tilt), V{}), right = maximum(V(middle - base.shape[0] * tilt), V{});
+  const MaskOf<V> wet = left + right > 0.0;
+  const V first = select(tilt > 0.0, all<V>(1.0), select(tilt < 0.0, all<V>(-1.0), V{}));
+  return select(wet, (left - right) / select(wet, left + right, all<V>(1.0)), first);
+}
+
+// [take_lines, cross_axis, cross_edge] Lines in the ski's axes, and the station at which the base's grip passes each of
+// them: from the crossing of the straight axis, where the edges' depths give the grip, two fixed-point steps, of which
+// the second takes the slopes of width and height. The error falls with the sidecut's slope. GRIP_REACH is over the
+// half width until the base is cut.
+template <class V>
+void cross_lines(const Runner& runner, const Pose& pose, const GrooveLines& lines, Base& s) {
+  const auto& R = pose.rotation;
+  const auto& c = pose.position;
+  const auto turned = [&](const Vector<V>& a) -> Vector<V> {
+    return {R[0][0] * a.x + R[1][0] * a.y + R[2][0] * a.z, R[0][1] * a.x + R[1][1] * a.y + R[2][1] * a.z,
+            R[0][2] * a.x + R[1][2] * a.y + R[2][2] * a.z};
+  };
+  const auto line3 = [&](LineField first, int j) -> Vector<V> {
+    return {load<V>(lines.values[first] + j), load<V>(lines.values[LineField(first + 1)] + j),
+            load<V>(lines.values[LineField(first + 2)] + j)};
+  };
+  for_lanes<V>(s, lines, [&](int i, int j) {
+    const Vector<V> origin = line3(ORIGIN_X, j), from = turned({origin.x - c[0], origin.y - c[1], origin.z - c[2]});
+    const Vector<V> ahead = turned(line3(AHEAD_X, j)), normal = turned(line3(NORMAL_X, j));
+    store3(s, FROM_BOOT_0, i, from);
+    store3(s, LINE_AHEAD_0, i, ahead);
+    store3(s, LINE_NORMAL_0, i, normal);
+    store3(s, LINE_LEFT_0, i, cross(normal, ahead));
+    const V forwards = 1.0 / ahead.x, crossing = from.x + (from.y * ahead.y + from.z * ahead.z) * forwards;
+    const V axis = within(crossing, runner.tail, runner.tip);
+    const BentBase<V> base(runner, pose, axis);
+    const V side = grip_side(base, axis, from, ahead, normal);
+    const V toward_grip = side * ahead.y * forwards, upward = ahead.z * forwards;
+    const V off = -toward_grip * base.shape[0] - upward * base.straight_height;
+    const V steeper = toward_grip * base.shape[1] + upward * base.straight_rise;
+    store(s[STATION] + i, crossing + off - steeper * off);
+    store(s[GRIP_REACH] + i, side);
+  });
+}
+
+// One of the two edges of a section: across from the ski's middle, to the left and upwards from the boot (m); the unit
+// vector in the surface across its direction.
+template <class V>
+struct Edge {
+  V reach, left, up;
+  Vector<V> across;
+};
+
 // The section of one line through the base.
 template <class V>
 struct Cut {
   // bent base: the section's place along the ski, half width and its slope, height and its slope, sine and
   // cosine of the twist and its slope; how far its middle lies to the left of the ski's axis (for differences)
   V station, half, flare, height, rise, sp, cp, twist_slope, aside{};
+  V side;                               // the grip's place across, over the half width
   Vector<V> from, ahead, normal, left;  // the line
-  V sine, deepest, reach, edge_depth, edge_left, edge_up, place;
+  V sine, deepest, reach, grip_depth, grip_left, grip_up, place;
+  V depth[2], x[2];  // of the left and the right edge
   V fall, climb, widening, wet_from, wet_to;
   Vector<V> across, along;
   V size;  // one over the length of `along` before it was made a unit
@@ -173,78 +196,95 @@ struct Cut {
     sp = load<V>(s[TWIST_SINE] + i), cp = load<V>(s[TWIST_COSINE] + i), twist_slope = load<V>(s[TWIST_SLOPE] + i);
     from = load3<V>(s, FROM_BOOT_0, i), ahead = load3<V>(s, LINE_AHEAD_0, i);
     normal = load3<V>(s, LINE_NORMAL_0, i), left = load3<V>(s, LINE_LEFT_0, i);
+    side = load<V>(s[GRIP_REACH] + i) / half;
   }
 
-  // The bent base at a place, not yet cut.
+  // The bent base at a place, before any section of this line was cut.
   Cut(const BentBase<V>& bent, V place_along, const Base& s, int i) {
     station = place_along, half = bent.shape[0], flare = bent.shape[1], height = bent.shape[2], rise = bent.shape[3];
     sp = bent.sine, cp = bent.cosine, twist_slope = bent.twist_slope;
     from = load3<V>(s, FROM_BOOT_0, i), ahead = load3<V>(s, LINE_AHEAD_0, i);
     normal = load3<V>(s, LINE_NORMAL_0, i), left = load3<V>(s, LINE_LEFT_0, i);
+    side = load<V>(s[GRIP_REACH] + i);
   }
 
   // A section that was cut and stored.
   static Cut stored(const Base& s, int i) {
     Cut c(s, i);
-    c.sine = load<V>(s[EDGE_SINE] + i), c.deepest = load<V>(s[DEEPEST] + i), c.reach = load<V>(s[EDGE_REACH] + i);
-    c.edge_depth = load<V>(s[EDGE_DEPTH] + i), c.edge_left = load<V>(s[EDGE_LEFT] + i);
-    c.edge_up = load<V>(s[EDGE_UP] + i), c.place = load<V>(s[EDGE_PLACE] + i), c.fall = load<V>(s[DEPTH_FALL] + i);
+    c.sine = load<V>(s[EDGE_SINE] + i), c.deepest = load<V>(s[DEEPEST] + i), c.reach = load<V>(s[GRIP_REACH] + i);
+    c.grip_depth = load<V>(s[GRIP_DEPTH] + i), c.grip_left = load<V>(s[GRIP_LEFT] + i);
+    c.grip_up = load<V>(s[GRIP_UP] + i), c.place = load<V>(s[GRIP_PLACE] + i), c.fall = load<V>(s[DEPTH_FALL] + i);
     c.climb = load<V>(s[DEPTH_CLIMB] + i), c.widening = load<V>(s[BASE_WIDENING] + i);
     c.wet_from = load<V>(s[WET_FROM] + i), c.wet_to = load<V>(s[WET_TO] + i);
+    for (int k = 0; k < 2; k++)
+      c.depth[k] = load<V>(s[of_edge(LEFT_DEPTH, k)] + i), c.x[k] = load<V>(s[of_edge(LEFT_X, k)] + i);
     c.across = load3<V>(s, ACROSS_0, i), c.along = load3<V>(s, ALONG_0, i), c.size = load<V>(s[ALONG_SIZE] + i);
     return c;
   }
 
   void store_at(Base& s, int i) const {
-    store(s[EDGE_SINE] + i, sine), store(s[DEEPEST] + i, deepest), store(s[EDGE_REACH] + i, reach);
-    store(s[EDGE_DEPTH] + i, edge_depth), store(s[EDGE_LEFT] + i, edge_left), store(s[EDGE_UP] + i, edge_up);
-    store(s[EDGE_PLACE] + i, place), store(s[DEPTH_FALL] + i, fall), store(s[DEPTH_CLIMB] + i, climb);
+    store(s[EDGE_SINE] + i, sine), store(s[DEEPEST] + i, deepest), store(s[GRIP_REACH] + i, reach);
+    store(s[GRIP_DEPTH] + i, grip_depth), store(s[GRIP_LEFT] + i, grip_left), store(s[GRIP_UP] + i, grip_up);
+    store(s[GRIP_PLACE] + i, place), store(s[DEPTH_FALL] + i, fall), store(s[DEPTH_CLIMB] + i, climb);
     store(s[BASE_WIDENING] + i, widening), store(s[WET_FROM] + i, wet_from), store(s[WET_TO] + i, wet_to);
+    for (int k = 0; k < 2; k++) store(s[of_edge(LEFT_DEPTH, k)] + i, depth[k]), store(s[of_edge(LEFT_X, k)] + i, x[k]);
     store3(s, ACROSS_0, i, across), store3(s, ALONG_0, i, along), store(s[ALONG_SIZE] + i, size);
-    store(s[EDGE_SKEW] + i, skew_);
+    store(s[GRIP_SKEW] + i, skew_);
   }
 
   // A stored section after the base has moved by a small way to the left, or off the snow. The wet base ends where it
   // did: the snow bears nothing at the water line.
   void move(const Base& s, int i, bool to_left, double way) {
-    const V skew = load<V>(s[EDGE_SKEW] + i), rise = to_left ? normal.y : normal.z;
-    (to_left ? edge_left : edge_up) += way;
-    deepest -= way * rise, edge_depth -= way * rise;
+    const V skew = load<V>(s[GRIP_SKEW] + i), rise = to_left ? normal.y : normal.z;
+    (to_left ? grip_left : grip_up) += way;
+    deepest -= way * rise, grip_depth -= way * rise, depth[0] -= way * rise, depth[1] -= way * rise;
     place += way * (to_left ? left.y - skew * ahead.y : left.z - skew * ahead.z);
   }
 
-  // [edge] The deeper edge: where it is, how deep; the fall of the depth to the left.
-  void find_edge(double per_blend) {
+  // [grip] Where it is, how deep; the fall of the depth to the left.
+  void find_grip() {
     const V middle = (from.x - station) * normal.x + (from.y - aside) * normal.y + (from.z - height) * normal.z;
     sine = sp * normal.z - cp * normal.y;
-    deepest = middle + half * absolute(sine);
-    const V side = edge_side_of<V>(sine * per_blend);
     reach = side * half;
-    edge_depth = middle + reach * sine;
-    edge_left = aside + reach * cp;
-    edge_up = height - reach * sp;
-    const V outwards = flare * side, twisting = reach * twist_slope;
-    raw_ = {all<V>(1.0), outwards * cp - twisting * sp, rise - outwards * sp - twisting * cp};
-    normal_ahead_ = twisting - rise * cp;
+    grip_depth = middle + reach * sine;
+    grip_left = aside + reach * cp;
+    grip_up = height - reach * sp;
+    raw_ = direction(side);
+    normal_ahead_ = reach * twist_slope - rise * cp;
     steep_ = 1.0 / (normal_ahead_ * normal.x + sp * normal.y + cp * normal.z);
     fall = (normal_ahead_ * left.x + sp * left.y + cp * left.z) * steep_;
   }
 
-  // [edge_place] Where it crosses the line; beyond tip and tail it goes on along its own direction.
-  void find_place() {
-    const V beyond = (from.x - station) * ahead.x + (from.y - edge_left) * ahead.y + (from.z - edge_up) * ahead.z;
+  // Along the base at a place across, over the half width: 1 ahead.
+  Vector<V> direction(V across) const {
+    const V outwards = flare * across, twisting = across * half * twist_slope;
+    return {all<V>(1.0), outwards * cp - twisting * sp, rise - outwards * sp - twisting * cp};
+  }
+
+  // [edge_places] Where grip and edges cross the line; beyond tip and tail each goes on along its own direction.
+  void find_places() {
+    const V beyond = (from.x - station) * ahead.x + (from.y - grip_left) * ahead.y + (from.z - grip_up) * ahead.z;
     skew_ = dot(raw_, left) / dot(raw_, ahead);
-    place = (station - from.x) * left.x + (edge_left - from.y) * left.y + (edge_up - from.z) * left.z + beyond * skew_;
+    const V on_grip = beyond * skew_;
+    place = (station - from.x) * left.x + (grip_left - from.y) * left.y + (grip_up - from.z) * left.z + on_grip;
+    const V aside_left = cp * left.y - sp * left.z, aside_ahead = cp * ahead.y - sp * ahead.z;
+    for (int k = 0; k < 2; k++) {
+      const double to = k == 0 ? 1.0 : -1.0;
+      const V off = to * half - reach;
+      const Vector<V> along_edge = direction(all<V>(to));
+      const V skew = dot(along_edge, left) / dot(along_edge, ahead);
+      x[k] = off * aside_left + ((beyond - off * aside_ahead) * skew - on_grip);
+      depth[k] = grip_depth + fall * x[k];
+    }
+    deepest = maximum(depth[0], depth[1]);
   }
 
   // [wet_base] Where on the line the base is in the snow.
   void find_wet() {
     widening = cp * left.y - sp * left.z + fall * sine;
-    const V per_widening = 1.0 / widening;
-    const V right_end = -(half + reach) * per_widening, left_end = (half - reach) * per_widening;
-    const V down = select(absolute(fall) > LEVEL, fall, all<V>(LEVEL)), water = -edge_depth / down;
-    wet_from = select(down > 0.0, maximum(right_end, water), right_end);
-    wet_to = select(down > 0.0, left_end, minimum(left_end, water));
+    const V down = select(absolute(fall) > LEVEL, fall, all<V>(LEVEL)), water = -grip_depth / down;
+    wet_from = select(down > 0.0, maximum(x[1], water), x[1]);
+    wet_to = select(down > 0.0, x[0], minimum(x[0], water));
   }
 
   // [edge_directions] In the surface: across the edge and along it; how fast the depth grows along it.
@@ -255,23 +295,34 @@ struct Cut {
     climb = (normal_ahead_ * along.x + sp * along.y + cp * along.z) * steep_;
   }
 
-  // How far the edge's crossing with the line lies ahead of the section, along the ski.
+  // One of the edges: the left one (0) or the right one (1).
+  Edge<V> edge(int k) const {
+    const double to = k == 0 ? 1.0 : -1.0;
+    const V off = to * half - reach;
+    const Vector<V> raw = cross(normal, direction(all<V>(to)));
+    return {to * half, grip_left + off * cp, grip_up - off * sp, scaled(raw, 1.0 / root(dot(raw, raw)))};
+  }
+
+  // Whether not the grip alone is an edge in the snow.
+  MaskOf<V> is_between() const { return (minimum(depth[0], depth[1]) > 0.0) | (absolute(side) != 1.0); }
+
+  // How far the grip's crossing with the line lies ahead of the section, along the ski.
   V way_to_line() const {
-    const V beyond = (from.x - station) * ahead.x + (from.y - edge_left) * ahead.y + (from.z - edge_up) * ahead.z;
+    const V beyond = (from.x - station) * ahead.x + (from.y - grip_left) * ahead.y + (from.z - grip_up) * ahead.z;
     return beyond / dot(raw_, ahead);
   }
 
-  void cut(const Snow& snow) {
-    find_edge(1.0 / snow.edge_blend_sine);
-    find_place();
+  void cut() {
+    find_grip();
+    find_places();
     find_wet();
     find_directions();
   }
 
  private:
   static constexpr double LEVEL = 1e-12;  // fall of the depth across below which a base is level
-  Vector<V> raw_;                         // along the edge, 1 ahead
-  V normal_ahead_, steep_, skew_;         // skew: way of the edge across the line per way ahead of it
+  Vector<V> raw_;                         // along the grip, 1 ahead
+  V normal_ahead_, steep_, skew_;         // skew: way of the grip across the line per way ahead of it
 };
 
 // [cross_bent_edge] The straight ski's stations, which `cross_lines` gives, miss the lines under a bent ski that is
@@ -280,7 +331,7 @@ struct Cut {
 // Newton's method on the bent edge corrects the stations. At a slope below STEEP both are lost in the other errors of a
 // place.
 template <class V>
-void cross_bent_edge(const Runner& runner, const Pose& pose, const Snow& snow, const GrooveLines& lines, Base& s) {
+void cross_bent_edge(const Runner& runner, const Pose& pose, const GrooveLines& lines, Base& s) {
   constexpr double STEEP = 0.25, FULLY = 0.35, LONGEST = 0.1;  // LONGEST: of a correction (m)
   constexpr int STEPS = 3;
   if (pose.beam.empty()) return;
@@ -289,45 +340,49 @@ void cross_bent_edge(const Runner& runner, const Pose& pose, const Snow& snow, c
     if (!any(absolute(up) > STEEP * absolute(forwards))) return;  // most lines: no division
     const V slope = absolute(V(up / forwards));
     const V straight = load<V>(s[STATION] + i), weight = within((slope - STEEP) / (FULLY - STEEP), 0.0, 1.0);
-    V station = straight;
+    const V straight_side = load<V>(s[GRIP_REACH] + i);
+    V station = straight, side = straight_side;
     for (int step = 0; step < STEPS; step++) {
       const V on_ski = within(station, runner.tail, runner.tip);
-      Cut<V> c(BentBase<V>(runner, pose, on_ski), on_ski, s, i);
-      c.find_edge(1.0 / snow.edge_blend_sine);
+      const BentBase<V> base(runner, pose, on_ski);
+      Cut<V> c(base, on_ski, s, i);
+      c.side = side = grip_side(base, on_ski, c.from, c.ahead, c.normal);
+      c.find_grip();
       station = on_ski + within(c.way_to_line(), -LONGEST, LONGEST);
     }
     store(s[STATION] + i, straight + weight * (station - straight));
+    store(s[GRIP_REACH] + i, straight_side + weight * (side - straight_side));
   });
 }
 
-// [cut_base] The bent base over each line and its plane section: the deeper edge, directions, where the base is wet.
+// [cut_base] The bent base over each line and its plane section: grip and edges, directions, where the base is wet.
 template <class V>
-void cut_base(const Runner& runner, const Pose& pose, const Snow& snow, const GrooveLines& lines, Base& s) {
+void cut_base(const Runner& runner, const Pose& pose, const GrooveLines& lines, Base& s) {
   for_lanes<V>(s, lines, [&](int i, int) {
     if (!any(load<V>(s[SHARE] + i) > 0.0)) {
       store(s[DEEPEST] + i, V{});
       return;
     }
-    const BentBase<V> base(runner, pose, load<V>(s[STATION] + i));
+    const V station = load<V>(s[STATION] + i);
+    const BentBase<V> base(runner, pose, station);
     store(s[HALF_WIDTH] + i, base.shape[0]), store(s[FLARE] + i, base.shape[1]);
     store(s[BASE_HEIGHT] + i, base.shape[2]), store(s[BASE_RISE] + i, base.shape[3]);
     store(s[ELEMENT] + i, base.element), store(s[ELEMENT_LENGTH] + i, base.length);
     store(s[IN_ELEMENT] + i, base.in_element), store(s[TWIST_SLOPE] + i, base.twist_slope);
     store(s[TWIST_SINE] + i, base.sine), store(s[TWIST_COSINE] + i, base.cosine);
-    Cut<V> c(s, i);
-    c.cut(snow);
+    Cut<V> c(base, station, s, i);
+    c.cut();
     c.store_at(s, i);
   });
 }
 
 template <class V>
-void find_sections(const Runner& runner, const Pose& pose, const Snow& snow, const GrooveLines& lines,
-                   std::int64_t first, Base& s) {
+void find_sections(const Runner& runner, const Pose& pose, const GrooveLines& lines, std::int64_t first, Base& s) {
   s.cover(lines, first);
-  cross_lines<V>(runner, pose, snow, lines, s);
-  cross_bent_edge<V>(runner, pose, snow, lines, s);
+  cross_lines<V>(runner, pose, lines, s);
+  cross_bent_edge<V>(runner, pose, lines, s);
   give_share<V>(runner, lines, s);
-  cut_base<V>(runner, pose, snow, lines, s);
+  cut_base<V>(runner, pose, lines, s);
 }
 
 }  // namespace skisnow::SKISNOW_LANES

@@ -11,7 +11,8 @@
 namespace skisnow {
 
 // One struct of arrays for each stage of an evaluation. Vectors are in the ski's axes (0 ahead, 1 left across the base,
-// 2 off the base), from the boot. x counts across along the line, to the left, from the edge that is deeper.
+// 2 off the base), from the boot. x counts across along the line, to the left, from the grip: the edge that alone is in
+// the snow, or a point between both edges by their depths.
 // clang-format off: fields that belong together share a row
 
 // The base over each line (find_sections).
@@ -24,32 +25,34 @@ enum BaseField {
   STATION, SHARE, HALF_WIDTH, FLARE, BASE_HEIGHT, BASE_RISE, IN_ELEMENT, ELEMENT_LENGTH, ELEMENT,
   // sine and cosine of the twist, its slope; sine of the edge angle
   TWIST_SINE, TWIST_COSINE, TWIST_SLOPE, EDGE_SINE,
-  // the edge that is deeper: depth of the deepest, and of this one, across from the ski's middle, to the left and
+  // the grip: its depth, across from the ski's middle (before the base is cut: over the half width), to the left and
   // upwards from the boot, across from the line's origin (m)
-  DEEPEST, EDGE_DEPTH, EDGE_REACH, EDGE_LEFT, EDGE_UP, EDGE_PLACE,
-  // in the surface: across the edge, along it, and one over that direction's length before it was made a unit
+  GRIP_DEPTH, GRIP_REACH, GRIP_LEFT, GRIP_UP, GRIP_PLACE,
+  // depth of the deeper edge and of both, and their x (m); the right edge's fields follow the left one's
+  DEEPEST, LEFT_DEPTH, RIGHT_DEPTH, LEFT_X, RIGHT_X,
+  // in the surface: across the grip's direction, along it, and one over its length before it was made a unit
   ACROSS_0, ACROSS_1, ACROSS_2, ALONG_0, ALONG_1, ALONG_2, ALONG_SIZE,
   // fall of the depth to the left; its growth along the edge; width across the base over that along the line; where the
   // wet base begins and ends
   DEPTH_FALL, DEPTH_CLIMB, BASE_WIDENING, WET_FROM, WET_TO,
-  EDGE_SKEW,  // how far the edge's place moves along the line as the line moves ahead by one
+  GRIP_SKEW,  // how far the grip's place moves along the line as the line moves ahead by one
   BASE_FIELDS
 };
 
 // The pressure on each section (press, or a law from outside).
 enum PressureField {
-  FORCE, MOMENT, SNOW_ENERGY,  // force (N), its moment about the edge (N m), elastic energy of the snow (J)
+  FORCE, MOMENT, SNOW_ENERGY,  // force (N), its moment about the grip (N m), elastic energy of the snow (J)
   RATE_POWER,                  // that the dashpot of snow that takes time takes (W)
-  // on demand: growth of force and moment with the depth of the edge, its fall, its place, and the wet base's ends
+  // on demand: growth of force and moment with the depth of the grip, its fall, its place, and the wet base's ends
   FORCE_BY_DEPTH, FORCE_BY_FALL, FORCE_BY_PLACE, MOMENT_BY_DEPTH, MOMENT_BY_FALL, MOMENT_BY_PLACE, FORCE_BY_FROM,
   FORCE_BY_TO,
   PRESSURE_FIELDS
 };
 
-// The hold of the snow at the edge (press, or a law from outside): share of the strength that is left after slip, shear
-// strength S_f and the thrust off the snow that comes with it (Pa), share of the displacement to full strength in use,
-// and the part of it by which the edge was eased.
-enum EdgeField { STRENGTH_LEFT, EDGE_STRENGTH, EDGE_THRUST, SHEAR_USED, SHEAR_EASED, EDGE_FIELDS };
+// The hold of the snow at the edges (press, or a law from outside): share of the strength that is left after slip, shear
+// strength S_f and the thrust off the snow that comes with it (Pa); of each edge the share of the displacement to full
+// strength in use, and the part of it by which the edge was eased.
+enum EdgeField { STRENGTH_LEFT, EDGE_STRENGTH, EDGE_THRUST, LEFT_USED, RIGHT_USED, LEFT_EASED, RIGHT_EASED, EDGE_FIELDS };
 
 // Sliding (slide, or a law from outside), along the edge and aside: velocity of the base at the centre of pressure (m/s),
 // μ and its growth with the speed (s/m), share of μ in use in parts, each with the sign of its way.
@@ -63,11 +66,11 @@ enum SlidingField {
   SLIDING_FIELDS
 };
 
-// The forces of each section (push): shear across the edge, the force along it, that of friction across it in the
-// surface and off the surface, the load that friction acts on (N); force and moment about the boot in the ski's axes;
-// force and moment on the beam.
+// The forces of each section (push): shear across both edges together and each of them, the force along, that of
+// friction across in the surface and off the surface, the load that friction acts on (N); force and moment about the
+// boot in the ski's axes; force and moment on the beam.
 enum ForceField {
-  SHEAR, PUSH, PUSH_ACROSS, PUSH_OFF, FRICTION_LOAD,
+  SHEAR, LEFT_SHEAR, RIGHT_SHEAR, PUSH, PUSH_ACROSS, PUSH_OFF, FRICTION_LOAD,
   FORCE_0, FORCE_1, FORCE_2, MOMENT_0, MOMENT_1, MOMENT_2, BEAM_FORCE, BEAM_MOMENT,
   FORCE_FIELDS
 };
@@ -83,6 +86,12 @@ struct Base : Columns<BaseField, BASE_FIELDS> {
   bool touches(int i) const { return (*this)[SHARE][i] > 0.0 && (*this)[DEEPEST][i] > 0.0; }
   void cover(const GrooveLines& lines, std::int64_t first);  // the lines from the first one
 };
+// A field of the left edge (0) or of the right one (1).
+constexpr BaseField of_edge(BaseField left, int edge) { return BaseField(left + edge); }
+constexpr EdgeField of_edge(EdgeField left, int edge) { return EdgeField(left + edge); }
+constexpr ForceField of_edge(ForceField left, int edge) { return ForceField(left + edge); }
+constexpr LineField of_edge(LineField left, int edge) { return LineField(left + edge); }
+
 using Pressures = Columns<PressureField, PRESSURE_FIELDS>;
 using EdgeHold = Columns<EdgeField, EDGE_FIELDS>;
 using Sliding = Columns<SlidingField, SLIDING_FIELDS>;
@@ -142,7 +151,7 @@ struct RunnerTangent;
 struct Kernels {
   const char* name;  // instruction set
   int lanes;
-  void (*find_sections)(const Runner&, const Pose&, const Snow&, const GrooveLines&, std::int64_t first, Base&);
+  void (*find_sections)(const Runner&, const Pose&, const GrooveLines&, std::int64_t first, Base&);
   // with `grows` the pressure's growth
   void (*press)(const Snow&, const GrooveLines&, const Base&, bool grows, Pressures&, EdgeHold&);
   void (*slide)(const Motion&, const Pose&, double dt, const Snow&, const GrooveLines&, const Base&, const Pressures&,

@@ -49,14 +49,17 @@ void SnowContact::settle_history(int k, const Pose& pose) {
   lines.drop_left(runner(k), pose, &snow_->archive, state_.strips[std::size_t(k)]);
 }
 
-// Strength and depth of the edges that hold, against which the next step's are set: see [ease].
+// Strength, depths and displacements of the edges that hold, against which the next step's are set: see [ease].
 void SnowContact::hold_strength(int k, GrooveLines& lines) const {
   const Sections& s = sections(k);
   for (std::int64_t n = lines.first; n < lines.end; n++) {
     const int i = s.index(n), slot = lines.slot(n);
     lines.values[STRENGTH_HELD][slot] = s.touches(i) ? s[EDGE_STRENGTH][i] : 0.0;
-    lines.values[DEPTH_HELD][slot] = s[EDGE_DEPTH][i];
-    lines.values[SHEAR_HELD][slot] = lines.values[ANCHOR][slot] - s[EDGE_PLACE][i];
+    for (int k = 0; k < 2; k++) {
+      const auto of_line = [&](LineField left) -> double& { return lines.values[of_edge(left, k)][slot]; };
+      of_line(LEFT_DEPTH_HELD) = s[of_edge(LEFT_DEPTH, k)][i];
+      of_line(LEFT_SHEAR_HELD) = of_line(LEFT_ANCHOR) - of_line(LEFT_MARK);
+    }
   }
 }
 
@@ -85,36 +88,40 @@ void SnowContact::follow_snow(int k, GrooveLines& lines) const {
     const int i = s.index(n), slot = lines.slot(n);
     if (!s.touches(i)) continue;
     const double before = lines.values[STRENGTH][slot];
-    lines.follow_snow(slot, s[EDGE_PLACE][i], *snow_);
+    lines.follow_snow(slot, s[GRIP_PLACE][i], *snow_);
     // an edge that slips meets the full strength of its new place
-    if (std::fabs(s[SHEAR_USED][i]) > 1.0) lines.values[STRENGTH_HELD][slot] *= lines.values[STRENGTH][slot] / before;
+    if (std::max(std::fabs(s[LEFT_USED][i]), std::fabs(s[RIGHT_USED][i])) > 1.0)
+      lines.values[STRENGTH_HELD][slot] *= lines.values[STRENGTH][slot] / before;
   }
 }
 
-// Leave all lines to the archive and lay others, on which the edge is displaced and has slipped as it had at the same
-// station.
+// Leave all lines to the archive and lay others, on which the edges are displaced and have slipped as they had at the
+// same station.
 void SnowContact::lay_anew(int k, const Pose& pose) {
   GrooveLines& lines = state_.lines[std::size_t(k)];
   Sections& s = sections_[std::size_t(k)];
-  std::vector<std::pair<double, double>> displaced, slipped;  // by station, rising
+  std::vector<std::pair<double, double>> displaced[2], slipped;  // by station, rising
+  const auto anchor = [&](int slot, int side) -> double& { return lines.values[of_edge(LEFT_ANCHOR, side)][slot]; };
+  const auto place = [&](int slot, int side) { return lines.values[of_edge(LEFT_MARK, side)][slot]; };
+  const auto is_in_snow = [&](int i, int side) { return s.touches(i) && s[of_edge(LEFT_DEPTH, side)][i] > 0.0; };
   for (std::int64_t n = lines.first; n < lines.end; n++) {
     const int i = s.index(n), slot = lines.slot(n);
-    if (!s.touches(i)) continue;
-    displaced.emplace_back(s[STATION][i], lines.values[ANCHOR][slot] - s[EDGE_PLACE][i]);
-    slipped.emplace_back(s[STATION][i], lines.values[SLIPPED][slot]);
+    if (s.touches(i)) slipped.emplace_back(s[STATION][i], lines.values[SLIPPED][slot]);
+    for (int side = 0; side < 2; side++)
+      if (is_in_snow(i, side)) displaced[side].emplace_back(s[STATION][i], anchor(slot, side) - place(slot, side));
   }
-  std::sort(displaced.begin(), displaced.end());
-  std::sort(slipped.begin(), slipped.end());
+  for (auto* each : {&slipped, &displaced[0], &displaced[1]}) std::sort(each->begin(), each->end());
   lines.leave_all(snow_->archive, state_.strips[std::size_t(k)]);
   state_.strips[std::size_t(k)] = snow_->archive.new_strip();
   prepare(k, lines, pose);
-  kernels_->find_sections(runner(k), pose, *snow_, lines, lines.first, s.base);
+  kernels_->find_sections(runner(k), pose, lines, lines.first, s.base);
   remember(k, lines, false);
-  for (std::int64_t n = lines.first; n < lines.end && !displaced.empty(); n++) {
+  for (std::int64_t n = lines.first; n < lines.end; n++) {
     const int i = s.index(n), slot = lines.slot(n);
-    if (!s.touches(i)) continue;
-    lines.values[ANCHOR][slot] = s[EDGE_PLACE][i] + interpolated(displaced, s[STATION][i]);
-    lines.values[SLIPPED][slot] = interpolated(slipped, s[STATION][i]);
+    if (s.touches(i) && !slipped.empty()) lines.values[SLIPPED][slot] = interpolated(slipped, s[STATION][i]);
+    for (int side = 0; side < 2; side++)
+      if (is_in_snow(i, side) && !displaced[side].empty())
+        anchor(slot, side) = place(slot, side) + interpolated(displaced[side], s[STATION][i]);
   }
 }
 

@@ -21,8 +21,8 @@ struct EightSections {
 
   EightSections(const Sections& s, int i, double by_way, double by_speed) {
     const auto column = [&](auto field) { return load<Eight>(s[field] + i); };
-    const Eight none{}, one = none + 1.0, station = column(STATION), to_left = column(EDGE_LEFT), up = column(EDGE_UP);
-    const Eight reach = column(EDGE_REACH), sp = column(TWIST_SINE), cp = column(TWIST_COSINE);
+    const Eight none{}, one = none + 1.0, station = column(STATION), to_left = column(GRIP_LEFT), up = column(GRIP_UP);
+    const Eight reach = column(GRIP_REACH), sp = column(TWIST_SINE), cp = column(TWIST_COSINE);
     const Eight twisting = reach * column(TWIST_SLOPE), outwards = column(FLARE) * reach / column(HALF_WIDTH);
     const Eight out = outwards * cp - twisting * sp, rise = column(BASE_RISE) - outwards * sp - twisting * cp;
     const Eight z = column(IN_ELEMENT), h = column(ELEMENT_LENGTH), y = 1.0 - z;

@@ -45,7 +45,6 @@ void put_snow(const Snow& snow, Fields& out) {
   out.put("snow.strength_share", snow.strength_share);
   out.put("snow.unloading_ratio", snow.unloading_ratio);
   out.put("snow.shear_displacement", snow.shear_displacement);
-  out.put("snow.edge_blend_sine", snow.edge_blend_sine);
   out.put("snow.compaction_resistance", snow.compaction_resistance ? 1.0 : 0.0);
   const FrictionLaw& mu = snow.friction;
   out.put("snow.friction", std::vector{mu.constant, mu.linear, mu.square, mu.film, mu.film_speed, mu.stick,
@@ -68,7 +67,6 @@ std::shared_ptr<Snow> snow_of(const Fields& data) {
   out->strength_share = data.number("snow.strength_share");
   out->unloading_ratio = data.number("snow.unloading_ratio");
   out->shear_displacement = data.number("snow.shear_displacement");
-  out->edge_blend_sine = data.number("snow.edge_blend_sine");
   out->compaction_resistance = data.number("snow.compaction_resistance") != 0.0;
   const auto& mu = data.at("snow.friction", 8);
   out->friction = {mu[0], mu[1], mu[2], mu[3], mu[4], mu[5], mu[6] != 0.0, mu[7] != 0.0};

@@ -7,12 +7,11 @@ namespace skisnow {
 
 namespace {
 
-constexpr double MARGIN = 0.12;      // (m) before tip and behind tail in which lines are laid: more than a step's way
-constexpr double EDGE_ASIDE = 0.04;  // half a ski's width (m), about: where an edge will cross; no accuracy hangs on it
-constexpr int NEWTON_STEPS = 3;      // to the place on a curved surface
-constexpr double MOST_TURN = 0.3;    // (rad) between a line's direction ahead and the ski
-constexpr double MOST_OFF = 2e-4;    // (m) between a line and the surface under the ski
-constexpr double FURTHER = 0.03;     // (m) beyond what is needed, over which older tracks are searched for
+constexpr double MARGIN = 0.12;    // (m) before tip and behind tail in which lines are laid: more than a step's way
+constexpr int NEWTON_STEPS = 3;    // to the place on a curved surface
+constexpr double MOST_TURN = 0.3;  // (rad) between a line's direction ahead and the ski
+constexpr double MOST_OFF = 2e-4;  // (m) between a line and the surface under the ski
+constexpr double FURTHER = 0.03;   // (m) beyond what is needed, over which older tracks are searched for
 
 Vector3 unit(const Vector3& a) { return 1.0 / std::sqrt(dot(a, a)) * a; }
 
@@ -25,12 +24,11 @@ void put(GrooveLines& lines, LineField first, int slot, const Vector3& vector) {
   for (int a = 0; a < 3; a++) lines.values[LineField(first + a)][slot] = vector[a];
 }
 
-// The place on the surface under a position along the ski's straight axis, beside it where the edge will be.
+// The place on the surface under a position along the ski's straight axis.
 Vector3 place_under(const Pose& pose, double station, const Snow& snow) {
-  const Vector3 ahead = pose.axis(0), lateral = pose.axis(1);
-  const double side = std::clamp(-lateral[2] / snow.edge_blend_sine, -1.0, 1.0) * EDGE_ASIDE;
+  const Vector3 ahead = pose.axis(0);
   Vector3 from;
-  for (int a = 0; a < 3; a++) from[a] = pose.position[a] + station * ahead[a] + side * lateral[a];
+  for (int a = 0; a < 3; a++) from[a] = pose.position[a] + station * ahead[a];
   const double level = ahead[0] * ahead[0] + ahead[1] * ahead[1];
   double way = 0.0;
   for (int i = 0; i < NEWTON_STEPS; i++) {
@@ -149,7 +147,7 @@ void GrooveLines::lay(std::int64_t number, const Pose& pose, double station, con
   put(*this, ORIGIN_X, at, origin);
   put(*this, AHEAD_X, at, ahead_on(normal, pose));
   put(*this, NORMAL_X, at, normal);
-  for (int field = ANCHORED; field < LINE_FIELDS; field++) values[LineField(field)][at] = 0.0;
+  for (int field = MARKED; field < LINE_FIELDS; field++) values[LineField(field)][at] = 0.0;
   take_snow(at, origin, snow);
   keep(at, Ground());
   delayed[std::size_t(at)] = DelayedGround{snow.rate.spacing};

@@ -22,13 +22,12 @@ enum LineField {
   AHEAD_X, AHEAD_Y, AHEAD_Z,     // unit vectors: along the ski when it was laid,
   NORMAL_X, NORMAL_Y, NORMAL_Z,  // and out of the snow
   HARDNESS, EXCESS, STRENGTH,    // H_V and k_u - H_V (N/m³), S_f (Pa) at the line
-  ANCHORED, ANCHOR,              // whether the edge holds (0 or 1), and where across (m)
-  ABOVE, EDGE_ABOVE, DEPTH_ABOVE,     // whether the base was just above at the last accepted pose; its edge then
-  MARKED, EDGE_MARKED, DEPTH_MARKED,  // whether it was in the snow then; its edge then
-  SLIPPED,                            // how far an edge has slipped across here (m)
-  EDGE_SIDE,                          // share of the half width at which the shear acted at the last accepted pose
-  // where the strength varies: that of the edge then (Pa), its depth, and its displacement from the anchor (m)
-  STRENGTH_HELD, DEPTH_HELD, SHEAR_HELD,
+  MARKED,                        // whether the ski was over it at the last accepted pose (0 or 1)
+  // each edge then: where across it was, how deep, and where it holds if it was in the snow (m)
+  LEFT_MARK, RIGHT_MARK, LEFT_MARK_DEPTH, RIGHT_MARK_DEPTH, LEFT_ANCHOR, RIGHT_ANCHOR,
+  SLIPPED,                       // how far an edge has slipped across here, the one that slipped farther (m)
+  // where the strength varies: that of the edges then (Pa); depth of each and its displacement from the anchor (m)
+  STRENGTH_HELD, LEFT_DEPTH_HELD, RIGHT_DEPTH_HELD, LEFT_SHEAR_HELD, RIGHT_SHEAR_HELD,
   // whether the base rubs here; where along the ski and across its friction is 0, of a point how far across the base (m)
   STUCK, STUCK_STATION, STUCK_PLACE, STUCK_ARM,
   KNOWN_FROM, KNOWN_TO,               // where across older tracks were looked for (m)

@@ -44,8 +44,6 @@ struct Snow {
   double strength_share = 1.0;          // of S_f everywhere, which may change during a run
   double unloading_ratio = 1.0;         // k_u/H_V
   double shear_displacement = 0.02e-3;  // displacement of the edge across, to full strength (m)
-  // sine of the edge angle (2°) above which the shear acts at the edge alone
-  double edge_blend_sine = 0.03489949670250097;
   bool compaction_resistance = true;
   FrictionLaw friction;
   bool friction_on_base = false;  // of what presses on the base, or of the pressure along the snow's normal

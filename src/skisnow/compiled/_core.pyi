@@ -53,7 +53,6 @@ class Snow:
     strength_share: float
     unloading_ratio: float
     shear_displacement: float
-    edge_blend_sine: float
     compaction_resistance: bool
     friction: FrictionLaw
     friction_on_base: bool

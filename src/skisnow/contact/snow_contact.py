@@ -61,25 +61,32 @@ class Sections(Shown):
     ----------
     position_along_ski, length
         Position from the boot, and the length of runner of the section (m).
-    depth, edge_sine, edge_place
-        Depth of the deeper edge (m, < 0 above the snow), sine of the edge angle, place of the edge on its line (m).
-    normal_force, shear, push, push_across, push_off
-        Forces of the pressure, of the edge across, along the edge, and of friction across it in the surface and off the
-        surface (N).
+    depth, edge_sine
+        Depth of the deeper edge (m, < 0 above the snow), sine of the edge angle.
+    left_depth, right_depth, left_place, right_place
+        Depth of each edge and its place on the line (m).
+    normal_force, shear, left_shear, right_shear, push, push_across, push_off
+        Forces of the pressure, across the edges together and each of them, along the ski, and of friction across it in
+        the surface and off the surface (N).
     sliding, sliding_aside, mu, rub, rub_aside, friction_load
         Velocity along the edge and aside (m/s), μ, the parts of it in use with the signs of the way, and the load that
         it acts on (N). Aside is across the edge in the surface, or at right angles to it in the base's plane.
-    strength, shear_used
-        S_f (N/m²), and the share of the displacement to full strength in use (beyond ±1: slips).
+    strength, left_used, right_used
+        S_f (N/m²), and the share of the displacement to full strength that each edge uses (beyond ±1: slips).
     """
 
     position_along_ski: FloatArray
     length: FloatArray
     depth: FloatArray
     edge_sine: FloatArray
-    edge_place: FloatArray
+    left_depth: FloatArray
+    right_depth: FloatArray
+    left_place: FloatArray
+    right_place: FloatArray
     normal_force: FloatArray
     shear: FloatArray
+    left_shear: FloatArray
+    right_shear: FloatArray
     push: FloatArray
     push_across: FloatArray
     push_off: FloatArray
@@ -90,15 +97,14 @@ class Sections(Shown):
     rub_aside: FloatArray
     friction_load: FloatArray
     strength: FloatArray
-    shear_used: FloatArray
+    left_used: FloatArray
+    right_used: FloatArray
 
     def _facts(self) -> Facts:
-        units = dict.fromkeys(("position_along_ski", "length", "depth", "edge_place"), "m")
-        units |= dict.fromkeys(("normal_force", "shear", "push", "push_across", "push_off", "friction_load"), "N") | {
-            "sliding": "m/s",
-            "sliding_aside": "m/s",
-            "strength": "N/m²",
-        }
+        lengths = ("position_along_ski", "length", "depth", "left_depth", "right_depth", "left_place", "right_place")
+        forces = ("normal_force", "shear", "left_shear", "right_shear", "push", "push_across", "push_off")
+        units = dict.fromkeys(lengths, "m") | dict.fromkeys((*forces, "friction_load"), "N")
+        units |= {"sliding": "m/s", "sliding_aside": "m/s", "strength": "N/m²"}
         return field_facts(self, units)
 
 

@@ -25,8 +25,6 @@ from ..geometry.surfaces import Grid, Plane
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 
-EDGE_BLEND: Final = math.radians(2.0)
-"""Edge angle (rad) above which the shear acts only at the edge; below, it moves to the middle (assumption)."""
 STICK_DISPLACEMENT: Final = 0.02e-3
 """Way of the base (m) to full friction, until which it sticks (modelling assumption): Coulomb's law, regularised."""
 KNOT_AREA: Final = 1e-4
@@ -78,7 +76,7 @@ class SnowField(Shown):
         Whether the snow that is pressed down resists along the edge.
     shear_displacement
         Of an edge across to its full strength (m), > 0: a penalty stiffness in front of Coulomb-like slip.
-    edge_blend_angle, stick_displacement, knot_area, part_along, part_across, delayed_spacing
+    stick_displacement, knot_area, part_along, part_across, delayed_spacing
         Numerics, see the constants of this module for what each does.
 
     Raises
@@ -108,7 +106,6 @@ class SnowField(Shown):
     surface: Plane | Grid = field(default_factory=Plane)
     compaction_resistance: bool = True
     shear_displacement: float = SHEAR_DISPLACEMENT
-    edge_blend_angle: float = EDGE_BLEND
     stick_displacement: float = STICK_DISPLACEMENT
     knot_area: float = KNOT_AREA
     part_along: float = PART_ALONG
@@ -157,7 +154,6 @@ class SnowField(Shown):
         for name in (
             "slip_weakening",
             "shear_displacement",
-            "edge_blend_angle",
             "stick_displacement",
             "part_along",
             "part_across",
@@ -217,7 +213,6 @@ class SnowField(Shown):
         snow.hardness, snow.strength = _grid(self.snow_hardness), _grid(self._strength())
         snow.surface = _grid(0.0 if isinstance(self.surface, Plane) else self.surface, goes_on=True)
         snow.unloading_ratio, snow.shear_displacement = self.unloading_ratio, self.shear_displacement
-        snow.edge_blend_sine = math.sin(self.edge_blend_angle)
         snow.compaction_resistance, snow.friction = self.compaction_resistance, self._friction()
         snow.friction_on_base, snow.shear = self.friction_acts_on == "base-normal", self._shear()
         snow.rate = self._rate()

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 def implausible_values(scenario: Scenario) -> tuple[str, ...]:
     """Warnings about a scenario, none of which stops it."""
     return (
-        *model_limits(scenario.sledge.edge_angle, scenario.ski, controlled=scenario.controlled).values(),
+        *model_limits(scenario.ski).values(),
         *_like_radians(scenario),
         *_like_another_unit(scenario),
         *_outside_ranges(scenario),
@@ -102,29 +102,15 @@ def _outside_ranges(scenario: Scenario) -> list[str]:
     return [" ".join(str(warning.message).split()) for warning in caught if issubclass(warning.category, RangeWarning)]
 
 
-FLAT: Final = 3.0 * DEGREE
-"""Edge angle (rad) from which the shear acts at one edge; below it the run ends at a wrong place."""
-
-
-def model_limits(edge_angle: float, ski: Ski, *, controlled: bool) -> dict[str, str]:
-    """Warnings by code: `nearly_flat_ski`, `base_bevel_ignored`.
+def model_limits(ski: Ski) -> dict[str, str]:
+    """Warnings by code: `base_bevel_ignored`.
 
     Parameters
     ----------
-    edge_angle
-        Edge angle of the sledge (rad).
     ski
         The ski.
-    controlled
-        True if a skier or a table moves the boots.
     """
     limits = {}
-    if not controlled and 0.0 < abs(edge_angle) < FLAT:
-        limits["nearly_flat_ski"] = (
-            f"sledge.edge_angle_deg is {math.degrees(edge_angle):.4g}: between 0 and 3 degrees the run ends at a wrong "
-            "place. The model moves the shear from one edge across the base to the other, so that the ski can turn to "
-            "the wrong side. Use 0 degrees, or 3 degrees and more"
-        )
     if ski.base_bevel != 0.0:
         limits["base_bevel_ignored"] = (
             f"base_bevel_deg of ski {ski.name} is {ski.base_bevel / DEGREE:.3g}: runs ignore it; only skisnow carve "

@@ -124,7 +124,7 @@ def simulate(
       force-penetration relation", Scand. J. Med. Sci. Sports, doi 10.1111/sms.12035.
     * The page docs/methods/simulated-turn.md.
     """
-    for code, text in model_limits(scenario.sledge.edge_angle, scenario.ski, controlled=scenario.controlled).items():
+    for code, text in model_limits(scenario.ski).items():
         warnings.warn(ModelLimitWarning(text, code=code), stacklevel=2)
     setup = set_up(scenario, laws=laws, boots=boots, strength_along=strength_along)
     record = Record(setup)

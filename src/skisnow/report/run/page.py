@@ -245,8 +245,7 @@ def outcome_sentences(run: Run) -> list[Markup]:
     deepest = float(np.nanmax(run.skis.edge_depth)) / MM
     sentences.append(prose("Deepest place of an edge in the snow: {deepest} mm.", deepest=_number(deepest)))
     scenario = run.scenario
-    limits = model_limits(scenario.sledge.edge_angle, scenario.ski, controlled=scenario.controlled)
-    sentences += [prose("Warning: {text}.", text=text) for text in limits.values()]
+    sentences += [prose("Warning: {text}.", text=text) for text in model_limits(scenario.ski).values()]
     return sentences + _balance(run)
 
 
