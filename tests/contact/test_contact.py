@@ -245,12 +245,12 @@ def test_machining_below_its_friction_angle_is_refused() -> None:
 @pytest.mark.parametrize(
     ("change", "words"),
     [
-        ({"snow_hardness": 0.0}, coded("not_a_number", name="snow_hardness", value=0.0, allowed="above 0")),
-        ({"snow_hardness": math.nan}, coded("not_a_number", name="snow_hardness")),
-        ({"unloading_ratio": 0.9}, coded("not_a_number", name="unloading_ratio", value=0.9, allowed="at least 1")),
-        ({"failure_shear_stress": -1.0}, coded("not_a_number", name="failure_shear_stress", value=-1.0)),
-        ({"shear_displacement": 0.0}, coded("not_a_number", name="shear_displacement", value=0.0)),
-        ({"friction": -0.1}, coded("not_a_number", name="friction", value=-0.1)),
+        ({"snow_hardness": 0.0}, coded("out_of_range", name="snow_hardness", value=0.0, limit=0.0)),
+        ({"snow_hardness": math.nan}, coded("out_of_range", name="snow_hardness")),
+        ({"unloading_ratio": 0.9}, coded("out_of_range", name="unloading_ratio", value=0.9, limit=1.0)),
+        ({"failure_shear_stress": -1.0}, coded("out_of_range", name="failure_shear_stress", value=-1.0)),
+        ({"shear_displacement": 0.0}, coded("out_of_range", name="shear_displacement", value=0.0)),
+        ({"friction": -0.1}, coded("out_of_range", name="friction", value=-0.1)),
     ],
 )
 def test_snow_that_cannot_be_is_refused(change: dict[str, float], words: str | Coded) -> None:
