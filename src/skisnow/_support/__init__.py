@@ -1,1 +1,1 @@
-"""What every package uses: files, texts, errors, units, processes; it knows no snow and no ski."""
+"""Helpers of every package: files, texts, errors, units, processes; it knows no snow and no ski."""

@@ -7,7 +7,7 @@ from pathlib import Path
 
 
 def load_certificate(context: ssl.SSLContext, file: str | Path, key: str | Path | None = None) -> None:
-    """Load a certificate and its private key, which may stand in the same file.
+    """Load a certificate and its private key, which may be in the same file.
 
     Raises
     ------

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 def pieces_of(thing: object) -> Iterator[bytes]:
-    """What an object is made of, down to numbers and texts: the same for the same content.
+    """Contents of an object, down to numbers and texts: the same for the same content.
 
     >>> b" ".join(pieces_of((1, "a")))
     b"1 'a'"

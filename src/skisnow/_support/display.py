@@ -15,14 +15,14 @@ _WIDEST: Final = 120
 
 
 class Facts(NamedTuple):
-    """What an object shows: a title, and rows of a name and a text; with one row or none all stands on one line."""
+    """Content of an object: a title, and rows of a name and a text; with one row or none all is on one line."""
 
     title: str
     rows: tuple[tuple[str, str], ...] = ()
 
 
 class Shown:
-    """Something that shows itself by its `_facts`; a dataclass asks for no repr of its own (``repr=False``)."""
+    """Something that shows itself by its `_facts`; a dataclass has no generated repr (``repr=False``)."""
 
     __slots__ = ()
 
@@ -55,7 +55,7 @@ class Shown:
 
 
 class ShownFields(Shown):
-    """A dataclass that shows one row for each of its fields; units stand in its docstring."""
+    """A dataclass that shows one row for each of its fields; units are in its docstring."""
 
     __slots__ = ()
 

@@ -1,4 +1,4 @@
-"""Packages that only some work needs (an extra each): loaded when that work is asked for."""
+"""Packages that only some work needs (an extra each): loaded when they are needed."""
 
 from __future__ import annotations
 

@@ -36,7 +36,7 @@ MOST_COLUMNS: Final = 1_000
 
 
 class NoTextError(ValueError):
-    """Bytes are no text: ``place`` is ``"byte 12"`` or ``"a NUL character"``, ``encoding`` what it was read as."""
+    """Bytes are not text: ``place`` is ``"byte 12"`` or ``"a NUL character"``, ``encoding`` what it was read as."""
 
     def __init__(self, place: str, encoding: str) -> None:
         super().__init__(f"{place} is no {encoding} text")
@@ -75,7 +75,7 @@ def decoded(data: bytes) -> DecodedText:
     Raises
     ------
     NoTextError
-        The bytes are no text in UTF-8, UTF-16 with byte order mark, or Windows-1252.
+        The bytes are not text in UTF-8, UTF-16 with byte order mark, or Windows-1252.
     """
     codec, foreign = encoding_of(data)
     try:
@@ -111,7 +111,7 @@ def most_frequent_separator(head: str) -> str:
 
 
 def is_number(cell: str, mark: str) -> bool:
-    """Tell whether a stripped cell is written as a number with this decimal mark.
+    """True if a stripped cell is written as a number with this decimal mark.
 
     >>> is_number("-1.5e3", "."), is_number("1_000", "."), is_number("nan", "."), is_number("1.5", ",")
     (True, False, False, False)
@@ -120,7 +120,7 @@ def is_number(cell: str, mark: str) -> bool:
 
 
 def number(cell: str, mark: str = ".") -> float:
-    """Read one cell; NaN where it is no finite number.
+    """Read one cell; NaN where it is not a finite number.
 
     >>> number(" 2,5", ","), number("1e999", "."), number("1_000")
     (2.5, nan, nan)
@@ -133,7 +133,7 @@ def number(cell: str, mark: str = ".") -> float:
 
 
 def decimal_mark(groups: Iterable[Iterable[str]], *, separator: str) -> str:
-    """Tell whether numbers are written with a decimal point or a decimal comma.
+    """True if numbers are written with a decimal point or a decimal comma.
 
     The first group of cells with a fraction decides, by its majority; where both are equally many, a file separated by
     commas has points and any other has commas. Without any fraction it is the point.
@@ -232,7 +232,7 @@ class CsvRow:
         Raises
         ------
         ParameterError
-            It is none.
+            It is not a number.
         """
         value = number(self.cells[column], self.mark)
         if not math.isfinite(value):
@@ -273,7 +273,7 @@ def csv_rows(
     Raises
     ------
     ParameterError
-        The file cannot be read, is no CSV, lacks a column, or has more cells in a row than columns.
+        The file cannot be read, is not CSV, lacks a column, or has more cells in a row than columns.
     """
     path = Path(path)
     text = plain_text(path, most_bytes=MOST_CSV_BYTES)

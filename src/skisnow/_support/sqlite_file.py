@@ -86,7 +86,7 @@ def require_sound_pages(database: sqlite3.Connection) -> None:
 
 
 def primary_code(error: BaseException) -> int:
-    """SQLite's result code of an error, without its extension; 0 if it has none."""
+    """SQLite's result code of an error, without its extension; 0 without one."""
     code: int = getattr(error, "sqlite_errorcode", 0)
     return code & 0xFF
 

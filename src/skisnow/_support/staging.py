@@ -2,7 +2,7 @@
 
 All is written into a hidden folder inside the place. When it is complete a plan is put beside it; only then are the old
 files taken away and the new ones moved. What a killed process left is finished, where there is a plan, or else thrown
-away, at the next start (`tidied`). A process holds a lock on its hidden folder, so that nobody tidies it meanwhile.
+away, at the next start (`tidied`). A process holds a lock on its hidden folder, so that no one tidies it meanwhile.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ class Stage:
     path
         The folder to fill.
     stale
-        Files, by their paths in the place, that only an earlier writing can have left; taken away where there are no
+        Files, by their paths in the place, that only an earlier writing can have left; taken away if there are no
         new ones.
     """
 
@@ -164,7 +164,7 @@ def _require_inside(names: Sequence[str]) -> None:
 
 
 def _is_old(hidden: Path) -> bool:
-    """Where the system has no locks a folder that nobody wrote into for a day is nobody's."""
+    """Where the system has no locks a folder that no one wrote into for a day is no one's."""
     return sys.platform == "win32" and time.time() - hidden.stat().st_mtime > _A_DAY_S
 
 
@@ -215,7 +215,7 @@ def write_file(path: str | Path, content: str | bytes) -> None:
 
 @contextmanager
 def place_to_write(path: str | Path) -> Iterator[Path]:
-    """An empty file to be filled by its name, which stands in its place when the block ends well, and else nowhere.
+    """An empty file to be filled by its name, which has its name when the block ends well, and else nowhere.
 
     Raises
     ------

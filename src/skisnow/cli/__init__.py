@@ -65,7 +65,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Run one command.
 
     Returns 0 when it did its work, 1 where the data or the machine refused, 2 for wrong words, 70 after an error that
-    nobody foresaw.
+    was not foreseen.
     """
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):  # JSON is UTF-8 whatever the terminal's code page
@@ -118,7 +118,7 @@ def _short(message: str) -> str:
 
 
 def _stdout_lost() -> int:
-    """Nobody reads on, or the output cannot be written: keep Python from saying so again when it ends."""
+    """Nothing reads the output, or the output cannot be written: keep Python from saying so again when it ends."""
     try:
         sys.stdout.flush()
     except OSError:

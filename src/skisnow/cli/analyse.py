@@ -24,7 +24,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     )
     add_language(parser)
     parser.add_argument("--json", action="store_true", help="print results.json instead of the summary")
-    parser.add_argument("--seed", type=seed_number, help="seed of the bootstrap, a whole number from 0 on")
+    parser.add_argument("--seed", type=seed_number, help="seed of the bootstrap, a whole number of 0 or more")
     parser.add_argument(
         "--resamples",
         type=whole_number(100, MOST_RESAMPLES),
@@ -35,7 +35,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
 
 
 def run(options: argparse.Namespace) -> int:
-    """Analyse, write what was asked for, print the summary."""
+    """Analyse, write the results, print the summary."""
     from .._support.memory import paused_collector
     from ..campaign import read_campaign
     from ..estimation import analyse

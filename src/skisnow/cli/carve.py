@@ -51,7 +51,7 @@ def _add_snow(parser: argparse.ArgumentParser) -> None:
     stress = "failure shear stress; beside --results or --published only where those have none"
     snow.add_argument("--S-f-N-per-mm2", type=number("N/mm²"), metavar="S_f", help=stress)
     snow.add_argument("--results", metavar="PATH", help="results.json of an analysed campaign")
-    snow.add_argument("--site", metavar="S", help="one site of those results; left out: all sites together")
+    snow.add_argument("--site", metavar="S", help="one site of those results; default: all sites together")
     snow.add_argument("--published", metavar="NAME", help="a published snow, such as race-piste")
     ratio = "k_u/H_V: 1 is elastic snow, inf rigid-plastic; no default; plays no part with --at-rest"
     snow.add_argument("--unloading-ratio", type=number(""), metavar="RATIO", help=ratio)
@@ -62,7 +62,7 @@ def _add_choices(parser: argparse.ArgumentParser) -> None:
     choices.add_argument(
         "--clamp-length-m", type=number("m"), metavar="M", help="length that boot and binding keep straight"
     )
-    footprint = "stiffness of boot and binding under each metre of it; left out: rigid"
+    footprint = "stiffness of boot and binding under each metre of it; default: rigid"
     choices.add_argument("--footprint-stiffness-N-per-mm2", type=number("N/mm²"), metavar="K", help=footprint)
     off: dict[str, Any] = {"action": "store_const", "const": False}
     choices.add_argument(

@@ -35,12 +35,12 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     parser.add_argument(
         "--fit-offset",
         metavar="start,heading,time",
-        help="fit what is unknown: one or several of start (place of the first point), heading, time; left out: none",
+        help="fit what is unknown: one or several of start (place of the first point), heading, time; default: none",
     )
     parser.add_argument(
         "--time-from",
         choices=("clock", "first-point"),
-        help="what equal time counts from: the files' dates or seconds, or each track's first point; left out: the "
+        help="what equal time counts from: the files' dates or seconds, or each track's first point; default: the "
         "clock, but the first points where only one file has a date",
     )
     add_fall_line_azimuth(parser, "puts a track in latitude and longitude into a simulated run's frame")
@@ -55,7 +55,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         "--known-to-m",
         type=number("metres", lowest=0),
         metavar="M",
-        help="how exactly the places of both are known, which no printed digit goes below; 0: print all. Left out: as "
+        help="how exactly the places of both are known, which no printed digit goes below; 0: print all. Default: as "
         "the receiver states, else by its kind",
     )
     parser.add_argument("--from-above", action="store_true", help="leave the heights out")

@@ -69,7 +69,7 @@ def run(options: argparse.Namespace) -> int:
 
 
 def candidates(parser: argparse.ArgumentParser, words: Sequence[str], begun: str) -> list[str]:
-    """What a word may become that is begun behind others; empty where a file or a number belongs."""
+    """Completions of a word that follows others; empty where a file or a number belongs."""
     waiting: argparse.Action | None = None
     places = _positionals(parser)
     for word in words:
@@ -105,7 +105,7 @@ def _options(parser: argparse.ArgumentParser, words: Iterable[str]) -> list[str]
 
 
 def _values(action: argparse.Action) -> list[str]:
-    """What an option or an argument may be, where it can be named."""
+    """Choices of an option or an argument, where it can be named."""
     if action.choices is not None:
         return list(map(str, action.choices))
     names = _NAMES.get(action.dest)

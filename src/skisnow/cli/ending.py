@@ -1,4 +1,4 @@
-"""SIGTERM as an orderly end: workers are stopped and what was finished is kept, as with Ctrl-C."""
+"""SIGTERM as an orderly end: workers stop and finished results are kept, as with Ctrl-C."""
 
 from __future__ import annotations
 
@@ -92,7 +92,7 @@ def ending_is_an_interrupt() -> Iterator[Ending]:
 
 
 STATUS: Final = 70
-"""Of a command that ended so; ``EX_SOFTWARE`` of sysexits.h."""
+"""Exit status after an unforeseen error; ``EX_SOFTWARE`` of sysexits.h."""
 
 
 def report_failure(error: Exception) -> int:

@@ -26,12 +26,12 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     fmu.add_argument("scenario", metavar="SCENARIO", help="a built-in one by its name, or a TOML file")
     fmu.add_argument("--out", type=Path, metavar="FILE", required=True, help="the file to write, ending in .fmu")
     fmu.add_argument(
-        "--fmi", type=int, choices=(2, 3), default=2, help="version of the standard, 2.0 or 3.0; left out: 2"
+        "--fmi", type=int, choices=(2, 3), default=2, help="version of the standard, 2.0 or 3.0; default: 2"
     )
     fmu.add_argument(
         "--contact", action="store_true", help="the contact of rigid skis: poses in, forces and moments out"
     )
-    fmu.add_argument("--skis", type=int, choices=(1, 2), help="with --contact: one ski, or a pair; left out: 2")
+    fmu.add_argument("--skis", type=int, choices=(1, 2), help="with --contact: one ski, or a pair; default: 2")
     add_changes(fmu)
     fmu.set_defaults(run=_fmu, parser=fmu)
     mjcf = kinds.add_parser(
@@ -41,7 +41,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     )
     mjcf.add_argument("ski", metavar="SKI", help="a ski of the catalogue by its name, or a ski file")
     mjcf.add_argument("--out", type=Path, metavar="FILE", required=True, help="the file to write, ending in .xml")
-    mjcf.add_argument("--segments", type=whole_number(4, 400), default=20, metavar="N", help="of the ski; left out: 20")
+    mjcf.add_argument("--segments", type=whole_number(4, 400), default=20, metavar="N", help="of the ski; default: 20")
     mjcf.set_defaults(run=_mjcf)
     chrono = kinds.add_parser(
         "chrono",

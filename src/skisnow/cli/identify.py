@@ -38,7 +38,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         help="tracks (CSV, GPX, FIT, NMEA, UBX, .pos), photo-cell times or measured grooves (CSV); several are "
         "fitted together",
     )
-    free = 'what is looked for, such as mu_0,drag_area,S_f; left out: what has a table [identify."KEY"] in the file'
+    free = 'what is looked for, such as mu_0,drag_area,S_f; default: what has a table [identify."KEY"] in the file'
     parser.add_argument("--free", default="", metavar="KEY,KEY", help=free)
     changes = "another value for one key of the scenario, several times for several"
     parser.add_argument("--set", action="append", default=[], dest="changes", metavar="section.key=value", help=changes)
@@ -57,7 +57,7 @@ def _add_ways(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--bootstrap", type=whole_number(40, MOST_RESAMPLES, or_zero=True), default=0, metavar="N", help=bootstrap
     )
-    by = "each resample is refitted, with simulations of its own (left out), or by the linearised model"
+    by = "each resample is refitted, with simulations of its own (default), or by the linearised model"
     parser.add_argument("--bootstrap-by", choices=("refit", "linear"), default="refit", help=by)
     posterior = "also about N samples of the posterior (needs emcee)"
     parser.add_argument("--posterior", type=whole_number(0, MOST_SAMPLES), default=0, metavar="N", help=posterior)
@@ -68,7 +68,7 @@ def _add_ways(parser: argparse.ArgumentParser) -> None:
     clock = "whether photo-cell clocks show 0 at the start, or each run's has an offset of its own"
     parser.add_argument("--clock", choices=("start", "free"), help=clock)
     parser.add_argument(
-        "--workers", type=whole_number(1, MOST_WORKERS), metavar="N", help="processes; left out: all cores"
+        "--workers", type=whole_number(1, MOST_WORKERS), metavar="N", help="processes; default: all cores"
     )
     add_scheduler(parser)
 
@@ -86,7 +86,7 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _prepared(options: argparse.Namespace) -> ScenarioFile:
-    """What can be refused is refused before the work."""
+    """Reject wrong options before the work."""
     with announced("loading"):
         from ..identification.intervals import require_bootstrap, require_emcee
         from ..scenario import scenario_file

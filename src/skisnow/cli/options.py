@@ -26,7 +26,7 @@ class Parser(argparse.ArgumentParser):
     _has_commands = False
 
     def add_subparsers(self, **named: Any) -> Any:
-        """Take commands of its own: the options behind them are theirs."""
+        """Parser with subcommands, to which the options behind them belong."""
         self._has_commands = True
         return super().add_subparsers(**named)
 
@@ -66,7 +66,7 @@ def add_language(parser: argparse.ArgumentParser, what: str = "the page and the 
         "--language",
         choices=codes(),
         default=ENGLISH,
-        help=f"of {what}; files that programs read stay as they are (left out: en)",
+        help=f"of {what}; files that programs read stay as they are (default: en)",
     )
 
 
@@ -96,9 +96,9 @@ def number(
     Parameters
     ----------
     unit
-        In which the number is; empty where it has none.
+        Unit of the number; empty without one.
     lowest, highest
-        Ends of what is allowed; left out where a table of keys says it, which is asked before the work begins.
+        Allowed range; not given where a table of keys says it, which is checked before the work begins.
     above
         Whether the lowest itself is left out.
     """
@@ -150,7 +150,7 @@ def _shown(word: str, limit: int = 80) -> str:
 
 
 def seed_number(word: str) -> int:
-    """A seed: a whole number from 0 to 2⁶³ - 1, so that it can stand in every file."""
+    """A seed: a whole number from 0 to 2⁶³ - 1, so that it can be in every file."""
     try:
         seed = int(word)
     except ValueError:
@@ -165,7 +165,7 @@ LOCAL = ("processes", "threads")
 
 def add_scheduler(parser: argparse.ArgumentParser) -> None:
     """Add the option to a command's."""
-    about = "who computes: processes (left out) or threads of this computer, or the workers of a Dask scheduler"
+    about = "who computes: processes (default) or threads of this computer, or the workers of a Dask scheduler"
     parser.add_argument("--scheduler", metavar="WORD|URL|FILE.toml", help=about)
 
 
@@ -175,7 +175,7 @@ def scheduler_of(options: argparse.Namespace) -> str | None:
     Raises
     ------
     ParameterError
-        It is no scheduler, its file cannot be read, or Dask is not installed.
+        It is not a scheduler, its file cannot be read, or Dask is not installed.
     """
     scheduler: str | None = options.scheduler
     if scheduler is not None and scheduler not in LOCAL and options.workers is not None:
@@ -189,7 +189,7 @@ def scheduler_of(options: argparse.Namespace) -> str | None:
 
 
 def checked_scheduler(scheduler: str | None) -> str | None:
-    """The same of what was given to the option.
+    """The same for a value of the option.
 
     Raises
     ------

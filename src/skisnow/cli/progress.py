@@ -63,7 +63,7 @@ class Progress:
         self._pause = pause_s if pause_s is not None else PAUSE_S if often else PAUSE_OF_LINES_S
 
     def __call__(self, text: str) -> None:
-        """Take note of what is being done."""
+        """Show the current step if it is time."""
         time_s = time.monotonic()
         if time_s < self._next:
             return

@@ -35,14 +35,14 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     )
     add_changes(parser)
     parser.add_argument(
-        "--gates", type=whole_number(2, MOST_GATES), metavar="N", help="the first of the course; left out: all"
+        "--gates", type=whole_number(2, MOST_GATES), metavar="N", help="the first of the course; default: all"
     )
-    model = "a simulated run for each evaluation (left out), or a point with mass on the line, in milliseconds"
+    model = "a simulated run for each evaluation (default), or a point with mass on the line, in milliseconds"
     parser.add_argument("--model", choices=("skier", "point"), default="skier", help=model)
     _add_search(parser)
     _add_worth(parser)
     parser.add_argument(
-        "--workers", type=whole_number(1, MOST_WORKERS), metavar="N", help="processes; left out: one for each core"
+        "--workers", type=whole_number(1, MOST_WORKERS), metavar="N", help="processes; default: one for each core"
     )
     add_scheduler(parser)
     parser.add_argument("--json", action="store_true", help="print race.json alone to standard output")
@@ -55,31 +55,31 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
 def _add_search(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--evaluations", type=whole_number(1, MOST_EVALUATIONS), default=300, metavar="N",
-        help="after which no new batch begins, of each window; 1: only the line that it begins from; left out: 300",
+        help="after which no new batch begins, of each window; 1: only the line that it begins from; default: 300",
     )  # fmt: skip
     search = "surrogate: a Gaussian process says where to race next (left out with the skier); cma: CMA-ES alone"
     parser.add_argument("--search", choices=("surrogate", "cma"), help=search)
     parser.add_argument(
         "--settled", type=number("s", lowest=0.0, highest=100.0), default=0.0, metavar="SECONDS",
-        help="end a search where all of its last batch lie within so much; left out: 0, never",
+        help="end a search where all of its last batch lie within so much; default: 0, never",
     )  # fmt: skip
     parser.add_argument(
         "--window", type=whole_number(2, MOST_GATES), metavar="N",
-        help="search the turns of N gates at once, then move on; left out: all at once",
+        help="search the turns of N gates at once, then move on; default: all at once",
     )  # fmt: skip
     parser.add_argument(
         "--step", type=whole_number(1, MOST_GATES), default=1, metavar="N", help="gates that a window moves on by"
     )
     parser.add_argument(
         "--ahead", type=whole_number(0, MOST_GATES), default=2, metavar="N",
-        help="gates behind a window that are raced through as well; left out: 2",
+        help="gates behind a window that are raced through as well; default: 2",
     )  # fmt: skip
     parser.add_argument(
         "--room", type=number("m", lowest=0.0, highest=1.0), default=0.05, metavar="METRES",
-        help="by which both skis have to pass each pole at least; left out: 0.05",
+        help="by which both skis have to pass each pole at least; default: 0.05",
     )  # fmt: skip
     parser.add_argument(
-        "--line", type=Path, metavar="LINE.csv", help="the line to begin from; left out: that of the skier itself"
+        "--line", type=Path, metavar="LINE.csv", help="the line to begin from; default: that of the skier itself"
     )
     parser.add_argument("--seed", type=seed_number, default=0, metavar="N", help="of every random number")
 

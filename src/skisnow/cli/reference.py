@@ -13,7 +13,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     parser = commands.add_parser("reference", help="write a synthetic campaign with the design of the 2013 paper")
     parser.add_argument("folder", type=Path, help="folder to write; it must not hold a campaign yet")
     parser.add_argument(
-        "--seed", type=seed_number, default=1, help="seed of the random numbers, a whole number from 0 on; left out: 1"
+        "--seed", type=seed_number, default=1, help="seed of the random numbers, 0 or more (default: 1)"
     )
     parser.add_argument(
         "--turning-angles", action="store_true", help="with turning angles of the shear device, which tell u_y"

@@ -29,14 +29,14 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     parser.add_argument("folder", type=Path, metavar="RUN", help="the folder of a run, with its run.nc")
     parser.add_argument("other", type=Path, nargs="?", metavar="OTHER", help="a second run, as its ghost")
     parser.add_argument("--ghost", "--over", dest="ghost", type=Path, metavar="RUN", help="the same")
-    parser.add_argument("--track", type=Path, metavar="FILE", help="a measured track to stand beside it")
+    parser.add_argument("--track", type=Path, metavar="FILE", help="a measured track to compare with")
     add_fall_line_azimuth(parser, "for a track in latitude and longitude")
     parser.add_argument(
         "--starts-at-s",
         type=number("s", lowest=-36_000, highest=36_000),
         default=0.0,
         metavar="S",
-        help="time of the run at the track's first point; left out: 0",
+        help="time of the run at the track's first point; default: 0",
     )
     parser.add_argument(
         "--model", action="store_true", help="also write replay.glb, the run as a glTF model that moves"
@@ -52,16 +52,16 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         type=number("", lowest=1, highest=LARGEST_FACTOR),
         default=1.0,
         metavar="X",
-        help="bending and twist so many times in the models; left out: 1",
+        help="bending and twist so many times in the models; default: 1",
     )
-    parser.add_argument("--title", help="what the reader sees above it; left out: the folder's name")
+    parser.add_argument("--title", help="what the reader sees above it; default: the folder's name")
     add_language(parser, "the page")
-    parser.add_argument("--out", type=Path, metavar="DIR", help="the folder to write into; left out: the run's")
+    parser.add_argument("--out", type=Path, metavar="DIR", help="the folder to write into; default: the run's")
     parser.set_defaults(run=run, parser=parser)
 
 
 def run(options: argparse.Namespace) -> int:
-    """Read the run and write what was asked for."""
+    """Read the run and write the replay."""
     if options.track is None and (options.fall_line_azimuth_deg is not None or options.starts_at_s):
         options.parser.error("--fall-line-azimuth-deg and --starts-at-s place a track: name it with --track")
     if options.other is not None and options.ghost is not None:

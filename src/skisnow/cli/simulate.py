@@ -84,7 +84,7 @@ def _list(name: str | None) -> int:
 
 
 def _prepare(options: argparse.Namespace, scenario_input: ScenarioFile) -> None:
-    """What can be refused is refused before the work."""
+    """Reject wrong options before the work."""
     if options.boots_out is not None:
         from ..simulation.run_tables import require_ending
 

@@ -25,10 +25,10 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         help="carved turns or simulated runs over a grid or a sample of inputs, as one table",
         description="Run a study. Its table goes where STUDY.toml says; an interrupted one goes on when started again.",
     )
-    about = "what varies, what is fixed, and `out`; with --merge the parts"
+    about = "with the varied and fixed inputs and `out`; with --merge the parts"
     parser.add_argument("study", type=Path, nargs="+", metavar="STUDY.toml", help=about)
     parser.add_argument(
-        "--workers", type=whole_number(1, MOST_WORKERS), metavar="N", help="processes; left out: one for each core"
+        "--workers", type=whole_number(1, MOST_WORKERS), metavar="N", help="processes; default: one for each core"
     )
     add_scheduler(parser)
     parts = parser.add_mutually_exclusive_group()
@@ -38,7 +38,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     parts.add_argument("--merge", type=Path, metavar="TABLE", help=merge)
     parser.add_argument("--figure", type=Path, metavar="FILE", help="draw a map of the table: .png, .svg or .pdf")
     add_language(parser, "the map")
-    about = "radius over edge angle, or where the edge loses grip; left out: radius"
+    about = "radius over edge angle, or where the edge loses grip; default: radius"
     parser.add_argument("--map", choices=("radius", "grip"), default="radius", help=about)
     parser.set_defaults(run=run, parser=parser)
 

@@ -1,4 +1,4 @@
-"""``skisnow track``: what a track says, printed and drawn."""
+"""``skisnow track``: distance, speed, runs and turns of a track, printed and drawn."""
 
 from __future__ import annotations
 

@@ -29,12 +29,12 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         "elastic contact, and over what is not known of snow, friction and ski.",
     )
     parser.add_argument("campaign", type=Path, metavar="CAMPAIGN", help="folder of the campaign, or a workbook (.xlsx)")
-    parser.add_argument("--site", metavar="SITE", help='whose snow it is, "C" or "site C"; left out: all sites')
+    parser.add_argument("--site", metavar="SITE", help='whose snow it is, "C" or "site C"; default: all sites')
     parser.add_argument(
         "--scenario",
         default="carved-46m",
         metavar="NAME|FILE",
-        help="the turn on that snow; left out: carved-46m",
+        help="the turn on that snow; default: carved-46m",
     )
     parser.add_argument(
         "--set",
@@ -49,10 +49,10 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         "--unloading-ratio",
         type=number("", lowest=1.0, highest=1000.0, above=True),
         metavar="RATIO",
-        help="k_u/H_V of the hypoplastic contact; left out: what the site's unloading says, else 10",
+        help="k_u/H_V of the hypoplastic contact; default: what the site's unloading says, else 10",
     )
     parser.add_argument(
-        "--runs", type=whole_number(3, MOST_RUNS), metavar="N", help="of the ensemble, 3 or more; left out: 64"
+        "--runs", type=whole_number(3, MOST_RUNS), metavar="N", help="of the ensemble, 3 or more; default: 64"
     )
     parser.add_argument(
         "--prior",
@@ -63,9 +63,9 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         help="range of a key of the scenario that the ensemble is drawn over, in place of the usual one or beside the "
         "usual ones, several times for several; equal ends: it is known",
     )
-    parser.add_argument("--seed", type=seed_number, help="seed of the ensemble, a whole number from 0 on")
+    parser.add_argument("--seed", type=seed_number, help="seed of the ensemble, a whole number of 0 or more")
     parser.add_argument(
-        "--workers", type=whole_number(1, MOST_WORKERS), metavar="N", help="processes; left out: one for each core"
+        "--workers", type=whole_number(1, MOST_WORKERS), metavar="N", help="processes; default: one for each core"
     )
     parser.add_argument("--json", action="store_true", help="print turn.json alone to standard output")
     parser.add_argument(

@@ -20,7 +20,7 @@ class Patched(NamedTuple):
 
 
 class _Weights(NamedTuple):
-    """Of the two ends of a cell along one axis: what multiplies their values, and their slopes."""
+    """Weights of the two ends of a cell along one axis: what multiplies their values, and their slopes."""
 
     value: tuple[FloatArray, FloatArray]
     slope: tuple[FloatArray, FloatArray]
@@ -67,7 +67,7 @@ def patched(values: FloatArray, u: FloatArray, v: FloatArray) -> Patched:
 
 
 def _cell(at: FloatArray, count: int) -> tuple[tuple[IntArray, IntArray], FloatArray]:
-    """Both ends of the cells that places lie in, and the shares of the way between them."""
+    """Both ends of the cells that places are in, and the shares of the way between them."""
     low = np.clip(np.floor(at), 0, max(count - 2, 0)).astype(np.intp)
     return (low, np.minimum(low + 1, count - 1)), np.clip(at - low, 0.0, 1.0)
 

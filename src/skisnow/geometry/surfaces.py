@@ -89,7 +89,7 @@ class Grid(ShownFields):
         return along_x, along_y
 
     def values_at(self, x: npt.ArrayLike, y: npt.ArrayLike) -> FloatArray:
-        """What varies over the place, at places x, y (m); beyond the border its last value."""
+        """Values of a grid at places x, y (m); beyond the border its last value."""
         return self._patched(x, y)[0]
 
     def _patched(self, x: npt.ArrayLike, y: npt.ArrayLike) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:

@@ -77,7 +77,7 @@ class SkiPiece(Tool):
 
     Notes
     -----
-    The paper has the wedge alone. It diverges at small ϑ: at 5° a base of 62 mm is a wedge only to 5.4 mm. The
+    The paper has only the wedge. It diverges at small ϑ: at 5° a base of 62 mm is a wedge only to 5.4 mm. The
     continuation is exact geometry, joins A and V continuously and contains the flat tool as ϑ → 0. ``PlainWedge`` is
     the paper's form.
 

@@ -1,4 +1,4 @@
-"""skisnow in other people's programs: what is written for them, and what is read of theirs."""
+"""skisnow in other people's programs: files written for them and read from them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Snow pits to CAAML 6.0.3, with H_V and S_f as custom data in a namespace of their own."""
+"""Snow pits to CAAML 6.0.3, with H_V and S_f as custom data in a separate namespace."""
 
 from __future__ import annotations
 

@@ -17,7 +17,7 @@ from ..scenario import Plane, Scenario
 SOIL: Final = "snow.json"
 TERRAIN: Final = "terrain.json"
 SIZE: Final = (20.0, 10.0)
-"""Of the patch along and across (m) (modelling assumption)."""
+"""Size of the patch along and across (m) (modelling assumption)."""
 SPACING: Final = 0.02
 """Of its grid (m) (modelling assumption: that of skisnow's lines)."""
 
@@ -28,7 +28,7 @@ def chrono_soil(scenario: Scenario) -> dict[str, Any]:
     Raises
     ------
     ParameterError
-        The snow varies over the place, is elastic, or is not given by H_V and S_f alone.
+        The snow varies over the place, is elastic, or is not given only by H_V and S_f.
 
     Notes
     -----
@@ -86,7 +86,7 @@ def write_chrono_terrain(
     size
         Along and across (m), > 0.
     spacing
-        Of the grid (m), > 0.
+        Spacing of the grid (m), > 0.
 
     Returns
     -------
@@ -96,7 +96,7 @@ def write_chrono_terrain(
     Raises
     ------
     ParameterError
-        As `chrono_soil`; the slope is no plane; a length is not above 0.
+        As `chrono_soil`; the slope is not a plane; a length is not above 0.
     OutputError
         The folder cannot be written.
 

@@ -48,14 +48,14 @@ ENDINGS: Final[Mapping[str, str]] = {
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ConvertOptions:
-    """What the formats do not say themselves.
+    """Values that the formats do not contain.
 
     Attributes
     ----------
     site
-        Of a campaign; None where it has one.
+        Site of a campaign; None if it has a single one.
     snow_height
-        Of the snow on the ground (m), where the source does not say it.
+        Height of the snow on the ground (m), where the source does not say it.
     time
         ISO 8601, where the source does not say it.
     forces
@@ -165,7 +165,7 @@ def _pit_of_recording(source: Path) -> SnowPit:
 
 
 def _completed(pit: SnowPit, options: ConvertOptions) -> SnowPit:
-    """The pit with what was said besides, where it does not say so itself."""
+    """The pit with the options for values that it lacks."""
     height = options.snow_height if pit.snow_height is None else pit.snow_height
     return replace(pit, snow_height=height, time=pit.time or options.time or "")
 

@@ -21,11 +21,11 @@ from ..ski.beam import CLAMP_LENGTH
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 
 SEGMENTS: Final = 20
-"""Of a ski, without the part that the binding holds (modelling assumption)."""
+"""Number of segments of a ski, without the part that the binding holds (modelling assumption)."""
 THICKNESS: Final = 0.01
-"""Of the boxes that are drawn (m); nothing is computed with it (modelling assumption)."""
+"""Thickness of the boxes that are drawn (m); nothing is computed with it (modelling assumption)."""
 POINTS: Final = 400
-"""Of the integrals along a segment."""
+"""Number of points of the integrals along a segment."""
 
 
 def ski_mjcf(
@@ -43,11 +43,11 @@ def ski_mjcf(
     ski
         Its shape, EI, GJ and mass are taken.
     segments
-        Of the chains before and behind the binding together, ≥ 4.
+        Number of segments of the chains before and behind the binding together, ≥ 4.
     clamp_length
         That the binding holds straight (m), > 0.
     damping
-        Of each hinge over its stiffness (s).
+        Damping of each hinge over its stiffness (s).
     free
         Whether the middle is free in space, or fixed to it.
 
@@ -58,7 +58,7 @@ def ski_mjcf(
 
     Notes
     -----
-    Axes: x ahead, y left, z up; the site ``boot`` lies on the base. Each hinge has the compliance of the ski between
+    Axes: x ahead, y left, z up; the site ``boot`` is on the base. Each hinge has the compliance of the ski between
     the middles of the segments that it joins. The free shape (camber, shovel) has no stress. Boxes are to be seen
     alone: they collide with nothing.
     """
@@ -272,7 +272,7 @@ class SnowForces:
             self._engine.mj_applyFT(model, data, wrench[:3], wrench[3:], at, body, data.qfrc_passive)
 
     def _velocities(self, data: Any) -> FloatArray:
-        """Of the sites and about them, in the world's axes; MuJoCo gives the angular one first."""
+        """Velocities of the sites and about them, in the world's axes; MuJoCo gives the angular one first."""
         out, velocity = np.empty((len(self._sites), 6)), np.empty(6)
         for k, site in enumerate(self._sites):
             self._engine.mj_objectVelocity(self.model, data, self._engine.mjtObj.mjOBJ_SITE, site, velocity, 0)

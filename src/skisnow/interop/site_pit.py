@@ -25,7 +25,7 @@ _NO_DEPTH: Final = "Densities and temperatures were noted without a depth and st
 
 
 def site_pit(analysis: Analysis, site: str) -> SnowPit:
-    """What a campaign knows of one of its sites.
+    """Snow pit of a site of a campaign.
 
     Densities of density.csv and beside experiments, and the mean ``snow_temperature_C``, have no depth in a campaign
     and are put at the surface, which the comment says. Forces are those of the used recordings of a SnowMicroPen, from

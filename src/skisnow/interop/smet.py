@@ -27,7 +27,7 @@ def write_smet(series: StationSeries, path: str | Path) -> Path:
     Raises
     ------
     ParameterError
-        A value is exactly -999, which stands for none.
+        A value is exactly -999, which means none.
     OutputError
         The file cannot be written.
     """
@@ -41,7 +41,7 @@ def write_weather_csv(series: StationSeries, path: str | Path) -> Path:
     Raises
     ------
     ParameterError
-        The station has none of these quantities.
+        The station has no such quantity.
     OutputError
         The file cannot be written.
     """

@@ -1,6 +1,6 @@
 """Snow pits and penetrometer forces as CSV with the column names of the NASA SnowEx campaigns.
 
-Heights count from the ground in cm, as there; -9999 stands for what is not known.
+Heights count from the ground in cm, as there; -9999 means what is not known.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """Quantities that dataclasses declare: found, checked in constructors, read from values as given and written back.
 
-A field's annotation says what may stand there:
+The annotation of a field declares its quantity:
 
 >>> @dataclass(frozen=True)
 ... class Air:
@@ -37,12 +37,12 @@ T = TypeVar("T")
 
 
 def _nothing(_: Any) -> None:
-    """The word for a value that has none."""
+    """No word for a value."""
 
 
 @dataclass(frozen=True, slots=True)
 class Word(Quantity):
-    """What a file says of a field in its own words, such as a name; whoever reads the file heeds it.
+    """Text of a file for a field, such as a name, which the reader of the file interprets.
 
     Attributes
     ----------
@@ -59,7 +59,7 @@ class Word(Quantity):
 
 
 class Section(NamedTuple):
-    """Where the quantities of a field's own dataclass stand; with `otherwise` words may stand for them."""
+    """Where the quantities of a field's own dataclass stand; with `otherwise` words may be for them."""
 
     name: str
     otherwise: bool = False
@@ -148,7 +148,7 @@ def made(owner: type[T], values: Mapping[str, Any], *, section: str = "", **part
     owner
         The dataclass.
     values
-        In their ranges; None and what is not there leave the field its default.
+        Values in their ranges; None and missing ones leave the default.
     section
         Where names without one stand.
     parts
@@ -174,7 +174,7 @@ def made(owner: type[T], values: Mapping[str, Any], *, section: str = "", **part
 
 
 def changed(thing: T, values: Mapping[str, Any], *, section: str = "") -> T:
-    """The same dataclass with other values, by name, in the units that the names say; also in what it holds.
+    """The same dataclass with other values, by name, in the units of their names; also in nested dataclasses.
 
     >>> @dataclass(frozen=True)
     ... class Step:
@@ -212,7 +212,7 @@ def _loses_effect(quantity: Quantity, values: Mapping[str, Any]) -> bool:
 
 
 def values_of(thing: Any, *, section: str = "") -> dict[str, Any]:
-    """The values of a dataclass and of what it holds, by name, in the units that the names say."""
+    """Values of a dataclass and of nested ones, by name, in the units of the names."""
     values: dict[str, Any] = {}
     for slot in _slots(type(thing)):
         value = getattr(thing, slot.field.name)
@@ -344,7 +344,7 @@ def checked_table(owner: type, table: Mapping[str, Any], place: str) -> dict[str
     Parameters
     ----------
     owner
-        The dataclass that declares what may stand there; `made` makes one of the values.
+        The dataclass that declares what may be there; `made` makes one of the values.
     table
         As parsed.
     place

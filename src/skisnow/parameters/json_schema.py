@@ -47,7 +47,7 @@ def table_schema(quantities: Iterable[Quantity]) -> Schema:
 
 
 def output_schema(quantities: Iterable[Quantity], *, every_null: bool = False) -> Schema:
-    """The schema of a table that says the value in force under every key; null where there is none.
+    """The schema of a table that says the value in force under every key; null if missing.
 
     With `every_null` also a key that has a default, or must be given, may have none in force.
     """
@@ -62,7 +62,7 @@ def output_schema(quantities: Iterable[Quantity], *, every_null: bool = False) -
 
 
 def schema_text(schema: Schema) -> str:
-    """A schema as it stands in its file."""
+    """A schema as it is in its file."""
     return json.dumps(schema, ensure_ascii=False, indent=1) + "\n"
 
 

@@ -27,7 +27,7 @@ InputValue: TypeAlias = float | int | str | bool | tuple[float, ...]
 
 @dataclass(frozen=True, slots=True)
 class Search:
-    """How a quantity is looked for: size in its unit (of its logarithm where `logarithmic`), and usual bounds.
+    """How a quantity is searched for: size in its unit (of its logarithm where `logarithmic`), and usual bounds.
 
     Attributes
     ----------
@@ -82,7 +82,7 @@ class Condition:
 
 @dataclass(frozen=True, slots=True)
 class Quantity:
-    """What may stand under one key; stands in the annotation of the field that holds it, see `declared`.
+    """One key of users, declared in the annotation of its field; see `declared`.
 
     Attributes
     ----------
@@ -99,11 +99,11 @@ class Quantity:
     example
         How it is given on the command line, with what its values mean.
     label, symbol
-        What people call it, such as on the axis of a figure, and its symbol there.
+        Short name, such as on the axis of a figure, and its symbol there.
     usual
-        Ends of what is usual, in the unit of the name; None: all of the range.
+        Ends of the usual range, in the unit of the name; None: all of the range.
     search
-        How it is looked for; None: by the value that the search begins with.
+        How it is searched for; None: by the value that the search begins with.
     index
         Its place, where the field holds several numbers.
     needed
@@ -112,7 +112,7 @@ class Quantity:
         Without it the quantity has no effect, and any other value than the default is rejected (default: none).
     kind, choices, default, field
         Come from the field: what its type allows, the words of a ``Literal``, the default in the unit of the name (None
-        where there is none), the field's name.
+        without one), the field's name.
 
     The range of numbers is that of each.
     """
@@ -289,7 +289,7 @@ class Quantity:
         return 1.0 if self.field == self.name.rpartition(".")[2] else self.factor
 
     def in_si(self, value: Any) -> Any:
-        """Give a value in SI, three numbers as a tuple; what is no number stays.
+        """Give a value in SI, three numbers as a tuple; what is not a number stays.
 
         >>> Quantity("solver.step_ms", "step").in_si(0.5)
         0.0005

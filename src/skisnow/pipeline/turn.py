@@ -28,7 +28,7 @@ from .ensemble import MEASURED, drawn_scenarios, ensemble_of, inputs_with
 UNLOADING_RATIO: Final = 10.0
 """k_u/H_V of hypoplastic snow whose unloading was not measured (modelling assumption: none is published)."""
 RUNS: Final = 64
-"""Of the ensemble (modelling assumption: the band of 90 % then leaves six out, and shares are known to a tenth)."""
+"""Runs of the ensemble (assumption: the band of 90 % then leaves six out, and shares are known to a tenth)."""
 
 
 def turn(
@@ -58,12 +58,12 @@ def turn(
     ski
         Ski instead of that of the scenario: a ski, a name of the catalogue, or a file.
     unloading_ratio
-        k_u/H_V > 1 of the hypoplastic contact; left out: the measured one of the site, or 10 where none is. The other
+        k_u/H_V > 1 of the hypoplastic contact; default: the measured one of the site, or 10 where none is. The other
         contact is elastic.
     shear_displacement
-        u_y (m) > 0; left out: the measured one of the site, or the scenario's own where none is.
+        u_y (m) > 0; default: the measured one of the site, or the scenario's own where none is.
     priors
-        In place of what the band counts beside H_V and S_f with the same key, or beside it. Without one, k_u/H_V and
+        Further inputs of the band beside H_V and S_f with the same key, or beside it. Without one, k_u/H_V and
         u_y are drawn from their measured intervals where the site has them and neither is given above; all else, and
         they where they were not measured, from `skisnow.pipeline.ensemble.PRIORS`.
     runs
@@ -143,7 +143,7 @@ def turn(
 
 
 def _analysed(campaign: Campaign | str | Path, site: str | None, progress: Callable[[str], None] | None) -> Analysis:
-    """The analysis of a campaign that has the site: a slip of the pen is told before the estimates."""
+    """The analysis of a campaign that has the site: a misspelt site is reported before the estimates."""
     read = campaign if isinstance(campaign, Campaign) else read_campaign(campaign, progress=progress)
     pressed = set(read.penetration.site) if read.penetration is not None else set()
     if site is not None and pressed and site_of_campaign(read, site) not in pressed:

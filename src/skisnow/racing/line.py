@@ -33,9 +33,9 @@ class LineTurn(ShownFields):
     Attributes
     ----------
     aside
-        Of the apex from the turning pole, to the side that is passed (m).
+        Distance of the apex from the turning pole, to the side that is passed (m).
     along
-        Of the apex from the pole down the course, over the way to the nearer of its neighbours: above 0 behind it.
+        Distance of the apex from the pole down the course, over the way to the nearer neighbour: above 0 behind it.
     turning
         Share of half the way to the apexes before and behind over which the edges turn, 0.2 to 1: edging starts so far
         before the apex and ends so far behind it; the rest is straight. 1: half waves.
@@ -290,7 +290,7 @@ def read_line(path: Path, course: Course, start: tuple[float, float]) -> RacingL
     Raises
     ------
     ParameterError
-        It cannot be read, a column is missing, a cell is no number, or its gates are not the course's.
+        It cannot be read, a column is missing, a cell is not a number, or its gates are not the course's.
     """
     rows = list(csv_rows(path, COLUMNS[:4], action=Message("Write the line with `skisnow race` again.")))
     if not 0 < len(rows) <= len(course.gates):

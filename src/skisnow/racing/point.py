@@ -36,7 +36,7 @@ class PointRacer:
     Attributes
     ----------
     slope_angle
-        Of the plane (rad).
+        Inclination of the plane (rad).
     mass
         (kg).
     friction, friction_by_speed
@@ -48,7 +48,7 @@ class PointRacer:
     least_radius
         A tighter line cannot be skied (m); 0: any.
     half_width
-        Of the racer (m): both sides have to pass a gate.
+        Width of the racer (m): both sides have to pass a gate.
     gravity
         (m/s²).
 
@@ -75,7 +75,7 @@ class PointRacer:
         Raises
         ------
         ParameterError
-            The slope is no plane, or there is no skier.
+            The slope is not a plane, or there is no skier.
         """
         if not isinstance(scenario.slope, Plane):
             raise ParameterError(

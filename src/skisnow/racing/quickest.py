@@ -38,11 +38,11 @@ class QuickestLine(Shown):
     line, score
         The best, and its time as the search computed it.
     start, start_score
-        What the search began from: the follower's line, where no other was given.
+        Start of the search: the follower's line, where no other was given.
     history
         Every evaluation.
     seed
-        Of the search.
+        Statistics of the search.
 
     See Also
     --------
@@ -112,7 +112,7 @@ def quickest_line(
         After which no new batch begins; of each window. 1: only the line where it begins, which needs no cmaes.
     search
         "surrogate": a Gaussian process of the evaluations so far says where the next four are made; where all turns
-        begin alike it varies them alike at first. "cma": CMA-ES alone, for evaluations that cost next to nothing. None:
+        begin alike it varies them alike at first. "cma": only CMA-ES, for evaluations that cost next to nothing. None:
         "surrogate" for the skier, "cma" for the point.
     population
         Evaluations of a batch of CMA-ES; None: 4 + 3 ln n for n numbers.

@@ -9,7 +9,7 @@ from .._support.display import ShownFields
 from ..track.course import CourseResult, Passage
 
 NOT_PASSED: Final = 1000.0
-"""What a gate that is not passed adds, so that any way that passes more gates is better (it moves no time)."""
+"""Value that a gate that is not passed adds, so that any way that passes more gates is better (it moves no time)."""
 FARTHEST: Final = 100.0
 """Distance (m) beyond which a failure is as bad as at it."""
 ABREAST: Final = 0.45
@@ -33,9 +33,9 @@ class Score(ShownFields):
     words
         How it ended.
     gates
-        Of each gate what became of it and the time from the start (s), None where it was not crossed.
+        Result at each gate and the time from the start (s), None where it was not crossed.
     margins
-        Of each gate by how much it was passed: the least distance from its poles (m); below 0: by how much it was not.
+        Margin at each gate: distance from the nearest pole (m); below 0 if the gate was not passed.
         None where it was not crossed.
     """
 

@@ -30,11 +30,11 @@ class Evaluated:
     Attributes
     ----------
     number
-        In the order of the search, from 0 on.
+        In the order of the search, 0 or more.
     place
         In the unit cube (n,).
     row
-        What the function gave; `value` is made small.
+        Result of the function; `value` is minimised.
     """
 
     number: int
@@ -66,7 +66,7 @@ class Evaluations:
     done: list[Evaluated]
 
     def of(self, candidates: Sequence[tuple[Any, FloatArray]]) -> Iterator[int]:
-        """Evaluate points, each with its place, telling how many are finished; at the end they stand in `done`."""
+        """Evaluate points, each with its place, telling how many are finished; at the end they are in `done`."""
         first = len(self.done)
         points = {first + i: point for i, (point, _) in enumerate(candidates)}
         missing = [(number, point) for number, point in points.items() if number not in self.kept]
@@ -156,11 +156,11 @@ def least_of(
     count
         Evaluations after which no new batch begins.
     population
-        Of a batch; None: 4 + 3 ln n.
+        Size of a batch; None: 4 + 3 ln n.
     spread
         Standard deviation of the first batch, in shares of each range.
     seed
-        Numbers from 0 on.
+        Number, 0 or more.
     settled
         Ends the search before, where all values of a batch lie within so much.
 

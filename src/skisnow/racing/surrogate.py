@@ -25,8 +25,8 @@ NOISE: Final = (1e-3, 0.5)
 SMALLEST: Final = 1e-9
 """Added to the kernel's diagonal, for rounding."""
 MOST_TIME: Final = 3.0
-"""Of the times' quarter widths above their median, beyond which a time counts as so much, and what a race counts that
-never came to the last gate (modelling assumption)."""
+"""Largest counted time, in quarter widths above the median; also that of a race that never came to the last gate
+(modelling assumption)."""
 MOST_MARGIN: Final = 0.5
 """Distance (m) from a pole that counts at most, to either side; a gate that was not reached counts as missed by it
 (modelling assumption)."""
@@ -69,7 +69,7 @@ class Surrogate:
         Parameters
         ----------
         places
-            (n, d), n from 2 on.
+            (n, d), n 2 or more.
         values
             (n,) or (n, q), finite.
         kinds
@@ -149,7 +149,7 @@ class Prospects:
     time, margins
         `margins` is None where nothing is known to fail.
     least
-        Of the times that the process expects where a race came through (s).
+        Distribution of the times that the process expects where a race came through (s).
 
     References
     ----------
@@ -165,7 +165,7 @@ class Prospects:
 
     @classmethod
     def of(cls, evaluations: Sequence[Evaluated], kinds: int) -> Prospects:
-        """What evaluations say, two at least, whose places have `kinds` numbers a turn."""
+        """Prospects from two or more evaluations, whose places have `kinds` numbers a turn."""
         places = np.array([evaluation.place for evaluation in evaluations])
         times, margins = times_of(evaluations), margins_of(evaluations)
         time = Surrogate.of(places, times, kinds)

@@ -66,9 +66,9 @@ class SurrogateSearch:
     kinds
         Numbers of a turn.
     spread
-        Of the first evaluations: half of the box about the start is twice as much.
+        Size of the first evaluations: half of the box about the start is twice as much.
     seed
-        Numbers from 0 on.
+        Number, 0 or more.
     settled
         Above 0: ends the search before, where three batches on end have not made the least less by so much.
     """
@@ -152,7 +152,7 @@ class SurrogateSearch:
         return chosen
 
     def _centre(self, prospects: Prospects) -> Evaluated:
-        """What came through and is expected to be the quickest; where nothing did, what failed by the least."""
+        """The line that passes all gates and is expected to be the fastest, else the one with the smallest failure."""
         evaluations = self.batches.found
         passed = passed_of(evaluations)
         if not passed.any():

@@ -20,8 +20,8 @@ Progress: TypeAlias = Callable[[str], None]
 Search: TypeAlias = Literal["surrogate", "cma"]
 
 RANGES: Final = {"aside": (0.25, 1.75), "along": (-0.25, 0.25), "turning": (0.35, 1.0)}
-"""Of aside (m), along and turning, within which a line is looked for (modelling assumption: nearer to a pole than half
-a stance nobody passes)."""
+"""Bounds of aside (m), along and turning in the search (modelling assumption: nearer to a pole than half
+a stance is not passed)."""
 _WIDTH: Final = np.array([high - low for low, high in RANGES.values()])
 _LOW: Final = np.array([low for low, _ in RANGES.values()])
 
@@ -83,7 +83,7 @@ class Windows:
                 first = max(0, first - self.step)
 
     def _whole(self, begun: RacingLine) -> Evaluated:
-        """Of the whole course: all turns alike, where they begin so and a process says where; else as it begins."""
+        """Candidates for the whole course: all turns alike if the start has that, else the start."""
         batches = self._batches(begun, 0, len(begun.turns), len(begun.turns))
         search, place = self._surrogate(batches, 0), _place(begun, 0, len(begun.turns))
         if self.how.search == "surrogate" and search.begins_alike(place):
@@ -130,6 +130,6 @@ def _as_found(line: RacingLine, evaluation: Evaluated) -> RacingLine:
 
 
 def _place(line: RacingLine, first: int, last: int) -> FloatArray:
-    """Where the turns of a line from a gate on and before another lie in the unit cube."""
+    """Where the turns of a line from a gate on and before another are in the unit cube."""
     numbers = [[turn.aside, turn.along, turn.turning] for turn in line.turns[first:last]]
     return np.clip((np.array(numbers) - _LOW) / _WIDTH, 0.0, 1.0).ravel()

@@ -178,7 +178,7 @@ class ScoredScenario:
 
 
 def drawn_for_race(snow: SnowProperties, count: int, *, spread: float | None, seed: int) -> list[SnowProperties]:
-    """A snow and so many drawn from what is not known of it: a Latin hypercube over H_V and S_f.
+    """A snow and so many drawn from the uncertainty of its values: a Latin hypercube over H_V and S_f.
 
     Parameters
     ----------
@@ -187,9 +187,9 @@ def drawn_for_race(snow: SnowProperties, count: int, *, spread: float | None, se
     count
         Of drawn snows; 0: none.
     spread
-        Where there is no interval: 95 % lie between the value over 1 + spread and its 1 + spread fold.
+        Without an interval 95 % lie between the value over 1 + spread and its 1 + spread fold.
     seed
-        From 0 on.
+        0 or more.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""What a run starts from: slope, snow, sledge, skis, start, and how it is computed."""
+"""Input of a run: slope, snow, sledge, skis, start, and how it is computed."""
 
 from __future__ import annotations
 

@@ -57,7 +57,7 @@ class Boots(Shown):
     axes
         (n, 2, 3, 3) of their skis: ahead, left across the base, off the base, as rows.
     frame
-        "sledge": of the sledge, which the snow moves; "slope": of the slope, so that the boots move as they are told
+        "sledge": of the sledge, which the snow moves; "slope": of the slope, so that the boots follow the table
         and nothing else moves them.
     over
         What ``at`` is; "distance" goes with the frame of the sledge.
@@ -210,7 +210,7 @@ _RESULTS: Final = ("_N", "_N_m", "_vx", "_vy", "_vz", "_px", "_py", "_pz", "_mx"
 """Ends of names of what a run's own boots hold besides: forces and moments, which are not read."""
 _EDGE: Final = "_edge_angle_deg"
 _ON_ITS_SIDE: Final = 90.0
-"""Edge angle (°) of a ski that stands on its edge: beyond it the base looks up."""
+"""Edge angle (°) of a ski that is on its edge: beyond it the base looks up."""
 _MOST_BYTES: Final = 1 << 28
 _HEAD: Final = 1 << 16
 _OF_OPENSIM: Final = (".mot", ".sto")
@@ -227,13 +227,13 @@ def read_boots(path: str | Path, *, edge_angle: float = 0.0, stance_width: float
     path
         A CSV file, or .mot or .sto of OpenSim. The page docs/files/boots.md names the columns.
     edge_angle, stance_width
-        Of the sledge: what is not said (rad, m).
+        Values of the sledge for angles and places that the file does not give (rad, m).
 
     Raises
     ------
     ParameterError
         The file cannot be read, a column is missing or unknown, a cell holds no finite number (file, row, column and
-        value are named), or it is no table of boots.
+        value are named), or it is not a table of boots.
     """
     path = Path(path)
     (_, names), *rows = _rows(path, plain_text(path, most_bytes=_MOST_BYTES))

@@ -198,7 +198,7 @@ def _snow(resolution: Resolution) -> SnowProperties:
 
 
 def with_numbers(snow: SnowProperties, values: Mapping[str, Any]) -> SnowProperties:
-    """The snow with numbers instead of its own H_V or S_f, which then have no interval."""
+    """The snow with numbers for H_V or S_f, which then have no interval."""
     if H_V in values:
         hardness = float(values[H_V]) * N_PER_MM3
         source = f"{snow.source}; H_V given as a number"

@@ -1,4 +1,4 @@
-"""What the parts of a scenario must hold to together; each number's own range stands where it is declared."""
+"""Rules between the parts of a scenario; ranges of single numbers are in their declarations."""
 
 from __future__ import annotations
 

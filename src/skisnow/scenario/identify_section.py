@@ -21,7 +21,7 @@ from .keys import SCENARIO_KEYS, free_key
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Sought:
-    """What may stand in ``[identify."KEY"]``, in the unit of that key."""
+    """Entries of ``[identify."KEY"]``, in the unit of that key."""
 
     start: Annotated[float | None, Quantity("start", "where the search begins; left out: the scenario's value")] = None
     lower: Annotated[float | None, Quantity("lower", "bound")] = None
@@ -34,7 +34,7 @@ class Sought:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Site:
-    """What may stand in ``[identify.site]``, in the units that the names say."""
+    """Entries of ``[identify.site]``, in the units of their names."""
 
     fall_line_azimuth_deg: Annotated[
         float, Quantity("fall_line_azimuth_deg", "compass direction in which the slope falls")
@@ -46,13 +46,13 @@ class Site:
 
 GIVEN: Final = tuple(quantity.name for quantity in quantities(Sought))
 NO_KEYS: Final = ("runs", "site", "clock")
-"""Entries of ``[identify]`` that are no parameters."""
+"""Entries of ``[identify]`` other than parameters."""
 SITE: Final = tuple(quantity.name for quantity in quantities(Site))
 CLOCKS: Final = ("start", "free")
 
 
 def require_known(section: Mapping[str, Any]) -> None:
-    """Refuse what nobody would read: a key that is misspelt, or that belongs into another section.
+    """Reject keys without effect: a misspelt one, or one that belongs into another section.
 
     Raises
     ------
@@ -87,7 +87,7 @@ def given_parameters(section: Mapping[str, Any]) -> dict[str, dict[str, float]]:
     Raises
     ------
     ParameterError
-        A key or a word is unknown (near ones are named), or a value is no finite number.
+        A key or a word is unknown (near ones are named), or a value is not a finite number.
     """
     parameters: dict[str, dict[str, float]] = {}
     for word, table in section.items():
@@ -180,7 +180,7 @@ class Prior:
                 SCENARIO_KEYS[self.key].in_range(end)
 
     def ends(self, own: float) -> tuple[float, float]:
-        """Both ends for a scenario with a value of its own."""
+        """Both ends for a scenario with this value."""
         return (self.low * own, self.high * own) if self.about else (self.low, self.high)
 
     def at(self, shares: npt.NDArray[np.float64], own: float) -> npt.NDArray[np.float64]:
@@ -227,7 +227,7 @@ class Measured:
     key
         Full name.
     value
-        In the key's unit: the median of what is drawn.
+        Median of the distribution, in the key's unit.
     low, high
         Ends of the 95 % interval in the key's unit, 0 < low ≤ value ≤ high.
     """
@@ -244,7 +244,7 @@ class Measured:
 
 
 def measured_of(snow: SnowProperties) -> tuple[Measured, ...]:
-    """What a snow has with a value and an interval above 0: H_V, S_f, k_u/H_V, u_y, as far as they are known.
+    """Quantities of a snow with a value and an interval above 0: H_V, S_f, k_u/H_V, u_y, as far as they are known.
 
     >>> snow = SnowProperties(2e8, None, "somewhere", unloading_ratio=9.0, unloading_ratio_interval=(6.0, 16.0))
     >>> measured_of(snow)

@@ -167,7 +167,7 @@ def in_sections(values: Mapping[str, Any]) -> dict[str, dict[str, Any]]:
 _HOW_IT_IS_COMPUTED: Final = ("run.", "solver.", "course.")
 
 EACH: Final = "each"
-"""Behind an ``@``: a value of its own for each run."""
+"""Word behind an ``@``: a separate value for each run."""
 FREE_KEYS: Final = tuple(
     name for name, key in SCENARIO_KEYS.items() if key.kind == "number" and not name.startswith(_HOW_IT_IS_COMPUTED)
 )
@@ -206,7 +206,7 @@ def free_key(word: str) -> str:
     Raises
     ------
     ParameterError
-        No key or several are meant, or the key is no number that can be looked for; near ones are named.
+        No key or several are meant, or the key is not a number that can be looked for; near ones are named.
 
     Examples
     --------

@@ -41,12 +41,12 @@ class ScenarioFile(ShownFields):
     title
         The built-in name, or the file's path.
     values
-        Every key of `SCENARIO_KEYS` with the value in force, in the unit that the key names; None where there is none.
-        H_V and S_f stand there also where a name gave them.
+        Every key of `SCENARIO_KEYS` with the value in force, in the unit that the key names; None if missing.
+        H_V and S_f are there also where a name gave them.
     scenario
         In SI.
     files
-        What was read: the scenario's file, profile, results, ski.
+        Files that were read: the scenario's file, profile, results, ski.
     warnings
         In words.
     """

@@ -117,7 +117,7 @@ Method: TypeAlias = Literal["default", "fast"]
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class Solver:
-    """How it is computed; lengths in m, times in s. What is None follows from ski and snow.
+    """How it is computed; lengths in m, times in s. Values of None are derived from ski and snow.
 
     See Also
     --------

@@ -58,7 +58,7 @@ def _boots_file(boots: Boots | None) -> str | None:
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class Scenario(Shown):
-    """What a run follows from.
+    """Input of a run: slope, snow, sledge, ski, start and end.
 
     Attributes
     ----------
@@ -81,7 +81,7 @@ class Scenario(Shown):
     course
         Gates whose passing a run reports; a course in degrees is laid on the slope. None: there are none.
     skier
-        Who moves the boots, keeps balance and steers; None: nobody does.
+        Who moves the boots, keeps balance and steers; None without a skier.
 
     See Also
     --------
@@ -239,7 +239,7 @@ class Scenario(Shown):
         Raises
         ------
         ParameterError
-            A name is no part and no key (the nearest is named), a value is outside its range, or parts do not go
+            A name is not a part and no key (the nearest is named), a value is outside its range, or parts do not go
             together.
 
         Examples

@@ -1,4 +1,4 @@
-"""The JSON Schema of a scenario's file: what its dataclasses declare, and what goes together."""
+"""JSON Schema of a scenario file, from the declarations of its dataclasses and the rules between keys."""
 
 from __future__ import annotations
 
@@ -35,11 +35,11 @@ _TOGETHER: Final[dict[str, Schema]] = {
     "ski": {"oneOf": _one_of("name", "file")},
     "run": {"anyOf": _one_of("duration_s", "length_m")},
 }
-"""What the keys of a section must be to each other."""
+"""Rules between the keys of a section."""
 
 
 def scenario_schema() -> Schema:
-    """The schema that stands in the package as `FILE`."""
+    """The schema that is in the package as `FILE`."""
     sections = {name: {**table_schema(_keys(name)), **_TOGETHER.get(name, {})} for name in SECTIONS}
     return {
         "$schema": DRAFT,

@@ -1,4 +1,4 @@
-"""What the snow holds an edge with, across."""
+"""Law of the shear strength of the snow."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ UPRIGHT: Final = 2.0
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class Shear:
-    """The law of the shear strength, in SI; what is None follows from the snow.
+    """The law of the shear strength, in SI; a value of None is derived from the snow.
 
     Attributes
     ----------

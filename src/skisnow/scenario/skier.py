@@ -13,7 +13,7 @@ Steers: TypeAlias = Literal["turns", "gates"]
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class Skier:
-    """What a balanced skier steers by, what its body can do, and the numbers of its control, SI and rad.
+    """Steering, body and control of a balanced skier, SI and rad.
 
     Attributes
     ----------

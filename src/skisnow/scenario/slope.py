@@ -148,7 +148,7 @@ class Profile(Shown):
 
     @property
     def coefficients(self) -> FloatArray:
-        """Of the cubic in x - x[i] on each piece i, highest power first, (4, n - 1)."""
+        """Coefficients of the cubic in x - x[i] on each piece i, highest power first, (4, n - 1)."""
         return np.asarray(self._curve.c)
 
     def heights(self, x: npt.ArrayLike) -> FloatArray:
@@ -265,7 +265,7 @@ def read_profile(path: str | Path, *, gap: Gap = "error") -> Profile:
     ------
     ParameterError
         The file cannot be read, a column is missing, a cell holds no finite number or an impossible one (file, row,
-        column and value are named), or it is no profile: too few points, x that does not rise, a gap, a cliff.
+        column and value are named), or it is not a profile: too few points, x that does not rise, a gap, a cliff.
     """
     limits = profile_limits(COLUMNS)
     rows = csv_rows(path, COLUMNS, action=_ACTION)

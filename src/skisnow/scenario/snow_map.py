@@ -24,13 +24,13 @@ from .raster_formats import read_grid_table
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 
 FINER: Final = 4
-"""Parts of a patch between whose ends it is looked for values below 0 (modelling assumption)."""
+"""Parts into which a patch is divided by the search for values below 0."""
 _PATCHES_AT_ONCE: Final = 16_384
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class SnowMap(Shown):
-    """What varies over the place, in the scenario's coordinates; beyond its border the last value goes on.
+    """H_V and S_f over the place, in the scenario's coordinates; beyond its border the last value goes on.
 
     Attributes
     ----------
@@ -82,7 +82,7 @@ class SnowMap(Shown):
         return None if self.failure_shear_stress is None else float(self.failure_shear_stress.values.mean())
 
     def means_of(self, snow: SnowProperties) -> SnowProperties:
-        """The snow with the map's means in place of its own numbers."""
+        """The snow with the map's means as H_V and S_f."""
         hardness, stress = self.mean_hardness, self.mean_stress
         if hardness is not None:
             snow = replace(snow, snow_hardness=hardness, snow_hardness_interval=None)
@@ -143,7 +143,7 @@ def _require_positive(name: str, grid: Grid) -> None:
 def _corners_that_may_swing(grid: Grid) -> tuple[FloatArray, FloatArray]:
     """X and y of the first corner of each patch that may reach below 0.
 
-    A patch lies in the convex hull of its Bézier points, which are its corners' values, give or take a third of their
+    A patch is in the convex hull of its Bézier points, which are its corners' values, give or take a third of their
     slopes over the patch.
     """
     along_x, along_y = grid.gradients(grid.x[:, None], grid.y[None, :])

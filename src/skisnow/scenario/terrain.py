@@ -44,7 +44,7 @@ class Terrain(Shown):
     origin_x, origin_y
         The place of the source (m) at which x and y of the scenario are 0.
     surface
-        What the skis run on, in the scenario's coordinates: smoothed, and counted from the origin.
+        Surface under the skis, in the scenario's coordinates: smoothed, and counted from the origin.
 
     Raises
     ------
@@ -189,7 +189,7 @@ def read_terrain(path: str | Path, *, smoothing: float = 0.0, origin_x: float = 
     Raises
     ------
     ParameterError
-        The file cannot be read or is no grid; file, row, column and value are named.
+        The file cannot be read or is not a grid; file, row, column and value are named.
     """
     raster = _placed(Path(path))
     try:
@@ -217,7 +217,7 @@ PROFILE_STEP: Final = 0.02
 
 
 def surface_of(slope: Slope) -> surfaces.Plane | surfaces.Grid:
-    """What a `SnowField` takes."""
+    """Surface for a `SnowField`."""
     if isinstance(slope, Plane):
         return surfaces.Plane()
     if isinstance(slope, Terrain):

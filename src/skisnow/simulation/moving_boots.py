@@ -22,7 +22,7 @@ FloatArray: TypeAlias = npt.NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class BootMoment(Shown):
-    """What whoever moves the boots knows when poses are asked for.
+    """State of a run for a function that returns the next poses of the boots.
 
     Attributes
     ----------
@@ -31,12 +31,12 @@ class BootMoment(Shown):
     distance
         Run so far (m).
     position, rotation, velocity
-        Of the sledge: (3,) in space (m), its axes as columns (3, 3), velocity and angular velocity in its axes (6,).
+        Origin of the sledge (3,) in space (m), axes as columns (3, 3), velocity and angular velocity in its axes (6,).
     boots
-        Of each boot against the sledge now: place, axes ahead, left and off the base, velocity, angular velocity,
+        Pose of each boot against the sledge now: place, axes ahead, left and off the base, velocity, angular velocity,
         (2, 6, 3).
     wrench
-        What each ski does to its boot, in its axes: force (N), moment (N m), (2, 6). Zero at the start.
+        Load of each ski on its boot, in its axes: force (N), moment (N m), (2, 6). Zero at the start.
 
     See Also
     --------
@@ -99,7 +99,7 @@ class BootDrive:
 
     @property
     def described(self) -> str:
-        """What moves the boots, in words."""
+        """Control of the boots, in words."""
         if isinstance(self.control, TableControl):
             return f"moved by {self.control.table.source}"
         return f"moved by {name_with_values(self.control)}"

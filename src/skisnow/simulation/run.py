@@ -99,7 +99,7 @@ class SkiHistory(Shown):
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Groove(Shown):
-    """What the skis left in the snow, one entry for each piece of a line across the path.
+    """Grooves of the skis in the snow, one entry for each piece of a line across the path.
 
     Attributes
     ----------
@@ -127,12 +127,12 @@ class Groove(Shown):
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True, repr=False)
 class Run(Shown):
-    """What came out.
+    """Result of a simulation.
 
     Attributes
     ----------
     scenario
-        What was asked.
+        The simulated scenario.
     outcome, remedy
         How it ended, and what that means and what to do, in words.
     time
@@ -150,23 +150,23 @@ class Run(Shown):
     skis
         The skis over time.
     groove
-        What they left.
+        Grooves of the skis.
     energies
         (n,) each (J): STORED, what is LOST since the start, and what was GIVEN by boots that move and by pushes.
     run_length
-        Of the middle's path (m).
+        Length of the middle's path (m).
     steps, rejected_steps
-        Of the integrator.
+        Numbers of the integrator.
     wall_s
         Time it took, without the start (s).
     numbers
-        What the solver chose: elements, line_spacing_m.
+        Choices of the solver: elements, line_spacing_m.
     boots
         Where the boots were, and force and moment on each; None where nothing is known of them.
     boots_by
-        What moved them, in words; None where they stay where the sledge has them.
+        Their control, in words; None where they stay where the sledge has them.
     laws, strength_along
-        What acted in place of the scenario's laws, as `skisnow.simulate` was given it.
+        Laws that acted instead of the scenario's, as `skisnow.simulate` was given it.
 
     See Also
     --------
@@ -198,7 +198,7 @@ class Run(Shown):
 
     @property
     def given_laws(self) -> dict[str, str | None]:
-        """What acted in place of the scenario's laws, in words: friction, shear, penetration, strength_along."""
+        """Laws that acted instead of the scenario's, in words: friction, shear, penetration, strength_along."""
         along = None if self.strength_along is None else name_with_values(self.strength_along)
         laws = dict.fromkeys(("friction", "shear", "penetration")) if self.laws is None else self.laws.described
         return {**laws, "strength_along": along}
@@ -246,7 +246,7 @@ class Run(Shown):
         Returns
         -------
         matplotlib.figure.Figure
-            One of its own; no window is opened.
+            A new figure; no window is opened.
 
         Raises
         ------

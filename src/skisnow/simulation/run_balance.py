@@ -34,7 +34,7 @@ def balance_of(run: Run) -> BalanceHistory:
     Raises
     ------
     ParameterError
-        The run knows nothing of its boots.
+        The run has no record of its boots.
     """
     boots = run.boots
     if boots is None:
@@ -115,11 +115,11 @@ class BalanceHistory(Shown):
     Attributes
     ----------
     lean
-        Of the line from the middle of the boots to the centre of mass, from the snow's normal (rad).
+        Angle of the line from the middle of the boots to the centre of mass, from the snow's normal (rad).
     pressure_lean
-        Of the line from the centre of pressure to it (rad); NaN where the skis do not bear.
+        Angle of the line from the centre of pressure to it (rad); NaN where the skis do not bear.
     balanced_lean
-        Of a body in balance with speed v and path radius R of the centre of mass:
+        Lean of a body in balance with speed v and path radius R of the centre of mass:
         tan Ψ = v²/(R g cos α) - tan α cos χ, χ from the horizontal (rad); NaN at both ends of a run.
     rolling_lean
         The same with what the body's roll and the rise of its centre of mass take: tan Ψ = (a_l + I φ''/(m z))/(a_n),

@@ -74,7 +74,7 @@ def racer_parts(run: Run) -> dict[str, MovingPoint]:
 
 
 def feet_and_tips(time: FloatArray, feet: FloatArray, tips: FloatArray) -> dict[str, MovingPoint]:
-    """What must cross the line of a gate, from the places (n, 2, 3) of feet and tips (m) at times (n,) (s)."""
+    """Points that must cross the line of a gate, from the places (n, 2, 3) of feet and tips (m) at times (n,) (s)."""
     return {
         f"{name} {part}": MovingPoint(time, place[:, ski, :2])
         for part, place in (("foot", feet), ("tip", tips))
@@ -83,7 +83,7 @@ def feet_and_tips(time: FloatArray, feet: FloatArray, tips: FloatArray) -> dict[
 
 
 def run_gates(run: Run) -> CourseResult | None:
-    """What became of the gates of the scenario's course; None where there is none, or the run has but one moment."""
+    """Result at the gates of the scenario's course; None without a course, or if the run has a single moment."""
     course = run.scenario.course
     return None if course is None or len(run.time) < 2 else time_gates(course, run)
 

@@ -36,7 +36,7 @@ class Moment:
     Attributes
     ----------
     time, place, attitude, velocity
-        Of the boots' middle, in space: (), (3,), (3, 3), (3,).
+        Motion of the boots' middle, in space: (), (3,), (3, 3), (3,).
     energies
         Kinetic, potential, elastic in the skis and in the snow, in its delayed depth; lost to penetration, shear,
         friction, drag, damping of the skis and of the snow since the start; given by boots and by pushes (J), (13,).
@@ -46,7 +46,7 @@ class Moment:
         Forces of the snow on each ski along the edge, forward positive; of friction across it, and off the surface (N),
         (skis, 3).
     dofs
-        Of the beams at the free nodes (skis, n): deflection (m), its slope and twist (rad).
+        Unknowns of the beams at the free nodes (skis, n): deflection (m), its slope and twist (rad).
     body
         Place of the body's origin and its axes as columns, in space, (3,) and (3, 3).
     boots, wrench
@@ -80,7 +80,7 @@ class Record:
     def advance(
         self, moment: float, *, replace: bool = False, is_over: Callable[[], bool] = lambda: False
     ) -> Outcome | None:
-        """Let the run go on to a moment (s) and store it, with `replace` in place of the last one.
+        """Let the run go on to a moment (s) and store it, with `replace` instead of the last one.
 
         The outcome if the steps cannot go on. `is_over`: see `Setup.advance`.
         """

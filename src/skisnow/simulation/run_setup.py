@@ -1,4 +1,4 @@
-"""A scenario made ready to run: numbers of the solver chosen, snow laid out, sledge set down on it."""
+"""A scenario made ready to run: numbers of the solver chosen, snow placed, sledge set down on it."""
 
 from __future__ import annotations
 
@@ -107,14 +107,14 @@ class Setup:
 
     @property
     def place(self) -> FloatArray:
-        """Of the middle between the boots, in space (m), (3,)."""
+        """Vector of the middle between the boots, in space (m), (3,)."""
         if self.drive is None:
             return self.dynamics.position
         return self.dynamics.position + self.dynamics.rotation @ self.dynamics.boots[:, 0].mean(axis=0)
 
     @property
     def velocity(self) -> FloatArray:
-        """Of the middle between the boots, in space (m/s), (3,)."""
+        """Vector of the middle between the boots, in space (m/s), (3,)."""
         rotation, rates = self.dynamics.rotation, self.dynamics.velocity
         if self.drive is None:
             return rotation @ rates[:3]
@@ -123,7 +123,7 @@ class Setup:
 
     @property
     def attitude(self) -> FloatArray:
-        """Of the sledge, or where nothing carries the boots, of a level between their skis: axes as columns, (3, 3)."""
+        """Axes of the sledge as columns, (3, 3); if nothing carries the boots, of a level between their skis."""
         if self.drive is None or not self.drive.held:
             return self.dynamics.rotation
         normal = self.slope_normal(*self.place[:2].tolist())
@@ -139,7 +139,7 @@ class Setup:
 
     @property
     def speed(self) -> float:
-        """Of the boots' middle (m/s)."""
+        """Speed of the boots' middle (m/s)."""
         return float(np.linalg.norm(self.dynamics.velocity[:3] if self.drive is None else self.velocity))
 
     @property
@@ -159,7 +159,7 @@ class Setup:
 
     @property
     def height(self) -> float:
-        """Of the boots' middle above the slope (m)."""
+        """Height of the boots' middle above the slope (m)."""
         return float(self.place[2] - self._slope_at_boots()[0])
 
     @property

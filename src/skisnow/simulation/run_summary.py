@@ -36,11 +36,11 @@ def summary_dict(
     Parameters
     ----------
     run
-        What came out.
+        The run.
     values
-        Every key of the scenario as `ScenarioFile.values` has it; left out: taken from the run's scenario.
+        Every key of the scenario as `ScenarioFile.values` has it; default: taken from the run's scenario.
     files
-        What the scenario was read from, for their SHA-256.
+        Files of the scenario, for their SHA-256.
     warnings
         About the scenario, in words.
     verification

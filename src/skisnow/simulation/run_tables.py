@@ -95,7 +95,7 @@ def boots_columns(run: Run) -> dict[str, FloatArray]:
     Raises
     ------
     ParameterError
-        The run knows nothing of its boots.
+        The run has no record of its boots.
     """
     boots = _boots(run)
     columns = {"time_s": run.time}
@@ -172,7 +172,7 @@ def write_boots(run: Run, path: str | Path) -> None:
     Raises
     ------
     ParameterError
-        The name ends otherwise, or the run knows nothing of its boots.
+        The name ends otherwise, or the run has no record of its boots.
     OutputError
         The place cannot be written.
     """

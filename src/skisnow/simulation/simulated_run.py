@@ -30,7 +30,7 @@ TIPPED: Final = math.radians(60.0)
 PITCHED: Final = math.radians(40.0)
 """Angle between the length of a sledge on the snow and the surface at which it has tipped over (modelling assumption).
 
-Beyond it a ski stands on its shovel or tail: a line across the snow meets its base more than once.
+Beyond it a ski is on its shovel or tail: a line across the snow meets its base more than once.
 """
 LONGEST_FLIGHT: Final = 0.3
 """Time (s) with both skis off the snow after which it is airborne (modelling assumption)."""
@@ -91,17 +91,17 @@ def simulate(
         S_f over that of the scenario, > 0, by the distance run (m): snow that is weaker or stronger in places.
         Evaluated every 10 ms, for both skis and all along them.
     laws
-        In place of the scenario's: laws of `skisnow.forces`, or of your own. Run, summary.json and report name them
+        Instead of the scenario's: laws of `skisnow.forces`, or of your own. Run, summary.json and report name them
         with their numbers.
     boots
-        Moves the boots against the sledge, in place of the scenario's boots.file: called with a `BootMoment` every
+        Moves the boots against the sledge, instead of the scenario's boots.file: called with a `BootMoment` every
         10 ms, or after its attribute ``period`` (s), it gives the `BootPose` of the left and the right boot at the end
         of that time. Its method ``push``, if it has one, gives a force and its place on the sledge.
 
     Returns
     -------
     Run
-        Whatever the outcome, with what was computed so far. Ctrl-C ends a run with the outcome "interrupted".
+        The run up to its end, whatever the outcome. Ctrl-C ends a run with the outcome "interrupted".
 
     Raises
     ------
@@ -227,7 +227,7 @@ def _ended(setup: Setup, flying: float) -> Outcome | None:
 
 
 def computed_run(setup: Setup, record: Record, outcome: Outcome, wall: float) -> Run:
-    """What came out; an end with the balance of energy open is no such end."""
+    """The run; its outcome is `energy_open` if too much energy is unaccounted for."""
     steps, rejected, *_ = setup.dynamics.counts
     run = Run(
         scenario=setup.scenario,
@@ -317,7 +317,7 @@ def weight_meets_base(setup: Setup) -> tuple[float, float]:
 
 
 def _carried_across(setup: Setup) -> tuple[float, float]:
-    """How far to the right and left skis can stand on the snow (m): at most from their edges to the waterline."""
+    """How far to the right and left skis can be on the snow (m): at most from their edges to the waterline."""
     ski, angle = setup.scenario.ski, setup.scenario.sledge.edge_angle
     width, length = float(ski.width.max()), float(ski.station[0] - ski.station[-1])
     tangent = max(math.tan(abs(angle)), 1e-9)

@@ -139,7 +139,7 @@ def sledge_body(
     sledge, ski
         The rigid part, and the ski of both sides.
     damping_ratio
-        Of the ski's first bending mode as it is clamped, ≥ 0: damping in proportion to the stiffness.
+        Damping ratio of the clamped ski's first bending mode, ≥ 0: damping in proportion to the stiffness.
     gravity
         In space (m/s²), (3,).
     drag, drag_height

@@ -37,18 +37,18 @@ move by once)."""
 
 @dataclass(frozen=True, slots=True, repr=False)
 class Refinement(Shown):
-    """What one finer choice changed.
+    """Change of a run's end by one finer choice.
 
     Attributes
     ----------
     key
-        Of the scenario, such as "solver.elements".
+        Key of the scenario, such as "solver.elements".
     was, now
         Its value in force and the finer one, in the unit that the key names.
     end_moves
         Distance between the ends of both runs (m); None where one of them is not finite.
     outcome
-        Of the finer run.
+        Outcome of the finer run.
 
     See Also
     --------
@@ -116,7 +116,7 @@ def verify(run: Run, simulate: Simulate | None = None) -> tuple[Refinement, ...]
     run
         The run.
     simulate
-        What computes a scenario, called in the order of `repetitions`; left out: `skisnow.simulate`, with the laws
+        Function that simulates a scenario, in the order of `repetitions`; default: `skisnow.simulate`, with the laws
         that the run was given in Python.
 
     Returns

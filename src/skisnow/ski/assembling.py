@@ -1,4 +1,4 @@
-"""A `Ski` from what is known about it."""
+"""Assembling a `Ski` from its parts."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ class SkiParts:
     mass_per_length
         As in `Ski`; None: proportional to the width (modelling assumption), with ``mass``.
     mass
-        Of the ski (kg); looked at only without ``mass_per_length``.
+        Mass of the ski (kg); used only without ``mass_per_length``.
     stations
         Stations (m) that the ski shall have, tip to tail; those of layout and boot are added and gaps above 2.5 mm
         divided evenly.
@@ -128,15 +128,15 @@ def arc_ski(
     tip_width, waist_width, tail_width
         At the front end, the middle and the rear end of the sidecut length (m).
     mass
-        Of the ski alone (kg); spread in proportion to the width (modelling assumption).
+        Mass of the ski (kg), without binding; spread in proportion to the width (modelling assumption).
     bending_stiffness, torsional_stiffness
         EI and GJ (N m²), tip to tail, one value or several.
     stiffness_station
-        Stations of both (m, from the boot, falling); left out: evenly spaced over the running length (modelling
+        Stations of both (m, from the boot, falling); default: evenly spaced over the running length (modelling
         assumption). Between
         them a shape-preserving cubic, beyond them the end values.
     base
-        Camber, rocker and heights; left out: flat, with the usual shovel and tail.
+        Camber, rocker and heights; default: flat, with the usual shovel and tail.
     base_bevel, edge_width
         As in `Ski`.
 

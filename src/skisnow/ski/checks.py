@@ -1,4 +1,4 @@
-"""What a ski must be, whoever makes it."""
+"""Conditions that every ski meets."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def require_on_ski(name: str, stations: FloatArray, station: FloatArray) -> None
     Raises
     ------
     ParameterError
-        One is not, or is no number.
+        One is not, or is not a number.
     """
     off = ~((station >= stations[-1] - _ROUNDING) & (station <= stations[0] + _ROUNDING))
     if np.any(off):
@@ -120,7 +120,7 @@ def require_lengths(name: str, tables: SkiSections, *, running: float, sidecut: 
     Raises
     ------
     ParameterError
-        They do not, or a length is none.
+        They do not, or a length is not valid.
     """
     tip, tail = tables.station[0], tables.station[-1]
     for which, length in (("running_length", running), ("sidecut_length", sidecut)):

@@ -27,7 +27,7 @@ EDITED_COLUMNS: Final = {
     "EI_N_m2": "bending_stiffness",
     "GJ_N_m2": "torsional_stiffness",
 }
-"""Columns of a ski's table that can be edited, and what they are called in `Ski`."""
+"""Columns of a ski's table that can be edited, with their names in `Ski`."""
 SIDECUT: Final = "sidecut_depth"
 """Factor of how much wider than the waist the ski is: the waist's own width stays."""
 MASS: Final = "mass_per_length_kg_per_m"
@@ -45,7 +45,7 @@ class SkiEdit:
     station
         Places (m from the boot, falling) at which values may be given. Shape (k,).
     factors
-        By column of `EDITED_COLUMNS`, for ``mass_per_length_kg_per_m``, and for `SIDECUT`; left out: 1.
+        By column of `EDITED_COLUMNS`, for ``mass_per_length_kg_per_m``, and for `SIDECUT`; default: 1.
     values
         By column, in SI, shape (k,): the value wanted there; NaN: as it is but for the factor.
     """
@@ -100,9 +100,9 @@ def edited_ski(ski: Ski, edit: SkiEdit, *, name: str, source: str) -> Ski:
         Where a value is given the curve passes through it: width and stiffness
         are multiplied by the ratio of new to old value, to the base's height the difference is added. Between
         stations ratio and difference follow a shape-preserving cubic (`StationTable`), so that where nothing is given
-        at two neighbouring stations nothing changes between them. Mass changes by its factor alone.
+        at two neighbouring stations nothing changes between them. Mass changes only by its factor.
     name, source
-        Of the edited ski.
+        Name of the edited ski.
 
     Raises
     ------
@@ -136,7 +136,7 @@ def edited_ski(ski: Ski, edit: SkiEdit, *, name: str, source: str) -> Ski:
 
 
 def values_at(ski: Ski, station: FloatArray) -> dict[str, FloatArray]:
-    """What the columns of `EDITED_COLUMNS` are at stations (m), in SI. Each of shape (k,)."""
+    """Values of the columns of `EDITED_COLUMNS` at stations (m), in SI. Each of shape (k,)."""
     return {
         column: np.interp(station, ski.station[::-1], np.asarray(getattr(ski, attribute))[::-1])
         for column, attribute in EDITED_COLUMNS.items()

@@ -1,4 +1,4 @@
-"""What a ski file and its table say: each key and column with its range, what is usual, and what stands for it."""
+"""Keys of a ski file and columns of its table: each key and column with its range, what is usual, and what means it."""
 
 from __future__ import annotations
 
@@ -149,7 +149,7 @@ class SkiFile:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class StationRow:
-    """A row of a ski's table in SI; its origin is what the column stands for."""
+    """A row of a ski's table in SI; its origin is what the column means."""
 
     station: Annotated[
         float,

@@ -91,7 +91,7 @@ class FileValues:
         refuse(self.file, key, value, allowed, action)
 
     def refuse_together(self, keys: Iterable[str], other: str | Message, action: Message) -> None:
-        """Raise an error where one of the keys stands beside another that says the same."""
+        """Raise an error where one of the keys is next to another that says the same."""
         for key in keys:
             if key in self.values:
                 raise ParameterError(

@@ -95,9 +95,10 @@ def layout_of_lengths(
     running_length, sidecut_length
         Between the contact points, between the widest points.
     tail_overhang
-        Of the tail behind the sidecut length; what is left of the length is the tip. Modelling assumption: 20 mm.
+        Length of the tail behind the sidecut length; what is left of the length is the tip. Modelling assumption: 20
+        mm.
     boot_position
-        Of the boot in front of the middle of the running length, negative behind it. Modelling assumption: 0.
+        Distance of the boot in front of the middle of the running length, negative behind it. Modelling assumption: 0.
 
     Raises
     ------

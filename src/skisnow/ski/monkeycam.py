@@ -40,7 +40,7 @@ _LENGTH = re.compile(r"([+-]?(?:\d++(?:\.\d*+)?|\.\d++)(?:[eE][+-]?\d++)?)\s*+([
 
 @dataclass(frozen=True, slots=True)
 class MonkeycamShape:
-    """What a design file of MonkeyCAM says of a ski's shape: its name and its outline (SI)."""
+    """Shape in a design file of MonkeyCAM: a ski's shape: its name and its outline (SI)."""
 
     name: str
     outline: ArcOutline
@@ -67,12 +67,12 @@ def read_monkeycam(
     mass, bending_stiffness, torsional_stiffness, stiffness_station, base, base_bevel, edge_width
         As in `arc_ski`.
     running_length
-        Between the contact points (m); left out: the effective edge (modelling assumption).
+        Between the contact points (m); default: the effective edge (modelling assumption).
 
     Raises
     ------
     ParameterError
-        The file cannot be read, a key is missing or no length, the edge is no arc, or the ski breaks a rule of `Ski`.
+        The file cannot be read, a key is missing or wrong, the edge is not an arc, or the ski breaks a rule of `Ski`.
 
     Notes
     -----

@@ -38,7 +38,7 @@ class ArcOutline:
     Attributes
     ----------
     layout
-        Of the ski.
+        Layout of the ski.
     tip_width, waist_width, tail_width
         At the front end, the middle and the rear end of the sidecut length.
     end_width

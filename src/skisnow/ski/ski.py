@@ -1,4 +1,4 @@
-"""What a ski is: its shape, stiffness and mass, as dense tables along it."""
+"""A ski: its shape, stiffness and mass, as dense tables along it."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ class Ski(Shown):
     Attributes
     ----------
     name
-        What it is called.
+        Name of the ski.
     source
         Where its numbers come from, in words.
     station
@@ -62,7 +62,7 @@ class Ski(Shown):
     edge_width
         Width of the bevelled strip (m). Modelling assumption: 2 mm, a usual steel edge.
     sidecut_middle
-        Station of the middle of running length and sidecut length (m): 0 where the boot stands there.
+        Station of the middle of running length and sidecut length (m): 0 where the boot is there.
     base
         What ``base_height`` follows from; None where the heights themselves are given.
 

@@ -154,7 +154,8 @@ def write_ski(ski: Ski, path: str | Path) -> None:
     ski
         To write.
     path
-        Of the TOML file. The table, a row for each station, goes beside it, with the same name and the ending .csv.
+        Path of the TOML file. The table, a row for each station, goes beside it, with the same name and the ending
+        .csv.
 
     Raises
     ------
@@ -210,7 +211,7 @@ def _is_rigid(ski: Ski) -> bool:
 
 
 def _plain(value: float) -> float:
-    """The number without the last digits, which the change of unit made up, and none that is no quantity."""
+    """The number without the last digits, which the change of unit made up, and none that is not a quantity."""
     return 0.0 if abs(value) < SMALLEST else float(f"{value:.15g}")
 
 

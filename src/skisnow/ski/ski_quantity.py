@@ -8,5 +8,5 @@ from ..parameters import Quantity
 def ski_quantity(
     name: str, meaning: str, allowed: tuple[float, float], usual: tuple[float, float], left_out: str
 ) -> Quantity:
-    """A quantity with the ends of what is allowed and of what is usual, and what holds where it is left out."""
+    """A quantity with its allowed and its usual range, and the value without it."""
     return Quantity(name, meaning, lowest=allowed[0], highest=allowed[1], usual=usual, origin=left_out)

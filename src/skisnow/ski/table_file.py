@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 FloatArray = npt.NDArray[np.float64]
 
 MOST_BYTES: Final = 1 << 20
-"""Of a table: a row for each 2.5 mm of a ski takes 200 kB at most."""
+"""Most rows of a table: a row for each 2.5 mm of a ski takes 200 kB at most."""
 
 
 def read_table(path: Path) -> dict[str, StationTable]:
@@ -44,7 +44,7 @@ def read_table(path: Path) -> dict[str, StationTable]:
     Raises
     ------
     ParameterError
-        The file cannot be read, a column is unknown or missing, a cell is no number or outside its range, or the
+        The file cannot be read, a column is unknown or missing, a cell is not a number or outside its range, or the
         stations do not fall. Line numbers are those of the file.
     """
     separator, lines = _lines(path)
@@ -94,7 +94,7 @@ def read_table(path: Path) -> dict[str, StationTable]:
 
 
 def _lines(path: Path) -> tuple[str, list[tuple[int, list[str]]]]:
-    """The separator, and the lines that are no remarks with their cells."""
+    """The separator, and the lines with their cells, without remarks."""
     try:
         text = decoded(plain_bytes(path, most_bytes=MOST_BYTES)).text
     except NoTextError as error:

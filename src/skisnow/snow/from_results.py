@@ -38,7 +38,7 @@ def snow_from_results(path: str | Path, *, site: str | None = None) -> SnowPrope
     path
         results.json as `skisnow analyse` writes it.
     site
-        One site of the file, "C" is also its "site C"; left out: all sites together.
+        One site of the file, "C" is also its "site C"; default: all sites together.
 
     Returns
     -------
@@ -49,7 +49,7 @@ def snow_from_results(path: str | Path, *, site: str | None = None) -> SnowPrope
     Raises
     ------
     ParameterError
-        The file cannot be read or is no results file; or it holds no used penetration experiment of that site: the
+        The file cannot be read or is not a results file; or it holds no used penetration experiment of that site: the
         message names the sites it has.
 
     See Also
@@ -130,7 +130,7 @@ def _results(path: Path) -> dict[str, Any]:
 
 
 def _sites(results: dict[str, Any]) -> set[str]:
-    """Sites with a used experiment; none of what is no list of experiments, which `_used` refuses."""
+    """Sites with a used experiment; empty if the entry is not a list, which `_used` rejects."""
     try:
         rows = [row for part in ("penetration", "shear") for row in results[part]["experiments"]]
         return {str(row["site"]) for row in rows if row["used"]}

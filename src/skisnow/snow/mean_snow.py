@@ -34,7 +34,7 @@ def mean_snow(
     Parameters
     ----------
     hardness_N_per_mm3, stress_N_per_mm2
-        Of the used experiments, as results.json has them: both ways to a snow give the same bits.
+        Values of the used experiments, as results.json has them: both ways to a snow give the same bits.
     source
         Where the numbers come from, for `SnowProperties.source`.
     where
@@ -199,7 +199,7 @@ def measured_intervals(snow: SnowProperties) -> tuple[Interval, Interval]:
 def log_normal(value: float, interval: Interval, shares: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
     """Quantiles at shares (n,) of a value that is known with a 95 % interval above 0: the median is the value.
 
-    On logarithms each side of the value is half of a normal distribution of its own: the interval of a ratio that was
+    On logarithms each side of the value is half of a separate normal distribution: the interval of a ratio that was
     turned over, or cut, does not lie evenly about it. Where it does, this is the log-normal distribution.
 
     >>> log_normal(9.0, (6.0, 16.0), np.array([0.025, 0.5, 0.975])).round(9).tolist()

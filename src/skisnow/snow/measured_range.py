@@ -25,7 +25,7 @@ _ONE_AT_A_TIME: Final = threading.RLock()
 
 @dataclass(frozen=True, slots=True)
 class MeasuredRange:
-    """Ends of what was measured of one quantity, with its source.
+    """Measured range of one quantity, with its source.
 
     Attributes
     ----------
@@ -95,7 +95,7 @@ class MeasuredRange:
 
 
 def with_range_warnings(act: Callable[[], T]) -> tuple[T, tuple[str, ...]]:
-    """What an act gives and its range warnings; any other warning is passed on. One thread at a time."""
+    """Result of a function and its range warnings; any other warning is passed on. One thread at a time."""
     with _ONE_AT_A_TIME, warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         value = act()

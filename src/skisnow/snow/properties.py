@@ -138,7 +138,7 @@ def _with_interval(value: float | None, interval: Interval | None, size: float, 
 
 
 def require_stress(snow: SnowProperties, S_f_N_per_mm2: float | None, *, carves: bool) -> None:
-    """Refuse a named snow that has no S_f where one is needed, or one of its own beside a given one.
+    """Refuse a named snow that has no S_f where one is needed, or one that has S_f next to a given one.
 
     Raises
     ------
@@ -166,7 +166,7 @@ def require_stress(snow: SnowProperties, S_f_N_per_mm2: float | None, *, carves:
 
 
 def with_stress(snow: SnowProperties, S_f_N_per_mm2: float | None) -> SnowProperties:
-    """The snow, with a given S_f where it has none."""
+    """The snow, with a given S_f if it lacks one."""
     if S_f_N_per_mm2 is None:
         return snow
     stress = S_f_N_per_mm2 * N_PER_MM2

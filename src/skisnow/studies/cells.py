@@ -15,7 +15,7 @@ from ..parameters import Quantity
 
 TEXTS: Final = ("outcome", "ski_name", "warnings", "reason", "study")
 BLANK: Final = ("warnings", "reason")
-"""Texts that are empty where there is nothing to say; of all others an empty cell is no value."""
+"""Texts that are empty where there is nothing to say; of all others an empty cell is not a value."""
 
 Reader: TypeAlias = Callable[[str], Any]
 
@@ -41,7 +41,7 @@ def cell(value: Any) -> str:
 
 
 def readers(columns: Sequence[str], keys: Mapping[str, Quantity], mark: str) -> list[Reader]:
-    """What makes values of the cells of each column; `mark` is the decimal mark."""
+    """Functions that convert the cells of each column; `mark` is the decimal mark."""
     return [_reader(name, keys, mark) for name in columns]
 
 
@@ -51,7 +51,7 @@ def row_of(place: str, columns: Sequence[str], cells: Sequence[str], readers: Se
     Raises
     ------
     ParameterError
-        It has another number of cells, or one is no number; the message begins with the place.
+        It has another number of cells, or one is not a number; the message begins with the place.
     """
     if len(cells) != len(columns):
         raise ParameterError(

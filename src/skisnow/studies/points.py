@@ -27,7 +27,7 @@ MOST_POINTS: Final = 1_000_000
 
 
 class Points(Sequence[Point], ABC):
-    """Inputs by name, for each number from 0 on; never a list of them all."""
+    """Inputs by name, for each number, 0 or more; never a list of them all."""
 
     __slots__ = ()
 
@@ -109,7 +109,7 @@ class GridPoints(Points):
         return math.prod(len(values) for values in self.axes.values())
 
     def point(self, number: int) -> Point:
-        """The digits of its number, in a base of its own for each axis, are the places on the axes."""
+        """The digits of its number, in a separate base for each axis, are the places on the axes."""
         chosen = []
         for values in reversed(list(self.axes.values())):
             number, place = divmod(number, len(values))
@@ -216,7 +216,7 @@ def _pair(name: str, value: Any) -> str:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Range:
-    """What stands behind a key in place of its values: ends in the unit of the key."""
+    """Definition of values instead of a list: ends in the unit of the key."""
 
     first: Annotated[float, Quantity("from", "the first value; a range is written { from = 20, to = 70, n = 11 }")]
     last: Annotated[float, Quantity("to", "the last value; a range is written { from = 20, to = 70, n = 11 }")]
@@ -255,7 +255,7 @@ class Axis:
         Raises
         ------
         ParameterError
-            It is none of these; the message names the key.
+            It has another form; the message names the key.
         """
         if isinstance(value, dict):
             return cls._of_range(key, value)

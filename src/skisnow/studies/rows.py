@@ -161,7 +161,7 @@ class DatabaseRows(StoredRows):
     def _errors(self) -> Iterator[None]:
         try:
             yield
-        except (sqlite3.Error, UnicodeDecodeError) as error:  # the latter where a name in the schema is no text
+        except (sqlite3.Error, UnicodeDecodeError) as error:  # the latter where a name in the schema is not a text
             damage = first_damage(self._database) if hasattr(self, "_database") else None
             raise _no_table(self._path, place_reason(error) or damage or error) from error
 

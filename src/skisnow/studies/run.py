@@ -41,7 +41,7 @@ def study_state(study: Study) -> StudyState:
     Raises
     ------
     ParameterError
-        A file that is no study's table stands in its place: it is not replaced.
+        A file that is not a study's table has its name: it is not replaced.
     """
     if not study.out.exists():
         return StudyState.NEW
@@ -101,7 +101,7 @@ def run_study(
     Raises
     ------
     ParameterError
-        Finished points of another study stand beside the table, or something that is no table stands in its place;
+        Finished points of another study is next to the table, or something that is not a table has its name;
         or the number of workers is below 1.
     OutputError
         The table's place cannot be written.
@@ -214,7 +214,7 @@ def written(
 
 
 class _Rows:
-    """Rows as lists of values; with each beginning they are counted, and held where they are few, anew."""
+    """Rows as lists of values; with each beginning they are counted, and held where they are few, again."""
 
     def __init__(self, finished_rows: FinishedRows, columns: tuple[str, ...], fingerprint: str) -> None:
         self._kept, self._columns, self._fingerprint = finished_rows, columns, fingerprint
@@ -235,7 +235,7 @@ class _Rows:
 
 
 def _stamp(path: Path) -> tuple[int, int, int] | None:
-    """Another one where a file was written anew."""
+    """Another one where a file was written again."""
     try:
         status = path.stat()
     except OSError:

@@ -51,7 +51,7 @@ class Shard:
         Raises
         ------
         ParameterError
-            It is none.
+            The text is not a shard.
         """
         match = _SHARD.fullmatch(text)
         shard = cls(int(match[1]), int(match[2])) if match else None
@@ -98,7 +98,7 @@ def run_shard(
     Returns
     -------
     Path
-        The file of the part, which `merge_shards` takes; it is gone on with when the part is started again.
+        The file of the part, which `merge_shards` takes; it is continued when the part is started again.
 
     Raises
     ------

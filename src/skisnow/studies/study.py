@@ -109,7 +109,7 @@ class Study(Shown):
         return self.out.with_name(f"{self.out.name}.partial")
 
     def place_for_previous(self) -> Path:
-        """Where another study's table goes that stands in this one's place: a name that is free."""
+        """Where another study's table goes that is in this one's place: a name that is free."""
         return place_for_previous(self.out)
 
     def fingerprint(self) -> str:
@@ -137,7 +137,7 @@ def place_for_previous(out: Path) -> Path:
 
 @dataclass(frozen=True, slots=True)
 class Sample:
-    """How many points a sample has, and what they are drawn with."""
+    """Number of points of a sample, and the seed."""
 
     n: Annotated[int, Quantity("n", "number of points", lowest=1)]
     seed: Annotated[int, Quantity("seed", "a whole number that the points follow from", lowest=0)]
@@ -163,7 +163,7 @@ def read_study(path: str | Path, *, subject: ModelReader = CarveModel) -> Study:
     ParameterError
         The file cannot be read, a key is unknown (the nearest is named), missing, said twice or of the wrong kind, or
         the inputs are not complete; or a value under [fixed] is outside its range, or names a ski or a snow that
-        cannot be read. Such a value of what varies is no error of the study but of its points.
+        cannot be read. Such a value of what varies is not an error of the study but of its points.
 
     See Also
     --------

@@ -137,7 +137,7 @@ class CarveModel(ShownFields):
         return [path for path in skis if path] + [self._sources.path(word) for word in points.distinct("results")]
 
     def __call__(self, point: Point) -> Row:
-        """One row; whatever is wrong with a point stands in it."""
+        """One row; whatever is wrong with a point is in it."""
         try:
             return _carve_row(answered(carve_question(point), sources=self._sources))
         except SkisnowError as error:
@@ -174,7 +174,7 @@ class ScenarioModel(ShownFields):
     Attributes
     ----------
     folder
-        Of the study.
+        Name of the study's file.
     scenario
         A built-in name, or the path of a file.
     """
@@ -233,7 +233,7 @@ class ScenarioModel(ShownFields):
         return [*own, *(self.folder / word for word in sorted(named))]
 
     def __call__(self, point: Point) -> Row:
-        """One row; whatever is wrong with a point stands in it."""
+        """One row; whatever is wrong with a point is in it."""
         from ..simulation.simulated_run import simulate
 
         try:

@@ -54,7 +54,7 @@ class StudyTable(Shown):
     varied
         The inputs that vary.
     counted
-        What was counted while the rows went by; None: it is counted when it is asked for.
+        Counts of the rows; None until they are requested.
 
     See Also
     --------
@@ -105,7 +105,7 @@ def read_table(path: str | Path, keys: Mapping[str, Quantity], *, varied: Sequen
     Raises
     ------
     ParameterError
-        It cannot be read, or is no study's table.
+        It cannot be read, or is not a study's table.
     """
     path = Path(path)
     stored = stored_rows(path, keys)
@@ -242,7 +242,7 @@ class Tally:
     warned
         How many carry warnings.
     first_failed, first_warned
-        Place, from 1 on, and text of the first row that could not be asked, and of the first with warnings.
+        Place, 1 or more, and text of the first row that could not be asked, and of the first with warnings.
     studies
         Fingerprints of the studies of the rows.
     """

@@ -20,11 +20,11 @@ from .cells import cell, cells
 from .rows import ROWS_OF_A_BLOCK, require_pyarrow
 
 ValueRows: TypeAlias = Callable[[], Iterable[list[Any]]]
-"""Begins anew at the first row with every call; each row has a value for every column."""
+"""Starts at the first row with every call; each row has a value for every column."""
 Writer: TypeAlias = Callable[[Path, Sequence[str], ValueRows], "array[int] | None"]
 
 ROWS_OF_A_GROUP: Final = 10 * ROWS_OF_A_BLOCK
-"""Of a Parquet file: some megabytes (modelling assumption)."""
+"""Rows of a group of a Parquet file: some megabytes (modelling assumption)."""
 _DATABASE_TYPES: Final[tuple[tuple[frozenset[type], str], ...]] = (
     (frozenset({bool}), "BOOLEAN"),
     (frozenset({int}), "INTEGER"),
@@ -35,7 +35,7 @@ _DATABASE_TYPES: Final[tuple[tuple[frozenset[type], str], ...]] = (
 
 
 def write_table(path: Path, columns: Sequence[str], rows: ValueRows) -> array[int] | None:
-    """Write a table; it stands in its place when it is complete, and else nowhere.
+    """Write a table; it has its name when it is complete, and else nowhere.
 
     Parameters
     ----------
@@ -49,7 +49,7 @@ def write_table(path: Path, columns: Sequence[str], rows: ValueRows) -> array[in
     Returns
     -------
     array of int, or None
-        Of a CSV file, where each block of rows begins.
+        Offsets in a CSV file at which each block of rows begins.
 
     Raises
     ------

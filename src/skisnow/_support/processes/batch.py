@@ -29,7 +29,7 @@ def run_batch(
     Parameters
     ----------
     points
-        What the function takes; with several workers they are pickled.
+        Inputs of the function; with several workers they are pickled.
     function
         From a point to a row of JSON values. With several workers it is pickled once for each of them: a function of a
         module, or an instance of a class of a module. An error that it raises ends the batch; a function whose points
@@ -39,7 +39,7 @@ def run_batch(
     workers
         Number of processes; None: as many as this process has cores; 1: this process itself.
     executor
-        What computes in place of processes of this computer: "threads"; any `concurrent.futures.Executor`, which is not
+        Executor instead of processes of this computer: "threads"; any `concurrent.futures.Executor`, which is not
         shut down; a Dask client, the address of a Dask scheduler, or a TOML file of one. The rows do not depend on it.
     progress
         Called with the number of finished points and that of all.
@@ -52,7 +52,7 @@ def run_batch(
     Raises
     ------
     ParameterError
-        The number of workers is below 1, or the executor is none.
+        The number of workers is below 1, or the executor is not valid.
     SkisnowError
         A worker ended unexpectedly, or has another skisnow; what was finished is kept.
 
@@ -91,7 +91,7 @@ def compute_missing(
     points, function, kept, workers, executor, progress
         As of `run_batch`.
     numbers
-        The points that are asked for; None: all.
+        Requested points; None: all.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""What a worker does, wherever it is: some points at once, their rows as text, and how long a point took."""
+"""Work of a worker, wherever it is: some points at once, their rows as text, and how long a point took."""
 
 from __future__ import annotations
 

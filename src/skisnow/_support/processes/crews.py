@@ -175,7 +175,7 @@ class GivenCrew(Crew):
 
 
 class _Worker:
-    """What a worker process knows; in every other process it stays empty."""
+    """State of a worker process; in every other process it stays empty."""
 
     function: PointFunction | None = None
 

@@ -1,4 +1,4 @@
-"""Workers on other computers, by Dask: a scheduler that runs, or a batch system that is asked for workers."""
+"""Workers on other computers, by Dask: a scheduler that runs, or a batch system that starts workers."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ BATCH_SYSTEMS: Final = {
 TLS_KEYS: Final = ("ca_file", "cert", "key", "ciphers")
 _ANY: Final = inspect.Parameter.VAR_KEYWORD
 _NOT_LOADED: Final = ("Can't get attribute", "deserializ")
-"""What Python and Dask say where a function is not there."""
+"""Texts of Python and Dask where a function is not there."""
 WAIT_S: Final = 30.0
 """How long (s) a scheduler may take to answer, where the file does not say."""
 AWAY_S: Final = 10.0
@@ -42,17 +42,17 @@ CHUNK_S: Final = 1.0
 """Work (s) that is handed over at once (modelling assumption: from one piece to the next a worker takes some 10 ms, and
 some 50 where its cores are wanted by others)."""
 COUNTED_EVERY_S: Final = 1.0
-"""Workers come and go; how many there are is asked for so often (modelling assumption: asking takes milliseconds)."""
+"""Workers come and go; interval (s) between counts (modelling assumption: asking takes milliseconds)."""
 
 
 @dataclass(frozen=True, slots=True)
 class SchedulerFile:
-    """What a TOML file says of a scheduler.
+    """Contents of a TOML file for a scheduler.
 
     Attributes
     ----------
     address
-        Of one that runs; None: a batch system is asked for workers.
+        Address of a running scheduler; None: a batch system starts workers.
     wait_s
         How long it may take to answer.
     tls
@@ -60,7 +60,7 @@ class SchedulerFile:
     system, options
         The batch system, and what its class of dask-jobqueue takes.
     jobs
-        How many jobs are asked for.
+        Number of jobs.
     """
 
     address: str | None = None
@@ -117,12 +117,12 @@ def _is_encrypted(settings: SchedulerFile) -> bool:
 
 
 def scheduler_of(scheduler: str | Path) -> SchedulerFile:
-    """What an address or a TOML file says.
+    """Settings of an address or a TOML file.
 
     Raises
     ------
     ParameterError
-        It is none, or a key in it is unknown or of the wrong kind.
+        It is not a scheduler, or a key in it is unknown or of the wrong kind.
     """
     if isinstance(scheduler, str) and "://" in scheduler:
         return SchedulerFile(address=scheduler)
@@ -302,7 +302,7 @@ def batch_cluster(settings: SchedulerFile) -> Any:
     Raises
     ------
     ParameterError
-        An option is none of its class.
+        Its class does not have an option.
     """
     jobqueue = _jobqueue()
     security = _security(settings.tls)

@@ -12,7 +12,7 @@ from .chunk import PointFunction
 from .crews import Crew, GivenCrew, ProcessCrew, ThreadCrew
 
 ExecutorLike: TypeAlias = Executor | str | Path | Any
-"""What computes: "processes" or "threads" of this computer; any `concurrent.futures.Executor`; a Dask client; the
+"""Executor: "processes" or "threads" of this computer; any `concurrent.futures.Executor`; a Dask client; the
 address of a Dask scheduler, or a TOML file that says where one is or which batch system is to start one."""
 
 LOCAL: Final = ("processes", "threads")
@@ -76,7 +76,7 @@ def require_executor(executor: ExecutorLike | None) -> None:
 
 
 def _workers_of(executor: Executor) -> int | None:
-    """What executors call it: those of the standard library, MPI's of mpi4py."""
+    """Names of the number of workers: those of the standard library, MPI's of mpi4py."""
     names = ("_max_workers", "num_workers")
     workers = next((getattr(executor, name) for name in names if hasattr(executor, name)), None)
     return workers if isinstance(workers, int) and workers > 0 else None

@@ -77,7 +77,7 @@ class KeptRows:
         columns
             As the attribute.
         about
-            What else is kept of the batch with a new file.
+            Further entries of the batch for a new file.
 
         Raises
         ------
@@ -102,7 +102,7 @@ class KeptRows:
         Raises
         ------
         ParameterError
-            There is none, or it is damaged, or not a file of rows.
+            The file is missing or damaged, or not a file of rows.
         OutputError
             It cannot be opened, or another run is writing it.
         """
@@ -138,7 +138,7 @@ class KeptRows:
         return rows
 
     def _take(self, about: Mapping[str, str] | None = None) -> None:
-        """Take the file for this process alone, and begin it where it is new."""
+        """Lock the file for this process, and begin it where it is new."""
         run = self._database.execute
         run("pragma locking_mode = exclusive")  # before the log: it then needs no memory shared with other processes
         run("pragma journal_mode = wal")
@@ -156,7 +156,7 @@ class KeptRows:
             require_sound_pages(self._database)
 
     def about(self) -> dict[str, str]:
-        """What was kept of the batch when it was begun."""
+        """Entries of the batch from its start."""
         entries = dict(self._selected("select name, value from about"))
         if entries.pop(_CHECKSUM, None) != _checksum_of(entries):
             raise _damaged(self.path, "the description of the batch has changed")
@@ -246,7 +246,7 @@ class KeptRows:
     def remove(self) -> None:
         """The batch is done and its rows stand elsewhere."""
         if self.path is not None:
-            self.path.unlink(missing_ok=True)  # while nobody else has it
+            self.path.unlink(missing_ok=True)  # while no one else has it
         self.close()
         if self.path is not None:
             forget(self.path)
@@ -281,7 +281,7 @@ def _errors(path: Path | None, database: sqlite3.Connection | None = None) -> It
     """Turn an error of the database into one that names the file and the remedy."""
     try:
         yield
-    except (sqlite3.DatabaseError, UnicodeDecodeError) as error:  # the latter where a name in the schema is no text
+    except (sqlite3.DatabaseError, UnicodeDecodeError) as error:  # the latter where a name in the schema is not a text
         if primary_code(error) in (sqlite3.SQLITE_BUSY, sqlite3.SQLITE_LOCKED):
             raise OutputError(
                 Message("{path} is being written by another run of this study. Wait for it or stop it.", path=path),

@@ -39,7 +39,7 @@ def json_value(text: str | bytes, *, title: str = "") -> Any:
     Raises
     ------
     GivenError
-        It is no JSON, NaN and infinite numbers included, or beyond a limit: nesting, digits of a number, length of a
+        It is not JSON, NaN and infinite numbers included, or beyond a limit: nesting, digits of a number, length of a
         text; or a key stands twice in an object, or a text has a character that none can have.
     """
     try:
@@ -65,7 +65,7 @@ def own_json(text: str | bytes) -> Any:
     Raises
     ------
     ValueError
-        It is no JSON.
+        It is not JSON.
     """
     return json.loads(text)
 
@@ -168,7 +168,7 @@ def _fits(value: object, hint: Any) -> bool:
 
 
 def json_number(value: float | None) -> float | None:
-    """The number, or None in place of what JSON has no number for.
+    """The number, or None instead of what JSON has no number for.
 
     >>> json_number(2), json_number(math.inf), json_number(math.nan), json_number(None)
     (2.0, None, None, None)

@@ -22,7 +22,7 @@ def plain_bytes(path: str | Path, *, most_bytes: int) -> bytes:
     Raises
     ------
     GivenError
-        It is not there, may not be read, is no plain file, or has more bytes; or no file can have such a name.
+        It is not there, may not be read, is not a plain file, or has more bytes; or no file can have such a name.
     """
     try:
         if not stat.S_ISREG((place := Path(path)).stat().st_mode):
@@ -77,7 +77,7 @@ def plain_text(path: str | Path, *, most_bytes: int) -> str:
     Raises
     ------
     GivenError
-        As in `plain_bytes`, or it is no UTF-8 text.
+        As in `plain_bytes`, or it is not UTF-8 text.
     """
     data = plain_bytes(path, most_bytes=most_bytes)
     try:
@@ -132,7 +132,7 @@ def _placed(what: str, line: int | None, title: str) -> str:
 
 
 MOST_DIGITS: Final = 18
-"""Of a number that fits into 64 bits. Python itself rejects texts of more than 4,300 digits with a ValueError."""
+"""Digits of a 64-bit number. Python itself rejects texts of more than 4,300 digits with a ValueError."""
 
 
 def natural_number(text: str) -> int | None:
@@ -279,12 +279,12 @@ def toml_values(text: str, *, title: str = "") -> dict[str, Any]:
     text
         With line feeds at the ends of lines.
     title
-        What it is called by in messages.
+        Name of the text in messages.
 
     Raises
     ------
     GivenError
-        It is no TOML, or beyond a limit: size, nesting, dots in a key, digits of a number, length of a text; or a text
+        It is not TOML, or beyond a limit: size, nesting, dots in a key, digits of a number, length of a text; or a text
         has a character that none can have.
     """
     try:

@@ -1,6 +1,6 @@
 """Workbooks of spreadsheet programs (.xlsx): the cells of their sheets as text, within limits.
 
-The zip archive is looked through before openpyxl opens it: sizes are counted while parts are unpacked, not believed,
+The zip archive is checked before openpyxl opens it: sizes are counted while parts are unpacked, not believed,
 and a part with a document type, in which entities could grow without end, is refused. Nothing is computed: a formula
 gives the value that the spreadsheet program stored with it, and one without a value is refused.
 """
@@ -29,7 +29,7 @@ MOST_UNPACKED_BYTES: Final = 1 << 26
 MOST_PARTS: Final = 2_000
 MOST_SHEETS: Final = 100
 MOST_ROWS: Final = 1 << 20
-"""What a sheet of Excel has."""
+"""Rows and columns of a sheet of Excel."""
 MOST_COLUMNS: Final = 1_000
 MOST_ELEMENTS: Final = 8_000_000
 DEEPEST_ELEMENT: Final = 64
@@ -58,7 +58,7 @@ def workbook_sheets(data: bytes, *, wanted: Callable[[str], bool]) -> dict[str, 
     Raises
     ------
     GivenError
-        It is no workbook, is protected by a password, is beyond a limit, or holds what a table has no need of.
+        It is not a workbook, is protected by a password, is beyond a limit, or holds what a table has no need of.
     """
     _require_sound(data)
     from openpyxl import load_workbook
@@ -95,7 +95,7 @@ def _undamaged(doing: Callable[[], Any]) -> Any:
 
 
 def _rows(sheet: Any) -> Rows:
-    sheet.reset_dimensions()  # what the file says of its own size is not believed
+    sheet.reset_dimensions()  # the stated size may be wrong
     rows: Rows = []
     fractions: list[tuple[int, int]] = []
     typed = {".": 0, ",": 0}

@@ -39,7 +39,7 @@ class Element:
         return (child for child in self.children if child.name == name)
 
     def text_of(self, *path: str) -> str:
-        """The text where local names lead to, stripped; ``""`` where there is none."""
+        """The text where local names lead to, stripped; ``""`` if there is not one."""
         element = self.child(*path)
         return "" if element is None else element.text.strip()
 
@@ -91,7 +91,7 @@ def xml_tree(data: bytes) -> Element:
     Raises
     ------
     GivenError
-        It is no XML, is damaged, has an unknown encoding, declares a document type, or exceeds the limits.
+        It is not XML, is damaged, has an unknown encoding, declares a document type, or exceeds the limits.
     """
     builder, parser = _Builder(), expat.ParserCreate(namespace_separator="}")
     parser.buffer_text = True

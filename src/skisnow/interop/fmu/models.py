@@ -1,4 +1,4 @@
-"""What an FMU computes: its variables, and the data from which the core builds it again without Python."""
+"""Model of an FMU: its variables, and the data from which the core builds it again without Python."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ class Model:
     variables
         In the order of their references.
     data
-        Of the core.
+        Data of the core.
     step
         That an importer may begin with (s).
     """
@@ -136,7 +136,7 @@ def _quaternion(rotation: FloatArray) -> FloatArray:
 
 
 def _snow_parameters(snow: SnowField) -> tuple[Variable, ...]:
-    """What may be set before the start; what varies over the place stays as it is, and is not offered."""
+    """Parameters and outputs: what varies over the place stays as it is, and is not offered."""
     hardness, stress = (float(grid.at(0.0, 0.0)[0]) for grid in (snow.compiled.hardness, snow.compiled.strength))
     one_hardness = not isinstance(snow.snow_hardness, Grid)
     one_stress = not isinstance(snow.failure_shear_stress, Grid) and not isinstance(snow.strength_share, Grid)

@@ -19,7 +19,7 @@ UNITS: Final[dict[str, dict[str, int]]] = {
     "N/m3": {"kg": 1, "m": -2, "s": -2},
     "1": {},
 }
-"""Of the variables, by exponents of the base units."""
+"""Units of the variables, by exponents of the base units."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,7 +35,7 @@ class Variable:
     unit
         A key of `UNITS`.
     about
-        What it is, in words.
+        Description.
     start
         Its value before anything is set.
     offered

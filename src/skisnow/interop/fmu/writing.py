@@ -23,7 +23,7 @@ ENDING: Final = ".fmu"
 DATA: Final = "skisnow.txt"
 """The model's data, in the folder of resources; its first word is the token that the model description has, too."""
 FOLDERS: Final[dict[Version, str]] = {2: "linux64", 3: "x86_64-linux"}
-"""Of the library within the FMU, by the version of the standard."""
+"""Folder of the library within the FMU, by the version of the standard."""
 STEP: Final = {"contact": 2e-4, "sledge": 1e-2}
 """Step (s) that the model description proposes (modelling assumption: see the page docs/how-to/fmu.md)."""
 _DATE: Final = (1980, 1, 1, 0, 0, 0)  # the earliest that a zip knows: the same FMU has the same bytes
@@ -46,7 +46,7 @@ def write_contact_fmu(scenario: Scenario, path: str | Path, *, fmi: Version = 2,
     Returns
     -------
     Path
-        Of the file.
+        Path of the file.
 
     Raises
     ------
@@ -73,7 +73,7 @@ def write_sledge_fmu(scenario: Scenario, path: str | Path, *, fmi: Version = 2) 
     Parameters
     ----------
     scenario
-        What moves, without boots that move.
+        Scenario without moving boots.
     path
         The file, whose name ends in .fmu.
     fmi
@@ -82,7 +82,7 @@ def write_sledge_fmu(scenario: Scenario, path: str | Path, *, fmi: Version = 2) 
     Returns
     -------
     Path
-        Of the file.
+        Path of the file.
 
     Raises
     ------

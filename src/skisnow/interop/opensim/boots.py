@@ -64,12 +64,13 @@ def boots_of_markers(
     up
         "y" as OpenSim has it (z to the right), or "z" (y to the left).
     slope_angle
-        Of the slope (rad): the boots' poses are turned into its axes. 0 where the markers' axes are those of the slope.
+        Angle of the slope (rad): the boots' poses are turned into its axes. 0 where the markers' axes are those of the
+        slope.
 
     Raises
     ------
     ParameterError
-        A marker is missing, was not seen in a frame (name and time are told), or three lie on one line.
+        A marker is missing, was not seen in a frame (the error gives name and time), or three lie on one line.
     """
     require_choice("up", up, ("y", "z"))
     c, s = np.cos(slope_angle), np.sin(slope_angle)

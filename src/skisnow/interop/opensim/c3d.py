@@ -24,7 +24,7 @@ from .table import MOST_BYTES, MotionTable
 
 ENDING: Final = ".c3d"
 WRITTEN: Final = "mm"
-"""Unit of places in what is written: that of most captures."""
+"""Unit of written places: that of most captures."""
 MOST_FRAMES: Final = 65_535
 """That the format counts, from its frame 0 on."""
 MOST_NAMES: Final = 255
@@ -136,7 +136,7 @@ def write_c3d(markers: Markers, path: str | Path, *, forces: MotionTable | None 
     path
         The file, whose name ends in .c3d.
     forces
-        Of the same stretch of time, at the markers' rate or a whole multiple: a channel for each column.
+        Forces over the same time, at the markers' rate or a whole multiple: a channel for each column.
 
     Raises
     ------

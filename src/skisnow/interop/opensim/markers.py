@@ -19,7 +19,7 @@ from .table import MOST_BYTES, number_of, require_rising
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 
 METRES: Final = {"m": 1.0, "cm": 1e-2, "mm": 1e-3}
-"""Of a unit of length that a file may name."""
+"""Size of a unit of length that a file may name."""
 _HEAD: Final = 5  # lines before the first row: file, keys, values, names, axes
 
 
@@ -32,7 +32,7 @@ class Markers(Shown):
     time
         (n,), rising (s).
     names
-        Of the k markers.
+        Names of the k markers.
     place
         (n, k, 3) in the laboratory's axes (m); not a number where a marker was not seen.
     rate
@@ -82,7 +82,7 @@ class Markers(Shown):
         Raises
         ------
         ParameterError
-            There is none of this name.
+            Unknown name.
         """
         if name not in self.names:
             raise ParameterError(
@@ -98,8 +98,8 @@ def read_trc(path: str | Path) -> Markers:
     Raises
     ------
     ParameterError
-        The file cannot be read, its head is none, its unit is not m, cm or mm, or a cell holds no number; file, line,
-        marker and value are named.
+        The file cannot be read, its head is invalid, its unit is not m, cm or mm, or a cell holds no number; file,
+        line, marker and value are named.
     """
     lines = plain_text(path, most_bytes=MOST_BYTES).splitlines()
     if len(lines) < _HEAD or not lines[0].startswith("PathFileType"):

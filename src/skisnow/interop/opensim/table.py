@@ -40,7 +40,7 @@ class MotionTable(Shown):
     name
         That the head begins with.
     head
-        Other keys of the head, as they stand there.
+        Other keys of the head, as they are there.
 
     Raises
     ------
@@ -73,7 +73,7 @@ class MotionTable(Shown):
 
 
 def require_rising(what: str, time: FloatArray) -> None:
-    """ParameterError where there is no time, or one that does not rise."""
+    """ParameterError if there is no time, or one that does not rise."""
     if np.ndim(time) != 1 or not len(time):
         raise ParameterError(
             Message(

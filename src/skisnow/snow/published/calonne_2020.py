@@ -5,7 +5,7 @@ Weissfluhjoch), with windows of 1 mm and the fourth make of the instrument.
 
 Notes
 -----
-Arguments are in N and m; L stands in the equations in mm.
+Arguments are in N and m; L is in the equations in mm.
 
 The snow was not groomed. The SSA becomes negative for L above about 1 mm.
 """

@@ -5,7 +5,7 @@ of a density cutter in wind-packed snow and depth hoar, with windows of 5 mm.
 
 Notes
 -----
-Arguments are in N and m; L stands in the equations in mm.
+Arguments are in N and m; L is in the equations in mm.
 
 Fit a is over all samples, fit b without the 5 % that it missed by most. There is none for the surface area. None of the
 snow was groomed.

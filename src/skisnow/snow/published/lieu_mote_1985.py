@@ -1,6 +1,6 @@
 """Lieu and Mote (1984, J. Glaciol. 30(104), 77-81; 1985, ASTM STP 860, 117-140): ice cut at negative rake angles.
 
-They machined ice, gave an empirical formula for the force and proposed to scale it for snow. The scale stands in
+They machined ice, gave an empirical formula for the force and proposed to scale it for snow. The scale is in
 Mössner and others (2013), the ranges and the direction of the force in the abstract of 1984.
 
 Notes

@@ -5,7 +5,7 @@ and antarctic snow, with windows of 2.5 mm.
 
 Notes
 -----
-Arguments are in N and m; L stands in the equations in mm.
+Arguments are in N and m; L is in the equations in mm.
 
 The length l_c = 0.131 + 0.355 L + 0.0291 ln F (mm) gives the surface by SSA = 4 (1 - ρ/ρ_ice)/(ρ_ice l_c). None of the
 snow was groomed.
