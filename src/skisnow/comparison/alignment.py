@@ -15,6 +15,7 @@ import numpy.typing as npt
 from scipy.special import stdtrit
 
 from .._support.errors import FitError, ParameterError
+from .._support.messages import Message
 from .._support.units import CONFIDENCE, DEGREE
 from .distances import EXACTNESS, Polyline, polyline
 from .nearest_place import NearestPlaces, Path
@@ -106,7 +107,10 @@ def require_offsets(fit: Collection[str]) -> None:
     """
     wrong = [word for word in fit if word not in OFFSETS]
     if wrong:
-        raise ParameterError(f"{wrong[0]!r} is no offset that can be fitted; {', '.join(OFFSETS)} are")
+        raise ParameterError(
+            Message("{value!r} is no offset that can be fitted; {allowed} are", value=wrong[0], allowed=list(OFFSETS)),
+            code="unknown_offset",
+        )
 
 
 def fit_motion(simulated: Polyline, measured: Polyline, *, start: bool, heading: bool) -> Motion:
@@ -141,8 +145,13 @@ def fit_motion(simulated: Polyline, measured: Polyline, *, start: bool, heading:
     answers = [motion for motion in solutions if math.isfinite(motion.rms)]
     if not answers:
         raise FitError(
-            f"start and heading cannot be fitted: less than {100 * LEAST_SHARE:g} % of the measured track then has the "
-            "simulated one beside it, or the steps do not settle. Look at both tracks without a fit"
+            Message(
+                "start and heading cannot be fitted: less than {share:g} % of the measured track then "
+                "has the simulated one beside it, or the steps do not settle. Look at both tracks "
+                "without a fit",
+                share=100 * LEAST_SHARE,
+            ),
+            code="no_alignment",
         )
     answers = [motion for motion in answers if _same_direction(path, places, motion)] or answers
     best = answers[0]

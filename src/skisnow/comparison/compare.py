@@ -11,6 +11,7 @@ import numpy as np
 
 from .._support.display import amount
 from .._support.errors import ParameterError
+from .._support.messages import Message
 from .._support.units import DEGREE
 from ..track.slope_frame import STEEPEST, LaidTracks, lay_for_fit
 from ..track.solution import inexact_sentence
@@ -102,11 +103,23 @@ def compare_tracks(
     """
     require_offsets(fit)
     if time_from not in (None, *get_args(TimeFrom)):
-        raise ParameterError(f"time is counted from first_point or clock, not from {time_from!r}")
+        raise ParameterError(
+            Message("time is counted from first_point or clock, not from {time_from!r}", time_from=time_from),
+            code="unknown_time_origin",
+        )
     if known_to is not None and not (math.isfinite(known_to) and known_to >= 0.0):
-        raise ParameterError(f"places are known to 0 m or more, not to {known_to!r}")
+        raise ParameterError(
+            Message("places are known to 0 m or more, not to {known_to!r}", known_to=known_to), code="out_of_range"
+        )
     if slope_angle is not None and not 0.0 <= slope_angle <= STEEPEST:
-        raise ParameterError(f"slope_angle is {slope_angle!r} rad. Allowed: from 0 to {STEEPEST:.4g}.")
+        raise ParameterError(
+            Message(
+                "slope_angle is {slope_angle!r} rad. Allowed: from 0 to {steepest:.4g}.",
+                slope_angle=slope_angle,
+                steepest=STEEPEST,
+            ),
+            code="out_of_range",
+        )
     if simulated.origin is not None and measured.origin is not None and simulated.origin != measured.origin:
         simulated = simulated.at_origin(measured.origin)
     placed, together = set(fit) >= _PLACED, _share_frame(simulated, measured)
@@ -215,7 +228,7 @@ def _fit_and_compare(plain: Comparison, fit: set[str], clock: Clock) -> Comparis
 def _fit_time(simulated: Polyline, plain: Comparison) -> float:
     reason = missing_time_reason(simulated, plain.names[0]) or missing_time_reason(plain.measured, plain.names[1])
     if reason:
-        raise ParameterError(f"{reason}; leave time out of the fit")
+        raise ParameterError(Message("{reason}; leave time out of the fit", reason=reason), code="no_times")
     return fit_time(simulated, plain.measured)
 
 
@@ -224,8 +237,15 @@ def _require_near(simulated: Polyline, measured: Polyline, names: tuple[str, str
     nearest = float(Path(simulated.place).nearest(places).distance.min())
     if nearest > FARTHEST:
         raise ParameterError(
-            f"{names[0]} and {names[1]} have nothing in common: they are nowhere nearer than {nearest / 1000.0:.4g} km "
-            f"({FARTHEST / 1000.0:g} km is allowed). Bring both into one frame, or fit start and heading"
+            Message(
+                "{first} and {second} have nothing in common: they are nowhere nearer than {nearest:.4g} "
+                "km ({farthest:g} km is allowed). Bring both into one frame, or fit start and heading",
+                first=names[0],
+                second=names[1],
+                nearest=nearest / 1000.0,
+                farthest=FARTHEST / 1000.0,
+            ),
+            code="nothing_common",
         )
 
 

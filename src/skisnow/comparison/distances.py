@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from .._support.display import ShownFields
 from .._support.errors import ParameterError
+from .._support.messages import Message
 from ..track.track import Track
 from .nearest_place import NearestPlaces, Path
 
@@ -267,7 +268,13 @@ def track_polyline(track: Track, *, dimensions: int) -> Polyline:
     line = polyline(track.place[points][:, :dimensions], track.time[points])
     if not line.length > 0.0:
         raise ParameterError(
-            f"{track.name}: {int(points.sum())} of its {len(track)} points can be used, all in one place. A comparison "
-            "needs two points in different places; give a longer track"
+            Message(
+                "{name}: {usable} of its {count} points can be used, all in one place. A comparison needs "
+                "two points in different places; give a longer track",
+                name=track.name,
+                usable=int(points.sum()),
+                count=len(track),
+            ),
+            code="one_place",
         )
     return line

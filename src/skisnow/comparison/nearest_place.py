@@ -10,6 +10,7 @@ import numpy.typing as npt
 from scipy.spatial import cKDTree
 
 from .._support.errors import ParameterError
+from .._support.messages import Message
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.intp]
@@ -134,7 +135,10 @@ class Path:
     def __init__(self, points: FloatArray) -> None:
         places = points[np.concatenate([[True], np.any(np.diff(points, axis=0) != 0.0, axis=1)])]
         if len(places) < 2:
-            raise ParameterError("a path needs two points in different places; all of these are in one")
+            raise ParameterError(
+                Message("a path needs two points in different places; all of these are in one"),
+                code="one_place",
+            )
         self._start = places[:-1]
         self._along = np.diff(places, axis=0)
         self._squared = (self._along**2).sum(axis=1)

@@ -10,6 +10,7 @@ import numpy as np
 from scipy.optimize import minimize_scalar
 
 from .._support.errors import FitError
+from .._support.messages import Message
 from ..track.track import Track
 from .alignment import LEAST_SHARE, PLACES
 from .distances import Polyline
@@ -53,11 +54,12 @@ def common_clock(simulated: Track, measured: Track, time_from: TimeFrom | None) 
     return Clock(first + (starts[1] - starts[0]).total_seconds(), "one clock, by the dates in both files")
 
 
-def missing_time_reason(line: Polyline, name: str) -> str | None:
+def missing_time_reason(line: Polyline, name: str) -> Message | None:
     """Reason why a track has no place at each time, or None if it has."""
     if not np.isfinite(line.time).all():
-        return f"not every point of the {name} track has a time"
-    return f"the {name} track's time runs backwards" if (np.diff(line.time) < 0.0).any() else None
+        return Message("not every point of the {name} track has a time", name=name)
+    backwards = bool((np.diff(line.time) < 0.0).any())
+    return Message("the {name} track's time runs backwards", name=name) if backwards else None
 
 
 _TIMES: Final = 401
@@ -76,7 +78,9 @@ def fit_time(simulated: Polyline, measured: Polyline) -> float:
     """
     shorter = min(simulated.time[-1] - simulated.time[0], measured.time[-1] - measured.time[0])
     if not shorter > 0.0:
-        raise FitError("the start time cannot be fitted: one of the tracks has no duration")
+        raise FitError(
+            Message("the start time cannot be fitted: one of the tracks has no duration"), code="no_duration"
+        )
     least = simulated.time[0] - measured.time[-1] + LEAST_SHARE * shorter
     most = simulated.time[-1] - measured.time[0] - LEAST_SHARE * shorter
     arc_length = np.linspace(0.0, measured.length, PLACES + 1)

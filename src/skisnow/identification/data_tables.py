@@ -13,6 +13,7 @@ import numpy.typing as npt
 
 from .._support.display import ShownFields
 from .._support.errors import ParameterError
+from .._support.messages import Message, template
 from .._support.spreadsheet_text import MOST_CSV_BYTES, number
 from .._support.user_files import plain_bytes
 from ..parameters import Quantity, own_quantities
@@ -20,6 +21,26 @@ from ..track.readers.text import decimal_mark_of, decode_text, require_width, sp
 
 FloatArray = npt.NDArray[np.float64]
 FEWEST_FOR_SCATTER: Final = 3
+
+
+_NOT_A_NUMBER: Final = {
+    False: template(
+        "{name}, row {row}, column {column}: {value!r} is not a finite number; write one with a decimal point, without "
+        "its unit"
+    ),
+    True: template(
+        "{name}, row {row}, column {column}: {value!r} is not a finite number; write one with a decimal comma, "
+        "as others "
+        "in the file, without its unit"
+    ),
+}
+_MEASURED: Final = {
+    "station": Message("station"),
+    "time": Message("time"),
+    "depth": Message("depth"),
+    "width": Message("width"),
+    "turn_radius": Message("turn radius"),
+}
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,12 +72,18 @@ class TableFile:
         missing = [name for name in columns if name not in self.columns]
         if missing:
             raise ParameterError(
-                f"{self.name}, row {self.header_row}: there is no column {missing[0]} among {', '.join(self.columns)}; "
-                f"needed are {', '.join(columns)}",
+                Message(
+                    "{name}, row {header_row}: there is no column {missing} among {columns}; needed are {needed}",
+                    name=self.name,
+                    header_row=self.header_row,
+                    missing=missing[0],
+                    columns=list(self.columns),
+                    needed=list(columns),
+                ),
                 code="missing_column",
             )
         if not self.rows:
-            raise ParameterError(f"{self.name} has no rows below its header", code="no_rows")
+            raise ParameterError(Message("{name} has no rows below its header", name=self.name), code="no_rows")
 
     def require_no_slip(self, expected: tuple[str, ...]) -> None:
         """Reject a column whose name is similar to that of a missing one: it would not be read."""
@@ -65,8 +92,14 @@ class TableFile:
             similar = difflib.get_close_matches(name.lower(), absent, n=1, cutoff=0.75) if name not in expected else []
             if similar:
                 raise ParameterError(
-                    f"{self.name}, row {self.header_row}: unknown column {name}. Did you mean {similar[0]}? Rename it, "
-                    "or give it a different name if it is not to be read",
+                    Message(
+                        "{name}, row {header_row}: unknown column {column}. Did you mean {similar}? Rename it, "
+                        "or give it a different name if it is not to be read",
+                        name=self.name,
+                        header_row=self.header_row,
+                        column=name,
+                        similar=similar[0],
+                    ),
                     code="misspelled_column",
                 )
 
@@ -77,7 +110,12 @@ class TableFile:
         for row, cells in self.rows:
             text = cells[place] if place < len(cells) else ""
             if not text:
-                raise ParameterError(f"{self.name}, row {row}, column {column}: the cell is empty", code="empty_cell")
+                raise ParameterError(
+                    Message(
+                        "{name}, row {row}, column {column}: the cell is empty", name=self.name, row=row, column=column
+                    ),
+                    code="empty_cell",
+                )
             texts.append(text)
         return texts
 
@@ -93,15 +131,16 @@ class TableFile:
                 continue
             value = number(text, self.mark)
             if not math.isfinite(value):
+                sentence = _NOT_A_NUMBER[self.mark == ","]
                 raise ParameterError(
-                    f"{self.name}, row {row}, column {column}: {text!r} is not a finite number; write one with a "
-                    f"decimal {'comma, as others in the file' if self.mark == ',' else 'point'}, without its unit",
-                    code="not_a_number",
+                    Message(sentence, name=self.name, row=row, column=column, value=text), code="not_a_number"
                 )
             try:
                 quantity.in_range(value)
             except ParameterError as error:
-                raise ParameterError(f"{self.name}, row {row}: {error}") from None
+                raise ParameterError(
+                    Message("{name}, row {row}: {error}", name=self.name, row=row, error=error), code=error.code
+                ) from None
             values.append(value)
         return np.array(values)
 
@@ -159,12 +198,22 @@ class PhotoCellRun(ShownFields):
     def __post_init__(self) -> None:
         if len(self.station) < 1 or self.station.shape != self.time.shape:
             raise ParameterError(
-                f"run {self.name}: {len(self.station)} cells and {len(self.time)} times", code="unequal_lengths"
+                Message(
+                    "run {name}: {n_cells} cells and {n_times} times",
+                    name=self.name,
+                    n_cells=len(self.station),
+                    n_times=len(self.time),
+                ),
+                code="unequal_lengths",
             )
         if self.station[0] < 0.0:
             raise ParameterError(
-                f"run {self.name}: station {self.station[0]:g} m is before the start. Give distances from the "
-                "scenario's start down",
+                Message(
+                    "run {name}: station {station:g} m is before the start. Give distances from the "
+                    "scenario's start down",
+                    name=self.name,
+                    station=self.station[0],
+                ),
                 code="before_start",
             )
         for what, values, unit in (("station", self.station, "m"), ("time", self.time, "s")):
@@ -172,12 +221,19 @@ class PhotoCellRun(ShownFields):
             if wrong.size:
                 first, second = values[wrong[0]], values[wrong[0] + 1]
                 raise ParameterError(
-                    f"run {self.name}: {what} {second:g} {unit} follows {first:g} {unit}; both must rise "
-                    "from cell to cell. Sort the rows of the run, and look for a clock that was set back",
+                    Message(
+                        "run {name}: {what} {second:g} {unit} follows {first:g} {unit}; both must rise from cell "
+                        "to cell. Sort the rows of the run, and look for a clock that was set back",
+                        name=self.name,
+                        what=_MEASURED[what],
+                        second=second,
+                        unit=unit,
+                        first=first,
+                    ),
                     code=f"{what}_not_rising",
                 )
         if self.time_sd is not None and not np.all(self.time_sd > 0.0):
-            raise ParameterError(f"run {self.name}: time_sd_s must be above 0")
+            raise ParameterError(Message("run {name}: time_sd_s must be above 0", name=self.name), code="out_of_range")
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
@@ -214,7 +270,7 @@ def parse_photo_cells(table: TableFile) -> PhotoCells:
         try:
             runs.append(PhotoCellRun(name, station[rows], time[rows], _sd_of_run(name, spread, rows)))
         except ParameterError as error:
-            raise ParameterError(f"{table.name}: {error}", code=error.code) from error
+            raise ParameterError(Message("{name}: {error}", name=table.name, error=error), code=error.code) from error
     return PhotoCells(table.name, tuple(runs))
 
 
@@ -223,7 +279,7 @@ def _sd_of_run(name: str, sd: FloatArray | None, rows: npt.NDArray[np.bool_]) ->
         return None
     if np.isnan(sd[rows]).any():
         raise ParameterError(
-            f"run {name}: time_sd_s is given in some rows only. Give it in all rows, or in none",
+            Message("run {name}: time_sd_s is given in some rows only. Give it in all rows, or in none", name=name),
             code="partial_accuracy",
         )
     return sd[rows]
@@ -281,11 +337,24 @@ class MeasuredGrooves(ShownFields):
             for place in np.flatnonzero(np.isfinite(values)):
                 if values[place] <= 0.0:
                     raise ParameterError(
-                        f"{self.name}: {what} of place {place + 1} is {values[place]:g} m; above 0 is allowed"
+                        Message(
+                            "{name}: {what} of place {place} is {value:g} m; above 0 is allowed",
+                            name=self.name,
+                            what=_MEASURED[what],
+                            place=place + 1,
+                            value=values[place],
+                        ),
+                        code="out_of_range",
                     )
                 if not spread[place] > 0.0:
                     raise ParameterError(
-                        f"{self.name}: the standard deviation of {what} of place {place + 1} must be above 0"
+                        Message(
+                            "{name}: the standard deviation of {what} of place {place} must be above 0",
+                            name=self.name,
+                            what=_MEASURED[what],
+                            place=place + 1,
+                        ),
+                        code="out_of_range",
                     )
 
     def __len__(self) -> int:
@@ -323,7 +392,10 @@ def parse_grooves(table: TableFile) -> MeasuredGrooves:
         columns[name] = (values, np.full(len(values), _scatter(table.name, name, values[measured])))
     (depth, depth_sd), (width, width_sd), (radius, radius_sd) = (columns[name] for name in GROOVE_COLUMNS)
     if not any(np.isfinite(values).any() for values in (depth, width, radius)):
-        raise ParameterError(f"{table.name} has none of the columns {', '.join(GROOVE_COLUMNS)}")
+        raise ParameterError(
+            Message("{name} has none of the columns {columns}", name=table.name, columns=list(GROOVE_COLUMNS)),
+            code="no_columns",
+        )
     return MeasuredGrooves(table.name, depth, width, np.abs(radius), depth_sd, width_sd, radius_sd, stated)
 
 
@@ -336,7 +408,15 @@ def _column(table: TableFile, quantity: Quantity) -> FloatArray:
 def _scatter(file: str, name: str, values: FloatArray) -> float:
     if len(values) < FEWEST_FOR_SCATTER:
         raise ParameterError(
-            f"{file}: {name} has no standard deviation ({name.replace('_mm', '_sd_mm').replace('s_m', 's_sd_m')}), and "
-            f"{len(values)} places are too few for their scatter to say it; give it, or {FEWEST_FOR_SCATTER} places"
+            Message(
+                "{file}: {name} has no standard deviation ({column}), and {count} places are too few "
+                "for their scatter to say it; give it, or {fewest} places",
+                file=file,
+                name=name,
+                column=name.replace("_mm", "_sd_mm").replace("s_m", "s_sd_m"),
+                count=len(values),
+                fewest=FEWEST_FOR_SCATTER,
+            ),
+            code="no_deviation",
         )
     return max(float(np.std(values, ddof=1)), 1e-6)

@@ -12,6 +12,7 @@ from typing import Final
 import numpy as np
 
 from .._support.errors import FitError, ParameterError
+from .._support.messages import Message
 from .._support.processes.executors import ExecutorLike, require_executor
 from .._support.processes.kept_rows import KeptRows, forget
 from ..parameters import values_of
@@ -26,7 +27,7 @@ from .grooves_alone import identify_from_grooves
 from .intervals import BootstrapBy, require_bootstrap
 from .parameter import Parameter, parameter_table, unused_tables
 from .photo_cell_times import PhotoCellTimes
-from .problem import Observations, expand_keys, unweighted_problem
+from .problem import Kind, Observations, expand_keys, unweighted_problem
 from .result import Effort, Identification
 from .simulations import RunSimulation, Simulations
 from .solution import too_few_points
@@ -130,7 +131,10 @@ def identify(
     tables = given_parameters(scenario_input.identify)
     keys = free_keys(free) or tuple(dict.fromkeys(key.partition("@")[0] for key in tables))
     if not keys:
-        raise ParameterError('No parameter is free. Name keys with --free, or write [identify."KEY"] in the scenario')
+        raise ParameterError(
+            Message('No parameter is free. Name keys with --free, or write [identify."KEY"] in the scenario'),
+            code="nothing_free",
+        )
     measurements = collect_data(
         scenario_input, scenario_file, [data] if isinstance(data, Data | str | Path) else data, keys
     )
@@ -207,12 +211,24 @@ def _clock(scenario_input: ScenarioInput, chosen: bool | None) -> bool:
     return scenario_input.identify.get("clock", "start") == "free" if chosen is None else chosen
 
 
+_KINDS: Final[dict[Kind, Message]] = {
+    "track": Message("the track"),
+    "photo_cells": Message("the photo-cell times"),
+    "marks": Message("the grooves"),
+}
+
+
 def _require_used(keys: Sequence[str], observations: Sequence[Observations]) -> None:
     for key in (key.partition("@")[0] for key in keys):
         if not any(observation.depends_on(key) for observation in observations):
-            kinds = " and ".join(dict.fromkeys(observation.kind.replace("_", " ") for observation in observations))
+            kinds = [_KINDS[kind] for kind in dict.fromkeys(observation.kind for observation in observations)]
             raise ParameterError(
-                f"--free: {key} has no effect on {kinds}. Remove it, or add data that depend on it", code="unused_key"
+                Message(
+                    "--free: {key} has no effect on {kinds}. Remove it, or add data that depend on it",
+                    key=key,
+                    kinds=kinds,
+                ),
+                code="unused_key",
             )
 
 

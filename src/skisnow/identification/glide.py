@@ -16,6 +16,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .._support.errors import ParameterError
+from .._support.messages import Message
 from ..scenario import Plane, Slope, Terrain
 
 FloatArray = npt.NDArray[np.float64]
@@ -85,8 +86,11 @@ def slope_line(slope: Slope, start: float) -> SlopeLine:
         return planes(np.array([slope.angle]))
     if isinstance(slope, Terrain):
         raise ParameterError(
-            'Photo-cell times are computed along one line, and slope.kind = "grid" does not define one. Give the '
-            'heights along the line: slope.kind = "profile"'
+            Message(
+                'Photo-cell times are computed along one line, and slope.kind = "grid" does not define '
+                'one. Give the heights along the line: slope.kind = "profile"'
+            ),
+            code="no_line",
         )
     middle = 0.5 * (slope.x[1:] + slope.x[:-1])
     of_segment = np.diff(slope.height) / np.diff(slope.x)

@@ -257,11 +257,17 @@ def require_bootstrap(resamples: int, by: str) -> None:
         Between 1 and `FEWEST` resamples, or an unknown method.
     """
     if by not in ("refit", "linear"):
-        raise ParameterError(f"Unknown bootstrap method {by!r}. Allowed: refit, linear", code="unknown_bootstrap")
+        raise ParameterError(
+            Message("Unknown bootstrap method {value!r}. Allowed: refit, linear", value=by), code="unknown_bootstrap"
+        )
     if resamples != 0 and resamples < FEWEST:
         raise ParameterError(
-            f"{resamples} resamples are too few for 95 % intervals: at least {FEWEST} are needed, some hundred are "
-            "recommended",
+            Message(
+                "{resamples} resamples are too few for 95 % intervals: at least {fewest} are needed, "
+                "some hundred are recommended",
+                resamples=resamples,
+                fewest=FEWEST,
+            ),
             code="too_few_resamples",
         )
 

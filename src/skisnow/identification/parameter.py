@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .._support.errors import ParameterError
+from .._support.messages import Message
 from ..parameters import Search
 from ..scenario.keys import SCENARIO_KEYS, short_name
 
@@ -68,34 +69,81 @@ class Parameter:
     def __post_init__(self) -> None:
         for name in ("start", "lower", "upper", "size"):
             if not math.isfinite(getattr(self, name)):
-                raise ParameterError(f"{self.key}: {name} is {getattr(self, name)}; it must be a finite number")
+                raise ParameterError(
+                    Message(
+                        "{key}: {name} is {value}; it must be a finite number",
+                        key=self.key,
+                        name=name,
+                        value=getattr(self, name),
+                    ),
+                    code="not_a_number",
+                )
         if not self.lower < self.upper:
             raise ParameterError(
-                f"{self.key}: lower is {self.lower:g} and upper {self.upper:g}{self._unit}; lower must be below upper",
+                Message(
+                    "{key}: lower is {lower:g} and upper {upper:g}{unit}; lower must be below upper",
+                    key=self.key,
+                    lower=self.lower,
+                    upper=self.upper,
+                    unit=self._unit,
+                ),
                 code="swapped_bounds",
             )
         if not self.lower <= self.start <= self.upper:
             raise ParameterError(
-                f"{self.key}: the bounds, {self.lower:g} to {self.upper:g}{self._unit}, exclude the start, "
-                f"{self.start:g}. Widen them, or start inside",
+                Message(
+                    "{key}: the bounds, {lower:g} to {upper:g}{unit}, exclude the start, {start:g}. Widen "
+                    "them, or start inside",
+                    key=self.key,
+                    lower=self.lower,
+                    upper=self.upper,
+                    unit=self._unit,
+                    start=self.start,
+                ),
                 code="start_outside_bounds",
             )
         if self.logarithmic and self.lower <= 0.0:
-            raise ParameterError(f"{self.key}: lower is {self.lower:g}{self._unit}; it must be above 0")
+            raise ParameterError(
+                Message(
+                    "{key}: lower is {lower:g}{unit}; it must be above 0",
+                    key=self.key,
+                    lower=self.lower,
+                    unit=self._unit,
+                ),
+                code="out_of_range",
+            )
         self._require_prior()
 
     def _require_prior(self) -> None:
         if (self.prior_mean is None) != (self.prior_sd is None):
             missing = "prior_sd" if self.prior_sd is None else "prior_mean"
             raise ParameterError(
-                f"{self.key}: {missing} is missing; a prior has a mean and a standard deviation", code="half_prior"
+                Message(
+                    "{key}: {missing} is missing; a prior has a mean and a standard deviation",
+                    key=self.key,
+                    missing=missing,
+                ),
+                code="half_prior",
             )
         if self.prior_sd is not None and not (math.isfinite(self.prior_sd) and self.prior_sd > 0.0):
             raise ParameterError(
-                f"{self.key}: prior_sd is {self.prior_sd:g}{self._unit}; it must be above 0", code="out_of_range"
+                Message(
+                    "{key}: prior_sd is {prior_sd:g}{unit}; it must be above 0",
+                    key=self.key,
+                    prior_sd=self.prior_sd,
+                    unit=self._unit,
+                ),
+                code="out_of_range",
             )
         if self.prior_mean is not None and not math.isfinite(self.prior_mean):
-            raise ParameterError(f"{self.key}: prior_mean is {self.prior_mean}; it must be a finite number")
+            raise ParameterError(
+                Message(
+                    "{key}: prior_mean is {prior_mean}; it must be a finite number",
+                    key=self.key,
+                    prior_mean=self.prior_mean,
+                ),
+                code="not_a_number",
+            )
 
     @property
     def _unit(self) -> str:
@@ -180,7 +228,10 @@ def _parameter(key: str, values: Mapping[str, Any], tables: Mapping[str, Mapping
     entries = {**tables.get(own, {}), **tables.get(key, {})}
     start = entries.get("start", values.get(key, values.get(own)))
     if start is None:
-        raise ParameterError(f'{own} has no value in the scenario; give it one, or [identify."{own}"] start = …')
+        raise ParameterError(
+            Message('{key} has no value in the scenario; give it one, or [identify."{key}"] start = …', key=own),
+            code="no_start",
+        )
     start = float(start)
     defaults = default_search(own, start)
     scenario_key = SCENARIO_KEYS[own]

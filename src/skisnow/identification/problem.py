@@ -11,6 +11,7 @@ import numpy.typing as npt
 
 from .._support.display import ShownFields
 from .._support.errors import ParameterError
+from .._support.messages import Message
 from ..parameters import nearest
 from ..scenario.keys import EACH
 from .parameter import Parameter, values_of
@@ -214,7 +215,12 @@ def expand_keys(keys: Sequence[str], runs: Sequence[str]) -> tuple[str, ...]:
     for key in keys:
         own, at, run = key.partition("@")
         if at and run != EACH and run not in runs:
-            raise ParameterError(f"--free: {key}: there is no run {run!r}. {nearest(run, runs)}", code="unknown_run")
+            raise ParameterError(
+                Message(
+                    "--free: {key}: there is no run {run!r}. {allowed}", key=key, run=run, allowed=nearest(run, runs)
+                ),
+                code="unknown_run",
+            )
         if len(runs) < 2:
             expanded.append(own)
         elif run == EACH or (own.startswith(START) and not at):
@@ -223,7 +229,9 @@ def expand_keys(keys: Sequence[str], runs: Sequence[str]) -> tuple[str, ...]:
             expanded.append(key)
     for key in expanded:
         if expanded.count(key) > 1:
-            raise ParameterError(f"--free: {key} is given twice. Remove one of them", code="repeated_key")
+            raise ParameterError(
+                Message("--free: {key} is given twice. Remove one of them", key=key), code="repeated_key"
+            )
     return tuple(expanded)
 
 

@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .._support.errors import FitError, ParameterError
+from .._support.messages import Message, template
 from .intervals import BootstrapBy, add_bootstrap_intervals, add_posterior_intervals, add_profile_intervals
 from .parameter import bounds_of
 from .problem import Problem
@@ -79,7 +80,9 @@ def solve(problem: Problem, plan: SearchRequest) -> Identification:
         Nothing can be computed at any start.
     """
     if plan.starts < 1:
-        raise ParameterError(f"starts is {plan.starts}; at least 1 is needed")
+        raise ParameterError(
+            Message("starts is {starts}; at least 1 is needed", starts=plan.starts), code="out_of_range"
+        )
     solution = solution_of(problem, plan)
     return add_requested_intervals(
         build_identification(solution, plan.title, plan.warnings, plan.methods), solution, plan
@@ -163,10 +166,10 @@ class _Solver:
                 return replace(best, state="interrupted")
         if best is None:
             values = self.problem.values(np.zeros(len(self.problem.parameters)))
-            warnings = "; ".join(
-                text for observation in self.problem.observations for text in observation.warnings(values)
-            )
-            raise FitError(f"nothing can be computed at the start: {warnings or 'no residuals'}")
+            warnings = [text for observation in self.problem.observations for text in observation.warnings(values)]
+            sentence = template("nothing can be computed at the start: {warnings}")
+            without = template("nothing can be computed at the start: no residuals")
+            raise FitError(Message(sentence if warnings else without, warnings=warnings), code="no_residuals")
         return best
 
     def _run_starts(self) -> list[FloatArray]:

@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .._support.errors import ParameterError
+from .._support.messages import Message, template
 from .._support.processes.kept_rows import Row
 from ..track.solution import inexact_sentence
 from ..track.track import Track
@@ -71,6 +72,12 @@ class TrackPoints:
         return float(np.sum(np.hypot(*np.diff(self.place, axis=0).T)))
 
 
+_NO_POINT: Final = {
+    True: template("{name} has no point that can be used: {flags}"),
+    False: template("{name} has no point that can be used: no places"),
+}
+
+
 def track_points(track: Track) -> TrackPoints:
     """Select the usable points of a track in the slope's frame.
 
@@ -81,7 +88,9 @@ def track_points(track: Track) -> TrackPoints:
     """
     use = track.usable
     if not use.any():
-        raise ParameterError(f"{track.name} has no point that can be used: {dict(track.flagged) or 'no places'}")
+        raise ParameterError(
+            Message(_NO_POINT[bool(track.flagged)], name=track.name, flags=str(dict(track.flagged))), code="no_data"
+        )
     time, place = track.time[use], track.place[use, :2]
     stated_sd = None if track.place_sd is None else track.place_sd[use, :2]
     stated = stated_sd is not None and bool(np.all(np.isfinite(stated_sd) & (stated_sd > 0.0)))
@@ -312,9 +321,17 @@ def require_near(track: TrackPoints, start: tuple[float, float], *, start_is_fre
     away = math.hypot(track.place[0, 0] - start[0], track.place[0, 1] - start[1])
     if away > max(FARTHEST_START, track.length):
         raise ParameterError(
-            f"{track.name} begins {_distance(away)} from the scenario's start (x = {start[0]:g} m, y = {start[1]:g} m) "
-            f"and is {_distance(track.length)} long: it is of another place, or in another frame. Give x down the fall "
-            "line and y to the left in m, from the slope's own origin, or set start.x_m and start.y_m",
+            Message(
+                "{name} begins {distance} from the scenario's start (x = {start_x:g} m, y = {start_y:g} m) "
+                "and is {length} long: it is of another place, or in another frame. Give x down the "
+                "fall line and y to the left in m, from the slope's own origin, or set start.x_m and "
+                "start.y_m",
+                name=track.name,
+                distance=_distance(away),
+                start_x=start[0],
+                start_y=start[1],
+                length=_distance(track.length),
+            ),
             code="other_place",
         )
     if away > NEAR_START and not start_is_free:
@@ -325,5 +342,8 @@ def require_near(track: TrackPoints, start: tuple[float, float], *, start_is_fre
     return None
 
 
-def _distance(metres: float) -> str:
-    return f"{metres / 1000.0:.4g} km" if metres >= 10_000.0 else f"{metres:.3g} m"
+def _distance(metres: float) -> Message:
+    far = metres >= 10_000.0
+    return (
+        Message("{distance:.4g} km", distance=metres / 1000.0) if far else Message("{distance:.3g} m", distance=metres)
+    )

@@ -19,6 +19,7 @@ import numpy as np
 
 from .._support.display import Facts, Shown
 from .._support.errors import ParameterError
+from .._support.messages import Message
 from .._support.units import DEGREE
 
 if TYPE_CHECKING:
@@ -66,7 +67,16 @@ class GeodeticPoint(Shown):
         for name, limit in (("latitude_deg", 90.0), ("longitude_deg", 180.0), ("height", HIGHEST)):
             value = getattr(self, name)
             if not abs(value) <= limit:
-                raise ParameterError(f"{name} of an origin is {value:g}; it must be from {-limit:g} to {limit:g}")
+                raise ParameterError(
+                    Message(
+                        "{name} of an origin is {value:g}; it must be from {lowest:g} to {limit:g}",
+                        name=name,
+                        value=value,
+                        lowest=-limit,
+                        limit=limit,
+                    ),
+                    code="out_of_range",
+                )
 
     def __str__(self) -> str:
         """Coordinates to 0.1 mm."""

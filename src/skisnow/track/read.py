@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final, Literal, TypeAlias, get_args
 
 from .._support.errors import ParameterError
+from .._support.messages import Message
 from .flags import FASTEST, GAP_FACTOR
 from .readers.conversion import build_track
 from .readers.fit import read_fit
@@ -88,9 +89,18 @@ def read_track(
     """
     for name, value in (("fastest", fastest), ("gap_factor", gap_factor)):
         if not value > 0.0:
-            raise ParameterError(f"{name} is {value:g}; it must be above 0")
+            raise ParameterError(
+                Message("{name} is {value:g}; it must be above 0", name=name, value=value), code="out_of_range"
+            )
     if kind is not None and kind not in get_args(TrackFormat):
-        raise ParameterError(f"there is no track format {kind!r}; there are {', '.join(get_args(TrackFormat))}")
+        raise ParameterError(
+            Message(
+                "there is no track format {kind!r}; there are {allowed}",
+                kind=kind,
+                allowed=list(get_args(TrackFormat)),
+            ),
+            code="unknown_name",
+        )
     path = Path(path)
     data = _bytes(path)
     recording = _recording(data, path.name, kind or _guess_format(data, path.suffix))

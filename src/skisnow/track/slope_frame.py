@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Final, Literal, NamedTuple
 import numpy as np
 
 from .._support.errors import ParameterError
+from .._support.messages import Message
 from .._support.units import DEGREE
 from .track import Track
 
@@ -122,16 +123,33 @@ def _rotate_sd(sd: FloatArray, axes: FloatArray) -> FloatArray:
 
 def _require(track: Track, azimuth: float, slope_angle: float | None, origin: Sequence[float] | FloatArray) -> None:
     if track.axes == "slope":
-        raise ParameterError(f"the track {track.name} is in a slope's frame already: {track.frame}")
+        raise ParameterError(
+            Message("the track {name} is in a slope's frame already: {frame}", name=track.name, frame=track.frame),
+            code="already_on_slope",
+        )
     if not abs(azimuth) <= 2.0 * math.pi:
         raise ParameterError(
-            f"the fall line's azimuth is {azimuth:g} rad; it must be from -2π to 2π. Is it in degrees?"
+            Message(
+                "the fall line's azimuth is {azimuth:g} rad; it must be from -2π to 2π. Is it in degrees?",
+                azimuth=azimuth,
+            ),
+            code="out_of_range",
         )
     if slope_angle is not None and not 0.0 <= slope_angle <= STEEPEST:
-        raise ParameterError(f"the slope angle is {slope_angle:g} rad; it must be from 0 to 75° = {STEEPEST:.4g} rad")
+        raise ParameterError(
+            Message(
+                "the slope angle is {slope_angle:g} rad; it must be from 0 to 75° = {steepest:.4g} rad",
+                slope_angle=slope_angle,
+                steepest=STEEPEST,
+            ),
+            code="out_of_range",
+        )
     place = np.asarray(origin, float)
     if place.shape != (3,) or not np.isfinite(place).all():
-        raise ParameterError(f"the origin of a slope is {origin!r}; it must be three finite numbers in m")
+        raise ParameterError(
+            Message("the origin of a slope is {value!r}; it must be three finite numbers in m", value=origin),
+            code="not_a_number",
+        )
 
 
 def _words(track: Track, azimuth: float, slope_angle: float | None, origin: Sequence[float] | FloatArray) -> str:

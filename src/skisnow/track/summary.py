@@ -10,6 +10,7 @@ import numpy as np
 
 from .._support.display import Facts, Shown, amount
 from .._support.errors import ParameterError
+from .._support.messages import Message
 from .._support.units import DEGREE
 from .._support.user_files.json_text import json_number
 from .curvature import TrackMotion, integrated_arc_length, places_arc_length, segments, track_motion
@@ -115,8 +116,12 @@ def track_summary(track: Track, *, window: float | None = None, place_noise: flo
     motion = track_motion(track, window=window, place_noise=place_noise)
     if not np.isfinite(motion.smoothed.velocity[:, 0]).any():
         raise ParameterError(
-            f"{track.name}: no window of {motion.smoothed.resolution.window:g} s holds six usable points. "
-            "Give a longer window"
+            Message(
+                "{name}: no window of {window:g} s holds six usable points. Give a longer window",
+                name=track.name,
+                window=motion.smoothed.resolution.window,
+            ),
+            code="too_few_points",
         )
     day = split_day(track, motion)
     turns = tuple(turn for run in day.runs for turn in find_turns(motion, first=run.first, last=run.last))

@@ -14,6 +14,7 @@ import numpy.typing as npt
 
 from ..._support.display import Facts, Shown, ShownFields, amount
 from ..._support.errors import ParameterError
+from ..._support.messages import Message, template
 from ..._support.nearest import require_choice
 from ...parameters import Quantity, Word, require_declared
 
@@ -35,6 +36,22 @@ class GateLine(NamedTuple):
     along: FloatArray
     across: FloatArray
     width: float
+
+
+_WRONG_SIDE: Final = {
+    "left": template(
+        "gate {name}: seen down the course the outer pole stands to the right of the turning pole, and side is "
+        '"left". Change the side, or exchange the poles'
+    ),
+    "right": template(
+        "gate {name}: seen down the course the outer pole stands to the left of the turning pole, and side is "
+        '"right". Change the side, or exchange the poles'
+    ),
+}
+_NOT_FINITE: Final = {
+    "turning": template("gate {name}: the turning pole stands at {place}; both must be finite, in m"),
+    "outer": template("gate {name}: the outer pole stands at {place}; both must be finite, in m"),
+}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
@@ -124,29 +141,44 @@ class Course(Shown):
         require_choice("axes", self.axes, get_args(CourseAxes))
         if len(self.gates) < FEWEST_GATES:
             raise ParameterError(
-                f"a course needs {FEWEST_GATES} gates or more, it has {len(self.gates)}: its direction comes from them"
+                Message(
+                    "a course needs {fewest} gates or more, it has {count}: its direction comes from them",
+                    fewest=FEWEST_GATES,
+                    count=len(self.gates),
+                ),
+                code="too_few_gates",
             )
         for before, gate in zip(self.gates, self.gates[1:], strict=False):
             if before.turning == gate.turning:
                 raise ParameterError(
-                    f"the gates {before.name} and {gate.name} stand at one place; move one, or drop it"
+                    Message(
+                        "the gates {first} and {second} stand at one place; move one, or drop it",
+                        first=before.name,
+                        second=gate.name,
+                    ),
+                    code="same_place",
                 )
         name, count = Counter(gate.name for gate in self.gates).most_common(1)[0]
         if count > 1:
-            raise ParameterError(f"two gates are called {name!r}; give each a name or number of its own")
+            raise ParameterError(
+                Message("two gates are called {name!r}; give each a name or number of its own", name=name),
+                code="repeated_name",
+            )
         for gate in self.gates:
             if not max(map(abs, (*gate.turning, *(gate.outer or ())))) <= FARTHEST:
                 raise ParameterError(
-                    f"gate {gate.name} stands at {gate.turning}. Allowed: coordinates of finite numbers, at most "
-                    f"{FARTHEST:g} m. Correct them, or their unit"
+                    Message(
+                        "gate {name} stands at {place}. Allowed: coordinates of finite numbers, at most "
+                        "{farthest:g} m. Correct them, or their unit",
+                        name=gate.name,
+                        place=gate.turning,
+                        farthest=FARTHEST,
+                    ),
+                    code="not_a_number",
                 )
         for gate, line, along in zip(self.gates, self.lines, self._chords(), strict=True):
             if float(line.along @ along) < AGAINST:
-                other = "right" if gate.side == "left" else "left"
-                raise ParameterError(
-                    f"gate {gate.name}: seen down the course the outer pole stands to the {other} of the turning pole, "
-                    f'and side is "{gate.side}". Change the side, or exchange the poles'
-                )
+                raise ParameterError(Message(_WRONG_SIDE[gate.side], name=gate.name), code="wrong_side")
 
     @property
     def lines(self) -> tuple[GateLine, ...]:
@@ -160,7 +192,10 @@ class Course(Shown):
         size = np.linalg.norm(chord, axis=1)
         if not size.min() > 0.0:
             at = int(np.argmin(size))
-            raise ParameterError(f"the gates before and behind {self.gates[at].name} stand at one place; move one")
+            raise ParameterError(
+                Message("the gates before and behind {name} stand at one place; move one", name=self.gates[at].name),
+                code="same_place",
+            )
         return np.asarray(chord / size[:, None])
 
     @property
@@ -263,10 +298,18 @@ class Gate(ShownFields):
         require_choice(f"gate {self.name}: side", self.side, get_args(Side))
         for pole, place in (("turning", self.turning), ("outer", self.outer)):
             if place is not None and not all(math.isfinite(coordinate) for coordinate in place):
-                raise ParameterError(f"gate {self.name}: the {pole} pole stands at {place}; both must be finite, in m")
+                raise ParameterError(
+                    Message(_NOT_FINITE[pole], name=self.name, place=place),
+                    code="not_a_number",
+                )
         if self.outer is not None and not self.width > 0.0:
             raise ParameterError(
-                f"gate {self.name}: both poles stand at {self.turning}; move one, or leave the outer out"
+                Message(
+                    "gate {name}: both poles stand at {turning}; move one, or leave the outer out",
+                    name=self.name,
+                    turning=self.turning,
+                ),
+                code="same_place",
             )
 
     @property

@@ -78,14 +78,17 @@ def read_course(
         "source": name, "discipline": discipline, "fall_line_azimuth_deg": fall_line_azimuth_deg,
     }  # fmt: skip
     if (latitude_deg is None) != (longitude_deg is None):
-        raise ParameterError(f"{path}: latitude and longitude of the origin go together; give both, or neither")
+        raise ParameterError(
+            Message("{path}: latitude and longitude of the origin go together; give both, or neither", path=path),
+            code="half_place",
+        )
     try:
         if path.suffix.lower() != ".gpx":
             return Course(gates=tuple(_gate(row) for row in _rows(path)), **options)
         waypoints = read_waypoints(path)
         return _geodetic_course(waypoints, latitude_deg, longitude_deg, options)
     except ParameterError as error:
-        raise error if str(error).startswith(str(path)) else ParameterError(f"{path}: {error}") from error
+        raise error if str(error).startswith(str(path)) else error.at(path) from error
 
 
 def _rows(path: Path) -> Iterator[CsvRow]:
@@ -124,7 +127,9 @@ def _geodetic_course(
     waypoints: list[Waypoint], latitude_deg: float | None, longitude_deg: float | None, options: dict[str, Any]
 ) -> Course:
     if not waypoints:
-        raise ParameterError("there is no waypoint; write one for each gate, in their order")
+        raise ParameterError(
+            Message("there is no waypoint; write one for each gate, in their order"), code="no_waypoint"
+        )
     first = waypoints[0]
     latitude = first.latitude_deg if latitude_deg is None else latitude_deg
     longitude = first.longitude_deg if longitude_deg is None else longitude_deg
@@ -137,8 +142,13 @@ def _geodetic_course(
         side = waypoint.side or bend
         if side is None:
             raise ParameterError(
-                f"waypoint {waypoint.row}, {waypoint.name!r}, does not say on which side it is passed, and the gates "
-                "lie so straight there that their line does not tell either. Write left or right into its type"
+                Message(
+                    "waypoint {row}, {name!r}, does not say on which side it is passed, and the gates lie so "
+                    "straight there that their line does not tell either. Write left or right into its type",
+                    row=waypoint.row,
+                    name=waypoint.name,
+                ),
+                code="no_side",
             )
         sides.append(side)
         if waypoint.side is None:
@@ -188,8 +198,13 @@ def on_slope(course: Course, *, slope_angle: float | None) -> Course:
         return course
     if course.fall_line_azimuth_deg is None:
         raise ParameterError(
-            f"{course.source}: its gates are in degrees; give course.fall_line_azimuth_deg, the compass direction in "
-            "which x points, and course.latitude_deg and course.longitude_deg of x = y = 0"
+            Message(
+                "{source}: its gates are in degrees; give course.fall_line_azimuth_deg, the compass "
+                "direction in which x points, and course.latitude_deg and course.longitude_deg of x = y "
+                "= 0",
+                source=course.source,
+            ),
+            code="no_azimuth",
         )
     angle = slope_angle or 0.0
     axes = slope_axes(course.fall_line_azimuth_deg * DEGREE, angle)

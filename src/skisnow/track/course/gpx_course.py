@@ -11,6 +11,7 @@ from typing import Final, cast
 from xml.parsers import expat
 
 from ..._support.errors import ParameterError
+from ..._support.messages import Message
 from ..._support.user_files import plain_text
 from .course import Side
 
@@ -56,7 +57,9 @@ class _Reader:
         self._path.append(name.rsplit("}", 1)[-1])
         self._text = []
         if len(self._path) > DEEPEST:
-            raise _RefusedError(f"more than {DEEPEST} elements within each other")
+            raise _RefusedError(
+                Message("more than {deepest} elements within each other", deepest=DEEPEST),
+            )
         if tuple(self._path) == _POINT:
             self.points.append(_WaypointTexts(attributes.get("lat"), attributes.get("lon")))
 
@@ -70,7 +73,7 @@ class _Reader:
         self._path.pop()
 
     def entity(self, name: str, *_rest: object) -> None:
-        raise _RefusedError(f"the declaration of an entity, {name}")
+        raise _RefusedError(Message("the declaration of an entity, {name}", name=name))
 
 
 def read_waypoints(path: str | Path) -> list[Waypoint]:
@@ -88,7 +91,10 @@ def read_waypoints(path: str | Path) -> list[Waypoint]:
     try:
         parser.Parse(plain_text(path, most_bytes=MOST_BYTES).lstrip(), True)
     except (_RefusedError, expat.ExpatError) as error:
-        raise ParameterError(f"{path} is no GPX that can be read ({error}); export it again") from error
+        raise ParameterError(
+            Message("{path} is no GPX that can be read ({error}); export it again", path=path, error=error),
+            code="not_gpx",
+        ) from error
     return [_waypoint(path, row, point) for row, point in enumerate(reader.points, start=1)]
 
 
@@ -110,5 +116,14 @@ def _number(path: str | Path, row: int, what: str, text: str | None, limit: floa
     if (math.isnan(value) and what == "ele") or abs(value) <= limit:
         return value
     raise ParameterError(
-        f"{path}, waypoint {row}, {what}: {text!r} is no number from {-limit:g} to {limit:g}; correct it"
+        Message(
+            "{path}, waypoint {row}, {what}: {text!r} is no number from {lowest:g} to {limit:g}; correct it",
+            path=path,
+            row=row,
+            what=what,
+            text=text,
+            lowest=-limit,
+            limit=limit,
+        ),
+        code="not_a_number",
     )

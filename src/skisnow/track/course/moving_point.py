@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..._support.errors import ParameterError
+from ..._support.messages import Message, template
 from ..projection import GeodeticPoint
 from ..track import Track
 from .course import Course
@@ -60,7 +61,9 @@ class MovingPoint:
     def __init__(self, time: FloatArray, place: FloatArray, velocity: FloatArray | None = None) -> None:
         self.time, self.place = np.asarray(time, float), np.asarray(place, float)
         if len(self.time) < 2 or not np.all(np.diff(self.time) > 0.0):
-            raise ParameterError("gates need two places or more at rising times; this track has fewer")
+            raise ParameterError(
+                Message("gates need two places or more at rising times; this track has fewer"), code="no_times"
+            )
         order: Literal[1, 2] = 2 if len(self.time) > 2 else 1
         differences = np.gradient(self.place, self.time, axis=0, edge_order=order)
         self.velocity = differences if velocity is None else np.where(np.isfinite(velocity), velocity, differences)
@@ -111,6 +114,18 @@ def _reached(first: float, last: float, rate: float, last_rate: float) -> float:
     return high
 
 
+_OTHER_UNIT: Final = {
+    True: template(
+        "the track {name} is in degrees, the course {source} in metres. Give the course as the track is: GPX with "
+        "waypoints, or CSV with x_m and y_m; or turn the track into the slope's frame first"
+    ),
+    False: template(
+        "the track {name} is in metres, the course {source} in degrees. Give the course as the track is: GPX with "
+        "waypoints, or CSV with x_m and y_m; or turn the track into the slope's frame first"
+    ),
+}
+
+
 def track_point(track: Track, course: Course) -> MovingPoint:
     """Moving point of a track: its usable horizontal places at rising times, from the course's origin.
 
@@ -121,10 +136,8 @@ def track_point(track: Track, course: Course) -> MovingPoint:
     """
     degrees = track.axes == "east_north_up"
     if degrees != (course.axes == "east_north_up"):
-        own, other = ("degrees", "metres") if degrees else ("metres", "degrees")
         raise ParameterError(
-            f"the track {track.name} is in {own}, the course {course.source} in {other}. Give the course as the track "
-            "is: GPX with waypoints, or CSV with x_m and y_m; or turn the track into the slope's frame first"
+            Message(_OTHER_UNIT[degrees], name=track.name, source=course.source), code="different_units"
         )
     if course.latitude_deg is not None and course.longitude_deg is not None and degrees:
         track = track.at_origin(GeodeticPoint(course.latitude_deg, course.longitude_deg))

@@ -15,6 +15,7 @@ from xml.parsers import expat
 
 import numpy as np
 
+from ..._support.messages import Message
 from ..._support.spreadsheet_text import number
 from .recording import Recording, is_not_finite, track_error
 
@@ -66,9 +67,15 @@ class _Reader:
         self._path.append(name.rsplit("}", 1)[-1])
         self._count += 1
         if len(self._path) > DEEPEST:
-            raise _TooMuchError(f"{len(self._path)} elements within each other", f"at most {DEEPEST}")
+            raise _TooMuchError(
+                Message("{count} elements within each other", count=len(self._path)),
+                f"at most {DEEPEST}",
+            )
         if self._count > MOST_ELEMENTS:
-            raise _TooMuchError(f"more than {MOST_ELEMENTS} elements", f"at most {MOST_ELEMENTS}")
+            raise _TooMuchError(
+                Message("more than {most} elements", most=MOST_ELEMENTS),
+                f"at most {MOST_ELEMENTS}",
+            )
         if tuple(self._path) == _POINT[:3]:
             self._segment += 1
         elif tuple(self._path) == _POINT:
@@ -88,7 +95,7 @@ class _Reader:
         self._path.pop()
 
     def entity(self, name: str, *_rest: object) -> None:
-        raise _TooMuchError(f"the declaration of an entity, {name}", "a file without them")
+        raise _TooMuchError(Message("the declaration of an entity, {name}", name=name), "a file without them")
 
     def _key(self) -> str | None:
         """Key under which the text of the current element is stored: that of a point, or a speed in its extensions."""
