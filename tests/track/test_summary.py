@@ -15,6 +15,7 @@ from skisnow._support.errors import ParameterError
 from skisnow.track.read import read_track
 from skisnow.track.summary import TrackSummary, half_wavelength, summary_dict, track_summary
 from skisnow.track.track import Track
+from tests.coded import raises
 
 from .paths import NOISE, circle, track
 
@@ -126,10 +127,10 @@ def test_too_few_points(points: int) -> None:
     made: Track = track(circle(15.0, 8.0))
     keep = slice(0, points)
     few = replace(made, time=made.time[keep], place=made.place[keep], speed=made.speed[keep])
-    with pytest.raises(ParameterError, match=f"made: {points} usable points"):
+    with raises(ParameterError, "too_few_points", name="made", count=points):
         track_summary(few)
 
 
 def test_window_without_points() -> None:
-    with pytest.raises(ParameterError, match=r"no window of 0\.2 s holds six usable points"):
+    with raises(ParameterError, "too_few_points", window=0.2):
         track_summary(track(circle(15.0, 8.0)), window=0.2)

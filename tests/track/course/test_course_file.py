@@ -17,6 +17,7 @@ from skisnow.track.course import Course, Gate, MovingPoint, course_warnings, on_
 from skisnow.track.course.course_file import _bends
 from skisnow.track.projection import GeodeticPoint
 from skisnow.track.read import read_track
+from tests.coded import Coded, coded, raises
 
 HEAD = "gate,x_m,y_m,side,outer_x_m,outer_y_m\n"
 ROWS = "1,10,-1,left,10,4\n2,20,1,right,20,-4\n3,30,-1,Left,,\n"
@@ -57,27 +58,27 @@ def test_table_is_read_as_it_stands(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("text", "said"),
     [
-        ("gate,x_m,y_m\n", "row 1: column side is missing"),
-        (HEAD + ROWS.replace("left,10", "up,10"), "row 2, column side: 'up': Must be left or right"),
-        (HEAD + ROWS.replace("2,20,1", "2,2o,1"), "row 3, column x_m: '2o': A finite number is needed"),
-        (HEAD + ROWS.replace("2,20,1", ",20,1"), "row 3, column gate: '': This is not a name"),
+        ("gate,x_m,y_m\n", coded("missing_column", column="side")),
+        (HEAD + ROWS.replace("left,10", "up,10"), coded("unknown_choice", row=2, column="side", value="up")),
+        (HEAD + ROWS.replace("2,20,1", "2,2o,1"), coded("not_a_number", row=3, column="x_m", value="2o")),
+        (HEAD + ROWS.replace("2,20,1", ",20,1"), coded("missing_name", row=3, column="gate")),
         (
             HEAD + ROWS.replace("20,-4", "20,"),
-            "row 3, column outer_x_m: '20': The other coordinate of the outer pole is missing",
+            coded("missing_column", row=3, column="outer_x_m", value="20"),
         ),
-        (HEAD + ROWS.replace("2,20,1", "1,20,1"), "two gates are called '1'"),
-        (HEAD + "1,10,-1,left,10,4\n", "a course needs 2 gates or more, it has 1"),
-        (HEAD + ROWS.replace("2,20,1,right,20,-4", "2,10,-1,right,,"), "the gates 1 and 2 stand at one place"),
-        (HEAD + ROWS.replace("10,4", "10,-1"), "gate 1: both poles stand at"),
+        (HEAD + ROWS.replace("2,20,1", "1,20,1"), coded("repeated_name", name="1")),
+        (HEAD + "1,10,-1,left,10,4\n", coded("too_few_gates", fewest=2, count=1)),
+        (HEAD + ROWS.replace("2,20,1,right,20,-4", "2,10,-1,right,,"), coded("same_place", first="1", second="2")),
+        (HEAD + ROWS.replace("10,4", "10,-1"), coded("same_place", name="1")),
         (
             HEAD + ROWS.replace("right", "left"),
-            'gate 2: seen down the course the outer pole stands to the right of the turning pole, and side is "left"',
+            coded("wrong_side", name="2"),
         ),
     ],
 )
-def test_what_is_wrong_is_told_with_its_place(tmp_path: Path, text: str, said: str) -> None:
+def test_what_is_wrong_is_told_with_its_place(tmp_path: Path, text: str, said: str | Coded) -> None:
     path = written(tmp_path, text)
-    with pytest.raises(ParameterError, match=said) as error:
+    with raises(ParameterError, said) as error:
         read_course(path)
     assert str(error.value).startswith(str(path))
 
@@ -124,28 +125,34 @@ def test_sides_that_are_not_told_are_those_of_the_bends(tmp_path: Path) -> None:
     assert [gate.side for gate in found.gates] == ["right", "left", "right", "left"]
     assert found.warnings == ("the side of 4 gates was taken from the bends of the course: g0, g-12, g-24, g-36",)
     straight = gpx([(0.0, -10.0 * i, "") for i in range(4)])
-    with pytest.raises(ParameterError, match="waypoint 1, '1', does not say on which side it is passed"):
+    with raises(ParameterError, "no_side", row=1, name="1"):
         read_course(written(tmp_path, straight, "course.gpx"))
 
 
 @pytest.mark.parametrize(
     ("text", "said"),
     [
-        ("<gpx></gpx>", "there is no waypoint"),
-        ("<gpx><wpt lat='95' lon='11'/></gpx>", "waypoint 1, lat: '95' is no number from -90 to 90"),
-        ("<gpx><wpt lat='nan' lon='11'/></gpx>", "waypoint 1, lat: 'nan' is no number from -90 to 90"),
+        ("<gpx></gpx>", "no_waypoint"),
+        (
+            "<gpx><wpt lat='95' lon='11'/></gpx>",
+            coded("not_a_number", row=1, what="lat", text="95", lowest=-90.0, limit=90.0),
+        ),
+        (
+            "<gpx><wpt lat='nan' lon='11'/></gpx>",
+            coded("not_a_number", row=1, what="lat", text="nan", lowest=-90.0, limit=90.0),
+        ),
         (
             "<gpx><wpt lat='47' lon='11'><ele>1e6</ele></wpt></gpx>",
-            "waypoint 1, ele: '1e6' is no number from -100000 to 100000",
+            coded("not_a_number", row=1, what="ele", text="1e6", lowest=-100000.0, limit=100000.0),
         ),
-        ("<gpx><wpt lat='47'/></gpx>", "waypoint 1, lon: None is no number from -180 to 180"),
-        ("<gpx><wpt lat='47' lon='11'>", "is no GPX that can be read"),
-        ('<!DOCTYPE gpx [<!ENTITY a "b">]><gpx/>', "the declaration of an entity, a"),
+        ("<gpx><wpt lat='47'/></gpx>", coded("not_a_number", row=1, what="lon", lowest=-180.0, limit=180.0)),
+        ("<gpx><wpt lat='47' lon='11'>", "not_gpx"),
+        ('<!DOCTYPE gpx [<!ENTITY a "b">]><gpx/>', coded("not_gpx", error="the declaration of an entity, a")),
     ],
 )
-def test_what_is_no_gpx_course_is_refused(tmp_path: Path, text: str, said: str) -> None:
+def test_what_is_no_gpx_course_is_refused(tmp_path: Path, text: str, said: str | Coded) -> None:
     path = written(tmp_path, text, "course.gpx")
-    with pytest.raises(ParameterError, match=said) as error:
+    with raises(ParameterError, said) as error:
         read_course(path)
     assert str(error.value).startswith(str(path))
 
@@ -153,19 +160,19 @@ def test_what_is_no_gpx_course_is_refused(tmp_path: Path, text: str, said: str) 
 def test_16_mib_of_gpx_are_read(tmp_path: Path) -> None:
     """A file of zeros, which is no GPX, but not too large before it has a byte more."""
     path = tmp_path / "course.gpx"
-    for size, said in ((2**24, "is no GPX that can be read"), (2**24 + 1, "is too large: at most 16 MiB are read")):
+    for size, code in ((2**24, "not_gpx"), (2**24 + 1, "too_large")):
         with path.open("wb") as stream:
             stream.truncate(size)
-        with pytest.raises(ParameterError, match=said):
+        with raises(ParameterError, code):
             read_course(path)
 
 
 def test_degrees_need_to_know_where_x_points(tmp_path: Path) -> None:
     named = [(east, north, f"<desc>{side}</desc>") for east, north, side in POINTS]
     path = written(tmp_path, gpx(named), "course.gpx")
-    with pytest.raises(ParameterError, match=r"give course\.fall_line_azimuth_deg"):
+    with raises(ParameterError, "no_azimuth"):
         on_slope(read_course(path), slope_angle=None)
-    with pytest.raises(ParameterError, match="latitude and longitude of the origin go together"):
+    with raises(ParameterError, "half_place"):
         read_course(path, latitude_deg=47.0)
 
 
@@ -222,7 +229,7 @@ def test_a_course_in_degrees_is_laid_on_the_slope_of_a_scenario_that_is_changed(
     np.testing.assert_allclose(
         [gate.turning for gate in changed.gates], [(-n * stretched, e) for e, n, _ in POINTS], atol=1e-3
     )
-    with pytest.raises(ParameterError, match="fall_line_azimuth_deg"):
+    with raises(ParameterError, "no_azimuth"):
         plane.with_(course=replace(degrees, fall_line_azimuth_deg=None))
 
 
@@ -239,7 +246,7 @@ def test_a_track_and_a_course_in_degrees_with_their_own_origins_are_brought_toge
     shared = read_track(tmp_path / "track.csv", origin=GeodeticPoint(course.latitude_deg, course.longitude_deg))  # type: ignore[arg-type]
     assert result.times == pytest.approx(list(time_gates(course, shared).times), abs=1e-6)
     assert result.times[1] == pytest.approx(37.0 / 9.0, abs=1e-3)
-    with pytest.raises(ParameterError, match="local metres"):
+    with raises(ParameterError, "no_origin"):
         time_gates(course, replace(track, origin=None))
 
 
@@ -265,7 +272,7 @@ def test_a_straight_stretch_has_no_sides_whichever_way_it_goes() -> None:
 def test_gates_that_lead_back_to_one_place_have_no_direction() -> None:
     places = (("a", (0.0, 0.0)), ("b", (10.0, 0.0)), ("c", (0.0, 0.0)))
     gates = tuple(Gate(name=name, turning=place, side="left") for name, place in places)
-    with pytest.raises(ParameterError, match="gates before and behind b stand at one place"):
+    with raises(ParameterError, "same_place", name="b"):
         Course(gates=gates)
 
 

@@ -13,6 +13,7 @@ from skisnow.track.course import MovingPoint, passages
 from skisnow.track.course.gates_table import COLUMNS, gates_csv, gates_dict, time_warnings
 from skisnow.track.course.moving_point import track_point
 from skisnow.track.track import Axes, Track
+from tests.coded import raises
 
 from .test_passages import WIDE, along_x, course
 
@@ -56,5 +57,5 @@ def test_beyond_a_narrow_gate_is_beyond_its_outer_pole() -> None:
 def test_a_track_is_the_point_at_its_usable_places_and_rising_times() -> None:
     point = track_point(track(), WIDE)
     np.testing.assert_array_equal(point.time, [0.0, 1.0, 3.0])
-    with pytest.raises(ParameterError, match="the track t is in degrees, the course "):
+    with raises(ParameterError, "different_units", name="t"):
         track_point(track("east_north_up"), WIDE)

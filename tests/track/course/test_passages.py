@@ -11,6 +11,7 @@ import pytest
 from skisnow._support.errors import ParameterError
 from skisnow.track.course import Course, CourseResult, Gate, MovingPoint, passages
 from skisnow.track.course.course import Point, Side
+from tests.coded import raises
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -54,7 +55,7 @@ def test_time_through_the_course_is_told_where_both_ends_were_reached() -> None:
 
 
 def test_a_side_is_left_or_right() -> None:
-    with pytest.raises(ParameterError, match="gate 1: side is 'up'"):
+    with raises(ParameterError, "unknown_choice", name="gate 1: side", value="up"):
         course(((10.0, -1.0), "up"))  # type: ignore[arg-type]
 
 
