@@ -305,17 +305,18 @@ class CaamlUnits:
         return None if size is None else (value + size[0]) * size[1]
 
 
-def _same_factor(factor: float, *names: str) -> dict[str, tuple[float, float]]:
-    return dict.fromkeys(names, (0.0, factor))
+def _proportional(factor: float, *units: str) -> dict[str, tuple[float, float]]:
+    """Zero point (0) and factor of each of the units."""
+    return dict.fromkeys(units, (0.0, factor))
 
 
 _LENGTHS: Final = {
-    **_same_factor(MM, "mm"),
-    **_same_factor(CM, "cm"),
-    **_same_factor(1.0, "m"),
-    **_same_factor(1e3, "km"),
-    **_same_factor(_INCH, "in", "inch"),
-    **_same_factor(_FOOT, "ft", "feet"),
+    **_proportional(MM, "mm"),
+    **_proportional(CM, "cm"),
+    **_proportional(1.0, "m"),
+    **_proportional(1e3, "km"),
+    **_proportional(_INCH, "in", "inch"),
+    **_proportional(_FOOT, "ft", "feet"),
 }
 LENGTH: Final = CaamlUnits("cm", _LENGTHS)
 ELEVATION: Final = CaamlUnits("m", _LENGTHS)
@@ -330,9 +331,9 @@ TEMPERATURE: Final = CaamlUnits(
 )
 DENSITY: Final = CaamlUnits(
     "kgm-3",
-    {**_same_factor(1.0, "kgm-3", "kg/m3", "kg/m³"), **_same_factor(1e3, "gcm-3", "g/cm3", "g/cm³", "kgl-1", "kg/l")},
+    {**_proportional(1.0, "kgm-3", "kg/m3", "kg/m³"), **_proportional(1e3, "gcm-3", "g/cm3", "g/cm³", "kgl-1", "kg/l")},
 )
-FORCE: Final = CaamlUnits("N", {**_same_factor(1.0, "N"), **_same_factor(1e3, "kN"), **_same_factor(1e-3, "mN")})
-ANGLE: Final = CaamlUnits("deg", {**_same_factor(1.0, "deg", "°"), **_same_factor(1.0 / DEGREE, "rad")})
-SNOW_HARDNESS: Final = CaamlUnits("Nmm-3", _same_factor(1.0, "Nmm-3"))
-SHEAR_STRESS: Final = CaamlUnits("Nmm-2", _same_factor(1.0, "Nmm-2"))
+FORCE: Final = CaamlUnits("N", {**_proportional(1.0, "N"), **_proportional(1e3, "kN"), **_proportional(1e-3, "mN")})
+ANGLE: Final = CaamlUnits("deg", {**_proportional(1.0, "deg", "°"), **_proportional(1.0 / DEGREE, "rad")})
+SNOW_HARDNESS: Final = CaamlUnits("Nmm-3", _proportional(1.0, "Nmm-3"))
+SHEAR_STRESS: Final = CaamlUnits("Nmm-2", _proportional(1.0, "Nmm-2"))

@@ -264,6 +264,7 @@ class _FlaggedReadings:
         return Problem("mark", code, PENETRATION.file, row, column, experiment, value, allowed, follows)
 
     def _depth(self, reading: int) -> str:
+        """Depth in mm, as text without the unit."""
         return f"{self._tests.penetration_depth[reading] / MM:.10g}"
 
     def _cancelled(self, index: int) -> tuple[int, str, str, str]:

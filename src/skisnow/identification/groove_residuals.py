@@ -81,7 +81,7 @@ class GrooveResiduals:
 
     @property
     def kind(self) -> Kind:
-        """MeasuredGrooves."""
+        """Kind of the data: grooves."""
         return "marks"
 
     @property

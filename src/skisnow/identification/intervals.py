@@ -81,7 +81,7 @@ def _along(solution: Solution, j: int, error: float) -> tuple[FloatArray, FloatA
         for i, residuals in enumerate(compute(points)):
             if residuals is not None:
                 costs[i] = min(costs[i], float(residuals @ residuals))
-                points[i] = _refit(solution, j, points[i], residuals)
+                points[i] = _step_of_others(solution, j, points[i], residuals)
     for i, residuals in enumerate(compute(points)):
         if residuals is not None:
             costs[i] = min(costs[i], float(residuals @ residuals))
@@ -98,10 +98,11 @@ def _moved(solution: Solution, j: int, end: float) -> FloatArray:
     place = optimum.place.copy()
     place[j] = end
     residuals = optimum.residuals + optimum.jacobian[:, j] * (end - optimum.place[j])
-    return _refit(solution, j, place, residuals)
+    return _step_of_others(solution, j, place, residuals)
 
 
-def _refit(solution: Solution, j: int, place: FloatArray, residuals: FloatArray) -> FloatArray:
+def _step_of_others(solution: Solution, j: int, place: FloatArray, residuals: FloatArray) -> FloatArray:
+    """One Gauss-Newton step of all parameters but j, which stays; the new place is within the bounds."""
     jacobian = solution.optimum.jacobian
     assert jacobian is not None
     others = np.array([i for i in range(len(place)) if i != j], dtype=int)

@@ -86,7 +86,7 @@ class PhotoCellTimes:
 
     @property
     def kind(self) -> Kind:
-        """Photo cells."""
+        """Kind of the data: times of photo cells."""
         return "photo_cells"
 
     @property

@@ -158,7 +158,7 @@ class Observations(Protocol):
 
     @property
     def kind(self) -> Kind:
-        """Of the data."""
+        """Kind of the data."""
 
     @property
     def runs(self) -> tuple[str, ...]:

@@ -257,6 +257,7 @@ def _pair(interval: Interval | None) -> list[float | None] | None:
 
 
 def _rms(fit: Fit) -> dict[str, float | None]:
+    """Root mean square residual of each labelled column; None without a finite one."""
     rms: dict[str, float | None] = {}
     for i, label in enumerate(fit.labels):
         residuals = fit.residual[np.isfinite(fit.residual[:, i]), i]

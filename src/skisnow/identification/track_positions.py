@@ -166,7 +166,7 @@ class TrackPositions:
 
     @property
     def kind(self) -> Kind:
-        """Tracks."""
+        """Kind of the data: tracks."""
         return "track"
 
     @property

@@ -138,10 +138,13 @@ def linear_uncertainty(jacobian: FloatArray, *, degrees_of_freedom: float | None
     single_errors = np.where(length > 0.0, 1.0 / unit, np.inf)
     with np.errstate(invalid="ignore"):
         unknown = lost | (factor * np.sqrt(np.diag(covariance)) > WIDEST_HALF_INTERVAL)
-    return Uncertainty(covariance, correlation, factor, unknown, _groups(open_directions, length), single_errors)
+    return Uncertainty(
+        covariance, correlation, factor, unknown, _undetermined_groups(open_directions, length), single_errors
+    )
 
 
-def _groups(directions: FloatArray, length: FloatArray) -> tuple[tuple[int, ...], ...]:
+def _undetermined_groups(directions: FloatArray, length: FloatArray) -> tuple[tuple[int, ...], ...]:
+    """Parameters that the data do not determine: those without effect, and those of each undetermined direction."""
     alone = [(int(j),) for j in np.flatnonzero(length == 0.0)]
     together = [
         tuple(int(j) for j in np.flatnonzero((np.abs(direction) > LEAST_SHARE) & (length > 0.0)))

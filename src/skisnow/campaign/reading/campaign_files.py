@@ -268,13 +268,13 @@ def campaign_weather(settings: WeatherSettings, files: RawFiles) -> CampaignWeat
     if not name:
         return None
     if "/" in name or "\\" in name or not name.lower().endswith(WEATHER_ENDING):
-        _refuse(files, name, "the name of a .smet file in the campaign's folder")
+        _refuse_weather_file(files, name, "the name of a .smet file in the campaign's folder")
         return None
     before = len(files.problems)
     data = files.read(name)
     if data is None:
         if len(files.problems) == before:
-            _refuse(files, name, "a file of this name in the campaign's folder")
+            _refuse_weather_file(files, name, "a file of this name in the campaign's folder")
         return None
     try:
         return CampaignWeather(parse_smet(name, data), settings)
@@ -283,7 +283,7 @@ def campaign_weather(settings: WeatherSettings, files: RawFiles) -> CampaignWeat
         return None
 
 
-def _refuse(files: RawFiles, name: str, allowed: str) -> None:
+def _refuse_weather_file(files: RawFiles, name: str, allowed: str) -> None:
     action = "Lay the file beside campaign.toml, or correct its name."
     files.problems.append(
         error("unreadable_file", CAMPAIGN_FILE, column="weather.file", value=name, allowed=allowed, action=action)

@@ -94,6 +94,7 @@ class TomlValues:
         return tuple(value for value in checked if value is not None)
 
     def _checked(self, value: object, quantity: Quantity) -> float | None:
+        """The number in the key's unit; None and a problem if it is none or out of range."""
         allowed = f"a finite number {quantity.allowed}"
         if isinstance(value, bool) or not isinstance(value, int | float):
             action = "Write a number with a decimal point, without quotes."

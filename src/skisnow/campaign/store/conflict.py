@@ -276,7 +276,7 @@ def entries_about(connection: Connection, journal_id: str, subject: Subject) -> 
 def shared_journals(here: Connection, there: Connection) -> Iterator[str]:
     """Ids of the journals that can be compared: of campaigns in entry, or stored in both stores."""
     of_here, of_there = _journals(here), _journals(there)
-    stored_here, stored_there = _stored(here), _stored(there)
+    stored_here, stored_there = _campaign_ids(here), _campaign_ids(there)
     for id_ in sorted(of_here | of_there):
         if (id_ in stored_here) == (id_ in stored_there):
             yield id_
@@ -286,5 +286,5 @@ def _journals(connection: Connection) -> set[str]:
     return set(connection.execute(select(journal.c.id)).scalars())
 
 
-def _stored(connection: Connection) -> set[str]:
+def _campaign_ids(connection: Connection) -> set[str]:
     return set(connection.execute(select(campaign.c.id)).scalars())

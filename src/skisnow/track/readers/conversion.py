@@ -98,6 +98,7 @@ def _fix(recording: Recording) -> BoolArray:
 def _projected(
     recording: Recording, fix: BoolArray, origin: GeodeticPoint | None
 ) -> tuple[FloatArray, FloatArray | None, GeodeticPoint | None]:
+    """Places, velocities and origin: in east, north, up where the file has latitude and longitude, else as recorded."""
     if not recording.is_geodetic:
         if origin is not None:
             raise track_error(

@@ -15,6 +15,7 @@ depends_on = None
 
 
 def upgrade() -> None:
+    """Create all tables of the store."""
     is_file = op.get_bind().dialect.name == "sqlite"
     _create_campaign_tables(is_file)
     _create_journal_tables()
