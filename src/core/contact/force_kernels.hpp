@@ -139,7 +139,8 @@ void slide(const Motion& motion, const Pose& pose, double dt, const Snow& snow, 
     const Vector<V> aside = aside_of(c, snow);
     const double vector = law.is_vector ? 1.0 : 0.0;
     const V ahead = dot(velocity, c.along), to_side = vector * dot(velocity, aside);
-    const V speed = root(ahead * ahead + to_side * to_side), film = 1.0 / (1.0 + speed / law.film_speed);
+    const V speed = root(ahead * ahead + to_side * to_side);
+    const V film = law.film != 0.0 ? 1.0 / (1.0 + speed / law.film_speed) : V{};
     const V of_law = law.constant + speed * (law.linear + law.square * speed) + law.film * film;
     const V growth_of_law = law.linear + 2.0 * law.square * speed - law.film / law.film_speed * film * film;
     store(out[SLIDING] + i, ahead), store(out[SLIDING_ASIDE] + i, to_side);

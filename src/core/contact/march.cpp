@@ -175,7 +175,8 @@ void keep_stuck(const Base& s, int i, const Snow& snow, GrooveLines& lines, int 
   if (v[STUCK][slot] > 0.5) {
     const double zero[] = {v[STUCK_STATION][slot], v[STUCK_PLACE][slot], v[STUCK_ARM][slot]};
     const alone::Way<double> way(c, alone::aside_of(c, snow), zero[0], zero[1], zero[2]);
-    const double far = snow.friction.is_vector ? std::hypot(way.ahead, way.aside) : std::fabs(way.ahead);
+    const double far =
+        snow.friction.is_vector ? std::sqrt(way.ahead * way.ahead + way.aside * way.aside) : std::fabs(way.ahead);
     most = stick / std::max(far, stick), over = c.place + (zero[2] - c.reach) / c.widening - zero[1];
   }
   v[STUCK][slot] = 1.0, v[STUCK_ARM][slot] = c.reach;
