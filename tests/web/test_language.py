@@ -26,7 +26,6 @@ from skisnow.carving.result import REMEDIES
 from skisnow.report.charts import ski_drawing
 from skisnow.scenario.keys import SCENARIO_KEYS
 from skisnow.ski import read_ski
-from skisnow.web.analysis_view import NAMES_IN_FILES
 from skisnow.web.pages.simulate import basic, expert
 from skisnow.web.scenario_fields import called, range_words
 from skisnow.web.study_fields import CARVE, study_keys
@@ -97,38 +96,41 @@ HEAD = "experiment,site,tool,edge_angle_deg,load_N,depth_mm"
     [
         (
             f"{HEAD}\n1,A,ski,30,20,x\n",
-            "penetration.csv, Zeile 2, Spalte depth_mm (Versuch 1): steht da 'x'; erlaubt: eine Zahl ab 0. "
-            "Schreibe eine schlichte Zahl wie 12.5, ohne Einheit, Bemerkung oder Tausendertrennzeichen.",
+            "penetration.csv, Zeile 2, Spalte depth_mm (Versuch 1): gefunden 'x'; erlaubt: eine Zahl ab 0. "
+            "Schreiben Sie eine schlichte Zahl wie 12.5, ohne Einheit, Bemerkung oder Tausendertrennzeichen.",
         ),
         (
             f"{HEAD}\n1,A,ski,30,20,1\n1,B,ski,30,40,2\n",
-            "Spalte site (Versuch 1): steht da 'B'; erlaubt: ein Wert von site in einem Versuch; Zeile 2 hat 'A'. "
-            "Berichtige die Zelle, oder gib den Zeilen, die ein anderer Versuch waren, einen anderen Namen.",
+            "Spalte site (Versuch 1): gefunden 'B'; erlaubt: ein Wert von site in einem Versuch; Zeile 2 hat 'A'. "
+            "Berichtigen Sie die Zelle, oder geben Sie den Zeilen, die ein anderer Versuch waren, einen anderen Namen.",
         ),
         (
             "Versuch,Ort,Werkzeug,Winkel [°],Last [N]\n1,A,ski,30,20\n",
             "erlaubt: experiment, site, tool, edge_angle_deg, load_N, depth_mm, oder Überschriften, die campaign.toml "
-            'ihnen zuordnet. Schreibe dies oben in campaign.toml, wenn es stimmt: columns.penetration = {"Versuch" = ',
-        ),
-        (f"{HEAD}\n", "Kopfzeile und mindestens eine Zeile. Fülle die Datei, oder nimm sie aus der Kampagne."),
-        (
-            f"{HEAD}\n1,A,ski,30,20,1\n",
-            "campaign.toml, Spalte plate[1].length_mm: steht da '100'; erlaubt: eine endliche Zahl über 0. "
-            "Schreibe eine Zahl mit Dezimalpunkt, ohne Anführungszeichen.",
+            "ihnen zuordnet. Schreiben Sie dies oben in campaign.toml, wenn es stimmt: "
+            'columns.penetration = {"Versuch" = ',
         ),
         (
+            f"{HEAD}\n",
+            "Kopfzeile und mindestens eine Zeile. Füllen Sie die Datei, oder nehmen Sie sie aus der Kampagne.",
+        ),
+        (
             f"{HEAD}\n1,A,ski,30,20,1\n",
-            "Spalte plaze: steht da 'plaze'; erlaubt: der Schlüssel plate. Ist plate gemeint? "
-            "Berichtige oder entferne den Schlüssel.",
+            "campaign.toml, Spalte plate[1].length_mm: gefunden '100'; erlaubt: eine endliche Zahl über 0. "
+            "Schreiben Sie eine Zahl mit Dezimalpunkt, ohne Anführungszeichen.",
+        ),
+        (
+            f"{HEAD}\n1,A,ski,30,20,1\n",
+            "Spalte plaze: gefunden 'plaze'; erlaubt: der Schlüssel plate. Meinten Sie plate? "
+            "Berichtigen oder entfernen Sie den Schlüssel.",
         ),
     ],
 )
 def test_what_is_wrong_in_files_is_said_with_their_own_names(table: str, german: str) -> None:
     with pytest.raises(FieldDataError) as caught:
         campaign_of_files({"campaign.toml": DESCRIBED.encode(), "penetration.csv": table.encode()})
-    words = GERMAN.keeping(NAMES_IN_FILES)
     wrong = (each for each in caught.value.problems if isinstance(each, Problem))
-    assert german in "\n".join(map(words.translated, lines_of(wrong)))
+    assert german in "\n".join(line.text("de") for line in lines_of(wrong))
 
 
 def test_a_further_language_is_one_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

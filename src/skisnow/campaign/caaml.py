@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Final, NoReturn
 import numpy as np
 
 from .._support.errors import FieldDataError
+from .._support.messages import Message
 from .._support.units import CM, DEGREE, MM, ZERO_CELSIUS
 from .._support.user_files import GivenError, plain_bytes, xml_tree
 from ..parameters.quantity import LARGEST
@@ -64,8 +65,8 @@ def read_caaml(path: str | Path) -> SnowPit:
             path.name,
             row=failure.line,
             value=failure.what,
-            allowed="a snow profile in CAAML 5 or 6",
-            action="Export it again from the program that wrote it.",
+            allowed=Message("a snow profile in CAAML 5 or 6"),
+            action=Message("Export it again from the program that wrote it."),
         )
         raise FieldDataError([problem]) from failure
     return _Profile(path.name, root).pit()
@@ -79,17 +80,24 @@ class _Profile:
         self._root = root
         if root.name != "SnowProfile" or NAMESPACE.fullmatch(root.namespace) is None:
             root_name = f"{root.name} of {root.namespace or 'no namespace'}"
-            self._refuse("SnowProfile", root_name, "SnowProfile of CAAML 5 or 6", "Export it as CAAML 6.")
+            self._refuse(
+                "SnowProfile", root_name, Message("SnowProfile of CAAML 5 or 6"), Message("Export it as CAAML 6.")
+            )
         measured = root.child("snowProfileResultsOf", "SnowProfileMeasurements")
         if measured is None:
-            self._refuse("snowProfileResultsOf", "nothing", "SnowProfileMeasurements", "The file holds no profile.")
+            self._refuse(
+                "snowProfileResultsOf",
+                "nothing",
+                Message("SnowProfileMeasurements"),
+                Message("The file holds no profile."),
+            )
         self._measured = measured
         self._is_version_6 = "v6" in root.namespace
         height = self._height()
         self._from_ground = measured.attributes.get("dir", "top down") != "top down"
         if self._from_ground and height is None:
-            action = "Add snowPackCond/hS, or export it top down."
-            self._refuse("SnowProfileMeasurements", "bottom up", "top down, or the height of the snow", action)
+            action = Message("Add snowPackCond/hS, or export it top down.")
+            self._refuse("SnowProfileMeasurements", "bottom up", Message("top down, or the height of the snow"), action)
         self._snow_height = height
 
     def _refuse(self, element: str, value: str, allowed: str, action: str) -> NoReturn:
@@ -167,7 +175,7 @@ class _Profile:
         if not self._is_version_6 and point.attributes.get("srsName", "").endswith("CRS84"):
             both.reverse()
         if len(both) != 2 or not (-90.0 <= both[0] <= 90.0 and -180.0 <= both[1] <= 180.0):
-            self._refuse("pos", text, "latitude and longitude in degrees", "Correct the place.")
+            self._refuse("pos", text, Message("latitude and longitude in degrees"), Message("Correct the place."))
         return both[0], both[1]
 
     def _layer(self, profile: Element, layer: Element) -> SnowLayer:
@@ -202,7 +210,7 @@ class _Profile:
             return ForceProfile(method, np.array(depths, dtype=float), np.array(forces, dtype=float))
         pairs = [[self._finite("tupleList", number) for number in row.split(",")] for row in rows]
         if any(len(pair) != 2 for pair in pairs):
-            self._refuse("tupleList", rows[0], "pairs of depth and force", "Correct the list.")
+            self._refuse("tupleList", rows[0], Message("pairs of depth and force"), Message("Correct the list."))
         units = (profile.child("MeasurementComponents") or profile).attributes
         columns = [
             np.array([self._convert(kind, attribute, pair[column], units.get(attribute)) for pair in pairs])
@@ -232,7 +240,12 @@ class _Profile:
     def _required(self, units: CaamlUnits, profile: Element, parent: Element, name: str) -> float:
         value = self._quantity(units, parent, name, profile=profile)
         if value is None:
-            self._refuse(name, "nothing", "a number", f"Give every {parent.name} its {name}.")
+            self._refuse(
+                name,
+                "nothing",
+                Message("a number"),
+                Message("Give every {name} its {name_2}.", name=parent.name, name_2=name),
+            )
         return value
 
     def _quantity(
@@ -255,10 +268,18 @@ class _Profile:
     def _convert(self, units: CaamlUnits, name: str, value: float, unit: str | None) -> float:
         converted = units.convert(value, unit)
         if converted is None:
-            allowed, action = f"a unit among {', '.join(units.sizes)}", "Correct the unit, or convert the numbers."
+            allowed, action = (
+                Message("a unit among {sizes}", sizes=list(units.sizes)),
+                Message("Correct the unit, or convert the numbers."),
+            )
             self._refuse(name, unit or "", allowed, action)
         if not abs(converted) <= LARGEST:
-            self._refuse(name, f"{value:g} {unit or ''}", f"a number to ±{LARGEST:g} in SI", "Correct the number.")
+            self._refuse(
+                name,
+                f"{value:g} {unit or ''}",
+                Message("a number to ±{largest:g} in SI", largest=LARGEST),
+                Message("Correct the number."),
+            )
         return converted
 
     def _finite(self, element: str, text: str) -> float:
@@ -267,7 +288,7 @@ class _Profile:
         except ValueError:
             value = math.nan
         if not math.isfinite(value):
-            self._refuse(element, text.strip()[:80], "a finite number", "Correct the number.")
+            self._refuse(element, text.strip()[:80], Message("a finite number"), Message("Correct the number."))
         return value
 
     def _word(self, text: str) -> str:

@@ -8,6 +8,8 @@ from dataclasses import asdict, dataclass, replace
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Final, Literal, TypeAlias
 
+from .._support.messages import Message, joined
+
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
@@ -39,8 +41,7 @@ WARNING_CODES = (
     "separator",
     "converted_unit",
 )
-_SHOWN = {"mark": "flag"}
-"""Names of severities on a terminal that differ from their codes."""
+_SEVERITIES: Final = {"error": Message("error"), "warning": Message("warning"), "mark": Message("flag")}
 LONGEST_VALUE: Final = 200
 """Characters of a value that its sentence shows."""
 
@@ -65,16 +66,30 @@ class Problem:
 
     def __str__(self) -> str:
         """The problem in one line."""
-        place = self.file
+        return str(self.message)
+
+    def text(self, language: str) -> str:
+        """The problem in one line of a language."""
+        return self.message.text(language)
+
+    @property
+    def message(self) -> Message:
+        """The problem in one line, which can be translated."""
+        place: str = self.file
         if self.row is not None:
-            place += f", row {self.row}"
+            place = Message("{place}, row {row}", place=place, row=self.row)
         if self.column is not None:
-            place += f", column {self.column}"
+            place = Message("{place}, column {column}", place=place, column=self.column)
         if self.experiment is not None:
-            place += f" (experiment {self.experiment})"
-        value = "" if self.value is None else f" found {_shorten(self.value)!r};"
-        shown = _SHOWN.get(self.severity, self.severity)
-        return f"{shown} {self.code}: {place}:{value} allowed: {self.allowed}. {self.action}"
+            place = Message("{place} (experiment {experiment})", place=place, experiment=self.experiment)
+        fields = {"severity": _SEVERITIES[self.severity], "code": self.code, "place": place}
+        fields |= {"allowed": self.allowed, "action": self.action}
+        if self.value is None:
+            return Message("{severity} {code}: {place}: allowed: {allowed}. {action}", **fields)
+        value = _shorten(self.value)
+        return Message(
+            "{severity} {code}: {place}: found {value!r}; allowed: {allowed}. {action}", **fields, value=value
+        )
 
     def as_dict(self) -> dict[str, str | int | None]:
         """Give the problem as the object of ``skisnow check --json``."""
@@ -142,41 +157,51 @@ _NAMES: Final = ("unknown_tool", "unknown_plate")
 
 def _combine(alike: Sequence[Problem]) -> Problem:
     first, more = alike[0], len(alike) - 1
-    where = f"{first.experiment} and {more} more, up to row {alike[-1].row}"
+    where = Message(
+        "{experiment} and {count} more, up to row {row}", experiment=first.experiment, count=more, row=alike[-1].row
+    )
     return replace(first, experiment=where) if more else first
 
 
-def _limited_lines(problems: Sequence[Problem]) -> Iterator[str]:
+def _limited_lines(problems: Sequence[Problem]) -> Iterator[Message]:
     """One line for each problem; of many problems of a kind in a column the first ones and the number of others."""
     kinds = [(problem.severity, problem.code, problem.file, problem.column) for problem in problems]
     counts, shown = Counter(kinds), Counter[tuple[object, ...]]()
     for kind, problem in zip(kinds, problems, strict=True):
         shown[kind] += 1
         if shown[kind] <= MOST_ALIKE or counts[kind] == MOST_ALIKE + 1:
-            yield str(problem)
+            yield problem.message
         elif shown[kind] == counts[kind]:
-            where = f"{problem.file}{f', column {problem.column}' if problem.column else ''}"
-            more = f"{counts[kind] - MOST_ALIKE} more like these, up to row {problem.row}; --json lists all"
-            yield f"{_SHOWN.get(problem.severity, problem.severity)} {problem.code}: {where}: {more}"
+            column = Message("{place}, column {column}", place=problem.file, column=problem.column)
+            yield Message(
+                "{severity} {code}: {place}: {count} more like these, up to row {row}; --json lists all",
+                severity=_SEVERITIES[problem.severity],
+                code=problem.code,
+                place=column if problem.column else problem.file,
+                count=counts[kind] - MOST_ALIKE,
+                row=problem.row,
+            )
 
 
-def lines_of(problems: Iterable[Problem]) -> list[str]:
+def lines_of(problems: Iterable[Problem]) -> list[Message]:
     """Lines for a terminal: one for each problem, and one for all notes that need no action.
 
     >>> told = [warning("separator", f"{name}.csv", value="semicolon", allowed="", action="", needs_action=False)
     ...         for name in ("shear", "density")]
-    >>> lines_of(told)
-    ['note: nothing need be done: semicolon in shear.csv, density.csv.']
+    >>> print(*lines_of(told))
+    note: nothing need be done: semicolon in shear.csv, density.csv.
     """
     every = list(problems)
     files: dict[str, list[str]] = {}
     for problem in every:
         if not problem.needs_action:
-            note = f"column {problem.value!r} kept as text" if problem.code == "unknown_column" else problem.value
+            kept = Message("column {column!r} kept as text", column=problem.value)
+            note = kept if problem.code == "unknown_column" else problem.value
             files.setdefault(note or problem.code, []).append(problem.file)
-    notes = "; ".join(f"{what} in {', '.join(dict.fromkeys(where))}" for what, where in files.items())
+    notes = [Message("{note} in {files}", note=note, files=list(dict.fromkeys(names))) for note, names in files.items()]
     lines = list(_limited_lines(_group_unknown_names(problem for problem in every if problem.needs_action)))
-    return [*lines, f"note: nothing need be done: {notes}."] if notes else lines
+    no_action = Message("note: nothing need be done: {notes}.", notes=joined(notes, "; "))
+    return [*lines, no_action] if notes else lines
 
 
 @dataclass(frozen=True, slots=True)

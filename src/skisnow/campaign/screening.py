@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from .._support.messages import Message
 from .._support.units import MM
 from ..geometry import in_form
 from .problems import (
@@ -174,11 +175,11 @@ def find_implausible_unloading(campaign: Campaign, tests: PenetrationTests) -> d
     }
 
 
-_UNFLAGGED_STATUS = "a blank status"
-_UNFLAGGED_ZERO = "a depth above 0 mm"
-_UNFLAGGED_LAYERED = "depths that grow with the load as F = H_V V has it"
-_UNFLAGGED_REBOUND = "a rebound that is large beside the step of the gauge and the scatter of the readings"
-_UNFLAGGED_OUTLIER = "a logarithm of the hardness nearer to its site's median"
+_UNFLAGGED_STATUS = Message("a blank status")
+_UNFLAGGED_ZERO = Message("a depth above 0 mm")
+_UNFLAGGED_LAYERED = Message("depths that grow with the load as F = H_V V has it")
+_UNFLAGGED_REBOUND = Message("a rebound that is large beside the step of the gauge and the scatter of the readings")
+_UNFLAGGED_OUTLIER = Message("a logarithm of the hardness nearer to its site's median")
 _OF_UNLOADING = ("unloading_not_falling", "unloading_sinks", "rebound_unresolved")
 
 
@@ -220,15 +221,17 @@ def _flagged_experiments(masks: Mapping[str, BoolArray]) -> Iterator[tuple[int, 
             yield index, codes[which]
 
 
-def _effect_of_flag(campaign: Campaign, code: str) -> str:
+def _effect_of_flag(campaign: Campaign, code: str) -> Message:
     if code in campaign.excluding:
-        return "The experiment is kept and counted, but not included in the estimates."
-    return "The experiment is only flagged and included in the estimates; look at it."
+        return Message("The experiment is kept and counted, but not included in the estimates.")
+    return Message("The experiment is only flagged and included in the estimates; look at it.")
 
 
-def _resolution_limit(campaign: Campaign) -> str:
+def _resolution_limit(campaign: Campaign) -> Message:
     step = 0.0 if campaign.gauge_resolution is None else campaign.gauge_resolution
-    return f"at least {RESOLUTIONS:g} steps of the gauge, {RESOLUTIONS * step / MM:.10g} mm"
+    return Message(
+        "at least {count:g} steps of the gauge, {depth:.10g} mm", count=RESOLUTIONS, depth=RESOLUTIONS * step / MM
+    )
 
 
 def _shear_problem(campaign: Campaign, index: int, code: str) -> Problem:
@@ -272,18 +275,23 @@ class _FlaggedReadings:
 
     def _too_few_loads(self, index: int) -> tuple[int, str, str, str]:
         first, end = self._tests.first[index : index + 2].tolist()
-        return first, "load_N", str(end - first), f"at least {FEWEST_LOADS} load steps"
+        return first, "load_N", str(end - first), Message("at least {count} load steps", count=FEWEST_LOADS)
 
     def _loads_not_rising(self, index: int) -> tuple[int, str, str, str]:
         load = self._tests.series(index).load
         step = int(np.flatnonzero(np.diff(load) <= 0)[0])
         reading = int(self._tests.first[index]) + step + 1
-        return reading, "load_N", f"{load[step + 1]:.10g}", f"more than the {load[step]:.10g} N of the reading before"
+        return (
+            reading,
+            "load_N",
+            f"{load[step + 1]:.10g}",
+            Message("more than the {load:.10g} N of the reading before", load=load[step]),
+        )
 
     def _depth_shrinks(self, index: int) -> tuple[int, str, str, str]:
         step = int(np.flatnonzero(np.diff(self._tests.series(index).penetration_depth) < 0)[0])
         before = int(self._tests.first[index]) + step
-        allowed = f"at least the {self._depth(before)} mm of the reading before"
+        allowed = Message("at least the {depth} mm of the reading before", depth=self._depth(before))
         return before + 1, "depth_mm", self._depth(before + 1), allowed
 
     def _zero_depth(self, index: int) -> tuple[int, str, str, str]:
@@ -293,7 +301,11 @@ class _FlaggedReadings:
     def _beyond_tool(self, index: int) -> tuple[int, str, str, str]:
         series = self._tests.series(index)
         reading = int(self._tests.first[index]) + int(np.argmax(series.penetration_depth))
-        allowed = f"at most {self._limit[index] / MM:.10g} mm for the tool {series.tool!r} at this edge angle"
+        allowed = Message(
+            "at most {limit:.10g} mm for the tool {tool!r} at this edge angle",
+            limit=self._limit[index] / MM,
+            tool=series.tool,
+        )
         return reading, "depth_mm", self._depth(reading), allowed
 
     def _below_resolution(self, index: int) -> tuple[int, str, str, str]:
@@ -308,12 +320,22 @@ class _FlaggedReadings:
         reading = first + int(np.flatnonzero(find_creep(self._campaign, self._tests)[first:end])[0])
         assert self._tests.depth_after is not None
         value = f"{self._tests.depth_after[reading] / MM:.10g}"
-        allowed = f"at most {CREEP_STEPS:g} steps of the gauge or {CREEP_SHARE:.0%} more than {self._depth(reading)} mm"
+        allowed = Message(
+            "at most {creep_steps:g} steps of the gauge or {creep_share:.0%} more than {depth} mm",
+            creep_steps=CREEP_STEPS,
+            creep_share=CREEP_SHARE,
+            depth=self._depth(reading),
+        )
         return reading, "depth_after_mm", value, allowed
 
     def _unloading_not_falling(self, index: int) -> tuple[int, str, str, str]:
         reading = self._first_wrong(index, "unloading_not_falling")
-        return reading, "load_N", f"{self._unloading.load[reading]:.10g}", "less than the load of the reading before"
+        return (
+            reading,
+            "load_N",
+            f"{self._unloading.load[reading]:.10g}",
+            Message("less than the load of the reading before"),
+        )
 
     def _unloading_sinks(self, index: int) -> tuple[int, str, str, str]:
         reading = self._first_wrong(index, "unloading_sinks")

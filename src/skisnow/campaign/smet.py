@@ -19,6 +19,7 @@ import numpy.typing as npt
 
 from .._support.display import Facts, Shown
 from .._support.errors import FieldDataError
+from .._support.messages import Message
 from .._support.user_files import GivenError, plain_bytes
 from ..parameters import Quantity, require_declared
 from ..parameters.quantity import LARGEST
@@ -106,7 +107,7 @@ def read_smet(path: str | Path) -> StationSeries:
     try:
         data = plain_bytes(path, most_bytes=MOST_BYTES)
     except GivenError as failure:
-        allowed, action = "a weather file in SMET", "Check its name and folder."
+        allowed, action = Message("a weather file in SMET"), Message("Check its name and folder.")
         problem = error("unreadable_file", path.name, value=failure.what, allowed=allowed, action=action)
         raise FieldDataError([problem]) from failure
     return parse_smet(path.name, data)
@@ -164,7 +165,7 @@ class _Reading:
             key, equals, value = plain.partition("=")
             if equals:
                 header[key.strip().lower()] = (number, value.strip())
-        allowed, action = "a header and then [DATA]", "The file is cut off; copy it again."
+        allowed, action = Message("a header and then [DATA]"), Message("The file is cut off; copy it again.")
         return self._refuse(len(self._lines), "", "no [DATA]", allowed, action)
 
     def series(self) -> StationSeries:
@@ -205,7 +206,10 @@ class _Reading:
         huge = ~np.isnan(table) & ~(np.abs(values) <= LARGEST)
         if huge.any():
             name = names[int(np.argmax(huge.any(axis=0)))]
-            allowed, action = f"numbers to ±{LARGEST:g} in SI", "Correct units_offset, units_multiplier or the numbers."
+            allowed, action = (
+                Message("numbers to ±{largest:g} in SI", largest=LARGEST),
+                Message("Correct units_offset, units_multiplier or the numbers."),
+            )
             self._refuse(self._header["fields"][0], name, "a larger number", allowed, action)
         return values
 

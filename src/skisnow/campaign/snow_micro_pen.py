@@ -18,6 +18,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .._support.errors import FieldDataError
+from .._support.messages import Message
 from .._support.units import CM, MM
 from .._support.user_files import GivenError, plain_bytes
 from .problems import error
@@ -175,7 +176,9 @@ def parse_snow_micro_pen(name: str, data: bytes) -> SnowMicroPenProfile:
     if not data:
         _refuse(name, "0 bytes", "a recording of a SnowMicroPen", "Copy it from the instrument again.", "empty_file")
     if len(data) < HEADER_BYTES:
-        allowed = f"at least {HEADER_BYTES} bytes, the header of a SnowMicroPen recording"
+        allowed = Message(
+            "at least {header_bytes} bytes, the header of a SnowMicroPen recording", header_bytes=HEADER_BYTES
+        )
         _refuse(name, f"{len(data)} bytes", allowed, "Copy the file from the instrument again.")
     header = {key: _value(data, offset, form) for key, offset, form in _FIELDS}
     _check(name, header, len(data))
@@ -204,11 +207,20 @@ def _check(file: str, header: dict[str, Any], size: int) -> None:
     }
     for name, (low, high) in limits.items():
         if not low <= header[name] <= high:  # NaN too
-            allowed = f"a SnowMicroPen recording, whose header has {name} from {low:g} to {high:g}"
+            allowed = Message(
+                "a SnowMicroPen recording, whose header has {name} from {low:g} to {high:g}",
+                name=name,
+                low=low,
+                high=high,
+            )
             _refuse(file, f"{name} {header[name]:g}", allowed, "This is another kind of file, or a damaged one.")
     needed = HEADER_BYTES + _SAMPLE_BYTES * header["samples"]
     if size < needed:
-        allowed = f"{needed} bytes or more for the {header['samples']} samples that the header counts"
+        allowed = Message(
+            "{needed} bytes or more for the {samples} samples that the header counts",
+            needed=needed,
+            samples=header["samples"],
+        )
         _refuse(file, f"{size} bytes", allowed, "The file is cut off; copy it from the instrument again.")
 
 

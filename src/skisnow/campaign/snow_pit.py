@@ -10,6 +10,7 @@ import numpy as np
 
 from .._support.display import Facts, Shown, amount
 from .._support.errors import FieldDataError
+from .._support.messages import Message
 from .._support.units import CM, ICE_DENSITY
 from ..parameters import Quantity
 from .problems import error
@@ -210,8 +211,8 @@ def _read(name: str, files: RawFiles) -> Table | None:
     data = files.read(name)
     if data is None:
         if name in files.absent:
-            action = "Check the file's name and folder."
-            files.problems.append(error("unreadable_file", name, allowed="a file of this name", action=action))
+            action = Message("Check the file's name and folder.")
+            files.problems.append(error("unreadable_file", name, allowed=Message("a file of this name"), action=action))
         return None
     try:
         text = inspect_csv(data)
@@ -246,8 +247,8 @@ def _layers_upside_down(file: str, table: Table) -> list[Problem]:
             column="TOP",
             experiment=table.names["ID"][index],
             value=f"{top[index]:g}",
-            allowed=f"a height above the layer's BOTTOM, {bottom[index]:g} cm",
-            action="Heights count upwards; exchange the two if the file counts from the surface down.",
+            allowed=Message("a height above the layer's BOTTOM, {bottom:g} cm", bottom=bottom[index]),
+            action=Message("Heights count upwards; exchange the two if the file counts from the surface down."),
         )
         for index in np.flatnonzero(top <= bottom).tolist()
     ]

@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from .._support.errors import OutputError
+from .._support.messages import Message
 from .._support.staging import staged, tidied, write_file
 from ..snow.published import moessner_2013
 from .reading.campaign import CAMPAIGN_FILES
@@ -230,7 +231,12 @@ def write_new_campaign(folder: str | Path, *, xlsx: bool = False) -> tuple[Path,
     there = _there(folder)
     if CAMPAIGN_FILE in there or (there and xlsx):
         raise OutputError(
-            f"{folder} holds a campaign already ({', '.join(there)}); nothing was written. Choose another folder."
+            Message(
+                "{folder} holds a campaign already ({there}); nothing was written. Choose another folder.",
+                folder=folder,
+                there=list(there),
+            ),
+            code="holds_campaign_already",
         )
     name = folder.resolve().name.replace("\\", "").replace('"', "") or "campaign"
     contents = _workbook(name) if xlsx else _files(name, tables=not there)

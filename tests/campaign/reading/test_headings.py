@@ -153,7 +153,7 @@ def test_a_mapping_of_one_table_comes_before_that_of_all(
 @pytest.mark.parametrize(
     ("line", "column", "told"),
     [
-        ('columns."Last" = "load"', "columns.Last", "Is load_N meant?"),
+        ('columns."Last" = "load"', "columns.Last", "Did you mean load_N?"),
         ("columns.Last = 3", "columns.Last", "both in quotes"),
         ('columns.penetration.x = "moment_Nm"', "columns.penetration.x", "both in quotes"),
         ('columns = "x"', "columns", "[columns]"),

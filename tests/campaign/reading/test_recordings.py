@@ -66,7 +66,7 @@ def test_a_damaged_recording_is_told_with_its_name(small_campaign: dict[str, str
 @pytest.mark.parametrize(
     ("section", "column", "words"),
     [
-        ('relation = "proksch"', "snow_micro_pen.relation", "proksch-2015 or calonne-2020"),
+        ('relation = "proksch"', "snow_micro_pen.relation", "proksch-2015, calonne-2020"),
         ("to_depth_mm = 4", "snow_micro_pen.to_depth_mm", "a depth above from_depth_mm, 5"),
         ("from_depth_mm = -1", "snow_micro_pen.from_depth_mm", "0 or more"),
         ("subtract_air_force = 1", "snow_micro_pen.subtract_air_force", "true or false"),

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from ..._support.errors import FieldDataError
+from ..._support.messages import Message, joined
 from ..problems import error, with_sheet_name
 from ..records import Campaign
 from .campaign_file import CAMPAIGN_FILE, read_campaign_file
@@ -195,11 +196,16 @@ def _read_folder(folder: Path, progress: Callable[[str], None] | None) -> _Conte
     if folder.is_file() and is_workbook(folder.name):
         return _read(FilesInMemory({folder.name: folder.read_bytes()}, folder=folder.with_suffix("")), progress)
     if not folder.is_dir():
-        action = "Name the folder that holds campaign.toml and the tables, or a workbook (.xlsx) with all of it."
+        action = Message(
+            "Name the folder that holds campaign.toml and the tables, or a workbook (.xlsx) with all of it."
+        )
         if folder.is_file() and folder.suffix.lower() == ".toml":
-            action += " A ski or a scenario is checked where it is used: by carve --ski FILE, by simulate FILE."
-        value = "a file" if folder.exists() else "nothing"
-        nowhere = error("unreadable_file", str(folder), value=value, allowed="a folder that exists", action=action)
+            used = Message("A ski or a scenario is checked where it is used: by carve --ski FILE, by simulate FILE.")
+            action = joined([action, used])
+        value = Message("a file") if folder.exists() else Message("nothing")
+        nowhere = error(
+            "unreadable_file", str(folder), value=value, allowed=Message("a folder that exists"), action=action
+        )
         return _Contents(folder, None, {}, {}, (nowhere,))
     return _read(FilesOfFolder(folder), progress)
 
@@ -263,8 +269,8 @@ def _units_without_heading(headings: Headings, tables: Mapping[str, Table]) -> l
             CAMPAIGN_FILE,
             column=path,
             value=path.rpartition(".")[2],
-            allowed="a heading of a table",
-            action="Write the heading as the table has it, or remove the line.",
+            allowed=Message("a heading of a table"),
+            action=Message("Write the heading as the table has it, or remove the line."),
         )
         for path in headings.without_heading(there)
     ]
@@ -273,7 +279,13 @@ def _units_without_heading(headings: Headings, tables: Mapping[str, Table]) -> l
 def _misnamed_files(there: Mapping[str, bool], absent: set[str]) -> list[Problem]:
     """Errors for files whose names differ from the expected ones only by case, because they would not be read."""
     return [
-        error("unreadable_file", name, value=name, allowed=name.lower(), action=f"Rename it to {name.lower()}.")
+        error(
+            "unreadable_file",
+            name,
+            value=name,
+            allowed=name.lower(),
+            action=Message("Rename it to {name}.", name=name.lower()),
+        )
         for name in sorted(there)
         if name not in CAMPAIGN_FILES and name.lower() in absent
     ]
@@ -283,16 +295,16 @@ def _missing_measurements() -> Problem:
     return error(
         "unreadable_file",
         PENETRATION.file,
-        allowed=f"at least one of {PENETRATION.file} and {SHEAR.file}",
-        action="Put the tables of the experiments into the folder, under these names.",
+        allowed=Message("at least one of {file} and {file_2}", file=PENETRATION.file, file_2=SHEAR.file),
+        action=Message("Put the tables of the experiments into the folder, under these names."),
     )
 
 
 def _read_description(files: RawFiles) -> CampaignFile | None:
     data = files.read(CAMPAIGN_FILE)
     if CAMPAIGN_FILE in files.absent:
-        action = "`skisnow new campaign` writes one into this folder: put your tools and plates there."
-        allowed = "a file of this name in the folder"
+        action = Message("`skisnow new campaign` writes one into this folder: put your tools and plates there.")
+        allowed = Message("a file of this name in the folder")
         files.problems.append(error("bad_toml", CAMPAIGN_FILE, allowed=allowed, action=action))
     if data is None:
         return None
@@ -302,9 +314,9 @@ def _read_description(files: RawFiles) -> CampaignFile | None:
         files.report_unreadable(CAMPAIGN_FILE, failure)
         return None
     if not decoded.text.strip():
-        action = "Describe the tools and plates that the tables name."
+        action = Message("Describe the tools and plates that the tables name.")
         files.problems.append(
-            error("empty_file", CAMPAIGN_FILE, value="nothing", allowed="keys and values", action=action)
+            error("empty_file", CAMPAIGN_FILE, value="nothing", allowed=Message("keys and values"), action=action)
         )
         return None
     files.report_encoding(CAMPAIGN_FILE, decoded.foreign_encoding)

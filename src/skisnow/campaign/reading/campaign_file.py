@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Annotated, Any, Final
 
+from ..._support.messages import Message, joined
 from ..._support.units import MM
 from ..._support.user_files import GivenError, toml_values
 from ...geometry import Disc, LyingCylinder, SkiPiece, Tool
@@ -165,16 +166,18 @@ def _parsed(text: str, problems: list[Problem]) -> dict[str, Any] | None:
         return toml_values(text.replace("\r\n", "\n").replace("\r", "\n"))
     except GivenError as failure:
         row, what = failure.line, failure.what
-    action = "Correct the line: texts stand in quotes, numbers have a decimal point, lists stand in brackets."
-    problems.append(error("bad_toml", CAMPAIGN_FILE, row=row, value=what, allowed="TOML (toml.io)", action=action))
+    action = Message("Correct the line: texts stand in quotes, numbers have a decimal point, lists stand in brackets.")
+    problems.append(
+        error("bad_toml", CAMPAIGN_FILE, row=row, value=what, allowed=Message("TOML (toml.io)"), action=action)
+    )
     return None
 
 
 def _recordings(section: TomlValues) -> SnowMicroPenSettings:
     settings = section.declared(SnowMicroPenSettings)
     if settings.from_depth >= settings.to_depth:
-        allowed = f"a depth above from_depth_mm, {settings.from_depth / MM:g}"
-        section.refuse("to_depth_mm", allowed, "Correct one of the two.", value=f"{settings.to_depth / MM:g}")
+        allowed = Message("a depth above from_depth_mm, {from_depth:g}", from_depth=settings.from_depth / MM)
+        section.refuse("to_depth_mm", allowed, Message("Correct one of the two."), value=f"{settings.to_depth / MM:g}")
     return settings
 
 
@@ -212,10 +215,10 @@ def _plates(top: TomlValues) -> tuple[dict[str, float], frozenset[str]]:
 def _new_name(entry: TomlValues, names: set[str]) -> str | None:
     """Read a name and add it to `names`; None, with an error, if it is missing or repeated."""
     if "name" not in entry.values:
-        entry.refuse("name", "a name", "Add the name that the tables use.")
+        entry.refuse("name", Message("a name"), Message("Add the name that the tables use."))
     name = entry.text("name")
     if name in names:
-        entry.refuse("name", "each name once", "Rename or remove one of the two.")
+        entry.refuse("name", Message("each name once"), Message("Rename or remove one of the two."))
         return None
     if name is not None:
         names.add(name)
@@ -223,21 +226,27 @@ def _new_name(entry: TomlValues, names: set[str]) -> str | None:
 
 
 def _shape_name(entry: TomlValues) -> str | None:
-    allowed = f"one of {', '.join(SHAPES)}"
+    allowed = Message("one of {shapes}", shapes=list(SHAPES))
     if "shape" not in entry.values:
-        entry.refuse("shape", allowed, "Add the shape.")
+        entry.refuse("shape", allowed, Message("Add the shape."))
         return None
     shape = entry.text("shape")
     if shape is None or shape in SHAPES:
         return shape
     near = difflib.get_close_matches(shape.lower(), SHAPES, n=1)
-    entry.refuse("shape", allowed, f"Is {near[0]} meant? Correct the shape." if near else "Correct the shape.")
+    entry.refuse(
+        "shape",
+        allowed,
+        Message("Did you mean {similar}? Correct the shape.", similar=near[0])
+        if near
+        else Message("Correct the shape."),
+    )
     return None
 
 
 def _needed_length(entry: TomlValues, quantity: Quantity) -> float | None:
     if quantity.name not in entry.values:
-        entry.refuse(quantity.name, "a length in mm above 0", f"Add {quantity.name}.")
+        entry.refuse(quantity.name, Message("a length in mm above 0"), Message("Add {name}.", name=quantity.name))
     return _length(entry, quantity)
 
 
@@ -253,8 +262,10 @@ def _length(entry: TomlValues, quantity: Quantity) -> float | None:
                 CAMPAIGN_FILE,
                 column=entry.path_of(quantity.name),
                 value=f"{value:g}",
-                allowed=f"a number in mm; {low:g} to {high:g} is usual",
-                action=f"If this is in {unit} convert it to mm; if it is in mm nothing need be done.",
+                allowed=Message("a number in mm; {low:g} to {high:g} is usual", low=low, high=high),
+                action=Message(
+                    "If this is in {unit} convert it to mm; if it is in mm nothing need be done.", unit=unit
+                ),
             )
         )
     return None if value is None else quantity.in_si(value)
@@ -276,9 +287,12 @@ def _excluding(top: TomlValues) -> frozenset[str]:
     for code in codes:
         if code not in QUALITY_FLAGS:
             near = difflib.get_close_matches(code, QUALITY_FLAGS, n=1)
-            hint = f"Is {near[0]} meant? " if near else ""
+            correct = Message("Correct the code.")
             screening.refuse(
-                "exclude", f"codes among {', '.join(QUALITY_FLAGS)}", f"{hint}Correct the code.", value=code
+                "exclude",
+                Message("codes among {quality_flags}", quality_flags=list(QUALITY_FLAGS)),
+                joined([Message("Did you mean {similar}?", similar=near[0]), correct]) if near else correct,
+                value=code,
             )
     return (frozenset(codes) & frozenset(QUALITY_FLAGS)) | ALWAYS_EXCLUDE
 

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final, Protocol
 
 from ..._support.errors import FieldDataError
+from ..._support.messages import Message
 from ..._support.units import MM
 from ..problems import error, warning
 from ..smet import CampaignWeather, parse_smet
@@ -131,14 +132,14 @@ class RawFiles:
             self._refuse(name, failure.strerror or str(failure))
             return None
         if data is None:
-            self._refuse(name, "something that is no plain file")
+            self._refuse(name, Message("something that is no plain file"))
             return None
         self.hashes[name] = hashlib.sha256(data).hexdigest()
         return data
 
     def _refuse(self, name: str, what: str) -> None:
-        action = "Make the file readable, or remove it from the campaign."
-        allowed = "a plain file that may be read"
+        action = Message("Make the file readable, or remove it from the campaign.")
+        allowed = Message("a plain file that may be read")
         self.problems.append(error("unreadable_file", name, value=what, allowed=allowed, action=action))
 
     def report_unreadable(self, name: str, failure: UnreadableTextError) -> None:
@@ -158,14 +159,17 @@ class RawFiles:
         """Report an encoding other than UTF-8."""
         if foreign_encoding is None:
             return
-        how = "It was guessed" if foreign_encoding == "Windows-1252" else "It was read as such"
-        action = f"{how}; save as UTF-8 if letters look wrong in the report."
+        action = (
+            Message("It was guessed; save as UTF-8 if letters look wrong in the report.")
+            if foreign_encoding == "Windows-1252"
+            else Message("It was read as such; save as UTF-8 if letters look wrong in the report.")
+        )
         self.problems.append(
             warning(
                 "encoding",
                 name,
                 value=foreign_encoding,
-                allowed="UTF-8, in the plain form",
+                allowed=Message("UTF-8, in the plain form"),
                 action=action,
                 needs_action=False,
             )
@@ -192,15 +196,15 @@ def recording_contents(table: Table | None, files: RawFiles) -> dict[str, bytes]
 
 def _content(table: Table, row: int, name: str, files: RawFiles) -> bytes | None:
     if "/" in name or "\\" in name or not name.lower().endswith(ENDING):
-        action = "Write the file's name alone, and lay the file beside the tables."
-        allowed = "the name of a .PNT file in the campaign's folder"
+        action = Message("Write the file's name alone, and lay the file beside the tables.")
+        allowed = Message("the name of a .PNT file in the campaign's folder")
         files.problems.append(_refusal(table, row, "file", "unreadable_file", allowed, action))
         return None
     before = len(files.problems)
     data = files.read(name)
     if data is None and len(files.problems) == before:
-        action = "Lay the file beside the tables, correct its name, or take the row out."
-        allowed = "a file of this name in the campaign's folder"
+        action = Message("Lay the file beside the tables, correct its name, or take the row out.")
+        allowed = Message("a file of this name in the campaign's folder")
         files.problems.append(_refusal(table, row, "file", "unreadable_file", allowed, action))
     if data is None:
         return None
@@ -221,8 +225,8 @@ def _repeated_names(table: Table, column: str) -> list[Problem]:
     for row, name in enumerate(table.names[column].cells()):
         reference = first.setdefault(name, row)
         if name and reference != row:
-            allowed = f"each {column} once; row {int(table.row[reference])} has it, too"
-            action = "Correct the cell, or take one of the rows out."
+            allowed = Message("each {column} once; row {row} has it, too", column=column, row=int(table.row[reference]))
+            action = Message("Correct the cell, or take one of the rows out.")
             problems.append(_refusal(table, row, column, "mixed_experiment", allowed, action))
     return problems
 
@@ -268,13 +272,13 @@ def campaign_weather(settings: WeatherSettings, files: RawFiles) -> CampaignWeat
     if not name:
         return None
     if "/" in name or "\\" in name or not name.lower().endswith(WEATHER_ENDING):
-        _refuse_weather_file(files, name, "the name of a .smet file in the campaign's folder")
+        _refuse_weather_file(files, name, Message("the name of a .smet file in the campaign's folder"))
         return None
     before = len(files.problems)
     data = files.read(name)
     if data is None:
         if len(files.problems) == before:
-            _refuse_weather_file(files, name, "a file of this name in the campaign's folder")
+            _refuse_weather_file(files, name, Message("a file of this name in the campaign's folder"))
         return None
     try:
         return CampaignWeather(parse_smet(name, data), settings)
@@ -284,7 +288,7 @@ def campaign_weather(settings: WeatherSettings, files: RawFiles) -> CampaignWeat
 
 
 def _refuse_weather_file(files: RawFiles, name: str, allowed: str) -> None:
-    action = "Lay the file beside campaign.toml, or correct its name."
+    action = Message("Lay the file beside campaign.toml, or correct its name.")
     files.problems.append(
         error("unreadable_file", CAMPAIGN_FILE, column="weather.file", value=name, allowed=allowed, action=action)
     )

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Final, Protocol
 
 import numpy as np
 
+from ..._support.messages import Message
 from ..._support.spreadsheet_text import decimal_mark, is_number, number
 from ..problems import error, warning
 from .table_forms import UNLOADING, allowed_words
@@ -106,7 +107,12 @@ class NameCollector:
 
     def _blank(self, index: int, rows: Rows) -> Problem:
         return rows.problem(
-            "out_of_range", index, column=self._column, value="", allowed="a non-empty name", action="Fill the cell."
+            "out_of_range",
+            index,
+            column=self._column,
+            value="",
+            allowed=Message("a non-empty name"),
+            action=Message("Fill the cell."),
         )
 
     def column(self, count: int) -> NameColumn:
@@ -137,7 +143,7 @@ class NumberCollector:
                 values = self._unit.convert(values)
         outside = self._column.outside(values) | np.isinf(values)
         for index in np.flatnonzero(outside).tolist():
-            action = "Correct the cell; its unit stands in the column's name."
+            action = Message("Correct the cell; its unit stands in the column's name.")
             cell = cells[index].strip() + (f" {self._unit.name}" if self._unit is not None else "")
             problems.append(self._refusal("out_of_range", index, cell, rows, action))
         values[outside] = np.nan
@@ -148,13 +154,21 @@ class NumberCollector:
             code, index, column=self._column.name, value=cell, allowed=allowed_words(self._column), action=action
         )
 
-    def _how_to_write(self, cell: str) -> str:
+    def _how_to_write(self, cell: str) -> Message:
         if not cell:
-            return "Enter the number."
-        for mark, other, words in ((",", ".", "decimal commas"), (".", ",", "decimal points")):
-            if self._mark == mark and is_number(cell, other):
-                return f"This file writes {words}; {cell} could be a thousand. Write it as the other cells."
-        return f"Write a plain number such as 12{self._mark}5, without unit, remark or thousands separator."
+            return Message("Enter the number.")
+        if self._mark == "," and is_number(cell, "."):
+            return Message(
+                "This file writes decimal commas; {cell} could be a thousand. Write it as the other cells.", cell=cell
+            )
+        if self._mark == "." and is_number(cell, ","):
+            return Message(
+                "This file writes decimal points; {cell} could be a thousand. Write it as the other cells.", cell=cell
+            )
+        return Message(
+            "Write a plain number such as {example}, without unit, remark or thousands separator.",
+            example=f"12{self._mark}5",
+        )
 
     def column(self, count: int) -> FloatArray:
         """The column; NaN if the file does not have it."""
@@ -248,8 +262,8 @@ class DateCollector:
                 column=self._column,
                 experiment=key.strip() or None,
                 value=f"{cell}{more}",
-                allowed="a day such as 2026-11-23 or 23.11.2026, with or without a time such as 09:10",
-                action="Write it so; no estimate needs it, but the report does not name this day.",
+                allowed=Message("a day such as 2026-11-23 or 23.11.2026, with or without a time such as 09:10"),
+                action=Message("Write it so; no estimate needs it, but the report does not name this day."),
             )
         ]
 

@@ -10,6 +10,7 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, TypeAlias
 
+from ..._support.messages import Message
 from ..problems import AppliedCorrection, error
 from .columns import is_number, number
 from .table_forms import CORRECTIONS, TABLES
@@ -56,7 +57,9 @@ class Correction:
             experiment=self.experiment or None,
             value=value,
             allowed=allowed,
-            action=f"Look at {self.file}, row {self.row}: put this correction right, or delete its row.",
+            action=Message(
+                "Look at {file}, row {row}: put this correction right, or delete its row.", file=self.file, row=self.row
+            ),
         )
 
 
@@ -140,14 +143,17 @@ class Corrector:
     def finish(self) -> None:
         """Report corrections whose row is not in the file; call this after the last record."""
         for row, of_one_row in sorted(self._left.items()):
-            what = "the header" if row == self._header.row else "no measurement"
-            allowed = f"a row of measurements; {what} stands there"
+            allowed = (
+                Message("a row of measurements; this is the header")
+                if row == self._header.row
+                else Message("a row of measurements; there is none")
+            )
             self._problems.extend(correction.mismatch("row", str(row), allowed) for correction in of_one_row)
 
     def _correct(self, cells: list[str], correction: Correction) -> None:
         position = self._position.get(correction.column)
         if position is None:
-            allowed = f"a column of {correction.file}: {', '.join(self._position)}"
+            allowed = Message("a column of {file}: {columns}", file=correction.file, columns=list(self._position))
             self._problems.append(correction.mismatch("column", correction.column, allowed))
             return
         cells.extend([""] * (len(self._header.columns) - len(cells)))
@@ -158,7 +164,7 @@ class Corrector:
         key_position = self._position.get(self._key)
         experiment = cells[key_position].strip() if key_position is not None else correction.experiment
         if experiment != correction.experiment:
-            allowed = f"what stands there: {experiment!r}"
+            allowed = Message("what stands there: {experiment!r}", experiment=experiment)
             self._problems.append(correction.mismatch("experiment", correction.experiment, allowed))
             return False
         standing = cells[position].strip()

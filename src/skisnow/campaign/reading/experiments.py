@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from ..._support.messages import Message
 from ..._support.units import DEGREE, MM
 from ..problems import error
 from ..records import DensitySamples, DropConeTests, PenetrationTests, ShearTests, TurningReadings, UnloadingReadings
@@ -140,8 +141,10 @@ def _repeated_name(table: Table, blocks: Blocks) -> Iterator[Problem]:
             column=table.form.key,
             experiment=key[row],
             value=key[row],
-            allowed=f"each name for one experiment, its rows together; this one also begins in row {before}",
-            action="Rename one of the two, or bring the rows together.",
+            allowed=Message(
+                "each name for one experiment, its rows together; this one also begins in row {before}", before=before
+            ),
+            action=Message("Rename one of the two, or bring the rows together."),
         )
 
 
@@ -153,8 +156,13 @@ def _mixed(table: Table, row: int, reference: int, column: str, value: str, othe
         column=column,
         experiment=table.names[table.form.key][row],
         value=value,
-        allowed=f"one {column} in an experiment; row {int(table.row[reference])} has {other!r}",
-        action="Correct the cell, or give the rows that were another experiment another name.",
+        allowed=Message(
+            "one {column} in an experiment; row {row} has {other!r}",
+            column=column,
+            row=int(table.row[reference]),
+            other=other,
+        ),
+        action=Message("Correct the cell, or give the rows that were another experiment another name."),
     )
 
 

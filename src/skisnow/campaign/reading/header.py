@@ -10,6 +10,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
+from ..._support.messages import Message, joined
 from ..problems import error, warning
 from .headings import columns_by_synonym, conversion, known_unit, named_unit, own_unit, unit_of_column, units_for
 
@@ -115,18 +116,25 @@ def _all_missing(form: TableForm, header: Header) -> Problem:
     pairs = ", ".join(
         f"{json.dumps(heading, ensure_ascii=False)} = {json.dumps(name)}" for heading, name in meant.items()
     )
-    line = f"Put this at the top of campaign.toml if it is right: columns.{table} = {{{pairs}}}" if meant else ""
+    actions = []
+    if meant:
+        line = f"columns.{table} = {{{pairs}}}"
+        actions.append(Message("Put this at the top of campaign.toml if it is right: {line}.", line=line))
     other = [
-        f"{heading} names {unit}" for heading in header.columns if (unit := _unit_of_other_quantity(form, heading))
+        Message("{heading} names {unit}", heading=heading, unit=unit)
+        for heading in header.columns
+        if (unit := _unit_of_other_quantity(form, heading))
     ]
-    lost = f"{'Nothing' if not meant else 'No heading'} looks like {', '.join(left)}: rename or add it" if left else ""
-    action = ". ".join(filter(None, (line, lost, f"Convert first: {', '.join(other)}" if other else "")))
+    if left:
+        actions.append(Message("No heading looks like {columns}: rename or add it.", columns=left))
+    if other:
+        actions.append(Message("Convert first: {headings}.", headings=other))
     return error(
         "missing_column",
         form.file,
         row=header.row,
-        allowed=f"{', '.join(form.required)}, or headings that campaign.toml maps to them",
-        action=f"{action}.",
+        allowed=Message("{required}, or headings that campaign.toml maps to them", required=list(form.required)),
+        action=joined(actions),
     )
 
 
@@ -144,8 +152,8 @@ def _repeated(form: TableForm, name: str, row: int) -> Problem:
         row=row,
         column=name,
         value=name,
-        allowed="each column once",
-        action="Rename or remove one of the columns of this name.",
+        allowed=Message("each column once"),
+        action=Message("Rename or remove one of the columns of this name."),
     )
 
 
@@ -154,8 +162,15 @@ def _missing(form: TableForm, name: str, unknown: Sequence[str], row: int) -> Pr
     near = difflib.get_close_matches(name.lower(), list(as_written), n=1)
     likely = {column: heading for heading, column in columns_by_synonym(form, unknown).items()}
     meant = as_written[near[0]] if near else likely.get(name)
-    hint = (
-        f"Is the column {meant!r} meant? Rename it, or map it under [columns] in campaign.toml" if meant else "Add it"
+    action = (
+        Message(
+            "Is the column {similar!r} meant? Rename it, or map it under [columns] in campaign.toml; the unit "
+            "belongs to "
+            "the name.",
+            similar=meant,
+        )
+        if meant
+        else Message("Add it; the unit belongs to the name.")
     )
     return error(
         "missing_column",
@@ -163,23 +178,27 @@ def _missing(form: TableForm, name: str, unknown: Sequence[str], row: int) -> Pr
         row=row,
         column=name,
         value=meant,
-        allowed=f"the columns {', '.join(form.required)}",
-        action=f"{hint}; the unit belongs to the name.",
+        allowed=Message("the columns {required}", required=list(form.required)),
+        action=action,
     )
 
 
 def _unknown(form: TableForm, name: str, header: Header) -> Problem:
     free = [name_of_column for name_of_column in form.known if name_of_column not in header.columns]
     near = difflib.get_close_matches(name, free, n=1)
-    hint = f"rename it where {near[0]!r} is meant" if near else "nothing need be done"
+    action = (
+        Message("The column is kept as text and not interpreted. Rename it if {similar!r} is meant.", similar=near[0])
+        if near
+        else Message("The column is kept as text and not interpreted; nothing need be done.")
+    )
     return warning(
         "unknown_column",
         form.file,
         row=header.row,
         column=name,
         value=name,
-        allowed=f"the columns {', '.join(form.known)}",
-        action=f"The column is kept as text and not interpreted; {hint}.",
+        allowed=Message("the columns {known}", known=list(form.known)),
+        action=action,
         needs_action=bool(near),
     )
 
@@ -241,8 +260,8 @@ def _note(form: TableForm, heading: str, column: str, unit: str) -> Problem:
         form.file,
         column=column,
         value=f"{heading} converted from {unit}",
-        allowed=f"numbers in the unit of {column}",
-        action="The numbers were converted; no action is needed.",
+        allowed=Message("numbers in the unit of {column}", column=column),
+        action=Message("The numbers were converted; no action is needed."),
         needs_action=False,
     )
 
@@ -255,8 +274,8 @@ def _other_unit(form: TableForm, heading: str, column: str, row: int, *, is_numb
         row=row,
         column=column,
         value=heading,
-        allowed=f"numbers in {units if is_number else units.split(', ', 1)[0]}",
-        action="Correct the unit, or convert the numbers.",
+        allowed=Message("numbers in {units}", units=units if is_number else units.split(", ", 1)[0]),
+        action=Message("Correct the unit, or convert the numbers."),
     )
 
 
@@ -267,6 +286,6 @@ def _two_units(form: TableForm, heading: str, column: str, row: int) -> Problem:
         row=row,
         column=column,
         value=heading,
-        allowed=f"one unit among {units_for(column)}",
-        action="Correct the heading, the row of units or campaign.toml: they state different units.",
+        allowed=Message("one unit among {units}", units=units_for(column)),
+        action=Message("Correct the heading, the row of units or campaign.toml: they state different units."),
     )

@@ -9,6 +9,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Final
 
+from ..._support.messages import Message, joined
 from ..._support.units import DEGREE, KILOGRAM_FORCE, ZERO_CELSIUS
 from .table_forms import CORRECTIONS, TABLES
 
@@ -112,7 +113,11 @@ def _unit(section: TomlValues, heading: str) -> str:
     value = section.values[heading]
     unit = known_unit(value) if isinstance(value, str) else ""
     if not unit:
-        section.refuse(heading, f"one of the units {every_unit()}", "Write the unit in quotes.")
+        section.refuse(
+            heading,
+            Message("one of the units {every_unit}", every_unit=every_unit()),
+            Message("Write the unit in quotes."),
+        )
     return unit
 
 
@@ -129,9 +134,9 @@ def _name(section: TomlValues, heading: str, columns: tuple[str, ...]) -> dict[s
     if isinstance(value, str) and value.strip() in columns:
         return {plain_heading(heading): value.strip()}
     near = difflib.get_close_matches(str(value).lower(), columns, n=1)
-    meant = f"Is {near[0]} meant? " if near else ""
-    action = f"{meant}Write the heading, an equals sign and the column's name, both in quotes."
-    section.refuse(heading, f"one of the columns {', '.join(columns)}", action)
+    write = Message("Write the heading, an equals sign and the column's name, both in quotes.")
+    action = joined([Message("Did you mean {similar}?", similar=near[0]), write]) if near else write
+    section.refuse(heading, Message("one of the columns {columns}", columns=list(columns)), action)
     return {}
 
 

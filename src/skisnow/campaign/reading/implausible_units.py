@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from ..._support.messages import Message
 from ..._support.units import DEGREE, KILOGRAM_FORCE, MM, N_PER_MM2, N_PER_MM3
 from ..problems import error, warning
 from .columns import is_unloading
@@ -94,8 +95,17 @@ def _warn_of_column(table: Table, name: str, likely: LikelyColumn, middle: float
         table.form.file,
         column=name,
         value=f"a median of {middle:g}",
-        allowed=f"numbers in {likely.unit}; medians of {likely.low:g} to {likely.high:g} are usual",
-        action=f"If these are {unit} convert them to {likely.unit}; if they are {likely.unit} nothing need be done.",
+        allowed=Message(
+            "numbers in {unit}; medians of {low:g} to {high:g} are usual",
+            unit=likely.unit,
+            low=likely.low,
+            high=likely.high,
+        ),
+        action=Message(
+            "If these are {unit} convert them to {unit_2}; if they are {unit_2} nothing need be done.",
+            unit=unit,
+            unit_2=likely.unit,
+        ),
     )
 
 
@@ -109,8 +119,16 @@ def _warn_of_rows(table: Table, name: str, likely: LikelyColumn, middle: float, 
         column=name,
         experiment=table.names[table.form.key][rows[0]] or None,
         value=f"{value:g}{more}",
-        allowed=f"numbers in {likely.unit}, within a factor {FAR:g} of the column's median of {middle:g}",
-        action=f"Look whether this is {likely.if_low if value < middle else likely.if_high} or a slip of the pen.",
+        allowed=Message(
+            "numbers in {unit}, within a factor {far:g} of the column's median of {middle:g}",
+            unit=likely.unit,
+            far=FAR,
+            middle=middle,
+        ),
+        action=Message(
+            "Look whether this is {value} or a slip of the pen.",
+            value=likely.if_low if value < middle else likely.if_high,
+        ),
     )
 
 
@@ -135,7 +153,9 @@ def check_missing_units(table: Table, described: CampaignFile | None) -> Iterato
         if unlikely is not None:
             middle, unit = unlikely
             values = f"with a median of {middle:g}"
-            yield _missing_unit(table, name, values, f"They look like {unit}.", unit.split(" or ", 1)[0])
+            yield _missing_unit(
+                table, name, values, Message("They look like {unit}.", unit=unit), unit.split(" or ", 1)[0]
+            )
 
 
 def _loads_in_kg(table: Table, described: CampaignFile | None) -> Iterator[Problem]:
@@ -148,8 +168,12 @@ def _loads_in_kg(table: Table, described: CampaignFile | None) -> Iterator[Probl
         values = f"{load[rows].min():g} to {load[rows].max():g} with tool {name}"
         largest = _largest_loads(table, rows.tolist())
         row, hardness = _middle(_hardness(table, name, largest, described), largest)
-        both = f"H_V of this experiment is {hardness:.4g} N/mm³ if they are in N"
-        yield _missing_unit(table, "load_N", values, f"{both}, {hardness * KILOGRAM_FORCE:.4g} in kg.", "kg", row)
+        both = Message(
+            "H_V of this experiment is {hardness:.4g} N/mm³ if they are in N, {other:.4g} in kg.",
+            hardness=hardness,
+            other=hardness * KILOGRAM_FORCE,
+        )
+        yield _missing_unit(table, "load_N", values, both, "kg", row)
 
 
 def _largest_loads(table: Table, rows: Sequence[int]) -> list[int]:
@@ -187,7 +211,12 @@ def _lever_arms(table: Table, described: CampaignFile | None) -> Iterator[Proble
     row, stress = _middle(_shear_stress(table, rows, described), rows)
     size = conversion(unit, "lever_arm_mm")
     other = stress / size.factor if size is not None else np.nan
-    both = f"S_f of this experiment is {stress:.4g} N/mm² if they are in mm, {other:.4g} in {unit}."
+    both = Message(
+        "S_f of this experiment is {stress:.4g} N/mm² if they are in mm, {other:.4g} in {unit}.",
+        stress=stress,
+        other=other,
+        unit=unit,
+    )
     yield _missing_unit(table, "lever_arm_mm", f"{arm[rows].min():g} to {longest:g}", both, unit, row)
 
 
@@ -208,7 +237,7 @@ def _middle(values: FloatArray, rows: list[int]) -> tuple[int, float]:
     return row, value
 
 
-def _missing_unit(table: Table, column: str, values: str, effect: str, unit: str, row: int = 0) -> Problem:
+def _missing_unit(table: Table, column: str, values: str, effect: Message, unit: str, row: int = 0) -> Problem:
     heading = table.unstated[column]
     line = f'units.{json.dumps(heading, ensure_ascii=False)} = "{unit}"'
     return error(
@@ -218,7 +247,13 @@ def _missing_unit(table: Table, column: str, values: str, effect: str, unit: str
         column=column,
         experiment=table.names[table.form.key][row] or None,
         value=f"{heading}: {values}",
-        allowed="numbers whose unit is stated",
-        action=f"{effect} State the unit: in the heading, such as {heading} [{unit}], or at the top of campaign.toml, "
-        f"such as {line}.",
+        allowed=Message("numbers whose unit is stated"),
+        action=Message(
+            "{effect} State the unit: in the heading, such as {heading} [{unit}], or at the top of "
+            "campaign.toml, such as {line}.",
+            effect=effect,
+            heading=heading,
+            unit=unit,
+            line=line,
+        ),
     )

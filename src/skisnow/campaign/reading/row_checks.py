@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from ..._support.messages import Message
 from ..problems import error, warning
 from .campaign_file import CAMPAIGN_FILE
 from .columns import is_unloading
@@ -71,10 +72,14 @@ def _unknown_names(table: Table, blocks: Blocks, column: str, described_names: f
             column=column,
             experiment=table.names[table.form.key][row] or None,
             value=names[row],
-            allowed=f"one of {', '.join(sorted(described_names))}"
+            allowed=Message("one of {names}", names=sorted(described_names))
             if described_names
-            else f"a {column} that {CAMPAIGN_FILE} describes",
-            action=f"Correct the cell, or describe the {column} in {CAMPAIGN_FILE} under [[{column}]].",
+            else Message("a {column} that {campaign_file} describes", column=column, campaign_file=CAMPAIGN_FILE),
+            action=Message(
+                "Correct the cell, or describe the {column} in {campaign_file} under [[{column}]].",
+                column=column,
+                campaign_file=CAMPAIGN_FILE,
+            ),
         )
 
 
@@ -95,8 +100,8 @@ def check_unit(table: Table) -> Iterator[Problem]:
             table.form.file,
             column=COLUMN,
             value=f"{tilted.min():g} to {tilted.max():g}",
-            allowed="degrees",
-            action="If these are radians multiply them by 57.29578; if they are degrees nothing need be done.",
+            allowed=Message("degrees"),
+            action=Message("If these are radians multiply them by 57.29578; if they are degrees nothing need be done."),
         )
 
 
@@ -111,8 +116,11 @@ def check_steepness(table: Table, blocks: Blocks) -> Iterator[Problem]:
             column=COLUMN,
             experiment=table.names[table.form.key][row] or None,
             value=f"{table.numbers[COLUMN][row]:g}",
-            allowed=f"penetration at up to {STEEPEST_MEASURED_DEG:g} degrees is what was measured before",
-            action="It is computed all the same; make sure that the angle is meant.",
+            allowed=Message(
+                "penetration at up to {steepest_measured_deg:g} degrees is what was measured before",
+                steepest_measured_deg=STEEPEST_MEASURED_DEG,
+            ),
+            action=Message("It is computed all the same; make sure that the angle is meant."),
         )
 
 
@@ -128,8 +136,8 @@ def check_flat_tools(table: Table, blocks: Blocks, flat_tools: frozenset[str]) -
             column=COLUMN,
             experiment=table.names[table.form.key][row] or None,
             value=f"{table.numbers[COLUMN][row]:g}",
-            allowed=f"0 for the tool {tool[row]!r}, which has no edge",
-            action="Write 0, or name the tool that was used.",
+            allowed=Message("0 for the tool {tool!r}, which has no edge", tool=tool[row]),
+            action=Message("Write 0, or name the tool that was used."),
         )
 
 
@@ -145,13 +153,22 @@ def check_branches(table: Table, blocks: Blocks) -> Iterator[Problem]:
     branch = table.names[BRANCH]
     unknown = np.array([name.casefold() not in BRANCHES for name in branch.names], dtype=np.bool_)[branch.code]
     for row in np.flatnonzero(unknown).tolist():
-        yield _refusal(table, row, "out_of_range", f"{LOADING}, {UNLOADING} or nothing, which is {LOADING}")
+        yield _refusal(
+            table,
+            row,
+            "out_of_range",
+            Message("{loading}, {unloading} or nothing, which is {loading}", loading=LOADING, unloading=UNLOADING),
+        )
     taken_off = is_unloading(branch)
     same = blocks.of_row[1:] == blocks.of_row[:-1]
     for row in (np.flatnonzero(same & taken_off[:-1] & ~taken_off[1:]) + 1).tolist():
-        yield _refusal(table, row, "branch_order", f"{UNLOADING}: a row of this experiment before it is")
+        yield _refusal(
+            table, row, "branch_order", Message("{branch}: a row of this experiment before it is", branch=UNLOADING)
+        )
     for row in blocks.start[taken_off[blocks.start]].tolist():
-        yield _refusal(table, row, "branch_order", f"{LOADING}: an experiment begins under its first load")
+        yield _refusal(
+            table, row, "branch_order", Message("{branch}: an experiment begins under its first load", branch=LOADING)
+        )
 
 
 def _refusal(table: Table, row: int, code: str, allowed: str) -> Problem:
@@ -163,7 +180,9 @@ def _refusal(table: Table, row: int, code: str, allowed: str) -> Problem:
         experiment=table.names[table.form.key][row] or None,
         value=table.names[BRANCH][row],
         allowed=allowed,
-        action="Correct the cell; the rows stand in the order of reading, and a second loading is another experiment.",
+        action=Message(
+            "Correct the cell; the rows stand in the order of reading, and a second loading is another experiment."
+        ),
     )
 
 
@@ -183,8 +202,10 @@ def check_turning(table: Table, blocks: Blocks) -> Iterator[Problem]:
                 column=name,
                 experiment=table.names[table.form.key][row] or None,
                 value=f"{values[row]:.12g}",
-                allowed=f"one {name} in an experiment; its first row has {first[row]:.12g}",
-                action="Correct the cell, or give the rows that were another experiment another name.",
+                allowed=Message(
+                    "one {name} in an experiment; its first row has {first:.12g}", name=name, first=first[row]
+                ),
+                action=Message("Correct the cell, or give the rows that were another experiment another name."),
             )
 
 
@@ -211,14 +232,14 @@ def check_repeated_rows(table: Table) -> Iterator[Problem]:
             row=int(table.row[index]),
             experiment=table.names[table.form.key][index] or None,
             value=f"the same as row {int(table.row[earlier])}",
-            allowed="each measurement once",
-            action="It counts again in the mean of its site: remove the row if it was pasted twice.",
+            allowed=Message("each measurement once"),
+            action=Message("It counts again in the mean of its site: remove the row if it was pasted twice."),
         )
     if repeated > MOST_LISTED:
         yield warning(
             "repeated_row",
             table.form.file,
             value=f"{repeated - MOST_LISTED} more repeated rows",
-            allowed="each measurement once",
-            action="They count again in the means of their sites: remove rows that were pasted twice.",
+            allowed=Message("each measurement once"),
+            action=Message("They count again in the means of their sites: remove rows that were pasted twice."),
         )

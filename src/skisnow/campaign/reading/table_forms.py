@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated, Final
 
+from ..._support.messages import Message
 from ..._support.units import ICE_DENSITY
 from ...parameters import Quantity, own_quantities
 
@@ -12,14 +13,17 @@ if TYPE_CHECKING:
     pass
 
 
-def allowed_words(column: Quantity) -> str:
+def allowed_words(column: Quantity) -> Message:
     """Allowed numbers in words.
 
-    >>> allowed_words(Quantity("edge_angle_deg", "edge angle", lowest=0, highest=90, below=True))
-    'a number from 0 to below 90'
+    >>> print(allowed_words(Quantity("edge_angle_deg", "edge angle", lowest=0, highest=90, below=True)))
+    a number from 0 to below 90
     """
-    words = column.allowed.removeprefix("any ")
-    return f"a {words}" if words.startswith("finite") else f"a number {'of ' if words[0].isdigit() else ''}{words}"
+    if column.allowed == Message("any finite number"):
+        return Message("a finite number")
+    if column.allowed[0].isdigit():
+        return Message("a number of {allowed}", allowed=column.allowed)
+    return Message("a number {allowed}", allowed=column.allowed)
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from ..._support.messages import Message
 from ..problems import error, warning
 from .columns import DateCollector, NameCollector, NumberCollector, Rows, Table, TextCollector, decimal_mark
 from .corrections import Corrector, header_with_status
@@ -139,8 +140,8 @@ def _too_many_errors(line: int, errors: int) -> UnreadableTextError:
     return UnreadableTextError(
         row=line,
         value=f"{errors} errors above it",
-        allowed=f"at most {MOST_ERRORS} errors in a table",
-        action="The rest was not read. Correct the rows above, or check that this is the right file.",
+        allowed=Message("at most {most_errors} errors in a table", most_errors=MOST_ERRORS),
+        action=Message("The rest was not read. Correct the rows above, or check that this is the right file."),
     )
 
 
@@ -158,8 +159,8 @@ def _table_or_empty(
 
 
 def _empty(form: TableForm, what: str) -> Problem:
-    action = "Fill the file, or remove it from the campaign."
-    return error("empty_file", form.file, value=what, allowed="a header and at least one row", action=action)
+    action = Message("Fill the file, or remove it from the campaign.")
+    return error("empty_file", form.file, value=what, allowed=Message("a header and at least one row"), action=action)
 
 
 class _TableReading:
@@ -239,8 +240,10 @@ class _TableReading:
             self._form.file,
             row=line,
             value=cell,
-            allowed=f"{width} cells, one below each column name",
-            action="Name the column in the header, or put the cell that holds a separator or decimal comma in quotes.",
+            allowed=Message("{width} cells, one below each column name", width=width),
+            action=Message(
+                "Name the column in the header, or put the cell that holds a separator or decimal comma in quotes."
+            ),
         )
 
     def finish(self) -> None:
@@ -294,7 +297,7 @@ def _format_notes(file: str, separator: str, mark: str) -> Iterator[Problem]:
             "separator",
             file,
             value=value,
-            allowed="commas between cells and decimal points, in the plain form",
-            action="It was read as found; nothing need be done.",
+            allowed=Message("commas between cells and decimal points, in the plain form"),
+            action=Message("It was read as found; nothing need be done."),
             needs_action=False,
         )

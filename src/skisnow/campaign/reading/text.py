@@ -14,6 +14,7 @@ from dataclasses import dataclass
 from itertools import chain
 from typing import TYPE_CHECKING, Final, TypeAlias
 
+from ..._support.messages import Message
 from ..._support.spreadsheet_text import (
     LONGEST_CELL,
     MOST_COLUMNS,
@@ -80,8 +81,8 @@ def _refuse_control_characters(data: bytes) -> None:
 def _binary(value: str) -> UnreadableTextError:
     return UnreadableTextError(
         value=value,
-        allowed="text in UTF-8, UTF-16 with byte order mark, or Windows-1252",
-        action="This looks like a binary file, such as a spreadsheet's own format; save it as CSV in UTF-8.",
+        allowed=Message("text in UTF-8, UTF-16 with byte order mark, or Windows-1252"),
+        action=Message("This looks like a binary file, such as a spreadsheet's own format; save it as CSV in UTF-8."),
     )
 
 
@@ -159,8 +160,8 @@ def _require_size(lines: list[int], rows: list[list[str]]) -> None:
         raise UnreadableTextError(
             row=line,
             value=f"{count} cells",
-            allowed=f"at most {MOST_COLUMNS} columns",
-            action="Take out the columns that are not needed.",
+            allowed=Message("at most {most_columns} columns", most_columns=MOST_COLUMNS),
+            action=Message("Take out the columns that are not needed."),
         )
     if max(map(len, chain.from_iterable(rows)), default=0) > LONGEST_CELL:
         line, cell = next(
@@ -169,8 +170,8 @@ def _require_size(lines: list[int], rows: list[list[str]]) -> None:
         raise UnreadableTextError(
             row=line,
             value=f"{cell[:40]}…",
-            allowed=f"cells of at most {LONGEST_CELL} characters",
-            action="Shorten the cell; is a separator or a quote missing?",
+            allowed=Message("cells of at most {longest_cell} characters", longest_cell=LONGEST_CELL),
+            action=Message("Shorten the cell; is a separator or a quote missing?"),
         )
 
 
@@ -178,8 +179,10 @@ def _open_quote(line: int) -> UnreadableTextError:
     return UnreadableTextError(
         row=line,
         value='"',
-        allowed="quotes in pairs",
-        action="A quote opened in this row is never closed, so that the rest of the file was not read; close it.",
+        allowed=Message("quotes in pairs"),
+        action=Message(
+            "A quote opened in this row is never closed, so that the rest of the file was not read; close it."
+        ),
     )
 
 
@@ -187,8 +190,8 @@ def _endless_cell(line: int) -> UnreadableTextError:
     return UnreadableTextError(
         row=line,
         value=f"a cell of more than {csv.field_size_limit()} characters",
-        allowed=f"quotes in pairs, and cells of at most {LONGEST_CELL} characters",
-        action="Close the quote that is opened in this row, or shorten the cell.",
+        allowed=Message("quotes in pairs, and cells of at most {longest_cell} characters", longest_cell=LONGEST_CELL),
+        action=Message("Close the quote that is opened in this row, or shorten the cell."),
     )
 
 
@@ -210,7 +213,7 @@ def inspect_csv(data: bytes) -> CsvText:
         raise UnreadableTextError(
             row=1,
             value=re.split(r"[\r\n]", head, maxsplit=1)[0].strip(' "'),
-            allowed="comma, semicolon or tab between cells",
-            action="Save the file with one of these separators.",
+            allowed=Message("comma, semicolon or tab between cells"),
+            action=Message("Save the file with one of these separators."),
         )
     return CsvText(data, text.codec, text.foreign_encoding, separator, named is not None)

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar
 
 from ..._support.errors import ParameterError
+from ..._support.messages import Message
 from ...parameters import made, own_quantities
 from ..problems import error, warning
 
@@ -65,7 +66,11 @@ class TomlValues:
         if value is None:
             return None
         if not isinstance(value, str) or not (value.strip() or blank_allowed):
-            self.refuse(key, f"a text{'' if blank_allowed else ' that is not blank'}, in quotes", f"Correct {key}.")
+            self.refuse(
+                key,
+                Message("a text, in quotes") if blank_allowed else Message("a text that is not blank, in quotes"),
+                Message("Correct {key}.", key=key),
+            )
             return None
         return value.strip() or None
 
@@ -74,7 +79,7 @@ class TomlValues:
         value = self.values.get(key, [])
         items = [value] if isinstance(value, str) else value
         if not isinstance(items, list) or not all(isinstance(item, str) for item in items):
-            self.refuse(key, "a text or a list of texts, in quotes", f"Correct {key}.")
+            self.refuse(key, Message("a text or a list of texts, in quotes"), Message("Correct {key}.", key=key))
             return ()
         return tuple(item.strip() for item in items if item.strip())
 
@@ -88,22 +93,26 @@ class TomlValues:
         key = quantity.name
         values = self.values.get(key, [])
         if not isinstance(values, list):
-            self.refuse(key, "a list of numbers such as [50, 100, 150]", f"Put the numbers of {key} in brackets.")
+            self.refuse(
+                key,
+                Message("a list of numbers such as [50, 100, 150]"),
+                Message("Put the numbers of {key} in brackets.", key=key),
+            )
             return ()
         checked = (self._checked(value, one) for one, value in quantity.each_of(values))
         return tuple(value for value in checked if value is not None)
 
     def _checked(self, value: object, quantity: Quantity) -> float | None:
         """The number in the key's unit; None and a problem if it is none or out of range."""
-        allowed = f"a finite number {quantity.allowed}"
+        allowed = Message("a finite number {allowed}", allowed=quantity.allowed)
         if isinstance(value, bool) or not isinstance(value, int | float):
-            action = "Write a number with a decimal point, without quotes."
+            action = Message("Write a number with a decimal point, without quotes.")
             self.refuse(quantity.name, allowed, action, value=value)
             return None
         try:
             quantity.in_range(value)
         except ParameterError:
-            action = "Correct the number; its unit stands in the key's name."
+            action = Message("Correct the number; its unit stands in the key's name.")
             self.refuse(quantity.name, allowed, action, code="out_of_range", value=value)
             return None
         return float(value)
@@ -112,7 +121,11 @@ class TomlValues:
         """A table below this one; empty if missing or invalid."""
         value = self.values.get(key, {})
         if not isinstance(value, dict):
-            self.refuse(key, f"a table, begun by the line [{key}]", f"Write [{key}] above its keys.")
+            self.refuse(
+                key,
+                Message("a table, begun by the line [{key}]", key=key),
+                Message("Write [{key}] above its keys.", key=key),
+            )
             value = {}
         return TomlValues(self.file, value, self.path_of(key), self.problems)
 
@@ -120,7 +133,11 @@ class TomlValues:
         """Tables of a list; empty if missing or invalid."""
         values = self.values.get(key, [])
         if not isinstance(values, list) or not all(isinstance(value, dict) for value in values):
-            self.refuse(key, f"tables, each begun by the line [[{key}]]", f"Write [[{key}]] above each one's keys.")
+            self.refuse(
+                key,
+                Message("tables, each begun by the line [[{key}]]", key=key),
+                Message("Write [[{key}]] above each one's keys.", key=key),
+            )
             return []
         paths = (f"{self.path_of(key)}[{place}]" for place in range(1, len(values) + 1))
         return [TomlValues(self.file, value, path, self.problems) for value, path in zip(values, paths, strict=True)]
@@ -134,7 +151,7 @@ class TomlValues:
             try:
                 values[key] = quantities[key].in_range(self.values[key])
             except ParameterError:
-                self.refuse(key, quantities[key].allowed, f"Correct {key}.", code="bad_toml")
+                self.refuse(key, quantities[key].allowed, Message("Correct {key}.", key=key), code="bad_toml")
         return made(owner, values)
 
     def refuse_misspelt(self, allowed_keys: Iterable[str]) -> None:
@@ -145,7 +162,12 @@ class TomlValues:
                 continue
             near = difflib.get_close_matches(key.lower(), keys, n=1, cutoff=_SIMILAR)
             if near:
-                self.refuse(key, f"the key {near[0]}", f"Is {near[0]} meant? Correct or remove the key.", value=key)
+                self.refuse(
+                    key,
+                    Message("the key {near}", near=near[0]),
+                    Message("Did you mean {similar}? Correct or remove the key.", similar=near[0]),
+                    value=key,
+                )
             else:
                 self._ignored(key, keys)
 
@@ -156,8 +178,8 @@ class TomlValues:
                 self.file,
                 column=self.path_of(key),
                 value=key,
-                allowed=f"the keys {', '.join(allowed_keys)}",
-                action="The key is not used; nothing need be done.",
+                allowed=Message("the keys {allowed_keys}", allowed_keys=list(allowed_keys)),
+                action=Message("The key is not used; nothing need be done."),
             )
         )
 

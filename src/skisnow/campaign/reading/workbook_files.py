@@ -12,6 +12,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
+from ..._support.messages import Message
 from ..._support.spreadsheet_text import is_number
 from ..._support.user_files import GivenError, workbook_sheets
 from ..problems import error, warning
@@ -82,8 +83,8 @@ def unfolded(files: CampaignFiles) -> UnfoldedFiles:
             _read_workbook(workbooks, name)
     for name in sorted(set(names) & set(workbooks.of_sheets)):
         workbooks.of_sheets.pop(name)
-        action = f"Keep one of {name} and the sheet; rename or remove the other."
-        place, allowed = workbooks.places.pop(name), "one table of a kind"
+        action = Message("Keep one of {name} and the sheet; rename or remove the other.", name=name)
+        place, allowed = workbooks.places.pop(name), Message("one table of a kind")
         workbooks.problems.append(error("unreadable_file", place, value=name, allowed=allowed, action=action))
     for place, rows in workbooks.unread.items():
         meant = _likely_table(rows)
@@ -105,9 +106,13 @@ def _likely_table(rows: Rows) -> str | None:
 
 def _misnamed_sheet(place: str, table: str) -> Problem:
     names = ", ".join(("campaign", "tools", "plates", "columns", *_FILES))
-    action = f"It looks like {table}: call the sheet so if it is. Else nothing need be done."
+    action = Message("It looks like {table}: call the sheet so if it is. Else nothing need be done.", table=table)
     return warning(
-        "unread_sheet", place, value=place.rpartition(", sheet ")[2], allowed=f"sheets called {names}", action=action
+        "unread_sheet",
+        place,
+        value=place.rpartition(", sheet ")[2],
+        allowed=Message("sheets called {names}", names=names),
+        action=action,
     )
 
 
@@ -130,7 +135,7 @@ def _read_workbook(workbooks: UnfoldedFiles, workbook: str) -> None:
     except (GivenError, OSError) as failure:
         what = failure.strerror or str(failure) if isinstance(failure, OSError) else str(failure)
         value, _, action = what.partition(". ")
-        allowed = "a workbook (.xlsx) with a sheet for each table"
+        allowed = Message("a workbook (.xlsx) with a sheet for each table")
         workbooks.problems.append(
             error(
                 "unreadable_file", workbook, value=value, allowed=allowed, action=action or "Save it again, or as CSV."
@@ -150,9 +155,9 @@ def _assign_sheets(workbooks: UnfoldedFiles, workbook: str, sheets: Mapping[str,
         elif kind not in _FILES:
             workbooks.unread[place] = rows
         elif _FILES[kind] in workbooks.of_sheets:
-            action = "Keep one of the sheets; rename or remove the other."
+            action = Message("Keep one of the sheets; rename or remove the other.")
             workbooks.problems.append(
-                error("unreadable_file", place, value=title, allowed="one table of a kind", action=action)
+                error("unreadable_file", place, value=title, allowed=Message("one table of a kind"), action=action)
             )
         else:
             workbooks.of_sheets[_FILES[kind]] = _csv(rows)
