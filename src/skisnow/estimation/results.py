@@ -84,6 +84,8 @@ def results_dict(analysis: Analysis) -> Json:
                 "ratio": row.ratio,
                 "interval": row.interval.tolist(),
                 "p": row.p,
+                "p_holm": row.p_holm,
+                "n_pairs": row.n_pairs,
                 "n_for_10_percent": row.n_for_10_percent,
             }
             for row in analysis.site_comparisons

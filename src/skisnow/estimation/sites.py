@@ -20,7 +20,7 @@ from ..snow.mean_snow import (
     with_measured_displacement,
     with_measured_unloading,
 )
-from ..statistics.two_groups import ratio_of_means, tests_per_group
+from ..statistics.two_groups import holm_corrected, ratio_of_means, tests_per_group
 from .comparisons import OwnValue, own_mean
 
 if TYPE_CHECKING:
@@ -64,7 +64,9 @@ class SiteComparison:
     quantity
         ``H_V`` or ``S_f``.
     ratio, interval, p
-        Welch's test on logarithms; NaN where a site has fewer than two tests.
+        Welch's test on logarithms, of this pair alone; NaN where a site has fewer than two tests.
+    p_holm, n_pairs
+        p corrected for the number of pairs of this quantity that have one (Holm 1979, Scand. J. Stat. 6, 65-70).
     n_for_10_percent
         Tests at each site that would detect ±10 % with a power of 80 % at 5 %, given the scatter within the two sites;
         None where the scatter is unknown.
@@ -77,6 +79,8 @@ class SiteComparison:
     interval: FloatArray
     p: float
     n_for_10_percent: int | None
+    p_holm: float = float("nan")
+    n_pairs: int = 0
 
 
 def compare_sites(quantity: str, values: FloatArray, site: Sequence[str]) -> tuple[SiteComparison, ...]:
@@ -85,7 +89,10 @@ def compare_sites(quantity: str, values: FloatArray, site: Sequence[str]) -> tup
     names, site_of = numbered([name for name, use in zip(site, positive.tolist(), strict=True) if use])
     logs = np.log(values[positive])
     groups = {name: logs[site_of == index] for index, name in enumerate(names)}
-    return tuple(_compare(quantity, (a, groups[a]), (b, groups[b])) for a, b in combinations(sorted(groups), 2))
+    pairs = [_compare(quantity, (a, groups[a]), (b, groups[b])) for a, b in combinations(sorted(groups), 2)]
+    corrected = holm_corrected(np.array([pair.p for pair in pairs]))
+    n_pairs = int(np.isfinite(corrected).sum())
+    return tuple(replace(pair, p_holm=p, n_pairs=n_pairs) for pair, p in zip(pairs, corrected.tolist(), strict=True))
 
 
 def _compare(quantity: str, a: tuple[str, FloatArray], b: tuple[str, FloatArray]) -> SiteComparison:
