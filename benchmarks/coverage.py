@@ -11,12 +11,13 @@ import argparse
 import sys
 import time
 from concurrent.futures import ProcessPoolExecutor
+from dataclasses import replace
 from functools import partial
 from typing import NamedTuple
 
 import numpy as np
 
-from benchmarks.campaign_intervals import HALF_AS_MUCH_AGAIN
+from benchmarks.campaign_intervals import CLEAN, HALF_AS_MUCH_AGAIN
 from skisnow.campaign import ReferenceNoise, reference_campaign
 from skisnow.estimation.hardness import DEFINITIONS, hardness_at_largest_load
 from skisnow.estimation.model_choice import bootstrap_intervals
@@ -24,11 +25,12 @@ from skisnow.estimation.models import Model, fit_models
 from skisnow.estimation.readings import readings_of
 from skisnow.estimation.screening import screened_penetration
 
+STATED = ReferenceNoise(**CLEAN)
 CONDITIONS = {
-    "all stated errors": ReferenceNoise(),
-    "H +50 % over the depth": ReferenceNoise(layering_mean=HALF_AS_MUCH_AGAIN, layering_sd=0.0),
-    "no layering": ReferenceNoise(layering_sd=0.0),
-    "no layering, no seating": ReferenceNoise(layering_sd=0.0, seating_sd=0.0),
+    "all stated errors": STATED,
+    "H +50 % over the depth": replace(STATED, layering_mean=HALF_AS_MUCH_AGAIN, layering_sd=0.0),
+    "no layering": replace(STATED, layering_sd=0.0),
+    "no layering, no seating": replace(STATED, layering_sd=0.0, seating_sd=0.0),
 }
 ANGLE_ROW = Model("H_V", "none", "linear")
 CONSTANT_ROW = Model("H_V", "none", "constant")

@@ -41,7 +41,7 @@ _LEAST_EFFECTIVE: Final = 50.0
 def rmse_of(seed: int, theta: FloatArray, kept: FloatArray) -> tuple[FloatArray, FloatArray]:
     """The nine rmse (N) of one campaign, of which a share of the series at each angle is kept; the shares that stay."""
     scatter, mean, spread = theta.tolist()
-    noise = ReferenceNoise(depth_scatter=scatter, layering_mean=mean, layering_sd=spread)
+    noise = ReferenceNoise(depth_scatter=scatter, layering_mean=mean, layering_sd=spread, depths_grow=False)
     drawn = reference_campaign(seed, noise=noise).campaign()
     assert drawn.penetration is not None
     readings = readings_of(drawn.penetration, drawn.tools, geometry="extended")

@@ -1,7 +1,7 @@
 """How often each regression of the reference campaign is significant: ``python -m benchmarks.regressions``.
 
 The truth behind the synthetic campaign has S_f from density by Eqn 14 and its printed rmse, Eqn 13 on the soft snow,
-and no other relation. Prints a Markdown table; that of the documentation is its output for seeds 0 to 59.
+and no other relation. Prints a Markdown table; that of the documentation is its output for seeds 0 to 199.
 """
 
 from __future__ import annotations
@@ -73,7 +73,7 @@ def _cells(response: str, predictor: str, group: str, count: Count) -> str:
 def main() -> None:
     """Print the table."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks.regressions")
-    parser.add_argument("--campaigns", type=int, default=60)
+    parser.add_argument("--campaigns", type=int, default=200)
     print("\n".join(table(range(parser.parse_args().campaigns))))
 
 

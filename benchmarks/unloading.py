@@ -8,10 +8,10 @@ from __future__ import annotations
 
 import argparse
 import math
-from dataclasses import replace
 
 import numpy as np
 
+from benchmarks.campaign_intervals import CLEAN
 from skisnow._support.units import MM
 from skisnow.campaign import ReferenceNoise, reference_campaign
 from skisnow.campaign.reference import design
@@ -20,9 +20,9 @@ from skisnow.estimation.series_estimates import series_estimates
 from skisnow.estimation.unloading import site_unloading
 
 CASES = {
-    "all stated errors": ReferenceNoise(),
-    "rebound scatters by 10 %": ReferenceNoise(rebound_scatter=0.1),
-    "gauge of 0.1 mm": replace(ReferenceNoise(), gauge_resolution=0.1 * MM),
+    "all stated errors": ReferenceNoise(**CLEAN),
+    "rebound scatters by 10 %": ReferenceNoise(**CLEAN, rebound_scatter=0.1),
+    "gauge of 0.1 mm": ReferenceNoise(**CLEAN, gauge_resolution=0.1 * MM),
 }
 HEAD = (
     "| errors in the data | site | H_V (N/mm³) | mean error of a series | rms | coverage | unresolved | "

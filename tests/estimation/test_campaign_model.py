@@ -204,7 +204,9 @@ def test_b_is_corrected_for_its_dilution() -> None:
     """Sixty reference campaigns with a scatter of 8 %: least squares give 0.95, the correction 1."""
     raw, expected, corrected, covered = [], [], [], []
     for seed in range(60):
-        drawn = reference_campaign(seed + 2000, noise=ReferenceNoise(depth_scatter=0.08))
+        drawn = reference_campaign(
+            seed + 2000, noise=ReferenceNoise(depth_scatter=0.08, layering_sd=0.15, depths_grow=False)
+        )
         found = skisnow.estimation.readings.readings_of(drawn.penetration, drawn.campaign().tools, geometry="extended")
         H = hardness_at_largest_load(found, DEFINITIONS["H_V"])
         b = volume_factor(found, H, fit_campaign(found, H, ReadingUncertainty(GAUGE / math.sqrt(12.0), 0.5)))

@@ -7,8 +7,8 @@ corrected:
 
     b = Σ (x/u) F exp(-w/2) / Σ (x/u)² exp(-2 w)
 
-with w from the spreads of `campaign_model`, and the error from the scatter between series (Student's t, m - 1 degrees
-of freedom).
+with w from the spreads of `campaign_model`; the exponents also have the third cumulant of the layering, which is
+skewed. The error comes from the scatter between series (Student's t, m - 1 degrees of freedom).
 """
 
 from __future__ import annotations
@@ -66,22 +66,32 @@ def volume_factor(readings: Readings, hardness: FloatArray, model: CampaignModel
     w, usable = _error_variance(readings, model)
     layers = np.exp((model.spreads.mean_exponent[model.group][readings.series] - 1.0) * _log_share(readings))
     even = x / layers
-    above = readings.sums(usable * even * F * np.exp(-w / 2.0))
-    below = readings.sums(usable * even**2 * np.exp(-2.0 * w))
+    skew = _layering_skewness(model)[readings.series] * _log_share(readings) ** 3
+    mean, square = w / 2.0 + skew / 6.0, 2.0 * w + 8.0 * skew / 6.0  # logarithms of the means of e^ε and e^2ε
+    above = readings.sums(usable * even * F * np.exp(-mean))
+    below = readings.sums(usable * even**2 * np.exp(-square))
     m = readings.n_series
     with np.errstate(invalid="ignore", divide="ignore"):
         value = float(above.sum() / below.sum())
         error = np.sqrt(((above - value * below) ** 2).sum() * m / np.float64(m - 1)) / below.sum()
     half = float(expanded_factor(m - 1.0, CONFIDENCE) * error)
     law = F * layers  # the value of x without errors where b = 1; readings that are not usable count as they are
-    expected = np.where(usable > 0, law * F * np.exp(w / 2.0), x * F).sum()
-    expected /= np.where(usable > 0, law**2 * np.exp(2.0 * w), x**2).sum()
+    expected = np.where(usable > 0, law * F * np.exp(mean), x * F).sum()
+    expected /= np.where(usable > 0, law**2 * np.exp(square), x**2).sum()
     return VolumeFactor(m, float((x @ F) / (x @ x)), float(expected), value, value - half, value + half)
 
 
 def _log_share(readings: Readings) -> FloatArray:
     log = np.log(readings.load)
     return log - log[readings.largest][readings.series]
+
+
+def _layering_skewness(model: CampaignModel) -> FloatArray:
+    """Third moment of g about g_0 in the group of each series: exponents of layered snow are skewed."""
+    cubes = (model.exponent - model.spreads.mean_exponent[model.group]) ** 3
+    n_groups = len(model.spreads.mean_exponent)
+    number = np.bincount(model.group, minlength=n_groups)
+    return (np.bincount(model.group, weights=cubes, minlength=n_groups) / np.maximum(number, 1))[model.group]
 
 
 def _error_variance(readings: Readings, model: CampaignModel) -> tuple[FloatArray, FloatArray]:

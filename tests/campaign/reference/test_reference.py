@@ -236,7 +236,9 @@ def test_a_seed_is_an_integer(seed: object) -> None:
         reference_campaign(seed)  # type: ignore[arg-type]
 
 
-@pytest.mark.parametrize(("name", "value"), [("load_sd", -0.1), ("depth_scatter", float("nan")), ("layering_sd", 1.0)])
+@pytest.mark.parametrize(
+    ("name", "value"), [("load_sd", -0.1), ("depth_scatter", float("nan")), ("layering_mean", 1.0)]
+)
 def test_impossible_noise_is_refused(name: str, value: float) -> None:
     with pytest.raises(ParameterError, match=name):
         ReferenceNoise(**{name: value})

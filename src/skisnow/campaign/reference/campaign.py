@@ -135,7 +135,9 @@ def reference_campaign(
     κ = 0 it is F = H_V V (Eqn 12). For the wedge F ~ e^(2 + κ): κ > 0 is snow that is harder below. The true load F is
     the nominal one plus an error; e solves the law for it. The gauge reads e (1 + scatter) + seating offset, rounded to
     its step; it does not read below its zero, so a negative reading is recorded as 0. The file states the nominal
-    loads. Readings are recorded as they come: where depths shrink, screening flags the series.
+    loads. The scatter of a series whose depth would shrink under a larger load is drawn again: a tool does not rise
+    under it. The scatter and κ, with 2 ln(1 + κ/2) normal, were set so that the rmse of the rows of H_V are those that
+    the paper prints; agreement there is no evidence.
 
     A flat series with a depth of at most 0.2 mm at the largest load is drawn at one of the other angles instead
     (modelling assumption: 0.0004 mm cannot be measured).

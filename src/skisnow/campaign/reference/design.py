@@ -114,9 +114,9 @@ SOFT_TESTS: Final = 30
 SOFT_SCATTER: Final = 0.006 * N_PER_MM2
 
 FURTHER_SHEAR_SITES: Final = (
-    ShearSite("site K", 8, 470.0),
-    ShearSite("site L", 8, 560.0),
-    ShearSite("site M", 7, 690.0),
+    ShearSite("site K", 8, 440.0),
+    ShearSite("site L", 8, 440.0),
+    ShearSite("site M", 7, 600.0),
 )
 SHEAR_DENSITY_RANGE: Final = moessner_2013.SNOW_DENSITY_RANGE
 SHEAR_DENSITY_SD: Final = 40.0
@@ -150,10 +150,14 @@ class ReferenceNoise:
         Offset of the depth zero (m), one per series, positive if the gauge reads too much.
     depth_scatter
         Relative scatter of depth from reading to reading.
+    depths_grow
+        Whether the scatter of a series whose depth would shrink under a larger load is drawn again.
     hardness_log_sd
         Spread of ln H_V between the spots of one site.
-    layering_mean, layering_sd
-        Mean and spread of the layering exponent κ over the series, see `reference_campaign`; each at most 0.4.
+    layering_mean
+        Mean of the layering exponent κ, see `reference_campaign`; at most 0.4 in size.
+    layering_sd
+        Spread of 2 ln(1 + κ/2) over the series, which is that of κ where it is small.
     shear_scatter
         Multiplies the scatter of S_f between spots (0.03 N/mm² hard, 0.006 soft, 0.059 about Eqn 14).
     moment_sd
@@ -175,10 +179,11 @@ class ReferenceNoise:
     gauge_resolution: float = 0.01 * MM
     load_sd: float = 0.5
     seating_sd: float = 0.02 * MM
-    depth_scatter: float = 0.02
+    depth_scatter: float = 0.03
+    depths_grow: bool = True
     hardness_log_sd: float = 0.3
     layering_mean: float = 0.0
-    layering_sd: float = 0.15
+    layering_sd: float = 0.8
     shear_scatter: float = 1.0
     moment_sd: float = 0.2
     lever_arm_sd: float = 1.0 * MM
@@ -193,9 +198,8 @@ class ReferenceNoise:
             value = getattr(self, name)
             if not (np.isfinite(value) and (value >= 0 or name == "layering_mean")):
                 raise ParameterError(f"ReferenceNoise: {name} is {value!r}; it must be a finite number, 0 or above")
-        for name in ("layering_mean", "layering_sd"):
-            if abs(getattr(self, name)) > 0.4:
-                raise ParameterError(
-                    f"ReferenceNoise: {name} is {getattr(self, name)!r}; it must be at most 0.4 in size, "
-                    "or the force falls with depth in some series"
-                )
+        if abs(self.layering_mean) > 0.4:
+            raise ParameterError(
+                f"ReferenceNoise: layering_mean is {self.layering_mean!r}; it must be at most 0.4 in size, "
+                "or the force falls with depth in some series"
+            )

@@ -31,6 +31,10 @@ _ANGLE_DECIMALS = 4
 """Decimals of a turning angle in degrees: finer than 0.001 mm at the plate."""
 
 
+_REDRAWS = 1000
+"""Of the scatter of a series whose depth would shrink under a larger load: a tool does not rise under it."""
+
+
 class DrawnPenetration(NamedTuple):
     """Readings, and per series the seating offset (m), κ, the tool's depth under the largest load (m) and k_u/H_V.
 
@@ -66,17 +70,24 @@ def penetration(
     """Draw the readings of every series."""
     shape = (snow_hardness.size, len(design.LOADS))
     nominal = np.array(design.LOADS)
-    layering = noise.layering_mean + noise.layering_sd * generator.standard_normal(shape[0])
+    spread = np.exp(noise.layering_sd / 2.0 * generator.standard_normal(shape[0]))
+    layering = 2.0 * ((1.0 + noise.layering_mean / 2.0) * spread - 1.0)
     seating_offset = noise.seating_sd * generator.standard_normal(shape[0])
     load = nominal + noise.load_sd * generator.standard_normal(shape)
     scatter = noise.depth_scatter * generator.standard_normal(shape)
     exponent = 1.0 / (1.0 + layering / 2.0)
     volume = (nominal[-1] / snow_hardness)[:, np.newaxis] * (load / nominal[-1]) ** exponent[:, np.newaxis]
     true_depth = design.SKI_PIECE.depth_at_volume(volume, edge_angle[:, np.newaxis])
-    # A gauge does not read below its zero.
     depth = true_depth * (1.0 + scatter)
-    reading = np.maximum(depth + seating_offset[:, np.newaxis], 0.0)
-    tests = _penetration_tests(edge_angle, _round_to_gauge(reading, noise).ravel())
+    reading = _gauge_reading(depth, seating_offset, noise)
+    for _ in range(_REDRAWS if noise.depths_grow and noise.depth_scatter > 0 else 0):
+        shrinks = (np.diff(reading, axis=1) < 0).any(axis=1)
+        if not shrinks.any():
+            break
+        scatter[shrinks] = noise.depth_scatter * generator.standard_normal((int(shrinks.sum()), shape[1]))
+        depth = true_depth * (1.0 + scatter)
+        reading = _gauge_reading(depth, seating_offset, noise)
+    tests = _penetration_tests(edge_angle, reading.ravel())
     unknown = np.full(shape[0], np.nan)
     return DrawnPenetration(tests, seating_offset, layering, true_depth.ravel(), depth[:, -1], unknown)
 
@@ -193,6 +204,11 @@ def _normal_within(
     while np.any(outside := (value < low) | (value > high)):
         value[outside] = centre[outside] + sd * generator.standard_normal(np.count_nonzero(outside))
     return value
+
+
+def _gauge_reading(depth: FloatArray, seating_offset: FloatArray, noise: ReferenceNoise) -> FloatArray:
+    """Reading of each depth (m, 7), with the offset of its series; a gauge does not read below its zero."""
+    return _round_to_gauge(np.maximum(depth + seating_offset[:, np.newaxis], 0.0), noise)
 
 
 def _round_to_gauge(depth: FloatArray, noise: ReferenceNoise) -> FloatArray:

@@ -15,18 +15,26 @@ from ..._support.errors import OutputError
 from ..._support.units import DEGREE, MM, N_PER_MM2
 from ..reading.table_forms import LOADING, UNLOADING
 from . import design
-from .campaign import reference_campaign
+from .campaign import DEFAULT_NOISE, reference_campaign
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
     from ..records import FloatArray
     from .campaign import ReferenceCampaign
+    from .design import ReferenceNoise
 
 _CAMPAIGN_FILES = ("penetration.csv", "shear.csv", "density.csv", "drop_cone.csv", "corrections.csv", "campaign.toml")
 
 
-def write_reference(folder: str | Path, *, seed: int, turning_angles: bool = False, creep: bool = False) -> None:
+def write_reference(
+    folder: str | Path,
+    *,
+    seed: int,
+    noise: ReferenceNoise = DEFAULT_NOISE,
+    turning_angles: bool = False,
+    creep: bool = False,
+) -> None:
     """Write the reference campaign of a seed: campaign.toml, penetration, shear, density and drop_cone CSV.
 
     Parameters
@@ -35,6 +43,8 @@ def write_reference(folder: str | Path, *, seed: int, turning_angles: bool = Fal
         Folder, created if necessary; other files in it are not changed.
     seed
         As for `skisnow.campaign.reference_campaign`. The same seed writes the same bytes.
+    noise
+        The errors and the scatter of the snow, as for `skisnow.campaign.reference_campaign`.
     turning_angles, creep
         True for turning angles in shear.csv, and depths after waiting in penetration.csv; other cells stay the same.
 
@@ -60,7 +70,7 @@ def write_reference(folder: str | Path, *, seed: int, turning_angles: bool = Fal
       snow for simulation of skiing", J. Glaciol.
     * The page docs/reference-campaign.md.
     """
-    drawn = reference_campaign(seed, turning_angles=turning_angles, creep=creep)
+    drawn = reference_campaign(seed, noise=noise, turning_angles=turning_angles, creep=creep)
     folder = Path(folder)
     there = [name for name in _CAMPAIGN_FILES if (folder / name).exists()]
     if there:
@@ -191,7 +201,7 @@ def _campaign_toml(drawn: ReferenceCampaign) -> str:
 #   unloading at {", ".join(design.UNLOADED_SITES)}: k_u/H_V is {design.UNLOADING_RATIO:g}, its logarithm varies by
 #     {noise.unloading_log_sd:g} from spot to spot; each rebound scatters by {noise.rebound_scatter:.0%}
 #   snow: ln H_V varies by {noise.hardness_log_sd:g} within a site, redrawn outside 0.04-90 N/mm3; layering of a series:
-#     F = H_V V(e7) (V(e)/V(e7))^(1 + kappa/2), kappa with {noise.layering_sd:g}
+#     F = H_V V(e7) (V(e)/V(e7))^(1 + kappa/2), 2 ln(1 + kappa/2) with {noise.layering_sd:g}
 #   shear: S_f scatters by {hard:g} N/mm2 (hard), {soft:g} (soft, about Eqn 13), {about_density:g} (about Eqn 14),
 #     hard and Eqn 14 redrawn outside 0.04-0.40;
 #     moment {noise.moment_sd:g} N m; the true lever arm is the stated one plus {noise.lever_arm_sd / MM:g} mm
