@@ -13,6 +13,7 @@ from skisnow._support.errors import ParameterError
 from skisnow.geometry.surfaces import Grid
 from skisnow.interop.chrono import write_chrono_terrain
 from skisnow.scenario.snow_map import SnowMap
+from tests.coded import raises
 
 
 def test_a_terrain_has_the_snow_of_the_scenario(tmp_path: Path) -> None:
@@ -35,11 +36,11 @@ def test_a_terrain_has_the_snow_of_the_scenario(tmp_path: Path) -> None:
 
 def test_snow_that_does_not_fit_is_refused(tmp_path: Path) -> None:
     elastic = load_scenario("carved-46m", changes={"snow.unloading_ratio": 1.0})
-    with pytest.raises(ParameterError, match="unloading_ratio is 1"):
+    with raises(ParameterError, "out_of_range", unloading_ratio=1.0):
         write_chrono_terrain(elastic, tmp_path)
     over = SnowMap(hardness=Grid.along(np.arange(4.0), np.full(4, 2e8)))
-    with pytest.raises(ParameterError, match="the scenario's snow varies, or has no S_f"):
+    with raises(ParameterError, "no_data"):
         write_chrono_terrain(load_scenario("carved-46m").with_(snow_map=over), tmp_path)
-    with pytest.raises(ParameterError, match="must be above 0"):
+    with raises(ParameterError, "out_of_range", spacing=0.0):
         write_chrono_terrain(load_scenario("carved-46m"), tmp_path, spacing=0.0)
     assert not list(tmp_path.iterdir())

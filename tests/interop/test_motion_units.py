@@ -10,6 +10,7 @@ import pytest
 from skisnow._support.errors import ParameterError
 from skisnow.cli import main
 from skisnow.interop.opensim import Markers, read_c3d, read_motion, read_trc
+from tests.coded import raises
 
 from .c3d_files import c3d_bytes
 
@@ -90,7 +91,7 @@ def test_quantities_of_the_lists_of_the_file_are_omitted(
     assert "x1" in capsys.readouterr().err
     assert read_trc(tmp_path / "a.trc").names == ("LHEE",)
     capture(tmp_path / "a.c3d", {"LABELS": ["x1"], "UNITS": ["mm"], group: ["x1"]})
-    with pytest.raises(ParameterError, match="no markers"):
+    with raises(ParameterError, "out_of_range"):
         read_c3d(tmp_path / "a.c3d")
 
 
@@ -105,14 +106,14 @@ def test_each_block_and_each_point_may_have_its_unit(tmp_path: Path) -> None:
     capture(tmp_path / "a.c3d", blocks)
     assert [read_c3d(tmp_path / "a.c3d").of(name)[1, 1] for name in "abc"] == pytest.approx([0.01, 10.0, 0.1])
     capture(tmp_path / "a.c3d", blocks | {"UNITS2": ["deg"]})
-    with pytest.raises(ParameterError, match="marker c"):
+    with raises(ParameterError, "out_of_range", name="c"):
         read_c3d(tmp_path / "a.c3d")
 
 
 @pytest.mark.parametrize("rate", [0.0, -1.0, np.nan])
 def test_a_rate_that_is_none_is_refused(tmp_path: Path, rate: float) -> None:
     capture(tmp_path / "a.c3d", {"LABELS": ["a"], "UNITS": ["mm"]}, rate=rate)
-    with pytest.raises(ParameterError, match=r"a\.c3d"):
+    with raises(ParameterError, "out_of_range"):
         read_c3d(tmp_path / "a.c3d")
 
 
@@ -131,7 +132,7 @@ def test_ezc3d_gives_blocks_as_they_are_read_here(tmp_path: Path) -> None:
 
 def test_names_that_are_there_twice_are_refused(tmp_path: Path) -> None:
     capture(tmp_path / "a.c3d", {"LABELS": ["a", "b", "a"], "UNITS": ["mm"]})
-    with pytest.raises(ParameterError, match="twice"):
+    with raises(ParameterError, "damaged"):
         read_c3d(tmp_path / "a.c3d")
 
 

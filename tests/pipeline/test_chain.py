@@ -29,6 +29,7 @@ from skisnow.report.turn.numbers import turn_dict
 from skisnow.scenario.identify_section import prior_of
 from skisnow.ski import write_ski
 from skisnow.snow import SnowProperties
+from tests.coded import Coded, coded, raises
 
 from ..report.runs import circle_run
 
@@ -154,7 +155,7 @@ def test_the_camber_is_rounded_in_a_band_only_where_it_is_one_number(tmp_path: P
     heights = turn.with_(ski=tmp_path / "heights.toml")
     both = [[each.key for each in inputs_with((), scenario)] for scenario in (turn, heights)]
     assert both[0] == [*both[1], "ski.camber_rounding_mm"]
-    with pytest.raises(ParameterError, match="given heights of its base"):
+    with raises(ParameterError, "no_camber"):
         heights.with_(camber_rounding_mm=50)
 
 
@@ -348,19 +349,19 @@ def test_the_report_is_that_of_the_chain(analysis: Analysis, tmp_path: Path) -> 
 @pytest.mark.parametrize(
     ("named", "told"),
     [
-        ({"site": "A"}, "has no interval of S_f"),
-        ({"site": "Z"}, "no used penetration experiment of site 'Z'"),
-        ({"priors": [prior_of("H_V=0.1:0.2")]}, "its interval comes from the campaign"),
-        ({"unloading_ratio": 1.0}, "k_u/H_V must be above 1 here"),
-        ({"shear_displacement": 0.0}, "u_y must be above 0"),
-        ({"runs": 2}, "a band needs 3 or more"),
-        ({"workers": 0}, "workers is 0"),
-        ({"scenario": "carved-46"}, "carved-46m"),
+        ({"site": "A"}, coded("no_data", quantity="S_f")),
+        ({"site": "Z"}, coded("no_data", site="Z")),
+        ({"priors": [prior_of("H_V=0.1:0.2")]}, "no_data"),
+        ({"unloading_ratio": 1.0}, coded("out_of_range", unloading_ratio=1.0)),
+        ({"shear_displacement": 0.0}, coded("out_of_range", shear_displacement=0.0)),
+        ({"runs": 2}, coded("out_of_range", fewest=3)),
+        ({"workers": 0}, coded("too_few_workers", workers=0)),
+        ({"scenario": "carved-46"}, coded("unknown_name", similar="carved-46m")),
     ],
 )
 @pytest.mark.usefixtures("asked")
-def test_what_cannot_be_is_refused_in_words(analysis: Analysis, named: dict[str, Any], told: str) -> None:
-    with pytest.raises(ParameterError, match=told):
+def test_what_cannot_be_is_refused_in_words(analysis: Analysis, named: dict[str, Any], told: str | Coded) -> None:
+    with raises(ParameterError, told):
         skisnow.turn(analysis, **{"site": "C", "workers": 1, **named})
 
 
@@ -444,5 +445,5 @@ def test_a_site_that_is_not_there_is_told_before_the_analysis(
     analysis: Analysis, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(pipeline_turn, "analyse", lambda *_, **__: pytest.fail("analysed for nothing"))
-    with pytest.raises(ParameterError, match="no used penetration experiment of site 'Z'; it has some of 'site A'"):
+    with raises(ParameterError, "no_data", site="Z"):
         skisnow.turn(analysis.campaign, "Z")

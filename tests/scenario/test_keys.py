@@ -13,6 +13,7 @@ from skisnow._support.errors import ParameterError
 from skisnow.scenario import Solver, keys, load_scenario, scenario_names, scenario_text
 from skisnow.scenario.keys import SCENARIO_KEYS
 from skisnow.scenario.schema import scenario_schema
+from tests.coded import raises
 
 SCHEMAS = files("skisnow.scenario") / "schemas"
 SCHEMA = json.loads((SCHEMAS / "scenario.schema.json").read_text(encoding="utf-8"))
@@ -94,7 +95,7 @@ def test_a_word_that_may_mean_two_keys_is_refused(monkeypatch: pytest.MonkeyPatc
     two = ("friction.mu_0", "snow.S_f_N_per_mm2")
     monkeypatch.setattr(keys, "_KEYS_BY_WORD", {"both": two, "one": two[:1]})
     assert keys.free_key("one") == "friction.mu_0"
-    with pytest.raises(ParameterError, match=r"both may mean one of friction\.mu_0, snow\.S_f_N_per_mm2\. Write one"):
+    with raises(ParameterError, "ambiguous", word="both"):
         keys.free_key("both")
 
 

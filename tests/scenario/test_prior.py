@@ -7,6 +7,7 @@ import pytest
 
 from skisnow._support.errors import ParameterError
 from skisnow.scenario.identify_section import Prior, prior_of
+from tests.coded import Coded, coded, raises
 
 SHARES = np.array([0.0, 0.5, 1.0])
 
@@ -26,16 +27,16 @@ def test_about_the_scenarios_own_value() -> None:
 @pytest.mark.parametrize(
     ("word", "told"),
     [
-        ("mu_0", "write KEY=LOW:HIGH"),
-        ("mu_0=1", "write KEY=LOW:HIGH"),
-        ("mu_0=a:b", "write KEY=LOW:HIGH"),
-        ("mu_0=0.2:0.1", "not above the other"),
-        ("mu_0=0:0.1", "above 0"),
-        ("mu_0=nan:0.1", "above 0"),
-        ("mu_0=0.1:7", "friction.mu_0 is 7"),
-        ("mew_0=0.1:0.2", "mu_0"),
+        ("unknown_name", "wrong_kind"),
+        ("mu_0=1", "wrong_kind"),
+        ("mu_0=a:b", "wrong_kind"),
+        ("mu_0=0.2:0.1", "out_of_range"),
+        ("mu_0=0:0.1", "out_of_range"),
+        ("mu_0=nan:0.1", "out_of_range"),
+        ("mu_0=0.1:7", coded("out_of_range", name="friction.mu_0")),
+        ("mew_0=0.1:0.2", "unknown_name"),
     ],
 )
-def test_what_is_no_prior_is_refused_in_words(word: str, told: str) -> None:
-    with pytest.raises(ParameterError, match=told):
+def test_what_is_no_prior_is_refused_in_words(word: str, told: str | Coded) -> None:
+    with raises(ParameterError, told):
         prior_of(word)

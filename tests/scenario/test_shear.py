@@ -6,6 +6,7 @@ from skisnow._support.errors import ParameterError
 from skisnow.forces.shear import AngleShear, DensityShear, MachiningShear
 from skisnow.scenario.run_settings import Start
 from skisnow.scenario.shear import Shear
+from tests.coded import raises
 
 S_F = 0.4e6
 
@@ -17,7 +18,7 @@ def test_each_word_is_its_law_with_the_numbers_given() -> None:
         flat_shear_stress=S_F, relative_decrease=0.3
     )
     assert Shear(law="by-density", snow_density=400.0).of(S_F) == DensityShear(snow_density=400.0)
-    with pytest.raises(ParameterError, match=r"give shear\.snow_density_kg_per_m3"):
+    with raises(ParameterError, "missing"):
         Shear(law="by-density")
 
 

@@ -10,6 +10,7 @@ import pytest
 from skisnow._support.errors import ParameterError
 from skisnow.studies import Study, read_study
 from skisnow.studies.study import TOP_KEYS
+from tests.coded import Coded, coded, raises
 
 FIXED = '[fixed]\nski = "slalom"\npublished = "race-piste"\nload_N = 800\nunloading_ratio = 10\n'
 GRID = "[grid]\nedge_angle_deg = [30, 45]\n"
@@ -89,81 +90,104 @@ def test_fingerprint_follows_points_and_files_but_not_the_place_of_the_table(tmp
 @pytest.mark.parametrize(
     ("text", "told"),
     [
-        (OUT + FIXED, r"either \[grid\] or \[latin_hypercube\]; neither"),
-        (OUT + FIXED + GRID + "[latin_hypercube]\nn = 3\nseed = 1\nload_N = { from = 1, to = 2 }", "both are there"),
-        (OUT + FIXED + "[grid]\n", "holds no input that varies"),
-        (OUT + FIXED + "[gird]\nload_N = [1]\n", "gird is no key of a study. Did you mean grid"),
+        (OUT + FIXED, "contradiction"),
+        (OUT + FIXED + GRID + "[latin_hypercube]\nn = 3\nseed = 1\nload_N = { from = 1, to = 2 }", "contradiction"),
+        (OUT + FIXED + "[grid]\n", "missing"),
+        (OUT + FIXED + "[gird]\nload_N = [1]\n", coded("unknown_name", similar="grid", key="gird")),
         (
             OUT + FIXED + "[grid]\nedge_angel_deg = [30]\n",
-            "grid.edge_angel_deg is no input. Did you mean edge_angle_deg",
+            coded("unknown_name", similar="edge_angle_deg", table="grid", name="edge_angel_deg"),
         ),
-        (OUT + FIXED + "laod_N = 3\n" + GRID, "fixed.laod_N is no input. Did you mean load_N"),
-        (OUT + FIXED + "[grid]\nload_N = [400]\n", r"load_N stands in \[grid\] and in \[fixed\]"),
-        (OUT + FIXED + "[grid]\nedge_angle_deg = []\n", "empty list"),
-        (OUT + FIXED + "[grid]\nedge_angle_deg = [30, 30.0]\n", "30.0 twice"),
-        (OUT + FIXED + '[grid]\nedge_angle_deg = [30, "forty"]\n', "'forty'; it must be a number"),
-        (OUT + FIXED + "[grid]\nedge_angle_deg = [true]\n", "True; it must be a number"),
-        (OUT + FIXED + "[grid]\nedge_angle_deg = { from = 3, to = 60 }\n", "n, the number of values, is missing"),
-        (OUT + FIXED + "[grid]\nedge_angle_deg = { from = 3, till = 60 }\n", "edge_angle_deg: there is no 'till'"),
-        (OUT + FIXED + "[grid]\nedge_angle_deg = { from = 3, n = 60 }\n", "to is missing"),
-        (OUT + FIXED + "[grid]\nedge_angle_deg = { from = 60, to = 3, n = 6 }\n", "from must be the smaller one"),
-        (OUT + FIXED.replace("race-piste", "race-pist") + GRID, "did you mean 'race-piste'"),
-        (OUT + FIXED.replace("slalom", "slalon") + GRID, "no ski named 'slalon'. Did you mean slalom"),
-        (OUT + FIXED.replace("slalom", "mine.toml") + GRID, "mine.toml cannot be read"),
-        (OUT + FIXED.replace("_ratio = 10", "_ratio = 0.5") + GRID, "fixed.unloading_ratio is 0.5; allowed is 1 or"),
-        (OUT + FIXED.replace("= 800", "= -800") + GRID, "fixed.load_N is -800; allowed is above 0 N"),
+        (OUT + FIXED + "laod_N = 3\n" + GRID, coded("unknown_name", similar="load_N", table="fixed", name="laod_N")),
+        (OUT + FIXED + "[grid]\nload_N = [400]\n", coded("contradiction", name="load_N", form="grid")),
+        (OUT + FIXED + "[grid]\nedge_angle_deg = []\n", "out_of_range"),
+        (OUT + FIXED + "[grid]\nedge_angle_deg = [30, 30.0]\n", coded("repeated", repeated=30.0)),
+        (OUT + FIXED + '[grid]\nedge_angle_deg = [30, "forty"]\n', coded("wrong_kind", value="'forty'")),
+        (OUT + FIXED + "[grid]\nedge_angle_deg = [true]\n", "wrong_kind"),
+        (OUT + FIXED + "[grid]\nedge_angle_deg = { from = 3, to = 60 }\n", "missing"),
+        (OUT + FIXED + "[grid]\nedge_angle_deg = { from = 3, till = 60 }\n", coded("unknown_name", name="till")),
+        (OUT + FIXED + "[grid]\nedge_angle_deg = { from = 3, n = 60 }\n", coded("missing", name="to")),
+        (OUT + FIXED + "[grid]\nedge_angle_deg = { from = 60, to = 3, n = 6 }\n", "wrong_kind"),
+        (OUT + FIXED.replace("race-piste", "race-pist") + GRID, coded("unknown_name", similar="race-piste")),
+        (OUT + FIXED.replace("slalom", "slalon") + GRID, coded("unknown_name", similar="slalom", name="slalon")),
+        (OUT + FIXED.replace("slalom", "mine.toml") + GRID, "cannot_read"),
+        (
+            OUT + FIXED.replace("_ratio = 10", "_ratio = 0.5") + GRID,
+            coded("out_of_range", low=1.0, name="unloading_ratio", value="0.5"),
+        ),
+        (
+            OUT + FIXED.replace("= 800", "= -800") + GRID,
+            coded(
+                "out_of_range",
+                low=0.0,
+                name="load_N",
+                value="-800",
+                allowed="above 0",
+                unit="N",
+                problem="fixed.load_N is -800; allowed is above 0 N",
+            ),
+        ),
         (
             OUT + FIXED.replace("slalom", "paper-tool") + GRID,
-            r"0.3 \(the default\); the ski paper-tool allows less than",
+            coded("out_of_range", clamp_length=0.3, name="paper-tool"),
         ),
-        (OUT + FIXED + "clamp_length_m = 300\n" + GRID, "or 0.3 if the number is in mm"),
-        (OUT + FIXED + 'results = "nowhere.json"\n' + GRID.replace("[grid]", "[grid]"), "in two ways"),
-        (OUT + FIXED.replace("published", "results") + GRID, "race-piste cannot be read"),
-        (OUT + FIXED + GRID + "S_f_N_per_mm2 = [0.2]\n", "which has its own S_f"),
-        (OUT + FIXED + "[grid]\nedge_angle_deg = { from = 3, to = 3, n = 6 }\n", r"under \[fixed\]"),
+        (OUT + FIXED + "clamp_length_m = 300\n" + GRID, coded("out_of_range", in_metres=0.3)),
+        (OUT + FIXED + 'results = "nowhere.json"\n' + GRID.replace("[grid]", "[grid]"), "contradiction"),
+        (OUT + FIXED.replace("published", "results") + GRID, "wrong_kind"),
+        (OUT + FIXED + GRID + "S_f_N_per_mm2 = [0.2]\n", "contradiction"),
+        (OUT + FIXED + "[grid]\nedge_angle_deg = { from = 3, to = 3, n = 6 }\n", "out_of_range"),
         (
             OUT + FIXED + "[grid]\nedge_angle_deg = { from = 3, to = nan, n = 6 }\n",
-            "to is nan; allowed is any finite number",
+            coded("out_of_range", name="to", value="nan", allowed="any finite number"),
         ),
-        (OUT + FIXED + "[grid]\nedge_angle_deg = { from = 0, to = 3, n = 6, log = true }\n", "both ends above 0"),
+        (
+            OUT + FIXED + "[grid]\nedge_angle_deg = { from = 0, to = 3, n = 6, log = true }\n",
+            coded("out_of_range", low=0.0),
+        ),
         (
             OUT + FIXED + "[grid]\nedge_angle_deg = { from = 3, to = 60, n = 1 }\n",
-            "n is 1; allowed is whole numbers 2 or more",
+            coded("out_of_range", low=2, name="n", value="1", allowed="whole numbers 2 or more"),
         ),
-        (OUT + FIXED + '[grid]\nedge_angle_deg = { from = 3, to = 60, n = 6, log = "yes" }\n', "true or false"),
-        (OUT + FIXED + "[grid]\nedge_angle_deg = { from = 3, to = 60, n = 2000000 }\n", "2000000 points"),
-        (OUT + FIXED + "[grid]\ntwist = { from = 0, to = 1, n = 2 }\n", "twist has no range"),
-        (OUT + FIXED + "[grid]\nelements = [80, 80.5]\n", "80.5; it must be a whole number"),
-        (OUT + FIXED + "edge_angle_deg = [3]\n[grid]\nelements = [80]\n", "it takes one value"),
-        (OUT + FIXED + "[latin_hypercube]\nn = 5\nedge_angle_deg = { from = 3, to = 60 }\n", "seed is missing"),
+        (OUT + FIXED + '[grid]\nedge_angle_deg = { from = 3, to = 60, n = 6, log = "yes" }\n', "wrong_kind"),
+        (
+            OUT + FIXED + "[grid]\nedge_angle_deg = { from = 3, to = 60, n = 2000000 }\n",
+            coded("out_of_range", n=2000000),
+        ),
+        (OUT + FIXED + "[grid]\ntwist = { from = 0, to = 1, n = 2 }\n", coded("no_data", name="twist")),
+        (OUT + FIXED + "[grid]\nelements = [80, 80.5]\n", coded("wrong_kind", value="80.5")),
+        (OUT + FIXED + "edge_angle_deg = [3]\n[grid]\nelements = [80]\n", "wrong_kind"),
+        (
+            OUT + FIXED + "[latin_hypercube]\nn = 5\nedge_angle_deg = { from = 3, to = 60 }\n",
+            coded("missing", name="seed"),
+        ),
         (
             OUT + FIXED + "[latin_hypercube]\nn = 0\nseed = 1\nelements = [80]\n",
-            "n is 0; allowed is whole numbers 1 or more",
+            coded("out_of_range", low=1, name="n", value="0", allowed="whole numbers 1 or more"),
         ),
         (
             OUT + FIXED + "[latin_hypercube]\nn = 5\nseed = 1\nedge_angle_deg = { from = 3, to = 60, n = 3 }\n",
-            "n stands once",
+            "contradiction",
         ),
-        (FIXED + GRID, "out is missing"),
-        ('out = "table.xlsx"\n' + FIXED + GRID, "must end in .csv"),
-        (OUT + GRID, "ski is missing"),
-        (OUT + FIXED.replace('published = "race-piste"\n', "") + GRID, "no snow is given"),
-        (OUT + FIXED + "H_V_N_per_mm3 = 3\n" + GRID, "in two ways"),
-        (OUT + FIXED.replace("unloading_ratio = 10\n", "") + GRID, "unloading_ratio is missing"),
-        ("out = table.csv\n", "is not TOML"),
+        (FIXED + GRID, "wrong_kind"),
+        ('out = "table.xlsx"\n' + FIXED + GRID, "wrong_ending"),
+        (OUT + GRID, coded("missing", name="ski")),
+        (OUT + FIXED.replace('published = "race-piste"\n', "") + GRID, "missing"),
+        (OUT + FIXED + "H_V_N_per_mm3 = 3\n" + GRID, "contradiction"),
+        (OUT + FIXED.replace("unloading_ratio = 10\n", "") + GRID, coded("missing", name="unloading_ratio")),
+        ("out = table.csv\n", "not_toml"),
     ],
 )
-def test_each_mistake_is_told_with_the_file(text: str, told: str, tmp_path: Path) -> None:
-    with pytest.raises(ParameterError, match=told) as caught:
+def test_each_mistake_is_told_with_the_file(text: str, told: str | Coded, tmp_path: Path) -> None:
+    with raises(ParameterError, told) as caught:
         study(tmp_path, text)
     assert str(tmp_path / "study.toml") in str(caught.value)
 
 
 def test_file_that_is_not_there_or_not_text(tmp_path: Path) -> None:
-    with pytest.raises(ParameterError, match="cannot be read"):
+    with raises(ParameterError, "cannot_read"):
         read_study(tmp_path / "study.toml")
     (tmp_path / "study.toml").write_bytes(b'out = "\xff"')
-    with pytest.raises(ParameterError, match="not UTF-8"):
+    with raises(ParameterError, "not_text", byte=8):
         read_study(tmp_path / "study.toml")
 
 
