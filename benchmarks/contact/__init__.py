@@ -1,1 +1,1 @@
-"""The compiled contact: what its constants move."""
+"""The compiled contact: what an evaluation costs."""

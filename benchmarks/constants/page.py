@@ -1,0 +1,86 @@
+"""docs/methods/contact-constants.md from the constants, what they move, and the reasons of the others."""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import Final
+
+from .collecting import ROOT, Constant
+from .results import Moved
+from .varying import CASES, FACTORS
+
+PAGE: Final = ROOT / "docs" / "methods" / "contact-constants.md"
+Reasons = Mapping[str, Sequence[str]]
+
+
+def read_reasons(path: Path) -> dict[str, list[str]]:
+    """Keys by the reason for which they are not varied."""
+    return {reason: list(table["keys"]) for reason, table in tomllib.loads(path.read_text(encoding="utf-8")).items()}
+
+
+REASONS: Final = read_reasons(Path(__file__).with_name("reasons.toml"))
+BY_S_F: Final = {"edge of 1°": 38, "carve": 0.4, "skid": 31, "skier": 13}
+"""The larger of the ways (mm) by which the ends move with 0.999 and 1.001 of S_f."""
+NOT_RUN: Final = "not varied yet"
+"""The reason of those that the runs have not come to."""
+
+
+def reasons_by_key(reasons: Reasons) -> dict[str, str]:
+    """The reason of each key, but for those that are not varied yet."""
+    return {key: reason for reason, keys in reasons.items() if reason != NOT_RUN for key in keys}
+
+
+def page(found: Sequence[Constant], moved: Sequence[Moved], reasons: Reasons) -> str:
+    """The text of the page."""
+    known = {each.key for each in found}
+    rows = [each for each in moved if each.key in known]
+    varied = len({each.key for each in rows})
+    return "\n".join([*_head(len(known), varied), *_table(rows), *_others(reasons), ""])
+
+
+def _head(count: int, varied: int) -> Iterator[str]:
+    yield "# What the constants move"
+    yield ""
+    yield "A script collects the constants of the sources: `constexpr` numbers of the compiled core, and numbers in"
+    yield "capitals of the Python packages contact, dynamics, carving, ski, simulation, skier and forces. In one build"
+    yield f"they are read at the start; each is halved and doubled. Of {count} constants {varied} were varied."
+    yield "*`python -m benchmarks.constants` computes this page.*"
+    yield ""
+    yield "| case | run |\n| --- | --- |"
+    for case, (name, changes) in CASES.items():
+        words = ", ".join(f"`{key}` {value:g}" for key, value in changes.items() if isinstance(value, float))
+        yield f"| {case} | `{name}`{' with ' if words else ''}{words} |"
+    yield ""
+    yield "## How far the end moves"
+    yield ""
+    ways = ", ".join(f"{way} mm ({case})" for case, way in BY_S_F.items())
+    yield "In mm on the slope; another outcome where the run does not end as it did. The default method's own error is"
+    yield f"7 mm after 46 m. A change of S_f by 0.1 % moves the ends by {ways}. A constant of the solver may move them"
+    yield "by the larger of both. Shape, snow and skier may move them more."
+    yield ""
+
+
+def _table(moved: Sequence[Moved]) -> Iterator[str]:
+    yield f"| constant | value | {' | '.join(f'{case}, × ½ and × 2' for case in CASES)} |"
+    yield f"| --- | --- |{' --- |' * len(CASES)}"
+    by_key: dict[str, dict[float, Moved]] = {}
+    for each in moved:
+        by_key.setdefault(each.key, {})[each.factor] = each
+    for key, of in sorted(by_key.items()):
+        value = next(iter(of.values())).value
+        cells = [
+            ", ".join(of[factor].ends[place] if factor in of else "not run" for factor in FACTORS)
+            for place in range(len(CASES))
+        ]
+        yield f"| `{key}` | {value} | {' | '.join(cells)} |"
+    yield ""
+
+
+def _others(reasons: Reasons) -> Iterable[str]:
+    yield "## Not varied"
+    yield ""
+    yield "| reason | constants |\n| --- | --- |"
+    for reason, keys in reasons.items():
+        yield f"| {reason} | {', '.join(f'`{key}`' for key in keys)} |"
