@@ -88,27 +88,46 @@ def _together(
     start: Start,
     shear: Shear,
     friction: float,
-) -> Iterator[str]:
+) -> Iterator[Message]:
     width = float(ski.width.max())
     if sledge.stance_width < width * (1.0 - 1e-9):  # the width of a ski file is rounded on its way to metres
-        yield (
-            f"the stance width is {sledge.stance_width:g} m; the ski {ski.name} is {width:.3g} m wide, and two "
-            f"must have room side by side: {width:.3g} m or more"
+        yield Message(
+            "the stance width is {stance:g} m; the ski {name} is {width:.3g} m wide, and two must have room side "
+            "by side: "
+            "{width:.3g} m or more",
+            stance=sledge.stance_width,
+            name=ski.name,
+            width=width,
         )
     most = 2.0 * min(float(ski.station[0]), -float(ski.station[-1]))
     if clamp_length >= most:
-        yield (
-            f"the clamp length is {clamp_length:g} m; the ski {ski.name} allows less than {most:.3g} m. Write "
-            "0 for a binding that bends with the ski"
+        yield Message(
+            "the clamp length is {clamp_length:g} m; the ski {name} allows less than {most:.3g} m. Write 0 for a "
+            "binding "
+            "that bends with the ski",
+            clamp_length=clamp_length,
+            name=ski.name,
+            most=most,
         )
     if friction < 0.0:
-        yield f"the friction at the start's speed, μ_0 + μ_1 v, is {friction:.3g}; below 0 it would drive the ski"
+        yield Message(
+            "the friction at the start's speed, μ_0 + μ_1 v, is {friction:.3g}; below 0 it would drive the ski",
+            friction=friction,
+        )
     if abs(sledge.edge_angle) < shear.least_edge_angle:
         least = math.degrees(shear.least_edge_angle)
-        yield (
-            f"the edge angle is {math.degrees(abs(sledge.edge_angle)):.3g}°; machining needs {least:.3g}° or more, "
-            "β + 2 shear.least_shear_plane_deg: edge more, or take another shear.law"
+        yield Message(
+            "the edge angle is {edge_angle:.3g}°; machining needs {least:.3g}° or more, β + 2 "
+            "shear.least_shear_plane_deg: edge more, or take another shear.law",
+            edge_angle=math.degrees(abs(sledge.edge_angle)),
+            least=least,
         )
     for name, place, (first, last) in zip("xy", (start.x, start.y), reach_of(slope), strict=True):
         if not first <= place <= last:
-            yield f"the start, {name} = {place:g} m, is off the slope, which reaches from {first:g} to {last:g} m there"
+            yield Message(
+                "the start, {name} = {place:g} m, is off the slope, which reaches from {first:g} to {last:g} m there",
+                name=name,
+                place=place,
+                first=first,
+                last=last,
+            )

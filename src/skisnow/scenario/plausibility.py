@@ -7,6 +7,7 @@ import warnings
 from typing import TYPE_CHECKING, Final
 
 from .._support.errors import RangeWarning
+from .._support.messages import Message
 from .._support.units import DEGREE, N_PER_MM3, in_degrees_if_radians
 from ..forces.measured_ranges import (
     DRAG_AREA,
@@ -42,13 +43,20 @@ def _like_radians(scenario: Scenario) -> list[str]:
     angles = {"sledge.edge_angle_deg": scenario.sledge.edge_angle}
     if isinstance(scenario.slope, Plane):
         angles["slope.angle_deg"] = scenario.slope.angle
-    texts = []
+    texts: list[str] = []
     for name, angle in angles.items():
         degrees_read = math.degrees(angle)
         meant = in_degrees_if_radians(abs(degrees_read))
         if meant is not None:
             degrees = math.copysign(meant, degrees_read)
-            texts.append(f"{name} is {degrees_read:.4g}: that looks like radians. If it is, write {degrees:.4g}")
+            texts.append(
+                Message(
+                    "{name} is {value:.4g}: that looks like radians. If it is, write {degrees:.4g}",
+                    name=name,
+                    value=degrees_read,
+                    degrees=degrees,
+                )
+            )
     return texts
 
 
@@ -56,7 +64,13 @@ def _like_another_unit(scenario: Scenario) -> list[str]:
     hardness = scenario.contact.snow.snow_hardness / N_PER_MM3
     if hardness <= GREATEST_LIKELY_HARDNESS:
         return []
-    return [f"snow.H_V_N_per_mm3 is {hardness:.4g}: is it in N/m³? If it is, write {hardness / N_PER_MM3:.4g}"]
+    return [
+        Message(
+            "snow.H_V_N_per_mm3 is {hardness:.4g}: is it in N/m³? If it is, write {converted:.4g}",
+            hardness=hardness,
+            converted=hardness / N_PER_MM3,
+        )
+    ]
 
 
 def _beside_rules(scenario: Scenario) -> tuple[str, ...]:
@@ -80,12 +94,19 @@ def _short_boots(scenario: Scenario) -> list[str]:
     if end is None or (first <= 0.0 and last >= end):
         return []
     return [
-        f"boots.file ({boots.source}) has poses from {first:g} to {last:g} {unit} of a run from 0 to {end:g} {unit}: "
-        "before and after them the boots rest"
+        Message(
+            "boots.file ({source}) has poses from {first:g} to {last:g} {unit} of a run from 0 to {end:g} {unit}: "
+            "before and after them the boots rest",
+            source=boots.source,
+            first=first,
+            last=last,
+            end=end,
+            unit=unit,
+        )
     ]
 
 
-ABOUT: Final = "a simulated run"
+ABOUT: Final = Message("a simulated run")
 
 
 def _outside_ranges(scenario: Scenario) -> list[str]:
@@ -99,10 +120,10 @@ def _outside_ranges(scenario: Scenario) -> list[str]:
             GLIDE_FRICTION.warn_outside(contact.friction + contact.friction_by_speed * scenario.start.speed, ABOUT)
         if scenario.air.drag_area > 0.0:
             DRAG_AREA.warn_outside(scenario.air.drag_area, ABOUT)
-    return [" ".join(str(warning.message).split()) for warning in caught if issubclass(warning.category, RangeWarning)]
+    return [warning.message.message for warning in caught if isinstance(warning.message, RangeWarning)]
 
 
-def model_limits(ski: Ski) -> dict[str, str]:
+def model_limits(ski: Ski) -> dict[str, Message]:
     """Warnings by code: `base_bevel_ignored`.
 
     Parameters
@@ -112,8 +133,9 @@ def model_limits(ski: Ski) -> dict[str, str]:
     """
     limits = {}
     if ski.base_bevel != 0.0:
-        limits["base_bevel_ignored"] = (
-            f"base_bevel_deg of ski {ski.name} is {ski.base_bevel / DEGREE:.3g}: runs ignore it; only skisnow carve "
-            "computes with it"
+        limits["base_bevel_ignored"] = Message(
+            "base_bevel_deg of ski {name} is {bevel:.3g}: runs ignore it; only skisnow carve computes with it",
+            name=ski.name,
+            bevel=ski.base_bevel / DEGREE,
         )
     return limits

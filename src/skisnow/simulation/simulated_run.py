@@ -12,6 +12,7 @@ from typing import Final, TypeAlias
 import numpy as np
 
 from .._support.errors import ModelLimitWarning, SolverError
+from .._support.messages import Message
 from ..contact import Laws
 from ..scenario import Scenario
 from ..scenario.plausibility import model_limits
@@ -149,9 +150,12 @@ def _warn_of_zero_friction(run: Run) -> None:
     fastest = float(run.speed.max(initial=0.0))
     if contact.friction + contact.friction_by_speed * fastest < 0.0:
         zero_at = -contact.friction / contact.friction_by_speed
-        text = (
-            f"mu_0 + mu_1 v is below 0 above {zero_at:.3g} m/s, and the run reached {fastest:.3g} m/s: friction counts "
-            "as 0 there. Use a friction.mu_1_s_per_m nearer to 0"
+        text = Message(
+            "mu_0 + mu_1 v is below 0 above {zero_at:.3g} m/s, and the run reached {fastest:.3g} m/s: friction "
+            "counts as 0 "
+            "there. Use a friction.mu_1_s_per_m nearer to 0",
+            zero_at=zero_at,
+            fastest=fastest,
         )
         warnings.warn(ModelLimitWarning(text, code="friction_below_zero"), stacklevel=3)
 

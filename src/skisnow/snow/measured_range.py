@@ -16,9 +16,17 @@ import numpy as np
 import numpy.typing as npt
 
 from .._support.errors import RangeWarning
-from .._support.messages import Message
+from .._support.messages import Message, template
 
 T = TypeVar("T")
+_OUTSIDE: Final = template(
+    "{relation}: {quantity} {value:.4g} {unit} is outside the {lowest:.4g} to {highest:.4g} {unit} that were measured "
+    "({source}); computed all the same"
+)
+_OUTSIDE_WITHOUT_UNIT: Final = template(
+    "{relation}: {quantity} {value:.4g} is outside the {lowest:.4g} to {highest:.4g} that were measured ({source}); "
+    "computed all the same"
+)
 _ONE_AT_A_TIME: Final = threading.RLock()
 """What becomes of warnings is a setting of the whole process."""
 
@@ -74,24 +82,17 @@ class MeasuredRange:
             return
         # the value that lies farthest out speaks for an array
         farthest = outside[np.argmax(np.maximum(self.lowest - outside, outside - self.highest))]
-        warnings.warn(
-            RangeWarning(
-                Message(
-                    "{relation}: {quantity} {value:.4g} {unit} is outside the {lowest:.4g} to {highest:.4g} "
-                    "{unit} that "
-                    "were measured ({source}); computed all the same",
-                    relation=relation,
-                    quantity=self.quantity,
-                    value=float(farthest) / self.unit_factor,
-                    unit=self.unit,
-                    lowest=self.lowest / self.unit_factor,
-                    highest=self.highest / self.unit_factor,
-                    source=self.source,
-                ),
-                code="outside_measured",
-            ),
-            stacklevel=stacklevel + 1,
+        message = Message(
+            _OUTSIDE if self.unit else _OUTSIDE_WITHOUT_UNIT,
+            relation=relation,
+            quantity=self.quantity,
+            value=float(farthest) / self.unit_factor,
+            unit=self.unit,
+            lowest=self.lowest / self.unit_factor,
+            highest=self.highest / self.unit_factor,
+            source=self.source,
         )
+        warnings.warn(RangeWarning(message, code="outside_measured"), stacklevel=stacklevel + 1)
 
 
 def with_range_warnings(act: Callable[[], T]) -> tuple[T, tuple[str, ...]]:
@@ -102,7 +103,7 @@ def with_range_warnings(act: Callable[[], T]) -> tuple[T, tuple[str, ...]]:
     for other in caught:
         if not issubclass(other.category, RangeWarning):
             warnings.warn_explicit(other.message, other.category, other.filename, other.lineno)
-    return value, tuple(str(warning.message) for warning in caught if issubclass(warning.category, RangeWarning))
+    return value, tuple(warning.message.message for warning in caught if isinstance(warning.message, RangeWarning))
 
 
 @contextmanager
