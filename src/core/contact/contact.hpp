@@ -126,7 +126,7 @@ class SnowContact {
     std::int64_t first, end;
     std::vector<GrooveLines::Line> lines;
     Column slips[3];  // anchors and slip of all slots, or empty
-    void keep_anchors(const GrooveLines& lines);
+    void keep_anchors(const GrooveLines& of);
     void put_back(GrooveLines& into) const;
   };
   std::vector<Before> before_;

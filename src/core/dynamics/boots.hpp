@@ -45,8 +45,8 @@ class MovingSki {
   double power(const FlexibleSki& stage) const;
   // Adds the undeformed ski, in its pose on its carrier, to a body, or with -1 takes it out.
   void add_to(Body& carrier, const FlexibleSki& stage, double sign) const;
-  void write(ByteWriter& out) const;
-  void read(ByteReader& in);
+  template <class Stream, class Ski>
+  static void pass(Stream& stream, Ski& ski);  // to or from bytes
 
  private:
   Body body_;

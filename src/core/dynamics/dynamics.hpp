@@ -114,6 +114,9 @@ class Dynamics {
   RunnerTangent tangent_;
   double contraction_ = 0.5;  // of Newton's method in its last iteration
 
+  template <class Stream, class Motion>
+  static void pass(Stream& stream, Motion& of);  // to or from bytes
+
   struct Formula {
     double h, reach, keep;       // β = h/a₁; share of the last increments
     double newest, now, before;  // weights of the rates: a₁, 1 + ω, a₋, over h

@@ -36,7 +36,7 @@ void ByteWriter::put(std::uint64_t value) { append_word(bytes_, value); }
 
 void ByteWriter::number(double value) { put(std::bit_cast<std::uint64_t>(value)); }
 
-void ByteWriter::numbers(const double* values, std::size_t count) {
+void ByteWriter::numbers(const double* values, std::size_t count, double) {
   for (std::size_t i = 0; i < count; i++) number(values[i]);
 }
 
@@ -83,23 +83,21 @@ double ByteReader::number() {
   return out;
 }
 
-double ByteReader::within(double least, double most) {
-  const double out = number();
-  if (!(out >= least && out <= most))
-    refuse_bytes("a number in them is " + std::to_string(out) + "; it must be from " + std::to_string(least) + " to " +
-                 std::to_string(most));
-  return out;
+void ByteReader::within(double& value, double least, double most) {
+  value = number();
+  if (!(value >= least && value <= most))
+    refuse_bytes("a number in them is " + std::to_string(value) + "; it must be from " + std::to_string(least) +
+                 " to " + std::to_string(most));
 }
 
 void ByteReader::numbers(double* values, std::size_t count, double most) {
-  for (std::size_t i = 0; i < count; i++) values[i] = within(-most, most);
+  for (std::size_t i = 0; i < count; i++) within(values[i], -most, most);
 }
 
-std::vector<double> ByteReader::numbers(std::size_t count, double most) {
-  if (count > left() / WORD) refuse_bytes("they name more numbers than they have");
-  std::vector<double> out(count);
-  numbers(out.data(), count, most);
-  return out;
+void ByteReader::some(std::vector<double>& values, std::int64_t count, double most) {
+  if (std::size_t(count) > left() / WORD) refuse_bytes("they name more numbers than they have");
+  values.resize(std::size_t(count));
+  all(values, most);
 }
 
 void ByteReader::require_end() const {
