@@ -10,7 +10,7 @@ import pytest
 
 from skisnow._support.errors import SkisnowError, SkisnowWarning
 
-E = TypeVar("E", bound=SkisnowError)
+E = TypeVar("E", bound=SkisnowError | SkisnowWarning)
 
 
 class Coded(NamedTuple):

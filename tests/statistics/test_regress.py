@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from tests.coded import warns
 
-from skisnow._support.errors import FitError, ParameterError
+from skisnow._support.errors import FitError, FitWarning, ParameterError
 from skisnow.statistics import linear_fit, regress
 
 from ..versions import EXACT_QUANTILES
@@ -92,7 +92,7 @@ def test_rows_with_nan_take_no_part() -> None:
 
 
 def test_no_constant_is_warned_of_and_an_implied_one_is_not() -> None:
-    with warns(UserWarning, "no_constant_column"):
+    with warns(FitWarning, "no_constant_column"):
         found = regress([1.0, 2.0, 2.0], [1.0, 2.0, 3.0])
     np.testing.assert_allclose(found.b, [11 / 14], rtol=1e-13)
     # R² = 1 - SSE/SST is what MATLAB gives there: SSE = 9 - 121/14, SST = 2/3
@@ -106,7 +106,7 @@ def test_no_constant_is_warned_of_and_an_implied_one_is_not() -> None:
 
 def test_dependent_columns_get_zero_with_a_warning() -> None:
     X = np.column_stack((DESIGN[:, :2], 2 * DESIGN[:, 1]))
-    with warns(UserWarning, "rank_deficient", rank=2):
+    with warns(FitWarning, "rank_deficient", rank=2):
         found = regress(Y, X)
     plain = regress(Y, DESIGN[:, :2])
     assert np.sum(found.b == 0) == 1
@@ -116,7 +116,7 @@ def test_dependent_columns_get_zero_with_a_warning() -> None:
 
 def test_of_two_columns_of_ones_the_first_counts() -> None:
     """The design of `test_the_vector_exactly` with ones on both sides: the same b, and 0 for what is not determined."""
-    with warns(UserWarning, "rank_deficient", count=4, rank=3):
+    with warns(FitWarning, "rank_deficient", count=4, rank=3):
         found = regress(Y, np.column_stack((DESIGN, np.ones(4))))
     np.testing.assert_allclose(found.b, [23 / 6, 5 / 6, 17 / 6, 0.0], rtol=1e-12, atol=1e-12)
 
