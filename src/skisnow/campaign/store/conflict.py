@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Final, Literal, TypeAlias
 
 from sqlalchemy import Connection, select
 
+from ..._support.messages import Message
 from .journal_entry import DESCRIPTION, parse_entry
 from .rows import damaged
 from .schema import campaign, journal, journal_entry
@@ -249,7 +250,9 @@ def entry_index(connection: Connection, journal_id: str) -> EntryIndex:
     query = select(columns.uid, columns.sequence, columns.file, columns.test).where(columns.journal_id == journal_id)
     for uid, sequence, file, test in connection.execute(query):
         if not isinstance(uid, str):
-            raise damaged(f"The entry {sequence} of the campaign in entry {journal_id}")
+            raise damaged(
+                Message("The entry {number} of the campaign in entry {id}", number=str(sequence), id=journal_id)
+            )
         index.subject[uid], index.sequence[uid], index.uid[sequence] = (file, test), sequence, uid
     return index
 

@@ -17,6 +17,7 @@ from sqlalchemy import Connection, Engine, NullPool, create_engine, event
 from sqlalchemy.exc import DBAPIError
 
 from ..._support.errors import StoreError
+from ..._support.messages import Message, template
 from ..._support.sqlite_file import (
     NO_ROOM,
     READ_ONLY,
@@ -38,16 +39,33 @@ if TYPE_CHECKING:
     from ..._support.sqlite_file import Mode
     from .server import StorePlace
 
-_DAMAGED: Final = "the file is damaged; put a backup in its place, or export what can still be exported"
-_NO_STORE: Final = "this file is no store but something else; name another file"
+_DAMAGED: Final = Message("the file is damaged; put a backup in its place, or export what can still be exported")
+_NO_STORE: Final = Message("this file is no store but something else; name another file")
+_NOT_ALLOWED: Final = Message("access is not allowed; change the permissions or name another place")
 _NO_TEXT: Final = "Could not decode to UTF-8"
 _SYSTEM_REASONS: Final = {
     errno.ENOSPC: NO_ROOM,
     errno.EDQUOT: NO_ROOM,
     errno.EROFS: READ_ONLY,
-    errno.EACCES: "access is not allowed; change the permissions or name another place",
-    errno.EPERM: "access is not allowed; change the permissions or name another place",
+    errno.EACCES: _NOT_ALLOWED,
+    errno.EPERM: _NOT_ALLOWED,
 }
+
+
+_FAILURES: Final = {
+    "could not be read": (template("{place} could not be read: {reason}."), "not_read"),
+    "could not be written": (template("{place} could not be written: {reason}."), "not_written"),
+    "could not be synchronised": (template("{place} could not be synchronised: {reason}."), "not_synchronised"),
+    "could not take the campaign in": (template("{place} could not take the campaign in: {reason}."), "not_stored"),
+    "cannot be used": (template("{place} cannot be used: {reason}."), "not_usable"),
+    "cannot be used as a store": (template("{place} cannot be used as a store: {reason}."), "not_usable"),
+}
+"""Template and code of what a store or a file could not do."""
+
+
+def _failure(doing: str, place: object, reason: str) -> StoreError:
+    text, code = _FAILURES[doing]
+    return StoreError(Message(text, place=place, reason=reason), code=code)
 
 
 @contextmanager
@@ -58,11 +76,12 @@ def database_errors(store: StorePlace, doing: str) -> Iterator[None]:
     except (DBAPIError, sqlite3.Error) as error:
         store = _place_of(error) or store
         if isinstance(store, ServerAddress):
-            raise StoreError(f"The store {store} {doing}: {reason(error, store)}.") from error
-        original = getattr(error, "orig", error)
-        raise StoreError(f"The store {store} {doing}: {_file_reason(original, store)}.") from error
+            why = reason(error, store)
+        else:
+            why = _file_reason(getattr(error, "orig", error), store)
+        raise _failure(doing, Message("The store {store}", store=store), why) from error
     except UnicodeDecodeError as error:  # SQLite's message contains damaged text from the schema
-        raise StoreError(f"The store {store} {doing}: {_DAMAGED}.") from error
+        raise _failure(doing, Message("The store {store}", store=store), _DAMAGED) from error
 
 
 def _file_reason(error: BaseException, path: Path) -> str:
@@ -71,7 +90,8 @@ def _file_reason(error: BaseException, path: Path) -> str:
     if code == sqlite3.SQLITE_NOTADB:
         return _NO_STORE
     if code == sqlite3.SQLITE_CORRUPT or message.startswith(_NO_TEXT):
-        return f"{_DAMAGED} ({damage})" if (damage := _damage(path)) else _DAMAGED
+        damage = _damage(path)
+        return Message("{reason} ({damage})", reason=_DAMAGED, damage=damage) if damage else _DAMAGED
     return place_reason(error) or message
 
 
@@ -88,7 +108,7 @@ def file_errors(place: Path, doing: str) -> Iterator[None]:
         yield
     except OSError as error:
         why = _SYSTEM_REASONS.get(error.errno or 0, error.strerror or str(error))
-        raise StoreError(f"{error.filename or place} {doing}: {why}.") from error
+        raise _failure(doing, error.filename or place, why) from error
 
 
 def _remember_place(engine: Engine, place: StorePlace) -> None:
@@ -173,7 +193,10 @@ def _require_tables(engine: Engine, path: Path) -> None:
         except sqlite3.DatabaseError as error:
             if place_reason(error) is not None:
                 raise
-            raise StoreError(f"{path} is damaged: {error}. Put a backup in its place.") from error
+            raise StoreError(
+                Message("{path} is damaged: {error}. Put a backup in its place.", path=path, error=error),
+                code="damaged",
+            ) from error
 
 
 def _readable_engine(path: Path, *, create: bool, busy_timeout_s: float) -> Engine:
@@ -224,10 +247,16 @@ def _revision(connection: Connection, path: Path) -> str | None:
     if not tables - {"alembic_version"}:
         return None
     if connection.exec_driver_sql("PRAGMA application_id").scalar_one() != APPLICATION_ID:
-        raise StoreError(f"{path} is an SQLite database of another program, not a store; name another file.")
+        raise StoreError(
+            Message("{path} is an SQLite database of another program, not a store; name another file.", path=path),
+            code="other_database",
+        )
     versions = connection.exec_driver_sql("SELECT version_num FROM alembic_version").scalars().all()
     if len(versions) != 1 or not isinstance(versions[0], str):
-        raise StoreError(f"{path} is damaged: it does not say what version it is. Put a backup in its place.")
+        raise StoreError(
+            Message("{path} is damaged: it does not say what version it is. Put a backup in its place.", path=path),
+            code="damaged",
+        )
     return versions[0]
 
 
@@ -250,7 +279,11 @@ def _bring_up_to_date(engine: Engine, path: Path, busy_timeout_s: float) -> None
             upgrade(connection)
             if connection.exec_driver_sql("PRAGMA foreign_key_check").first() is not None:
                 raise StoreError(
-                    f"{path} holds rows that point nowhere; it was left as it is. Put a backup in its place."
+                    Message(
+                        "{path} holds rows that point nowhere; it was left as it is. Put a backup in its place.",
+                        path=path,
+                    ),
+                    code="damaged",
                 )
 
 

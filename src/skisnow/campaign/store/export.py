@@ -7,6 +7,7 @@ from hashlib import sha256
 from typing import TYPE_CHECKING, TypeAlias
 
 from ..._support.errors import StoreError
+from ..._support.messages import Message
 from ..._support.staging import write_file
 from ..reading.corrections import STATUS
 from ..reading.table_forms import CORRECTIONS
@@ -115,8 +116,14 @@ def _records(data: bytes) -> list[list[str]]:
         return [cells for _, some in inspect_csv(data).records() for cells in some]
     except UnreadableTextError as error:
         raise StoreError(
-            f"The {CORRECTIONS.file} that came with the campaign cannot be read, so that no rows can follow: "
-            f"{error.allowed} is wanted. `skisnow store export --as-added` gives the files without later corrections."
+            Message(
+                "The {file} that came with the campaign cannot be read, so that no rows can follow: "
+                "{allowed} is wanted. `skisnow store export --as-added` gives the files without later "
+                "corrections.",
+                file=CORRECTIONS.file,
+                allowed=error.allowed,
+            ),
+            code="unreadable_corrections",
         ) from error
 
 

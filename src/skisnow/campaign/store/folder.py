@@ -16,6 +16,7 @@ from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Final, Protocol
 
 from ..._support.errors import ParameterError, StoreError
+from ..._support.messages import Message
 from ..._support.user_files import MOST_TOML_BYTES, plain_bytes, toml_values
 from ..reading.campaign_files import FilesOfFolder
 from ..reading.text import UnreadableTextError, decode
@@ -99,8 +100,13 @@ def list_files(folder: Path) -> dict[str, FileState]:
                 refused.append(path)
     if refused:
         raise StoreError(
-            f"{folder} holds what is neither file nor folder (links, pipes, …): {', '.join(map(_printable, refused))}; "
-            "put the files themselves in their place, or take them out."
+            Message(
+                "{folder} holds what is neither file nor folder (links, pipes, …): {paths}; put the "
+                "files themselves in their place, or take them out.",
+                folder=folder,
+                paths=list(map(_printable, refused)),
+            ),
+            code="not_a_file",
         )
     return files
 
@@ -135,7 +141,7 @@ def _description(folder: Path) -> bytes:
     return unfolded(FilesOfFolder(folder)).read(DESCRIPTION) or b""
 
 
-def unsafe_because(path: str, *, for_windows: bool) -> str | None:
+def unsafe_because(path: str, *, for_windows: bool) -> Message | None:
     """Reason why a relative path must not be written below a folder; None if it is safe.
 
     >>> unsafe_because("../passwd", for_windows=False)
@@ -147,23 +153,30 @@ def unsafe_because(path: str, *, for_windows: bool) -> str | None:
     """
     parts = path.split("/")
     if path.startswith("/") or re.match("[A-Za-z]:", path):
-        return "it is absolute or names a drive"
+        return Message("it is absolute or names a drive")
     if any(part in ("", ".", "..") for part in parts):
-        return "it has a part that is empty, . or .."
+        return Message("it has a part that is empty, . or ..")
     if "\0" in path:
-        return "it has a zero byte"
+        return Message("it has a zero byte")
     if for_windows and any(_WINDOWS_NAMES.fullmatch(part) or _NOT_ON_WINDOWS.search(part) for part in parts):
-        return "Windows allows no such name"
+        return Message("Windows allows no such name")
     try:
         path.encode()
     except UnicodeEncodeError:
-        return "its name is no valid text"
+        return Message("its name is no valid text")
     return None
 
 
 def _require_safe(path: str, *, for_windows: bool) -> None:
     if (why := unsafe_because(path, for_windows=for_windows)) is not None:
-        raise StoreError(f"The file {_printable(path)} cannot be taken in or given back: {why}; rename it.")
+        raise StoreError(
+            Message(
+                "The file {path} cannot be taken in or given back: {why}; rename it.",
+                path=_printable(path),
+                why=why,
+            ),
+            code="unsafe_name",
+        )
 
 
 def _printable(path: str) -> str:
@@ -183,7 +196,10 @@ def new_folder(out: Path) -> Iterator[Path]:
     """
     out = out.resolve()
     if out.exists() and (not out.is_dir() or any(out.iterdir())):
-        raise StoreError(f"{out} is there already and not an empty folder; name a folder that does not exist yet.")
+        raise StoreError(
+            Message("{out} is there already and not an empty folder; name a folder that does not exist yet.", out=out),
+            code="not_empty",
+        )
     out.parent.mkdir(parents=True, exist_ok=True)
     with TemporaryDirectory(dir=out.parent, prefix=f".{out.name[:40]}-") as hidden:
         filling = Path(hidden) / "campaign"  # its permissions are the usual ones, the hidden folder's are not
@@ -218,11 +234,20 @@ def write_file(folder: Path, file: StoredFile, pieces: Iterable[bytes]) -> None:
             os.fsync(stream.fileno())
     except FileExistsError as error:
         raise StoreError(
-            f"{file.path} and another file of the campaign have the same name on this file system; "
-            "export to one that tells upper from lower case."
+            Message(
+                "{path} and another file of the campaign have the same name on this file system; export "
+                "to one that tells upper from lower case.",
+                path=file.path,
+            ),
+            code="same_name",
         ) from error
     if digest.hexdigest() != file.sha256:
-        raise StoreError(f"{file.path} is damaged in the store and was not written; `skisnow store verify` lists all.")
+        raise StoreError(
+            Message(
+                "{path} is damaged in the store and was not written; `skisnow store verify` lists all.", path=file.path
+            ),
+            code="damaged",
+        )
 
 
 def checked_bytes(file: StoredFile, pieces: Iterable[bytes]) -> bytes:
@@ -235,7 +260,12 @@ def checked_bytes(file: StoredFile, pieces: Iterable[bytes]) -> bytes:
     """
     data = b"".join(pieces)
     if hashlib.sha256(data).hexdigest() != file.sha256:
-        raise StoreError(f"{file.path} is damaged in the store and was not read; `skisnow store verify` lists all.")
+        raise StoreError(
+            Message(
+                "{path} is damaged in the store and was not read; `skisnow store verify` lists all.", path=file.path
+            ),
+            code="damaged",
+        )
     return data
 
 

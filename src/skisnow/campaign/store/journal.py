@@ -18,6 +18,7 @@ from sqlalchemy import ColumnElement, Connection, and_, func, insert, select
 from sqlalchemy.exc import DatabaseError
 
 from ..._support.errors import ParameterError, StoreError
+from ..._support.messages import Message
 from ..._support.user_files import toml_values
 from .engine import apart, database_errors, reading, writing
 from .journal_entry import DESCRIPTION, JournalEntry, NewEntry, now, parse_entry, uid_of_file, write_entry
@@ -195,17 +196,23 @@ def _journal_head(name: str, id_: object, begun_at: object, n_entries: object, l
     try:
         return JournalHead(text_of(id_), name, text_of(begun_at), require_integer(n_entries), text_of(last_at))
     except TypeError as error:
-        raise damaged(f"The campaign in entry {id_}") from error
+        raise damaged(Message("The campaign in entry {id}", id=id_)) from error
 
 
 def _require(connection: Connection, id_: str) -> None:
     if connection.execute(select(journal.c.id).where(journal.c.id == id_, _IN_ENTRY)).first() is None:
-        raise StoreError(f"The store has no campaign in entry with the id {id_!r}; the list of campaigns names all.")
+        raise StoreError(
+            Message("The store has no campaign in entry with the id {id!r}; the list of campaigns names all.", id=id_),
+            code="unknown_id",
+        )
 
 
 def _require_stored(connection: Connection, id_: str) -> None:
     if connection.execute(select(campaign.c.id).where(campaign.c.id == id_)).first() is None:
-        raise StoreError(f"The store keeps no campaign with the id {id_!r}; the list of campaigns names all.")
+        raise StoreError(
+            Message("The store keeps no campaign with the id {id!r}; the list of campaigns names all.", id=id_),
+            code="unknown_id",
+        )
 
 
 def _entry_of_file(connection: Connection, id_: str, entry: NewEntry, standing: Mapping[str, str]) -> int:
@@ -239,8 +246,14 @@ def _require_current(connection: Connection, id_: str, entry: NewEntry, seen: in
     if row is not None:
         subject = f"{entry.file}, {entry.test}" if entry.test else entry.file
         raise OvertakenError(
-            f"Nothing was stored: {row['who'] or 'somebody'} wrote about {subject} meanwhile ({row['at']}). "
-            "Look at it as it is now, then enter again what is still missing."
+            Message(
+                "Nothing was stored: {who} wrote about {subject} meanwhile ({at}). Look at it as it is "
+                "now, then enter again what is still missing.",
+                who=row["who"] or Message("somebody"),
+                subject=subject,
+                at=row["at"],
+            ),
+            code="overtaken",
         )
 
 
@@ -249,7 +262,12 @@ def _require_subject(connection: Connection, id_: str, entry: NewEntry) -> None:
         return
     query = select(journal_entry.c.sequence).where(_is_about_test(id_, entry), journal_entry.c.sequence == entry.about)
     if connection.execute(query).first() is None:
-        raise StoreError(f"{entry.test} has no entry {entry.about} that could be corrected or undone.")
+        raise StoreError(
+            Message(
+                "{test} has no entry {about} that could be corrected or undone.", test=entry.test, about=entry.about
+            ),
+            code="no_entry",
+        )
 
 
 def entered_name(connection: Connection, journal_id: str) -> str:

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any, Final, Literal, TypeAlias
 from sqlalchemy import Connection, RowMapping, func, insert, select
 
 from ..._support.errors import StoreError
+from ..._support.messages import Message
 from ..._support.user_files import json_value
 from .rows import TIME, damaged, require_integer, text_of
 from .schema import journal_entry
@@ -118,7 +119,11 @@ def readable_entry(row: RowMapping) -> JournalEntry:
 
 
 def _damaged(row: RowMapping) -> StoreError:
-    return damaged(f"The entry {row['sequence']} of the campaign in entry {row['journal_id']}")
+    return damaged(
+        Message(
+            "The entry {number} of the campaign in entry {id}", number=str(row["sequence"]), id=str(row["journal_id"])
+        )
+    )
 
 
 _SUMMED_COLUMNS: Final = (

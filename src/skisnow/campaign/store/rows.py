@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 from sqlalchemy import Connection, Row, delete, insert, select, update
 
 from ..._support.errors import StoreError
+from ..._support.messages import Message
 from .folder import StoredFile, manifest_sha256, read_chunks
 from .schema import CHUNK_BYTES, campaign, campaign_file, chunk, content
 
@@ -102,8 +103,14 @@ def required_digits(beginning: str) -> str:
     digits = beginning.strip().lower()
     if not re.fullmatch(rf"[0-9a-f]{{{_SHORTEST_PREFIX},64}}", digits):
         raise StoreError(
-            f"{digits!r} is no campaign's id: give its {ID_DIGITS} hexadecimal digits or the first "
-            f"{_SHORTEST_PREFIX} or more of them."
+            Message(
+                "{digits!r} is no campaign's id: give its {most} hexadecimal digits or the first "
+                "{fewest} or more of them.",
+                digits=digits,
+                most=ID_DIGITS,
+                fewest=_SHORTEST_PREFIX,
+            ),
+            code="not_an_id",
         )
     return digits
 
@@ -117,14 +124,31 @@ def campaign_ids(connection: Connection) -> list[NamedId]:
 def ambiguous_id_error(beginning: str, matching: Sequence[NamedId], stored: Sequence[NamedId]) -> StoreError:
     """Error for an unknown or ambiguous beginning of an id, with candidates."""
     if matching:
-        return StoreError(f"Several campaigns begin with {beginning}: {_candidates(matching)}; give more digits.")
-    return StoreError(f"No campaign begins with {beginning}; the store holds {_candidates(stored)}.")
+        return StoreError(
+            Message(
+                "Several campaigns begin with {beginning}: {candidates}; give more digits.",
+                beginning=beginning,
+                candidates=_candidates(matching),
+            ),
+            code="ambiguous_id",
+        )
+    return StoreError(
+        Message(
+            "No campaign begins with {beginning}; the store holds {candidates}.",
+            beginning=beginning,
+            candidates=_candidates(stored),
+        ),
+        code="unknown_id",
+    )
 
 
-def _candidates(campaigns: Sequence[NamedId]) -> str:
+def _candidates(campaigns: Sequence[NamedId]) -> Message:
     named = [f"{campaign_id.id} ({campaign_id.name})" for campaign_id in campaigns[:_SHOWN_CANDIDATES]]
     further = len(campaigns) - len(named)
-    return (", ".join(named) or "none") + (f" and {further} more" if further else "")
+    if not named:
+        return Message("none")
+    names = Message("{names}", names=named)
+    return Message("{names} and {count} more", names=named, count=further) if further else names
 
 
 def stored_hashes(connection: Connection) -> set[str]:
@@ -135,7 +159,11 @@ def stored_hashes(connection: Connection) -> set[str]:
 def damaged(what: str) -> StoreError:
     """Error for damaged rows."""
     return StoreError(
-        f"{what} is damaged in the store; `skisnow store verify` lists all damage. Put a backup in its place."
+        Message(
+            "{what} is damaged in the store; `skisnow store verify` lists all damage. Put a backup in its place.",
+            what=what,
+        ),
+        code="damaged",
     )
 
 
@@ -148,7 +176,7 @@ def require_whole(stored: StoredCampaign) -> None:
         A name, a size, a hash or a file differs.
     """
     if manifest_sha256(stored.files) != stored.sha256:
-        raise damaged(f"The list of files of the campaign {stored.id}")
+        raise damaged(Message("The list of files of the campaign {id}", id=stored.id))
 
 
 def stored_campaign(connection: Connection, row: Row[tuple[object, ...]]) -> StoredCampaign:
@@ -162,7 +190,7 @@ def stored_campaign(connection: Connection, row: Row[tuple[object, ...]]) -> Sto
     try:
         return _stored_campaign(connection, row)
     except (TypeError, ValueError) as error:
-        raise damaged(f"The campaign {row.id}") from error
+        raise damaged(Message("The campaign {id}", id=row.id)) from error
 
 
 def _stored_campaign(connection: Connection, row: Row[tuple[object, ...]]) -> StoredCampaign:
@@ -211,7 +239,7 @@ def stored_chunks(connection: Connection, sha256: str) -> Iterator[bytes]:
         for piece in connection.execute(pieces, execution_options={"yield_per": 1}).scalars():
             yield require_bytes(piece)
     except TypeError as error:
-        raise damaged(f"The content {sha256}") from error
+        raise damaged(Message("The content {sha256}", sha256=sha256)) from error
 
 
 def is_sound(connection: Connection, sha256: str, size: int) -> bool:
@@ -269,8 +297,12 @@ def refuse_changed(paths: Sequence[str]) -> None:
     """Raise an error if files changed while they were read."""
     if paths:
         raise StoreError(
-            f"Changed while being read: {', '.join(paths)}; nothing was stored. "
-            "Close the program that writes there and add the folder again."
+            Message(
+                "Changed while being read: {paths}; nothing was stored. Close the program that writes "
+                "there and add the folder again.",
+                paths=list(paths),
+            ),
+            code="changed_meanwhile",
         )
 
 
@@ -292,7 +324,10 @@ def store_campaign(
     if present == sha256:
         return False
     if present is not None:
-        raise StoreError(f"Another campaign in the store has the id {id_} by chance; keep this one in another store.")
+        raise StoreError(
+            Message("Another campaign in the store has the id {id} by chance; keep this one in another store.", id=id_),
+            code="same_id",
+        )
     connection.execute(
         insert(campaign).values(
             id=id_,

@@ -15,6 +15,7 @@ from sqlalchemy import URL, Connection, create_engine, event, make_url, text
 from sqlalchemy.exc import ArgumentError
 
 from ..._support.errors import StoreError
+from ..._support.messages import Message
 from .schema import APPLICATION_ID, MARK, REVISION
 
 if TYPE_CHECKING:
@@ -38,29 +39,35 @@ _CONNECTION: Final = {
 }
 
 _STATES: Final = {
-    "55P03": "another program has kept it locked for too long; wait until that one is done and try again",
-    "53100": "there is no room left on the server's disk; its administrator must make some",
-    "53300": "the server has too many connections; wait a little and try again",
-    "42501": "this user is not allowed to do that; the owner of the database can grant it",
-    "25006": "it is read-only; ask the server's administrator, or name another place",
-    "42P01": "a table of the store is missing; put a backup in its place",
-    "42703": "a column of the store is missing; put a backup in its place",
-    "25P03": "the server gave up waiting for this program; nothing half-written stays, do it again",
+    "55P03": Message("another program has kept it locked for too long; wait until that one is done and try again"),
+    "53100": Message("there is no room left on the server's disk; its administrator must make some"),
+    "53300": Message("the server has too many connections; wait a little and try again"),
+    "42501": Message("this user is not allowed to do that; the owner of the database can grant it"),
+    "25006": Message("it is read-only; ask the server's administrator, or name another place"),
+    "42P01": Message("a table of the store is missing; put a backup in its place"),
+    "42703": Message("a column of the store is missing; put a backup in its place"),
+    "25P03": Message("the server gave up waiting for this program; nothing half-written stays, do it again"),
 }
-_BROKEN: Final = "the connection to the server broke; nothing half-written stays, do it again"
-_NOT_REACHED: Final = "the server cannot be reached; check the network, the host's name and the port"
+_BROKEN: Final = Message("the connection to the server broke; nothing half-written stays, do it again")
+_NOT_REACHED: Final = Message("the server cannot be reached; check the network, the host's name and the port")
 _CONNECTING: Final = (
-    ("password authentication failed", "the user's name or the password is wrong"),
-    ("no password supplied", "a password is wanted; put it into PGPASSWORD, or into the file ~/.pgpass"),
-    ("no pg_hba.conf entry", "the server lets this user not in from this machine; a line of its pg_hba.conf would"),
-    ("failed to resolve host", "there is no host of that name; check the address"),
-    ("could not translate host name", "there is no host of that name; check the address"),
-    ("does not support SSL", "the server speaks no TLS; its administrator sets ssl = on, or leave sslmode out"),
-    ("certificate", "the server's certificate was refused; check sslmode and sslrootcert in the address"),
-    ("role ", "the server knows no user of that name"),
-    ("does not exist", "the server has no database of that name; its administrator makes one with createdb"),
-    ("Connection refused", "no server answers there; check that it runs, the host's name and the port"),
-    ("No such file or directory", "no server answers there; check that it runs, and the address"),
+    ("password authentication failed", Message("the user's name or the password is wrong")),
+    ("no password supplied", Message("a password is wanted; put it into PGPASSWORD, or into the file ~/.pgpass")),
+    (
+        "no pg_hba.conf entry",
+        Message("the server lets this user not in from this machine; a line of its pg_hba.conf would"),
+    ),
+    ("failed to resolve host", Message("there is no host of that name; check the address")),
+    ("could not translate host name", Message("there is no host of that name; check the address")),
+    (
+        "does not support SSL",
+        Message("the server speaks no TLS; its administrator sets ssl = on, or leave sslmode out"),
+    ),
+    ("certificate", Message("the server's certificate was refused; check sslmode and sslrootcert in the address")),
+    ("role ", Message("the server knows no user of that name")),
+    ("does not exist", Message("the server has no database of that name; its administrator makes one with createdb")),
+    ("Connection refused", Message("no server answers there; check that it runs, the host's name and the port")),
+    ("No such file or directory", Message("no server answers there; check that it runs, and the address")),
     ("timeout expired", _NOT_REACHED),
     ("timed out", _NOT_REACHED),
     ("No route to host", _NOT_REACHED),
@@ -103,7 +110,12 @@ def open_server(address: ServerAddress, *, create: bool, busy_timeout_s: float) 
             _require_unicode(connection, address)
             revision = _revision(connection, address)
         if revision is None and not create:
-            raise StoreError(f"There is no store at {address}; add a campaign first, or name another place.")
+            raise StoreError(
+                Message(
+                    "There is no store at {address}; add a campaign first, or name another place.", address=address
+                ),
+                code="no_store",
+            )
         if needs_migration(revision, address):
             _bring_up_to_date(engine, address)
     except BaseException:
@@ -140,7 +152,11 @@ def _engine(address: ServerAddress, busy_timeout_s: float) -> Engine:
         engine = create_engine(address.url, connect_args=defaults, pool_pre_ping=True, hide_parameters=True)
     except ModuleNotFoundError as missing:
         raise StoreError(
-            f"A store on a server needs {missing.name}; install it with: pip install 'skisnow[postgresql]'"
+            Message(
+                "A store on a server needs {name}; install it with: pip install 'skisnow[postgresql]'",
+                name=missing.name,
+            ),
+            code="not_installed",
         ) from None
 
     def set_up(connection: Any, _: object) -> None:
@@ -165,8 +181,13 @@ def _require_unicode(connection: Connection, address: ServerAddress) -> None:
     encoding = connection.exec_driver_sql("SHOW server_encoding").scalar_one()
     if encoding != "UTF8":
         raise StoreError(
-            f"The database {address} holds texts as {encoding}, which has not every letter; "
-            "make one with: createdb --encoding=UTF8 --template=template0 NAME"
+            Message(
+                "The database {address} holds texts as {encoding}, which has not every letter; make one "
+                "with: createdb --encoding=UTF8 --template=template0 NAME",
+                address=address,
+                encoding=encoding,
+            ),
+            code="wrong_encoding",
         )
 
 
@@ -181,11 +202,20 @@ def _revision(connection: Connection, address: ServerAddress) -> str | None:
         return None
     if tables.get("campaign") != MARK or "alembic_version" not in tables:
         raise StoreError(
-            f"{address} holds tables of another program, not a store; make a database of its own for the store."
+            Message(
+                "{address} holds tables of another program, not a store; make a database of its own for the store.",
+                address=address,
+            ),
+            code="other_database",
         )
     versions = connection.exec_driver_sql("SELECT version_num FROM alembic_version").scalars().all()
     if len(versions) != 1:
-        raise StoreError(f"{address} is damaged: it does not say what version it is. Put a backup in its place.")
+        raise StoreError(
+            Message(
+                "{address} is damaged: it does not say what version it is. Put a backup in its place.", address=address
+            ),
+            code="damaged",
+        )
     return str(versions[0])
 
 
@@ -203,8 +233,13 @@ def needs_migration(revision: str | None, place: object) -> bool:
 
     if revision is not None and not is_known(revision):
         raise StoreError(
-            f"{place} has schema {revision}, which this version of skisnow does not know; it reads {REVISION}. "
-            "Update skisnow, or name another store.",
+            Message(
+                "{place} has schema {revision}, which this version of skisnow does not know; it reads "
+                "{known}. Update skisnow, or name another store.",
+                place=place,
+                revision=revision,
+                known=REVISION,
+            ),
             code="unknown_schema",
         )
     return True
@@ -256,12 +291,18 @@ def store_place(place: Path | str | ServerAddress) -> StorePlace:
         return place
     if isinstance(place, Path):
         if re.match(r"postgres(ql)?:/", str(place), re.IGNORECASE):
-            raise StoreError(f"The address of a server is a text, not a path: give it as {_FORM!r}.")
+            raise StoreError(
+                Message("The address of a server is a text, not a path: give it as {form!r}.", form=_FORM),
+                code="not_an_address",
+            )
         return place.absolute()
     if _SERVER.match(place):
         return ServerAddress(_server_url(place))
     if _SCHEME.match(place):
-        raise StoreError(f"A store is a file or {_FORM}; another kind of address was given.")
+        raise StoreError(
+            Message("A store is a file or {form}; another kind of address was given.", form=_FORM),
+            code="not_an_address",
+        )
     return Path(place).absolute()
 
 
@@ -270,11 +311,19 @@ def _server_url(text: str) -> URL:
         url = make_url(text).set(drivername="postgresql+psycopg")
     except (ArgumentError, ValueError):  # their messages contain the address
         raise StoreError(
-            f"The address of the server cannot be read; it has the form {_FORM}, and what is none of A–Z, 0–9, - . _ ~ "
-            "in a user's name or a password is written as % and two hexadecimal digits."
+            Message(
+                "The address of the server cannot be read; it has the form {form}, and what is none of "
+                "A–Z, 0–9, - . _ ~ in a user's name or a password is written as % and two hexadecimal "
+                "digits.",
+                form=_FORM,
+            ),
+            code="not_an_address",
         ) from None
     if not url.database:
-        raise StoreError(f"The address of the server names no database; it has the form {_FORM}.")
+        raise StoreError(
+            Message("The address of the server names no database; it has the form {form}.", form=_FORM),
+            code="no_database",
+        )
     return url
 
 

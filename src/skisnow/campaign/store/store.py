@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Self
 
 from ..._support.display import Facts, Shown
 from ..._support.errors import StoreError
+from ..._support.messages import Message
 from .engine import database_errors, file_errors, open_engine, reading, writing
 from .folder import (
     FileState,
@@ -133,10 +134,17 @@ class Store(Shown):
             return cls(place, open_engine(place, create=create, busy_timeout_s=busy_timeout_s))
         with file_errors(place, "cannot be used as a store"):
             if place.is_dir():
-                raise StoreError(f"{place} is a folder, not a store; name a file.")
+                raise StoreError(
+                    Message("{place} is a folder, not a store; name a file.", place=place), code="not_a_file"
+                )
             if not place.exists():
                 if not create:
-                    raise StoreError(f"There is no store at {place}; add a campaign first, or name another file.")
+                    raise StoreError(
+                        Message(
+                            "There is no store at {place}; add a campaign first, or name another file.", place=place
+                        ),
+                        code="no_store",
+                    )
                 place.parent.mkdir(parents=True, exist_ok=True)
         return cls(place, open_engine(place, create=create, busy_timeout_s=busy_timeout_s))
 
@@ -198,12 +206,23 @@ class Store(Shown):
 
     def _files_to_add(self, folder: Path) -> dict[str, FileState]:
         if not folder.is_dir():
-            raise StoreError(f"{folder} is no folder; name the folder that holds the campaign's files.")
+            raise StoreError(
+                Message("{folder} is no folder; name the folder that holds the campaign's files.", folder=folder),
+                code="no_folder",
+            )
         if isinstance(self.path, Path) and self.path.resolve().is_relative_to(folder.resolve()):
-            raise StoreError(f"The store {self.path} lies in {folder} itself; keep it somewhere else.")
+            raise StoreError(
+                Message(
+                    "The store {path} lies in {folder} itself; keep it somewhere else.", path=self.path, folder=folder
+                ),
+                code="inside_folder",
+            )
         files = list_files(folder)
         if not files:
-            raise StoreError(f"{folder} holds no file; name the folder that holds the campaign's files.")
+            raise StoreError(
+                Message("{folder} holds no file; name the folder that holds the campaign's files.", folder=folder),
+                code="no_files",
+            )
         return files
 
     def list(self) -> tuple[StoredCampaign, ...]:

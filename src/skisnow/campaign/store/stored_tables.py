@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from ..._support.errors import ParameterError
+from ..._support.messages import Message
 from ..._support.user_files import natural_number
 from ..reading.campaign_file import CAMPAIGN_FILE, read_campaign_file
 from ..reading.campaign_files import FilesOfFolder, RawFiles
@@ -87,7 +88,7 @@ def cell_of(key: str) -> tuple[int, str]:
     text, _, column = key.partition("/")
     line = natural_number(text)
     if line is None or not column:
-        raise damaged(f"A correction of the cell {key[:80]!r}")
+        raise damaged(Message("A correction of the cell {cell!r}", cell=key[:80]))
     return line, column
 
 

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Final
 from sqlalchemy import Connection, select
 
 from ..._support.errors import StoreError
+from ..._support.messages import Message
 from .conflict import Conflict, entries_by_uid, entry_index, find_divergences, shared_journals
 from .engine import database_errors, reading, writing
 from .folder import Progress, no_progress
@@ -93,7 +94,10 @@ def sync(
         transfers stay; another run continues.
     """
     if here.path == there.path:
-        raise StoreError(f"{here.path} cannot be synchronised with itself; name the group's store.")
+        raise StoreError(
+            Message("{path} cannot be synchronised with itself; name the group's store.", path=here.path),
+            code="same_store",
+        )
     return _Sync(here, there).run(keep or {}, who, progress)
 
 
@@ -162,8 +166,12 @@ class _Sync:
             open_ = {divergence.id: divergence for divergence in self._open(here, there)}
             if unknown := sorted(chosen.keys() - open_.keys() - {ALL}):
                 raise StoreError(
-                    f"No open conflict is called {', '.join(unknown)}: one of its sides may have changed. Nothing was "
-                    "settled; synchronise without a choice to see what is open."
+                    Message(
+                        "No open conflict is called {names}: one of its sides may have changed. Nothing was "
+                        "settled; synchronise without a choice to see what is open.",
+                        names=list(unknown),
+                    ),
+                    code="unknown_conflict",
                 )
             sides = {id_: chosen.get(id_, chosen.get(ALL)) for id_ in open_}
             choices = [(open_[id_], side) for id_, side in sides.items() if side is not None]

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from sqlalchemy import Connection, insert, select
 
 from ..._support.errors import StoreError
+from ..._support.messages import Message
 from .conflict import entries_by_uid, entry_index, find_divergences
 from .journal_entry import DESCRIPTION, NewEntry, insert_entries, next_sequence, number_of_uid, write_entry
 from .rows import ID_DIGITS, copy_content, damaged, require_whole, store_campaign, stored_chunks
@@ -35,7 +36,7 @@ def take_campaign(source: Connection, to: Connection, stored: StoredCampaign) ->
     require_whole(stored)
     for file in stored.files:
         if not copy_content(to, file, stored_chunks(source, file.sha256)):
-            raise damaged(f"{file.path} of the campaign {stored.sha256[:ID_DIGITS]}")
+            raise damaged(Message("{path} of the campaign {id}", path=file.path, id=stored.sha256[:ID_DIGITS]))
     counts = (stored.n_errors, stored.n_warnings)
     store_campaign(to, stored.files, stored.sha256, stored.name, counts, added_at=stored.added_at)
 
@@ -78,7 +79,9 @@ def take_entries(source: Connection, to: Connection, journal_id: str, uids: Iter
         number = max(next_, number_of_uid(entry.uid))
         about = None if entry.about is None else numbers.get(of_source.get(entry.about, ""))
         if entry.about is not None and about is None:
-            raise damaged(f"What the entry {entry.sequence} of the campaign {journal_id} is about")
+            raise damaged(
+                Message("What the entry {number} of the campaign {id} is about", number=entry.sequence, id=journal_id)
+            )
         once = None if entry.once in sent else entry.once
         taken.append(replace(entry, sequence=number, about=about, once=once))
         numbers[entry.uid], next_ = number, number + 1
@@ -96,7 +99,13 @@ def settle(here: Connection, there: Connection, divergence: Divergence, side: Si
     """
     if side not in divergence.choices:
         raise StoreError(
-            f"The conflict {divergence.id} cannot be settled by keeping {side}: {' or '.join(divergence.choices)}."
+            Message(
+                "The conflict {id} cannot be settled by keeping {side}: {choices}.",
+                id=divergence.id,
+                side=side,
+                choices=list(divergence.choices),
+            ),
+            code="unknown_side",
         )
     numbers = take_entries(there, here, divergence.journal_id, [entry.uid for entry in divergence.there])
     if divergence.subject[0] == DESCRIPTION:
