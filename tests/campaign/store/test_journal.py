@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from sqlalchemy import insert
 from sqlalchemy.exc import IntegrityError
+from tests.coded import raises
 
 from skisnow._support.errors import StoreError
 from skisnow.campaign import read_campaign
@@ -146,7 +147,7 @@ def test_two_who_write_about_one_test_do_not_overwrite_each_other(store: Store) 
     journals = Journals(store)
     id_, last = campaign_with(journals, "1.5")
     journals.append(id_, reading("1", 1, "40", "2.25"), seen=last)
-    with pytest.raises(OvertakenError, match=r"Ada wrote about penetration\.csv, 1 meanwhile"):
+    with raises(OvertakenError, "overtaken", who="Ada", subject="penetration.csv, 1"):
         journals.append(id_, reading("1", 1, "40", "9.99"), seen=last)
     journals.append(id_, reading("2", 0, "20", "1"), seen=0)  # another test is nobody's business
     assert "9.99" not in campaign_files(replayed(journals.entries(id_)))["penetration.csv"]
@@ -163,9 +164,9 @@ def test_only_what_is_there_can_be_corrected(store: Store) -> None:
     journals = Journals(store)
     id_, last = campaign_with(journals, "1.5")
     wrong = NewEntry(action="correct", file="penetration.csv", test="1", about=999, cells={"depth_mm": "1"})
-    with pytest.raises(StoreError, match="no entry 999"):
+    with raises(StoreError, "no_entry", about=999):
         journals.append(id_, wrong, seen=last)
-    with pytest.raises(StoreError, match="no campaign in entry"):
+    with raises(StoreError, "unknown_id"):
         journals.entries("0123456789ab")
 
 

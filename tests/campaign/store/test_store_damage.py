@@ -10,9 +10,12 @@ from threading import Thread
 
 import pytest
 from sqlalchemy import event
+from tests.coded import raises
 
 from skisnow._support.errors import StoreError
 from skisnow.campaign.store import Journals, Store
+
+from .reasons import LOCKED, NO_ROOM
 
 FILES = {
     "empty.csv": b"",
@@ -72,7 +75,7 @@ def test_a_flipped_bit_is_found_named_and_repaired(folder: Path, place: Path, tm
     with Store.open(place) as store:
         findings = store.verify()
         assert [(finding.campaign, finding.path) for finding in findings] == [(added.id, "windows.csv")]
-        with pytest.raises(StoreError, match=r"windows\.csv is damaged in the store"):
+        with raises(StoreError, "damaged", path="windows.csv"):
             store.export(added.id, tmp_path / "out")
         assert not (tmp_path / "out").exists()
         again = store.add(folder)
@@ -139,7 +142,7 @@ def test_nothing_is_exported_under_a_damaged_name(statement: str, folder: Path, 
     with Store.open(place) as store:
         id_ = store.add(folder).id
         change(place, statement)
-        with pytest.raises(StoreError, match=r"The list of files of the campaign .* is damaged in the store"):
+        with raises(StoreError, "damaged"):
             store.export(id_, tmp_path / "out")
     assert not (tmp_path / "out").exists()
 
@@ -148,7 +151,7 @@ def test_a_store_of_two_versions_is_damaged(folder: Path, place: Path) -> None:
     with Store.open(place) as store:
         store.add(folder)
     change(place, "INSERT INTO alembic_version VALUES ('0001')")
-    with pytest.raises(StoreError, match="does not say what version it is"):
+    with raises(StoreError, "damaged"):
         Store.open(place)
 
 
@@ -232,7 +235,7 @@ def test_a_lock_held_too_long(folder: Path, place: Path, tmp_path: Path) -> None
         other = sqlite3.connect(place, isolation_level=None)
         try:
             other.execute("BEGIN IMMEDIATE")
-            with pytest.raises(StoreError, match="kept it locked for too long"):
+            with raises(StoreError, "not_stored", reason=LOCKED):
                 store.add(write(tmp_path / "other", {"a": b"a"}))
             assert [stored.id for stored in store.list()] == [id_]  # readers need not wait
             store.export(id_, tmp_path / "out")
@@ -246,7 +249,7 @@ def test_a_full_disk_leaves_the_store_as_it_was(folder: Path, place: Path, tmp_p
     with Store.open(place) as store:
         id_ = store.add(first).id
         event.listen(store.engine, "connect", lambda connection, _: connection.execute("PRAGMA max_page_count = 200"))
-        with pytest.raises(StoreError, match="no room left on the disk; free some space"):
+        with raises(StoreError, "not_stored", reason=NO_ROOM):
             store.add(folder)
         assert [stored.id for stored in store.list()] == [id_]
         assert store.verify() == ()

@@ -12,11 +12,14 @@ from pathlib import Path
 
 import pytest
 from sqlalchemy import event, text
+from tests.coded import raises
 
 from skisnow._support.errors import StoreError
 from skisnow.campaign.store import Store
 from skisnow.campaign.store import engine as store_engine
 from skisnow.campaign.store.engine import writing
+
+from .reasons import CANNOT_OPEN, LOCKED, NO_STORE, NOT_ALLOWED, READ_ONLY
 
 
 @pytest.fixture
@@ -77,8 +80,8 @@ def test_writing_takes_the_lock_at_once_and_rolls_back(place: Path) -> None:
 def test_rows_must_point_somewhere(place: Path) -> None:
     with (
         Store.open(place) as store,
-        pytest.raises(StoreError, match="FOREIGN KEY"),
-        store_engine.database_errors(place, "refused"),
+        raises(StoreError, "not_written"),
+        store_engine.database_errors(place, "could not be written"),
         writing(store.engine) as connection,
     ):
         connection.execute(text("INSERT INTO chunk VALUES ('a', 0, x'00')"))
@@ -108,7 +111,7 @@ def test_a_relative_place_stays_where_it_was(tmp_path: Path, folder: Path, monke
 
 
 def test_reading_does_not_make_a_store(place: Path) -> None:
-    with pytest.raises(StoreError, match="There is no store at"):
+    with raises(StoreError, "no_store"):
         Store.open(place, create=False)
     assert not place.parent.exists()
 
@@ -116,12 +119,12 @@ def test_reading_does_not_make_a_store(place: Path) -> None:
 def test_other_things_are_no_stores_and_stay_as_they_are(tmp_path: Path) -> None:
     words = tmp_path / "words.txt"
     words.write_text("experiment,site\n" * 1000)
-    with pytest.raises(StoreError, match=r"words\.txt cannot be used: this file is no store but something else"):
+    with raises(StoreError, "not_usable", reason=NO_STORE):
         Store.open(words)
     assert words.read_text() == "experiment,site\n" * 1000
-    with pytest.raises(StoreError, match="is a folder, not a store"):
+    with raises(StoreError, "not_a_file"):
         Store.open(tmp_path)
-    with pytest.raises(StoreError, match=r"cannot be used as a store"):
+    with raises(StoreError, "not_usable"):
         Store.open(words / "store.sqlite3")
 
 
@@ -134,7 +137,7 @@ def test_another_programs_database_is_left_alone(tmp_path: Path) -> None:
     connection.commit()
     connection.close()
     before = other.read_bytes()
-    with pytest.raises(StoreError, match="database of another program"):
+    with raises(StoreError, "other_database"):
         Store.open(other)
     assert other.read_bytes() == before
 
@@ -159,7 +162,7 @@ def answers_but_takes_nothing(place: Path, id_: str, tmp_path: Path) -> None:
         assert store.show(id_[:4]).n_bytes == len(b"raw")
         assert store.verify() == ()
         store.export(id_, tmp_path / "out")
-        with pytest.raises(StoreError, match="it is read-only; allow writing to the file and its folder"):
+        with raises(StoreError, "not_stored", reason=READ_ONLY):
             store.add(new)
     assert (tmp_path / "out" / "penetration.csv").read_bytes() == b"raw"
 
@@ -168,7 +171,7 @@ def test_a_connection_that_may_not_write(id_: str, place: Path, folder: Path, tm
     (folder / "more").write_bytes(b"more")
     with Store.open(place) as store:
         event.listen(store.engine, "connect", lambda connection, _: connection.execute("PRAGMA query_only = ON"))
-        with pytest.raises(StoreError, match="it is read-only"):
+        with raises(StoreError, "not_stored", reason=READ_ONLY):
             store.add(folder)
         assert [stored.id for stored in store.list()] == [id_]
         assert store.verify() == ()
@@ -191,9 +194,9 @@ def test_a_store_in_a_folder_that_allows_no_log(
     monkeypatch.setattr(sqlite3, "connect", refuses)
     answers_but_takes_nothing(place, id_, tmp_path)
     place.with_name(place.name + "-wal").write_bytes(b"somebody is writing")
-    with pytest.raises(StoreError, match="it cannot be opened; the file and its folder must exist"):
+    with raises(StoreError, "not_usable", reason=CANNOT_OPEN):
         Store.open(place)
-    with pytest.raises(StoreError, match="it cannot be opened"):
+    with raises(StoreError, "not_usable", reason=CANNOT_OPEN):
         Store.open(tmp_path / "new store")
 
 
@@ -218,9 +221,9 @@ def test_a_frozen_store(id_: str, place: Path, tmp_path: Path) -> None:
 
 @pytest.mark.usefixtures("frozen")
 def test_a_new_store_in_a_frozen_folder(place: Path) -> None:
-    with pytest.raises(StoreError, match="it cannot be opened; the file and its folder must exist and be readable"):
+    with raises(StoreError, "not_usable", reason=CANNOT_OPEN):
         Store.open(place)
-    with pytest.raises(StoreError, match="access is not allowed; change the permissions"):
+    with raises(StoreError, "not_usable", reason=NOT_ALLOWED):
         Store.open(place.parent / "deeper" / "store.sqlite3")
     assert [*place.parent.iterdir()] == []
 
@@ -240,7 +243,7 @@ def test_a_folder_that_cannot_be_made(place: Path, monkeypatch: pytest.MonkeyPat
         raise OSError(errno.EROFS, os.strerror(errno.EROFS), str(path))
 
     monkeypatch.setattr(Path, "mkdir", fails)
-    with pytest.raises(StoreError, match="it is read-only; allow writing"):
+    with raises(StoreError, "not_usable", reason=READ_ONLY):
         Store.open(place)
 
 
@@ -312,7 +315,7 @@ def test_opening_waits_for_others(place: Path, lock: str) -> None:
     place.parent.mkdir()
     other = sqlite3.connect(place, isolation_level=None, check_same_thread=False)
     other.execute(f"BEGIN {lock}")
-    with pytest.raises(StoreError, match="kept it locked for too long"):
+    with raises(StoreError, "not_usable", reason=LOCKED):
         Store.open(place, busy_timeout_s=0.05)
     release = threading.Timer(0.3, other.rollback)
     release.start()

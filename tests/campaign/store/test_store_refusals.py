@@ -5,9 +5,12 @@ import os
 from pathlib import Path
 
 import pytest
+from tests.coded import raises
 
 from skisnow._support.errors import StoreError
 from skisnow.campaign.store import Store
+
+from .reasons import NOT_ALLOWED
 
 FILES = {
     "campaign.toml": b"name = 'A'",
@@ -40,7 +43,7 @@ def test_links_and_pipes_are_refused_and_named(folder: Path, place: Path) -> Non
     (folder / "raw" / "folder link").symlink_to(folder)
     os.mkfifo(folder / "pipe")
     with Store.open(place) as store:
-        with pytest.raises(StoreError, match="link") as caught:
+        with raises(StoreError, "not_a_file") as caught:
             store.add(folder)
         assert store.list() == ()
     for name in ("link.csv", "raw/folder link", "pipe"):
@@ -60,7 +63,7 @@ def test_names_that_could_not_be_given_back_are_refused(name: bytes, folder: Pat
     except OSError:
         pytest.skip("this file system has no such names itself")
     with Store.open(place) as store:
-        with pytest.raises(StoreError, match="rename it"):
+        with raises(StoreError, "unsafe_name"):
             store.add(folder)
         assert store.list() == ()
 
@@ -69,13 +72,13 @@ def test_no_folder_no_file_no_store_within(tmp_path: Path, place: Path) -> None:
     file = write(tmp_path, {"file": b"x"}) / "file"
     (tmp_path / "empty" / "folder").mkdir(parents=True)
     with Store.open(place) as store:
-        with pytest.raises(StoreError, match="no folder"):
+        with raises(StoreError, "no_folder"):
             store.add(tmp_path / "absent")
-        with pytest.raises(StoreError, match="no folder"):
+        with raises(StoreError, "no_folder"):
             store.add(file)
-        with pytest.raises(StoreError, match="holds no file"):
+        with raises(StoreError, "no_files"):
             store.add(tmp_path / "empty")
-        with pytest.raises(StoreError, match="lies in"):
+        with raises(StoreError, "inside_folder"):
             store.add(tmp_path)
 
 
@@ -85,7 +88,7 @@ def test_a_file_that_cannot_be_read(folder: Path, place: Path, monkeypatch: pyte
 
     monkeypatch.setattr("skisnow.campaign.store.store.read_chunks", forbidden)
     with Store.open(place) as store:
-        with pytest.raises(StoreError, match=r"could not be read: access is not allowed"):
+        with raises(StoreError, "not_read", reason=NOT_ALLOWED):
             store.add(folder)
         assert store.list() == ()
 
