@@ -35,6 +35,7 @@ from skisnow.report.turn.sentences import contrast, ensemble_sentence, key_sente
 from skisnow.scenario.identify_section import Prior, measured_of
 from skisnow.simulation.run import Run
 from skisnow.snow import SnowProperties
+from tests.coded import raises
 
 from ..conftest import without_png
 from .runs import RADIUS, circle_run
@@ -281,7 +282,7 @@ def test_runs_beyond_their_grip_are_counted(chain: TurnChain) -> None:
 
 
 def test_too_little_to_compare_is_refused(chain: TurnChain, tmp_path: Path) -> None:
-    with pytest.raises(ParameterError, match="2 contacts and 2 runs"):
+    with raises(ParameterError, "too_few_runs", contacts=2, runs=2):
         write_turn_report(replace(chain, ensemble=chain.ensemble[:2]), tmp_path)
     assert not list(tmp_path.iterdir())
 

@@ -16,6 +16,7 @@ from skisnow.campaign import Campaign
 from skisnow.estimation.results import results_json
 from skisnow.report import write_report
 from skisnow.report.figures.drawing import FORMS
+from tests.coded import raises
 
 from ..conftest import only_drawn
 from .conftest import Reported, first_series, reported
@@ -114,6 +115,6 @@ def test_other_files_stay_and_those_of_an_earlier_report_go(campaign: Campaign, 
 def test_a_place_that_cannot_be_written_is_a_clear_error(reference: Reported, tmp_path: Path) -> None:
     taken = tmp_path / "taken"
     taken.write_text("a file, not a folder")
-    with pytest.raises(OutputError, match="cannot be written"):
+    with raises(OutputError, "cannot_write"):
         write_report(reference.analysis, taken)
     assert taken.read_text() == "a file, not a folder"

@@ -11,6 +11,7 @@ import pytest
 
 from skisnow._support.errors import FieldDataError, ParameterError
 from skisnow.web.subprocesses import BOUNDS, Bounds, confined
+from tests.coded import raises
 
 
 def other_process(word: str) -> tuple[str, int]:
@@ -48,18 +49,18 @@ def test_the_answer_and_the_errors_come_back() -> None:
 
 def test_what_ends_the_other_process_is_said_here(capfd: pytest.CaptureFixture[str]) -> None:
     for work in (dies, is_wrong):
-        with pytest.raises(ParameterError, match="damaged, nested too deep, or takes more than 120 s and 3000 MB"):
+        with raises(ParameterError, "cannot_read", seconds=120.0, megabytes=3000):
             confined(BOUNDS, work)
     assert "Traceback" not in capfd.readouterr().err
 
 
 def test_time_has_an_end() -> None:
-    with pytest.raises(ParameterError, match=r"not read within 0\.5 s"):
+    with raises(ParameterError, "too_slow", seconds=0.5):
         confined(Bounds(seconds=0.5), takes_time)
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="other systems keep no such limit")
 def test_memory_has_an_end() -> None:
     assert confined(BOUNDS, takes_memory) == 400_000_000
-    with pytest.raises(ParameterError, match="more than 120 s and 300 MB"):
+    with raises(ParameterError, "cannot_read", seconds=120.0, megabytes=300):
         confined(Bounds(memory_bytes=300_000_000), takes_memory)

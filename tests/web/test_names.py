@@ -4,6 +4,7 @@ import pytest
 
 from skisnow._support.errors import StoreError
 from skisnow.web.page_addresses import analysis, carving, correcting, entering, export, plain_stem, required_id
+from tests.coded import raises
 
 
 def test_addresses_of_a_campaign() -> None:
@@ -34,5 +35,5 @@ def test_an_id_is_four_to_sixty_four_letters_and_digits(said: str, fits: bool) -
     if fits:
         assert required_id(said) == said
     else:
-        with pytest.raises(StoreError, match="This address names no campaign"):
+        with raises(StoreError, "no_campaign"):
             required_id(said)

@@ -9,10 +9,11 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from skisnow._support.errors import ParameterError
+from skisnow._support.errors import OutputError, ParameterError
 from skisnow.report.formatting import significant
 from skisnow.ski import read_ski, ski_named
 from skisnow.web.lab_skis import LabSkis, ski_of_texts
+from tests.coded import raises
 
 from .conftest import Served, has_text
 
@@ -150,9 +151,9 @@ def test_a_ski_is_saved_with_its_table_and_read_by_its_word(tmp_path: Path) -> N
     text, table = skis.texts("Mine 2")
     assert 'name = "Mine 2"' in text
     assert table.count("\n") == len(CARVER.station) + 1
-    with pytest.raises(ParameterError, match="there is a ski MINE 2 already"):
+    with raises(ParameterError, "already_there", name="MINE 2"):
         skis.save_ski("MINE 2", CARVER)
-    with pytest.raises(ParameterError, match="the lab has no ski named 'other'"):
+    with raises(ParameterError, "unknown_ski", name="other"):
         skis.word("other")
     assert [place.name for place in (tmp_path / "skis").iterdir()] == ["Mine 2"]
 
@@ -172,7 +173,7 @@ def test_a_saved_name_stands_in_the_file_however_it_is_written(tmp_path: Path) -
     skis.save_texts("second", TEXT.replace('name = "carver"\n', ""), "")
     assert [read_ski(Path(skis.word(name))).name for name in skis.saved()] == ["first", "second"]
     lines = TEXT.replace('name = "carver"\n', "").replace('source = """', 'source = """\\\nname = inside\n')
-    with pytest.raises(ParameterError, match="write the name into the file yourself"):
+    with raises(ParameterError, "no_place_for_name"):
         skis.save_texts("third", f'{lines}name = "carver"\n', "")
 
 
@@ -180,7 +181,7 @@ def test_no_folder_is_overwritten_by_who_is_slower(tmp_path: Path, monkeypatch: 
     skis = LabSkis(tmp_path)
     skis.save_texts("one", TEXT, "")
     monkeypatch.setattr(LabSkis, "require_new", lambda *_: None)  # both looked before either saved
-    with pytest.raises(Exception, match="cannot be saved"):
+    with raises(OutputError, "cannot_write"):
         skis.save_texts("one", TEXT.replace("1755", "1760"), "")
     assert "length_mm = 1755" in skis.texts("one")[0]
     assert [place.name for place in (tmp_path / "skis").iterdir()] == ["one"]

@@ -15,6 +15,7 @@ from markupsafe import Markup
 
 from .._support.errors import ParameterError
 from .._support.language import ENGLISH, catalogue, require_language
+from .._support.messages import Message
 from .._support.staging import write_file
 from ..simulation.run import Run
 from .binary import replay_bytes
@@ -90,7 +91,10 @@ def write_replay(
 def _replay(run: Run | Replay | str | Path, title: str | None, track: ReplayTrack | None) -> Replay:
     if isinstance(run, Replay):
         if track is not None or title is not None:
-            raise ParameterError("a replay has its own title and track: give them to replay_of_run or replay_of_file")
+            raise ParameterError(
+                Message("a replay has its own title and track: give them to replay_of_run or replay_of_file"),
+                code="not_together",
+            )
         return run
     if isinstance(run, Run):
         return replay_of_run(run, track=track) if title is None else replay_of_run(run, title=title, track=track)

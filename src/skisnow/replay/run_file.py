@@ -11,6 +11,7 @@ import numpy.typing as npt
 from scipy.io import netcdf_file
 
 from .._support.errors import ParameterError, SkisnowError
+from .._support.messages import Message, template
 from .._support.units import DEGREE
 from .._support.user_files import GivenError, json_value
 from ..geometry.boot_axes import axes_of
@@ -77,18 +78,23 @@ def replay_of_file(
             outcome, spacing = content.outcome.decode("utf-8"), float(content.solver_line_spacing_m)
         require_drawable(arrays)
         if not 0.0 < spacing <= 1.0:
-            raise ParameterError(f"solver_line_spacing_m is {spacing:g}; it must be above 0 and at most 1")
+            raise ParameterError(
+                Message("solver_line_spacing_m is {spacing:g}; it must be above 0 and at most 1", spacing=spacing),
+                code="out_of_range",
+            )
         setting = _setting(path, values, outcome, spacing, ski)
         return assembled(arrays, setting, title=title or path.resolve().parent.name, track=track, boots=boots)
     except SkisnowError as error:
         if str(path.parent) in str(error) and not isinstance(error, GivenError):
             raise
-        reason = str(error).rstrip(".")
-        raise ParameterError(f"{path} is no run.nc of skisnow: {reason}. Simulate it again with --out") from error
+        raise _not_a_run(path, error) from error
     except OSError as error:
-        raise ParameterError(f"{path} cannot be read: {error.strerror or error}. Check the path") from error
+        raise ParameterError(
+            Message("{path} cannot be read: {error}. Check the path", path=path, error=error.strerror or error),
+            code="cannot_read",
+        ) from error
     except _DAMAGE as error:
-        raise ParameterError(f"{path} is no run.nc of skisnow ({error}). Simulate it again with --out") from error
+        raise _not_a_run(path, error) from error
 
 
 def _arrays(file: Any) -> dict[str, FloatArray]:
@@ -162,8 +168,8 @@ def _slope(path: Path, values: dict[str, Any]) -> Slope:
     if kind == "grid":
         origin = {f"origin_{axis}": scenario_value(values, f"slope.origin_{axis}_m") or 0.0 for axis in "xy"}
         smoothing = scenario_value(values, "slope.smooth_m") or 0.0
-        return read_terrain(_locate(path, needed_value(values, "slope.grid"), "grid"), smoothing=smoothing, **origin)
-    profile = _locate(path, needed_value(values, "slope.profile"), "profile")
+        return read_terrain(_locate(path, needed_value(values, "slope.grid"), "slope"), smoothing=smoothing, **origin)
+    profile = _locate(path, needed_value(values, "slope.profile"), "slope")
     return read_profile(profile, gap=scenario_value(values, "slope.profile_gap") or "error")
 
 
@@ -183,15 +189,34 @@ def _course(path: Path, values: dict[str, Any], slope: Slope) -> Course | None:
     return course_on_slope(course, slope)
 
 
-def _locate(path: Path, named: str, what: str) -> Path:
+def _not_a_run(path: Path, error: Exception) -> ParameterError:
+    message = Message("{path} is no run.nc of skisnow ({error}). Simulate it again with --out", path=path, error=error)
+    return ParameterError(message, code="not_a_run")
+
+
+_MISSING: Final = {
+    "ski": template(
+        "{path} was simulated with the ski of {file}, which does not exist any more; its shape is needed to draw "
+        "the run. Put it into {folder}"
+    ),
+    "slope": template(
+        "{path} was simulated on the slope of {file}, which does not exist any more; its shape is needed to draw "
+        "the run. Put it into {folder}"
+    ),
+    "course": template(
+        "{path} was simulated with the course of {file}, which does not exist any more; it is needed to draw the "
+        "run. Put it into {folder}"
+    ),
+}
+
+
+def _locate(path: Path, named: str, kind: str) -> Path:
     """Path of a file that the scenario names, from the current folder or that of the run."""
     for place in (Path(named), path.parent / named, path.parent.parent / named):
         if place.is_file():
             return place
-    raise ParameterError(
-        f"{path} was simulated with the {what} of {named}, which is not there any more; its shape is needed to draw "
-        f"the run. Put it into {path.parent}"
-    )
+    message = Message(_MISSING[kind], path=path, file=named, folder=path.parent)
+    raise ParameterError(message, code="missing_file")
 
 
 LARGEST: Final = 1e9
@@ -211,13 +236,13 @@ def require_drawable(arrays: Mapping[str, FloatArray]) -> None:
     """
     require_finite(arrays)
     if np.any(np.diff(arrays["time"]) <= 0.0):
-        raise ParameterError("time does not rise")
+        raise ParameterError(Message("time does not rise"), code="not_rising")
     if np.any(np.diff(arrays["station"]) >= 0.0):
-        raise ParameterError("station does not fall from tip to tail")
+        raise ParameterError(Message("station does not fall from tip to tail"), code="not_falling")
     attitude = arrays["attitude"]
     product = attitude @ attitude.swapaxes(-1, -2)
     if attitude.shape[-2:] != (3, 3) or not np.allclose(product, np.eye(3), atol=_ORTHOGONAL):
-        raise ParameterError("attitude is not a rotation")
+        raise ParameterError(Message("attitude is not a rotation"), code="not_a_rotation")
 
 
 def require_finite(arrays: Mapping[str, FloatArray]) -> None:
@@ -227,7 +252,15 @@ def require_finite(arrays: Mapping[str, FloatArray]) -> None:
         sound = np.abs(values) >= SMALLEST_RADIUS if name == "turn_radius" else np.abs(values) <= LARGEST
         if not sound.all():
             place = np.unravel_index(int(np.argmin(sound)), values.shape)
-            raise ParameterError(f"{name} is {values[place]:g} at place {', '.join(str(index + 1) for index in place)}")
+            raise ParameterError(
+                Message(
+                    "{name} is {value:g} at place {place}",
+                    name=name,
+                    value=values[place],
+                    place=[str(index + 1) for index in place],
+                ),
+                code="not_finite",
+            )
 
 
 def scenario_value(values: Mapping[str, Any], name: str) -> Any:
@@ -248,5 +281,5 @@ def needed_value(values: Mapping[str, Any], name: str) -> Any:
     """A required value of the run's scenario by its full name; errors as in `scenario_value`, or it is missing."""
     value = scenario_value(values, name)
     if value is None:
-        raise ParameterError(f"{name} is missing")
+        raise ParameterError(Message("{name} is missing", name=name), code="missing")
     return value

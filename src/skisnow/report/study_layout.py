@@ -12,6 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .._support.errors import ParameterError
+from .._support.messages import Message
 from ..carving.keys import CARVE_KEYS
 from ..studies import StudyTable
 from .symbols import figure_text
@@ -69,7 +70,10 @@ def map_layout(table: StudyTable, *, second_is_number: bool) -> MapLayout:
     varied = [name for name in table.varied if len(_distinct(table, name)) > 1]
     numbers = [name for name in varied if all(_is_number(row[name]) for row in table.rows)]
     if not numbers:
-        raise ParameterError("the map needs a number that varies, such as edge_angle_deg; only names and switches vary")
+        raise ParameterError(
+            Message("the map needs a number that varies, such as edge_angle_deg; only names and switches vary"),
+            code="nothing_varies",
+        )
     x = "edge_angle_deg" if "edge_angle_deg" in numbers else numbers[0]
     others = [name for name in numbers if name != x]
     names = [name for name in varied if name not in numbers]
@@ -82,8 +86,14 @@ def map_layout(table: StudyTable, *, second_is_number: bool) -> MapLayout:
     if count > MOST_PANELS:
         counts = ", ".join(f"{name} with {len(_distinct(table, name))} values" for name in left)
         raise ParameterError(
-            f"the map would have {count} panels ({counts}); at most {MOST_PANELS} are readable. The table is written; "
-            "make a study of fewer of them for the map"
+            Message(
+                "the map would have {count} panels ({counts}); at most {most} are readable. The "
+                "table is written; make a study of fewer of them for the map",
+                count=count,
+                counts=counts,
+                most=MOST_PANELS,
+            ),
+            code="too_many_panels",
         )
     return MapLayout(x, second, tuple(left), sampled)
 
@@ -98,7 +108,9 @@ def drawn_table(table: StudyTable) -> StudyTable:
     """
     rows = table.answers()
     if not rows:
-        raise ParameterError("the map has nothing to draw: not one point of this table could be asked")
+        raise ParameterError(
+            Message("the map has nothing to draw: not one point of this table could be asked"), code="nothing_to_draw"
+        )
     pairs = {(row.get("ski"), row.get("ski_name")) for row in rows}
     names = {name for _, name in pairs}
     if None not in names and len(names) == len(pairs):

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Final
 from nicegui import run
 
 from .._support.errors import StoreError
+from .._support.messages import Message
 from ..campaign.store import Journals
 from .campaign_analysis import N_FIGURES, Choice, Numbers, Refusal, analyse_files, figure
 from .transfer import entry_files, kept_files
@@ -119,7 +120,7 @@ class AnalysisCache:
             state = self._state(kind, id_)  # before reading: a later entry makes the cached state old
             source = await run.io_bound(CampaignSource, self._lab, kind, id_)
             if source is None:
-                raise StoreError("The lab is about to end.")
+                raise StoreError(Message("The lab is about to end."), code="lab_ends")
             self._subjects[(kind, id_)] = (state, source)
             self._subjects.move_to_end((kind, id_))
             while len(self._subjects) > MOST_CAMPAIGNS:
@@ -133,7 +134,10 @@ class AnalysisCache:
             return len(Journals(self._lab.store).corrections(stored.id))
         counts = {head.id: head.n_entries for head in Journals(self._lab.store).list()}
         if id_ not in counts:
-            raise StoreError(f"The store has no campaign with the id {id_!r}; the list of campaigns names all.")
+            raise StoreError(
+                Message("The store has no campaign with the id {id!r}; the list of campaigns names all.", id=id_),
+                code="unknown_campaign",
+            )
         return counts[id_]
 
     async def figures(self, analysed: CachedAnalysis, language: str) -> AsyncIterator[FigureImage]:

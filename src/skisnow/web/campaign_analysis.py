@@ -100,9 +100,9 @@ def analyse_files(files: FilesInMemory, choice: Choice) -> Numbers | Refusal:
         analysis = analyse(_select_data(campaign_of_files(files.contents, others=files.others), choice))
     except FieldDataError as error:
         errors = (problem for problem in error.problems if isinstance(problem, Problem) and problem.severity == "error")
-        return Refusal(str(error), tuple(lines_of(errors)))
+        return Refusal(error.message, tuple(lines_of(errors)))
     except SkisnowError as error:
-        return Refusal(str(error))
+        return Refusal(error.message)
     data = ReportData(analysis)
     html = tables_html({name: table for name, table in campaign_tables(data).items() if table.rows})
     shown: dict[str, str] = {name: str(html[name]) for name in SHOWN_TABLES if name in html}

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final, TypeAlias
 
 from .._support.errors import FieldDataError, StoreError
+from .._support.messages import Message
 from ..campaign import QUALITY_FLAGS, campaign_of_files
 from ..campaign.reading import READ_FILES, FilesInMemory, unfolded
 from ..campaign.reading.campaign_file import CAMPAIGN_FILE, read_campaign_file
@@ -141,7 +142,7 @@ def _flag_sentences(problems: list[Problem]) -> dict[TestKey, dict[str, str]]:
     return sentences
 
 
-OWN_SHEET: Final = (
+OWN_SHEET: Final = Message(
     "The corrections of this campaign stand in a sheet of its workbook. Correct it there, and import the workbook "
     "again."
 )
@@ -171,7 +172,13 @@ class CorrectionSession(EditSession):
         try:
             text = decode(self._tables.read(CAMPAIGN_FILE) or b"").text
         except (FileNotFoundError, UnreadableTextError) as error:
-            raise StoreError(f"{CAMPAIGN_FILE} of this campaign cannot be read, so nothing in it can be.") from error
+            raise StoreError(
+                Message(
+                    "{file} of this campaign cannot be read, so nothing in it can be.",
+                    file=CAMPAIGN_FILE,
+                ),
+                code="cannot_read",
+            ) from error
         described = read_campaign_file(text, problems)
         if described is None:
             raise FieldDataError(problems)
@@ -209,7 +216,7 @@ class CorrectionSession(EditSession):
             As in `Journals.correct`; or the corrections are in a sheet of a workbook, which is not edited.
         """
         if CORRECTIONS.file in self._tables.places:
-            raise StoreError(OWN_SHEET)
+            raise StoreError(OWN_SHEET, code="in_a_workbook")
         standing = self.file_cells(entry.file, entry.test)
         written = self._journals.correct(self.id, entry, seen=seen, standing=standing)
         self.refresh()

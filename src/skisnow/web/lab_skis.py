@@ -13,13 +13,14 @@ from tempfile import TemporaryDirectory, mkdtemp
 from typing import IO, TYPE_CHECKING, Final
 
 from .._support.errors import OutputError, ParameterError
+from .._support.messages import Message
 from .._support.staging import cannot_write, write_file
 from .._support.user_files import GivenError, toml_values
 from ..ski import read_ski, ski_names, write_ski
 from ..snow.measured_range import with_range_warnings
 from .subprocesses import SKI_BOUNDS, confined
 from .uploads import Unpacking
-from .words import typed_number
+from .words import reworded, typed_number
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -63,7 +64,9 @@ class LabSkis:
         if name in ski_names():
             return name
         if name not in self.saved():
-            raise ParameterError(f"the lab has no ski named {name!r}. Choose one from the list")
+            raise ParameterError(
+                Message("the lab has no ski named {name!r}. Choose one from the list", name=name), code="unknown_ski"
+            )
         return str((self._folder / name / FILE).absolute())
 
     def texts(self, name: str) -> tuple[str, str]:
@@ -94,7 +97,10 @@ class LabSkis:
         named = _NAME_LINE.sub(lambda _: line, text, count=1) if _NAME_LINE.search(text) else f"{line}\n{text}"
         ski, _ = ski_of_texts(named, table)
         if ski.name != name:
-            raise ParameterError(f"write the name into the file yourself, on a line of its own: {line}")
+            raise ParameterError(
+                Message("write the name into the file yourself, on a line of its own: {line}", line=line),
+                code="no_place_for_name",
+            )
 
         def write(folder: Path) -> None:
             write_file(folder / FILE, named)
@@ -106,11 +112,22 @@ class LabSkis:
     def require_new(self, name: str) -> None:
         """Reject a name that exists or is not a valid name of a folder on every system."""
         if not _NAME.fullmatch(name) or _DEVICES.fullmatch(name):
-            raise ParameterError("a ski's name has 1 to 40 letters, digits, blanks, - and _; give it another one")
+            raise ParameterError(
+                Message("a ski's name has 1 to 40 letters, digits, blanks, - and _; give it another one"),
+                code="name_not_allowed",
+            )
         if name.casefold() in (NOTHING, EDITED):
-            raise ParameterError(f"{name} stands for something else in the lists of skis; give this one another name")
+            raise ParameterError(
+                Message("{name} stands for something else in the lists of skis; give this one another name", name=name),
+                code="name_not_allowed",
+            )
         if name.casefold() in (other.casefold() for other in self.names()):
-            raise ParameterError(f"there is a ski {name} already, and none is overwritten; give this one another name")
+            raise ParameterError(
+                Message(
+                    "there is a ski {name} already, and none is overwritten; give this one another name", name=name
+                ),
+                code="already_there",
+            )
 
     def _save(self, name: str, write: Writing) -> None:
         self.require_new(name)
@@ -124,7 +141,14 @@ class LabSkis:
             made.chmod(0o755)
             made.rename(self._folder / name)  # complete or absent; fails if another request saved the name first
         except OSError as error:
-            raise OutputError(f"the ski {name} cannot be saved: {error.strerror or error}. Try another name") from error
+            raise OutputError(
+                Message(
+                    "the ski {name} cannot be saved: {error}. Try another name",
+                    name=name,
+                    error=error.strerror or error,
+                ),
+                code="cannot_write",
+            ) from error
         finally:
             shutil.rmtree(made, ignore_errors=True)
 
@@ -146,7 +170,7 @@ def ski_of_texts(text: str, table: str) -> tuple[Ski, str]:
         try:
             ski, warned = with_range_warnings(lambda: read_ski(place))
         except ParameterError as error:
-            raise ParameterError(_without_folder(name, str(error))) from error
+            raise ParameterError(_without_folder(name, error.message), code=error.code) from error
     return ski, " ".join(_without_folder(name, warning) for warning in warned)
 
 
@@ -170,15 +194,26 @@ def _require_no_other_file(text: str) -> None:
         return  # the reader reports it with its line
     if "shape" in keys:
         raise ParameterError(
-            f"{FILE}: a shape of another program cannot be read here. Use read_ski or the command line"
+            Message(
+                "{file}: a shape of another program cannot be read here. Use read_ski or the command line", file=FILE
+            ),
+            code="foreign_shape",
         )
     if keys.get("table", TABLE) != TABLE:
-        raise ParameterError(f'{FILE}: the table of a ski of the lab is in the field below it: write table = "{TABLE}"')
+        raise ParameterError(
+            Message(
+                '{file}: the table of a ski of the lab is in the field below it: write table = "{table}"',
+                file=FILE,
+                table=TABLE,
+            ),
+            code="wrong_table",
+        )
 
 
 def _without_folder(folder: str, message: str) -> str:
     """A message without the path of a temporary folder."""
-    return message.replace(f"{Path(folder) / 'x'}"[:-1], "").replace(f"{Path(folder).resolve() / 'x'}"[:-1], "")
+    start, resolved_start = f"{Path(folder) / 'x'}"[:-1], f"{Path(folder).resolve() / 'x'}"[:-1]
+    return reworded(message, lambda text: text.replace(start, "").replace(resolved_start, ""))
 
 
 if TYPE_CHECKING:
@@ -299,19 +334,25 @@ def read_ski_files(folder: str, names: Sequence[str], further: Mapping[str, str]
         _require_own_files(place, names)
     elif not files and not designs and names:
         raise ParameterError(
-            "a table alone tells neither length nor mass of a ski; choose it together with a .toml file that names it "
-            f"(table = '{names[0]}'): “Download the file” on the page gives one to begin with"
+            Message(
+                "a table alone tells neither length nor mass of a ski; choose it together with a .toml "
+                "file that names it (table = '{table}'): “Download the file” on the page gives one to "
+                "begin with",
+                table=names[0],
+            ),
+            code="table_alone",
         )
     else:
         raise ParameterError(
-            "choose one ski: its .toml file with the table that it names, or the ski-def.json of MonkeyCAM"
+            Message("choose one ski: its .toml file with the table that it names, or the ski-def.json of MonkeyCAM"),
+            code="not_one_ski",
         )
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         try:
             ski = read_ski(place)
         except ParameterError as error:
-            raise ParameterError(str(error).replace(f"{folder}/", "")) from error
+            raise ParameterError(_without_folder(folder, error.message), code=error.code) from error
     warned = " ".join(str(warning.message).replace(f"{folder}/", "") for warning in caught)
     is_whole = len(names) == 1 and files
     text, table = (place.read_text(encoding="utf-8-sig"), "") if is_whole else texts_of_ski(ski)
@@ -324,5 +365,11 @@ def _require_own_files(place: Path, names: Sequence[str]) -> None:
     for key in ("table", "shape"):
         if (named := keys.get(key)) is not None and named not in names:
             raise ParameterError(
-                f"{place.name}: {key} is {named!r}; choose that file, too, and name it without a folder"
+                Message(
+                    "{file}: {key} is {needed!r}; choose that file, too, and name it without a folder",
+                    file=place.name,
+                    key=key,
+                    needed=named,
+                ),
+                code="missing_file",
             )

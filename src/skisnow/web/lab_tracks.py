@@ -11,6 +11,7 @@ from tempfile import mkdtemp
 from typing import IO, TYPE_CHECKING, Final
 
 from .._support.errors import FieldDataError, ParameterError
+from .._support.messages import Message
 from .._support.staging import cannot_write, write_file
 from .._support.units import DEGREE
 from .._support.user_files import read_record
@@ -20,7 +21,7 @@ from ..track.read import SUFFIXES, read_track
 from ..track.slope_frame import in_slope_frame
 from .page_addresses import plain_stem
 from .subprocesses import BOUNDS, confined
-from .words import typed_number
+from .words import reworded, typed_number
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -97,7 +98,12 @@ class TrackFolders:
         _require_allowed(placing)
         if len(self.names()) >= MOST_TRACKS:
             raise ParameterError(
-                f"{MOST_TRACKS} tracks are kept already; take some out of the folder {TRACKS_FOLDER} of the lab"
+                Message(
+                    "{most} tracks are kept already; take some out of the folder {folder} of the lab",
+                    most=MOST_TRACKS,
+                    folder=TRACKS_FOLDER,
+                ),
+                code="too_many_files",
             )
         try:
             self._folder.mkdir(parents=True, exist_ok=True)
@@ -134,12 +140,17 @@ class TrackFolders:
             The lab has no such track, or it cannot be placed.
         """
         if name not in self.names():
-            raise ParameterError(f"there is no track {name!r} here. Choose one from the list")
+            raise ParameterError(
+                Message("there is no track {name!r} here. Choose one from the list", name=name), code="unknown_track"
+            )
         placing = read_record(self._folder / name / ABOUT, Placing)
         _require_allowed(placing)
         places = [path for path in (self._folder / name).iterdir() if path.name != ABOUT]
         if len(places) != 1:
-            raise ParameterError(f"the folder of the track {name} is damaged. Remove it and upload the track again")
+            raise ParameterError(
+                Message("the folder of the track {name} is damaged. Remove it and upload the track again", name=name),
+                code="damaged",
+            )
         angle = replay.tilt if replay.profile is None else None
         return (read or track_on_slope)(places[0], placing, angle)
 
@@ -162,17 +173,31 @@ def track_on_slope(place: Path, placing: Placing, slope_angle: float | None) -> 
 def _require_allowed(placing: Placing) -> None:
     azimuth, start = placing.fall_line_azimuth_deg, placing.starts_at_s
     if azimuth is not None and not -360.0 <= azimuth <= 360.0:
-        raise ParameterError(f"the fall line's direction is {azimuth:g}°; it must be from −360 to 360")
+        raise ParameterError(
+            Message("the fall line's direction is {azimuth:g}°; it must be from −360 to 360", azimuth=azimuth),
+            code="out_of_range",
+        )
     if not abs(start) <= LONGEST_WAIT_S:
         raise ParameterError(
-            f"the start of the track is {start:g} s; it must be within {LONGEST_WAIT_S:g} s of the run's"
+            Message(
+                "the start of the track is {start:g} s; it must be within {longest:g} s of the run's",
+                start=start,
+                longest=LONGEST_WAIT_S,
+            ),
+            code="out_of_range",
         )
 
 
 def _require_few_points(track: Track) -> None:
     if len(track.time) > MOST_POINTS:
         raise ParameterError(
-            f"{track.name} has {len(track.time)} points; at most {MOST_POINTS} are drawn beside a run. Cut the turn out"
+            Message(
+                "{track} has {points} points; at most {most} are drawn beside a run. Cut the turn out",
+                track=track.name,
+                points=len(track.time),
+                most=MOST_POINTS,
+            ),
+            code="too_many_points",
         )
 
 
@@ -182,7 +207,13 @@ def _copy_limited(content: IO[bytes], place: Path) -> None:
         while piece := content.read(_CHUNK):
             taken += len(piece)
             if taken > LARGEST_TRACK_BYTES:
-                raise ParameterError(f"a track of more than {LARGEST_TRACK_BYTES // 1_000_000} MB is not taken in")
+                raise ParameterError(
+                    Message(
+                        "a track of more than {most} MB is not taken in",
+                        most=LARGEST_TRACK_BYTES // 1_000_000,
+                    ),
+                    code="too_large",
+                )
             file.write(piece)
 
 
@@ -191,8 +222,12 @@ def _read_named(place: Path, placing: Placing) -> Track:
     try:
         return replace(read_track(place), name=placing.called)
     except FieldDataError as error:
-        message = str(error).replace(str(place), placing.called).replace(place.name, placing.called)
-        raise ParameterError(message) from error
+        raise ParameterError(_with_name(error.message, place, placing.called), code=error.code) from error
+
+
+def _with_name(message: str, place: Path, name: str) -> str:
+    """A message with the name of the uploaded file instead of the place where it is stored."""
+    return reworded(message, lambda text: text.replace(str(place), name).replace(place.name, name))
 
 
 def _to_slope_axes(track: Track, placing: Placing, *, slope_angle: float | None) -> Track:
@@ -201,11 +236,18 @@ def _to_slope_axes(track: Track, placing: Placing, *, slope_angle: float | None)
     if azimuth is None:
         if track.axes == "east_north_up":
             raise ParameterError(
-                f"{placing.called} is in latitude and longitude: say in which compass direction the slope falls"
+                Message(
+                    "{track} is in latitude and longitude: say in which compass direction the slope falls",
+                    track=placing.called,
+                ),
+                code="no_direction",
             )
         return track
     if track.axes == "slope":
-        raise ParameterError(f"{placing.called} is in the axes of the slope already: leave the direction out")
+        raise ParameterError(
+            Message("{track} is in the axes of the slope already: leave the direction out", track=placing.called),
+            code="needless_direction",
+        )
     return in_slope_frame(track, fall_line_azimuth=azimuth * DEGREE, slope_angle=slope_angle, missing_height="on_slope")
 
 
@@ -253,7 +295,10 @@ class LabCourses:
         if name in course_names():
             return "course.name", name
         if name not in self.kept():
-            raise ParameterError(f"the lab has no course named {name!r}. Choose one from the list")
+            raise ParameterError(
+                Message("the lab has no course named {name!r}. Choose one from the list", name=name),
+                code="unknown_course",
+            )
         return "course.file", str((self._folder / name).absolute())
 
     def keep(self, called: str, content: IO[bytes]) -> str:
@@ -268,14 +313,27 @@ class LabCourses:
         """
         suffix = PurePosixPath(called.lower()).suffix
         if suffix not in COURSE_SUFFIXES:
-            raise ParameterError(f"{called} is no course: choose a .csv or .gpx file")
+            raise ParameterError(
+                Message("{file} is no course: choose a .csv or .gpx file", file=called), code="unknown_ending"
+            )
         if len(self.kept()) >= MOST_COURSES:
             raise ParameterError(
-                f"{MOST_COURSES} courses are kept already; take some out of the folder {COURSES_FOLDER} of the lab"
+                Message(
+                    "{most} courses are kept already; take some out of the folder {folder} of the lab",
+                    most=MOST_COURSES,
+                    folder=COURSES_FOLDER,
+                ),
+                code="too_many_files",
             )
         data = content.read(LARGEST_COURSE_BYTES + 1)
         if len(data) > LARGEST_COURSE_BYTES:
-            raise ParameterError(f"a course of more than {LARGEST_COURSE_BYTES // 1_000_000} MB is not taken in")
+            raise ParameterError(
+                Message(
+                    "a course of more than {most} MB is not taken in",
+                    most=LARGEST_COURSE_BYTES // 1_000_000,
+                ),
+                code="too_large",
+            )
         place = self._folder / f"{plain_stem(called, 'course')}-{secrets.token_hex(2)}{suffix}"
         made = place.with_name(f".partial-{place.name}")
         write_file(made, data)
@@ -285,7 +343,7 @@ class LabCourses:
         except OSError as error:
             raise cannot_write(place, error) from error
         except ParameterError as error:
-            raise ParameterError(str(error).replace(str(made), called).replace(made.name, called)) from error
+            raise ParameterError(_with_name(error.message, made, called), code=error.code) from error
         finally:
             made.unlink(missing_ok=True)
         return place.name

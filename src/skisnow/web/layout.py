@@ -17,6 +17,7 @@ from starlette.responses import HTMLResponse, Response
 
 from .._support.errors import FieldDataError, ParameterError, SkisnowError, StoreError
 from .._support.language import catalogue, languages
+from .._support.messages import Message
 from .elements import Words, named
 from .guard import STATUS
 from .language import language_of, language_of_request, said
@@ -149,10 +150,13 @@ def log_error(error: BaseException) -> str:
 def error_sentence(error: BaseException) -> str:
     """Sentence of an error: the message of skisnow's errors, a reference to the log for others."""
     if isinstance(error, FieldDataError):
-        return f"The campaign cannot be used as it is: {error}"
+        return Message("The campaign cannot be used as it is: {error}", error=error)
     if isinstance(error, SkisnowError):
-        return str(error)
-    return f"Something went wrong that should not. What was shown as stored is stored. Reference: {log_error(error)}."
+        return error.message
+    return Message(
+        "Something went wrong that should not. What was shown as stored is stored. Reference: {reference}.",
+        reference=log_error(error),
+    )
 
 
 def add_error_pages(outer: FastAPI) -> None:
@@ -184,8 +188,12 @@ def plain_page(title: str, sentence: str, status: int, request: Request) -> Resp
     """Page without scripts in the language of the request: title, sentence, and a link to the campaigns."""
     language = language_of_request(request)
     shown = {"title": title, "said": sentence, "back": "To the campaigns"}
-    words = {name: escape(catalogue(language).translated(text)) for name, text in shown.items()}
+    words = {name: escape(_in_language(text, language)) for name, text in shown.items()}
     return HTMLResponse(_PLAIN.format(language=language, **words), status)
+
+
+def _in_language(text: str, language: str) -> str:
+    return text.text(language) if isinstance(text, Message) else catalogue(language).translated(text)
 
 
 async def _not_found_answer(request: Request, _: Exception) -> Response:

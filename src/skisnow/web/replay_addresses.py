@@ -14,6 +14,7 @@ from starlette.responses import HTMLResponse, PlainTextResponse, Response
 
 from .._support.errors import ParameterError
 from .._support.language import ENGLISH, catalogue
+from .._support.messages import Message
 from .._support.user_files import read_json
 from ..replay.binary import replay_bytes
 from ..replay.model import moving_replay_model, replay_model
@@ -67,7 +68,9 @@ class RunFolders:
             The lab has no such run.
         """
         if name not in self.names():
-            raise ParameterError(f"there is no run {name!r} here. Choose one from the list")
+            raise ParameterError(
+                Message("there is no run {name!r} here. Choose one from the list", name=name), code="unknown_run"
+            )
         return self.folder / name
 
     def replay(self, name: str, track: str = "") -> Replay:
@@ -135,7 +138,8 @@ def add_addresses(app: FastAPI, runs: RunFolders) -> None:
         try:
             page = confined(BOUNDS, gaps_of_folders, runs.place(run), runs.place(ghost), language_of_request(request))
         except ParameterError as error:
-            return plain_page("This cannot be shown", f"{str(error)[0].upper()}{str(error)[1:]}.", 404, request)
+            sentence = error.text(language_of_request(request))
+            return plain_page("This cannot be shown", f"{sentence[0].upper()}{sentence[1:]}.", 404, request)
         return HTMLResponse(page)
 
     for address, answer in ((SHOW, show), (GATES, gates), (f"{FILES}/{{name}}", program_file)):

@@ -21,6 +21,7 @@ from typing import TYPE_CHECKING, Any, Final, Literal, NamedTuple, TypeAlias
 
 from .._support.errors import ParameterError
 from .._support.language import ENGLISH
+from .._support.messages import Message
 from .._support.staging import write_file
 from .._support.user_files import GivenError, read_json, read_record
 
@@ -156,7 +157,7 @@ class Runs:
             if self._process is not None:
                 self._process.terminate()
         else:
-            raise ParameterError("this run is over already; there is nothing to cancel")
+            raise ParameterError(Message("this run is over already; there is nothing to cancel"), code="run_is_over")
 
     async def work(self) -> None:
         """Run the jobs of the queue until `end`."""
@@ -227,7 +228,7 @@ class Runs:
         try:
             finished = read_record(summary, FinishedRun, only_known=False)
         except GivenError as error:
-            return replace(job, state="failed", said=str(error))
+            return replace(job, state="failed", said=error.message)
         words = f"{finished.outcome_in_words}: {finished.extent}"
         if finished.outcome == "interrupted":  # a job that was cancelled after its end counts as finished
             return replace(job, state="cancelled", said=f"{words}. What was computed until then is kept.")

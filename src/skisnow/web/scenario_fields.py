@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import re
+from functools import partial
 from typing import TYPE_CHECKING, Any, Final
 
 from nicegui import ui
 
 from .._support.errors import ParameterError
+from .._support.messages import Message
 from .elements import choice, field, named
 from .language import said
 from .layout import sentence
+from .words import reworded
 
 if TYPE_CHECKING:
     from typing import TypeAlias
@@ -125,10 +128,18 @@ class ScenarioField:
         self.refuse("")
         try:
             if not self.text:
-                raise ParameterError(f"{self.key.name} is empty; {self.where} has {self.before}")
+                raise ParameterError(
+                    Message(
+                        "{key} is empty; {file} has {before}",
+                        key=self.key.name,
+                        file=self.where,
+                        before=self.before,
+                    ),
+                    code="empty",
+                )
             return self.key.in_range(self.typed_value())
         except ParameterError as error:
-            self.refuse(in_labels(str(error), self.key))
+            self.refuse(in_labels(error.message, self.key))
             raise
 
     where = "the scenario"
@@ -154,6 +165,10 @@ class ScenarioField:
         client.run_javascript(f"lab.goTo({id_})")
 
 
+def _replace(name: str, label: str, text: str) -> str:
+    return text.replace(name, label)
+
+
 def in_labels(message: str, *keys: Quantity) -> str:
     """A message of the library with the names of fields instead of keys.
 
@@ -162,5 +177,6 @@ def in_labels(message: str, *keys: Quantity) -> str:
     'Mass of the sledge m (kg) is -5.0; allowed is above 0 to 1000 kg'
     """
     for key in sorted(keys, key=lambda key: -len(key.name)):
-        message = message.replace(key.name, called(key))
+        label = said(called(key)) if isinstance(message, Message) else called(key)
+        message = reworded(message, partial(_replace, key.name, label))
     return message

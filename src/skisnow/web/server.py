@@ -16,6 +16,7 @@ import uvicorn
 
 from .._support.certificates import load_certificate
 from .._support.errors import ParameterError
+from .._support.messages import Message
 from .application import lab_application
 from .guard import is_loopback
 
@@ -39,11 +40,17 @@ def require_allowed(host: str, token: str | None) -> None:
         The host is not this machine's loopback address and there is no token, or the token is blank.
     """
     if token is not None and not token.strip():
-        raise ParameterError("the token is blank; give one that is hard to guess, or leave --token out")
+        raise ParameterError(
+            Message("the token is blank; give one that is hard to guess, or leave --token out"), code="blank_token"
+        )
     if token is None and not is_loopback(host):
         raise ParameterError(
-            f"on {host} other machines could open the lab; add --token with a word that is hard to guess, "
-            "or leave --host out"
+            Message(
+                "on {host} other machines could open the lab; add --token with a word that is hard to "
+                "guess, or leave --host out",
+                host=host,
+            ),
+            code="no_token",
         )
 
 
@@ -59,8 +66,13 @@ class Certificate:
             load_certificate(ssl.SSLContext(ssl.PROTOCOL_TLS_SERVER), self.file, self.key)
         except (OSError, ssl.SSLError, ValueError) as error:
             raise ParameterError(
-                f"{self.file}: no certificate with its private key can be read ({error}); give a PEM file with both, "
-                "or the key's file with --certificate-key"
+                Message(
+                    "{file}: no certificate with its private key can be read ({error}); give a PEM file with "
+                    "both, or the key's file with --certificate-key",
+                    file=self.file,
+                    error=error,
+                ),
+                code="cannot_read",
             ) from error
 
 

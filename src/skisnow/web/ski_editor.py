@@ -11,6 +11,7 @@ import numpy as np
 from nicegui import ui
 
 from .._support.errors import ParameterError
+from .._support.messages import Message
 from ..ski.editing import EDITED_COLUMNS, SIDECUT, SkiEdit, edit_stations, edited_ski, values_at
 from ..ski.file_keys import COLUMNS
 from .elements import Words, button, field, named
@@ -85,7 +86,9 @@ class SkiEditor:
     def require_drawn(self) -> None:
         """Reject an edit while the text of the file differs from the drawn one."""
         if self._typed_texts() != self._base:
-            raise ParameterError("the file below was changed since it was drawn; press Draw the file first")
+            raise ParameterError(
+                Message("the file below was changed since it was drawn; press Draw the file first"), code="file_changed"
+            )
 
     async def begin(self, name: str) -> None:
         """Load a ski of the lab."""

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Final
 from nicegui import run
 
 from .._support.errors import ParameterError, SkisnowError
+from .._support.messages import Message
 from .._support.units import MM, N_PER_MM2, N_PER_MM3
 from ..campaign.store import Journals
 from ..estimation.results import results_json
@@ -99,7 +100,8 @@ class SnowChoice:
         if self.is_numbers:
             return None
         if self._found is None:
-            raise ParameterError(self._refused or "the campaign is being analysed; wait a moment")
+            waiting = Message("the campaign is being analysed; wait a moment")
+            raise ParameterError(self._refused or waiting, code="no_snow")
         return self._found
 
     async def _choose_campaign_or_snow(self) -> None:
@@ -208,7 +210,7 @@ def campaign_snow(lab: Lab, key: str) -> Analysis:
     kind, id_ = key.split("-", 1)
     numbers = analyse_files((kept_files if kind == "kept" else entry_files)(lab, id_), Choice())
     if isinstance(numbers, Refusal):
-        raise ParameterError(f"this campaign gives no snow yet. {numbers.said}")
+        raise ParameterError(Message("this campaign gives no snow yet. {said}", said=numbers.said), code="no_snow")
     return numbers.analysis
 
 

@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 from .._support.errors import ParameterError, SkisnowError
 from .._support.language import ENGLISH
+from .._support.messages import Message
 from .._support.processes.executors import LOCAL
 from .._support.processes.kept_rows import KeptRows
 from .._support.processes.pool import available_cores
@@ -25,6 +26,7 @@ from .._support.staging import write_file
 from .runs import AROUND_S, JOB, LOOKED_AT, Job, Runs, duration_words, new_name, simulated_s, slowness
 from .study_fields import CARVE, STUDY, TABLE, require_few_points
 from .uploads import files_below
+from .words import reworded
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -107,7 +109,7 @@ class Studies(Runs):
                 points = len(read_study(made / STUDY).points)
                 require_few_points(points)
             except ParameterError as error:
-                raise ParameterError(_without_folder(made, str(error))) from error
+                raise ParameterError(_without_folder(made, error.message), code=error.code) from error
             made.chmod(0o755)
             made.rename(self.folder / name)  # it becomes a study with its job.json
         finally:
@@ -129,7 +131,10 @@ class Studies(Runs):
         """
         job = next((job for job in self.study_jobs() if job.name == name), None)
         if job is None or job.state not in ("cancelled", "failed"):
-            raise ParameterError("this study waits, is computed or is done; there is nothing to go on with")
+            raise ParameterError(
+                Message("this study waits, is computed or is done; there is nothing to go on with"),
+                code="not_stopped",
+            )
         self._keep(replace(job, state="waiting", said="", workers=self.workers))
 
     def file(self, name: str, file: str) -> Path:
@@ -142,7 +147,12 @@ class Studies(Runs):
         """
         names = {job.name for job in self.jobs()}
         if name not in names or file not in (STUDY, TABLE, FIGURE) or not (self.folder / name / file).is_file():
-            raise ParameterError(f"there is no {file!r} of a study {name!r} here. Choose one from the list")
+            raise ParameterError(
+                Message(
+                    "there is no {file!r} of a study {study!r} here. Choose one from the list", file=file, study=name
+                ),
+                code="unknown_file",
+            )
         return self.folder / name / file
 
     def files_of(self, folder: Path) -> list[tuple[str, bytes]]:
@@ -192,7 +202,7 @@ class Studies(Runs):
         try:
             counts = self.table(name)[1].counts()
         except SkisnowError as error:
-            return str(error)
+            return error.message
         every = "; ".join(f"{outcome.replace('_', ' ')} {count}" for outcome, count in counts.items())
         return f"{sum(counts.values())} points: {every}."
 
@@ -212,7 +222,9 @@ def _finished(partial: Path) -> int:
 
 def _without_folder(folder: Path, message: str) -> str:
     """A message without the path of the study's folder and file."""
-    return message.replace(f"{folder / STUDY}: ", "").replace(f"{folder}/", "").removeprefix("skisnow: ")
+    if not isinstance(message, Message):
+        return message.replace(f"{folder / STUDY}: ", "").replace(f"{folder}/", "").removeprefix("skisnow: ")
+    return reworded(message, lambda text: text.replace(str(folder / STUDY), STUDY).replace(f"{folder}/", ""))
 
 
 CARVE_S: Final = 0.03

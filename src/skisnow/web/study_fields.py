@@ -12,13 +12,14 @@ from typing import TYPE_CHECKING, Any, Final
 from nicegui import ui
 
 from .._support.errors import ParameterError
+from .._support.messages import Message
 from .._support.user_files import natural_number
 from ..carving.keys import CARVE_KEYS
 from .elements import choice, field, named
 from .language import said
 from .layout import sentence
 from .scenario_fields import called, with_point, written
-from .words import typed_number
+from .words import reworded, typed_number
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -138,8 +139,13 @@ def require_few_points(points: int) -> None:
     """
     if points > MOST_POINTS:
         raise ParameterError(
-            f"the study has {points} points; the lab takes at most {MOST_POINTS}. Take fewer values, or the command "
-            "skisnow study, which takes a million"
+            Message(
+                "the study has {points} points; the lab takes at most {most}. Take fewer values, "
+                "or the command skisnow study, which takes a million",
+                points=points,
+                most=MOST_POINTS,
+            ),
+            code="too_many_points",
         )
 
 
@@ -269,7 +275,9 @@ class AxisFields:
         key = self._keys[self.name]
         words = called(key)
         if not all(str(field_.value or "").strip() for field_ in self._ends):
-            raise ParameterError(f"{words}: type both ends of what it goes through")
+            raise ParameterError(
+                Message("{input}: type both ends of what it goes through", input=words), code="missing"
+            )
         low, high = (
             typed_number(f"{words}, the {end} end", str(field_.value or ""))
             for field_, end in zip(self._ends, ("lower", "upper"), strict=True)
@@ -278,11 +286,25 @@ class AxisFields:
             try:
                 key.in_range(round(end) if key.kind == "whole number" and end == round(end) else end)
             except ParameterError as error:
-                raise ParameterError(str(error).replace(key.name, words)) from error
+                message = reworded(error.message, lambda text: text.replace(key.name, said(words)))
+                raise ParameterError(message, code=error.code) from error
         if not low < high:
-            raise ParameterError(f"{words}: it goes from {low:g} to {high:g}; the first end must be the smaller one")
+            raise ParameterError(
+                Message(
+                    "{input}: it goes from {low:g} to {high:g}; the first end must be the smaller one",
+                    input=words,
+                    low=low,
+                    high=high,
+                ),
+                code="not_rising",
+            )
         if self._log.value and low <= 0.0:
-            raise ParameterError(f"{words}: even in the logarithm, it must begin above 0; it begins at {low:g}")
+            raise ParameterError(
+                Message(
+                    "{input}: even in the logarithm, it must begin above 0; it begins at {low:g}", input=words, low=low
+                ),
+                code="not_positive",
+            )
         return Range(low, high, self.count(), bool(self._log.value))
 
     def count(self) -> int:
@@ -299,6 +321,12 @@ class AxisFields:
         number = natural_number(text)
         if number is None or not 2 <= number <= MOST_POINTS:
             raise ParameterError(
-                f"{called(self._keys[self.name])}: the number of values is {text!r}; it must be from 2 to {MOST_POINTS}"
+                Message(
+                    "{input}: the number of values is {value!r}; it must be from 2 to {most}",
+                    input=called(self._keys[self.name]),
+                    value=text,
+                    most=MOST_POINTS,
+                ),
+                code="out_of_range",
             )
         return number

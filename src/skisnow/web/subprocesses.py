@@ -17,6 +17,7 @@ from multiprocessing.connection import wait
 from typing import TYPE_CHECKING, Final, ParamSpec, TypeVar
 
 from .._support.errors import FieldDataError, OutputError, ParameterError, SkisnowError, StoreError
+from .._support.messages import Message
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -25,7 +26,6 @@ if TYPE_CHECKING:
 Given = ParamSpec("Given")
 Answer = TypeVar("Answer")
 
-_PLAIN: Final = (StoreError, OutputError)
 _LOG: Final = logging.getLogger("skisnow.web")
 _LAST_WORDS: Final = 4000
 
@@ -58,41 +58,52 @@ def confined(bounds: Bounds, work: Callable[Given, Answer], *args: Given.args, *
     tells.close()
     try:
         if not hears.poll(bounds.seconds):
-            raise ParameterError(f"it was not read within {bounds.seconds:g} s; give less of it, or check the file")
-        kind, answer, trace = hears.recv()
+            raise ParameterError(
+                Message(
+                    "it was not read within {seconds:g} s; give less of it, or check the file", seconds=bounds.seconds
+                ),
+                code="too_slow",
+            )
+        answer, trace = hears.recv()
     except EOFError as end:
-        raise ParameterError(_failure_message(bounds)) from end
+        raise _failure(bounds) from end
     finally:
         process.kill()
         process.join()
         hears.close()
     if trace:
         _LOG.error("an upload could not be read: %s", trace)
-    if kind is not None:
-        raise kind(answer)
+    if isinstance(answer, SkisnowError):
+        raise answer
     result: Answer = answer
     return result
 
 
-def _failure_message(bounds: Bounds) -> str:
-    allowed = f"{bounds.seconds:g} s and {bounds.memory_bytes // 1_000_000} MB"
-    return f"reading it failed: it is damaged, nested too deep, or takes more than {allowed}; check the file"
+def _failure(bounds: Bounds) -> ParameterError:
+    return ParameterError(
+        Message(
+            "reading it failed: it is damaged, nested too deep, or takes more than {seconds:g} s and {megabytes} MB; "
+            "check the file",
+            seconds=bounds.seconds,
+            megabytes=bounds.memory_bytes // 1_000_000,
+        ),
+        code="cannot_read",
+    )
 
 
 def _run_confined(tells: Connection, bounds: Bounds, work: Callable[..., object], args: tuple[object, ...]) -> None:
     """Function of the new process: set limits, call the function, send the result."""
     end_with_server()
     _set_limits(bounds)
-    answer: tuple[type[SkisnowError] | None, object, str]
+    answer: tuple[object, str]
     try:
-        answer = (None, work(*args), "")
-    except FieldDataError as error:
-        answer = (FieldDataError, [str(error)], "")
+        answer = (work(*args), "")
+    except (FieldDataError, StoreError, OutputError) as error:
+        answer = (error, "")
     except SkisnowError as error:
-        kind = type(error) if type(error) in _PLAIN else ParameterError
-        answer = (kind, str(error), "")
+        answer = (ParameterError(error.message, code=error.code), "")
     except Exception:  # logged by the server
-        answer = (ParameterError, _failure_message(bounds), traceback.format_exc()[-_LAST_WORDS:])
+        answer = (_failure(bounds), traceback.format_exc()[-_LAST_WORDS:])
     tells.send(answer)
 
 

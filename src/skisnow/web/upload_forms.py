@@ -12,6 +12,7 @@ from starlette.requests import Request
 from starlette.responses import RedirectResponse, Response
 
 from .._support.errors import ParameterError, SkisnowError
+from .._support.messages import Message
 from .elements import Words
 from .layout import error_sentence, plain_page
 
@@ -52,7 +53,9 @@ def add_upload(
             async with request.form(max_files=max_files, max_fields=max_fields) as form:
                 place = await run_in_threadpool(store, form)
         except (SkisnowError, OSError) as error:
-            return plain_page(NOT_STORED, f"Nothing was stored: {error_sentence(error)}", 400, request)
+            return plain_page(
+                NOT_STORED, Message("Nothing was stored: {error}", error=error_sentence(error)), 400, request
+            )
         except HTTPException:
             return plain_page(NOT_STORED, too_many, 400, request)
         return RedirectResponse(place, 303)
@@ -64,7 +67,7 @@ def uploaded_files(form: FormData, key: str, missing: str) -> list[UploadFile]:
     """Uploaded files of a field; ParameterError with the text `missing` without any."""
     files = [file for file in form.getlist(key) if isinstance(file, UploadFile) and file.filename]
     if not files:
-        raise ParameterError(missing)
+        raise ParameterError(missing, code="no_file")
     return files
 
 

@@ -12,6 +12,7 @@ from pathlib import Path, PurePosixPath
 from typing import IO, TYPE_CHECKING, Final
 
 from .._support.errors import ParameterError
+from .._support.messages import Message, joined
 from ..campaign.reading import unfolded
 from ..campaign.reading.campaign_file import CAMPAIGN_FILE
 from ..campaign.reading.campaign_files import FilesOfFolder
@@ -32,7 +33,7 @@ _METHODS: Final = (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED)
 _END_RECORD: Final = struct.Struct("<4s4H2LH")
 _LONGEST_COMMENT: Final = 0xFFFF
 _BYTES_PER_NAME: Final = 2_000
-_DAMAGED: Final = "the zip file is damaged or of a kind that is not read; pack the folder again"
+_DAMAGED: Final = Message("the zip file is damaged or of a kind that is not read; pack the folder again")
 
 
 class Unpacking:
@@ -68,7 +69,10 @@ class Unpacking:
         with archive:
             members = [member for member in archive.infolist() if not member.filename.endswith("/")]
             if len(members) > self.limits.files:
-                raise ParameterError(f"more than {self.limits.files} files at once are not taken in")
+                raise ParameterError(
+                    Message("more than {most} files at once are not taken in", most=self.limits.files),
+                    code="too_many_files",
+                )
             for member in members:
                 _require_plain(member)
                 self._write(member.filename, _unpacked(archive, member))
@@ -83,45 +87,79 @@ class Unpacking:
             at = tail.rindex(b"PK\5\6")
             *_, listed, _start, _comment = _END_RECORD.unpack_from(tail, at)
         if listed > self.limits.files * _BYTES_PER_NAME:
-            raise ParameterError(f"more than {self.limits.files} files at once are not taken in")
+            raise ParameterError(
+                Message("more than {most} files at once are not taken in", most=self.limits.files),
+                code="too_many_files",
+            )
 
     def _write(self, name: str, pieces: Iterable[bytes]) -> None:
         place = self._place(name)
         self._files += 1
         if self._files > self.limits.files:
-            raise ParameterError(f"more than {self.limits.files} files at once are not taken in")
+            raise ParameterError(
+                Message("more than {most} files at once are not taken in", most=self.limits.files),
+                code="too_many_files",
+            )
         try:
             place.parent.mkdir(parents=True, exist_ok=True)
             with place.open("xb") as file:
                 for piece in pieces:
                     self._bytes += len(piece)
                     if self._bytes > self.limits.unpacked_bytes:
-                        raise ParameterError(f"more than {self.limits.unpacked_bytes} bytes at once are not taken in")
+                        raise ParameterError(
+                            Message(
+                                "more than {most} bytes at once are not taken in",
+                                most=self.limits.unpacked_bytes,
+                            ),
+                            code="too_large",
+                        )
                     file.write(piece)
         except (FileExistsError, NotADirectoryError) as error:
-            raise ParameterError(f"two files of the upload are called {shown(name)}") from error
+            raise ParameterError(
+                Message("two files of the upload are called {file}", file=shown(name)), code="same_name"
+            ) from error
         except OSError as error:
             if error.errno != errno.ENAMETOOLONG:
                 raise
-            raise ParameterError(f"the file {shown(name)} is not taken in: its name is too long") from error
+            raise ParameterError(
+                Message("the file {file} is not taken in: its name is too long", file=shown(name)), code="name_too_long"
+            ) from error
 
     def _place(self, name: str) -> Path:
         path = name.replace("\\", "/")
         if (why := unsafe_because(path, for_windows=True)) is not None:
-            raise ParameterError(f"the file {shown(name)} is not taken in: {why}")
+            raise ParameterError(
+                Message("the file {file} is not taken in: {why}", file=shown(name), why=why), code="not_taken_in"
+            )
         if path.count("/") > DEEPEST:
-            raise ParameterError(f"the file {shown(name)} is not taken in: it lies in more than {DEEPEST} folders")
+            raise ParameterError(
+                Message(
+                    "the file {file} is not taken in: it lies in more than {most} folders",
+                    file=shown(name),
+                    most=DEEPEST,
+                ),
+                code="too_deep",
+            )
         return self.folder.joinpath(*PurePosixPath(path).parts)
 
 
 def _require_plain(member: zipfile.ZipInfo) -> None:
     kind = stat.S_IFMT(member.external_attr >> 16)
     if kind not in (0, stat.S_IFREG):
-        raise ParameterError(f"{shown(member.filename)} in the zip file is a link or the like, not a plain file")
+        raise ParameterError(
+            Message("{file} in the zip file is a link or the like, not a plain file", file=shown(member.filename)),
+            code="not_a_plain_file",
+        )
     if member.flag_bits & 1:
-        raise ParameterError(f"{shown(member.filename)} in the zip file is encrypted; pack it without a password")
+        raise ParameterError(
+            Message("{file} in the zip file is encrypted; pack it without a password", file=shown(member.filename)),
+            code="encrypted",
+        )
     if member.compress_type not in _METHODS:
-        raise ParameterError(f"{shown(member.filename)} in the zip file is packed in an unusual way; choose Deflate")
+        raise ParameterError(
+            Message("{file} in the zip file is packed in an unusual way; choose Deflate", file=shown(member.filename)),
+            code="unknown_compression",
+        )
 
 
 def _unpacked(archive: zipfile.ZipFile, member: zipfile.ZipInfo) -> Iterator[bytes]:
@@ -142,7 +180,7 @@ def _damage_errors() -> Iterator[None]:
     try:
         yield
     except Exception as error:
-        raise ParameterError(_DAMAGED) from error
+        raise ParameterError(_DAMAGED, code="damaged") from error
 
 
 def shown(name: str) -> str:
@@ -174,7 +212,7 @@ def files_below(folder: Path, *, under: str = "") -> Sequence[tuple[str, bytes]]
     return [(prefix + path.relative_to(folder).as_posix(), path.read_bytes()) for path in paths]
 
 
-UNDESCRIBED: Final = (
+UNDESCRIBED: Final = Message(
     "there is no campaign.toml in it, nor a workbook (.xlsx) with the sheets campaign, tools and plates; choose the "
     "folder of a campaign, a zip of it, or such a workbook. Beside tables of your own, skisnow new campaign FOLDER "
     "writes a campaign.toml to be filled in"
@@ -199,8 +237,9 @@ def add_uploaded(store: StorePlace, place: str, names: Sequence[str], limits: Li
     folder = campaign_folder(unpacking.folder)
     files = unfolded(FilesOfFolder(folder))
     if CAMPAIGN_FILE not in files.names():
+        found = files.problems
         raise ParameterError(
-            f"{files.problems[0].value}. {files.problems[0].action}" if files.problems else UNDESCRIBED
+            joined([found[0].value, found[0].action], ". ") if found else UNDESCRIBED, code="no_campaign"
         )
     with Store.open(store) as opened:
         return opened.add(folder).id

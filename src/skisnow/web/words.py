@@ -4,10 +4,16 @@ from __future__ import annotations
 
 import math
 import re
-from typing import Any, Final
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
 
-from .._support.errors import ParameterError
+from .._support.errors import ParameterError, SkisnowError
+from .._support.messages import Message, count_message
 from ..report.formatting import interval, significant
+from .language import said
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
 
 LABELS: Final = {
     "experiment": "Name of the test",
@@ -60,7 +66,30 @@ def in_words(message: str) -> str:
     >>> in_words("the column depth_mm has no number")
     'the column Depth (mm) has no number'
     """
-    return _NAMES.sub(lambda key: _LABEL_OF_NAME[key[0]], message)
+    in_page_language = said if isinstance(message, Message) else str
+    return reworded(message, lambda text: _NAMES.sub(lambda key: in_page_language(_LABEL_OF_NAME[key[0]]), text))
+
+
+def reworded(message: str, change: Callable[[str], str]) -> str:
+    """A message with changed text: in the fields of a `Message`, otherwise in the whole text.
+
+    >>> reworded(Message("{key} is missing", key="depth_mm"), str.upper)
+    'DEPTH_MM is missing'
+    """
+    if not isinstance(message, Message):
+        return change(message)
+    fields = {name: _changed(value, change) for name, value in message.fields.items()}
+    if message.plural is not None:
+        return count_message(message.template, message.plural, **{**fields, "count": message.fields["count"]})
+    return Message(message.template, **fields)
+
+
+def _changed(value: object, change: Callable[[str], str]) -> object:
+    if isinstance(value, SkisnowError):
+        value = value.message
+    if isinstance(value, list):
+        return [_changed(item, change) for item in value]
+    return reworded(str(value), change) if isinstance(value, str | Path) else value
 
 
 def hardness_words(row: dict[str, Any]) -> str:
@@ -108,5 +137,7 @@ def typed_number(what: str, text: str) -> float:
     except ValueError:
         value = math.nan
     if not math.isfinite(value):
-        raise ParameterError(f"{what}: {text.strip()!r} is no number. Correct it")
+        raise ParameterError(
+            Message("{field}: {value!r} is no number. Correct it", field=what, value=text.strip()), code="not_a_number"
+        )
     return value

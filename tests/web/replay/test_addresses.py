@@ -8,6 +8,8 @@ from pathlib import Path
 
 import pytest
 
+from tests.coded import raises
+
 pytest.importorskip("fastapi", reason="the web lab is not installed: pip install 'skisnow[web]'")
 pytest.importorskip("httpx", reason="requests of the test need httpx")
 
@@ -79,7 +81,7 @@ def test_runs_are_listed_newest_first(runs: Path) -> None:
 
 @pytest.mark.parametrize("name", ["../outside", "..", "", ".", "no run", "lab.log", "/etc", "older/../older"])
 def test_only_names_of_the_list_lead_anywhere(runs: Path, client: Client, name: str) -> None:
-    with pytest.raises(ParameterError, match="no run"):
+    with raises(ParameterError, "unknown_run"):
         RunFolders(runs).place(name)
     assert client.get("/replay/show", params={"run": name}).status_code == 404
     assert client.get("/replay/show", params={"run": "older", "ghost": name or "?"}).status_code == 404

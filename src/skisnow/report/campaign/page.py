@@ -13,6 +13,7 @@ from markupsafe import Markup
 from ..._support.errors import ParameterError
 from ..._support.language import ENGLISH, require_language
 from ..._support.memory import paused_collector
+from ..._support.messages import Message
 from ..._support.staging import staged, tidied, write_file
 from ...estimation import Analysis
 from ...estimation.results import results_json
@@ -113,8 +114,12 @@ def write_report(
     """
     if not isinstance(analysis, Analysis):
         raise ParameterError(
-            "a report is written of an analysis, into a folder: write_report(analyse(campaign), folder); given is a "
-            f"{type(analysis).__name__}"
+            Message(
+                "a report is written of an analysis, into a folder: write_report(analyse(campaign), "
+                "folder); given is a {kind}",
+                kind=type(analysis).__name__,
+            ),
+            code="wrong_type",
         )
     require_language(language)
     report = progress or silent

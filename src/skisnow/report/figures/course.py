@@ -11,6 +11,7 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
 from ..._support.errors import ParameterError
+from ..._support.messages import Message
 from ..._support.units import DEGREE
 from ...scenario import Plane
 from ...scenario.terrain import normals_of
@@ -128,7 +129,10 @@ def run_course(run: Run) -> Figure:
     """Draw the line of a run over its course; ParameterError for a run without a course."""
     result = run_gates(run)
     if result is None:
-        raise ParameterError("the run has no course, or ended before its first step; give the scenario course.file")
+        raise ParameterError(
+            Message("the run has no course, or ended before its first step; give the scenario course.file"),
+            code="no_course",
+        )
     level = isinstance(run.scenario.slope, Plane)
     words = "distance down the fall line $x$" if level else "horizontal distance $x$"
     label = "edge angle (°)"

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 from ..._support.errors import ParameterError
 from ..._support.language import ENGLISH
+from ..._support.messages import Message
 from ..._support.staging import require_writable, write_file
 from .drawing import FORMS, UNDATED, render
 from .style import journal_style
@@ -129,7 +130,14 @@ def require_drawable(path: Path) -> None:
         The folder cannot be created or written.
     """
     if path.suffix.lower() not in SUFFIXES:
-        raise ParameterError(f"{path}: a figure is a file that ends in {', '.join(SUFFIXES)}. Change its ending")
+        raise ParameterError(
+            Message(
+                "{path}: a figure is a file that ends in {suffixes}. Change its ending",
+                path=path,
+                suffixes=list(SUFFIXES),
+            ),
+            code="unknown_ending",
+        )
     require_writable(path.parent)
 
 

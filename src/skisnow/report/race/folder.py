@@ -11,6 +11,7 @@ from markupsafe import Markup
 
 from ..._support.errors import ParameterError
 from ..._support.language import ENGLISH
+from ..._support.messages import Message
 from ..._support.staging import write_file
 from ...racing import write_line
 from ...track.course.gates_table import GAP_COLUMNS, gap_rows, gaps_csv, read_gate_gaps
@@ -138,7 +139,12 @@ def gaps_of_folders(folder: Path, other: Path, language: str = ENGLISH) -> str:
     gaps, names = read_gate_gaps(folder, other), (folder.name, other.name)
     if gaps is None:
         raise ParameterError(
-            f"{names[0]} and {names[1]} did not go through the same gates: choose two runs on one course"
+            Message(
+                "{first} and {second} did not go through the same gates: choose two runs on one course",
+                first=names[0],
+                second=names[1],
+            ),
+            code="different_courses",
         )
     pictures = render_pictures(_drawings(gaps, names), language=language, names=frozenset(names))
     return gaps_page(gaps, names, pictures, language=language)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Final
 
 from ..._support.errors import ParameterError
+from ..._support.messages import Message
 from ..._support.units import DEGREE
 from ...parameters import nearest
 from ..figures.course import run_course
@@ -157,8 +158,14 @@ _FIGURES: Final = {
 def run_figure(run: Run, what: str) -> Figure:
     """One figure of a run by its name, in the style of the reports; see `Run.plot`."""
     if what not in _FIGURES:
-        raise ParameterError(f"there is no figure {what!r} of a run. {nearest(what, _FIGURES)}")
+        raise ParameterError(
+            Message("there is no figure {figure!r} of a run. {nearest}", figure=what, nearest=nearest(what, _FIGURES)),
+            code="unknown_figure",
+        )
     if len(run.time) < 2:
-        raise ParameterError(f"the run ended before its first step ({run.outcome}); there is nothing to draw")
+        raise ParameterError(
+            Message("the run ended before its first step ({outcome}); there is nothing to draw", outcome=run.outcome),
+            code="nothing_to_draw",
+        )
     with journal_style():
         return _FIGURES[what](run)

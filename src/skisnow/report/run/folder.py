@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 from ..._support.errors import OutputError
 from ..._support.language import ENGLISH, codes, require_language
+from ..._support.messages import Message
 from ..._support.staging import staged, tidied, write_file
 from ..._support.user_files import GivenError, plain_text
 from ...scenario.plausibility import implausible_values
@@ -121,7 +122,12 @@ def link_replay(folder: str | Path) -> Path | None:
     try:
         page = plain_text(path, most_bytes=MOST_BYTES)
     except GivenError as error:
-        raise OutputError(f"{path} cannot be read: {error}. The replay is written; the report has no link") from error
+        raise OutputError(
+            Message(
+                "{path} cannot be read: {error}. The replay is written; the report has no link", path=path, error=error
+            ),
+            code="cannot_read",
+        ) from error
     linked = with_link(page)
     if linked == page:
         return None

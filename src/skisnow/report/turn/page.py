@@ -13,6 +13,7 @@ from markupsafe import Markup
 
 from ..._support.errors import ParameterError
 from ..._support.language import ENGLISH, require_language
+from ..._support.messages import Message
 from ..._support.staging import require_writable, write_file
 from ..._support.units import DEGREE, MM, N_PER_MM2, N_PER_MM3
 from ...scenario.keys import scenario_values
@@ -67,8 +68,14 @@ def write_turn_report(chain: TurnChain, folder: str | Path, *, language: str = E
     """
     if len(chain.runs) < 2 or len(chain.ensemble) < FEWEST:
         raise ParameterError(
-            f"there are {len(chain.runs)} contacts and {len(chain.ensemble)} runs of the ensemble; the report needs 2 "
-            f"and {FEWEST} at least"
+            Message(
+                "there are {contacts} contacts and {runs} runs of the ensemble; the report needs 2 "
+                "and {fewest} at least",
+                contacts=len(chain.runs),
+                runs=len(chain.ensemble),
+                fewest=FEWEST,
+            ),
+            code="too_few_runs",
         )
     require_language(language)
     folder = Path(folder)

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple, TypeAlias
 from nicegui import ui
 
 from ..._support.errors import ParameterError, StoreError
+from ..._support.messages import Message
 from ...campaign.reading.table_forms import BRANCH
 from ...campaign.store import NewEntry
 from ...campaign.store.stored_tables import FORMS, CellError, checked_cell
@@ -133,7 +134,7 @@ def problem_said(error: SkisnowError, *, name: str = "") -> str:
     ``name`` of the field in that language (default: the name of the column).
     """
     if not isinstance(error, CellError):
-        return f"{said(in_words(str(error))).rstrip('.')}."
+        return f"{said(in_words(error.message)).rstrip('.')}."
     problem = said_template(error.problem, name or said(label(error.column)), error.value)
     return f"{problem} {said_template(error.fix, *(number_said(f'{limit:g}') for limit in error.limits))}"
 
@@ -213,16 +214,21 @@ def _stored(session: EditSession, record: Any, once: str) -> str:
     """Store a reading; returns the name of its series."""
     said = _cells(record)
     if not once or not said:
-        raise ParameterError("this is no reading")
+        raise ParameterError(Message("this is no reading"), code="not_a_reading")
     cells = {column: checked_cell(FORMS[FILE], column, text) for column, text in said.items()}
     if cells["tool"] not in session.described.tools:
-        raise ParameterError(f"the campaign has no tool {cells['tool']!r}")
+        raise ParameterError(Message("the campaign has no tool {tool!r}", tool=cells["tool"]), code="unknown_name")
     test = session.test(FILE, cells["experiment"])
     there = test.row_under(cells["load_N"], cells.get(BRANCH, ""))
     if there is not None and there.entered.once != once:
-        raise ParameterError(f"a reading of {there.cells['depth_mm']} mm is there already")
+        raise ParameterError(
+            Message("a reading of {depth_mm} mm is there already", depth_mm=there.cells["depth_mm"]),
+            code="already_there",
+        )
     if test.rows and test.rows[0].cells["site"] != cells["site"]:
-        raise ParameterError(f"that series is at the site {test.rows[0].cells['site']}")
+        raise ParameterError(
+            Message("that series is at the site {site}", site=test.rows[0].cells["site"]), code="other_site"
+        )
     who = str(record.get("who") or "")[:LONGEST]
     place = test.next_position
     entry = NewEntry(action="add", file=FILE, test=test.name, cells=cells, position=place, who=who, once=once)

@@ -146,10 +146,10 @@ class TableView:
             self.session.write_down(entry, seen=seen)
         except OvertakenError as error:
             self.session.refresh()
-            self.say(str(error), "bad")
+            self.say(error.message, "bad")
             return False
         except (StoreError, ParameterError) as error:
-            self.say(str(error), "bad")
+            self.say(error.message, "bad")
             return False
         self.say(said)
         return True

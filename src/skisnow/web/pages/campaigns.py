@@ -78,7 +78,7 @@ def _list_drafts(lab: Lab) -> None:
 def _add_damaged(id_: str, error: StoreError) -> None:
     with ui.element("section").classes("card"):
         heading(id_, 3)
-        sentence(str(error), "bad")
+        sentence(error.message, "bad")
 
 
 def _list_imported(lab: Lab) -> None:

@@ -118,7 +118,7 @@ class _Solver:
                     answer_dict(answered(carve_question(question), sources=self._sources)) for question in questions
                 ]
             except SkisnowError as error:
-                return str(error)
+                return error.message
 
 
 class _Carve:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Final
 from nicegui import run, ui
 
 from ..._support.errors import ParameterError
+from ..._support.messages import Message
 from ...campaign.store.stored_tables import cell_key
 from ..edit_session import CorrectionSession
 from ..elements import Words, choice, field, link
@@ -28,7 +29,7 @@ if TYPE_CHECKING:
     from ..settings import Lab
 
 HERE = "/"
-UNREAD = (
+UNREAD = Message(
     "no table of this campaign can be read; what is wrong in its files stands under Analysis in the list of campaigns"
 )
 
@@ -43,7 +44,8 @@ def add_page(lab: Lab) -> None:
             return
         file = table or next(iter(session.tables), "")
         if file not in session.tables:
-            raise ParameterError("this campaign has no such table" if session.tables else UNREAD)
+            missing = Message("this campaign has no such table")
+            raise ParameterError(missing if session.tables else UNREAD, code="no_table")
         with framed(session.stored.name or "Campaign", here=HERE, keeps=True):
             sentence("Imported: its files stay as they came in. What is corrected here stands beside them.", "quiet")
             further = {"Analysis": analysis("kept", session.id), "Export": export("kept", session.id)}

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, Final
 from nicegui import ui
 
 from ..._support.errors import FieldDataError, ParameterError, SkisnowError
+from ..._support.messages import Message, template
 from ..._support.user_files import toml_values
 from ...campaign.problems import Problem
 from ...campaign.reading.campaign_file import SHAPES
@@ -72,7 +73,9 @@ def _show_refusal(status: StatusLine, error: SkisnowError) -> None:
         errors = [problem for problem in error.problems if isinstance(problem, Problem) and problem.severity == "error"]
         status.say("Not stored:", "bad", [said(str(problem)) for problem in errors])
     else:
-        status.say(str(error) if isinstance(error, OvertakenError) else f"Not stored: {error}", "bad")
+        status.say(
+            error.message if isinstance(error, OvertakenError) else Message("Not stored: {error}", error=error), "bad"
+        )
     status.run_method("scrollIntoView")
 
 
@@ -96,6 +99,20 @@ def _store(lab: Lab, session: EditSession | None, text: str, once: str | None) -
     return session.id
 
 
+_IN_USE: Final = {
+    "tool": template(
+        "test {test} was made with the tool {name}: leave that name as it is, and give another tool its own entry"
+    ),
+    "plate": template(
+        "test {test} was made with the plate {name}: leave that name as it is, and give another plate its own entry"
+    ),
+}
+_NO_NAME: Final = {
+    "tool": template("tool {number} has lengths and no name; give it one, or empty them"),
+    "plate": template("plate {number} has lengths and no name; give it one, or empty them"),
+}
+
+
 def _require_used_names(session: EditSession, described: dict[str, Any]) -> None:
     """Reject a description without the tools and plates of tests."""
     for kind in ("tool", "plate"):
@@ -103,10 +120,8 @@ def _require_used_names(session: EditSession, described: dict[str, Any]) -> None
         for test in session.campaign.tests.values():
             missing = {row.cells[kind] for row in test.rows if kind in row.cells} - names
             if missing:
-                raise ParameterError(
-                    f"test {test.name} was made with the {kind} {min(missing)}: leave that name as it is, and give"
-                    f" another {kind} an entry of its own"
-                )
+                message = Message(_IN_USE[kind], test=test.name, name=min(missing))
+                raise ParameterError(message, code="name_in_use")
 
 
 class DescriptionForm:
@@ -143,7 +158,7 @@ class DescriptionForm:
         loads = [typed_number("the loads", word) for word in (self._loads.value or "").replace(";", " ").split()]
         values: dict[str, Any] = {"name": (self._name.value or "").strip(), "place": (self._place.value or "").strip()}
         if not values["name"]:
-            raise ParameterError("the campaign has no name")
+            raise ParameterError(Message("the campaign has no name"), code="no_name")
         values |= {"observers": observers or None, "load_steps_N": loads or None}
         values |= {
             key: typed_number(NUMBERS[key], number.value or "") for key, number in self._numbers.items() if number.value
@@ -202,7 +217,7 @@ class EntryRows:
         for number, (name, shape, lengths) in enumerate(self._rows, start=1):
             if not (name.value or "").strip():
                 if any((length.value or "").strip() for length in lengths.values()):
-                    raise ParameterError(f"{self.kind} {number} has lengths and no name; give it one, or empty them")
+                    raise ParameterError(Message(_NO_NAME[self.kind], number=number), code="no_name")
                 continue
             entry: dict[str, Any] = {"name": name.value.strip()}
             if shape is not None:

@@ -8,6 +8,7 @@ from urllib.parse import quote
 from nicegui import app, background_tasks, run, ui
 
 from ..._support.errors import ParameterError, SkisnowError
+from ..._support.messages import Message
 from ...replay.run_file import RUN_FILE
 from ..elements import Words, button, choice, link, named
 from ..job_list import JobList
@@ -247,7 +248,7 @@ class _Form:
         assert snow.analysis is not None
         results = await run.io_bound(results_with, snow.analysis, scenario, changes)
         if results is None:
-            raise ParameterError("the lab is about to end")
+            raise ParameterError(Message("the lab is about to end"), code="lab_ends")
         return results
 
 

@@ -8,6 +8,7 @@ from urllib.parse import quote
 from nicegui import run, ui
 
 from ..._support.errors import SkisnowError
+from ..._support.messages import Message
 from ...report.charts import SkiDrawing, ski_drawing
 from ..elements import Words, button, choice, field, link, named, option_texts
 from ..lab_skis import EDITED, FILE, NOTHING, TABLE, LabSkis, check_ski_texts, texts_of_ski
@@ -148,7 +149,7 @@ class _Skis:
             self._editor.require_drawn()
             await run.io_bound(self._save_edited, name, edit)
         except SkisnowError as error:
-            _show_status(self._saved, f"Not saved: {error_sentence(error)}", bad=True)
+            _show_status(self._saved, Message("Not saved: {error}", error=error_sentence(error)), bad=True)
             return
         names = self._skis.names()
         self._first.set_options(names)

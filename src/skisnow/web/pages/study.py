@@ -7,12 +7,13 @@ from typing import TYPE_CHECKING, Any, Final
 from nicegui import app, background_tasks, run, ui
 
 from ..._support.errors import ParameterError, SkisnowError
+from ..._support.messages import Message
 from ...estimation.results import results_json
 from ...report.campaign.page import RESULTS
 from ..elements import Words, button, choice, link, named, option_texts
 from ..job_list import JobList
 from ..lab_skis import FILE, TABLE, LabSkis
-from ..language import language_of, said_list
+from ..language import language_of, said, said_list
 from ..layout import error_sentence, framed, heading, sentence
 from ..page_requests import redrawn_by
 from ..runs import Runs
@@ -204,7 +205,7 @@ class _Form:
             job = await run.io_bound(self._studies.ask_for, question, language_of())
         except SkisnowError as error:
             keys = [field.key for field in self._fields.values()]
-            self._status.set_text(f"Not begun: {in_labels(error_sentence(error), *keys)}")
+            self._status.set_text(said(Message("Not begun: {error}", error=in_labels(error_sentence(error), *keys))))
             self._status.classes(add="bad")
             return
         if job is not None:
@@ -214,14 +215,20 @@ class _Form:
     def _question(self) -> StudyQuestion:
         axes = [axis for axis in self._axes if axis.name]
         if len({axis.name for axis in axes}) < len(axes):
-            raise ParameterError("the first and the second input are the same; choose another one")
+            raise ParameterError(
+                Message("the first and the second input are the same; choose another one"),
+                code="same_input",
+            )
         varied = {axis.name: axis.range() for axis in axes}
         from_snow = self._numbers_from_snow()
         for name in varied:
             if from_snow.get(name):
                 raise ParameterError(
-                    f"{called(study_keys(str(self._of.value))[name])} varies and the chosen snow gives it; choose the "
-                    "numbers below as the snow"
+                    Message(
+                        "{input} varies and the chosen snow gives it; choose the numbers below as the snow",
+                        input=called(study_keys(str(self._of.value))[name]),
+                    ),
+                    code="given_by_snow",
                 )
         fixed = {name: field.check() for name, field in self._fields.items() if self._counts(name, field)}
         files, named_words = dict[str, bytes](), list[str]()

@@ -18,6 +18,7 @@ from skisnow.web.analysis_cache import AnalysisCache, CachedAnalysis, CampaignSo
 from skisnow.web.analysis_view import AnalysisView, OpenAnalysis
 from skisnow.web.campaign_analysis import Choice, Numbers, Refusal, analyse_files, figure
 from skisnow.web.subprocesses import Worker
+from tests.coded import raises
 
 from .shared import COUNTED, FILES, FLAGS, PENETRATION, TOML, WRONG, Drawing, kept
 
@@ -160,7 +161,7 @@ def test_a_lab_that_is_about_to_end_says_so(desk: Desk, tmp_path: Path, monkeypa
 
     monkeypatch.setattr("skisnow.web.analysis_cache.run.io_bound", nothing)
     assert desk.wait(subject.analysed(Choice())) == Refusal("The lab is about to end.")
-    with pytest.raises(StoreError, match=r"^The lab is about to end\.$"):
+    with raises(StoreError, "lab_ends"):
         desk.wait(analyses.subject("kept", id_))
 
 

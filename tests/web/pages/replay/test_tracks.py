@@ -23,6 +23,7 @@ from skisnow.web import lab_tracks, replay_addresses
 from skisnow.web.lab_skis import LabSkis
 from skisnow.web.lab_tracks import Placing, TrackFolders, points_of_track, track_on_slope
 from skisnow.web.replay_addresses import RunFolders, program_file, show_address, show_page
+from tests.coded import raises
 
 from ....report.runs import circle_run
 from ...replay.test_tracks import gpx
@@ -67,7 +68,7 @@ def test_no_more_tracks_than_the_lab_can_list(tmp_path: Path, monkeypatch: pytes
 
 def test_tracks_of_a_folder_that_cannot_be_written_are_refused(tmp_path: Path) -> None:
     (tmp_path / "tracks").write_bytes(b"")
-    with pytest.raises(OutputError, match="tracks"):
+    with raises(OutputError, "cannot_write"):
         keep_track(tmp_path)
 
 
@@ -81,13 +82,13 @@ def test_a_track_is_no_longer_and_no_larger_than_allowed(tmp_path: Path, monkeyp
         folders.keep(io.BytesIO(content + b"3,3,0,0\n"), Placing("x.csv"))
     assert str(found.value) == "x.csv has 4 points; at most 3 are drawn beside a run. Cut the turn out"
     (tmp_path / "long.csv").write_bytes(content + b"3,3,0,0\n")
-    with pytest.raises(ParameterError, match="4 points"):
+    with raises(ParameterError, "too_many_points", points=4):
         track_on_slope(tmp_path / "long.csv", Placing("x.csv"), 0.0)
     monkeypatch.setattr(lab_tracks, "LARGEST_TRACK_BYTES", 2_000_000)
     monkeypatch.setattr(lab_tracks, "_CHUNK", 1_500_000)
     counted = folders.keep(io.BytesIO(bytes(2_000_000)), Placing("x.csv"), count=lambda place, _: place.stat().st_size)
     assert counted[1] == 2_000_000
-    with pytest.raises(ParameterError, match=r"^a track of more than 2 MB is not taken in$"):
+    with raises(ParameterError, "too_large", most=2):
         folders.keep(io.BytesIO(bytes(2_000_001)), Placing("x.csv"), count=lambda *_: 1)
 
 

@@ -13,6 +13,7 @@ from skisnow._support.errors import OutputError, ParameterError
 from skisnow.track.course import course_names
 from skisnow.web import lab_tracks
 from skisnow.web.lab_tracks import LabCourses, gates_of
+from tests.coded import raises
 
 from ..desk import in_this_process
 from .shared import GIVEN, asked
@@ -95,20 +96,19 @@ def test_courses_are_listed_the_newest_first_without_what_is_none(tmp_path: Path
 def test_what_is_just_allowed_of_courses_is_taken(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     courses = LabCourses(tmp_path)
     monkeypatch.setattr(lab_tracks, "confined", lambda *_: 3)
-    with pytest.raises(ParameterError, match="a course of more than 1 MB is not taken in"):
+    with raises(ParameterError, "too_large", most=1):
         courses.keep("a.csv", io.BytesIO(bytes(1_000_001)))
     courses.keep("a.csv", io.BytesIO(bytes(1_000_000)))
     monkeypatch.setattr(lab_tracks, "MOST_COURSES", 2)
     courses.keep("a.csv", io.BytesIO(COURSE))
-    told = "2 courses are kept already; take some out of the folder courses of the lab"
-    with pytest.raises(ParameterError, match=told):
+    with raises(ParameterError, "too_many_files", most=2, folder="courses"):
         courses.keep("a.csv", io.BytesIO(COURSE))
     assert len(courses.kept()) == 2
 
 
 @pytest.mark.usefixtures("here")
 def test_a_course_that_cannot_be_read_is_told_under_its_own_name(tmp_path: Path) -> None:
-    with pytest.raises(ParameterError, match=r"^bad\.csv") as found:
+    with raises(ParameterError, "unknown_choice", path="bad.csv") as found:
         LabCourses(tmp_path).keep("bad.csv", io.BytesIO(COURSE.replace(b"right", b"up")))
     assert str(tmp_path) not in str(found.value) and "partial" not in str(found.value)
     assert list((tmp_path / "courses").iterdir()) == []
@@ -127,6 +127,6 @@ def test_a_course_is_read_with_the_limits_of_uploads_and_a_full_disk_is_said(
         raise OSError(28, "No space left on device")
 
     monkeypatch.setattr(Path, "rename", full)
-    with pytest.raises(OutputError, match="No space left"):
+    with raises(OutputError, "cannot_write"):
         LabCourses(tmp_path).keep("b.csv", io.BytesIO(COURSE))
     assert [place.name[:2] for place in (tmp_path / "courses").iterdir()] == ["a-"]
