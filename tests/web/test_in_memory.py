@@ -23,7 +23,7 @@ from skisnow.web.analysis_cache import AnalysisCache, CampaignSource
 from skisnow.web.campaign_analysis import Choice, Numbers, analyse_files, figure
 from skisnow.web.edit_session import CorrectionSession, EditSession, _flag_sentences
 from skisnow.web.settings import Lab
-from skisnow.web.snow_choice import campaign_snow, results_with
+from skisnow.web.snow_choice import campaign_snow, results_and_snow_words
 from skisnow.web.transfer import entry_files, kept_files, write_entry
 from skisnow.web.uploads import add_uploaded
 from tests.coded import raises
@@ -155,7 +155,7 @@ def test_the_snow_of_a_campaign_is_that_of_its_results(lab: Lab, tmp_path: Path)
     id_ = kept_id(lab, tmp_path / "kept")
     changes = {"snow.site": "A", "snow.S_f_N_per_mm2": "0.3"}  # the campaign has no shear test
     analysis = campaign_snow(lab, f"kept-{id_}")
-    results, words = results_with(analysis, "carved-46m", changes)
+    results, words = results_and_snow_words(analysis, "carved-46m", changes)
     by_hand = 60.0 / (200.0 * 2.6**2 / (2.0 * math.tan(math.radians(30.0))))
     assert words.startswith(f"H_V = {significant(by_hand)} N/mm³, [")
     assert words.endswith("; S_f = 0.300 N/mm², interval not known")
@@ -164,7 +164,7 @@ def test_the_snow_of_a_campaign_is_that_of_its_results(lab: Lab, tmp_path: Path)
         by_hand * 1e9, rel=1e-9
     )
     with raises(ParameterError, "no_data", site="Z"):
-        results_with(analysis, "carved-46m", {"snow.site": "Z"})
+        results_and_snow_words(analysis, "carved-46m", {"snow.site": "Z"})
 
 
 def test_a_campaign_that_measured_the_unloading_gives_its_ratio_to_the_run_unless_one_is_typed(
@@ -173,11 +173,11 @@ def test_a_campaign_that_measured_the_unloading_gives_its_ratio_to_the_run_unles
     skisnow.write_reference(tmp_path / "reference", seed=1)
     key = f"kept-{lab.store.add(tmp_path / 'reference').id}"
     analysis = campaign_snow(lab, key)
-    _, words = results_with(analysis, "carved-46m", {})
+    _, words = results_and_snow_words(analysis, "carved-46m", {})
     snow = analyse(read_campaign(tmp_path / "reference")).snow()
     assert snow.unloading_ratio is not None
     assert f"; k_u/H_V = {significant(snow.unloading_ratio)}, [" in words
-    assert "k_u" not in results_with(analysis, "carved-46m", {"snow.unloading_ratio": "10"})[1]
+    assert "k_u" not in results_and_snow_words(analysis, "carved-46m", {"snow.unloading_ratio": "10"})[1]
 
 
 def test_what_is_downloaded_is_the_campaign_that_was_analysed(lab: Lab, tmp_path: Path) -> None:

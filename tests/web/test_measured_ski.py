@@ -113,6 +113,7 @@ def test_a_field_that_is_missing_is_said_there_and_at_the_button(page: Page, ser
     page.get_by_text("Nicht gespeichert: Masse eines Skis (kg)", exact=True).wait_for()
     form.get_by_text("hier fehlt eine Zahl", exact=True).wait_for()
     page.wait_for_function("document.activeElement.getAttribute('aria-label') === 'Masse eines Skis (kg)'")
+    assert not (served.store.parent / "lab" / "skis" / "Prototyp").exists()
 
 
 def test_a_chart_has_the_numbers_of_the_language_and_its_words_side_by_side(page: Page, served: Served) -> None:

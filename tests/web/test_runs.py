@@ -120,6 +120,7 @@ def test_a_campaign_without_experiments_gives_no_snow_and_says_so(page: Page, se
     page.get_by_role("button", name="Simulate").click()
     page.get_by_text("Not begun: this campaign gives no snow yet").wait_for()
     page.get_by_text("Nothing was simulated yet.").wait_for()
+    assert not any((served.store.parent / "lab").rglob("job.json"))
 
 
 def pressed_while_it_goes_on(page: Page, button: Locator) -> None:

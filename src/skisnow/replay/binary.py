@@ -125,7 +125,7 @@ def replay_of_bytes(content: bytes) -> Replay:
         The bytes are not a replay, are incomplete, or have a later format.
     """
     if content[: len(MAGIC)] != MAGIC or len(content) < 8:
-        raise ParameterError(Message("these bytes are no replay: they do not begin with SKRP"), code="not_a_replay")
+        raise ParameterError(Message("these bytes are not a replay: they do not begin with SKRP"), code="not_a_replay")
     (length,) = struct.unpack("<I", content[4:8])
     try:
         header = json_value(content[8 : 8 + length].decode("utf-8"))

@@ -212,7 +212,7 @@ def _gate_times(
     """Time from the first moment to each gate as in gates.csv (s); NaN for a gate that was not crossed."""
     time, place = arrays["time"], arrays["place"]
     if boots is not None:
-        feet, ahead = boots.place, _axes(boots)[..., 0]
+        feet, ahead = boots.place, _boot_axes(boots)[..., 0]
     else:
         side = 0.5 * setting.stance_width * arrays["attitude"][:, :, 1]
         feet, ahead = np.stack([place + side, place - side], axis=1), arrays["attitude"][:, None, :, 0]
@@ -222,7 +222,7 @@ def _gate_times(
     return np.array([np.nan if gate_time is None else gate_time - result.start_time for gate_time in result.times])
 
 
-def _axes(boots: ReplayBoots) -> FloatArray:
+def _boot_axes(boots: ReplayBoots) -> FloatArray:
     """Axes (n, 2, 3, 3) of boots as columns."""
     turns = Rotation.from_quat(np.roll(boots.attitude, -1, axis=-1).reshape(-1, 4))
     return np.asarray(turns.as_matrix().reshape(*boots.attitude.shape[:2], 3, 3))
@@ -232,7 +232,7 @@ def _skier(arrays: Mapping[str, FloatArray], height: float, boots: ReplayBoots |
     """Skier of a run; None without moving boots."""
     if boots is None:
         return None
-    axes = boots.place, _axes(boots).swapaxes(-1, -2)
+    axes = boots.place, _boot_axes(boots).swapaxes(-1, -2)
     return replay_skier(height, arrays["place"], arrays["attitude"], axes, arrays["centre"])
 
 

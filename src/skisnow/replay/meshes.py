@@ -30,7 +30,7 @@ CORNERS: Final = 8
 """Vertices of a ski's cross section: left and right on top, right and left on the base, and the same for the walls."""
 
 
-def upright(tilt: float) -> list[float]:
+def rotation_to_gltf(tilt: float) -> list[float]:
     """Quaternion x, y, z, w from the run's axes to those of glTF: the inclination about y, then z up made y up."""
     y, w = math.sqrt(0.5) * math.sin(tilt / 2.0), math.sqrt(0.5) * math.cos(tilt / 2.0)
     return [-w, y, -y, w]  # (-√½, 0, 0, √½) times (0, sin, 0, cos)
@@ -43,7 +43,7 @@ def ski_mesh(replay: Replay, frame: int, ski: int, exaggeration: float) -> Mesh:
     away = np.cross(edges[:, 0] - edges[:, 1], along)  # across to the left and towards the tail: away from the snow
     away /= np.linalg.norm(away, axis=1)[:, None]
     top = edges + (drawn_thickness(replay.skis.station)[:, None] * away)[:, None]
-    return _walled(edges, top, _force_colours(replay, replay.skis.force_per_length[frame, ski]))
+    return _ski_with_walls(edges, top, _force_colours(replay, replay.skis.force_per_length[frame, ski]))
 
 
 def unloaded_ski_mesh(replay: Replay, ski: int) -> Mesh:
@@ -56,7 +56,7 @@ def unloaded_ski_mesh(replay: Replay, ski: int) -> Mesh:
     side = np.stack([skis.half_width, -skis.half_width])
     place = np.empty((2, len(skis.station), 2, 3))  # base or top, station, left or right
     place[..., 0], place[..., 1], place[..., 2] = skis.station[:, None], side.T, height[..., None]
-    return _walled(place[0], place[1], _force_colours(replay, skis.force_per_length[:, ski].mean(axis=0)))
+    return _ski_with_walls(place[0], place[1], _force_colours(replay, skis.force_per_length[:, ski].mean(axis=0)))
 
 
 def _force_colours(replay: Replay, force: FloatArray) -> FloatArray:
@@ -67,7 +67,7 @@ def _force_colours(replay: Replay, force: FloatArray) -> FloatArray:
     return face
 
 
-def _walled(base: FloatArray, top: FloatArray, face: FloatArray) -> Mesh:
+def _ski_with_walls(base: FloatArray, top: FloatArray, face: FloatArray) -> Mesh:
     """A ski from its base and top (station, left or right, 3) and its faces' colours (station, 3)."""
     ring = [top[:, 0], top[:, 1], base[:, 1], base[:, 0]]  # twice: for the faces and for the walls
     corners = np.stack([ring[0], ring[1], ring[2], ring[3], ring[3], ring[0], ring[1], ring[2]], axis=1)
@@ -116,7 +116,7 @@ def _normals(replay: Replay, place: FloatArray) -> FloatArray:
 
 def snow_mesh(replay: Replay) -> Mesh:
     """The slope around the run."""
-    low, high = _around(replay)
+    low, high = _slope_bounds(replay)
     is_bent = replay.profile is not None, replay.terrain is not None
     x, y = (
         np.linspace(low[axis], high[axis], max(2, math.ceil(high[axis] - low[axis]) * 4) if bent else 2)
@@ -133,7 +133,7 @@ def grid_mesh(replay: Replay) -> Mesh:
 
     They are in pieces of at most a metre: a line of a piece that passes behind the eye is not drawn everywhere.
     """
-    low, high = np.ceil(_around(replay)[0]), np.floor(_around(replay)[1])
+    low, high = np.ceil(_slope_bounds(replay)[0]), np.floor(_slope_bounds(replay)[1])
     x, y = (np.arange(low[axis], high[axis] + 0.5) for axis in (0, 1))
     # finer, so that they follow the snow
     along_x = x if replay.profile is None and replay.terrain is None else np.arange(low[0], high[0] + 0.1, 0.25)
@@ -151,7 +151,7 @@ def grid_mesh(replay: Replay) -> Mesh:
     return Mesh(vertices, colours, np.arange(len(vertices)).reshape(-1, 2))
 
 
-def _around(replay: Replay) -> FloatArray:
+def _slope_bounds(replay: Replay) -> FloatArray:
     """Lowest and highest coordinates (2, 3) of the shown slope."""
     return np.stack([replay.place.min(axis=0) - _MARGIN, replay.place.max(axis=0) + _MARGIN])
 

@@ -19,11 +19,11 @@ from .meshes import (
     end_of_force_scale,
     grid_mesh,
     groove_mesh,
+    rotation_to_gltf,
     ski_mesh,
     snow_mesh,
     surface_heights,
     unloaded_ski_mesh,
-    upright,
 )
 from .replay import SKI_NAMES, continuous, nearest_frame
 from .skier import JOINTS, part_poses, skier_mesh, skier_parts
@@ -51,7 +51,7 @@ def replay_model(replay: Replay, time: float, *, exaggeration: float = 1.0) -> b
         named["groove"] = groove_mesh(replay, made)
     model = Glb()
     parts = [model.node(name, mesh=model.mesh(name, mesh)) for name, mesh in named.items()]
-    run = model.node("run", rotation=upright(replay.tilt), children=parts)
+    run = model.node("run", rotation=rotation_to_gltf(replay.tilt), children=parts)
     return model.to_bytes(replay.title, [run])
 
 
@@ -101,7 +101,7 @@ def moving_replay_model(replay: Replay, *, exaggeration: float = 1.0) -> bytes:
     ground = {"snow": snow_mesh(shown), "grid": grid_mesh(shown)}
     parts = [model.node(name, mesh=model.mesh(name, mesh)) for name, mesh in ground.items()]
     parts += [*_groove(model, shown), sledge, _camera(model, shown, clock, course)]
-    run = model.node("run", rotation=upright(shown.tilt), children=parts, extras=_extras(shown, exaggeration))
+    run = model.node("run", rotation=rotation_to_gltf(shown.tilt), children=parts, extras=_extras(shown, exaggeration))
     return model.to_bytes(shown.title, [run], cameras=_CAMERAS)
 
 

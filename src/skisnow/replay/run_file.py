@@ -190,7 +190,9 @@ def _course(path: Path, values: dict[str, Any], slope: Slope) -> Course | None:
 
 
 def _not_a_run(path: Path, error: Exception) -> ParameterError:
-    message = Message("{path} is no run.nc of skisnow ({error}). Simulate it again with --out", path=path, error=error)
+    message = Message(
+        "{path} is not a run.nc of skisnow ({error}). Simulate it again with --out", path=path, error=error
+    )
     return ParameterError(message, code="not_a_run")
 
 

@@ -203,7 +203,7 @@ class Part:
 
 def skier_parts(height: float) -> list[Part]:
     """Parts of a skier with this height (m)."""
-    return [*_trunk_and_head(height), *(part for side in ("left", "right") for part in _sided(side, height))]
+    return [*_trunk_and_head(height), *(part for side in ("left", "right") for part in _limb_parts(side, height))]
 
 
 def _trunk_and_head(height: float) -> list[Part]:
@@ -222,7 +222,7 @@ def _trunk_and_head(height: float) -> list[Part]:
     ]
 
 
-def _sided(side: str, height: float) -> list[Part]:
+def _limb_parts(side: str, height: float) -> list[Part]:
     h = height / DRAWN_HEIGHT
     shank, thigh, arm, pole = (share * height for share in (SHANK.length, THIGH.length, UPPER_ARM.length, POLE))
     return [

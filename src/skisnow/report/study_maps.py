@@ -125,7 +125,7 @@ def _grid(rows: Sequence[Json], layout: MapLayout) -> tuple[FloatArray, FloatArr
 
 
 def _draw_points(axes: Axes, rows: Sequence[Json], layout: MapLayout) -> None:
-    for holds, line_style in _styles(layout.sampled).items():
+    for holds, line_style in _marker_styles(layout.sampled).items():
         chosen = [row for row in rows if row["holds"] is holds]
         axes.plot(
             [row[layout.x] for row in chosen], [row[str(layout.second)] for row in chosen], linestyle="none", zorder=3,
@@ -133,7 +133,7 @@ def _draw_points(axes: Axes, rows: Sequence[Json], layout: MapLayout) -> None:
         )  # fmt: skip
 
 
-def _styles(sampled: bool) -> dict[bool | None, dict[str, Any]]:
+def _marker_styles(sampled: bool) -> dict[bool | None, dict[str, Any]]:
     size = 3.6 if sampled else 2.4
     return {
         True: {"marker": "o", "color": BLUE, "markersize": size},
@@ -145,7 +145,7 @@ def _styles(sampled: bool) -> dict[bool | None, dict[str, Any]]:
 def _draw_share_lines(axes: Axes, rows: Sequence[Json], layout: MapLayout) -> None:
     ordered = sorted(rows, key=lambda row: float(row[layout.x]))
     axes.plot([row[layout.x] for row in ordered], [share_of_limit(row) for row in ordered], color=GREY, zorder=1)
-    for holds, line_style in _styles(True).items():
+    for holds, line_style in _marker_styles(True).items():
         chosen = [row for row in ordered if row["holds"] is holds]
         axes.plot(
             [row[layout.x] for row in chosen], [share_of_limit(row) for row in chosen], linestyle="none", **line_style
@@ -178,7 +178,7 @@ def _grip_handles(layout: MapLayout, rows: Sequence[Json]) -> list[Line2D]:
     texts = {True: "holds", False: "slips", None: "no equilibrium"}
     handles = [
         Line2D([], [], linestyle="none", label=texts[holds], **line_style)
-        for holds, line_style in _styles(layout.sampled).items()
+        for holds, line_style in _marker_styles(layout.sampled).items()
         if any(row["holds"] is holds for row in rows)
     ]
     if not layout.sampled:

@@ -143,8 +143,7 @@ def _flag_sentences(problems: list[Problem]) -> dict[TestKey, dict[str, str]]:
 
 
 OWN_SHEET: Final = Message(
-    "The corrections of this campaign stand in a sheet of its workbook. Correct it there, and import the workbook "
-    "again."
+    "The corrections of this campaign are in a sheet of its workbook. Correct it there, and import the workbook again."
 )
 
 

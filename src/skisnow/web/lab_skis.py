@@ -98,7 +98,7 @@ class LabSkis:
         ski, _ = ski_of_texts(named, table)
         if ski.name != name:
             raise ParameterError(
-                Message("write the name into the file yourself, on a line of its own: {line}", line=line),
+                Message("write the name into the file yourself, on a separate line: {line}", line=line),
                 code="no_place_for_name",
             )
 
@@ -118,7 +118,9 @@ class LabSkis:
             )
         if name.casefold() in (NOTHING, EDITED):
             raise ParameterError(
-                Message("{name} stands for something else in the lists of skis; give this one another name", name=name),
+                Message(
+                    "{name} already means something else in the lists of skis; give this one another name", name=name
+                ),
                 code="name_not_allowed",
             )
         if name.casefold() in (other.casefold() for other in self.names()):

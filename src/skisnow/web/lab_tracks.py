@@ -209,7 +209,7 @@ def _copy_limited(content: IO[bytes], place: Path) -> None:
             if taken > LARGEST_TRACK_BYTES:
                 raise ParameterError(
                     Message(
-                        "a track of more than {most} MB is not taken in",
+                        "a track of more than {most} MB is not accepted",
                         most=LARGEST_TRACK_BYTES // 1_000_000,
                     ),
                     code="too_large",
@@ -314,7 +314,7 @@ class LabCourses:
         suffix = PurePosixPath(called.lower()).suffix
         if suffix not in COURSE_SUFFIXES:
             raise ParameterError(
-                Message("{file} is no course: choose a .csv or .gpx file", file=called), code="unknown_ending"
+                Message("{file} is not a course: choose a .csv or .gpx file", file=called), code="unknown_ending"
             )
         if len(self.kept()) >= MOST_COURSES:
             raise ParameterError(
@@ -329,7 +329,7 @@ class LabCourses:
         if len(data) > LARGEST_COURSE_BYTES:
             raise ParameterError(
                 Message(
-                    "a course of more than {most} MB is not taken in",
+                    "a course of more than {most} MB is not accepted",
                     most=LARGEST_COURSE_BYTES // 1_000_000,
                 ),
                 code="too_large",

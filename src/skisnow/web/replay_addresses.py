@@ -59,7 +59,7 @@ class RunFolders:
         folders = [place for place in self.folder.iterdir() if (place / RUN_FILE).is_file()]
         return [place.name for place in sorted(folders, key=lambda place: -(place / RUN_FILE).stat().st_mtime)]
 
-    def place(self, name: str) -> Path:
+    def folder_of(self, name: str) -> Path:
         """Folder of a run; only names of `names` are accepted.
 
         Raises
@@ -83,7 +83,7 @@ class RunFolders:
         ParameterError
             The lab has no such run, or it cannot be shown.
         """
-        place = self.place(name)
+        place = self.folder_of(name)
         ski = _ski_of_job(place / JOB)
         alone = replay_of_file(place, title=name, ski=ski)
         if not track:
@@ -108,7 +108,7 @@ def add_addresses(app: FastAPI, runs: RunFolders) -> None:
     def show(request: Request, run: str, ghost: str = "", track: str = "") -> Response:
         try:
             for name in (run, ghost) if ghost else (run,):
-                runs.place(name)
+                runs.folder_of(name)
         except ParameterError as error:
             return PlainTextResponse(str(error), 404)
         return HTMLResponse(show_page(run, ghost or None, track, language_of_request(request)))
@@ -136,7 +136,9 @@ def add_addresses(app: FastAPI, runs: RunFolders) -> None:
 
     def gates(request: Request, run: str, ghost: str = "") -> Response:
         try:
-            page = confined(BOUNDS, gaps_of_folders, runs.place(run), runs.place(ghost), language_of_request(request))
+            page = confined(
+                BOUNDS, gaps_of_folders, runs.folder_of(run), runs.folder_of(ghost), language_of_request(request)
+            )
         except ParameterError as error:
             sentence = error.text(language_of_request(request))
             return plain_page("This cannot be shown", f"{sentence[0].upper()}{sentence[1:]}.", 404, request)
@@ -198,7 +200,7 @@ def add_track_uploads(app: FastAPI, tracks: TrackFolders) -> None:
     """Add the address that receives measured tracks."""
 
     def store(form: FormData) -> str:
-        upload = uploaded_files(form, "file", "no file was chosen; choose the file of a track")[0]
+        upload = uploaded_files(form, "file", Message("no file was chosen; choose the file of a track"))[0]
         azimuth = number_of(str(form.get("azimuth", "")), "the direction of the fall line")
         start = number_of(str(form.get("start", "")), "the time at the first point")
         placing = Placing((upload.filename or "")[:200], azimuth, start or 0.0)

@@ -9,6 +9,7 @@ from nicegui import run, ui
 from starlette.datastructures import FormData
 
 from .._support.errors import SkisnowError
+from .._support.messages import Message
 from .elements import Words, button, field
 from .lab_skis import (
     LISTS,
@@ -42,7 +43,7 @@ def add_ski_uploads(app: FastAPI, lab: Lab) -> None:
     """Add the address that receives skis."""
 
     def store(form: FormData) -> str:
-        missing = "no file was chosen; choose the .toml file of a ski, or a design of MonkeyCAM"
+        missing = Message("no file was chosen; choose the .toml file of a ski, or a design of MonkeyCAM")
         files = [(file.filename or "", file.file) for file in uploaded_files(form, "files", missing)]
         further = {key: str(form.get(key, "")) for key in STIFFNESS}
         texts = ski_of_uploads(files, further, lab.limits)

@@ -219,7 +219,7 @@ def sites_of(analysis: Analysis) -> list[str]:
     return list(dict.fromkeys(row.site for row in analysis.site_means if row.quantity.startswith("H_V")))
 
 
-def results_with(analysis: Analysis, scenario: str, changes: Mapping[str, str]) -> tuple[bytes, str]:
+def results_and_snow_words(analysis: Analysis, scenario: str, changes: Mapping[str, str]) -> tuple[bytes, str]:
     """Text of results.json of a campaign, and the resulting snow of a scenario in words.
 
     Parameters

@@ -275,9 +275,7 @@ class AxisFields:
         key = self._keys[self.name]
         words = called(key)
         if not all(str(field_.value or "").strip() for field_ in self._ends):
-            raise ParameterError(
-                Message("{input}: type both ends of what it goes through", input=words), code="missing"
-            )
+            raise ParameterError(Message("{input}: type both ends of its range", input=words), code="missing")
         low, high = (
             typed_number(f"{words}, the {end} end", str(field_.value or ""))
             for field_, end in zip(self._ends, ("lower", "upper"), strict=True)

@@ -14,6 +14,7 @@ from starlette.requests import Request
 from starlette.responses import Response
 
 from .._support.errors import StoreError
+from .._support.messages import Message
 from ..campaign.reading import READ_FILES, FilesInMemory
 from ..campaign.store import Journals, campaign_files, corrected_files, export_corrected, export_entered, replayed
 from .layout import error_sentence, plain_page
@@ -36,7 +37,7 @@ def add_transfer(app: FastAPI, lab: Lab) -> None:
     """Add the addresses for import and export of campaigns."""
 
     def store(form: FormData) -> str:
-        missing = "no file was chosen; choose the files of a campaign, its folder, or a zip of it"
+        missing = Message("no file was chosen; choose the files of a campaign, its folder, or a zip of it")
         return f"/?added={_add_campaign(lab, uploaded_files(form, 'files', missing))}"
 
     async def entry(request: Request, id_: str) -> Response:

@@ -70,7 +70,7 @@ class Unpacking:
             members = [member for member in archive.infolist() if not member.filename.endswith("/")]
             if len(members) > self.limits.files:
                 raise ParameterError(
-                    Message("more than {most} files at once are not taken in", most=self.limits.files),
+                    Message("more than {most} files at once are not accepted", most=self.limits.files),
                     code="too_many_files",
                 )
             for member in members:
@@ -88,7 +88,7 @@ class Unpacking:
             *_, listed, _start, _comment = _END_RECORD.unpack_from(tail, at)
         if listed > self.limits.files * _BYTES_PER_NAME:
             raise ParameterError(
-                Message("more than {most} files at once are not taken in", most=self.limits.files),
+                Message("more than {most} files at once are not accepted", most=self.limits.files),
                 code="too_many_files",
             )
 
@@ -97,7 +97,7 @@ class Unpacking:
         self._files += 1
         if self._files > self.limits.files:
             raise ParameterError(
-                Message("more than {most} files at once are not taken in", most=self.limits.files),
+                Message("more than {most} files at once are not accepted", most=self.limits.files),
                 code="too_many_files",
             )
         try:
@@ -108,7 +108,7 @@ class Unpacking:
                     if self._bytes > self.limits.unpacked_bytes:
                         raise ParameterError(
                             Message(
-                                "more than {most} bytes at once are not taken in",
+                                "more than {most} bytes at once are not accepted",
                                 most=self.limits.unpacked_bytes,
                             ),
                             code="too_large",
@@ -122,19 +122,19 @@ class Unpacking:
             if error.errno != errno.ENAMETOOLONG:
                 raise
             raise ParameterError(
-                Message("the file {file} is not taken in: its name is too long", file=shown(name)), code="name_too_long"
+                Message("the file {file} is not accepted: its name is too long", file=shown(name)), code="name_too_long"
             ) from error
 
     def _place(self, name: str) -> Path:
         path = name.replace("\\", "/")
         if (why := unsafe_because(path, for_windows=True)) is not None:
             raise ParameterError(
-                Message("the file {file} is not taken in: {why}", file=shown(name), why=why), code="not_taken_in"
+                Message("the file {file} is not accepted: {why}", file=shown(name), why=why), code="not_taken_in"
             )
         if path.count("/") > DEEPEST:
             raise ParameterError(
                 Message(
-                    "the file {file} is not taken in: it lies in more than {most} folders",
+                    "the file {file} is not accepted: it is in more than {most} folders",
                     file=shown(name),
                     most=DEEPEST,
                 ),
@@ -214,7 +214,7 @@ def files_below(folder: Path, *, under: str = "") -> Sequence[tuple[str, bytes]]
 
 UNDESCRIBED: Final = Message(
     "there is no campaign.toml in it, nor a workbook (.xlsx) with the sheets campaign, tools and plates; choose the "
-    "folder of a campaign, a zip of it, or such a workbook. Beside tables of your own, skisnow new campaign FOLDER "
+    "folder of a campaign, a zip of it, or such a workbook. For existing tables, skisnow new campaign FOLDER "
     "writes a campaign.toml to be filled in"
 )
 

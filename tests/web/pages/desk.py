@@ -6,6 +6,7 @@ where the focus goes, only Chromium shows.
 
 from __future__ import annotations
 
+import ast
 import asyncio
 import re
 import shutil
@@ -35,6 +36,7 @@ from skisnow.web.settings import Lab
 Answer = TypeVar("Answer")
 PATIENCE_S = 60.0  # nothing is asserted of time
 _HEADING = re.compile("h[1-6]")
+_FIELD = re.compile(r"""field (.*?) = ('(?:[^'\\]|\\.)*'|"(?:[^"\\]|\\.)*"|True|False|None)""")
 
 
 @dataclass
@@ -66,6 +68,16 @@ class Sheet:
     def status(self) -> str:
         """The line that says what came of the last act; nothing where nothing is said."""
         return next((line for line in self.outline() if line.startswith("[status")), "")
+
+    def outcome(self) -> str:
+        """Kind of the last act's outcome: "good", "bad" or nothing."""
+        found = re.match(r"\[status (\w+)\]", self.status())
+        return found[1] if found else ""
+
+    def link(self, text: str) -> str:
+        """Address of a link."""
+        (found,) = {each.props["href"] for each in self.of(ui.link) if each.text == text}
+        return str(found)
 
     def refusals(self) -> list[str]:
         """Problems that are listed below the status."""
@@ -269,6 +281,12 @@ def in_this_process(monkeypatch: pytest.MonkeyPatch, *modules: str) -> list[tupl
     for name in modules:
         monkeypatch.setattr(f"skisnow.web.{name}.confined", done)
     return heard
+
+
+def values(lines: list[str]) -> dict[str, object]:
+    """Values of the fields in lines of an outline, by what a screen reader calls the fields."""
+    fields = [match for line in lines if (match := _FIELD.match(line))]
+    return {match[1]: ast.literal_eval(match[2]) for match in fields}
 
 
 @contextmanager

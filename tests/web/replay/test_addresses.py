@@ -82,7 +82,7 @@ def test_runs_are_listed_newest_first(runs: Path) -> None:
 @pytest.mark.parametrize("name", ["../outside", "..", "", ".", "no run", "lab.log", "/etc", "older/../older"])
 def test_only_names_of_the_list_lead_anywhere(runs: Path, client: Client, name: str) -> None:
     with raises(ParameterError, "unknown_run"):
-        RunFolders(runs).place(name)
+        RunFolders(runs).folder_of(name)
     assert client.get("/replay/show", params={"run": name}).status_code == 404
     assert client.get("/replay/show", params={"run": "older", "ghost": name or "?"}).status_code == 404
     escaped = name.replace("/", "%2F") or "%20"

@@ -110,7 +110,7 @@ def procedure_comparison(data: ReportData) -> Markup:
         low=significant(low),
         middle=significant(median),
         high=significant(high),
-        file=_file("hardness_by_procedure", data),
+        file=_table_file("hardness_by_procedure", data),
     )
 
 
@@ -128,7 +128,7 @@ def seating_findings(data: ReportData) -> list[Markup]:
             shown=whole(count_resolved_offsets(rows)),
             all=counted(len(rows), "used series", "used series"),
             half=significant(float(np.nanmedian(half_widths))),
-            file=_file("seating", data),
+            file=_table_file("seating", data),
         )
     ]
     if without:
@@ -150,12 +150,12 @@ def unloading_findings(data: ReportData) -> list[Markup]:
             "inverse of the upper end of H_V / k_u. Every series stands in {file}.",
             resolved=whole(len(resolved)),
             all=counted(len(used), "used series with unloading", "used series with unloading"),
-            file=_file("unloading", data),
+            file=_table_file("unloading", data),
         )
     ]
 
 
-def _file(name: str, data: ReportData) -> Markup:
+def _table_file(name: str, data: ReportData) -> Markup:
     return Markup("<code>tables/{}{}.csv</code>").format(name, "_synthetic" if data.synthetic else "")
 
 

@@ -82,11 +82,11 @@ def model_rmse(data: ReportData, styles: Sequence[SiteStyle]) -> Drawing | LeftO
 
 def _label(row: Json, data: ReportData) -> str:
     selected = data.results["penetration"]["selected"]
-    text = f"${row['hardness'][0]}_\\mathrm{{{row['hardness'][2]}}}$: {_form(row)}"
+    text = f"${row['hardness'][0]}_\\mathrm{{{row['hardness'][2]}}}$: {_model_label(row)}"
     return f"▸ {text}" if selected and selected["id"] == row["id"] else text
 
 
-def _form(row: Json) -> str:
+def _model_label(row: Json) -> str:
     if row["a"] == "none":
         return "$b = 1$" if row["b"] == "one" else f"$b$ {row['b']}"
     return f"$a$, $b$ {row['b']}"

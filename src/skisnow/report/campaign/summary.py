@@ -62,10 +62,10 @@ def _experiments(results: Json) -> Iterator[str]:
             yield f"{kind} experiments: none"
             continue
         used, flagged = sum(row["used"] for row in rows), sum(bool(row["flags"]) for row in rows)
-        yield f"{kind} experiments: {len(rows)}, used {used}, flagged {flagged}{_codes(rows)}"
+        yield f"{kind} experiments: {len(rows)}, used {used}, flagged {flagged}{_flag_counts(rows)}"
 
 
-def _codes(rows: list[Json]) -> str:
+def _flag_counts(rows: list[Json]) -> str:
     counts: dict[str, int] = {}
     for row in rows:
         for code in row["flags"]:

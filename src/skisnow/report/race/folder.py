@@ -217,8 +217,8 @@ def race_summary(result: QuickestLine, checked: Sequence[tuple[str, Score]]) -> 
     """Text for a terminal: times, time gained, and the turns of the line; parameters as in `write_race`."""
     gates = len(result.line.turns)
     gained = "" if result.gained is None else f", {result.gained:.3f} s less than where the search began"
-    lines = [f"{gates} gates in {_time(result.score)}{gained}; {len(result.history)} evaluations"]
-    lines += [f"{name}: {_time(score)}" for name, score in checked]
+    lines = [f"{gates} gates in {_time_text(result.score)}{gained}; {len(result.history)} evaluations"]
+    lines += [f"{name}: {_time_text(score)}" for name, score in checked]
     lines.append(f"{'gate':>6} {'aside (m)':>10} {'along':>7} {'turning':>8}")
     for gate, turn in zip(result.line.course.gates, result.line.turns, strict=True):
         lines.append(f"{gate.name:>6} {turn.aside:10.2f} {turn.along:7.3f} {turn.turning:8.2f}")
@@ -306,7 +306,7 @@ def _csv(rows: Sequence[Sequence[object]]) -> str:
     return text.getvalue()
 
 
-def _time(score: Score) -> str:
+def _time_text(score: Score) -> str:
     return score.words if score.time is None else f"{score.time:.3f} s"
 
 

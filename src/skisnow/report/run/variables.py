@@ -166,14 +166,14 @@ def _coordinates() -> list[RunVariable]:
         RunVariable("time", (TIME,), "s", "time since the start", lambda run: run.time, axis="T"),
         RunVariable("station", (STATION,), "m", "place along the ski from the boot, positive forward, tip to tail",
                     lambda run: run.skis.station),
-        *(_axis(variable) for variable in _three("{}", (TIME,), "m", down, lambda run: run.place)),
+        *(_axis_variable(variable) for variable in _three("{}", (TIME,), "m", down, lambda run: run.place)),
         *_three("ski_{}", (TIME, SKI), "m", edge, lambda run: run.skis.track),
         *_three("groove_{}", (PIECE,), "m", "middle of a piece of groove, on the undisturbed surface: {}",
                 lambda run: run.groove.middle),
     ]  # fmt: skip
 
 
-def _axis(variable: RunVariable) -> RunVariable:
+def _axis_variable(variable: RunVariable) -> RunVariable:
     return RunVariable(
         variable.name, variable.dimensions, variable.units, variable.meaning, variable.values, variable.name.upper()
     )

@@ -54,7 +54,7 @@ _FURTHER: Final = {
 
 def key_sentences(chain: TurnChain) -> list[Markup]:
     """Key sentences: snow, contacts, band, and warnings near the limit of grip."""
-    contacts = [_contact(name, run) for name, run in chain.runs.items()]
+    contacts = [_contact_sentence(name, run) for name, run in chain.runs.items()]
     spreads = [_band(chain), *_spreads(chain), *_largest_share(chain)]
     return [_snow(chain), *contacts, *contrast(chain), *spreads, *_warnings(chain)]
 
@@ -85,8 +85,8 @@ def _spreads(chain: TurnChain) -> list[Markup]:
     inputs = list(band_inputs(chain))
     if not inputs:
         return []
-    measured = _listed([row.key for row in inputs if row.measured])
-    assumed = _listed([row.key for row in inputs if not row.measured])
+    measured = _key_list([row.key for row in inputs if row.measured])
+    assumed = _key_list([row.key for row in inputs if not row.measured])
     return [
         prose(
             "The band draws {measured} from the intervals that the campaign measured, {assumed} from priors.",
@@ -96,7 +96,7 @@ def _spreads(chain: TurnChain) -> list[Markup]:
     ]
 
 
-def _listed(keys: Sequence[str]) -> Markup:
+def _key_list(keys: Sequence[str]) -> Markup:
     *before, last = [_in_words(key) for key in keys] or [html("nothing")]
     return html(", ").join(before) + html(" and ") + last if before else last
 
@@ -162,7 +162,7 @@ def _displacement(value: float | None, ends: tuple[float, float] | None) -> Mark
     return prose(", u_y {value} mm {ends}", value=significant(value / MM), ends=interval([end / MM for end in ends]))
 
 
-def _contact(name: str, run: Run) -> Markup:
+def _contact_sentence(name: str, run: Run) -> Markup:
     grip, slides = used_grip(run)
     return prose(
         "{name}: {outcome} after {length} m and {time} s. The afterbody/forebody edge-depth ratio is {ratio}; the more "

@@ -124,7 +124,7 @@ def checked_fields(
         try:
             cells[column] = checked_cell(form, column, str(field.value or ""), conversion=units.get(column))
         except CellError as error:
-            field.error = problem_said(error, name=_name_said(field))
+            field.error = problem_said(error, name=_translated_name(field))
     return cells if len(cells) == len(fields) else None
 
 
@@ -139,7 +139,7 @@ def problem_said(error: SkisnowError, *, name: str = "") -> str:
     return f"{problem} {said_template(error.fix, *(number_said(f'{limit:g}') for limit in error.limits))}"
 
 
-def _name_said(field: Field) -> str:
+def _translated_name(field: Field) -> str:
     return str(field.props.get("aria-label") or field.props.get("label") or "")
 
 
@@ -193,7 +193,7 @@ def _request_key(record: Any) -> str:
     return once if isinstance(once, str) and 0 < len(once) <= LONGEST else ""
 
 
-def _cells(record: Any) -> dict[str, str]:
+def _sent_cells(record: Any) -> dict[str, str]:
     said = record.get("cells") if isinstance(record, dict) else None
     if not isinstance(said, dict):
         return {}
@@ -202,7 +202,7 @@ def _cells(record: Any) -> dict[str, str]:
 
 
 def _words_said(record: Any) -> str:
-    cells = _cells(record)
+    cells = _sent_cells(record)
     if not cells:
         return said("a reading")
     return said_template(
@@ -212,9 +212,9 @@ def _words_said(record: Any) -> str:
 
 def _stored(session: EditSession, record: Any, once: str) -> str:
     """Store a reading; returns the name of its series."""
-    said = _cells(record)
+    said = _sent_cells(record)
     if not once or not said:
-        raise ParameterError(Message("this is no reading"), code="not_a_reading")
+        raise ParameterError(Message("this is not a reading"), code="not_a_reading")
     cells = {column: checked_cell(FORMS[FILE], column, text) for column, text in said.items()}
     if cells["tool"] not in session.described.tools:
         raise ParameterError(Message("the campaign has no tool {tool!r}", tool=cells["tool"]), code="unknown_name")

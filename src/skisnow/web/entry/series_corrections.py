@@ -191,7 +191,7 @@ class AfterWaiting:
         return depth
 
     def _store(self, ask: ui.element) -> bool:
-        """Store new depths, and ask for the reason of changed ones."""
+        """Store new depths, and ask for the reason of changed ones; False if nothing is stored or asked."""
         depths = self._checked()
         if depths is None:
             return False

@@ -30,7 +30,8 @@ if TYPE_CHECKING:
 
 HERE = "/"
 UNREAD = Message(
-    "no table of this campaign can be read; what is wrong in its files stands under Analysis in the list of campaigns"
+    "no table of this campaign can be read; what is wrong in its files is listed under Analysis in the list of "
+    "campaigns"
 )
 
 
@@ -143,6 +144,7 @@ class ImportedTestForm:
         return changed is None or bool(changed)
 
     def _ask_correction(self, name: str) -> bool:
+        """Ask for the reason of changed cells; False if a cell is rejected."""
         test = self._view.test(name)
         stored = test.rows[0].cells
         changed = self._changed(stored)

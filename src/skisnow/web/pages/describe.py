@@ -141,7 +141,9 @@ class DescriptionForm:
         loads = " ".join(f"{load:g}" for load in values.get("load_steps_N", ()))
         with ui.element("div").classes("fields"):
             self._loads = field("Disc loads (N), with blanks between", loads, wide=True)
-            self._numbers = {key: field(words, _text(values.get(key)), numeric=True) for key, words in NUMBERS.items()}
+            self._numbers = {
+                key: field(words, _number_text(values.get(key)), numeric=True) for key, words in NUMBERS.items()
+            }
         self._tools = EntryRows("Tools", "tool", values.get("tool", ()))
         self._plates = EntryRows("Plates of the shear test", "plate", values.get("plate", ()))
 
@@ -203,7 +205,7 @@ class EntryRows:
                 shape = choice(_SHAPE.format(number), SHAPE_WORDS, values.get("shape", "ski"))
             keys = LENGTHS_OF_SHAPES if shape is not None else {"length_mm": LENGTHS["length_mm"]}
             lengths = {
-                key: field(f"{words} of {self.kind} {number}", _text(values.get(key)), numeric=True)
+                key: field(f"{words} of {self.kind} {number}", _number_text(values.get(key)), numeric=True)
                 for key, words in keys.items()
             }
         self._rows.append((name, shape, lengths))
@@ -245,7 +247,7 @@ def _default_description() -> dict[str, Any]:
     }
 
 
-def _text(value: float | None) -> str:
+def _number_text(value: float | None) -> str:
     return "" if value is None else f"{value:.12g}"
 
 

@@ -56,7 +56,7 @@ def add_page(lab: Lab) -> None:
                 _side_by_side_form(names, tracks.names(), track)
             _track_form()
             for name in names:
-                _add_run(runs.place(name), name)
+                _add_run(runs.folder_of(name), name)
 
 
 def _add_run(place: Path, name: str) -> None:

@@ -20,7 +20,7 @@ from ..page_requests import redrawn_by
 from ..replay_addresses import show_address
 from ..runs import Job, Runs, duration_words, estimated_s
 from ..scenario_fields import ScenarioField, called, in_labels
-from ..snow_choice import SnowChoice, require_scenario, results_with, snow_words
+from ..snow_choice import SnowChoice, require_scenario, results_and_snow_words, snow_words
 from ..upload_forms import add_upload, file_input, submit_button, upload_form, uploaded_files
 
 if TYPE_CHECKING:
@@ -246,7 +246,7 @@ class _Form:
         if not self._snow.gives_stress:
             changes[OF_SNOW[1]] = self._fields[OF_SNOW[1]].text
         assert snow.analysis is not None
-        results = await run.io_bound(results_with, snow.analysis, scenario, changes)
+        results = await run.io_bound(results_and_snow_words, snow.analysis, scenario, changes)
         if results is None:
             raise ParameterError(Message("the lab is about to end"), code="lab_ends")
         return results
@@ -274,7 +274,7 @@ def _has_skier(values: Mapping[str, Any]) -> bool:
 
 def _keep_course(courses: LabCourses, form: FormData) -> str:
     """Store an uploaded course; returns the address of the page with this course."""
-    upload = uploaded_files(form, "file", "no file was chosen; choose the file of a course")[0]
+    upload = uploaded_files(form, "file", Message("no file was chosen; choose the file of a course"))[0]
     return f"{PATH}?course={quote(courses.keep((upload.filename or '')[:200], upload.file), safe='')}"
 
 

@@ -212,10 +212,10 @@ def test_plain_files_are_unpacked_however_they_are_packed(folder: Path, method: 
             packed({"a": b"x"}, method=zipfile.ZIP_BZIP2),
             "'a' in the zip file is packed in an unusual way; choose Deflate",
         ),
-        (packed({"a": bytes(5001)}), "more than 5000 bytes at once are not taken in"),
-        (packed(dict.fromkeys("abcde", b"")), "more than 4 files at once are not taken in"),
-        (packed({f"{'a/' * 33}b": b""}), f"the file '{'a/' * 33}b' is not taken in: it lies in more than 32 folders"),
-        (packed({"b" * 300: b""}), f"the file '{'b' * 79}…' is not taken in: its name is too long"),
+        (packed({"a": bytes(5001)}), "more than 5000 bytes at once are not accepted"),
+        (packed(dict.fromkeys("abcde", b"")), "more than 4 files at once are not accepted"),
+        (packed({f"{'a/' * 33}b": b""}), f"the file '{'a/' * 33}b' is not accepted: it is in more than 32 folders"),
+        (packed({"b" * 300: b""}), f"the file '{'b' * 79}…' is not accepted: its name is too long"),
         (packed({"a": b"", "a/b": b""}), "two files of the upload are called 'a/b'"),
     ],
 )
@@ -272,7 +272,7 @@ def test_of_a_large_zip_its_end_alone_is_looked_at_first(folder: Path, monkeypat
 def test_a_name_that_some_system_has_not_is_refused(folder: Path, name: str) -> None:
     with pytest.raises(ParameterError) as found:
         taken(folder, {name: b"x"})
-    assert str(found.value).startswith(f"the file '{name}' is not taken in: ")
+    assert str(found.value).startswith(f"the file '{name}' is not accepted: ")
     assert list(folder.iterdir()) == []
 
 

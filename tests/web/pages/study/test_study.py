@@ -225,8 +225,8 @@ def test_another_input_begins_anew(desk: Desk) -> None:
 @pytest.mark.parametrize(
     ("typed", "told"),
     [
-        ({FROM: ""}, f"{ANGLE}: type both ends of what it goes through"),
-        ({TO: " "}, f"{ANGLE}: type both ends of what it goes through"),
+        ({FROM: ""}, f"{ANGLE}: type both ends of its range"),
+        ({TO: " "}, f"{ANGLE}: type both ends of its range"),
         ({FROM: "a"}, f"{ANGLE}, the lower end: 'a' is no number. Correct it"),
         ({TO: "inf"}, f"{ANGLE}, the upper end: 'inf' is no number. Correct it"),
         ({TO: "88"}, f"{ANGLE} is 88.0; allowed is from 0 to 85 °"),
