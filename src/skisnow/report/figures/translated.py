@@ -1,4 +1,4 @@
-"""A figure in another language: all words and numbers in it, before it is drawn."""
+"""Translation of a figure: all words and numbers in it, before it is drawn."""
 
 from __future__ import annotations
 
@@ -19,31 +19,31 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _MATHS: Final = re.compile(r"\$[^$]*\$")
-_PUT_AWAY: Final = re.compile(rf"{FIRST}(\d+){LAST}")
+_PLACEHOLDER: Final = re.compile(rf"{FIRST}(\d+){LAST}")
 
 
 def translate_figure(figure: Figure, language: str, *, names: Set[str] = frozenset()) -> None:
-    """Change the figure itself: titles, labels, legends, notes, and how numbers stand at its axes.
+    """Translate titles, labels, legends, notes and numbers at the axes of the figure itself.
 
     Parameters
     ----------
     figure
-        As it was drawn in English.
+        Figure in English.
     language
-        Its code; there is a catalogue of it.
+        Code of a language with a catalogue.
     names
-        What users wrote and is no word of ours, as it stands in the figure.
+        Texts of users, as in the figure; they are not translated.
     """
     if language == ENGLISH:
         return
-    said = _sayer(language, names)
+    translate = _translator(language, names)
     for axes in figure.axes:
         for axis in (axes.xaxis, axes.yaxis):
-            _translate_numbers(axis, said)
+            _translate_numbers(axis, translate)
     for text in figure.findobj(Text):
         assert isinstance(text, Text)
         if text.get_text():
-            text.set_text(said(text.get_text()))
+            text.set_text(translate(text.get_text()))
     _lay_out_legends(figure)
 
 
@@ -57,37 +57,39 @@ def _lay_out_legends(figure: Figure) -> None:
         legend_below(figure, handles)
 
 
-def _sayer(language: str, names: Set[str]) -> Callable[[str], str]:
-    """What translates one text, of which formulas are places."""
-    known = catalogue(language).keeping(names)
+def _translator(language: str, names: Set[str]) -> Callable[[str], str]:
+    """Function that translates a text and keeps its formulas."""
+    texts = catalogue(language).keeping(names)
 
-    def said(text: str) -> str:
+    def translate(text: str) -> str:
         if text in names:
             return text
         formulas = _MATHS.findall(text)
         numbers = iter(range(len(formulas)))
         plain = _MATHS.sub(lambda _: f"{FIRST}{next(numbers)}{LAST}", text)
-        lines = "\n".join(map(known.translated, plain.split("\n")))
-        return _PUT_AWAY.sub(lambda found: formulas[int(found[1])], known.with_numbers(lines))
+        lines = "\n".join(map(texts.translated, plain.split("\n")))
+        return _PLACEHOLDER.sub(lambda number: formulas[int(number[1])], texts.with_numbers(lines))
 
-    return said
-
-
-def _translate_numbers(axis: Axis, said: Callable[[str], str]) -> None:
-    if not isinstance(axis.get_major_formatter(), _Said):  # else that of another panel, which they share
-        axis.set_major_formatter(_Said(axis.get_major_formatter(), said))
-        axis.set_minor_formatter(_Said(axis.get_minor_formatter(), said))
+    return translate
 
 
-class _Said(Formatter):
-    """What another formatter writes at an axis, in the language of the figure."""
+def _translate_numbers(axis: Axis, translate: Callable[[str], str]) -> None:
+    if not isinstance(
+        axis.get_major_formatter(), _TranslatedFormatter
+    ):  # otherwise translated with another panel that shares the axis
+        axis.set_major_formatter(_TranslatedFormatter(axis.get_major_formatter(), translate))
+        axis.set_minor_formatter(_TranslatedFormatter(axis.get_minor_formatter(), translate))
 
-    def __init__(self, other: Any, said: Callable[[str], str]) -> None:
+
+class _TranslatedFormatter(Formatter):
+    """Formatter that translates the texts of another formatter."""
+
+    def __init__(self, other: Any, translate: Callable[[str], str]) -> None:
         self._other = other
-        self._said = said
+        self._translate = translate
 
     def __call__(self, x: float, pos: int | None = None) -> str:
-        return self._said(self._other(x, pos))
+        return self._translate(self._other(x, pos))
 
     def set_axis(self, axis: Any) -> None:
         self._other.set_axis(axis)
@@ -96,7 +98,7 @@ class _Said(Formatter):
         self._other.set_locs(locs)
 
     def format_ticks(self, values: Sequence[float]) -> list[str]:
-        return [self._said(each) for each in self._other.format_ticks(values)]
+        return [self._translate(text) for text in self._other.format_ticks(values)]
 
     def get_offset(self) -> str:
-        return self._said(self._other.get_offset())
+        return self._translate(self._other.get_offset())

@@ -271,7 +271,7 @@ def ensemble_sentence(chain: TurnChain) -> Markup:
 
 
 def ensemble_accuracy(chain: TurnChain) -> list[Markup]:
-    """Sentence with the error of the ensemble's longer time steps; empty if it has none."""
+    """Sentence with the error of the ensemble's longer time steps; empty if it is not known."""
     if chain.ensemble_error is None:
         return []
     return [
