@@ -57,7 +57,7 @@ def _head(count: int, varied: int) -> Iterator[str]:
     yield ""
     ways = ", ".join(f"{way} mm ({case})" for case, way in BY_S_F.items())
     yield "In mm on the slope; another outcome where the run does not end as it did. The default method's own error is"
-    yield f"7 mm after 46 m. A change of S_f by 0.1 % moves the ends by {ways}. A constant of the solver should not move"
+    yield f"7 mm after 46 m. A change of S_f by 0.1 % moves ends by {ways}. A constant of the solver should not move"
     yield "them by more than the larger of both; `MILNE`, `MOST_TURN` and `PART_ALONG` do. Shape, snow and skier may."
     yield "`KNOT_AREA` moves nothing here, because a run takes it from `solver.groove_tolerance`."
     yield ""
