@@ -43,7 +43,9 @@ def test_kept_without_outputs(name: str) -> None:
 def test_page_has_every_cell(name: str) -> None:
     page, place = text_of_page(name), 0
     for cell in write_notebooks.cells_of(name):
-        place = page.index(cell.text, place)
+        found = page.find(cell.text, place)
+        assert found >= place, cell.text
+        place = found
 
 
 def test_reading() -> None:

@@ -73,6 +73,7 @@ def test_what_is_named_beside_it_exists(documented: Any) -> None:
         module, _, rest = line.split(" : ")[0].strip().removeprefix("skisnow.").rpartition(".")
         place: Any = skisnow
         for part in [*filter(None, module.split(".")), rest]:
+            assert hasattr(place, part), line
             place = getattr(place, part)
 
 
