@@ -9,6 +9,7 @@ import re
 import tomllib
 from collections import Counter
 from pathlib import Path
+from typing import Any, cast
 
 import numpy as np
 import pytest
@@ -189,9 +190,9 @@ def test_shear_without_errors_gives_the_printed_regressions() -> None:
 
 @pytest.mark.parametrize(("name", "sd"), [("moment_sd", 0.2), ("lever_arm_sd", 1e-3)])
 def test_errors_of_the_moment_and_its_arm(name: str, sd: float) -> None:
-    errors = []
+    errors, changes = [], cast("Any", {name: sd})
     for seed in range(20):
-        drawn = reference_campaign(seed, noise=dataclasses.replace(QUIET, **{name: sd}))
+        drawn = reference_campaign(seed, noise=dataclasses.replace(QUIET, **changes))
         force = drawn.failure_shear_stress * 0.1 * drawn.shear.penetration_depth  # N, on the 100 mm plate
         exact = force * drawn.shear.lever_arm
         errors.append((drawn.shear.moment - exact) / (1.0 if name == "moment_sd" else force))
@@ -241,7 +242,7 @@ def test_a_seed_is_an_integer(seed: object) -> None:
 )
 def test_impossible_noise_is_refused(name: str, value: float) -> None:
     with pytest.raises(ParameterError, match=name):
-        ReferenceNoise(**{name: value})
+        ReferenceNoise(**cast("Any", {name: value}))
 
 
 def test_written_files_have_the_contracts_columns(tmp_path: Path) -> None:
