@@ -213,9 +213,9 @@ def test_boots_move_with_even_acceleration() -> None:
     assert np.abs(np.diff(place, axis=0) / step - 0.5 * (velocity[1:] + velocity[:-1])).max() < 1e-3
 
 
-def swing(legs: float) -> float:
+def swing(legs: float, **changes: object) -> float:
     """Rms (N) of the load of the outer ski between 5 and 12 Hz in the first turns, with legs that so give way (1/s)."""
-    run = simulate(tall(Skier(leg_yielding=legs), duration_s=3.5))
+    run = simulate(tall(Skier(leg_yielding=legs), duration_s=3.5, **changes))
     turning = run.time > 1.0
     load, rates = run.balance.load[turning], np.fft.rfftfreq(int(turning.sum()), float(np.median(np.diff(run.time))))
     parts = np.fft.rfft(load - load.mean(axis=0), axis=0)
@@ -227,11 +227,12 @@ def swing(legs: float) -> float:
 def test_loads_do_not_chatter_from_ski_to_ski() -> None:
     """Legs that do not give way let the load go to and fro some six times a second.
 
-    Legs that give way take at least four fifths of that.
+    Legs that give way take at least four fifths of that. Friction across the skis is left out of this comparison: it
+    changes its side when a ski changes the direction in which it skids, and adds 5 N whatever the legs do.
     """
-    left = swing(Skier().leg_yielding)
-    assert left < 20.0
-    assert left < 0.2 * swing(0.0)
+    assert swing(Skier().leg_yielding) < 20.0
+    along = {"friction.direction": "along-ski"}
+    assert swing(Skier().leg_yielding, **along) < 0.2 * swing(0.0, **along)
 
 
 def test_left_and_right_mirror() -> None:
