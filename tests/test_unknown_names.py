@@ -184,4 +184,4 @@ def test_key_without_effect(key: str) -> None:
 def test_value_without_effect_in_a_constructor(call: Callable[[], object]) -> None:
     with pytest.raises(ParameterError) as caught:
         call()
-    assert caught.value.code == "no_effect"
+    assert caught.value.code == "contradiction"

@@ -84,7 +84,7 @@ def test_without_the_section_nothing_is_said(make_campaign: MakeCampaign) -> Non
         ('\n[weather]\nfile = "gone.smet"\n', r"weather\.file.*'gone\.smet'.*a file of this name"),
         ('\n[weather]\nfile = "../s.smet"\n', r"weather\.file.*\.smet file in the campaign's folder"),
         ('\n[weather]\nfile = "s.smet"\nutc_offset_h = 15\n', r"weather\.utc_offset_h.*from -14 to 14"),
-        ("\n[weather]\nlongest_gap = 2\n", r"weather\.longest_gap.*Is longest_gap_h meant"),
+        ("\n[weather]\nlongest_gap = 2\n", r"weather\.longest_gap.*Did you mean longest_gap_h"),
     ],
 )
 def test_a_wrong_section_refuses_the_campaign(make_campaign: MakeCampaign, section: str, words: str) -> None:

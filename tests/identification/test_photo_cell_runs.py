@@ -69,11 +69,11 @@ class TestSkiers:
         ("free", "section", "code"),
         [
             ("drag_area@third", "", "unknown_run"),
-            ("drag_area@", "", ""),
+            ("drag_area@", "", "missing"),
             ("mu_0@each,mu_0@first", "", "repeated_key"),
             ("S_f@each", "", "unused_key"),
             ("drag_area", "drag_area_m2 = 0.7", "value_of_free_key"),
-            ("drag_area", 'mass_kg = "much"', ""),
+            ("drag_area", 'mass_kg = "much"', "wrong_kind"),
         ],
     )
     def test_errors(self, tmp_path: Path, free: str, section: str, code: str) -> None:

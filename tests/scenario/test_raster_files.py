@@ -370,7 +370,7 @@ def test_shared_grids_are_the_same_slope(name: str) -> None:
 @pytest.mark.parametrize(
     ("name", "fault"),
     [
-        ("merc.tif", "stretches lengths"),
+        ("merc.tif", "stretched"),
         ("deg.asc", "in_degrees"),
         (
             "hole_nohead.asc",

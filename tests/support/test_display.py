@@ -87,7 +87,7 @@ def objects(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
 def test_every_public_class_is_looked_at(objects: dict[str, Any]) -> None:
     classes = {name: getattr(skisnow, name) for name in skisnow.__all__}
     shown = {name for name, each in classes.items() if isinstance(each, type) and not issubclass(each, Exception)}
-    assert shown == set(objects)
+    assert shown <= set(objects)
 
 
 def test_every_public_object_and_its_parts_are_shown_below_ten_lines(objects: dict[str, Any]) -> None:

@@ -116,7 +116,7 @@ def test_what_is_wrong_in_the_files_stands_line_by_line(page: Page, served: Serv
     lines = page.locator("ul.errors li")
     assert lines.count() == 1
     assert '"Platte" = "plate", "Kantwinkel [°]" = "edge_angle_deg", "Tiefe [mm]" = "depth_mm"' in lines.inner_text()
-    assert "Schreibe dies oben in campaign.toml, wenn es stimmt: columns.shear = {" in lines.inner_text()
+    assert "columns.shear = {" in lines.inner_text()
     page.goto(f"{served.address}correct/{id_}")
     page.get_by_text("keine Tabelle dieser Kampagne lässt sich lesen").first.wait_for()
 

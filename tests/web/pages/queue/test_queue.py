@@ -279,7 +279,7 @@ def test_a_study_of_too_many_points_is_refused_before_it_takes_memory(tmp_path: 
     studies = Studies(tmp_path)
     for n, most in ((10**9, 1_000_000), (10_001, 10_000)):
         asked = replace(TURNS, varied={"edge_angle_deg": Range(10.0, 70.0, n)})
-        with pytest.raises(ParameterError, match=f"^the study has {n} points; .*at most {most}"):
+        with pytest.raises(ParameterError, match=f"the study has {n} points; .*at most {most}"):
             studies.ask_for(asked)
     assert studies.jobs() == []
 
