@@ -23,7 +23,8 @@ _UNREAD: Final = """
     open startswith endswith replace removeprefix removesuffix split join getattr hasattr import_module attrgetter
     read_text write_text encode decode mkdtemp TemporaryDirectory create query_params execute text debug info warning
     error set_cookie setdefault get pop page api_route simplefilter filterwarnings strptime strftime TypeVar isinstance
-    Message template count_message PageRequest NewEntry partial cast Environment PackageLoader get_template fullmatch sub finditer glob
+    Message template count_message PageRequest NewEntry partial cast Environment PackageLoader get_template fullmatch
+    sub finditer glob
 """
 UNREAD_CALLS: Final = frozenset(_UNREAD.split())
 """Arguments of these are read by programs, or their translation is checked elsewhere (`Message`)."""
