@@ -6,6 +6,10 @@ from typing import Any, Final
 
 import numpy as np
 
+from skisnow.scenario.keys import SCENARIO_KEYS
+from skisnow.scenario.reading import load_input
+from skisnow.scenario.resolution import CONDITIONS
+
 SHARE: Final = 0.25
 """Probability of each key to be given."""
 LOGARITHMIC: Final = {
@@ -75,16 +79,29 @@ def changes(seed: int, law: str | None = None) -> dict[str, Any]:
     out["run.duration_s"], out["solver.method"] = float(rng.uniform(*DURATION)), "fast"
     out["shear.law"] = law or list(LAWS)[int(rng.integers(len(LAWS)))]
     out |= {key: float(rng.uniform(*ends)) for key, ends in LAWS[out["shear.law"]].items()}
-    for key in _replaced(out):
-        out.pop(key, None)
-    return out
+    if out["shear.law"] == "by-density":
+        out.pop("snow.S_f_N_per_mm2", None)
+    if out.get("snow.penetration") == "elastic":
+        out.pop("snow.unloading_ratio", None)
+    return _with_effect(out)
 
 
 def _logarithmic(rng: np.random.Generator, least: float, most: float) -> float:
     return float(np.exp(rng.uniform(np.log(least), np.log(most))))
 
 
-def _replaced(values: dict[str, Any]) -> list[str]:
-    """Keys that another value makes meaningless."""
-    strength = ["snow.S_f_N_per_mm2"] if values["shear.law"] == "by-density" else []
-    return strength + (["snow.unloading_ratio"] if values.get("snow.penetration") == "elastic" else [])
+def _with_effect(values: dict[str, Any]) -> dict[str, Any]:
+    """The keys that act: another key's value can make one meaningless, which scenarios reject."""
+    base = load_input("carved-46m").layers[-1].values
+    remaining = values
+    while True:
+        context = {**base, **remaining}
+        without_effect = {
+            name
+            for name in remaining
+            if (condition := CONDITIONS.get(name)) is not None
+            and not condition.holds(context.get(condition.key, SCENARIO_KEYS[condition.key].default))
+        }
+        if not without_effect:
+            return remaining
+        remaining = {name: value for name, value in remaining.items() if name not in without_effect}

@@ -8,6 +8,9 @@ import pytest
 from benchmarks.turns import allowed_keys, scenarios
 
 from skisnow.scenario.keys import SCENARIO_KEYS
+from skisnow.scenario.reading import load_input
+from skisnow.scenario.resolution import resolve
+from skisnow.ski.sources import Sources
 
 QUICK = 10
 """A seed whose sledge tips over soon."""
@@ -29,6 +32,7 @@ def test_any_values_are_those_of_a_scenario() -> None:
         assert given == allowed_keys.changes(seed, "by-angle")
         assert set(given) <= set(SCENARIO_KEYS)
         assert given["shear.law"] == "by-angle"
+        resolve(load_input("carved-46m").changed(given), Sources())
     assert {allowed_keys.changes(seed)["shear.law"] for seed in range(50)} == set(allowed_keys.LAWS)
 
 
