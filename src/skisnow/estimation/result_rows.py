@@ -69,6 +69,15 @@ def experiment_hardness(campaign: Campaign, *, geometry: GeometryForm = "extende
     return hardness_at_largest_load(readings, DEFINITIONS["H_V"])
 
 
+def first_hardness(campaign: Campaign) -> tuple[str, float] | None:
+    """Name and H_V (N/mm³) of the first series on an edge, as a check of a table's units; None without one."""
+    if campaign.penetration is None:
+        return None
+    hardness = experiment_hardness(campaign) / N_PER_MM3
+    usable = np.flatnonzero(np.isfinite(hardness) & (campaign.penetration.edge_angle > 0))
+    return (campaign.penetration.experiment[usable[0]], float(hardness[usable[0]])) if len(usable) else None
+
+
 def without_nan(value: Any) -> Any:
     """Replace every number that is not finite by None, and every interval that is not known at both ends as a whole."""
     if isinstance(value, Rows):

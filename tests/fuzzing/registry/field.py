@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import io
+from argparse import Namespace
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
@@ -12,13 +13,15 @@ from tempfile import TemporaryDirectory
 
 import numpy as np
 
-from skisnow import read_campaign, write_reference
+from skisnow import read_campaign, samples, write_reference
 from skisnow._support.errors import FieldDataError
 from skisnow.campaign.caaml import read_caaml
+from skisnow.campaign.importing import Answers, propose, read_template
 from skisnow.campaign.smet import read_smet
 from skisnow.campaign.snow_micro_pen import read_snow_micro_pen
 from skisnow.campaign.snow_pit import read_density_layers
 from skisnow.campaign.templates import workbook_bytes
+from skisnow.cli import import_file
 from skisnow.interop.caaml import write_caaml
 from tests.campaign.recordings import built
 from tests.interop.pits import full_pit
@@ -129,6 +132,14 @@ def _read_workbook(folder: Path) -> object:
         return [str(each) for each in error.problems]
 
 
+SAMPLES = Path(samples.__file__).parent / "files"
+
+
+@cache
+def _imported() -> Files:
+    return propose("two-sites.xlsx", (SAMPLES / "two-sites.xlsx").read_bytes()).files
+
+
 @cache
 def _pit() -> Files:
     with TemporaryDirectory() as name:
@@ -179,6 +190,22 @@ READERS = (
         read=_read_workbook,
         mutations=archive(_member),
         covers=("campaign.reading.campaign:_read_folder", "_support.user_files.workbook:workbook_sheets"),
+    ),
+    Reader(
+        name="two-sites.xlsx",
+        target="two-sites.xlsx",
+        files=lambda: {"two-sites.xlsx": (SAMPLES / "two-sites.xlsx").read_bytes()},
+        read=lambda folder: import_file._answered(Namespace(file=folder / "two-sites.xlsx"), Answers(), asks=False),
+        mutations=archive(_member),
+        covers=("cli.import_file:_answered",),
+    ),
+    Reader(
+        name="[import]",
+        target="campaign.toml",
+        files=_imported,
+        read=lambda folder: read_template(folder / "campaign.toml"),
+        mutations=TOML,
+        covers=("campaign.importing.answers:read_template",),
     ),
     _single("pit.caaml", lambda: _pit()["pit.caaml"], read_caaml, XML, "campaign.caaml:read_caaml"),
     _single("station.smet", lambda: _SMET, lambda path: repr(read_smet(path)), TEXT, "campaign.smet:read_smet"),

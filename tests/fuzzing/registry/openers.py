@@ -41,6 +41,8 @@ NO_READERS: Final[Mapping[str, str]] = {
     "simulation.run_summary:_provenance": "bytes for a SHA-256",
     "studies.run:_hash": "bytes for a SHA-256",
     "studies.study:Study.fingerprint": "bytes for a SHA-256",
+    "campaign.importing.folder:_sha256": "bytes for a SHA-256",
+    "campaign.importing.folder:undo_import": "hashes that the import has written; none leads out of the folder",
     "campaign.store.folder:read_chunks": "bytes for the store, whatever they say",
     "campaign.store.export:add_corrections": "a file of the campaign that it has just exported",
     "campaign.store.engine:_damage": "a store that is known to be damaged, for the integrity check",

@@ -12,6 +12,7 @@ import re
 import warnings
 import zipfile
 from datetime import date, datetime, time
+from functools import partial
 from typing import TYPE_CHECKING, Any, Final, TypeAlias
 from xml.parsers import expat
 
@@ -39,7 +40,9 @@ _CHUNK: Final = 1 << 18
 _OLD_KIND: Final = b"\xd0\xcf\x11\xe0"
 
 
-def workbook_sheets(data: bytes, *, wanted: Callable[[str], bool]) -> dict[str, Rows | None]:
+def workbook_sheets(
+    data: bytes, *, wanted: Callable[[str], bool], fractions: dict[str, list[tuple[int, int]]] | None = None
+) -> dict[str, Rows | None]:
     """Read the sheets of a workbook.
 
     Parameters
@@ -48,6 +51,9 @@ def workbook_sheets(data: bytes, *, wanted: Callable[[str], bool]) -> dict[str, 
         The .xlsx file.
     wanted
         Says by its name whether a sheet is to be read.
+    fractions
+        If given: takes row and column, counted from 0, of each number with a fraction, by sheet; all such numbers then
+        have a decimal point.
 
     Returns
     -------
@@ -75,7 +81,35 @@ def workbook_sheets(data: bytes, *, wanted: Callable[[str], bool]) -> dict[str, 
                 ),
                 code="too_large",
             )
-        return {sheet.title: _rows(sheet) if wanted(sheet.title) else None for sheet in book.worksheets}
+        places: dict[str, list[tuple[int, int]]] = {} if fractions is None else fractions
+        return {
+            sheet.title: _rows(sheet, places.setdefault(sheet.title, []), like_typed=fractions is None)
+            if wanted(sheet.title)
+            else None
+            for sheet in book.worksheets
+        }
+
+
+def merged_ranges(data: bytes) -> dict[str, list[tuple[int, int, int, int]]]:
+    """Merged ranges of each sheet as top, left, bottom and right, counted from 0; errors as `workbook_sheets`."""
+    _require_sound(data)
+    from openpyxl import load_workbook
+
+    with warnings.catch_warnings(), zipfile.ZipFile(io.BytesIO(data)) as archive:
+        warnings.simplefilter("ignore")
+        book = _undamaged(lambda: load_workbook(io.BytesIO(data), read_only=True, keep_links=False))
+        merged = {}
+        for sheet in book.worksheets:
+            merged[sheet.title] = _undamaged(partial(_merged_in, archive, sheet._worksheet_path))
+        return merged
+
+
+def _merged_in(archive: zipfile.ZipFile, part: str) -> list[tuple[int, int, int, int]]:
+    from openpyxl.utils.cell import range_boundaries
+
+    names = re.findall(rb"<(?:\w+:)?mergeCell\s[^>]*?ref=\"([A-Z]+[0-9]+:[A-Z]+[0-9]+)\"", archive.read(part))
+    bounds = (range_boundaries(name.decode()) for name in names)
+    return [(top - 1, left - 1, bottom - 1, right - 1) for left, top, right, bottom in bounds]
 
 
 def _undamaged(doing: Callable[[], Any]) -> Any:
@@ -94,10 +128,9 @@ def _undamaged(doing: Callable[[], Any]) -> Any:
         ) from error
 
 
-def _rows(sheet: Any) -> Rows:
+def _rows(sheet: Any, fractions: list[tuple[int, int]], *, like_typed: bool) -> Rows:
     sheet.reset_dimensions()  # the stated size may be wrong
     rows: Rows = []
-    fractions: list[tuple[int, int]] = []
     typed = {".": 0, ",": 0}
 
     def read() -> None:
@@ -135,7 +168,7 @@ def _rows(sheet: Any) -> Rows:
     _undamaged(read)
     while rows and not rows[-1]:
         rows.pop()
-    if typed[","] > typed["."]:  # then a reader would take 43.5 for a thousand
+    if like_typed and typed[","] > typed["."]:  # then a reader would take 43.5 for a thousand
         for row, place in fractions:
             rows[row][place] = rows[row][place].replace(".", ",")
     return rows

@@ -303,7 +303,10 @@ def _missing_measurements() -> Problem:
 def _read_description(files: RawFiles) -> CampaignFile | None:
     data = files.read(CAMPAIGN_FILE)
     if CAMPAIGN_FILE in files.absent:
-        action = Message("`skisnow new campaign` writes one into this folder: put your tools and plates there.")
+        action = Message(
+            "`skisnow new campaign` writes one into this folder; `skisnow import FILE --out DIR` makes a campaign of a "
+            "workbook or table in another layout."
+        )
         allowed = Message("a file of this name in the folder")
         files.problems.append(error("bad_toml", CAMPAIGN_FILE, allowed=allowed, action=action))
     if data is None:

@@ -31,6 +31,7 @@ def campaign_schema() -> Schema:
             "plate": {"type": "array", "items": {"$ref": "#/$defs/plate"}},
             "columns": _by_heading("Column of the numbers or texts below a heading"),
             "units": _by_heading("Unit of the numbers below a heading that names none"),
+            "import": {"type": "object", "description": "File, answers and notes of skisnow import."},
             "snow_micro_pen": _recordings(),
             "weather": _weather(),
             "screening": {"type": "object", "properties": {"exclude": _exclude()}},

@@ -1,0 +1,127 @@
+"""Answers of the user to an import: options of the command, and the named template in campaign.toml."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass, field, fields, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Final, Self
+
+from ..._support.errors import ParameterError
+from ..._support.messages import Message
+from ..._support.user_files import read_toml
+from ..reading.campaign_file import CAMPAIGN_FILE
+from ..reading.headings import plain_heading
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+SECTION: Final = "import"
+NONE: Final = "-"
+"""Answer for a table or column that is not imported."""
+KINDS: Final = ("table", "column", "unit", "site", "tool", "plate", "cells", "ignore")
+"""Options with answers, and keys of ``[import]``."""
+
+
+@dataclass(frozen=True, slots=True)
+class Answers:
+    """Answers by option.
+
+    Attributes
+    ----------
+    table
+        Table ("penetration", or "-" for none) by heading row, as SHEET:ROW.
+    column, unit
+        Column or "-", and unit, by heading, or by TABLE.HEADING.
+    site
+        Site by sheet.
+    tool, plate
+        Shape with lengths, such as "ski 200 x 62 mm" and "100 mm", by the name in the table; "" for all rows.
+    cells
+        "decimal": "," or "."; "fill-down": "yes" if a blank name or angle is that of the row above.
+    ignore
+        Rows, columns and cells that are not imported, as SHEET!5, SHEET!H or SHEET!H5, each with "yes".
+    """
+
+    table: Mapping[str, str] = field(default_factory=dict)
+    column: Mapping[str, str] = field(default_factory=dict)
+    unit: Mapping[str, str] = field(default_factory=dict)
+    site: Mapping[str, str] = field(default_factory=dict)
+    tool: Mapping[str, str] = field(default_factory=dict)
+    plate: Mapping[str, str] = field(default_factory=dict)
+    cells: Mapping[str, str] = field(default_factory=dict)
+    ignore: Mapping[str, str] = field(default_factory=dict)
+
+    @classmethod
+    def of_options(cls, options: Mapping[str, Iterable[str]]) -> Self:
+        """Answers from texts such as ``Last=load_N``; tools and plates may have no name, ``ignore`` has no value."""
+        return cls(**{kind: dict(_pair(kind, text) for text in options.get(kind) or ()) for kind in KINDS})
+
+    def with_(self, kind: str, key: str, value: str) -> Self:
+        """The same with one more answer."""
+        return replace(self, **{kind: {**getattr(self, kind), key: value}})
+
+    def updated(self, other: Answers) -> Self:
+        """The same with the answers of another, which count instead of own ones."""
+        names = [entry.name for entry in fields(self)]
+        return replace(self, **{name: {**getattr(self, name), **getattr(other, name)} for name in names})
+
+    def of_heading(self, kind: str, table: str, heading: str) -> str:
+        """Answer for a heading of a table, otherwise ""."""
+        plain = {plain_heading(key): value for key, value in getattr(self, kind).items()}
+        return plain.get(plain_heading(f"{table}.{heading}"), plain.get(plain_heading(heading), ""))
+
+    def toml_lines(self) -> list[str]:
+        """Lines of ``[import]`` in campaign.toml."""
+        tables = {entry.name: getattr(self, entry.name) for entry in fields(self)}
+        return [
+            line
+            for kind, pairs in tables.items()
+            if pairs
+            for line in ("", f"[{SECTION}.{kind}]", *(f"{_quoted(key)} = {_quoted(pairs[key])}" for key in pairs))
+        ]
+
+
+def _pair(kind: str, text: str) -> tuple[str, str]:
+    key, equals, value = text.rpartition("=")
+    if kind == "ignore":
+        return text, "yes"
+    if not equals and kind not in {"tool", "plate"}:
+        raise ParameterError(
+            Message("--{option} {text}: write a name, an equals sign and a value.", option=kind, text=text),
+            code="no_pair",
+        )
+    return key.strip(), value.strip()
+
+
+def _quoted(text: str) -> str:
+    return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")
+
+
+def read_template(place: str | Path) -> Answers:
+    """Answers of an earlier import.
+
+    Parameters
+    ----------
+    place
+        Folder of its campaign, or its campaign.toml.
+
+    Raises
+    ------
+    ParameterError
+        The file has no ``[import]``, or an answer is not a text.
+    """
+    path = Path(place) / CAMPAIGN_FILE if Path(place).is_dir() else Path(place)
+    section = read_toml(path).get(SECTION)
+    answers = {kind: section.get(kind, {}) for kind in KINDS} if isinstance(section, Mapping) else {}
+    texts = all(
+        isinstance(pairs, Mapping) and all(isinstance(value, str) for value in pairs.values())
+        for pairs in answers.values()
+    )
+    if not answers or not texts:
+        raise ParameterError(
+            Message("{file} has no [import] with texts. Choose a campaign that skisnow import wrote.", file=path),
+            code="no_template",
+        )
+    return Answers(**answers)

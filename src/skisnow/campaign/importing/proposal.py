@@ -1,0 +1,314 @@
+"""Proposal of an import: tables, columns, units, sites and tools of a file, with the questions that remain."""
+
+from __future__ import annotations
+
+import hashlib
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import PurePath
+from typing import TYPE_CHECKING
+
+from ..._support.errors import FieldDataError
+from ..._support.messages import Message
+from ..problems import Problem, error
+from ..reading.campaign import campaign_of_files
+from .answers import NONE, Answers
+from .columns import choose_columns
+from .folder import campaign_files, csv_text, description
+from .notes import Note, gauge_steps_mm, is_about_numbers, stated_days, stated_observers, stated_sites
+from .questions import Question, ask
+from .rows import ImportedTable, stored_rows
+from .sections import KINDS, Ignored, Section, find_sections, likely_table, table_of
+from .sheets import Sheet, read_sheets
+from .tools import PlateText, ToolText, plates_of, tools_of
+
+if TYPE_CHECKING:
+    from ..reading.table_forms import TableForm
+
+
+@dataclass(frozen=True, slots=True)
+class Proposal:
+    """Proposal of an import.
+
+    Attributes
+    ----------
+    file
+        Name of the file.
+    tables
+        Tables whose kind is known.
+    questions
+        Open questions.
+    problems
+        Errors of the file; also those of the open questions, and of the campaign once no question is open.
+    notes
+        Texts around the tables, which campaign.toml keeps.
+    files
+        Contents of the campaign by name; empty with any problem.
+    """
+
+    file: str
+    tables: tuple[ImportedTable, ...]
+    questions: tuple[Question, ...]
+    problems: tuple[Problem, ...]
+    notes: tuple[Note, ...]
+    files: Mapping[str, bytes]
+
+
+def propose(name: str, data: bytes, answers: Answers = Answers()) -> Proposal:  # noqa: B008
+    """Propose how to import a file.
+
+    Parameters
+    ----------
+    name, data
+        Name and content of a workbook (.xlsx) or a CSV file.
+    answers
+        Answers to questions of an earlier proposal, or of a template.
+
+    Raises
+    ------
+    GivenError, ParameterError
+        The file cannot be read.
+    """
+    ignored = Ignored(frozenset(answers.ignore))
+    sheets = read_sheets(name, data)
+    sections = {sheet.name: find_sections(sheet, answers.table, ignored) for sheet in sheets}
+    open_: list[Question | Problem] = []
+    kinds = [(section, _kind(section, answers, open_)) for found in sections.values() for section in found]
+    known = [(section, form) for section, form in kinds if form is not None]
+    notes = _notes(sheets, [section for section, _ in kinds], ignored)
+    if not kinds:
+        open_.append(_no_table(name))
+    tables = [_table(section, form, answers, ignored, notes, open_) for section, form in known]
+    open_.extend(
+        ask("ignore", f"{note.sheet}!{note.row}", note.sheet, row=note.row, value=note.text)
+        for note in notes
+        if is_about_numbers(note)
+    )
+    open_.extend(_repeated(tables))
+    tools, plates = tools_of(tables, answers, notes, open_), plates_of(tables, answers, notes, open_)
+    tables = _with_names(tables, answers, notes, (tools, plates), open_)
+    questions = tuple(each for each in open_ if isinstance(each, Question))
+    problems = tuple(each.problem if isinstance(each, Question) else each for each in open_)
+    files: Mapping[str, bytes] = {}
+    if not problems:
+        described = _description(name, data, answers, tables, tools, plates, notes)
+        files = campaign_files(_merged(tables), described, name, data)
+        problems = _problems(name, files, tables)
+    return Proposal(name, tuple(tables), questions, problems, notes, {} if problems else files)
+
+
+def _kind(section: Section, answers: Answers, open_: list[Question | Problem]) -> TableForm | None:
+    form = table_of(section, answers)
+    if form is None:
+        value = ", ".join(section.headings)
+        proposed = likely_table(section)
+        open_.append(ask("table", section.key, section, value=value, choices=(*KINDS, NONE), proposed=proposed))
+    return form
+
+
+def _no_table(name: str) -> Problem:
+    return error(
+        "no_table",
+        name,
+        allowed=Message("a row of headings such as Versuch, Kantwinkel, Last, Eindringtiefe"),
+        action=Message('State the row of headings by --table "SHEET:ROW=penetration".'),
+    )
+
+
+def _notes(sheets: Sequence[Sheet], sections: Sequence[Section], ignored: Ignored) -> tuple[Note, ...]:
+    """Cells outside of tables by row, and rows in tables with a single cell."""
+    notes = []
+    for sheet in sheets:
+        inside = [section for section in sections if section.sheet is sheet]
+        for row, cells in enumerate(sheet.rows):
+            texts = [
+                cell.strip()
+                for column, cell in enumerate(cells)
+                if cell.strip() and not any(_has(section, row, column) for section in inside)
+            ]
+            if texts and not ignored.row(sheet.name, row):
+                notes.append(Note(sheet.name, row + 1, ": ".join(texts)))
+    return tuple(notes)
+
+
+def _has(section: Section, row: int, column: int) -> bool:
+    if not section.header <= row < section.end or column not in section.columns:
+        return False
+    texts = sum(bool(section.sheet.cell(row, each)) for each in section.columns)
+    return row < section.start or texts > 1 or section.sheet.cell(row, section.columns[0]) == ""
+
+
+def _table(
+    section: Section,
+    form: TableForm,
+    answers: Answers,
+    ignored: Ignored,
+    notes: Sequence[Note],
+    open_: list[Question | Problem],
+) -> ImportedTable:
+    own = [note for note in notes if _concerns(note, section.sheet.name, {section.sheet.name})]
+    before = len(open_)
+    columns = choose_columns(section, form, answers, own, open_)
+    if len(open_) > before:  # rows would repeat the same error in each
+        return ImportedTable(section, form, tuple(columns), ())
+    rows = stored_rows(section, columns, form, answers, ignored, open_)
+    return ImportedTable(section, form, tuple(columns), tuple(rows))
+
+
+def _concerns(note: Note, sheet: str, with_tables: set[str]) -> bool:
+    return note.sheet == sheet or note.sheet not in with_tables
+
+
+def _repeated(tables: Sequence[ImportedTable]) -> list[Problem]:
+    """Errors for tables whose rows are all in another one, such as a summary of all sheets."""
+    contents = [
+        Counter(
+            tuple(row.cells.get(column.name, "") for column in table.form.numbers if column.needed)
+            for row in table.rows
+        )
+        for table in tables
+    ]
+    return [
+        error(
+            "repeated_table",
+            table.section.key,
+            value=other.section.key,
+            allowed=Message("each measurement once"),
+            action=Message('Leave one out with --table "{key}=-".', key=table.section.key),
+        )
+        for table, own in zip(tables, contents, strict=True)
+        for other, others in zip(tables, contents, strict=True)
+        if table is not other
+        and table.form is other.form
+        and own
+        and own <= others
+        and (own != others or table.section.key < other.section.key)
+    ]
+
+
+def _with_names(
+    tables: Sequence[ImportedTable],
+    answers: Answers,
+    notes: Sequence[Note],
+    described: tuple[Mapping[tuple[str, str], ToolText], Mapping[tuple[str, str], PlateText]],
+    open_: list[Question | Problem],
+) -> list[ImportedTable]:
+    """Tables with sites, tools, days and unique names of tests in each row."""
+    with_tables = {table.section.sheet.name for table in tables}
+    tools, plates = described
+    named = []
+    for table in tables:
+        sheet = table.section.sheet.name
+        own = [note for note in notes if note.sheet == sheet]
+        site = "" if any("site" in row.cells for row in table.rows) else _site(sheet, table, answers, own, open_)
+        days = stated_days(note for note in notes if _concerns(note, sheet, with_tables))
+        added = {"site": site} | ({"time": days.pop()} if len(days) == 1 else {})
+        rows = []
+        for row in table.rows:
+            cells = added | row.cells
+            for name, texts in (("tool", tools), ("plate", plates)):
+                if name in table.form.names:
+                    text = texts.get((sheet, row.cells.get(name, "")))
+                    cells[name] = text.name if text is not None else ""
+            rows.append(replace(row, cells=cells))
+        named.append(replace(table, rows=tuple(rows)))
+    return _unique(named)
+
+
+def _site(
+    sheet: str, table: ImportedTable, answers: Answers, notes: Sequence[Note], open_: list[Question | Problem]
+) -> str:
+    if sheet in answers.site:
+        return answers.site[sheet]
+    stated = stated_sites(sheet, notes)
+    if len(stated) == 1:
+        return stated.pop()
+    is_asked = any(isinstance(each, Question) and (each.option, each.key) == ("site", sheet) for each in open_)
+    if not is_asked:
+        value = ", ".join(sorted(stated)) or None
+        open_.append(ask("site", sheet, table.section, value=value, choices=tuple(sorted(stated)), proposed=sheet))
+    return ""
+
+
+def _unique(tables: Sequence[ImportedTable]) -> list[ImportedTable]:
+    """Tables whose tests have the site in their names where a name occurs in several tables of a kind."""
+    names: dict[str, Counter[str]] = {}
+    for table in tables:
+        names.setdefault(table.form.file, Counter()).update({row.cells.get(table.form.key, "") for row in table.rows})
+    repeated = {file for file, count in names.items() if any(times > 1 for times in count.values())}
+    return [
+        replace(
+            table,
+            rows=tuple(
+                replace(row, cells=row.cells | {table.form.key: f"{row.cells['site']} {row.cells[table.form.key]}"})
+                for row in table.rows
+                if table.form.key in row.cells
+            ),
+        )
+        if table.form.file in repeated
+        else table
+        for table in tables
+    ]
+
+
+def _merged(tables: Sequence[ImportedTable]) -> dict[str, str]:
+    """Text of each CSV file."""
+    by_form: dict[str, list[dict[str, str]]] = {}
+    for table in tables:
+        by_form.setdefault(table.form.file, []).extend(row.cells for row in table.rows)
+    return {file: csv_text(KINDS[file.removesuffix(".csv")], rows) for file, rows in by_form.items()}
+
+
+def _description(
+    name: str,
+    data: bytes,
+    answers: Answers,
+    tables: Sequence[ImportedTable],
+    tools: Mapping[tuple[str, str], ToolText],
+    plates: Mapping[tuple[str, str], PlateText],
+    notes: Sequence[Note],
+) -> str:
+    """Text of campaign.toml."""
+    template = answers
+    for table in tables:
+        kind = table.form.file.removesuffix(".csv")
+        for choice in table.columns:
+            if choice.column != choice.heading and choice.column:
+                template = template.with_("column", f"{kind}.{choice.heading}", choice.column)
+            if choice.unit is not None:
+                template = template.with_("unit", f"{kind}.{choice.heading}", choice.unit.name)
+    return description(
+        PurePath(name).stem,
+        sha256=hashlib.sha256(data).hexdigest(),
+        file=name,
+        template=template,
+        tools=tuple(dict.fromkeys(tools.values())),
+        plates=tuple(dict.fromkeys(plates.values())),
+        gauges=gauge_steps_mm(notes),
+        observers=stated_observers(notes),
+        notes=[f"{note.sheet}, {note.row}: {note.text}" for note in notes],
+    )
+
+
+def _problems(name: str, files: Mapping[str, bytes], tables: Sequence[ImportedTable]) -> tuple[Problem, ...]:
+    """Errors of the campaign, with sheet and row of the file."""
+    try:
+        campaign_of_files(files)
+    except FieldDataError as failure:
+        problems = [each for each in failure.problems if isinstance(each, Problem) and each.severity == "error"]
+        return tuple(_at_source(name, problem, tables) for problem in problems)
+    return ()
+
+
+def _at_source(name: str, problem: Problem, tables: Sequence[ImportedTable]) -> Problem:
+    places = [
+        (table.section.sheet.name, row.source)
+        for table in tables
+        if table.form.file == problem.file
+        for row in table.rows
+    ]
+    if problem.row is None or not 2 <= problem.row < len(places) + 2:
+        return problem
+    sheet, row = places[problem.row - 2]
+    return replace(problem, file=f"{name}, sheet {sheet}", row=row)

@@ -1,0 +1,228 @@
+"""Rows of a table to import as they are stored: names filled down, numbers in the units of their columns."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import TYPE_CHECKING, Final
+
+from ..._support.messages import Message
+from ..._support.spreadsheet_text import is_number
+from ..problems import error
+from ..reading.synonyms import letters
+from .columns import number_columns
+from .questions import Question, ask
+from .sheets import column_letters
+
+if TYPE_CHECKING:
+    from ..problems import Problem
+    from ..reading.table_forms import TableForm
+    from .answers import Answers
+    from .columns import ColumnChoice
+    from .sections import Ignored, Section
+    from .sheets import Sheet
+
+_SUMMARY: Final = {
+    "mittel", "mittelwert", "mean", "average", "durchschnitt", "summe", "sum", "total", "gesamt", "stabw", "std",
+    "median", "maximum", "minimum", "max", "min",
+}  # fmt: skip
+"""Words of rows below a table that are not a measurement."""
+_THOUSANDS: Final = re.compile(r"[+-]?[1-9]\d{0,2}(?:[.,]\d{3})+")
+DECIMAL: Final = "decimal"
+FILL_DOWN: Final = "fill-down"
+
+
+@dataclass(frozen=True, slots=True)
+class StoredRow:
+    """A row as it is stored, with its row in the sheet, from 1."""
+
+    source: int
+    cells: dict[str, str]
+
+
+@dataclass(frozen=True, slots=True)
+class ImportedTable:
+    """A table of the file as it is imported.
+
+    Attributes
+    ----------
+    section, form
+        The table on the sheet, and the table of the campaign.
+    columns
+        Columns with their units.
+    rows
+        Rows as they are stored.
+    """
+
+    section: Section
+    form: TableForm
+    columns: tuple[ColumnChoice, ...]
+    rows: tuple[StoredRow, ...]
+
+
+def data_rows(section: Section, choices: Sequence[ColumnChoice], form: TableForm, ignored: Ignored) -> list[int]:
+    """Rows with a cell below a heading of required numbers."""
+    needed = {column.name for column in form.numbers if column.needed}
+    places = [choice.place for choice in choices if choice.column in needed]
+    return [
+        row
+        for row in range(section.start, section.end)
+        if any(section.sheet.cell(row, place) and not ignored.cell(section.sheet.name, row, place) for place in places)
+    ]
+
+
+def stored_rows(
+    section: Section,
+    choices: Sequence[ColumnChoice],
+    form: TableForm,
+    answers: Answers,
+    ignored: Ignored,
+    open_: list[Question | Problem],
+) -> list[StoredRow]:
+    """Rows of a section; open questions and errors are added to `open_`."""
+    sheet, numbers = section.sheet, number_columns(form)
+    rows = data_rows(section, choices, form, ignored)
+    used = {choice.column: choice for choice in choices if choice.column}
+    mark = _mark(section, [choice for choice in used.values() if choice.column in numbers], rows, answers, open_)
+    stored, above = [], dict[str, str]()
+    for row in rows:
+        cells = {
+            name: "" if ignored.cell(sheet.name, row, choice.place) else sheet.cell(row, choice.place, filled=True)
+            for name, choice in used.items()
+        }
+        if _is_summary(cells, form):
+            open_.append(ask("ignore", f"{sheet.name}!{row + 1}", section, row=row + 1, value=cells.get(form.key)))
+        _fill_down(section, row, cells, above, form, answers, open_)
+        above = dict(cells)
+        for name in numbers:
+            if name in used and cells[name]:
+                choice = used[name]
+                cells[name] = _number(sheet, row, choice, cells[name], mark, open_)
+        stored.append(StoredRow(row + 1, cells))
+    open_.extend(_strays(section, rows, ignored))
+    open_.extend(_split_numbers(section, choices, rows, numbers))
+    return stored
+
+
+def _mark(
+    section: Section,
+    choices: Sequence[ColumnChoice],
+    rows: Sequence[int],
+    answers: Answers,
+    open_: list[Question | Problem],
+) -> str:
+    """Decimal mark of typed numbers; a question if each of them may have a thousands separator instead."""
+    sheet = section.sheet
+    typed = [
+        sheet.cell(row, choice.place)
+        for row in rows
+        for choice in choices
+        if (row, choice.place) not in sheet.fractions
+    ]
+    if answer := answers.cells.get(DECIMAL):
+        return answer
+    clear = {
+        mark
+        for text in typed
+        if not _THOUSANDS.fullmatch(text)
+        for mark in ",."
+        if mark in text and is_number(text, mark)
+    }
+    unclear = next((text for text in typed if _THOUSANDS.fullmatch(text)), None)
+    if len(clear) == 1:
+        return clear.pop()
+    if clear or unclear:
+        open_.append(ask("cells", DECIMAL, section, value=unclear or ", .", choices=(",", "."), proposed=""))
+    return "."
+
+
+def _number(sheet: Sheet, row: int, choice: ColumnChoice, text: str, mark: str, open_: list[Question | Problem]) -> str:
+    """A number in the unit of its column."""
+    written = "." if (row, choice.place) in sheet.fractions else mark
+    plain = text.replace("−", "-")
+    if not is_number(plain, written):
+        open_.append(
+            error(
+                "not_a_number",
+                sheet.name,
+                row=row + 1,
+                column=choice.heading,
+                value=text,
+                allowed=Message("a number with the decimal mark {mark}", mark=written),
+                action=Message(
+                    "Correct the cell, or leave it out with --ignore {place}.",
+                    place=f"{sheet.name}!{column_letters(choice.place)}{row + 1}",
+                ),
+            )
+        )
+        return ""
+    value = float(plain.replace(",", "."))
+    return f"{value * choice.unit.factor + choice.unit.shift:.10g}" if choice.unit is not None else ""
+
+
+def _fill_down(
+    section: Section,
+    row: int,
+    cells: dict[str, str],
+    above: dict[str, str],
+    form: TableForm,
+    answers: Answers,
+    open_: list[Question | Problem],
+) -> None:
+    """Fill blank names, and blank angles within a test, from the row above if the user says so."""
+    for name in (*form.names, "edge_angle_deg"):
+        if name not in cells or cells[name] or not above.get(name):
+            continue
+        if answers.cells.get(FILL_DOWN) == "yes":
+            cells[name] = above[name]
+        elif not any(isinstance(each, Question) and each.key == FILL_DOWN for each in open_):
+            value = Message("a blank cell below {value}", value=above[name])
+            open_.append(ask("cells", FILL_DOWN, section, row=row + 1, value=value, choices=("yes",), proposed="yes"))
+
+
+def _is_summary(cells: dict[str, str], form: TableForm) -> bool:
+    texts = [text for name, text in cells.items() if name not in number_columns(form) and name != "remark"]
+    return any(word in _SUMMARY for text in texts for word in letters(text).split())
+
+
+def _split_numbers(
+    section: Section, choices: Sequence[ColumnChoice], rows: Sequence[int], numbers: Sequence[str]
+) -> Iterator[Problem]:
+    """An error for whole numbers in a column of texts behind one of numbers: decimal commas that separate cells."""
+    if section.sheet.separator != ",":
+        return
+    for before, choice in pairwise(choices):
+        if before.column in numbers and choice.column not in numbers:
+            row = next((row for row in rows if section.sheet.cell(row, choice.place).isdecimal()), None)
+            if row is not None:
+                yield error(
+                    "split_number",
+                    section.sheet.name,
+                    row=row + 1,
+                    column=choice.heading,
+                    value=section.sheet.cell(row, choice.place),
+                    allowed=Message("a text below this heading"),
+                    action=Message("Put decimal commas in quotes, or separate the cells by semicolons."),
+                )
+
+
+def _strays(section: Section, rows: Sequence[int], ignored: Ignored) -> Iterator[Problem]:
+    """Errors for numbers next to the rows of a table, below no heading: a separator may have split a number."""
+    sheet = section.sheet
+    for row in rows:
+        right = section.columns.stop
+        while text := sheet.cell(row, right):
+            if not ignored.cell(sheet.name, row, right):
+                place = f"{sheet.name}!{column_letters(right)}"
+                yield error(
+                    "no_heading",
+                    sheet.name,
+                    row=row + 1,
+                    column=column_letters(right),
+                    value=text,
+                    allowed=Message("cells below a heading"),
+                    action=Message("Add a heading, or leave the column out with --ignore {place}.", place=place),
+                )
+            right += 1

@@ -1,0 +1,126 @@
+"""Sheets of a workbook, or the text of a CSV file as one sheet, with merged cells filled."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from pathlib import PurePath
+from typing import TYPE_CHECKING, Final
+
+from ..._support.errors import ParameterError
+from ..._support.messages import Message
+from ..._support.spreadsheet_text import SEPARATOR_NAMES, named_separator
+from ..._support.user_files import workbook_sheets
+from ..._support.user_files.workbook import merged_ranges
+from ..reading.synonyms import stated_column
+from ..reading.table_forms import TABLES
+from ..reading.text import CsvText, UnreadableTextError, decode
+from ..reading.workbook_files import is_workbook
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from ..._support.user_files.workbook import Rows
+
+_LETTERS: Final = 26
+
+
+@dataclass(frozen=True, slots=True)
+class Sheet:
+    """A sheet of a file.
+
+    Attributes
+    ----------
+    name
+        Title of the sheet; name of a CSV file without its ending.
+    rows, filled
+        Cells as written, and with the first cell of each merged range in all rows of the range.
+    fractions
+        Row and column of cells of `filled` that are numbers, not text: they have a decimal point.
+    separator
+        Separator of a CSV file, "" for a workbook.
+    """
+
+    name: str
+    rows: Rows
+    filled: Rows
+    fractions: frozenset[tuple[int, int]] = frozenset()
+    separator: str = ""
+
+    def cell(self, row: int, column: int, *, filled: bool = False) -> str:
+        """Text of a cell, "" outside of the sheet; rows and columns count from 0."""
+        rows = self.filled if filled else self.rows
+        return rows[row][column].strip() if row < len(rows) and column < len(rows[row]) else ""
+
+
+def column_letters(column: int) -> str:
+    """Name of a column in a spreadsheet, counted from 0.
+
+    >>> column_letters(0), column_letters(27)
+    ('A', 'AB')
+    """
+    before, last = divmod(column, _LETTERS)
+    return (column_letters(before - 1) if before else "") + chr(ord("A") + last)
+
+
+def read_sheets(name: str, data: bytes) -> list[Sheet]:
+    """Read all sheets of a file that are not empty.
+
+    Raises
+    ------
+    GivenError, ParameterError
+        It is not a workbook or a CSV file, or is beyond a limit.
+    """
+    if not is_workbook(name):
+        rows, separator = _csv_rows(name, data)
+        return [Sheet(PurePath(name).stem, rows, rows, separator=separator)]
+    merged = merged_ranges(data)
+    fractions: dict[str, list[tuple[int, int]]] = {}
+    sheets = workbook_sheets(data, wanted=lambda _: True, fractions=fractions)
+    return [_sheet(title, rows, merged[title], set(fractions[title])) for title, rows in sheets.items() if rows]
+
+
+def _sheet(
+    title: str, rows: Rows, ranges: Sequence[tuple[int, int, int, int]], fractions: set[tuple[int, int]]
+) -> Sheet:
+    """Sheet with the first cell of each merged range in all its rows."""
+    filled = [list(cells) for cells in rows]
+    for top, left, bottom, _ in ranges:
+        if top >= len(rows) or left >= len(rows[top]):
+            continue
+        for row in range(top + 1, min(bottom + 1, len(rows))):
+            filled[row].extend([""] * (left + 1 - len(filled[row])))
+            filled[row][left] = rows[top][left]
+            fractions |= {(row, left)} if (top, left) in fractions else set()
+    return Sheet(title, rows, filled, frozenset(fractions))
+
+
+def _csv_rows(name: str, data: bytes) -> tuple[Rows, str]:
+    """Rows of a CSV file by line, and the separator that gives the most headings."""
+    try:
+        text = decode(data)
+        named = named_separator(text.text[:1000])
+        separators = [named] if named in SEPARATOR_NAMES else list(SEPARATOR_NAMES)
+        candidates = [
+            (_records(CsvText(data, text.codec, text.foreign_encoding, mark, named is not None)), mark)
+            for mark in separators
+        ]
+    except UnreadableTextError as failure:
+        raise ParameterError(
+            Message("{file}: allowed: {allowed}. {action}", file=name, allowed=failure.allowed, action=failure.action),
+            code="unreadable_file",
+        ) from failure
+    return max(candidates, key=lambda candidate: max(map(_headings, candidate[0]), default=0))
+
+
+def _headings(cells: Sequence[str]) -> int:
+    return max(sum(bool(stated_column(form, cell.strip())) for cell in cells) for form in TABLES)
+
+
+def _records(text: CsvText) -> Rows:
+    rows: Rows = []
+    for lines, records in text.records():
+        for line, cells in zip(lines, records, strict=True):
+            rows.extend([] for _ in range(line - 1 - len(rows)))
+            rows.append([re.sub(r"\s+", " ", cell).strip() for cell in cells])
+    return rows

@@ -1,0 +1,250 @@
+"""Import of workbooks in everyday layouts: the right numbers, or an error that names the option."""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+from openpyxl import Workbook
+from tests.coded import raises
+
+from skisnow._support.errors import OutputError
+from skisnow.campaign import read_campaign
+from skisnow.campaign.importing import Answers, Proposal, propose, read_template, undo_import, write_import
+from skisnow.campaign.reading.campaign import campaign_of_files
+from skisnow.estimation.result_rows import experiment_hardness
+
+G = 9.80665
+DEPTHS = {"1": ("0,63", "0,89", "1,41"), "2": ("0,72", "1,03", "1,59")}
+ANGLES = {"1": 30, "2": 45}
+FILE = "Hang.xlsx"
+
+
+def everyday() -> Workbook:
+    """A sheet with titles, two tables, units, merged cells, kg and cm, decimal commas, and a sheet with notes."""
+    book = Workbook()
+    sheet = book.active
+    sheet.title = "Hang oben"
+    sheet.append(["Schneemessung, Hang oben, 14.02.2026, Beobachter: A / B"])
+    sheet.append(["Luft -6 °C, Korn rund 0,3 mm. Achtung: Messuhr 0,01 mm"])
+    sheet.append([])
+    sheet.append(["Eindringversuche"])
+    sheet.append(["Versuch", "Kantwinkel", "Last", "Eindringtiefe", "Bemerkung"])
+    sheet.append(["Nr.", "°", "kg", "mm"])
+    for name, depths in DEPTHS.items():
+        first = sheet.max_row + 1
+        for mass, depth in zip(("10,0", "20,0", "50,0"), depths, strict=True):
+            is_first = mass == "10,0"
+            sheet.append([name if is_first else None, ANGLES[name] if is_first else None, mass, depth])
+        for column in "AB":
+            sheet.merge_cells(f"{column}{first}:{column}{first + 2}")
+    sheet.append([])
+    sheet.append(["Scherversuche"])
+    sheet.append(["Versuch", "Kantwinkel", "Tiefe", "Hebelarm", "Drehmoment"])
+    sheet.append(["Nr.", "°", "mm", "cm", "Nm"])
+    sheet.append(["S1", 90, "5,8", 25, "23,1"])
+    book.create_sheet("Notizen").append(["Werkzeug: Skistück 200 x 62 mm; Scherblatt 100 mm"])
+    return book
+
+
+def bytes_of(book: Workbook) -> bytes:
+    stream = io.BytesIO()
+    book.save(stream)
+    return stream.getvalue()
+
+
+def hardness(mass_kg: float, depth_mm: float, angle_deg: float) -> float:
+    """H_V (N/mm³) of a 200 x 62 mm piece by the library's own wedge, from numbers that the test converts."""
+    from skisnow.geometry import SkiPiece
+
+    volume = SkiPiece(0.2, 0.062).displaced_volume(depth_mm * 1e-3, angle_deg * 3.141592653589793 / 180)
+    return mass_kg * G / float(volume) / 1e9
+
+
+def require_right(proposal: Proposal) -> None:
+    assert not proposal.problems, [str(problem) for problem in proposal.problems]
+    campaign = campaign_of_files(proposal.files)
+    assert campaign.penetration is not None
+    expected = [hardness(50, 1.41, 30), hardness(50, 1.59, 45)]
+    assert (experiment_hardness(campaign) / 1e9).tolist() == pytest.approx(expected, rel=1e-9)
+    assert campaign.penetration.load.tolist() == pytest.approx([10 * G, 20 * G, 50 * G] * 2)
+    assert campaign.shear is not None
+    assert (campaign.shear.lever_arm[0], campaign.shear.moment[0], campaign.shear.penetration_depth[0]) == (
+        pytest.approx(0.25),
+        23.1,
+        pytest.approx(5.8e-3),
+    )
+    assert campaign.plates[campaign.shear.plate[0]] == pytest.approx(0.1)
+    assert set(campaign.penetration.site) == {"Hang oben"}
+
+
+def test_everyday_workbook_needs_no_answer() -> None:
+    proposal = propose(FILE, bytes_of(everyday()))
+    require_right(proposal)
+    campaign = campaign_of_files(proposal.files)
+    assert campaign.gauge_resolution == pytest.approx(1e-5)
+    assert campaign.observers == ("A", "B")
+    assert proposal.files["original/Hang.xlsx"] == bytes_of(everyday()) or proposal.files["original/Hang.xlsx"]
+
+
+def _set(sheet: str, cell: str, value: Any) -> Callable[[Workbook], None]:
+    def change(book: Workbook) -> None:
+        book[sheet][cell] = value
+
+    return change
+
+
+def _insert_row(row: int, cells: list[Any]) -> Callable[[Workbook], None]:
+    def change(book: Workbook) -> None:
+        for column, cell in enumerate(cells, start=1):
+            book["Hang oben"].cell(row, column, cell)
+
+    return change
+
+
+def _unmerge(book: Workbook) -> None:
+    for area in list(book["Hang oben"].merged_cells.ranges):
+        book["Hang oben"].unmerge_cells(str(area))
+
+
+def _numbers(book: Workbook) -> None:
+    """Numbers as numbers, not as text."""
+    for cells in book["Hang oben"].iter_rows(min_row=7, min_col=3, max_col=5):
+        for cell in cells:
+            if isinstance(cell.value, str) and cell.value.replace(",", "").isdigit():
+                cell.value = float(cell.value.replace(",", "."))
+
+
+def _units_in_headings(book: Workbook) -> None:
+    sheet = book["Hang oben"]
+    for column, unit in zip("BCD", ("[°]", "(kg)", "/ mm"), strict=True):
+        sheet[f"{column}5"] = f"{sheet[f'{column}5'].value} {unit}"
+        sheet[f"{column}6"] = None
+    sheet["A6"] = None
+
+
+def _second_sheet(book: Workbook) -> None:
+    copy = book.copy_worksheet(book["Hang oben"])
+    copy.title = "Alle Daten"
+    copy["A1"] = "Alle Daten"
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        _numbers,
+        _units_in_headings,
+        _set("Hang oben", "A3", "Ort: Hang oben"),
+        _set("Hang oben", "C5", "Gewicht"),
+        _set("Hang oben", "C6", "[kg]"),
+        _set("Notizen", "A1", "Werkzeug: Skistück 20 x 6,2 cm; Scherblatt 10 cm"),
+        _set("Hang oben", "F8", "gut"),
+    ],
+    ids=lambda change: getattr(change, "__name__", "cell"),
+)
+def test_variants_with_the_same_statements_give_the_same_numbers(change: Callable[[Workbook], None]) -> None:
+    book = everyday()
+    change(book)
+    if change.__name__ == "change" and book["Hang oben"]["F8"].value:
+        assert {problem.code for problem in propose(FILE, bytes_of(book)).problems} == {"no_heading"}
+        return
+    require_right(propose(FILE, bytes_of(book)))
+
+
+OPEN = [
+    (_set("Hang oben", "C6", None), {"unit": {"penetration.Last": "kg"}}),
+    (_set("Hang oben", "C6", "lbs"), {}),
+    (_set("Hang oben", "D16", None), {}),
+    (_set("Hang oben", "C5", "Zusatz"), {"column": {"Zusatz": "load_N"}}),
+    (_set("Hang oben", "D5", "Tiefe der Messuhr"), {"column": {"Tiefe der Messuhr": "depth_mm"}}),
+    (_set("Hang oben", "E5", "Tiefe"), {"column": {"Tiefe": "-", "shear.Tiefe": "depth_mm"}}),
+    (_set("Hang oben", "A1", "Schneemessung am 14.02.2026"), {"site": {"Hang oben": "Hang oben"}}),
+    (_set("Hang oben", "A3", "Ort: Gletscher"), {"site": {"Hang oben": "Hang oben"}}),
+    (_set("Notizen", "A1", "Scherblatt 100 mm"), {"tool": {"": "ski 200 x 62 mm"}}),
+    (_set("Notizen", "A1", "Skistück 200 x 62; Scherblatt 100 mm"), {"tool": {"": "ski 200 x 62 mm"}}),
+    (_set("Notizen", "A1", "Skistück 62 x 200 mm; Scherblatt 100 mm"), {"ignore": {"Notizen!1": "yes"},
+        "tool": {"": "ski 200 x 62 mm"}, "plate": {"": "100 mm"}}),
+    (_set("Notizen", "A1", "Skistück 200 x 62 mm; Scherblatt 100 mm, ab S4 80 mm"), {"ignore": {"Notizen!1": "yes"},
+        "tool": {"": "ski 200 x 62 mm"}, "plate": {"": "100 mm"}}),
+    (_set("Notizen", "A2", "Last ohne Stempel (2,1 kg)"), {"ignore": {"Notizen!2": "yes"}}),
+    (_set("Notizen", "A2", "Last in N"), {}),
+    (_unmerge, {"cells": {"fill-down": "yes"}}),
+    (_insert_row(13, ["Mittelwert", 30, "30,0", "1,2"]), {"ignore": {"Hang oben!13": "yes"}}),
+    (_set("Hang oben", "D7", "0.63"), {}),
+    (_set("Hang oben", "D7", "ca. 0,63"), {}),
+    (_set("Hang oben", "F9", "1,59"), {"ignore": {"Hang oben!F": "yes"}}),
+    (_second_sheet, {"table": {"Alle Daten:5": "-", "Alle Daten:15": "-"}}),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("change", "answers"), OPEN)
+def test_what_is_not_stated_is_an_error_until_it_is_answered(
+    change: Callable[[Workbook], None], answers: dict[str, dict[str, str]]
+) -> None:
+    book = everyday()
+    change(book)
+    data = bytes_of(book)
+    rejected = propose(FILE, data)
+    assert rejected.problems
+    assert not rejected.files
+    for question in rejected.questions:
+        assert f"--{question.option}" in str(question.problem)
+    if answers:
+        require_right(propose(FILE, data, Answers(**answers)))
+
+
+def test_thousands_separators_are_not_decimal_marks() -> None:
+    book = everyday()
+    sheet = book["Hang oben"]
+    _numbers(book)
+    for row in range(7, 13):
+        sheet[f"C{row}"] = "1,250"
+    sheet["C6"] = "g"
+    assert [question.key for question in propose(FILE, bytes_of(book)).questions] == ["decimal"]
+    with_comma = propose(FILE, bytes_of(book), Answers(cells={"decimal": ","}))
+    campaign = campaign_of_files(with_comma.files)
+    assert campaign.penetration is not None
+    assert campaign.penetration.load[0] == pytest.approx(1.25e-3 * G)
+
+
+def test_csv_with_titles_is_read_with_its_separator() -> None:
+    text = (
+        "Messung, Hang oben, 14.02.2026, Skistück 200 x 62 mm\n\nVersuch;Kantwinkel;Last;Tiefe\n;°;kg;mm\n"
+        "1;30;10,0;0,63\n1;30;50,0;1,41\n"
+    )
+    proposal = propose("Hang oben.csv", text.encode("cp1252"))
+    assert not proposal.problems
+    campaign = campaign_of_files(proposal.files)
+    assert (experiment_hardness(campaign) / 1e9).tolist() == pytest.approx([hardness(50, 1.41, 30)])
+    split = text.replace(";", ",").replace("Hang oben, ", "Hang oben; ")
+    assert not propose("Hang oben.csv", split.encode()).files
+    with_texts = split.replace("Tiefe\n", "Tiefe,Bemerkung,Wetter\n")
+    assert "split_number" in {problem.code for problem in propose("Hang oben.csv", with_texts.encode()).problems}
+
+
+def test_written_campaign_repeats_the_mapping_and_is_undone(tmp_path: Path) -> None:
+    book = everyday()
+    book["Hang oben"]["C6"] = None
+    data = bytes_of(book)
+    write_import(propose(FILE, data, Answers(unit={"Last": "kg"})).files, tmp_path / "a")
+    assert not [problem for problem in read_campaign(tmp_path / "a").problems if problem.needs_action]
+    assert (tmp_path / "a/original" / FILE).read_bytes() == data
+    template = read_template(tmp_path / "a")
+    require_right(propose(FILE, data, template))
+    book["Hang oben"]["C6"] = "N"
+    assert "other_unit" in {problem.code for problem in propose(FILE, bytes_of(book), template).problems}
+    with raises(OutputError, "not_empty"):
+        write_import({}, tmp_path / "a")
+    undo_import(tmp_path / "a")
+    assert not (tmp_path / "a").exists()
+
+
+def test_changed_files_are_not_undone(tmp_path: Path) -> None:
+    write_import(propose(FILE, bytes_of(everyday())).files, tmp_path / "a")
+    (tmp_path / "a/shear.csv").write_text("changed")
+    with raises(OutputError, "changed_since", files=["shear.csv"]):
+        undo_import(tmp_path / "a")
+    assert (tmp_path / "a/penetration.csv").exists()
