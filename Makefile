@@ -171,4 +171,4 @@ sbom: $(TOOLS)/.tools
 	$(TOOLS)/bin/python requirements/sbom.py $(TOOLS)/run/bin/python $(SBOM)
 
 clean:
-	rm -rf $(VENV) $(TOOLS) $(MINIMUM) $(DEMO) build dist docs/_build .pytest_cache .mypy_cache .ruff_cache .hypothesis
+	rm -rf $(VENV) $(TOOLS) $(MINIMUM) $(DEMO) build dist docs/_build docs/_generated .pytest_cache .mypy_cache .ruff_cache .hypothesis

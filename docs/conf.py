@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import sys
 import tomllib
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from sphinx.application import Sphinx
+
+sys.path.insert(0, str(Path(__file__).parent))
+from key_tables import write_tables
 
 _PROJECT = tomllib.loads((Path(__file__).parents[1] / "pyproject.toml").read_text(encoding="utf-8"))["project"]
 
@@ -17,7 +21,7 @@ copyright = "The skisnow developers"
 version = release = _PROJECT["version"]
 
 extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon"]
-exclude_patterns = ["_build"]
+exclude_patterns = ["_build", "_generated"]
 
 myst_enable_extensions = ["dollarmath", "colon_fence", "attrs_block", "attrs_inline"]
 myst_heading_anchors = 3
@@ -88,7 +92,8 @@ def _levels(app: Sphinx, page: str, template: str, context: dict[str, Any], doct
 
 
 def setup(app: Sphinx) -> None:
-    """Register the renderer of equations, the reader of bars, and the levels of captions."""
+    """Write the tables of keys; register the renderer of equations, the reader of bars, and the levels of captions."""
+    write_tables()
     app.connect("autodoc-process-docstring", _bars)
     app.connect("html-page-context", _levels, priority=900)  # behind the theme's own
     app.add_html_math_renderer("mathml", (_visit_inline, None), (_visit_block, None))

@@ -1,14 +1,9 @@
-"""Schemas and tables of keys, from what the dataclasses declare: python docs/write_inputs.py [--check].
-
-In a page a table stands between the lines ``<!-- keys of NAME -->`` and ``<!-- end of keys -->``, which no reader sees.
-Without ``--check`` schemas and pages are written anew, and git shows what has changed.
-"""
+"""JSON schemas from what the dataclasses declare: python docs/write_inputs.py [--check]."""
 
 from __future__ import annotations
 
 import argparse
 import json
-import re
 import sys
 from collections.abc import Sequence
 from functools import reduce
@@ -16,18 +11,10 @@ from pathlib import Path
 
 import skisnow
 from skisnow.campaign.reading import campaign_schema
-from skisnow.campaign.reading.campaign_file import CAMPAIGN_KEYS
-from skisnow.campaign.reading.table_forms import PENETRATION, SHEAR
-from skisnow.campaign.smet import WeatherSettings
-from skisnow.campaign.snow_micro_pen_records import SnowMicroPenSettings
 from skisnow.carving.keys import CARVE_KEYS
-from skisnow.parameters import own_quantities
-from skisnow.parameters.json_schema import Schema, output_schema, page_table, schema_text
+from skisnow.parameters.json_schema import Schema, output_schema, schema_text
 from skisnow.scenario import schema as scenario
-from skisnow.scenario.keys import FREE_KEYS, SCENARIO_KEYS
-from skisnow.ski.file_keys import COLUMNS, SKI_KEYS
 
-DOCS = Path(__file__).resolve().parent
 PACKAGE = Path(skisnow.__file__).resolve().parent
 SUMMARY, CARVE = "simulation/schemas/summary.schema.json", "carving/schemas/carve.schema.json"
 
@@ -56,32 +43,11 @@ SCHEMAS = {
     SUMMARY: summary_schema,
     CARVE: carve_schema,
 }
-_OF_CSV = ("column", "unit", "range", "meaning")
-TABLES = {
-    "scenario": page_table(SCENARIO_KEYS.values()),
-    "carve": page_table(CARVE_KEYS.values()),
-    "ski": page_table(SKI_KEYS.values(), ("key", "meaning", "unit", "range", "usual", "left out")),
-    "campaign": page_table(CAMPAIGN_KEYS.values(), ("key", "unit", "range", "meaning")),
-    "snow_micro_pen": page_table(own_quantities(SnowMicroPenSettings), ("key", "unit", "range", "default", "meaning")),
-    "weather": page_table(own_quantities(WeatherSettings), ("key", "unit", "range", "default", "meaning")),
-    "penetration": page_table(PENETRATION.numbers, _OF_CSV),
-    "shear": page_table(SHEAR.numbers[:4], _OF_CSV),
-    "search": page_table(
-        (SCENARIO_KEYS[name] for name in FREE_KEYS if SCENARIO_KEYS[name].search), ("key", "usual size", "bounds")
-    ),
-    "stations": page_table(COLUMNS.values(), ("column", "meaning", "unit", "range", "usual", "instead of")),
-}
-TABLE = re.compile(r"(?P<mark><!-- keys of (?P<name>[\w -]+) -->\n)(?P<rows>.*?)(?=<!-- end of keys -->)", re.DOTALL)
 
 
 def anew() -> dict[Path, str]:
-    """The text of every schema and of every page with such a table."""
-    found = {PACKAGE / name: schema_text(schema()) for name, schema in SCHEMAS.items()}
-    for page in sorted((DOCS / "files").glob("*.md")):
-        text = page.read_text(encoding="utf-8")
-        if TABLE.search(text):
-            found[page] = TABLE.sub(lambda mark: mark["mark"] + TABLES[mark["name"]], text)
-    return found
+    """The text of every schema."""
+    return {PACKAGE / name: schema_text(schema()) for name, schema in SCHEMAS.items()}
 
 
 def stale() -> dict[Path, str]:
@@ -91,7 +57,7 @@ def stale() -> dict[Path, str]:
 
 def main() -> int:
     """Number of files that said something else."""
-    parser = argparse.ArgumentParser(description="Schemas and tables of keys, from what the dataclasses declare.")
+    parser = argparse.ArgumentParser(description="JSON schemas from what the dataclasses declare.")
     parser.add_argument("--check", action="store_true", help="write nothing; the exit status tells how many differ")
     options = parser.parse_args()
     found = stale()

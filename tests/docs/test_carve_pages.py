@@ -12,8 +12,10 @@ from skisnow.cli import build_parser
 from skisnow.studies import read_study
 from skisnow.studies.subjects import CARVE_RESULTS
 
+from .page_text import page_text
+
 DOCS = Path(__file__).resolve().parents[2] / "docs"
-PAGE = (DOCS / "files" / "carve.md").read_text(encoding="utf-8")
+PAGE = page_text("files/carve")
 
 
 def keys_of(schema: Any) -> Iterator[str]:

@@ -13,14 +13,10 @@ from skisnow.campaign.reading.campaign_file import SHAPES
 from skisnow.campaign.reading.table_forms import CORRECTIONS, TABLES
 from skisnow.cli import build_parser
 
-ROOT = Path(__file__).resolve().parents[2]
-CAMPAIGN, RESULTS, COMMANDS = (
-    (ROOT / "docs" / "files" / f"{name}.md").read_text(encoding="utf-8")
-    for name in ("campaign", "results", "command-line")
-)
-BESIDE = "".join(
-    (ROOT / "docs" / "files" / f"{name}.md").read_text(encoding="utf-8") for name in ("snow-micro-pen", "smet")
-)
+from .page_text import page_text
+
+CAMPAIGN, RESULTS, COMMANDS = (page_text(f"files/{name}") for name in ("campaign", "results", "command-line"))
+BESIDE = page_text("files/snow-micro-pen") + page_text("files/smet")
 PACKAGE = Path(skisnow.__file__).parent
 
 

@@ -15,8 +15,10 @@ from skisnow.simulation.run_tables import COLUMNS
 from skisnow.studies import read_study
 from skisnow.studies.subjects import RUN_RESULTS
 
+from .page_text import page_text
+
 DOCS = Path(__file__).resolve().parents[2] / "docs"
-PAGE = (DOCS / "files" / "scenario.md").read_text(encoding="utf-8")
+PAGE = page_text("files/scenario")
 RUNS = (DOCS / "files" / "run.md").read_text(encoding="utf-8")
 HOW_TO = (DOCS / "how-to" / "simulate.md").read_text(encoding="utf-8")
 
