@@ -1,8 +1,8 @@
-"""The gallery's pages, figures and printed numbers, made anew: python docs/write_gallery.py [--check] [NAME ...].
+"""Pages, figures and printed numbers of the gallery: python docs/write_gallery.py [--check] [NAME ...].
 
 An example is a script in ``examples/gallery`` that prints what it found and saves one figure under its own name. Its
 docstring has a title, a text, and two lines: ``Figure:``, what is to be seen, and ``Known from:``, where its number is
-known from. ``THEMES`` gives the order.
+known from. Each theme in ``THEMES`` is a page with a section for each of its examples.
 """
 
 from __future__ import annotations
@@ -34,12 +34,13 @@ PICTURES: Final = DOCS / "_static" / "gallery"
 PAGES: Final = DOCS / "gallery"
 START, END = "<!-- examples -->", "<!-- end of examples -->"
 THEMES: Final = {
-    "Tests on the slope": ("one_series", "gauge_offset", "which_law", "two_sites", "shear_blade"),
-    "Snow that remembers": ("unloading", "second_in_the_groove", "own_force_law"),
-    "A ski in snow": ("more_waist", "does_it_hold"),
-    "Turns": ("across_a_pipe", "energy_of_a_turn", "skid_to_carve"),
-    "Measured tracks": ("radius_of_a_track", "two_tracks", "friction_from_photo_cells"),
+    "tests": ("Tests on the slope", ("one_series", "gauge_offset", "which_law", "two_sites", "shear_blade")),
+    "snow": ("Snow that remembers", ("unloading", "second_in_the_groove", "own_force_law")),
+    "skis": ("A ski in snow", ("more_waist", "does_it_hold")),
+    "turns": ("Turns", ("across_a_pipe", "energy_of_a_turn", "skid_to_carve")),
+    "tracks": ("Measured tracks", ("radius_of_a_track", "two_tracks", "friction_from_photo_cells")),
 }
+"""Title and examples of each page."""
 STYLE: Final[dict[str, Any]] = {
     "figure.figsize": (6.4, 3.8),
     "figure.constrained_layout.use": True,
@@ -73,7 +74,7 @@ class Ran:
 
 def names() -> Iterator[str]:
     """All examples in their order."""
-    for group in THEMES.values():
+    for _, group in THEMES.values():
         yield from group
 
 
@@ -101,41 +102,53 @@ def ran(name: str) -> Ran:
     return Ran(values, told.getvalue(), picture)
 
 
-def page(name: str, printed: str) -> str:
-    """Markdown of an example's page."""
-    said = words(name)
-    return f"""# {said.title}
+def page(theme: str, printed: dict[str, str]) -> str:
+    """Markdown of the page of a theme, with what each example printed."""
+    title, group = THEMES[theme]
+    return "\n".join([f"# {title}\n", *(_section(name, printed[name]) for name in group)])
 
-{said.text}
 
-![{said.figure}](../_static/gallery/{name}.png)
+def _section(name: str, printed: str) -> str:
+    example = words(name)
+    return f"""({name})=
+## {example.title}
 
-*{said.figure}*
+{example.text}
 
-It prints
+![{example.figure}](../_static/gallery/{name}.png)
+
+*{example.figure}* Known from: {example.known}
 
 ```
 {printed}```
-
-Known from: {said.known}
 
 ```{{literalinclude}} ../../examples/gallery/{name}.py
 :language: python
 :lines: {_first_line(name)}-
 ```
-
-The script is `examples/gallery/{name}.py`.
 """
+
+
+def printed_on_pages() -> dict[str, str]:
+    """What each example printed according to the pages."""
+    printed = {}
+    for theme, (_, group) in THEMES.items():
+        text = (PAGES / f"{theme}.md").read_text(encoding="utf-8")
+        for name in group:
+            printed[name] = text.partition(f"({name})=\n")[2].partition("```\n")[2].partition("```")[0]
+    return printed
 
 
 def index() -> str:
     """The part of the start page that shows all examples."""
     parts = []
-    for theme, group in THEMES.items():
-        cards = "\n".join(f"- [![](../_static/gallery/{name}.png) {words(name).title}]({name}.md)" for name in group)
-        parts.append(f"## {theme}\n\n{{.cards}}\n{cards}\n")
-    listed = "\n".join(names())
-    return f"{START}\n" + "\n".join(parts) + f"\n```{{toctree}}\n:hidden:\n\n{listed}\n```\n{END}"
+    for theme, (title, group) in THEMES.items():
+        cards = "\n".join(
+            f"- [![](../_static/gallery/{name}.png) {words(name).title}]({theme}.md#{name})" for name in group
+        )
+        parts.append(f"## {title}\n\n{{.cards}}\n{cards}\n")
+    pages = "\n".join(THEMES)
+    return f"{START}\n" + "\n".join(parts) + f"\n```{{toctree}}\n:hidden:\n\n{pages}\n```\n{END}"
 
 
 def _sentence(text: str) -> str:
@@ -176,11 +189,13 @@ def main() -> int:
     asked = parser.parse_args()
     start = PAGES / "index.md"
     stale = [_differs(start, _with_index(start.read_text(encoding="utf-8")), check=asked.check)]
+    printed = printed_on_pages()
     for name in asked.names or names():
-        found = ran(name)
-        stale.append(_differs(PAGES / f"{name}.md", page(name, found.printed), check=asked.check))
+        example = ran(name)
+        printed[name] = example.printed
         if not asked.check:
-            _draw(name, found.picture)
+            _draw(name, example.picture)
+    stale += [_differs(PAGES / f"{theme}.md", page(theme, printed), check=asked.check) for theme in THEMES]
     return sum(stale) if asked.check else 0
 
 
