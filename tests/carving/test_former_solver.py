@@ -3,6 +3,10 @@
 Four boot moments are of the compiled core since its matrix is exact: they moved by up to 3e-6 N m, which is 1e-11 m of
 depth, where Newton's method ends. On snow of 10⁻⁵ N/mm³ the ski is in it with both edges, each of which now holds by
 itself: the ski twists less, and its side force moved by 5e-4.
+
+34 answers on snow that remembers were recorded again when the places across became functions of the question: they
+moved by the error of keeping the groove at a few places (median: radius 5e-6, depth 9e-5, force 1e-4). `test_point.py`
+compares with many places.
 """
 
 from __future__ import annotations

@@ -9,6 +9,7 @@
 #include "bindings/arrays.hpp"
 #include "carve/carve.hpp"
 #include "carve/equations.hpp"
+#include "carve/point.hpp"
 #include "carve/strip.hpp"
 #include "linear_algebra/banded.hpp"
 
@@ -130,6 +131,44 @@ nb::tuple carve_solution(const CarvedSki& ski, const CarveConditions& conditions
                         array({step.border.begin(), step.border.end()}, {std::size_t(CARVE_BORDER)}));
 }
 
+std::vector<double> listed(const Array& values) { return {values.data(), values.data() + values.size()}; }
+
+void make_point(CarvePoint* at, const CarvedSki& ski, const CarveConditions& conditions, const Array& u,
+                const Array& border, const std::optional<Array>& places) {
+  CarveState near{ski.spread(u.data()), {}};
+  std::copy_n(border.data(), CARVE_BORDER, near.border.begin());
+  new (at) CarvePoint(ski, conditions, places ? listed(*places) : std::vector<double>(), std::move(near));
+}
+
+// Last correction, unknowns, depth and force of a refined equilibrium.
+nb::tuple point_state(const CarvePoint& at) {
+  std::vector<double> u = at.ski().gathered(at.state().u), depth = at.depth(), force = at.force();
+  const std::size_t size = u.size(), n = depth.size();
+  const auto& border = at.state().border;
+  return nb::make_tuple(at.last_correction(), array(std::move(u), {size}),
+                        nb::make_tuple(border[0], border[1], border[2]), array(std::move(depth), {n}),
+                        array(std::move(force), {n}));
+}
+
+// Gradient by the stations' columns (place, weight, width, base height, deflection, normal force), by the conditions,
+// and the adjoint unknowns.
+nb::tuple point_gradient(CarvePoint& at, const Array& u, const Array& depth, const Array& force) {
+  CarveGradient found = at.gradient({at.ski().spread(u.data()), listed(depth), listed(force)});
+  const std::size_t n = found.place.size();
+  std::vector<double> columns;
+  for (const auto* each :
+       {&found.place, &found.weight, &found.width, &found.base_height, &found.by_deflection, &found.normal})
+    columns.insert(columns.end(), each->begin(), each->end());
+  std::vector<double> adjoint = at.ski().gathered(found.adjoint.u);
+  const std::size_t size = adjoint.size();
+  return nb::make_tuple(
+      array(std::move(columns), {6, n}),
+      array({found.edge_angle, found.hardness, found.excess, found.load, found.moment, found.side_force, found.bevel,
+             found.bevel_width, found.pitch_of_force, found.pitch_of_shear, found.running_length, found.greatest_width},
+            {12}),
+      array(std::move(adjoint), {size}));
+}
+
 // Behind the rows of a banded matrix, or of a right side, the zeros that loops over it need.
 Column with_room(const Array& rows, std::size_t width) {
   Column out((rows.shape(0) + BAND_HALF) * width, 0.0);
@@ -186,6 +225,11 @@ void bind_carve(nb::module_& m) {
   m.def("find_carve", &find, nb::arg("ski"), nb::arg("conditions"), nb::arg("offset").none(), nb::arg("near").none(),
         nb::arg("laws").none());
   m.def("carve_solution", &carve_solution);
+  nb::class_<CarvePoint>(m, "CarvePoint")
+      .def("__init__", &make_point, nb::keep_alive<1, 2>(), nb::arg("ski"), nb::arg("conditions"), nb::arg("u"),
+           nb::arg("border"), nb::arg("places").none())
+      .def("state", &point_state)
+      .def("gradient", &point_gradient);
   m.def("banded_factors", &banded_factors);
   m.def("banded_solution", &banded_solution);
   m.def("strip_sums", &strip_sums);

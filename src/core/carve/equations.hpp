@@ -64,6 +64,8 @@ class CarveFactors {
   void factor(const CarvedSki& ski, CarveEquations& system);
   // Newton's correction for the residuals of `system`; false where it is not finite.
   bool correct(const CarvedSki& ski, const CarveEquations& system, CarveState& step);
+  // Replace a right side by the solution with the transposed matrix. The held unknowns must be zero.
+  void solve_transposed(const CarvedSki& ski, CarveState& right);
 
  private:
   int used_ = 0, tiles_ = 0;  // unknowns of border and links; their tiles
@@ -83,6 +85,9 @@ class CarveFactors {
   void add_links();
   void solve_border(const CarveEquations& system, const double* u);
 };
+
+// Root mean square change of the edge depth along the ski (m) that a step makes.
+double depth_change(const CarvedSki& ski, const CarveConditions& conditions, const CarveState& step);
 
 // Newton's method from `state`, which it moves to the equilibrium; `at` then holds the equations there.
 class CarveNewton {

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -13,6 +14,29 @@ bool all_finite(const double* values, int count) {
   for (int i = 0; i < count; i++)
     if (!std::isfinite(values[i])) return false;
   return true;
+}
+
+// With the transposed matrices of `solve_dense` and `solve_band`.
+void solve_dense_transposed(const double* factors, int n, int stride, const int* order, double* right) {
+  for (int i = 0; i < n; i++) {
+    for (int j = 0; j < i; j++) right[i] -= factors[j * stride + i] * right[j];
+    right[i] /= factors[i * stride + i];
+  }
+  for (int i = n - 1; i >= 0; i--)
+    for (int j = i + 1; j < n; j++) right[i] -= factors[j * stride + i] * right[j];
+  for (int k = n - 1; k >= 0; k--) std::swap(right[k], right[order[k]]);
+}
+
+void solve_band_transposed(const double* factors, double* x, int size) {
+  for (int i = 0; i < size; i++) {
+    const double* row = factors + BAND_WIDTH * i + BAND_HALF;
+    x[i] *= row[0];
+    for (int j = 1; j <= std::min(BAND_HALF, size - 1 - i); j++) x[i + j] -= row[j] * x[i];
+  }
+  for (int i = size - 1; i >= 0; i--) {
+    const double* row = factors + BAND_WIDTH * i + BAND_HALF;
+    for (int j = 1; j <= std::min(BAND_HALF, i); j++) x[i - j] -= row[-j] * x[i];
+  }
 }
 
 }  // namespace
@@ -128,6 +152,29 @@ bool CarveFactors::correct(const CarvedSki& ski, const CarveEquations& system, C
       u[j] -= (part[0] + part[1]) + (part[2] + part[3]);
     }
   return all_finite(border_.data(), used_) && all_finite(u, ski.size);
+}
+
+// [transposed] With V = A⁻¹B, of the beam A, and S = D - C V: μ = S⁻ᵀ(h - Vᵀg), λ = A⁻ᵀ(g - Cᵀμ).
+void CarveFactors::solve_transposed(const CarvedSki& ski, CarveState& right) {
+  double* u = right.u.data();
+  border_.assign(std::size_t(tiles_ * BAND_TILE), 0.0);
+  double* y = border_.data();
+  for (int t = 0; t < tiles_; t++)
+    for (int j = block_[std::size_t(t)].begin; j < ski.size; j++)
+      for (int c = 0; c < BAND_TILE; c++) y[BAND_TILE * t + c] -= influence(t, j)[c] * u[j];
+  for (int a = 0; a < CARVE_BORDER; a++) y[a] += right.border[std::size_t(a)];
+  solve_dense_transposed(schur_.data(), used_, tiles_ * BAND_TILE, order_.data(), y);
+  for (int j = 0; j < ski.size; j++)
+    for (int a = 0; a < CARVE_BORDER; a++) u[j] -= rows_[std::size_t(BAND_TILE * j + a)] * y[a];
+  for (std::size_t k = 0; k < links_.size(); k++) {
+    const CarveLinkRow& link = links_[k];
+    double* at = u + link.first;
+    const double* by = y + CARVE_BORDER + 2 * k;
+    for (int a = 0; a < 4; a++) at[BENDS[a]] -= link.deflection[a] * by[0];
+    for (int a = 0; a < 2; a++) at[TURNS[a]] -= link.by_twist[a] * by[0] + link.twist[a] * by[1];
+  }
+  solve_band_transposed(band_.data(), u, ski.size);
+  std::copy_n(y, CARVE_BORDER, right.border.begin());
 }
 
 }  // namespace skisnow

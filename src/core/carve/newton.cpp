@@ -28,11 +28,10 @@ CarveNewton::CarveNewton(const CarvedSki& ski, std::function<void()> asked)
   step_ = trial_ = trial_step_ = state;
 }
 
-// Root mean square change of the edge depth along the ski (m); of the shear stress too, as a depth.
-double CarveNewton::length_of(const CarveConditions& conditions, const CarveState& step) const {
+double depth_change(const CarvedSki& ski, const CarveConditions& conditions, const CarveState& step) {
   const double cosine = std::cos(conditions.edge_angle);
   double total = 0.0;
-  for (const CarveStation& s : ski_.stations) {
+  for (const CarveStation& s : ski.stations) {
     const double* u = step.u.data() + s.first;
     double change = step.border[0] + step.border[1] * s.place;
     for (int a = 0; a < 4; a++) change -= cosine * s.deflection[a] * u[BENDS[a]];
@@ -40,8 +39,14 @@ double CarveNewton::length_of(const CarveConditions& conditions, const CarveStat
       for (int a = 0; a < 2; a++) change += s.half_width * cosine * s.twist[a] * u[TURNS[a]];
     total += change * change;
   }
+  return std::sqrt(total / double(ski.stations.size()));
+}
+
+// Of the edge depth (m), and of the shear stress, as a depth.
+double CarveNewton::length_of(const CarveConditions& conditions, const CarveState& step) const {
   const double by_stress = STRESS_AS_DEPTH * step.border[2] / std::max(std::fabs(state.border[2]), 1.0);
-  return std::sqrt(total / double(ski_.stations.size()) + by_stress * by_stress);
+  const double by_depth = depth_change(ski_, conditions, step);
+  return std::sqrt(by_depth * by_depth + by_stress * by_stress);
 }
 
 std::optional<double> CarveNewton::damped_step(const CarveConditions& conditions, CarveGroove& groove, double length,

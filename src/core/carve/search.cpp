@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "carve/equations.hpp"
+#include "carve/places.hpp"
 #include "linear_algebra/banded.hpp"
 
 namespace skisnow {
@@ -12,31 +13,11 @@ namespace {
 
 constexpr int MOST_STAGES = 40;
 constexpr double SOFTENINGS[] = {1000.0, 30.0, 3.0};
-constexpr double SHALLOWEST_WEDGE = 0.01;  // (rad) flatter than this the first guess treats the base as flat
-constexpr double CONTACT_SHARE = 0.9;      // share of the running length that the first guess loads evenly
-
-// Places across at which the groove is kept: about the waterline, and at the ends of bevel and base.
-std::vector<double> places_across(const CarvedSki& ski, const CarveConditions& conditions, double deepest) {
-  const double tangent = std::tan(std::max(conditions.edge_angle, 1e-9)), cosine = std::cos(conditions.edge_angle);
-  const double reach = ski.greatest_width * cosine, waterline = std::max(deepest, 0.0) / tangent;
-  std::vector<double> place = {0.0};
-  if (waterline > 0.6 * reach)
-    for (double share : {0.25, 0.5, 0.75}) place.push_back(share * 1.05 * reach);
-  else
-    for (double share : {0.5, 1.0, 1.7}) place.push_back(share * waterline);
-  place.push_back(1.05 * reach);
-  if (conditions.bevel > 0.0) place.push_back(conditions.bevel_width * cosine);
-  std::sort(place.begin(), place.end());
-  place.erase(std::unique(place.begin(), place.end()), place.end());
-  return place;
-}
-
 // A ski bent so that its edge is straight in the snow, as deep as a rigid one of that contact length would be.
 CarveState first_guess(const CarvedSki& ski, const CarveConditions& given) {
   const double angle = given.edge_angle, length = CONTACT_SHARE * ski.running_length;
   const double aside = ski.waist / 2.0 * std::sin(angle);
-  const double wedge =
-      std::sqrt(2.0 * given.load * std::tan(std::max(angle, SHALLOWEST_WEDGE)) / (given.hardness * length));
+  const double wedge = straight_waterline(ski, given) * std::tan(std::max(angle, SHALLOWEST_WEDGE));
   const double flat = given.load / (given.hardness * length * ski.waist * std::cos(angle)) + aside;
   const double depth = std::min(wedge, flat);
   const double drawn = given.by_reaction ? given.load : depth * length;
@@ -53,7 +34,7 @@ class Search {
       : newton(ski, std::move(asked)), ski_(ski), conditions_(conditions), groove_(ski.stations.size()) {
     groove_.along_path = !offset.empty();
     groove_.path.offset = std::move(offset);
-    groove_.edge.place = places_across(ski, conditions, 0.0);
+    groove_.edge.place = places_across(ski, conditions);
     newton.state = first_guess(ski, conditions);
   }
 
@@ -62,7 +43,6 @@ class Search {
   // From another solution; back at the first guess if that fails.
   bool continues(const CarveSolution& near) {
     newton.state = near.state;
-    groove_.edge.place = places_across(ski_, conditions_, *std::max_element(near.depth.begin(), near.depth.end()));
     const bool found = reaches(conditions_);
     if (!found) newton.state = first_guess(ski_, conditions_);
     return found;
@@ -98,7 +78,6 @@ class Search {
     elastic.excess = 0.0;
     if (!reaches(elastic)) return false;
     if (conditions.excess == 0.0) return true;
-    keep_groove_at_waterline();
     const double goal = std::log1p(conditions.excess / conditions.hardness);
     return follows([&](double share) {
       CarveConditions out = conditions;
@@ -117,14 +96,7 @@ class Search {
     elastic.excess = elastic.law_share = 0.0;
     virgin.excess = virgin.law_memory = 0.0;
     if (!reaches(elastic)) return false;
-    const std::vector<double> linear = places_across(ski_, conditions_, newton.at.deepest());
-    if (!takes_law(virgin)) return false;
-    const CarveState before = newton.state;
-    keep_groove_at_waterline();  // result of the law on virgin snow, independent of the start of the search
-    if (takes_memory(conditions)) return true;
-    newton.state = before;
-    groove_.edge.place = linear;
-    return takes_memory(conditions);
+    return takes_law(virgin) && takes_memory(conditions);
   }
 
   // The law from outside sees a growing share of the groove, as fast as the logarithm of the unloading ratio.
@@ -145,9 +117,6 @@ class Search {
       return out;
     });
   }
-
-  // Forces at the present state.
-  void keep_groove_at_waterline() { groove_.edge.place = places_across(ski_, conditions_, newton.at.deepest()); }
 
   // To the equilibrium under these conditions; stays where it was if that fails.
   bool reaches(const CarveConditions& conditions) {

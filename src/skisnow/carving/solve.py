@@ -92,12 +92,33 @@ def solved(
         border = np.array([near.boot_depth, near.boot_slope, near.shear_stress])
         from_there = (near.u, border, near.edge_depth)
     laws = None if conditions.laws is None else conditions.laws.compiled
-    # numbers of NumPy, too, which the core does not know
-    given: list[Any] = [each.item() if isinstance(each, np.generic) else each for each in conditions[:-1]]
-    numbers = core.CarveConditions(*given)
-    found = core.find_carve(_core_ski(model), numbers, offset, from_there, laws)
+    found = core.find_carve(_core_ski(model), _numbers(conditions), offset, from_there, laws)
     converged, iterations, u, (depth, slope, stress), edge_depth, force = found
     return Solution(converged, iterations, u, depth, slope, stress, edge_depth, force)
+
+
+def refined(
+    model: ClampedSki, conditions: Conditions, near: Solution, *, places: FloatArray | None = None
+) -> core.CarvePoint:
+    """The equilibrium next to a solution, to the last digits, for derivatives: groove along the edge, no laws.
+
+    Parameters
+    ----------
+    model, conditions
+        As in `solved`.
+    near
+        Its solution.
+    places
+        Where across the groove is kept (m from the edge, rising from 0); None: where `solved` keeps it.
+    """
+    border = np.array([near.boot_depth, near.boot_slope, near.shear_stress])
+    return core.CarvePoint(_core_ski(model), _numbers(conditions), near.u, border, places)
+
+
+def _numbers(conditions: Conditions) -> core.CarveConditions:
+    # numbers of NumPy, too, which the core does not know
+    given: list[Any] = [each.item() if isinstance(each, np.generic) else each for each in conditions[:-1]]
+    return core.CarveConditions(*given)
 
 
 @functools.lru_cache(maxsize=32)

@@ -1,0 +1,243 @@
+#include "carve/point.hpp"
+
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <utility>
+
+#include "carve/places.hpp"
+#include "carve/residual.hpp"
+
+namespace skisnow {
+
+namespace {
+
+constexpr int MOST_PLACES = 10;
+constexpr int MOST_CORRECTIONS = 6;
+constexpr double FAR_ABOVE = -1e3;  // depth (m) that marks untouched snow
+
+// Directions in which the forces on a section are differentiated; from GROOVE on: depth of the groove at each place.
+enum Along { CORNER, ANGLE, HALF, HARDNESS, EXCESS, BEVEL, BEVEL_WIDTH, LINE, REACH, BEVEL_END, GROOVE };
+constexpr int DIRECTIONS = GROOVE + MOST_PLACES;
+using Number = Slopes<DIRECTIONS>;
+
+// Factors by which a section's force, moment and depths count in a sum.
+struct Shares {
+  double force, moment, edge, other;
+};
+
+struct Felt {  // a section in the snow, or that deepens the groove
+  bool touches = false;
+  bool deepens[MOST_PLACES] = {};
+  double sine, cosine, deflection, corner, angle;
+  Number force, moment, edge, other;
+
+  double sum(const Shares& share, int along) const {
+    return share.force * force.by[along] + share.moment * moment.by[along] + share.edge * edge.by[along] +
+           share.other * other.by[along];
+  }
+};
+
+}  // namespace
+
+// [passed] A pass from tip to tail, the same for all outputs.
+struct CarvePoint::Passed {
+  const CarvedSki& ski;
+  const CarveConditions given;
+  double bevel_width, sine, cosine;
+  std::vector<Number> place;
+  std::vector<Felt> felt;
+
+  Passed(const CarvedSki& of, const CarveConditions& conditions, const std::vector<double>& own_place,
+         const CarveState& at)
+      : ski(of),
+        given(conditions),
+        bevel_width(conditions.bevel > 0.0 ? conditions.bevel_width : 0.0),
+        sine(std::sin(conditions.edge_angle)),
+        cosine(std::cos(conditions.edge_angle)) {
+    if (own_place.empty())
+      place = places_across(Number::along(straight_waterline(ski, given), LINE),
+                            Number::along(ski.greatest_width * cosine, REACH),
+                            bevel_width > 0.0 ? Number::along(bevel_width * cosine, BEVEL_END) : Number(0.0));
+    else
+      place.assign(own_place.begin(), own_place.end());
+    if (place.size() > MOST_PLACES) throw std::invalid_argument("too many places for derivatives");
+    std::vector<Number> groove;
+    for (std::size_t k = 0; k < place.size(); k++) groove.push_back(Number::along(FAR_ABOVE, GROOVE + int(k)));
+    felt.resize(ski.stations.size());
+    for (std::size_t i = 0; i < felt.size(); i++) feel(ski.stations[i], at, groove, felt[i]);
+  }
+
+  SectionIn<Number> section(const CarveStation& s, const Felt& f) const {
+    return {Number::along(f.corner, CORNER), Number::along(f.angle, ANGLE), Number::along(s.half_width, HALF),
+            Number::along(given.bevel, BEVEL),
+            bevel_width > 0.0 ? Number::along(bevel_width, BEVEL_WIDTH) : Number(0.0)};
+  }
+
+  void feel(const CarveStation& s, const CarveState& at, std::vector<Number>& groove, Felt& f) {
+    const double* u = at.u.data() + s.first;
+    f.deflection = 0.0, f.angle = given.edge_angle;
+    for (int a = 0; a < 4; a++) f.deflection += s.deflection[a] * u[BENDS[a]];
+    for (int a = 0; a < 2 && given.twists; a++) f.angle += s.twist[a] * u[TURNS[a]];
+    f.sine = std::sin(f.angle), f.cosine = std::cos(f.angle);
+    f.corner = at.border[0] + at.border[1] * s.place - cosine * (s.base_height + f.deflection) + s.half_width * f.sine;
+    const SectionIn<double> flat(f.corner, f.angle, s.half_width, given.bevel, bevel_width);
+    std::vector<double> depth;
+    for (const Number& each : place) depth.push_back(flat.base_depth(each.value));
+    const bool deep = *std::max_element(depth.begin(), depth.end()) > 0.0 || flat.other_depth() > 0.0;
+    f.touches = deep || flat.edge_depth() > 0.0;
+    if (f.touches) {
+      const auto in_snow = section(s, f);
+      const auto sums = strip_across<Number>(in_snow, place, groove, Number::along(given.hardness, HARDNESS),
+                                             Number::along(given.excess, EXCESS));
+      f.force = sums.force, f.moment = sums.moment, f.edge = in_snow.edge_depth(), f.other = in_snow.other_depth();
+    }
+    for (std::size_t k = 0; k < place.size(); k++) {
+      f.deepens[k] = depth[k] >= groove[k].value;
+      if (f.deepens[k]) groove[k].value = depth[k];
+    }
+  }
+
+  // Gradient of λ·R + seed; `by_state`: the same by the unknowns.
+  CarveGradient backward(const CarveState& at, CarveState adjoint, const CarveSeed& seed, CarveState& by_state) const;
+
+ private:
+  void through_places(CarveGradient& out, double by_line, double by_reach, double by_bevel_end) const;
+};
+
+// [backward] From tail to tip. `back`: how the sum grows with the groove's depth at each place, behind the station.
+CarveGradient CarvePoint::Passed::backward(const CarveState& at, CarveState adjoint, const CarveSeed& seed,
+                                           CarveState& by_state) const {
+  const std::size_t n = felt.size(), places = place.size();
+  CarveGradient out;
+  for (auto* each : {&out.place, &out.weight, &out.width, &out.base_height, &out.by_deflection, &out.normal})
+    each->assign(n, 0.0);
+  by_state.u.assign(at.u.size(), 0.0), by_state.border = {};
+  const double *mu = adjoint.border.data(), stress = at.border[2], shears = given.side_force_bending ? 1.0 : 0.0;
+  const double by_force = given.pitch_of_force, by_shear = given.pitch_of_shear;
+  const bool reacts = given.by_reaction;
+  double back[MOST_PLACES] = {}, by_line = 0.0, by_reach = 0.0, by_bevel_end = 0.0;
+  for (std::size_t i = n; i-- > 0;) {
+    const CarveStation& s = ski.stations[i];
+    const Felt& f = felt[i];
+    double by[GROOVE] = {};  // growth of the sum with the section's own numbers
+    for (std::size_t k = 0; k < places; k++) {
+      if (!f.deepens[k]) continue;
+      if (back[k] != 0.0) {
+        const Number depth = section(s, f).base_depth(place[k]);
+        for (int along = 0; along < GROOVE; along++) by[along] += back[k] * depth.by[along];
+      }
+      back[k] = 0.0;
+    }
+    if (f.touches) {
+      const double* l = adjoint.u.data() + s.first;
+      double bends = 0.0, turns = 0.0;
+      for (int a = 0; a < 4; a++) bends += s.deflection[a] * l[BENDS[a]];
+      for (int a = 0; a < 2 && given.twists; a++) turns += s.twist[a] * l[TURNS[a]];
+      const double w = s.weight, half = s.half_width, force = f.force.value;
+      const double bite = reacts ? force : std::max(f.edge.value, 0.0);
+      const double turned = reacts ? bite : bite - 2.0 * std::max(f.other.value, 0.0);
+      const double normal = cosine * force + shears * sine * stress * bite;
+      const double moment = f.moment.value - half * f.cosine * force - shears * half * f.sine * stress * turned;
+      const double pitch = by_force * force + by_shear * stress * bite;
+      const double held = reacts ? 0.0 : stress * bite;  // by reaction the load alone draws the side force
+      const double by_bite = w * stress * (mu[1] * s.place * by_shear - bends * shears * sine + (reacts ? 0.0 : mu[2]));
+      const double by_turned = w * stress * turns * shears * half * f.sine;
+      const double by_load = w * (mu[0] + mu[1] * s.place * by_force - bends * cosine + turns * half * f.cosine);
+      const Shares share{by_load + seed.force[i] + (reacts ? by_bite + by_turned : 0.0), -w * turns,
+                         seed.depth[i] + (!reacts && f.edge.value > 0.0 ? by_bite + by_turned : 0.0),
+                         !reacts && f.other.value > 0.0 ? -2.0 * by_turned : 0.0};
+      for (int along = 0; along < GROOVE; along++) by[along] += f.sum(share, along);
+      for (std::size_t k = 0; k < places; k++) back[k] += f.sum(share, GROOVE + int(k));
+      by[ANGLE] -= w * turns * half * (f.sine * force - shears * f.cosine * stress * turned);
+      by[HALF] += w * turns * (f.cosine * force + shears * f.sine * stress * turned);
+      out.weight[i] = mu[0] * force + mu[1] * s.place * pitch + mu[2] * held - bends * normal - turns * moment;
+      out.place[i] = w * mu[1] * pitch;
+      out.normal[i] = w * normal;
+      out.edge_angle += w * bends * (sine * force - shears * cosine * stress * bite);
+      out.pitch_of_force += w * mu[1] * s.place * force;
+      out.pitch_of_shear += w * mu[1] * s.place * stress * bite;
+      by_state.border[2] += w * ((mu[1] * s.place * by_shear - bends * shears * sine) * bite +
+                                 turns * shears * half * f.sine * turned + (reacts ? 0.0 : mu[2] * bite));
+    } else {  // a depth that is asked for above the snow
+      by[CORNER] += seed.depth[i];
+      by[ANGLE] -=
+          seed.depth[i] * (bevel_width > 0.0 ? bevel_width * (f.cosine - std::cos(f.angle - given.bevel)) : 0.0);
+    }
+    const double corner = by[CORNER], angle = by[ANGLE] + corner * s.half_width * f.cosine;
+    out.width[i] = 0.5 * (by[HALF] + corner * f.sine);
+    out.base_height[i] = -cosine * corner;
+    out.by_deflection[i] = -cosine * corner;
+    out.place[i] += corner * at.border[1];
+    out.edge_angle += angle + corner * sine * (s.base_height + f.deflection);
+    out.hardness += by[HARDNESS], out.excess += by[EXCESS];
+    out.bevel += by[BEVEL], out.bevel_width += by[BEVEL_WIDTH];
+    by_line += by[LINE], by_reach += by[REACH], by_bevel_end += by[BEVEL_END];
+    by_state.border[0] += corner, by_state.border[1] += corner * s.place;
+    for (int a = 0; a < 4; a++) by_state.u[std::size_t(s.first + BENDS[a])] -= cosine * s.deflection[a] * corner;
+    for (int a = 0; a < 2 && given.twists; a++) by_state.u[std::size_t(s.first + TURNS[a])] += s.twist[a] * angle;
+  }
+  out.load -= mu[0], out.moment -= mu[1], out.side_force -= mu[2];
+  if (reacts) out.load += mu[2] * stress, by_state.border[2] += mu[2] * given.load;
+  through_places(out, by_line, by_reach, by_bevel_end);
+  out.adjoint = std::move(adjoint);
+  return out;
+}
+
+// The places across depend on the question: the chain rule through `straight_waterline` and the widths.
+void CarvePoint::Passed::through_places(CarveGradient& out, double by_line, double by_reach,
+                                        double by_bevel_end) const {
+  const double line = straight_waterline(ski, given), tangent = std::tan(given.edge_angle);
+  out.load += 0.5 * by_line * line / given.load;
+  out.hardness -= 0.5 * by_line * line / given.hardness;
+  out.running_length -= 0.5 * by_line * line / ski.running_length;
+  if (given.edge_angle > SHALLOWEST_WEDGE) out.edge_angle -= 0.5 * by_line * line * (1.0 + tangent * tangent) / tangent;
+  out.greatest_width += by_reach * cosine;
+  out.bevel_width += by_bevel_end * cosine;
+  out.edge_angle -= (by_reach * ski.greatest_width + by_bevel_end * bevel_width) * sine;
+}
+
+CarvePoint::CarvePoint(const CarvedSki& ski, const CarveConditions& conditions, std::vector<double> place,
+                       CarveState near)
+    : ski_(ski), conditions_(conditions), place_(std::move(place)), state_(std::move(near)), at_(ski) {
+  refine();
+}
+
+CarvePoint::~CarvePoint() = default;
+
+void CarvePoint::factor() {
+  CarveGroove groove(ski_.stations.size());
+  groove.edge.place = place_.empty() ? places_across(ski_, conditions_) : place_;
+  assemble(ski_, conditions_, groove, state_, at_);
+  factors_.factor(ski_, at_);
+}
+
+// [refine] Newton's corrections for the residual in more digits, as long as they fall.
+void CarvePoint::refine() {
+  CarveState step = state_;
+  double before = std::numeric_limits<double>::infinity();
+  const std::vector<double> place = place_.empty() ? places_across(ski_, conditions_) : place_;
+  for (int k = 0; k < MOST_CORRECTIONS; k++) {
+    factor();
+    refine_residual(ski_, conditions_, place, state_, at_);
+    if (!factors_.correct(ski_, at_, step)) break;
+    last_correction_ = depth_change(ski_, conditions_, step);
+    if (!(last_correction_ < 0.5 * before)) break;
+    before = last_correction_;
+    for (std::size_t j = 0; j < state_.u.size(); j++) state_.u[j] += step.u[j];
+    for (std::size_t a = 0; a < CARVE_BORDER; a++) state_.border[a] += step.border[a];
+  }
+  factor();
+}
+
+CarveGradient CarvePoint::gradient(const CarveSeed& seed) {
+  if (!passed_) passed_ = std::make_unique<Passed>(ski_, conditions_, place_, state_);
+  CarveState adjoint{Column(state_.u.size(), 0.0), {}}, right;
+  passed_->backward(state_, adjoint, seed, right);
+  for (std::size_t j = 0; j < adjoint.u.size(); j++) adjoint.u[j] = -right.u[j] - seed.u[j];
+  for (std::size_t a = 0; a < CARVE_BORDER; a++) adjoint.border[a] = -right.border[a];
+  factors_.solve_transposed(ski_, adjoint);
+  return passed_->backward(state_, std::move(adjoint), seed, right);
+}
+
+}  // namespace skisnow

@@ -1,0 +1,159 @@
+// The equations of a carving ski on any kind of number: with derivatives in some directions (`Slopes`), or in more
+// digits (long double). Groove along the edge, snow of the core's law.
+//
+// Equations: docs/methods/carve-derivatives.md.
+#pragma once
+
+#include <cmath>
+#include <vector>
+
+#include "carve/equations.hpp"
+
+namespace skisnow {
+
+// A number with its derivatives in N directions.
+template <int N>
+struct Slopes {
+  double value = 0.0, by[N] = {};
+
+  Slopes() = default;
+  Slopes(double given) : value(given) {}  // NOLINT: a number has no derivative
+  static Slopes along(double value, int direction) {
+    Slopes out(value);
+    out.by[direction] = 1.0;
+    return out;
+  }
+  // f of a number: its value and its derivative f'
+  Slopes mapped(double to, double growth) const {
+    Slopes out(to);
+    for (int n = 0; n < N; n++) out.by[n] = growth * by[n];
+    return out;
+  }
+  Slopes operator-() const { return mapped(-value, -1.0); }
+  Slopes& operator+=(const Slopes& b) {
+    value += b.value;
+    for (int n = 0; n < N; n++) by[n] += b.by[n];
+    return *this;
+  }
+  Slopes& operator-=(const Slopes& b) {
+    value -= b.value;
+    for (int n = 0; n < N; n++) by[n] -= b.by[n];
+    return *this;
+  }
+  Slopes& operator*=(const Slopes& b) {
+    for (int n = 0; n < N; n++) by[n] = by[n] * b.value + value * b.by[n];
+    value *= b.value;
+    return *this;
+  }
+  Slopes& operator/=(const Slopes& b) {
+    const double inverse = 1.0 / b.value;
+    value *= inverse;
+    for (int n = 0; n < N; n++) by[n] = (by[n] - value * b.by[n]) * inverse;
+    return *this;
+  }
+  friend Slopes operator+(Slopes a, const Slopes& b) { return a += b; }
+  friend Slopes operator-(Slopes a, const Slopes& b) { return a -= b; }
+  friend Slopes operator*(Slopes a, const Slopes& b) { return a *= b; }
+  friend Slopes operator/(Slopes a, const Slopes& b) { return a /= b; }
+  friend bool operator<(const Slopes& a, const Slopes& b) { return a.value < b.value; }
+  friend bool operator>(const Slopes& a, const Slopes& b) { return a.value > b.value; }
+  friend bool operator==(const Slopes& a, const Slopes& b) { return a.value == b.value; }
+  friend Slopes sin(const Slopes& a) { return a.mapped(std::sin(a.value), std::cos(a.value)); }
+  friend Slopes cbrt(const Slopes& a) {
+    const double root = std::cbrt(a.value);
+    return a.mapped(root, 1.0 / (3.0 * root * root));
+  }
+  friend Slopes cos(const Slopes& a) { return a.mapped(std::cos(a.value), -std::sin(a.value)); }
+};
+
+// One section in the snow; see `CarveSection`.
+template <class T>
+struct SectionIn {
+  T half, sine, cosine, tangent, corner, strip, rise;
+
+  SectionIn(const T& corner_depth, const T& angle, const T& half_width, const T& bevel, const T& bevel_width)
+      : half(half_width), corner(corner_depth), strip(bevel_width) {
+    using std::cos;
+    using std::sin;
+    sine = sin(angle), cosine = cos(angle), tangent = sine / cosine;
+    rise = strip > T(0.0) ? sine - sin(angle - bevel) : T(0.0);
+  }
+  T reach() const { return T(2.0) * half * cosine; }
+  T edge_depth() const { return corner - strip * rise; }
+  // depth of the other edge; the bevel there is not counted
+  T other_depth() const { return corner - T(2.0) * half * sine; }
+  T base_depth(const T& xi) const {
+    const T straight = corner - xi * tangent;
+    if (!(strip > T(0.0))) return straight;
+    const T left = strip - xi / cosine;
+    return left > T(0.0) ? straight - left * rise : straight;
+  }
+};
+
+// ∫p and ∫p ξ across a section, in closed form; see `StripSums`.
+template <class T>
+struct StripIn {
+  T force = 0.0, moment = 0.0;
+
+  // from `start`, over `length`, on which depth and lift (groove less depth) are straight lines
+  void add(const T& start, const T& length, const T (&depth)[2], const T (&lift)[2], const T& hardness,
+           const T& excess) {
+    const T zero(0.0);
+    const T depths = (depth[1] - depth[0]) / length, lifts = (lift[1] - lift[0]) / length;
+    const auto virgin = [&](const T& a, const T& b) {
+      if (b > a) add_linear(start + a, b - a, hardness * (depth[0] + depths * a), hardness * (depth[0] + depths * b));
+    };
+    if (!(lift[0] > zero) && !(lift[1] > zero)) return virgin(zero, length);
+    T from = zero, to = length;  // where the ground was pressed deeper before
+    if (!(lift[0] > zero)) from = -lift[0] / lifts;
+    if (!(lift[1] > zero)) to = -lift[0] / lifts;
+    virgin(zero, from);
+    virgin(to, length);
+    const auto pressure = [&](const T& x) {
+      return hardness * (depth[0] + depths * x) - excess * (lift[0] + lifts * x);
+    };
+    if (to > from) add_linear(start + from, to - from, pressure(from), pressure(to));
+  }
+
+ private:
+  // a linear pressure as far as it is above zero
+  void add_linear(const T& start, const T& length, T p0, T p1) {
+    const T zero(0.0);
+    if (!(p0 > zero) && !(p1 > zero)) return;
+    T low = zero, high = length;
+    if (p0 < zero) {
+      low = length * p0 / (p0 - p1);
+      p0 = zero;
+    } else if (p1 < zero) {
+      high = length * p0 / (p0 - p1);
+      p1 = zero;
+    }
+    const T x = start + low, h = high - low, part = T(0.5) * h * (p0 + p1);
+    force += part;
+    moment += x * part + h * h * (p0 + T(2.0) * p1) * T(1.0 / 6.0);
+  }
+};
+
+// [across] The same over all places; `groove`: depth at each.
+template <class T>
+StripIn<T> strip_across(const SectionIn<T>& section, const std::vector<T>& place, const std::vector<T>& groove,
+                        const T& hardness, const T& excess) {
+  StripIn<T> out;
+  const T zero(0.0), reach = section.reach();
+  for (std::size_t k = 0; k + 1 < place.size(); k++) {
+    const T start = place[k], length = (place[k + 1] < reach ? place[k + 1] : reach) - start;
+    if (!(length > zero)) break;
+    const T depth[2] = {section.base_depth(start), section.base_depth(start + length)};
+    if (!(depth[0] > zero) && !(depth[1] > zero)) continue;
+    const T end = groove[k] + length / (place[k + 1] - start) * (groove[k + 1] - groove[k]);
+    const T lift[2] = {groove[k] - depth[0], end - depth[1]};
+    out.add(start, length, depth, lift, hardness, excess);
+  }
+  return out;
+}
+
+// Residual of all equations in more digits than they are solved in, rounded at the end into `system`.
+void refine_residual(const CarvedSki& ski, const CarveConditions& conditions, const std::vector<double>& place,
+                     const CarveState& at, CarveEquations& system);
+
+}  // namespace skisnow
