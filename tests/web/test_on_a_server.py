@@ -25,7 +25,7 @@ from .test_day import PLATE, SERIES, TOOL, VALUES, enter_series
 if TYPE_CHECKING:
     from playwright.sync_api import Page
 
-PAGE = Path(__file__).parents[2] / "docs" / "how-to" / "group-store.md"
+PAGE = Path(__file__).parents[2] / "docs" / "how-to" / "store.md"
 PASSWORD = "a:word with \\ in it"
 
 

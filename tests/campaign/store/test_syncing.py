@@ -399,7 +399,7 @@ def test_the_command_shows_conflicts_and_takes_choices(
     assert told.startswith("given: 0 stored campaigns, 0 entries; taken: 0 stored campaigns, 0 entries\n")
     assert "penetration.csv, 1: the same cell was corrected differently\n    here: Bo, " in told
     id_ = told.partition("choose with --keep ")[2].partition("=")[0]
-    page = Path(__file__).parents[3] / "docs" / "how-to" / "group-store.md"
+    page = Path(__file__).parents[3] / "docs" / "how-to" / "store.md"
     shown = page.read_text(encoding="utf-8").partition("<!-- example: conflict -->\n```\n")[2].partition("```")[0]
     shortened = re.sub(r"\d{4}-\d\d-\d\dT[\d:]{8}Z", "TIME", told.replace(id_, "ID"))
     assert shown == re.sub(r"\([0-9a-f]{12}\)", "(CAMPAIGN)", shortened).partition("\n\n")[2]
