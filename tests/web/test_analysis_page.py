@@ -13,7 +13,6 @@ import pytest
 from skisnow.campaign import read_campaign, write_reference
 from skisnow.campaign.store import Journals, NewEntry, Store
 from skisnow.estimation import analyse, results_dict
-from skisnow.web.analysis_cache import MOST_CAMPAIGNS
 from skisnow.web.campaign_analysis import choosable_flags
 
 from .conftest import DRAWING_MS, Served, downloaded_results, ready
@@ -179,13 +178,3 @@ def test_the_report_is_of_what_was_chosen_just_before(page: Page, served: Served
     report = opened.value
     report.wait_for_load_state()
     assert "cancelled" in report.content()
-
-
-@pytest.mark.slow
-def test_a_campaign_that_was_forgotten_is_computed_again(page: Page, served: Served) -> None:
-    with Store.open(served.store) as store:
-        ids = [Journals(store).begin(DESCRIPTION) for _ in range(MOST_CAMPAIGNS + 1)]
-    for id_ in ids:
-        page.goto(f"{served.address}analysis/entry/{id_}")
-        page.locator(".status", has_text="used.").or_(page.locator(".status", has_text="cannot")).wait_for()
-    assert "Computing" in html(served, f"/analysis/entry/{ids[0]}")

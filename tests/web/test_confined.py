@@ -59,7 +59,7 @@ def test_time_has_an_end() -> None:
         confined(Bounds(seconds=0.5), takes_time)
 
 
-@pytest.mark.skipif(sys.platform != "linux", reason="other systems keep no such limit")
+@pytest.mark.skipif(sys.platform != "linux", reason="no such limit")
 def test_memory_has_an_end() -> None:
     assert confined(BOUNDS, takes_memory) == 400_000_000
     with raises(ParameterError, "cannot_read", seconds=120.0, megabytes=300):

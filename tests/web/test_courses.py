@@ -2,22 +2,16 @@
 
 from __future__ import annotations
 
-import io
 import json
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
 
-from tests.coded import raises
-
 pytest.importorskip("nicegui", reason="the web lab is not installed: pip install 'skisnow[web]'")
 
 from fastapi import FastAPI
 
-from skisnow._support.errors import ParameterError
-from skisnow.track.course import course_names
-from skisnow.web.lab_tracks import LARGEST_COURSE_BYTES, LabCourses
 from skisnow.web.replay_addresses import RunFolders, add_addresses
 
 from ..track.course.test_gate_gaps import folder_of
@@ -29,30 +23,6 @@ if TYPE_CHECKING:
     from .conftest import Served
 
 COURSE = b"gate,x_m,y_m,side\n1,12,1.5,left\n2,22,-1.5,right\n3,32,1.5,left\n"
-
-
-def test_a_course_is_kept_under_a_name_of_its_own_and_chosen_by_it(tmp_path: Path) -> None:
-    courses = LabCourses(tmp_path)
-    name = courses.keep("Hang 3.CSV", io.BytesIO(COURSE))
-    assert name.startswith("Hang-3-") and name.endswith(".csv")
-    assert courses.names() == [*course_names(), name]
-    key, word = courses.change(name)
-    assert (key, Path(word).read_bytes()) == ("course.file", COURSE)
-    assert courses.change("slalom-20-gates") == ("course.name", "slalom-20-gates")
-    with raises(ParameterError, "unknown_course"):
-        courses.change("../lab.log")
-
-
-def test_what_is_no_course_is_refused_and_leaves_nothing(tmp_path: Path) -> None:
-    courses = LabCourses(tmp_path)
-    for called, content, code in (
-        ("words.txt", b"words", "unknown_ending"),
-        ("long.csv", b"x" * (LARGEST_COURSE_BYTES + 1), "too_large"),
-        ("bad.csv", COURSE.replace(b"right", b"up"), "unknown_choice"),
-    ):
-        with raises(ParameterError, code):
-            courses.keep(called, io.BytesIO(content))
-    assert [place for place in tmp_path.rglob("*") if place.is_file()] == []
 
 
 @pytest.mark.slow

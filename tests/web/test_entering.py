@@ -2,50 +2,15 @@
 
 from __future__ import annotations
 
-import tempfile
-from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
-import numpy as np
-import pytest
-
-from skisnow import read_campaign
 from skisnow.campaign.store import Journals, Store, replayed
-from skisnow.campaign.store.replayed import campaign_files, write_campaign
-from skisnow.web.edit_session import EditSession
-from skisnow.web.settings import Lab
-from skisnow.web.words import hardness_words
 
 from .conftest import Served, fill, has_text, ready
-from .test_day import correct_the_typing_error, create, enter_series, next_series
+from .test_day import create, enter_series, next_series
 
 if TYPE_CHECKING:
     from playwright.sync_api import Locator, Page
-
-
-def hardness_beside(page: Page, served: Served) -> str:
-    """H_V beside the series: that of all its readings by the library, not that of fewer of a moment ago."""
-    with Store.open(served.store) as store:
-        (head,) = Journals(store).list()
-        row = EditSession(Lab(store, served.lab), head.id).quick_results("A").experiments["penetration.csv", "1"]
-    words = f"H_V = {hardness_words(row)}"
-    page.locator(".beside .value", has_text=words).wait_for()
-    return words
-
-
-@pytest.mark.slow
-def test_undo_and_a_second_look(page: Page, served: Served) -> None:
-    create(page, served)
-    enter_series(page, "1")
-    ready(page)
-    page.get_by_role("button", name="Undo: entered 3.0 mm under 80 N").press("Enter")
-    page.get_by_text("Undone.").wait_for()
-    has_text(page.get_by_label("Depth under 80 N (mm)"), "")
-    with Store.open(served.store) as store:
-        (head,) = Journals(store).list()
-        test = replayed(Journals(store).entries(head.id)).test("penetration.csv", "1")
-    assert [row.cells["depth_mm"] for row in test.rows] == ["1.5", "22.5", "2.6"]
-    assert [entry.action for entry in test.history] == ["add"] * 4 + ["undo"]
 
 
 def test_the_curve_follows_the_readings(page: Page, served: Served) -> None:
@@ -67,137 +32,6 @@ def test_the_curve_follows_the_readings(page: Page, served: Served) -> None:
     left, top = zip(*(map(float, each.removesuffix("h0").split()) for each in own.split("M")[1:]), strict=True)
     assert sorted(left) == list(left)  # deeper and deeper
     assert sorted(top, reverse=True) == list(top)  # under more and more load, which counts upwards
-
-
-@pytest.mark.slow
-def test_discs_that_are_taken_off_have_fields_of_their_own(page: Page, served: Served) -> None:
-    """They come behind the loading, are told from it everywhere, and give k_u/H_V beside the same H_V."""
-    create(page, served)
-    enter_series(page, "1")
-    correct_the_typing_error(page)
-    before = hardness_beside(page, served)
-    hardness = page.locator(".beside .value")
-    assert hardness.inner_text() == before
-    page.locator("summary", has_text="Discs taken off one by one").press("Enter")
-    ready(page)
-    page.get_by_label("Depth back under 60 N (mm)").focus()
-    page.keyboard.type("2.95\n2.89\n2,8\n")
-    page.get_by_text("Stored: 2.8 mm under 20 N on the way back.").wait_for()
-    page.wait_for_function("document.querySelector('.beside .value').innerText.includes('k_u/H_V = ')")
-    assert hardness.inner_text().startswith(before)
-    page.reload()
-    has_text(page.get_by_label("Depth back under 20 N (mm)"), "2.8")
-    has_text(page.get_by_label("Depth under 20 N (mm)"), "1.5")
-    with Store.open(served.store) as store:
-        (head,) = Journals(store).list()
-        campaign = replayed(Journals(store).entries(head.id))
-    rows = [row.split(",") for row in campaign_files(campaign)["penetration.csv"].splitlines()]
-    load, depth, branch = (rows[0].index(name) for name in ("load_N", "depth_mm", "branch"))
-    assert [(row[load], row[depth], row[branch]) for row in rows[-3:]] == [
-        ("60", "2.95", "unloading"),
-        ("40", "2.89", "unloading"),
-        ("20", "2.8", "unloading"),
-    ]
-    assert [row[branch] for row in rows[1:-3]] == [""] * 4
-
-
-@pytest.mark.slow
-def test_a_depth_that_is_read_once_more_after_waiting_stands_beside_the_first_one(page: Page, served: Served) -> None:
-    """At the width of a phone: with its reading in the file's column, flagged where the snow creeps, corrected with a
-    reason; the first depths, and with them H_V, stay.
-
-    The gauge steps by 0.01 mm: 0.1 mm more than 2.6 mm is creep.
-    """
-    page.set_viewport_size({"width": 390, "height": 844})
-    create(page, served)
-    enter_series(page, "1")
-    correct_the_typing_error(page)
-    before = hardness_beside(page, served)
-    ready(page)
-    page.locator("summary", has_text="Depths read once more after waiting").press("Enter")
-    fits(page)
-    assert page.locator("input:visible, button:visible").evaluate_all(NAMELESS) == []
-    page.get_by_label("Depth after waiting under 40 N (mm)").fill("2.1.6")
-    page.keyboard.press("Enter")
-    page.locator(".refusals li", has_text="“2.1.6”").wait_for()
-    press(page, "button", "Next series")
-    page.get_by_text("Not stored yet: 40 N after waiting.").wait_for()
-    ready(page)
-    page.get_by_label("Depth after waiting under 40 N (mm)").fill("2,16")
-    page.get_by_label("Depth after waiting under 60 N (mm)").fill("2.8")
-    page.keyboard.press("Enter")
-    page.get_by_text("Stored after waiting: 2.16 mm under 40 N, 2.8 mm under 60 N.").wait_for()
-    page.locator(".beside .marks", has_text="Under one load the depth grew").wait_for()
-    ready(page)
-    page.get_by_label("Depth after waiting under 60 N (mm)").fill("2.7")
-    page.keyboard.press("Enter")
-    page.get_by_text("After waiting under 60 N: 2.8 mm becomes 2.7 mm.").wait_for()
-    ready(page)
-    page.get_by_role("button", name="Correct it").press("Enter")
-    page.get_by_text("Corrected; the first reading is kept.").wait_for()
-    page.reload()
-    has_text(page.get_by_label("Depth after waiting under 60 N (mm)"), "2.7")
-    has_text(page.get_by_label("Depth under 60 N (mm)"), "2.6")
-    fits(page)
-    page.locator(".beside .value", has_text=before).wait_for()
-    assert page.locator(".beside .value").inner_text() == before
-    assert page.get_by_text("corrected from").all_inner_texts() == ["corrected from 22.5"]
-    with Store.open(served.store) as store:
-        (head,) = Journals(store).list()
-        campaign = replayed(Journals(store).entries(head.id))
-    rows = campaign.test("penetration.csv", "1").rows
-    assert [row.cells.get("depth_after_mm", "") for row in rows] == ["", "2.16", "2.7", ""]
-    folder = Path(tempfile.mkdtemp(dir=served.store.parent))
-    write_campaign(campaign, folder)
-    tests = read_campaign(folder).penetration
-    assert tests is not None
-    assert tests.depth_after is not None
-    assert tests.depth_after * 1e3 == pytest.approx([np.nan, 2.16, 2.7, np.nan], nan_ok=True)
-
-
-def test_a_moment_for_each_turning_angle(page: Page, served: Served) -> None:
-    """Rows of one shear test: the next angle is asked for by itself, what a test has once stays, S_f is the largest's.
-
-    30 N m/0.25 m/(100 mm × 6 mm) = 0.2 N/mm²; 20 N m take 2°, so u_y = 30/20 × 2° × 250 mm = 13.1 mm.
-    """
-    create(page, served)
-    page.get_by_role("link", name="Shear").press("Enter")
-    page.get_by_role("heading", name="New test").wait_for()
-    fill(page, {"Site": "A", "Turning angle (°)": "0", "Edge angle (°)": "90", "Depth (mm)": "6"})
-    fill(page, {"Lever arm (mm)": "250", "Moment (N m)": "5"})
-    page.keyboard.press("Enter")
-    page.get_by_text("Stored: test 1.").wait_for()
-    page.get_by_label("Turning angle (°)").and_(page.locator(":focus")).wait_for()
-    has_text(page.get_by_label("Depth (mm)"), "6")
-    page.keyboard.type("1\n15\n")
-    page.locator(".so-far li").nth(1).wait_for()
-    page.keyboard.type("2\n25\n")
-    page.locator(".so-far li").nth(2).wait_for()
-    page.keyboard.type("3\n30\n")
-    page.get_by_text("S_f = 0.200 N/mm²").wait_for()
-    page.get_by_text("u_y = 13.1 mm").wait_for()
-    ready(page)
-    fill(page, {"Depth (mm)": "7", "Turning angle (°)": "4", "Moment (N m)": "30"})
-    page.keyboard.press("Enter")
-    page.locator(".refusals li", has_text="the rows of test 1 have one Depth (mm)").wait_for()
-
-
-@pytest.mark.slow
-def test_what_is_no_number_is_not_stored(page: Page, served: Served) -> None:
-    create(page, served)
-    fill(page, {"Site": "A", "Edge angle (°)": "95"})
-    page.keyboard.press("Enter")
-    page.locator(".refusals li", has_text="“95”").wait_for()
-    ready(page)
-    fill(page, {"Edge angle (°)": "30"})
-    page.keyboard.press("Enter")
-    page.get_by_label("Depth under 20 N (mm)").and_(page.locator(":focus")).wait_for()
-    page.keyboard.type("1.5.2")
-    page.keyboard.press("Enter")
-    page.locator(".refusals li", has_text="“1.5.2”").wait_for()
-    with Store.open(served.store) as store:
-        (head,) = Journals(store).list()
-        assert head.n_entries == 1
 
 
 def test_a_series_on_a_phone_from_its_first_reading_to_the_last(page: Page, served: Served) -> None:
@@ -248,33 +82,6 @@ def test_a_refused_last_reading_that_is_put_right_is_no_correction(page: Page, s
     page.keyboard.press("Enter")
     page.locator(".reading[data-load='20'] .stored", has_text="stored").wait_for()
     assert page.get_by_label("Why", exact=True).count() == 0
-
-
-def test_a_campaign_without_a_plate_says_where_to_name_one(page: Page, served: Served) -> None:
-    with Store.open(served.store) as store:
-        id_ = Journals(store).begin('name = "Bare"\n')
-    page.goto(f"{served.address}enter/{id_}?table=shear.csv")
-    page.locator(".bad", has_text="no plate").wait_for()
-    assert page.locator(".bad").count() == 1
-
-
-@pytest.mark.slow
-def test_two_browsers_on_one_series(page: Page, served: Served) -> None:
-    create(page, served)
-    enter_series(page, "1")
-    other = page.context.new_page()
-    other.goto(page.url)
-    other.get_by_role("heading", name="Series 1").wait_for()
-    correct_the_typing_error(page)
-    other.get_by_label("Depth under 60 N (mm)").fill("9.9")
-    other.keyboard.press("Enter")
-    other.get_by_label("Why", exact=True).wait_for()
-    other.get_by_role("button", name="Correct it").click()
-    other.get_by_text("Nothing was stored: Ada wrote about Penetration, 1 meanwhile").wait_for()
-    with Store.open(served.store) as store:
-        (head,) = Journals(store).list()
-        rows = replayed(Journals(store).entries(head.id)).test("penetration.csv", "1").rows
-    assert [row.cells["depth_mm"] for row in rows] == ["1.5", "2.15", "2.6", "3.0"]
 
 
 def test_a_phone_and_the_names_of_all_fields(page: Page, served: Served) -> None:

@@ -10,13 +10,13 @@ import pytest
 pytest.importorskip("nicegui", reason="the web lab is not installed")
 
 from starlette.applications import Starlette
-from starlette.requests import ClientDisconnect, Request
+from starlette.requests import Request
 from starlette.responses import PlainTextResponse, Response
 from starlette.routing import Route, WebSocketRoute
 from starlette.types import Message, Scope
 from starlette.websockets import WebSocket
 
-from skisnow.web.guard import COOKIE, Access, Guard, Tries, is_loopback
+from skisnow.web.guard import COOKIE, Access, Guard, is_loopback
 
 from .finished import finished
 
@@ -80,13 +80,6 @@ class Client:
         return sent
 
 
-def test_the_labs_own_requests_are_answered() -> None:
-    lab = Client()
-    assert lab.ask().status == 200
-    assert lab.post(b"12345", **OWN).text == "5"
-    assert lab.is_spoken_to(**OWN)
-
-
 @pytest.mark.parametrize(
     "headers",
     [
@@ -104,10 +97,6 @@ def test_what_other_sites_send_is_refused(headers: dict[str, str]) -> None:
     assert not lab.is_spoken_to(**headers)
 
 
-def test_another_site_may_not_read_either() -> None:
-    assert Client().ask(origin="http://evil.example").status == 403
-
-
 @pytest.mark.parametrize(
     "host", ["evil.example", "evil.example:8765", "192.168.1.7:8765", "127.0.0.1.evil.example", ""]
 )
@@ -117,12 +106,6 @@ def test_other_names_for_this_machine_are_refused(host: str) -> None:
     assert lab.ask(host=host).status == 421
     assert lab.post(b"x", host=host, origin=f"http://{host}").status == 421
     assert not lab.is_spoken_to(host=host, origin=f"http://{host}")
-
-
-def test_on_all_addresses_bare_ones_are_known_and_foreign_names_are_not() -> None:
-    access = Access("0.0.0.0", "secret", 1000)
-    assert [access.allows_host(name) for name in ("192.168.1.7:8765", "[fe80::1]:8765", "localhost:1")] == [True] * 3
-    assert not access.allows_host("evil.example:8765")
 
 
 def test_without_the_token_nothing_is_answered() -> None:
@@ -155,28 +138,6 @@ def test_the_token_is_not_taken_from_another_site() -> None:
     assert lab.post(b"token=snow+in+may", path="/token", origin="http://evil.example").status == 403
 
 
-def test_bodies_beyond_the_limit_are_refused() -> None:
-    lab = Client(body_bytes=100)
-    assert lab.post(b"x" * 100, **OWN).status == 200
-    assert lab.post(b"x" * 101, **OWN).status == 413
-    for size in ("-1", "x", "1" * 5000, "0" * 5000 + "1"):
-        assert lab.post(b"x", **{**OWN, "content-length": size}).status == 413
-
-
-def test_a_body_that_says_less_than_it_is_is_cut_off() -> None:
-    with pytest.raises(ClientDisconnect):
-        Client(body_bytes=100).ask("POST", "/", (b"x" * 60, b"x" * 60), **OWN)
-
-
-def test_nothing_external_may_be_loaded_or_framed() -> None:
-    headers = Client().ask().headers
-    policy = headers["content-security-policy"]
-    assert "default-src 'none'" in policy
-    assert "frame-ancestors 'none'" in policy
-    assert not {"http:", "https:", "*"} & set(policy.replace(";", " ").split())
-    assert headers["x-content-type-options"] == "nosniff"
-
-
 def test_what_counts_as_loopback() -> None:
     assert [is_loopback(host) for host in ("127.0.0.1", "127.9.9.9", "::1", "localhost")] == [True] * 4
     assert not any(is_loopback(host) for host in ("0.0.0.0", "::", "192.168.0.1", "example.org"))
@@ -188,22 +149,6 @@ def test_what_is_no_address_is_a_bad_request(headers: dict[str, str]) -> None:
         assert lab.ask(**headers).status == 400
         assert lab.post(b"x", **{**OWN, **headers}).status == 400
         assert not lab.is_spoken_to(**{**OWN, **headers})
-
-
-def test_an_address_may_try_ten_tokens_a_minute() -> None:
-    clock = [100.0]
-    tries = Tries(lambda: clock[0])
-    assert [tries.wait_s("192.168.1.7") for _ in range(10)] == [0.0] * 10
-    clock[0] = 130.0
-    assert tries.wait_s("192.168.1.7") == 30.0
-    assert tries.wait_s("192.168.1.8") == 0.0
-    clock[0] = 160.0
-    assert tries.wait_s("192.168.1.7") == 0.0
-    same_network = [tries.wait_s(f"2001:db8::{i}") for i in range(11)]
-    assert same_network == [0.0] * 10 + [60.0]
-    assert tries.wait_s("2001:db8:0:0:ffff::1") == 60.0
-    assert tries.wait_s("2001:db8:0:1::1") == 0.0
-    assert tries.wait_s("no address") == 0.0
 
 
 def test_too_many_tries_are_told_when_to_try_again(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -155,27 +155,6 @@ def test_an_imported_campaign_is_corrected(page: Page, served: Served, tmp_path:
     assert by_lab == results
 
 
-@pytest.mark.slow
-def test_what_a_test_has_once_is_corrected_in_every_row(
-    page: Page, served: Served, tmp_path: Path, capsys: Printed
-) -> None:
-    imported(page, served)
-    follow(page, "Correct")
-    page.get_by_text("B: 1").click()
-    follow(page, "3", exact=True)
-    correct(page, "Site", "A", "was at A")
-    correct(page, "Edge angle (°)", "45", "misheard")
-    follow(page, "Shear")
-    follow(page, "1", exact=True)
-    page.get_by_text("S_f = 0.200 N/mm²").wait_for()  # 30 N m / 0.25 m / (100 mm × 6 mm), by hand
-    correct(page, "Moment (N m)", "36", "misread")
-    page.get_by_text("S_f = 0.240 N/mm²").wait_for()
-    results = analysed(exported(page, served, tmp_path / "export"), capsys)
-    row = results["penetration"]["experiments"][2]
-    assert (row["site"], row["edge_angle_deg"]) == ("A", 45.0)
-    assert abs(results["shear"]["experiments"][0]["S_f_N_per_mm2"] - 0.24) < 1e-12
-
-
 @pytest.mark.parametrize("has_icons", [True, pytest.param(False, marks=pytest.mark.slow)])
 def test_the_pages_fit_a_phone(page: Page, served: Served, has_icons: bool) -> None:
     page.set_viewport_size({"width": 390, "height": 844})

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import io
-import json
 import re
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -20,8 +19,7 @@ from .conftest import Served, fill
 
 pytest.importorskip("nicegui", reason="the web lab is not installed")
 
-from skisnow._support.language import catalogue
-from skisnow.web.lab_skis import add_ski, measured_text, read_ski_files, ski_of_uploads
+from skisnow.web.lab_skis import add_ski, measured_text, ski_of_uploads
 
 if TYPE_CHECKING:
     from playwright.sync_api import Page
@@ -75,45 +73,6 @@ def test_a_file_with_its_table_is_taken_as_it_is_read(tmp_path: Path) -> None:
     with raises(ParameterError, "already_there", name="my slalom"):
         add_ski(skis, "", texts)
     assert add_ski(skis, " another  name ", texts) == "another name"
-
-
-def test_a_design_is_taken_with_what_it_does_not_know(tmp_path: Path) -> None:
-    (tmp_path / "ski-def.json").write_text(json.dumps(DESIGN), encoding="utf-8")
-    texts = read_ski_files(str(tmp_path), ["ski-def.json"], TYPED)
-    assert texts.name == "Board"
-    skis = LabSkis(tmp_path / "lab")
-    ski = read_ski(skis.word(add_ski(skis, "design", texts)))
-    assert float(ski.width[abs(ski.station).argmin()]) == pytest.approx(0.093, abs=1e-6)
-    assert ski.mass == pytest.approx(2.231)
-
-
-def test_what_is_no_ski_is_said_and_other_files_are_not_read(tmp_path: Path) -> None:
-    (tmp_path / "rows.csv").write_text(TABLE, encoding="utf-8")
-    (tmp_path / "mine.toml").write_text(WITH_TABLE.replace("rows.csv", "../rows.csv"), encoding="utf-8")
-    with raises(ParameterError, "missing_file"):
-        read_ski_files(str(tmp_path), ["mine.toml", "rows.csv"], {})
-    with raises(ParameterError, "table_alone", table="rows.csv") as alone:
-        read_ski_files(str(tmp_path), ["rows.csv"], {})
-    assert catalogue("de").translated(str(alone.value)).startswith("eine Tabelle allein sagt weder Länge noch Masse")
-    with raises(ParameterError, "not_one_ski"):
-        read_ski_files(str(tmp_path), ["mine.toml", "other.toml"], {})
-    (tmp_path / "mine.toml").write_text(WITH_TABLE.replace("1396", "-1"), encoding="utf-8")
-    with raises(ParameterError, "out_of_range", file="mine.toml"):
-        read_ski_files(str(tmp_path), ["mine.toml", "rows.csv"], {})
-
-
-def test_a_field_that_is_missing_is_said_there_and_at_the_button(page: Page, served: Served) -> None:
-    page.set_extra_http_headers({"Accept-Language": "de"})
-    page.goto(f"{served.address}skis")
-    page.locator("summary", has_text="Gemessenen Ski hinzufügen").click()
-    form = page.locator(".adding > .fields")
-    for place, text in enumerate(("Prototyp", "1593", "1396", "1458", "116", "68", "101")):
-        form.locator("input").nth(place).fill(text)
-    page.get_by_role("button", name="Diesen Ski hinzufügen").click()
-    page.get_by_text("Nicht gespeichert: Masse eines Skis (kg)", exact=True).wait_for()
-    form.get_by_text("hier fehlt eine Zahl", exact=True).wait_for()
-    page.wait_for_function("document.activeElement.getAttribute('aria-label') === 'Masse eines Skis (kg)'")
-    assert not (served.store.parent / "lab" / "skis" / "Prototyp").exists()
 
 
 def test_a_chart_has_the_numbers_of_the_language_and_its_words_side_by_side(page: Page, served: Served) -> None:

@@ -10,13 +10,12 @@ import pytest
 
 from skisnow._support.units import N_PER_MM2, N_PER_MM3
 from skisnow.campaign import read_campaign, write_reference
-from skisnow.campaign.store import Journals, Store
+from skisnow.campaign.store import Store
 from skisnow.estimation import analyse, results_dict
 from skisnow.estimation.results import results_json
 from skisnow.report.formatting import significant
 from skisnow.snow import snow_from_results
 from skisnow.web.lab_skis import LabSkis
-from skisnow.web.runs import Runs
 
 from .conftest import Served, killed_and_started_again
 
@@ -26,15 +25,6 @@ if TYPE_CHECKING:
     from skisnow.snow import SnowProperties
 
 LONG_MS = 120_000  # seconds, more on a busy machine
-
-
-def test_jobs_are_kept_in_their_order_and_cancelled_before_they_begin(tmp_path: Path) -> None:
-    runs = Runs(tmp_path)
-    first, second = runs.ask("carved-46m", {"run.duration_s": "1"}), runs.ask("../up", {})
-    assert [job.name for job in Runs(tmp_path).jobs()] == [second.name, first.name]
-    assert (tmp_path / second.name).parent == tmp_path
-    runs.cancel(first.name)
-    assert [job.state for job in Runs(tmp_path).jobs()] == ["waiting", "cancelled"]
 
 
 @pytest.mark.slow
@@ -108,19 +98,6 @@ def test_the_snow_of_a_campaign_comes_with_its_uncertainty(page: Page, served: S
     assert summary["ski"]["name"] == "mine"
     page.get_by_role("link", name="Watch").click()
     page.wait_for_function("window.skisnowReplay")  # its ski is found, though the run was not with one of the catalogue
-
-
-@pytest.mark.slow
-def test_a_campaign_without_experiments_gives_no_snow_and_says_so(page: Page, served: Served) -> None:
-    with Store.open(served.store) as store:
-        Journals(store).begin('name = "empty"\n')
-    page.goto(f"{served.address}simulate")
-    choose(page, "Snow", "empty")
-    page.get_by_text("gives no snow yet").wait_for()
-    page.get_by_role("button", name="Simulate").click()
-    page.get_by_text("Not begun: this campaign gives no snow yet").wait_for()
-    page.get_by_text("Nothing was simulated yet.").wait_for()
-    assert not any((served.store.parent / "lab").rglob("job.json"))
 
 
 def pressed_while_it_goes_on(page: Page, button: Locator) -> None:

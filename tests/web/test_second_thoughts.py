@@ -7,10 +7,9 @@ from typing import TYPE_CHECKING
 import pytest
 
 from skisnow.campaign.store import Journals, Store, replayed
-from skisnow.ski import read_ski
 
 from .conftest import Served, fill, has_text, ready
-from .test_day import create, enter_series, enter_shear, next_series
+from .test_day import create, enter_series
 
 if TYPE_CHECKING:
     from playwright.sync_api import Page
@@ -27,29 +26,6 @@ def described(page: Page, served: Served) -> str:
 def send(page: Page) -> None:
     ready(page)
     page.get_by_role("button", name="Store and enter tests").press("Enter")
-
-
-@pytest.mark.slow
-def test_tools_and_plates_in_use_keep_their_names(page: Page, served: Served) -> None:
-    create(page, served)
-    enter_series(page, "2")
-    next_series(page)
-    enter_shear(page)
-    id_ = described(page, served)
-    for kind, used, test in (("tool", "ski piece", "2"), ("plate", "plate", "1")):
-        fill(page, {f"Name of {kind} 1": "renamed"})
-        send(page)
-        page.get_by_text(f"Not stored: test {test} was made with the {kind} {used}").wait_for()
-        fill(page, {f"Name of {kind} 1": used})
-    page.get_by_role("button", name="Another tool").press("Enter")
-    fill(page, {"Length (mm) of tool 2": "150"})
-    send(page)
-    page.get_by_text("Not stored: tool 2 has lengths and no name").wait_for()
-    fill(page, {"Name of tool 2": "a longer one", "Width (mm) of tool 2": "60"})
-    send(page)
-    page.get_by_role("heading", name="New series").wait_for()
-    with Store.open(served.store) as store:
-        assert "a longer one" in replayed(Journals(store).entries(id_)).description
 
 
 @pytest.mark.slow
@@ -79,20 +55,6 @@ def test_readings_stay_under_their_loads_when_the_discs_change(page: Page, serve
         rows = replayed(Journals(store).entries(id_)).test("penetration.csv", "2").rows
     found = [(row.cells["load_N"], row.cells["depth_mm"]) for row in rows]
     assert found == [("20", "1.4"), ("30", "1.7"), ("40", "2.0"), ("50", "2.2"), ("60", "2.5"), ("80", "2.9")]
-
-
-@pytest.mark.slow
-def test_a_shear_test_that_was_begun_waits_while_another_is_looked_at(page: Page, served: Served) -> None:
-    create(page, served)
-    enter_shear(page)
-    fill(page, {"Depth (mm)": "99", "Moment (N m)": "7,7"})
-    page.get_by_role("button", name="Correct 1").press("Enter")
-    page.get_by_role("heading", name="Correct a test").wait_for()
-    ready(page)
-    page.get_by_role("button", name="New test").press("Enter")
-    page.get_by_role("heading", name="New test").wait_for()
-    has_text(page.get_by_label("Depth (mm)"), "99")
-    has_text(page.get_by_label("Moment (N m)"), "7,7")
 
 
 @pytest.mark.slow
@@ -131,23 +93,6 @@ def test_a_value_that_is_being_typed_is_not_drawn_over(page: Page, served: Serve
     page.keyboard.press("Tab")
     page.get_by_role("cell", name="180 N m²").wait_for()
     has_text(page.get_by_label("GJ (N m²) at 0.000 m", exact=True), "180")
-
-
-@pytest.mark.slow
-def test_a_ski_file_that_was_not_drawn_is_not_passed_over(page: Page, served: Served) -> None:
-    page.goto(f"{served.address}skis")
-    page.get_by_role("row", name="Mass").wait_for()
-    page.locator("summary", has_text="The file of the ski").press("Enter")
-    text = page.get_by_label("File of the edited ski")
-    text.fill(text.input_value().replace("mass_kg = 2.246", "mass_kg = 3.75"))
-    fill(page, {"New name": "heavy"})
-    page.get_by_role("button", name="Save in the lab").click()
-    page.get_by_text("Not saved: the file below was changed since it was drawn; press Draw the file first").wait_for()
-    page.get_by_role("button", name="Draw the file").click()
-    page.get_by_role("cell", name="3.75 kg").wait_for()
-    page.get_by_role("button", name="Save in the lab").click()
-    page.get_by_text("Saved: heavy.").wait_for()
-    assert read_ski(served.store.parent / "lab" / "skis" / "heavy" / "ski.toml").mass == 3.75
 
 
 def test_what_is_typed_for_a_run_is_neither_lost_nor_passed_over(page: Page, served: Served) -> None:

@@ -12,7 +12,7 @@ import pytest
 
 from skisnow.studies import read_study, run_study
 
-from .conftest import PATIENCE_MS, Served, fill, has_text, killed_and_started_again, ready, settled
+from .conftest import PATIENCE_MS, Served, fill, killed_and_started_again, ready, settled
 from .test_runs import choose
 
 if TYPE_CHECKING:
@@ -42,26 +42,6 @@ def unpacked(page: Page, folder: Path) -> Path:
     with zipfile.ZipFile(io.BytesIO(Path(download.value.path()).read_bytes())) as packed:
         packed.extractall(folder)
     return folder / "study"
-
-
-@pytest.mark.slow
-def test_what_cannot_be_studied_is_said_before_anything_begins(page: Page, served: Served) -> None:
-    page.goto(f"{served.address}study")
-    page.get_by_text("13 points. Will take about").wait_for()
-    fill(page, {f"{FIRST}: number of values": "40"})
-    page.get_by_text("40 points. Will take about").wait_for()
-    choose(page, SECOND, "Load (N)")
-    has_text(page.get_by_label(f"{SECOND}: from"), "400")
-    has_text(page.get_by_label(f"{SECOND}: to"), "1200")
-    fill(page, {f"{SECOND}: from": "300", f"{SECOND}: to": "200"})
-    page.get_by_text("400 points. Will take about").wait_for()
-    page.get_by_label("Load (N)", exact=True).wait_for(state="hidden")  # it varies
-    page.get_by_role("button", name="Start the study").click()
-    page.get_by_text("Not begun: Load (N): it goes from 300 to 200; the first end must be the smaller one").wait_for()
-    fill(page, {f"{SECOND}: to": "400", f"{FIRST}: to": "88"})
-    page.get_by_role("button", name="Start the study").click()
-    page.get_by_text("Not begun: Edge angle ϑ (°) is 88").wait_for()
-    page.get_by_text("Nothing was studied yet.").wait_for()
 
 
 @pytest.mark.slow

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import pytest
 
 pytest.importorskip("nicegui", reason="the web lab is not installed")
+
+from skisnow._support.errors import SkisnowError
 
 from . import desk as desks
 
@@ -23,8 +25,15 @@ def kept_desk(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Desk]:
 
 
 @pytest.fixture
-def desk(kept_desk: Desk) -> Iterator[Desk]:
-    """A lab with nothing in it; no handler may fail but where the test takes the failure out."""
+def desk(kept_desk: Desk, monkeypatch: pytest.MonkeyPatch) -> Iterator[Desk]:
+    """An empty lab that notes every error of skisnow; no handler may fail unless the test removes the failure."""
     kept_desk.empty()
+    begin = SkisnowError.__init__
+
+    def noted(error: SkisnowError, *given: Any, **named: Any) -> None:
+        begin(error, *given, **named)
+        kept_desk.errors.append(error)
+
+    monkeypatch.setattr(SkisnowError, "__init__", noted)
     yield kept_desk
     assert kept_desk.failures == []

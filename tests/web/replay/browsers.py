@@ -51,6 +51,10 @@ class Watched:
         """The value of a script in which `replay` is the player."""
         return self.page.evaluate(f"() => {{ const replay = window.skisnowReplay; {script} }}")
 
+    def value(self, of_player: str) -> Any:
+        """A property of the player."""
+        return self.does(f"return replay.{of_player}")
+
     def picture(self) -> Any:
         """The canvas alone as an array (height, width, 3)."""
         import io

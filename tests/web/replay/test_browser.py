@@ -103,10 +103,10 @@ def test_the_picture_changes_while_it_plays(seen: Watched) -> None:
     seen.page.get_by_role("button", name="Play").click()
     seen.page.wait_for_function("window.skisnowReplay.time > 0.1")
     seen.page.get_by_role("button", name="Pause").click()
-    stopped = seen.does("return replay.time")
+    stopped = seen.value("time")
     assert (np.abs(seen.picture() - first).max(axis=2) > 30).mean() > 0.01
     pictures_later(seen)
-    assert seen.does("return replay.time") == stopped
+    assert seen.value("time") == stopped
 
 
 def played(apart_ms: float) -> str:
@@ -137,7 +137,7 @@ def test_a_page_that_was_hidden_goes_on_from_where_it_was(seen: Watched) -> None
 def test_it_ends_at_the_end_and_begins_anew(seen: Watched) -> None:
     seen.does("replay.seek(3.9); replay.play()")
     seen.page.wait_for_function("!window.skisnowReplay.playing")
-    assert seen.does("return replay.time") == pytest.approx(4.0)
+    assert seen.value("time") == pytest.approx(4.0)
     assert seen.does("replay.play(); return replay.time") < 1.0
 
 
@@ -174,7 +174,7 @@ def test_it_opens_playing_from_behind(browser: Any, address: str) -> None:
     seen = Watched(browser, address, plays=True)
     try:
         seen.page.wait_for_function("window.skisnowReplay.time > 0.1")
-        assert seen.does("return replay.stage.follower.view") == "chase"
+        assert seen.value("stage.follower.view") == "chase"
         on_picture = seen.does(
             """replay.pause(); replay.seek(2.0);
                const { camera } = replay.stage.follower, world = replay.stage.space;
@@ -245,7 +245,7 @@ def test_the_groove_is_as_deep_as_the_slider_says(seen: Watched) -> None:
     pictures = []
     for times in ("1", "16"):
         seen.page.get_by_label("Exaggeration of the groove").fill(times)
-        assert seen.does("return replay.stage.groove.mesh.material.uniforms.times.value") == int(times)
+        assert seen.value("stage.groove.mesh.material.uniforms.times.value") == int(times)
         pictures.append(seen.picture())
     assert (np.abs(pictures[1] - pictures[0]).max(axis=2) > 30).mean() > 0.005
 
@@ -397,7 +397,7 @@ def test_exaggeration_bends_more(seen: Watched) -> None:
     seen.does("replay.seek(2.0); replay.look('edge')")
     true = seen.picture()
     seen.page.get_by_label("Exaggeration of bending and twist").fill("10")
-    assert seen.does("return replay.exaggeration") == 10
+    assert seen.value("exaggeration") == 10
     assert (np.abs(seen.picture() - true).max(axis=2) > 25).mean() > 0.005
 
 
@@ -407,34 +407,34 @@ def test_everything_by_keyboard(seen: Watched) -> None:
     seen.page.locator("canvas.replay-canvas").focus()
     keyboard.press("ArrowRight")
     keyboard.press("Shift+ArrowRight")
-    assert seen.does("return replay.time") == pytest.approx(0.55)
+    assert seen.value("time") == pytest.approx(0.55)
     keyboard.press("End")
-    assert seen.does("return replay.time") == pytest.approx(4.0)
+    assert seen.value("time") == pytest.approx(4.0)
     keyboard.press("Home")
     for key, view in (("3", "above"), ("4", "edge"), ("5", "free"), ("2", "boot"), ("1", "chase")):
         keyboard.press(key)
-        assert seen.does("return replay.stage.follower.view") == view
+        assert seen.value("stage.follower.view") == view
         assert seen.page.locator(f'[data-view="{view}"]').get_attribute("aria-pressed") == "true"
     keyboard.press("d")
-    assert seen.does("return replay.stage.follower.view") == "free"
+    assert seen.value("stage.follower.view") == "free"
     keyboard.press("c")
-    assert seen.does("return replay.exaggeration") == 2
+    assert seen.value("exaggeration") == 2
     keyboard.press("b")
-    assert seen.does("return replay.relief") == 9
+    assert seen.value("relief") == 9
     keyboard.press("f")
     assert seen.page.get_by_label("Forces", exact=True).is_checked()
     keyboard.press("g")
     assert not seen.page.get_by_label("Groove", exact=True).is_checked()
     keyboard.press(" ")
-    assert seen.does("return replay.playing")
+    assert seen.value("playing")
     keyboard.press(" ")
-    assert not seen.does("return replay.playing")
+    assert not seen.value("playing")
 
 
 def test_keys_work_where_nothing_has_the_focus(fresh: Watched) -> None:
     assert fresh.does("return document.activeElement === document.body")
     fresh.page.keyboard.press("End")
-    assert fresh.does("return replay.time") == pytest.approx(4.0)
+    assert fresh.value("time") == pytest.approx(4.0)
 
 
 def test_every_control_has_a_name(seen: Watched) -> None:
@@ -451,12 +451,12 @@ def test_dragging_turns_and_the_wheel_comes_nearer(fresh: Watched) -> None:
     box = fresh.page.locator("canvas.replay-canvas").bounding_box()
     x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
     fresh.page.mouse.move(x, y)
-    before = fresh.does("return replay.stage.follower.camera.position.length()")
+    before = fresh.value("stage.follower.camera.position.length()")
     fresh.page.mouse.down()
     fresh.page.mouse.move(x + 80, y - 40)
     fresh.page.mouse.up()
-    assert fresh.does("return replay.stage.follower.view") == "free"
-    zoom = fresh.does("return replay.stage.follower.zoom.free")
+    assert fresh.value("stage.follower.view") == "free"
+    zoom = fresh.value("stage.follower.zoom.free")
     fresh.page.mouse.wheel(0, -300)
     fresh.page.wait_for_function(f"window.skisnowReplay.stage.follower.zoom.free < {zoom}")
     assert before > 0.0

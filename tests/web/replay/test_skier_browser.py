@@ -78,4 +78,4 @@ def test_both_begin_together(seen: Watched, replay: Replay) -> None:
         }});"""
     own, ghost = seen.does(script)
     assert own == pytest.approx(ghost, abs=1e-3)
-    assert seen.does("return replay.end") == pytest.approx(float(replay.time[-1]), abs=1e-3)
+    assert seen.value("end") == pytest.approx(float(replay.time[-1]), abs=1e-3)

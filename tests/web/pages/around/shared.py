@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 def raising(error: Exception) -> Callable[..., object]:
-    def work(*_: object) -> object:
+    def work(*_: object, **__: object) -> object:
         raise error
 
     return work

@@ -21,7 +21,7 @@ from skisnow.web.analysis_cache import AnalysisCache
 from skisnow.web.guard import CONTENT_POLICY, COOKIE, Access, Guard
 from skisnow.web.layout import _error_answer, _notify, error_sentence, log_error, log_to, plain_page
 
-from .shared import greeting
+from .shared import greeting, raising
 
 if TYPE_CHECKING:
     from starlette.types import Message
@@ -65,33 +65,31 @@ class Asked:
 
 
 OWN = {"origin": f"http://{HOST}"}
-FOREIGN = (403, "Asked for by another site: refused.")
-TOO_MUCH = (413, "This is more than the lab takes in at once.")
+FOREIGN, TOO_MUCH, OTHER_HOST, NO_ADDRESS = 403, 413, 421, 400
 
 
 @pytest.mark.parametrize(
     ("method", "headers", "answer"),
     [
-        ("GET", {}, (200, "0")),
-        ("HEAD", {}, (200, "0")),
-        ("OPTIONS", {}, (200, "0")),
-        ("GET", OWN, (200, "0")),
-        ("POST", OWN, (200, "0")),
+        ("GET", {}, 200),
+        ("HEAD", {}, 200),
+        ("OPTIONS", {}, 200),
+        ("GET", OWN, 200),
+        ("POST", OWN, 200),
         ("POST", {}, FOREIGN),
         ("PUT", {}, FOREIGN),
         ("GET", {"origin": "http://127.0.0.1"}, FOREIGN),
         ("POST", {"origin": "http://127.0.0.1"}, FOREIGN),
-        ("GET", {"host": "evil.example"}, (421, "This address is not one of the lab's.")),
-        ("GET", {"host": "LOCALHOST:8765"}, (200, "0")),
-        ("GET", {"host": "[::1]:8765"}, (200, "0")),
-        ("GET", {"host": "["}, (400, "The Host or the Origin of this request is no address.")),
-        ("GET", {"content_length": "100"}, (200, "0")),
-        ("GET", {"content_length": "101"}, TOO_MUCH),
-        ("GET", {"content_length": "1e1"}, TOO_MUCH),
+        ("GET", {"host": "evil.example"}, OTHER_HOST),
+        ("GET", {"host": "LOCALHOST:8765"}, 200),
+        ("GET", {"host": "[::1]:8765"}, 200),
+        ("GET", {"host": "["}, NO_ADDRESS),
+        ("GET", {"content_length": "100"}, 200),
+        *(("GET", {"content_length": size}, TOO_MUCH) for size in ("101", "1e1", "-1", "x", "1" * 5000)),
     ],
 )
-def test_who_is_answered(desk: Desk, method: str, headers: dict[str, str], answer: tuple[int, str]) -> None:
-    assert Asked(desk).status("/", method, **headers) == answer
+def test_who_is_answered(desk: Desk, method: str, headers: dict[str, str], answer: int) -> None:
+    assert Asked(desk).status("/", method, **headers)[0] == answer
 
 
 def test_a_body_without_its_size_is_cut_off_beyond_the_limit(desk: Desk) -> None:
@@ -116,7 +114,8 @@ def test_every_answer_has_the_headers_and_a_stricter_policy_stays(desk: Desk) ->
         assert {name: found[name] for name in expected} == expected
     assert dict(lab.send("http", "/own")[0]["headers"])[b"content-security-policy"] == b"own"
     assert lab.status("/status")[0] == 404
-    assert CONTENT_POLICY.split("; ")[0] == "default-src 'none'"
+    assert "default-src 'none'" in CONTENT_POLICY
+    assert not {"http:", "https:", "*"} & set(CONTENT_POLICY.replace(";", " ").split())
 
 
 def test_a_socket_of_another_site_is_closed(desk: Desk) -> None:
@@ -133,8 +132,7 @@ def test_a_socket_of_another_site_is_closed(desk: Desk) -> None:
 def test_the_token_is_asked_for_until_the_cookie_is_there(desk: Desk) -> None:
     lab, cookie = Asked(desk, token="snow"), hmac.new(b"snow", b"skisnow lab", hashlib.sha256).hexdigest()
     for path, method in (("/", "GET"), ("/token", "GET"), ("/", "POST")):
-        status, text = lab.status(path, method, **OWN)
-        assert (status, "The lab asks for the token that it was started with." in text) == (401, True)
+        assert lab.status(path, method, **OWN)[0] == 401
     assert lab.status(cookie=f"{COOKIE}={cookie}") == (200, "0")
     assert lab.send("websocket", cookie=f"a=b; {COOKIE}={cookie}", **OWN) == [{"type": "websocket.accept"}]
     assert lab.status(cookie=f"{COOKIE}=wrong")[0] == 401
@@ -199,58 +197,50 @@ def test_the_log_keeps_its_last_two_files(log: Path) -> None:
 
 def test_an_error_is_said_in_the_corner_of_its_page(desk: Desk) -> None:
     page = desk.open("/replay")
-    desk.do(lambda: _notify(StoreError("The disk is full.")), page.client)
+    desk.do(lambda: _notify(StoreError("full.")), page.client)
     page.told("notify ")
-    told = page.scripts[-1]
-    for part in ("'message': 'The disk is full.'", "'type': 'negative'", "'multiLine': True", "'timeout': 0"):
-        assert part in told
-    assert "'closeBtn': 'Close'" in told
+    for part in ("'message': 'full.'", "'type': 'negative'", "'multiLine': True", "'timeout': 0"):
+        page.told(part)
+
+
+def test_an_error_without_a_page_is_logged(log: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """NiceGUI raises an error if a task belongs to no page."""
+    monkeypatch.setattr("nicegui.ui.notify", raising(RuntimeError("no slot")))
+    _notify(StoreError("disk full"))
+    assert log.read_text(encoding="utf-8").endswith(": disk full\n")
 
 
 @pytest.mark.parametrize(
-    ("error", "status", "told"),
-    [
-        (StoreError("it is not there"), 404, "it is not there"),
-        (ParameterError("it cannot be"), 404, "it cannot be"),
-        (OutputError("it is full"), 500, "it is full"),
-        (ValueError("secret"), 500, "Something went wrong that should not. What was shown as stored is stored. Refer"),
-    ],
+    ("error", "status"),
+    [(StoreError("a"), 404), (ParameterError("b"), 404), (OutputError("c"), 500), (ValueError("secret"), 500)],
 )
 def test_a_page_that_cannot_be_shown_says_why(
-    desk: Desk, monkeypatch: pytest.MonkeyPatch, error: Exception, status: int, told: str
+    desk: Desk, monkeypatch: pytest.MonkeyPatch, error: Exception, status: int
 ) -> None:
-    def known(*_: object) -> None:
-        raise error
-
-    monkeypatch.setattr(AnalysisCache, "cached", known)
+    monkeypatch.setattr(AnalysisCache, "cached", raising(error))
     answer = desk.get("/analysis/kept/ffff")
     assert answer.status_code == status
-    assert told in answer.text and "This page cannot be shown" in answer.text
     assert "secret" not in answer.text
     assert desk.failures == [error]
     desk.failures.clear()
 
 
 def test_there_is_no_page_at_a_wrong_address(desk: Desk) -> None:
-    for path in ("/nowhere", "/export/kept"):
+    for path in ("/nowhere", "/export/kept", "/docs", "/redoc", "/openapi.json"):
         answer = desk.get(path)
         assert answer.status_code == 404
-        assert "<h1>No such page</h1><p>The lab has no page at this address.</p>" in answer.text
-        assert '<a href="/">To the campaigns</a>' in answer.text
-        assert "<title>No such page · skisnow</title>" in answer.text
+        assert '<a href="/">' in answer.text
     assert '<html lang="de">' in desk.get("/nowhere", "de").text
-    assert "<h1>No such page</h1>" not in desk.get("/nowhere", "de").text
 
 
 def test_an_answer_that_failed_says_what_it_may(desk: Desk, log: Path) -> None:
     request = Request({"type": "http", "headers": []})
     said = desk.wait(_error_answer(request, StoreError("it is <full>")))
     assert said.status_code == 500
-    assert "<h1>This cannot be shown</h1><p>it is &lt;full&gt;</p>" in bytes(said.body).decode()
+    assert "it is &lt;full&gt;" in bytes(said.body).decode()
     other = desk.wait(_error_answer(request, ValueError("secret")))
     text = bytes(other.body).decode()
     assert other.status_code == 500
-    assert "<h1>This cannot be shown</h1><p>Something went wrong. Reference: " in text
     assert "secret" not in text and "secret" in log.read_text(encoding="utf-8")
     assert plain_page("a", "b", 418, request).status_code == 418
-    assert error_sentence(FieldDataError(["it is so"])) == "The campaign cannot be used as it is: it is so"
+    assert error_sentence(FieldDataError(["it is so"])).endswith(" it is so")

@@ -251,10 +251,8 @@ def test_whoever_lets_others_in_is_told_how_they_come(
     for found, scheme, last in zip(announced, ("http", "https"), (IN_CLEAR, ENCRYPTED), strict=True):
         port = found.place[1]
         assert told[:2] == [f"{scheme}://192.168.1.7:{port}/", f"also: {scheme}://10.0.0.2:{port}/"]
-        phone = (
-            f"With a phone in the same network: point its camera at the code, or open {scheme}://192.168.1.7:{port}/"
-        )
-        assert told[3:5] == [phone, last]
+        assert f"{scheme}://192.168.1.7:{port}/" in told[3]
+        assert told[4] == last
         del told[:5]
     assert told == []
     assert (announced[1].config.ssl_certfile, announced[1].config.ssl_keyfile) == (secure.file, secure.key)
@@ -293,11 +291,8 @@ def test_a_certificate_is_read_before_anything_is_served(tmp_path: Path, monkeyp
     assert given == [(kind, tmp_path / "a.pem", tmp_path / "b.pem"), (kind, tmp_path / "a.pem", None)]
     for error in (OSError("o"), ValueError("v"), ssl.SSLError("s")):
         monkeypatch.setattr(server, "load_certificate", raising(error))
-        with pytest.raises(ParameterError) as found:
+        with raises(ParameterError, "cannot_read"):
             Certificate(tmp_path / "a.pem")
-        told = f"{tmp_path / 'a.pem'}: no certificate with its private key can be read ("
-        assert str(found.value).startswith(told)
-        assert str(found.value).endswith("give a PEM file with both, or the key's file with --certificate-key")
 
 
 @pytest.mark.parametrize(
@@ -342,9 +337,6 @@ def test_a_phone_is_shown_the_way() -> None:
     assert lines[0] == "also: http://10.0.0.3:80/"
     code = lines[1].splitlines()
     assert {len(line) for line in code} == {29} and len(code) == 15
-    assert lines[2:] == [
-        "With a phone in the same network: point its camera at the code, or open http://10.0.0.2:80/",
-        "What goes between the machines is encrypted. A browser asks once whether it may trust a certificate of your "
-        "own.",
-    ]
+    assert "http://10.0.0.2:80/" in lines[2]
+    assert lines[3] == ENCRYPTED
     assert list(lines_for_others(["http://10.0.0.2:80/"], secure=False))[-1] == IN_CLEAR

