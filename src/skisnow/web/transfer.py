@@ -13,10 +13,11 @@ from starlette.datastructures import FormData, UploadFile
 from starlette.requests import Request
 from starlette.responses import Response
 
-from .._support.errors import StoreError
+from .._support.errors import ParameterError, StoreError
 from .._support.messages import Message
 from ..campaign.reading import READ_FILES, FilesInMemory
 from ..campaign.store import Journals, campaign_files, corrected_files, export_corrected, export_entered, replayed
+from .file_imports import ENDINGS, FileImports
 from .layout import error_sentence, plain_page
 from .page_addresses import required_id
 from .subprocesses import BOUNDS, confined
@@ -38,7 +39,15 @@ def add_transfer(app: FastAPI, lab: Lab) -> None:
 
     def store(form: FormData) -> str:
         missing = Message("no file was chosen; choose the files of a campaign, its folder, or a zip of it")
-        return f"/?added={_add_campaign(lab, uploaded_files(form, 'files', missing))}"
+        uploads = uploaded_files(form, "files", missing)
+        try:
+            return f"/?added={_add_campaign(lab, uploads)}"
+        except ParameterError as error:
+            name = uploads[0].filename or ""
+            if error.code != "no_campaign" or len(uploads) > 1 or not name.lower().endswith(ENDINGS):
+                raise
+        uploads[0].file.seek(0)
+        return f"{IMPORT}/{FileImports(lab).keep(name, uploads[0].file)}"
 
     async def entry(request: Request, id_: str) -> Response:
         return await _zip_answer(lambda folder: write_entry(lab, id_, folder), id_, request)

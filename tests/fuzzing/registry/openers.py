@@ -49,6 +49,8 @@ NO_READERS: Final[Mapping[str, str]] = {
     "studies.writing:_write_database": "the table that it writes",
     "web.lab_skis:LabSkis.texts": "the text of a ski, shown in a field",
     "web.lab_skis:texts_of_ski": "the file that it has just written",
+    "web.file_imports:FileImports.name": "the name that it has just written",
+    "web.file_imports:FileImports.content": "bytes for cli.import_file:_answered's reader",
     "web.uploads:files_below": "bytes for a download",
     "web.pages.replay:_in_words": "summary.json, by read_record as web.runs:Runs._over",
     "cli.compare:_slope_angle_of_run": "summary.json of a run, by read_json as other records",

@@ -1,18 +1,22 @@
 """Import of workbooks and CSV files in any layout: proposed tables, columns, units, tools and sites."""
 
-from .answers import Answers, read_template
-from .folder import undo_import, write_import
+from .answers import Answers, parse_template, read_template
+from .columns import ColumnChoice
+from .folder import RECORD, undo_import, write_import
 from .proposal import Proposal, propose
 from .questions import Question
 from .rows import ImportedTable
 from .sections import Section
 
 __all__ = [
+    "RECORD",
     "Answers",
+    "ColumnChoice",
     "ImportedTable",
     "Proposal",
     "Question",
     "Section",
+    "parse_template",
     "propose",
     "read_template",
     "undo_import",

@@ -6,11 +6,11 @@ import json
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Final, Self
+from typing import TYPE_CHECKING, Any, Final, Self
 
 from ..._support.errors import ParameterError
 from ..._support.messages import Message
-from ..._support.user_files import read_toml
+from ..._support.user_files import read_toml, toml_values
 from ..reading.campaign_file import CAMPAIGN_FILE
 from ..reading.headings import plain_heading
 
@@ -113,7 +113,16 @@ def read_template(place: str | Path) -> Answers:
         The file has no ``[import]``, or an answer is not a text.
     """
     path = Path(place) / CAMPAIGN_FILE if Path(place).is_dir() else Path(place)
-    section = read_toml(path).get(SECTION)
+    return _template(read_toml(path), str(path))
+
+
+def parse_template(text: str, name: str) -> Answers:
+    """Answers in the text of a campaign.toml; `name` is its name in messages. Errors as `read_template`."""
+    return _template(toml_values(text.replace("\r\n", "\n")), name)
+
+
+def _template(values: Mapping[str, Any], name: str) -> Answers:
+    section = values.get(SECTION)
     answers = {kind: section.get(kind, {}) for kind in KINDS} if isinstance(section, Mapping) else {}
     texts = all(
         isinstance(pairs, Mapping) and all(isinstance(value, str) for value in pairs.values())
@@ -121,7 +130,7 @@ def read_template(place: str | Path) -> Answers:
     )
     if not answers or not texts:
         raise ParameterError(
-            Message("{file} has no [import] with texts. Choose a campaign that skisnow import wrote.", file=path),
+            Message("{file} has no [import] with texts. Choose a campaign that skisnow import wrote.", file=name),
             code="no_template",
         )
     return Answers(**answers)

@@ -13,7 +13,7 @@ from sqlalchemy import Connection, Row, delete, insert, select, update
 from ..._support.errors import StoreError
 from ..._support.messages import Message
 from .folder import StoredFile, manifest_sha256, read_chunks
-from .schema import CHUNK_BYTES, campaign, campaign_file, chunk, content
+from .schema import CHUNK_BYTES, campaign, campaign_file, chunk, content, journal_entry
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
@@ -282,6 +282,28 @@ def copy_content(connection: Connection, file: StoredFile, pieces: Iterable[byte
         return True
     connection.execute(insert(content).values(sha256=file.sha256, size=file.size))
     return _store_chunks(connection, file.sha256, pieces)
+
+
+def remove_campaign(connection: Connection, stored: StoredCampaign) -> None:
+    """Remove a campaign, and the contents that no other campaign has.
+
+    Raises
+    ------
+    StoreError
+        The campaign has corrections.
+    """
+    if connection.execute(select(journal_entry.c.sequence).where(journal_entry.c.journal_id == stored.id)).first():
+        raise StoreError(
+            Message("The campaign {id} has corrections and was not removed. Export it instead.", id=stored.id),
+            code="has_corrections",
+        )
+    connection.execute(delete(campaign_file).where(campaign_file.c.campaign_id == stored.id))
+    connection.execute(delete(campaign).where(campaign.c.id == stored.id))
+    own = {file.sha256 for file in stored.files}
+    used = set(connection.execute(select(campaign_file.c.sha256).where(campaign_file.c.sha256.in_(own))).scalars())
+    for sha256 in own - used:
+        connection.execute(delete(chunk).where(chunk.c.sha256 == sha256))
+        connection.execute(delete(content).where(content.c.sha256 == sha256))
 
 
 def _store_chunks(connection: Connection, sha256: str, pieces: Iterable[bytes]) -> bool:

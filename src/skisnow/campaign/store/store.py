@@ -35,6 +35,7 @@ from .rows import (
     all_campaigns,
     one_campaign,
     refuse_changed,
+    remove_campaign,
     require_whole,
     store_campaign,
     store_content,
@@ -224,6 +225,21 @@ class Store(Shown):
                 code="no_files",
             )
         return files
+
+    def remove(self, id: str) -> StoredCampaign:  # noqa: A002 (as in show)
+        """Remove a campaign without corrections, and the contents that no other campaign has; returns it.
+
+        A later sync brings it back from a group's store that has it.
+
+        Raises
+        ------
+        StoreError
+            As in `show`; or the campaign has corrections.
+        """
+        with database_errors(self.path, "could not be changed"), writing(self.engine) as connection:
+            stored = one_campaign(connection, id)
+            remove_campaign(connection, stored)
+        return stored
 
     def list(self) -> tuple[StoredCampaign, ...]:
         """All campaigns, oldest first."""

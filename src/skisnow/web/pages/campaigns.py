@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Final
@@ -9,7 +10,9 @@ from typing import TYPE_CHECKING, Final
 from nicegui import run, ui
 
 from ..._support.errors import StoreError
+from ..._support.messages import Message
 from ...campaign import write_reference
+from ...campaign.importing import RECORD
 from ...campaign.store import Journals
 from ...report.formatting import counted
 from ..edit_session import EditSession
@@ -94,6 +97,19 @@ def _list_imported(lab: Lab) -> None:
                 link("Correct", correcting(campaign.id))
                 link("Analysis", analysis("kept", campaign.id))
                 link("Export", export("kept", campaign.id))
+                if _is_undoable(lab, campaign):
+                    button(Message("Undo the import"), partial(_undo, lab, campaign.id), once=True)
+
+
+def _is_undoable(lab: Lab, campaign: StoredCampaign) -> bool:
+    """True for a campaign from a file in another layout, without corrections."""
+    is_import = any(file.path == RECORD for file in campaign.files)
+    return is_import and not Journals(lab.store).corrections(campaign.id)
+
+
+def _undo(lab: Lab, id_: str) -> None:
+    lab.store.remove(id_)
+    ui.navigate.to(PATH)
 
 
 def _check_result(campaign: StoredCampaign) -> str:
@@ -119,9 +135,11 @@ def _store_sample(lab: Lab) -> str:
 def _import_form(lab: Lab) -> None:
     heading("Import")
     sentence(
-        "A campaign's folder, its files, a workbook (.xlsx), or a zip. It is stored byte for byte; corrections stand "
-        "beside it. "
-        f"At most {counted(lab.limits.files, 'file')}.",
+        Message(
+            "A campaign's folder, its files, a zip, or a workbook (.xlsx) or CSV file in any layout. It is stored "
+            "byte for byte; corrections are separate. At most {most} files.",
+            most=lab.limits.files,
+        ),
         "quiet",
     )
     for id_, text, further in (("folder", "Folder", "webkitdirectory"), ("files", "Files or zip", "")):

@@ -1,0 +1,229 @@
+"""Page that imports a workbook or CSV file in any layout: choices on the left, stored rows and H_V on the right."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from dataclasses import field as dataclass_field
+from typing import TYPE_CHECKING, Final
+
+from nicegui import run, ui
+
+from ..._support.errors import ParameterError, SkisnowError
+from ..._support.messages import Message, template
+from ...campaign.importing import Answers
+from ...campaign.importing.columns import FROM_NOTES
+from ...campaign.reading.headings import units_for
+from ..elements import Words, button, choice, field, named
+from ..file_imports import FileImports, TriedImport, try_import
+from ..language import said
+from ..layout import error_sentence, framed, heading, sentence
+from ..settings import BUILD_S
+from ..subprocesses import BOUNDS, confined
+from ..words import TABLES, label
+
+if TYPE_CHECKING:
+    from ...campaign.importing import ColumnChoice, ImportedTable, Proposal, Question
+    from ..settings import Lab
+
+PATH: Final = "/import/{id_}"
+HERE: Final = "/"
+NONE: Final = "-"
+LEFT_OUT: Final = Message("left out")
+TEXT: Final = Message("kept as text")
+_SHOWN_ROWS: Final = 4
+QUESTIONS: Final = {
+    "table": template("Which table begins at {key}?"),
+    "column": template("Which column is {key}?"),
+    "unit": template("Which unit have the numbers below {key}?"),
+    "site": template("Which site is the sheet {key}?"),
+    "tool": template("Tool with lengths and unit, such as ski 200 x 62 mm {key}"),
+    "plate": template("Length of the blade with unit, such as 100 mm {key}"),
+    "cells": template("How are the cells written ({key})?"),
+    "ignore": template("Leave out {key}?"),
+}
+"""Question of each option of the command."""
+
+
+def add_page(lab: Lab) -> None:
+    """Add the page to the application."""
+    imports = FileImports(lab)
+
+    @ui.page(PATH, response_timeout=BUILD_S)
+    async def import_file(id_: str) -> None:
+        name = imports.name(id_)
+        with framed(Message("Import a file"), here=HERE):
+            sentence(Message("{file}: check the proposal, answer the questions, then store the campaign.", file=name))
+            page = _Import(imports, id_)
+        await page.draw()
+
+
+@dataclass
+class _Import:
+    """One upload with the answers so far."""
+
+    imports: FileImports
+    id_: str
+    answers: Answers = dataclass_field(default_factory=Answers)
+    tried: TriedImport | None = None
+
+    def __post_init__(self) -> None:
+        templates = self.imports.templates()
+        if templates:
+            options = {"": said(Message("none")), **templates}
+            choice(Message("Template of an earlier import"), options, "").on_value_change(self._use_template)
+        with ui.element("div").classes("acts"):
+            self._store = button(Message("Store the campaign"), self._keep, "main", once=True)
+            self._status = Words("").classes("status").props("role=status aria-live=polite")
+        with ui.element("div").classes("two"):
+            self._choices = named(ui.element("section"), Message("Proposal"))
+            self._preview = named(ui.element("section").classes("stored-rows"), Message("Preview"))
+
+    async def draw(self) -> None:
+        """Propose again with the current answers, and show it."""
+        name, data = self.imports.content(self.id_)
+        try:
+            self.tried = await run.io_bound(confined, BOUNDS, try_import, name, data, self.answers)
+        except SkisnowError as error:
+            self._say(error_sentence(error), good=False)
+            self._store.set_enabled(False)
+            return
+        if self.tried is None:  # the server ends
+            return
+        self._show(self.tried)
+
+    def _show(self, tried: TriedImport) -> None:
+        proposal = tried.proposal
+        self._choices.clear()
+        with self._choices:
+            if proposal.questions:
+                heading(Message("Questions"))
+                for question in proposal.questions:
+                    self._question(question)
+            _list_problems(proposal)
+            for table in proposal.tables:
+                self._table(table)
+        self._preview.clear()
+        with self._preview:
+            for table in proposal.tables:
+                _show_rows(table)
+        self._store.set_enabled(not proposal.problems)
+        if proposal.problems:
+            count = len(proposal.problems)
+            self._say(Message("Not ready: {count} open questions or errors.", count=count), good=False)
+        elif tried.hardness is not None:
+            series, value = tried.hardness
+            self._say(Message("H_V of {series}: {value:.3f} N/mm³", series=series, value=value), good=True)
+        else:
+            self._say(Message("Ready."), good=True)
+
+    def _say(self, text: str, *, good: bool) -> None:
+        self._status.set_text(text)
+        self._status.classes(remove="good bad", add="good" if good else "bad")
+
+    def _question(self, question: Question) -> None:
+        words = Message(QUESTIONS[question.option], key=question.key)
+        with ui.element("div").classes("card ask"):
+            sentence(question.problem.value or "", "quiet")
+            if question.option == "ignore":
+                button(words, lambda: self._answer(question.option, question.key, "yes"))
+            elif question.choices:
+                options = {text: _choice_words(text) for text in question.choices}
+                made = choice(words, options, None)
+                made.on_value_change(lambda event: self._answer(question.option, question.key, event.value))
+                if question.proposed:
+                    self._proposal(question)
+            else:
+                typed = field(words, question.proposed)
+                with ui.element("div").classes("acts"):
+                    button(Message("Use this"), lambda: self._answer(question.option, question.key, str(typed.value)))
+
+    def _proposal(self, question: Question) -> None:
+        words = Message("Proposal: {text}", text=_choice_words(question.proposed))
+        button(words, lambda: self._answer(question.option, question.key, question.proposed), "small")
+
+    def _table(self, table: ImportedTable) -> None:
+        """Choices of a table: its kind, a column for each heading, and the units that are stated."""
+        kind = table.form.file.removesuffix(".csv")
+        heading(Message("{place}: {table}", place=table.section.key, table=said(TABLES[table.form.file])), 3)
+        options = {name: label(name) for name in table.form.known} | {NONE: LEFT_OUT}
+        with ui.element("div").classes("inputs"):
+            for column in table.columns:
+                own = options if column.column in options else {column.column: TEXT, **options}
+                made = choice(_with_unit(column), {key: str(text) for key, text in own.items()}, column.column or NONE)
+                key = f"{kind}.{column.heading}"
+                made.on_value_change(lambda event, key=key: self._answer("column", key, event.value))
+        self._site(table)
+
+    def _site(self, table: ImportedTable) -> None:
+        """Site of a sheet whose tables have no column for it."""
+        sheet = table.section.sheet.name
+        if any(column.column == "site" for column in table.columns) or not table.rows:
+            return
+        site = table.rows[0].cells["site"]
+        typed = field(Message("Site of the sheet {sheet}", sheet=sheet), site)
+        typed.on("blur", lambda: self._answer("site", sheet, str(typed.value)) if typed.value != site else None)
+
+    async def _answer(self, option: str, key: str, value: str) -> None:
+        self.answers = self.answers.with_(option, key, value)
+        await self.draw()
+
+    async def _use_template(self, event: object) -> None:
+        chosen = str(getattr(event, "value", ""))
+        self.answers = self.imports.template(chosen) if chosen else Answers()
+        await self.draw()
+
+    async def _keep(self) -> None:
+        if self.tried is None or self.tried.proposal.problems:
+            raise ParameterError(Message("Answer the questions first."), code="not_ready")
+        files = self.tried.proposal.files
+        added = await run.io_bound(self.imports.store, self.id_, files)
+        if added is not None:
+            ui.navigate.to(f"/?added={added}")
+
+
+def _with_unit(column: ColumnChoice) -> str:
+    """Heading with the unit of its numbers, and the unit in which they are stored if it is another one."""
+    if column.unit is None:
+        return column.heading
+    stored, given = units_for(column.column).split(", ")[0], column.unit.name
+    fields = {"heading": column.heading, "unit": given}
+    if given == stored:
+        return Message("{heading}, in {unit}", **fields)
+    return Message("{heading}, {unit} to {stored}", **fields, stored=stored)
+
+
+def _choice_words(text: str) -> str:
+    return said(LEFT_OUT) if text == NONE else said(TABLES.get(f"{text}.csv", label(text)))
+
+
+def _list_problems(proposal: Proposal) -> None:
+    asked = [question.problem for question in proposal.questions]
+    problems = [problem for problem in proposal.problems if problem not in asked]
+    if problems:
+        heading(Message("Errors"))
+        with ui.element("ul").classes("errors"):
+            for problem in problems:
+                with ui.element("li"):
+                    Words(problem.message)
+
+
+def _show_rows(table: ImportedTable) -> None:
+    """First rows as they are stored."""
+    present = dict.fromkeys(name for row in table.rows[:_SHOWN_ROWS] for name in row.cells)
+    names = sorted(present, key=lambda name: name in {"time", *FROM_NOTES})  # measured numbers first
+    count = len(table.rows)
+    place, file = table.section.key, table.form.file
+    words = Message("{place}: {count} rows, stored as {file}", place=place, count=count, file=file)
+    with ui.element("div").classes("table"), ui.element("table"):
+        with ui.element("caption"):
+            Words(words)
+        with ui.element("thead"), ui.element("tr"):
+            for name in names:
+                with ui.element("th").props("scope=col"):
+                    Words(label(name))
+        with ui.element("tbody"):
+            for row in table.rows[:_SHOWN_ROWS]:
+                with ui.element("tr"):
+                    for name in names:
+                        with ui.element("td"):
+                            ui.label(row.cells.get(name, ""))
