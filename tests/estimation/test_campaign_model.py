@@ -16,7 +16,7 @@ from skisnow.estimation.campaign_model import CampaignModel, fit_campaign
 from skisnow.estimation.hardness import DEFINITIONS, hardness_at_largest_load
 from skisnow.estimation.readings import Readings, ReadingUncertainty
 from skisnow.estimation.seating import seating
-from skisnow.estimation.spread_groups import fit_in_groups
+from skisnow.estimation.spread_groups import fit_in_groups, scatter_warning
 from skisnow.estimation.volume_factor import volume_factor
 from skisnow.geometry import Disc, SkiPiece, Tool
 
@@ -198,6 +198,39 @@ def test_noisier_sites_have_their_own_spreads() -> None:
     assert (apart.grouped_by, apart.group_names) == ("site", ("A", "B"))
     assert math.sqrt(apart.spreads.scatter2[1] / apart.spreads.scatter2[0]) == pytest.approx(4.0, rel=0.3)
     assert np.median(apart.half_width(0)[30:]) > 2.0 * np.median(apart.half_width(0)[:30])
+
+
+def mixed_series(factor: float, *, count: int = 40, seed: int = 1) -> Readings:
+    """Every other series of one site and tool has ``factor`` times the seating and scatter."""
+    quiet, _ = simulated(count, seed=seed)
+    loud, _ = simulated(count, seating_sd=factor * 5e-5, scatter=factor * 0.02, seed=seed + 1000)
+    depth = np.where(np.arange(count)[:, None] % 2, loud.penetration_depth.reshape(count, 7),
+                     quiet.penetration_depth.reshape(count, 7))  # fmt: skip
+    return series(depth, np.full(count, ANGLE), LOADS)
+
+
+def in_groups(readings: Readings) -> CampaignModel:
+    H = hardness_at_largest_load(readings, DEFINITIONS["H_V"])
+    same = ["A"] * readings.n_series
+    return fit_in_groups(readings, H, UNCERTAINTY, labels={"site": same, "tool": same})
+
+
+def test_noisier_series_among_quieter_ones_have_their_own_spreads() -> None:
+    model = in_groups(mixed_series(4.0))
+    assert model.grouped_by == "scatter"
+    assert np.mean(model.group == np.arange(40) % 2) > 0.85
+    assert math.sqrt(model.spreads.scatter2[1] / model.spreads.scatter2[0]) == pytest.approx(4.0, rel=0.3)
+    (warning,) = scatter_warning(model, [f"P{number}" for number in range(40)])
+    assert warning.fields["n"] == (model.group == 1).sum()
+    assert warning.fields["first"][:2] == [f"P{number}" for number in np.flatnonzero(model.group == 1)[:2]]
+
+
+@pytest.mark.parametrize("count", [1, 2, 10, 40])
+def test_series_of_one_scatter_stay_one_group(count: int) -> None:
+    for seed in range(30):
+        model = in_groups(mixed_series(1.0, count=count, seed=seed))
+        assert model.grouped_by == "campaign"
+        assert scatter_warning(model, ["P1"] * count) == ()
 
 
 def test_b_is_corrected_for_its_dilution() -> None:

@@ -100,6 +100,7 @@ def test_regressions_are_the_planned_ones_in_order(results: Json) -> None:
     assert pooled == [
         ("S_f_N_per_mm2", "edge_angle_rad"),
         ("S_f_N_per_mm2", "snow_density_kg_per_m3"),
+        ("S_f_N_per_mm2", "drop_cone_depth_mm"),
         ("H_V_N_per_mm3", "snow_density_kg_per_m3"),
         ("H_V_N_per_mm3", "drop_cone_depth_mm"),
         ("S_f_N_per_mm2", "H_V_N_per_mm3"),
@@ -129,7 +130,7 @@ def test_only_shear(make_campaign: MakeCampaign) -> None:
     assert results["penetration"]["tests"] == []
     single = results["regressions"][0]
     assert (single["n"], single["b"], single["p"]) == (1, None, None)
-    assert [row["n"] for row in results["regressions"]] == [1, 0, 0, 0, 0]
+    assert [row["n"] for row in results["regressions"]] == [1, 0, 0, 0, 0, 0]
 
 
 def test_only_one_flat_series(make_campaign: MakeCampaign) -> None:

@@ -274,7 +274,7 @@ def test_a_campaign_without_recordings_is_as_before(make_campaign: MakeCampaign)
     rows = [(f"p{number}", "A", "disc", 0, load, load / 100) for number in (1, 2) for load in (100, 200, 300)]
     results = skisnow.analyse(make_campaign(rows), n_resamples=100).results
     assert "snow_micro_pen" not in results
-    assert len(results["regressions"]) == 5
+    assert len(results["regressions"]) == 6
 
 
 @pytest.mark.usefixtures("undrawn")

@@ -40,6 +40,7 @@ from .series_estimates import reading_uncertainty
 from .shear import shear_displacement, shear_stress, site_displacement
 from .sites import SiteComparison, SiteMean, compare_sites, site_means, site_snow
 from .snow_micro_pen import SnowMicroPenAnalysis, evaluate_recordings
+from .spread_groups import scatter_warning
 from .unloading import site_unloading
 from .volume_factor import volume_factor
 from .weather import WeatherAtTests, weather_at_tests
@@ -349,6 +350,7 @@ def _penetration(
         site_growth=site_growth(growing, screened.used, sites),
         unloading=estimates.unloading,
         site_unloading=site_unloading(estimates.unloading, screened.used, sites),
+        warnings=scatter_warning(model, campaign.penetration.experiment),
     )
     if not screened.used.any():
         return of_series
@@ -368,7 +370,7 @@ def _penetration(
         selected=selected,
         errors_in_depth=ModelTable(depth_fits, {}),  # no intervals: a bootstrap covers b in 7 to 90 % of campaigns
         volume_factor=volume_factor(used, by_last["H_V"], model.of(screened.used)),
-        warnings=(*filter(None, (no_choice,)), *fit_warnings(fits, selected, used.load)),
+        warnings=(*of_series.warnings, *filter(None, (no_choice,)), *fit_warnings(fits, selected, used.load)),
     )
 
 

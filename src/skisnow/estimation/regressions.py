@@ -60,6 +60,7 @@ class RegressionPlan:
 PLANS: Final = (
     RegressionPlan("shear", STRESS_KEY, ANGLE_KEY, by_site=True),
     RegressionPlan("shear", STRESS_KEY, DENSITY_KEY),
+    RegressionPlan("shear", STRESS_KEY, DROP_CONE_KEY),
     RegressionPlan("penetration", HARDNESS_KEY, DENSITY_KEY),
     RegressionPlan("penetration", HARDNESS_KEY, DROP_CONE_KEY),
     RegressionPlan("spots", STRESS_KEY, HARDNESS_KEY),

@@ -4,6 +4,10 @@
 the others, their intervals would be too narrow and those of the others too wide. Bartlett's test (1937, Proc. R. Soc.
 A 160, 268-282, doi 10.1098/rspa.1937.0109) compares the spreads of sites and of tools; where they differ beyond chance
 and by a clear factor, the model is fitted again with the spreads of each site or tool.
+
+Where noisier series are mixed with quieter ones at the same site and with the same tool, no label separates them. Then
+the sums of squares of the series do: a mixture of two scaled chi-squared distributions (EM algorithm; Dempster, Laird
+and Rubin 1977, J. R. Stat. Soc. B 39, 1-38) sorts the series into two classes, each with its own spreads.
 """
 
 from __future__ import annotations
@@ -13,9 +17,10 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 import numpy.typing as npt
-from scipy.special import chdtrc
+from scipy.special import chdtrc, expit, gammaln
 
 from .._support.content import numbered
+from .._support.messages import Message
 from .campaign_model import DEFAULT_PRIORS, CampaignModel, fit_campaign
 
 if TYPE_CHECKING:
@@ -34,6 +39,18 @@ CLEAR_FACTOR: Final = 2.0
 """Between the largest and the smallest spread of the groups; less does not justify spreads of each group."""
 FEWEST_DEGREES: Final = 5.0
 """Degrees of freedom that a group needs to take part in the test."""
+OVERDISPERSED: Final = 1.5
+"""Spread of the sums of squares of the series over that of one scatter, above which two classes are tried."""
+LIKELIHOOD_GAIN: Final = 20.0
+"""Twice the gain in log likelihood that two classes need over one (3 parameters more)."""
+SMALLEST_CLASS: Final = 0.1
+"""Share of the series; a smaller class is a few outliers."""
+LEAST_SHARE: Final = 0.3
+"""Share of τ² that an offset must leave to the data to take part in the sorting."""
+SCATTER_CLASSES: Final = ("quieter series", "noisier series")
+LISTED_SERIES: Final = 5
+"""Names of series in a warning."""
+_EM_ROUNDS: Final = 60
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,6 +77,8 @@ def fit_in_groups(
 ) -> CampaignModel:
     """Fit the campaign's model with common spreads, or with those of each group of the clearest grouping.
 
+    Without a clear grouping by label, series that are clearly noisier than the others are a group (``scatter``).
+
     Parameters
     ----------
     labels
@@ -73,9 +92,12 @@ def fit_in_groups(
         names, index = numbered(label)
         tests = spread_tests(model, index) if len(names) > 1 else ()
         clear += [(test.p, grouping, names, index) for test in tests if test.is_clear]
-    if not clear:
+    if clear:
+        _, grouping, names, index = min(clear, key=lambda entry: entry[0])
+    elif (sorted_ := noisier_series(model)) is not None:
+        grouping, names, index = "scatter", list(SCATTER_CLASSES), sorted_.astype(np.int64)
+    else:
         return model
-    _, grouping, names, index = min(clear, key=lambda entry: entry[0])
     apart = fit_campaign(readings, hardness, uncertainty, counts=counts, group=index, priors=priors)
     return replace(apart, grouped_by=grouping, group_names=tuple(names))
 
@@ -83,13 +105,95 @@ def fit_in_groups(
 def spread_tests(model: CampaignModel, index: IntArray) -> tuple[SpreadTest, SpreadTest]:
     """Tests of the scatter s and of the seating τ between the groups of ``index`` (m,), of a model with one group."""
     known = model.counts & np.isfinite(model.log_hardness)
-    seating2 = model.spreads.seating2[0]
-    # Under the model the estimate of δ has the variance τ² B, B = 1 - C_δδ/τ²: what the prior leaves to the data.
-    share = 1.0 - model.covariance[:, 2, 2] / seating2
+    squares, degrees, _ = _offset_squares(model)
     return (
         _bartlett(model.misfit[known], model.free[known], index[known]),
-        _bartlett((share * model.offset**2 / seating2)[known], (share**2)[known], index[known]),
+        _bartlett(squares[known], degrees[known], index[known]),
     )
+
+
+def _offset_squares(model: CampaignModel) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """δ² of each series as a sum of squares with degrees of freedom, and its share of τ².
+
+    Under the model the estimate of δ has the variance τ² B, B = 1 - C_δδ/τ²: what the prior leaves to the data.
+    """
+    seating2 = model.spreads.seating2[0]
+    share = 1.0 - model.covariance[:, 2, 2] / seating2
+    return share * model.offset**2 / seating2, share**2, share
+
+
+def noisier_series(model: CampaignModel) -> BoolArray | None:
+    """Mask of the series whose scatter is clearly larger than that of the others; None without two clear classes.
+
+    ``model`` has one group. The sum of squared residuals of a series is its scale times chi-squared, and so is δ².
+    Of two classes with their own scales and shares, each series belongs to the more probable one.
+    """
+    known = model.counts & np.isfinite(model.log_hardness) & (model.free > 1.0)
+    squares, degrees = model.misfit[known], model.free[known]
+    if known.sum() < 2 * FEWEST_DEGREES or squares.min() <= 0.0:
+        return None
+    scaled = squares * degrees.sum() / squares.sum()
+    if np.mean((scaled - degrees) ** 2 / (2.0 * degrees)) < OVERDISPERSED:
+        return None
+    of_offset, free_offset, share = (values[known] for values in _offset_squares(model))
+    seen = (share > LEAST_SHARE) & (of_offset > 0.0)
+    sums = [(squares, degrees), (np.where(seen, of_offset, 0.0), np.where(seen, free_offset, 0.0))]
+    probability, gain, factor = _two_classes(sums)
+    if gain < LIKELIHOOD_GAIN or factor < CLEAR_FACTOR or not SMALLEST_CLASS < probability.mean() < 1 - SMALLEST_CLASS:
+        return None
+    noisier = np.zeros(len(known), dtype=np.bool_)
+    noisier[known] = probability > 0.5
+    return noisier
+
+
+def scatter_warning(model: CampaignModel, experiment: Sequence[str]) -> tuple[Message, ...]:
+    """The sentence about noisier series mixed with quieter ones, which have their own spreads; else empty."""
+    if model.grouped_by != "scatter":
+        return ()
+    noisier = np.flatnonzero(model.counts & (model.group == 1)).tolist()
+    quieter, larger = np.sqrt(model.spreads.scatter2).tolist()
+    return (
+        Message(
+            "{n} of {total} series scatter {factor:.2g} times as much as the others, at the same sites and with the "
+            "same tools ({first}): they have wider intervals. Look for another observer, gauge or tool.",
+            n=len(noisier),
+            total=int(model.counts.sum()),
+            factor=larger / quieter,
+            first=[experiment[index] for index in noisier[:LISTED_SERIES]] + ["…"] * (len(noisier) > LISTED_SERIES),
+        ),
+    )
+
+
+def _two_classes(sums: Sequence[tuple[FloatArray, FloatArray]]) -> tuple[FloatArray, float, float]:
+    """Probability of the noisier class, twice the gain in log likelihood, and the factor between the first scatters.
+
+    ``sums`` are independent sums of squares with their degrees of freedom; one with 0 says nothing.
+    """
+    noisier = np.where(sums[0][0] / sums[0][1] > np.median(sums[0][0] / sums[0][1]), 0.9, 0.1)
+    for _ in range(_EM_ROUNDS):
+        large, small = _scales(sums, noisier), _scales(sums, 1.0 - noisier)
+        share = float(np.clip(noisier.mean(), 0.01, 0.99))
+        in_large = np.log(share) + _log_density(sums, large)
+        in_small = np.log1p(-share) + _log_density(sums, small)
+        noisier = expit(in_large - in_small)
+    one = _log_density(sums, _scales(sums, np.ones_like(noisier)))
+    gain = 2.0 * float(np.sum(np.logaddexp(in_large, in_small) - one))
+    return noisier, gain, float(np.sqrt(large[0] / small[0]))
+
+
+def _scales(sums: Sequence[tuple[FloatArray, FloatArray]], weight: FloatArray) -> list[float]:
+    """Variance of each kind of sum over the series with these weights."""
+    return [float(weight @ squares) / max(float(weight @ degrees), 1e-300) for squares, degrees in sums]
+
+
+def _log_density(sums: Sequence[tuple[FloatArray, FloatArray]], scales: Sequence[float]) -> FloatArray:
+    """Logarithm of the density of the sums of squares, scale times chi-squared."""
+    density = np.zeros(len(sums[0][0]))
+    for (squares, degrees), scale in zip(sums, scales, strict=True):
+        known = degrees > 0.0
+        half, y = 0.5 * degrees[known], squares[known] / (2.0 * max(scale, 1e-300))
+        density[known] += (half - 1.0) * np.log(y) - y - gammaln(half) - np.log(2.0 * max(scale, 1e-300))
+    return density
 
 
 def _bartlett(squares: FloatArray, degrees: FloatArray, index: IntArray) -> SpreadTest:

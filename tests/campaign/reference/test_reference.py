@@ -18,7 +18,7 @@ import skisnow
 from skisnow._support.errors import OutputError, ParameterError
 from skisnow.campaign.reading import read_campaign
 from skisnow.campaign.reference import ReferenceCampaign, ReferenceNoise, reference_campaign, write_reference
-from skisnow.campaign.reference.design import PENETRATION_SITES
+from skisnow.campaign.reference.design import FURTHER_SHEAR_SITES, PENETRATION_SITES
 from skisnow.campaign.screening import screen_penetration
 
 QUIET = ReferenceNoise(
@@ -221,6 +221,18 @@ def test_density_and_drop_cone_know_nothing_of_the_hardness() -> None:
         values = np.repeat([getattr(site, quantity) for site in PENETRATION_SITES], weights)
         assert abs(np.corrcoef(hardness, values)[0, 1]) < 0.05  # p above 0.4 over 236 series
         assert values.mean() == pytest.approx(mean, rel=1e-3)  # the paper's mean, to its digits
+
+
+def test_drop_cones_at_the_shear_tests_have_no_relation_with_density() -> None:
+    drawn = reference_campaign(1)
+    cone = drawn.drop_cone.site_means()
+    at_90 = np.isfinite(drawn.shear.snow_density)
+    sites = np.array(drawn.shear.site)[at_90]
+    assert at_90.sum() == 58
+    assert set(sites) <= cone.keys()
+    planned = {site.name: site for site in (*PENETRATION_SITES, *FURTHER_SHEAR_SITES)}
+    density, depth = ([getattr(planned[site], name) for site in sites] for name in ("snow_density", "drop_cone_depth"))
+    assert abs(np.corrcoef(density, depth)[0, 1]) < 0.05  # p above 0.7 over 58 tests
 
 
 def test_same_seed_same_bits_another_seed_others() -> None:

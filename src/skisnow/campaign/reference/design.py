@@ -45,11 +45,12 @@ class PenetrationSite:
 
 @dataclass(frozen=True, slots=True)
 class ShearSite:
-    """A site of shear tests at 90° with no penetration tests: mean ρ (kg/m³)."""
+    """A site of shear tests at 90° with no penetration tests: mean ρ (kg/m³) and H_p (m) of its snow."""
 
     name: str
     tests: int
     snow_density: float
+    drop_cone_depth: float
 
 
 TOOL: Final = "ski piece"
@@ -114,10 +115,11 @@ SOFT_TESTS: Final = 30
 SOFT_SCATTER: Final = 0.006 * N_PER_MM2
 
 FURTHER_SHEAR_SITES: Final = (
-    ShearSite("site K", 8, 440.0),
-    ShearSite("site L", 8, 440.0),
-    ShearSite("site M", 7, 600.0),
+    ShearSite("site K", 8, 440.0, 11.9 * MM),
+    ShearSite("site L", 8, 440.0, 13.5 * MM),
+    ShearSite("site M", 7, 600.0, 13.0 * MM),
 )
+"""Their drop-cone depths are chosen so that ρ and H_p have no relation over the tests at 90°."""
 SHEAR_DENSITY_RANGE: Final = moessner_2013.SNOW_DENSITY_RANGE
 SHEAR_DENSITY_SD: Final = 40.0
 SHEAR_STRESS_RANGE: Final = tuple(limit * N_PER_MM2 for limit in moessner_2013.FAILURE_SHEAR_STRESS_RANGE_N_PER_MM2)
