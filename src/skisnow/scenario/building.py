@@ -10,6 +10,7 @@ from typing import Any
 
 from .._support.errors import ParameterError
 from .._support.messages import Message
+from .._support.nearest import most_like
 from .._support.units import N_PER_MM2, N_PER_MM3
 from ..parameters import Word, changed, made, nearest, values_of
 from ..ski import Ski, read_ski, ski_names
@@ -245,8 +246,11 @@ def _full_name(name: str, part_names: Collection[str]) -> str:
     try:
         return full_name(name)
     except ParameterError as error:
+        part = most_like(name, part_names)
+        if part is None:
+            raise
         raise ParameterError(
-            Message("{problem} Parts: {allowed}", problem=error, allowed=nearest(name, part_names)), code="unknown_name"
+            Message("{problem} Did you mean the part {part}?", problem=error, part=part), code="unknown_name"
         ) from error
 
 
