@@ -73,5 +73,5 @@ def test_modules_are_imported_by_name_in_few_places() -> None:
     }
     assert {place for place in places if not place.startswith("web/")} == {
         "__init__.py",
-        "_support/optional_packages.py",
+        "_support/environment.py",
     }

@@ -10,7 +10,7 @@ from datetime import UTC, datetime
 
 import numpy as np
 
-from skisnow._support.processes.pool import available_cores
+from skisnow._support.processes.batch import available_cores
 from skisnow.identification import identify
 from skisnow.track.track import Track
 

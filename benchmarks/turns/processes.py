@@ -12,8 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from skisnow._support.processes.batch import run_batch
-from skisnow._support.processes.pool import available_cores
+from skisnow._support.processes.batch import available_cores, run_batch
 
 from ..timing import timed
 from .cases import SCENARIO, Case, Runs

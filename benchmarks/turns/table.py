@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from datetime import UTC, datetime
 
 from skisnow._support.errors import SkisnowError
-from skisnow._support.processes.pool import available_cores
+from skisnow._support.processes.batch import available_cores
 
 from . import peers, processes, speed
 from .cases import DEFAULT, FAST, HARD_SNOW, SCENARIO, Runs

@@ -13,7 +13,7 @@ import pytest
 
 import skisnow
 from skisnow._support.errors import FieldDataError
-from skisnow.interop.site_pit import site_pit
+from skisnow.interop.snowex import site_pit
 
 from .conftest import MakeCampaign
 

@@ -11,7 +11,7 @@ from skisnow import analyse, read_campaign
 from skisnow.campaign.caaml import read_caaml
 from skisnow.cli import main
 from skisnow.interop.caaml import write_caaml
-from skisnow.interop.site_pit import site_pit
+from skisnow.interop.snowex import site_pit
 
 from ..campaign.recordings import plain_snow
 from .pits import full_pit

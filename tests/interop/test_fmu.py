@@ -23,9 +23,8 @@ from skisnow._support.errors import ParameterError
 from skisnow.contact import Runner, SnowContact, SnowField
 from skisnow.geometry.surfaces import Grid
 from skisnow.interop import write_contact_fmu, write_sledge_fmu
-from skisnow.interop.fmu.description import Version
-from skisnow.interop.fmu.models import _require_own_laws, _snow_parameters, contact_model, sledge_model
-from skisnow.interop.fmu.variables import UNITS
+from skisnow.interop.fmu.models import UNITS, _require_own_laws, _snow_parameters, contact_model, sledge_model
+from skisnow.interop.fmu.writing import Version
 from skisnow.scenario.snow_map import SnowMap
 from skisnow.simulation.run_setup import laid_out
 from skisnow.simulation.sledge_body import rotation

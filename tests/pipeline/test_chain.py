@@ -22,9 +22,8 @@ from skisnow.campaign.reference import reference_campaign
 from skisnow.cli import main
 from skisnow.forces.shear.displacement import SHEAR_DISPLACEMENT
 from skisnow.parameters import values_of
-from skisnow.pipeline import ensemble
 from skisnow.pipeline import turn as pipeline_turn
-from skisnow.pipeline.ensemble import MEASURED, PRIORS, inputs_with
+from skisnow.pipeline.turn import MEASURED, PRIORS, inputs_with
 from skisnow.report.turn.numbers import turn_dict
 from skisnow.scenario.identify_section import prior_of
 from skisnow.ski import write_ski
@@ -55,7 +54,6 @@ def asked(monkeypatch: pytest.MonkeyPatch) -> list[Scenario]:
         return replace(circle_run(radius=radius, count=61, unloading_ratio=contact.unloading_ratio), scenario=scenario)
 
     monkeypatch.setattr(pipeline_turn, "simulate", circle)
-    monkeypatch.setattr(ensemble, "simulate", circle)
     return scenarios
 
 
@@ -66,7 +64,7 @@ def test_the_chain_asks_for_the_turn_with_each_contact_and_for_each_that_was_dra
     turn = skisnow.load_scenario("carved-46m", changes=TURN)
     found = skisnow.turn(analysis, "C", turn, ski="carver", runs=4, seed=3, workers=1, progress=said.append)
     snow = analysis.snow("site C", unloading_ratio=10.0)
-    drawn = ensemble.drawn_scenarios(asked[0], PRIORS, 4, 3)
+    drawn = pipeline_turn.drawn_scenarios(asked[0], PRIORS, 4, 3)
     assert found.snow == snow
     assert [each.contact.snow for each in asked[:7]] == [snow, snow, snow, *(each.contact.snow for each in drawn)]
     assert [each.contact.unloading_ratio for each in asked[:3]] == [10.0, 1.0, 10.0]
@@ -100,7 +98,7 @@ def test_a_measured_unloading_ratio_is_the_one_of_the_turn(analysis: Analysis, a
 
 def test_all_that_is_not_known_is_drawn_over_its_prior(analysis: Analysis) -> None:
     nominal = skisnow.load_scenario("carved-46m").with_(snow=analysis.snow("C", unloading_ratio=10.0))
-    drawn = [values_of(each) for each in ensemble.drawn_scenarios(nominal, PRIORS, 400, 1)]
+    drawn = [values_of(each) for each in pipeline_turn.drawn_scenarios(nominal, PRIORS, 400, 1)]
     for prior in PRIORS:
         values = np.array([each[prior.key] for each in drawn])
         low, high = prior.ends(values_of(nominal)[prior.key] or 0.0)
@@ -113,7 +111,7 @@ def test_all_that_is_not_known_is_drawn_over_its_prior(analysis: Analysis) -> No
 def test_the_ensemble_is_computed_quickly_whatever_the_turn_asks_for(asked: list[Scenario]) -> None:
     """Rows of 0.05 s of an error-controlled run, and what they are kept for."""
     turn = skisnow.load_scenario("carved-46m").with_(duration_s=1.0)
-    row = ensemble.simulate_fast(turn.with_(solver=replace(turn.solver, fixed=True, output_interval=0.01)))
+    row = pipeline_turn.simulate_fast(turn.with_(solver=replace(turn.solver, fixed=True, output_interval=0.01)))
     (solver,) = (each.solver for each in asked)
     assert (solver.method, solver.fixed, solver.output_interval) == ("fast", False, 0.05)
     run = circle_run(radius=10.0 * (turn.contact.snow.snow_hardness / 4.42e8) ** 0.1, count=61)
@@ -132,7 +130,6 @@ def test_how_far_quick_ends_beside_the_turn_is_told(analysis: Analysis, monkeypa
         )
 
     monkeypatch.setattr(pipeline_turn, "simulate", beside)
-    monkeypatch.setattr(ensemble, "simulate", beside)
     assert skisnow.turn(analysis, "C", runs=3, workers=1).ensemble_error == pytest.approx(0.05)
 
 
@@ -167,10 +164,10 @@ def test_each_input_has_a_column_of_shares_in_its_order(analysis: Analysis, monk
         assert generator.random() == np.random.default_rng(8).random()
         return np.array([[0.025, 0.5, 0.25, 0.125]])
 
-    monkeypatch.setattr(ensemble, "latin_hypercube", shares)
+    monkeypatch.setattr(pipeline_turn, "latin_hypercube", shares)
     snow = analysis.snow("C", unloading_ratio=10.0)
     two = (prior_of("snow.unloading_ratio=2:32"), prior_of("ski.stiffness_factor=0.25:4"))
-    (first,) = ensemble.drawn_scenarios(skisnow.load_scenario("carved-46m").with_(snow=snow), two, 1, 8)
+    (first,) = pipeline_turn.drawn_scenarios(skisnow.load_scenario("carved-46m").with_(snow=snow), two, 1, 8)
     assert snow.snow_hardness_interval is not None
     assert first.contact.snow.snow_hardness == pytest.approx(snow.snow_hardness_interval[0])
     assert first.contact.snow.failure_shear_stress == pytest.approx(snow.failure_shear_stress)
@@ -179,7 +176,7 @@ def test_each_input_has_a_column_of_shares_in_its_order(analysis: Analysis, monk
 
 
 def test_a_latin_hypercube_has_one_in_each_slice() -> None:
-    shares = ensemble.latin_hypercube(50, 3, np.random.default_rng(1))
+    shares = pipeline_turn.latin_hypercube(50, 3, np.random.default_rng(1))
     assert shares.shape == (50, 3)
     assert np.floor(np.sort(shares, axis=0) * 50.0).T.tolist() == [list(range(50))] * 3
     assert np.ptp(shares * 50.0 % 1.0) > 0.9
@@ -216,8 +213,8 @@ def test_what_the_campaign_measured_is_drawn_from_its_interval(analysis: Analysi
     snow = replace(plain, **MEASURED_HERE)
     turn = skisnow.load_scenario("carved-46m").with_(snow=plain)
     measured = turn.with_(snow=snow)
-    before = [values_of(each) for each in ensemble.drawn_scenarios(turn, inputs_with((), turn), 400, 1)]
-    drawn = [values_of(each) for each in ensemble.drawn_scenarios(measured, inputs_with((), measured), 400, 1)]
+    before = [values_of(each) for each in pipeline_turn.drawn_scenarios(turn, inputs_with((), turn), 400, 1)]
+    drawn = [values_of(each) for each in pipeline_turn.drawn_scenarios(measured, inputs_with((), measured), 400, 1)]
     for key, expected in ((RATIO, [6.0, 9.0, 16.0]), (WAY, [0.2, 0.25, 0.3125])):
         assert np.quantile([each[key] for each in drawn], [0.025, 0.5, 0.975]) == pytest.approx(expected, rel=0.01)
         assert [each[key] for each in before] != [each[key] for each in drawn]
@@ -246,7 +243,7 @@ def test_what_is_drawn_stays_inside_what_the_key_allows(analysis: Analysis) -> N
     wide: dict[str, Any] = {"unloading_ratio_interval": (1.0, 900.0), "shear_displacement_interval": (1e-5, 9e-3)}
     snow = replace(analysis.snow("C"), **{**MEASURED_HERE, **wide})
     turn = skisnow.load_scenario("carved-46m").with_(snow=snow)
-    drawn = [values_of(each) for each in ensemble.drawn_scenarios(turn, inputs_with((), turn), 400, 1)]
+    drawn = [values_of(each) for each in pipeline_turn.drawn_scenarios(turn, inputs_with((), turn), 400, 1)]
     for key, low, high in ((RATIO, 1.0, 1000.0), (WAY, 0.01, 10.0)):
         assert [min(each[key] for each in drawn), max(each[key] for each in drawn)] == [low, high]
 
@@ -321,7 +318,6 @@ def test_a_turn_near_the_limit_of_grip_is_warned_of(analysis: Analysis, monkeypa
         return replace(circle_run(radius=20.0 if beyond else 12.0, count=61), scenario=scenario)
 
     monkeypatch.setattr(pipeline_turn, "simulate", folded)
-    monkeypatch.setattr(ensemble, "simulate", folded)
     for angle, near in ((34.79, True), (34.0, False)):
         turn = skisnow.load_scenario("carved-46m").with_(edge_angle_deg=angle)
         found = skisnow.turn(analysis, "C", turn, runs=3, workers=1)

@@ -15,8 +15,8 @@ import pytest
 
 from skisnow import load_scenario, read_ski
 from skisnow._support.errors import ParameterError
+from skisnow._support.processes.batch import Pool
 from skisnow._support.processes.kept_rows import KeptRows
-from skisnow._support.processes.pool import Pool
 from skisnow.racing import LineTurn, RacingLine, follower_line, quickest_line, surrogate_search
 from skisnow.racing.line import cut, ways
 from skisnow.racing.quickest import _begun, _require, _search, _window

@@ -14,8 +14,8 @@ import pytest
 
 from skisnow import QuickestLine, Scenario, load_scenario, race
 from skisnow._support.errors import ParameterError
+from skisnow._support.processes.batch import Pool
 from skisnow._support.processes.kept_rows import KeptRows
-from skisnow._support.processes.pool import Pool
 from skisnow.racing.search import Batches, Evaluations, least_of
 
 from .test_point import WAY, glide, straight_course

@@ -15,8 +15,8 @@ from scipy.optimize import minimize
 from scipy.special import erfcx
 from scipy.stats import norm
 
+from skisnow._support.processes.batch import Pool
 from skisnow._support.processes.kept_rows import KeptRows
-from skisnow._support.processes.pool import Pool
 from skisnow.racing.score import Score, with_room
 from skisnow.racing.search import Evaluated, Evaluations
 from skisnow.racing.surrogate import MOST_MARGIN, Prospects, Surrogate, margins_of, times_of

@@ -9,8 +9,8 @@ from typing import Any
 
 import pytest
 
+from skisnow._support.processes.batch import Pool
 from skisnow._support.processes.kept_rows import KeptRows
-from skisnow._support.processes.pool import Pool
 from skisnow.racing import RacingLine, follower_line
 from skisnow.racing.line import cut
 from skisnow.racing.racers import LinePoint, turns_in

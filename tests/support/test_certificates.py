@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from skisnow._support.certificates import load_certificate
+from skisnow._support.environment import load_certificate
 
 OPENSSL = shutil.which("openssl")
 pytestmark = pytest.mark.skipif(OPENSSL is None, reason="openssl is not there, which makes the certificates")

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 
 import pytest
 
-from skisnow._support.memory import paused_collector
+from skisnow._support.environment import paused_collector
 
 
 @pytest.fixture(autouse=True)

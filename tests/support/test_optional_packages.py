@@ -2,9 +2,9 @@
 
 import math
 
+from skisnow._support.environment import needed
 from skisnow._support.errors import ParameterError
 from skisnow._support.messages import Message
-from skisnow._support.optional_packages import needed
 from tests.coded import raises
 
 

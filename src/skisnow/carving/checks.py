@@ -5,9 +5,8 @@ from __future__ import annotations
 import math
 from typing import Final
 
-from .._support.errors import ParameterError
+from .._support.errors import ParameterError, require_choice
 from .._support.messages import Message
-from .._support.nearest import require_choice
 from ..ski.ski import Ski
 from ..snow.properties import SnowProperties
 

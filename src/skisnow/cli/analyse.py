@@ -7,8 +7,8 @@ import sys
 from pathlib import Path
 from typing import Any
 
+from .ending import ready
 from .options import MOST_RESAMPLES, add_language, seed_number, whole_number
-from .output_folder import ready
 
 
 def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -36,7 +36,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
 
 def run(options: argparse.Namespace) -> int:
     """Analyse, write the results, print the summary."""
-    from .._support.memory import paused_collector
+    from .._support.environment import paused_collector
     from ..campaign import read_campaign
     from ..estimation import analyse
     from ..estimation.results import results_json

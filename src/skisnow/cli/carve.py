@@ -8,8 +8,8 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from .ending import fonts_listed
 from .options import add_language, number, whole_number
-from .output_folder import fonts_listed
 from .progress import announced
 
 if TYPE_CHECKING:

@@ -10,8 +10,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from .._support.units import DEGREE
+from .ending import ready
 from .options import add_fall_line_azimuth, add_language, number
-from .output_folder import ready
 from .progress import announced
 
 if TYPE_CHECKING:

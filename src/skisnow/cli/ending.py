@@ -1,4 +1,4 @@
-"""SIGTERM as an orderly end: workers stop and finished results are kept, as with Ctrl-C."""
+"""Output folder and end of a command: SIGTERM stops workers and keeps finished results, as Ctrl-C does."""
 
 from __future__ import annotations
 
@@ -16,6 +16,8 @@ from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
+
+from .progress import announced
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -130,3 +132,33 @@ def _kept(name: str, text: str) -> Path | None:
             continue
         return folder / name
     return None
+
+
+USUAL_S: Final = 10.0
+"""Seconds for a machine with a thousand fonts or more (milliseconds each); a hundred take less than a second."""
+
+
+def fonts_listed() -> None:
+    """See that the list is there before the work begins, and say so where it is made: nothing is slow unannounced."""
+    from pathlib import Path
+
+    import matplotlib
+
+    if not list(Path(matplotlib.get_cachedir()).glob("fontlist-*.json")):
+        with announced("listing this machine's fonts for the figures, this once", usual_s=USUAL_S):
+            import matplotlib.font_manager
+
+
+def ready(folder: Path) -> None:
+    """See that a folder can be written and figures drawn, tidy up what killed processes left in it, and say so.
+
+    Raises
+    ------
+    OutputError
+        It cannot be made or written.
+    """
+    from .._support.staging import tidied
+
+    for sentence in tidied(folder):
+        print(sentence, file=sys.stderr)
+    fonts_listed()

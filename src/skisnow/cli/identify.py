@@ -8,9 +8,8 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from .ending import Ending, ending_is_an_interrupt
+from .ending import Ending, ending_is_an_interrupt, ready
 from .options import MOST_RESAMPLES, MOST_WORKERS, add_language, add_scheduler, scheduler_of, seed_number, whole_number
-from .output_folder import ready
 from .progress import Progress, announced
 
 MOST_SAMPLES, MOST_STARTS = 1_000_000, 1_000

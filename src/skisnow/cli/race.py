@@ -9,9 +9,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from .ending import Ended, ending_is_an_interrupt
+from .ending import Ended, ending_is_an_interrupt, ready
 from .options import MOST_WORKERS, add_changes, add_scheduler, number, scheduler_of, seed_number, whole_number
-from .output_folder import ready
 from .progress import Progress, announced
 
 if TYPE_CHECKING:

@@ -12,9 +12,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from .._support.errors import ModelLimitWarning
-from .ending import Ending, ending_is_an_interrupt
+from .ending import Ending, ending_is_an_interrupt, ready
 from .options import add_changes, add_language
-from .output_folder import ready
 from .progress import Progress, announced
 
 if TYPE_CHECKING:

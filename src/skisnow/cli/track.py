@@ -7,8 +7,8 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from .ending import ready
 from .options import add_language, number
-from .output_folder import ready
 from .progress import Progress, announced
 
 if TYPE_CHECKING:

@@ -8,8 +8,8 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from .ending import ready
 from .options import MOST_WORKERS, add_language, number, seed_number, whole_number
-from .output_folder import ready
 from .progress import Progress, announced
 
 if TYPE_CHECKING:

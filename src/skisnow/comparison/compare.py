@@ -13,8 +13,8 @@ from .._support.display import amount
 from .._support.errors import ParameterError
 from .._support.messages import Message
 from .._support.units import DEGREE
+from ..track.flags import inexact_sentence
 from ..track.slope_frame import STEEPEST, LaidTracks, lay_for_fit
-from ..track.solution import inexact_sentence
 from ..track.track import Track
 from .alignment import OFFSETS, Motion, fit_motion, require_offsets
 from .distances import (

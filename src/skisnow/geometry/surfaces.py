@@ -1,9 +1,10 @@
-"""Surfaces of a slope: z(x, y) out of the undisturbed snow, and what varies over the place."""
+"""Surfaces of a slope z(x, y): planes and grids with bicubic patches, and smoothing of measured heights."""
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
-from typing import TypeAlias
+from typing import Final, NamedTuple, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
@@ -11,7 +12,6 @@ import numpy.typing as npt
 from .._support.display import ShownFields
 from .._support.errors import ParameterError
 from .._support.messages import Message
-from .patches import patched
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 
@@ -136,3 +136,146 @@ def _require_even(name: str, places: FloatArray) -> None:
             ),
             code="not_rising",
         )
+
+
+IntArray: TypeAlias = npt.NDArray[np.intp]
+
+
+class Patched(NamedTuple):
+    """Values at places, and their slopes along both axes for each step of the grid."""
+
+    value: FloatArray
+    slope_x: FloatArray
+    slope_y: FloatArray
+
+
+class _Weights(NamedTuple):
+    """Weights of the two ends of a cell along one axis: what multiplies their values, and their slopes."""
+
+    value: tuple[FloatArray, FloatArray]
+    slope: tuple[FloatArray, FloatArray]
+
+
+def patched(values: FloatArray, u: FloatArray, v: FloatArray) -> Patched:
+    """Values (n, m) between their places.
+
+    Parameters
+    ----------
+    values
+        (n, m) at the places 0 to n - 1 and 0 to m - 1.
+    u, v
+        Places (k,) in steps of the grid, inside it.
+
+    Notes
+    -----
+    Cubic Hermite in both directions without a twist at the corners; slopes at the places are central differences, at a
+    border those of the parabola through three values.
+
+    Examples
+    --------
+    A parabola comes back: 1.5² = 2.25, with the slope 3.
+
+    >>> found = patched(np.arange(4.0)[:, None] ** 2, np.array([1.5]), np.zeros(1))
+    >>> found.value, found.slope_x, found.slope_y
+    (array([2.25]), array([3.]), array([0.]))
+    """
+    rows, along = _cell(u, values.shape[0])
+    columns, across = _cell(v, values.shape[1])
+    corners = [(i, j, rows[i], columns[j]) for i in (0, 1) for j in (0, 1)]
+    at = [(values[row, column], _slope(values, row, column, 0), _slope(values, row, column, 1))
+          for _, _, row, column in corners]  # fmt: skip
+
+    def both(over_x: _Weights, over_y: _Weights) -> FloatArray:
+        total = np.zeros_like(u)
+        for (i, j, _, _), (value, rise_x, rise_y) in zip(corners, at, strict=True):
+            total += over_y.value[j] * (over_x.value[i] * value + over_x.slope[i] * rise_x)
+            total += over_x.value[i] * over_y.slope[j] * rise_y
+        return total
+
+    x, y = _hermite(along), _hermite(across)
+    return Patched(both(x, y), both(_hermite_slope(along), y), both(x, _hermite_slope(across)))
+
+
+def _cell(at: FloatArray, count: int) -> tuple[tuple[IntArray, IntArray], FloatArray]:
+    """Both ends of the cells that places are in, and the shares of the way between them."""
+    low = np.clip(np.floor(at), 0, max(count - 2, 0)).astype(np.intp)
+    return (low, np.minimum(low + 1, count - 1)), np.clip(at - low, 0.0, 1.0)
+
+
+def _slope(values: FloatArray, row: IntArray, column: IntArray, axis: int) -> FloatArray:
+    """For each step, by differences: central inside; at a border the parabola's, or the chord's of two values."""
+    count, at = values.shape[axis], (row, column)[axis]
+
+    def value(place: IntArray) -> FloatArray:
+        within = np.clip(place, 0, count - 1)
+        return np.asarray(values[within, column] if axis == 0 else values[row, within])
+
+    if count == 1:
+        return np.zeros(at.shape)
+    if count == 2:
+        return value(np.ones_like(at)) - value(np.zeros_like(at))
+    first = 0.5 * (4.0 * value(at + 1) - 3.0 * value(at) - value(at + 2))
+    last = 0.5 * (3.0 * value(at) - 4.0 * value(at - 1) + value(at - 2))
+    inside = 0.5 * (value(at + 1) - value(at - 1))
+    return np.where(at == 0, first, np.where(at == count - 1, last, inside))
+
+
+def _hermite(f: FloatArray) -> _Weights:
+    e = 1.0 - f
+    return _Weights((e * e * (1.0 + 2.0 * f), f * f * (3.0 - 2.0 * f)), (f * e * e, -f * f * e))
+
+
+def _hermite_slope(f: FloatArray) -> _Weights:
+    e = 1.0 - f
+    return _Weights((-6.0 * f * e, 6.0 * f * e), (e * (1.0 - 3.0 * f), f * (3.0 * f - 2.0)))
+
+
+HALVING: Final = math.sqrt(math.log(2.0) / math.pi)
+"""α of ISO 16610-21: with it a wave of the cut-off length keeps half of its height."""
+
+
+def smoothed(values: FloatArray, steps: tuple[float, float], *, cutoff: float) -> FloatArray:
+    """Values over a grid without what is shorter than a length.
+
+    Parameters
+    ----------
+    values
+        (n, m) at evenly spaced places.
+    steps
+        Between the places along both axes (m), > 0.
+    cutoff
+        Length λ_c ≥ 0 (m) of the wave that keeps half of its height; one of twice the length keeps 84 %, one of half
+        the length 6 %. 0: nothing is smoothed.
+
+    Notes
+    -----
+    Weights w(t) = exp(-π (t/(α λ_c))²), α = √(ln 2/π), up to |t| = λ_c, along one axis after the other (ISO 16610-21).
+    Near a border the value of the straight line through the weighted values: a plane stays a plane everywhere.
+
+    Examples
+    --------
+    >>> plane = np.add.outer(np.arange(3.0), 2.0 * np.arange(4.0))
+    >>> bool(np.allclose(smoothed(plane, (1.0, 1.0), cutoff=5.0), plane))
+    True
+    """
+    if cutoff <= 0.0:
+        return values
+    return _along_first(_along_first(values, steps[0], cutoff).T, steps[1], cutoff).T
+
+
+def _along_first(values: FloatArray, step: float, cutoff: float) -> FloatArray:
+    """A straight line of weighted least squares through the neighbours of each place, taken at the place."""
+    count = len(values)
+    reach = min(math.ceil(cutoff / step), count - 1)
+    sums, moments = np.zeros((3, count)), np.zeros((2, *values.shape))
+    for k in range(-reach, reach + 1):
+        weight = math.exp(-math.pi * (k * step / (HALVING * cutoff)) ** 2)
+        here, there = slice(max(0, -k), count - max(0, k)), slice(max(0, k), count - max(0, -k))
+        for power in range(3):
+            sums[power, here] += weight * float(k) ** power
+        for power in range(2):
+            moments[power, here] += weight * float(k) ** power * values[there]
+    determinant = sums[0] * sums[2] - sums[1] ** 2
+    if reach == 0 or determinant.min() < 1e-12:  # the step is far longer than what is to go
+        return values
+    return np.asarray((sums[2, :, None] * moments[0] - sums[1, :, None] * moments[1]) / determinant[:, None])

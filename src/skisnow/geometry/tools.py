@@ -16,7 +16,7 @@ from typing import Annotated, Final, Literal, TypeAlias, get_args
 import numpy as np
 import numpy.typing as npt
 
-from .._support.nearest import require_choice
+from .._support.errors import require_choice
 from ..parameters import Quantity, require_declared
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]

@@ -10,9 +10,9 @@ import numpy as np
 import numpy.typing as npt
 from scipy.interpolate import PchipInterpolator
 
+from .._support.environment import needed
 from .._support.errors import ParameterError
 from .._support.messages import Message
-from .._support.optional_packages import needed
 from ..statistics import percentile_interval
 from .parameter import Parameter, bounds_of
 from .result import Identification, Identified, Interval, Profile

@@ -13,7 +13,7 @@ import numpy.typing as npt
 from .._support.errors import ParameterError
 from .._support.messages import Message, template
 from .._support.processes.kept_rows import Row
-from ..track.solution import inexact_sentence
+from ..track.flags import inexact_sentence
 from ..track.track import Track
 from .problem import Fit, Kind, Values, run_values
 from .simulations import RunTask, grip_limit_sentences, perturbed_tasks

@@ -19,9 +19,8 @@ from ..parameters import nearest
 from .caaml import write_caaml
 from .campaign_netcdf import write_campaign_netcdf
 from .opensim import read_c3d, read_motion, read_trc, write_c3d, write_motion, write_trc
-from .site_pit import site_pit, sites_of
 from .smet import write_smet, write_weather_csv
-from .snowex import write_snowex_force, write_snowex_pit
+from .snowex import site_pit, sites_of, write_snowex_force, write_snowex_pit
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping

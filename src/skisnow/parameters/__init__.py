@@ -1,6 +1,6 @@
 """A quantity, declared once on the dataclass that holds it: for files, checks, command line, schemas, docs, forms."""
 
-from .._support.nearest import meant, nearest
+from .._support.errors import meant, nearest
 from .declared import (
     APART,
     Section,

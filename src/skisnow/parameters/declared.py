@@ -28,9 +28,8 @@ from functools import cache
 from types import NoneType, UnionType
 from typing import Annotated, Any, Final, Literal, NamedTuple, TypeVar, Union, get_args, get_origin
 
-from .._support.errors import ParameterError
+from .._support.errors import ParameterError, nearest
 from .._support.messages import Message
-from .._support.nearest import nearest
 from .quantity import Kind, Quantity
 
 T = TypeVar("T")

@@ -11,12 +11,11 @@ from typing import get_args
 
 from .._support.content import pieces_of
 from .._support.display import Facts, Shown, amount
-from .._support.errors import ParameterError
+from .._support.errors import ParameterError, require_choice
 from .._support.messages import Message
-from .._support.nearest import require_choice
+from .._support.processes.batch import Pool, workers_in_force
 from .._support.processes.executors import ExecutorLike, require_executor
 from .._support.processes.kept_rows import KeptRows
-from .._support.processes.pool import Pool, workers_in_force
 from ..scenario import Scenario
 from .line import RacingLine, course_of, cut, follower_line
 from .racers import Racer, RacerModel, ScoredLine, score_in, turns_in

@@ -9,11 +9,11 @@ from typing import Any, Final, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
+from .._support.environment import needed
 from .._support.errors import ParameterError
 from .._support.messages import Message
-from .._support.optional_packages import needed
+from .._support.processes.batch import Pool
 from .._support.processes.kept_rows import KeptRows, Row
-from .._support.processes.pool import Pool
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 Told: TypeAlias = Callable[[int, float], None]

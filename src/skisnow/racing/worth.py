@@ -15,9 +15,8 @@ from scipy.stats import qmc
 
 from .._support.content import pieces_of
 from .._support.display import Facts, Shown, amount
-from .._support.errors import ParameterError
+from .._support.errors import ParameterError, require_choice
 from .._support.messages import Message
-from .._support.nearest import require_choice
 from .._support.processes.batch import run_batch
 from .._support.processes.executors import ExecutorLike
 from .._support.processes.kept_rows import KeptRows

@@ -15,9 +15,8 @@ import numpy as np
 import numpy.typing as npt
 
 from .._support.display import Facts, Shown, ends
-from .._support.errors import ParameterError
+from .._support.errors import ParameterError, require_choice
 from .._support.messages import Message
-from .._support.nearest import require_choice
 from .._support.spreadsheet_text import column_names, decimal_mark, most_frequent_separator, with_decimal_point
 from .._support.units import DEGREE
 from .._support.user_files import plain_text

@@ -8,9 +8,8 @@ from dataclasses import fields, replace
 from pathlib import Path
 from typing import Any
 
-from .._support.errors import ParameterError
+from .._support.errors import ParameterError, most_like
 from .._support.messages import Message
-from .._support.nearest import most_like
 from .._support.units import N_PER_MM2, N_PER_MM3
 from ..parameters import Word, changed, made, nearest, values_of
 from ..ski import Ski, read_ski, ski_names

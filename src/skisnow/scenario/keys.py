@@ -6,9 +6,8 @@ import difflib
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, Final
 
-from .._support.errors import ParameterError
+from .._support.errors import ParameterError, most_like, nearest
 from .._support.messages import Message, joined
-from .._support.nearest import most_like, nearest
 from .._support.spreadsheet_text import is_number
 from .._support.units import without_unit
 from .._support.user_files import GivenError, toml_values

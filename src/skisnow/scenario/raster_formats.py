@@ -12,9 +12,9 @@ from typing import Any, Final, NoReturn
 import numpy as np
 import numpy.typing as npt
 
+from .._support.environment import needed
 from .._support.errors import ParameterError
 from .._support.messages import Message
-from .._support.optional_packages import needed
 from .._support.spreadsheet_text import CsvRow, csv_rows
 from .._support.user_files import is_file, plain_text
 from .map_system import LENGTHS, MapSystem, length_unit, map_system

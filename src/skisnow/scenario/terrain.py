@@ -14,8 +14,7 @@ from .._support.display import Facts, Shown, amount, ends
 from .._support.errors import ParameterError
 from .._support.messages import Message
 from ..geometry import surfaces
-from ..geometry.smoothing import smoothed
-from ..geometry.surfaces import Grid
+from ..geometry.surfaces import Grid, smoothed
 from ..parameters import Condition, Quantity, Word, require_declared
 from .raster import PlacedValues
 from .raster_formats import read_esri_ascii, read_geotiff, read_grid_table

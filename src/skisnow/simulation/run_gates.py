@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 from ..scenario.scenario import course_on_slope
 from ..track.course import Course, CourseResult, MovingPoint, passages
-from ..track.course.moving_point import track_point
+from ..track.course.passages import track_point
 from ..track.track import Track
 
 if TYPE_CHECKING:

@@ -14,9 +14,9 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import IO, Any, Final, overload
 
+from .._support.environment import needed
 from .._support.errors import ParameterError
 from .._support.messages import Message
-from .._support.optional_packages import needed
 from .._support.processes.kept_rows import Row
 from .._support.sqlite_file import connect, first_damage, place_reason, require_schema, require_sound_pages
 from .._support.user_files import own_json

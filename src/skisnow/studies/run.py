@@ -14,10 +14,9 @@ from typing import Any, Protocol, Self
 
 from .._support.errors import OutputError, ParameterError, SkisnowError
 from .._support.messages import Message
-from .._support.processes.batch import Progress, compute_missing
+from .._support.processes.batch import Progress, compute_missing, workers_in_force
 from .._support.processes.executors import ExecutorLike, require_executor
 from .._support.processes.kept_rows import KeptRows, Row, json_text
-from .._support.processes.pool import workers_in_force
 from .._support.staging import cannot_write
 from .._support.user_files import is_file
 from ..parameters import Quantity

@@ -12,11 +12,10 @@ from typing import Any, Final, Self
 
 from .._support.errors import ParameterError
 from .._support.messages import Message, template
-from .._support.processes.batch import Progress, compute_missing
+from .._support.processes.batch import Progress, compute_missing, workers_in_force
 from .._support.processes.chunk import own_identity
 from .._support.processes.executors import ExecutorLike, require_executor
 from .._support.processes.kept_rows import KeptRows, NumberedText
-from .._support.processes.pool import workers_in_force
 from .._support.user_files import own_json
 from ..parameters import Quantity
 from .run import StudyRows, StudyState, kept_rows, standing, written

@@ -14,9 +14,9 @@ from .._support.messages import Message
 from .._support.units import DEGREE
 from .._support.user_files.json_text import json_number
 from .curvature import TrackMotion, integrated_arc_length, places_arc_length, segments, track_motion
+from .flags import solution_counts
 from .path_estimate import Interval
 from .runs import Day, Stretch, max_speed, split_day
-from .solution import solution_counts
 from .track import Track
 from .turns import Turn, find_turns
 

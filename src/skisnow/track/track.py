@@ -13,9 +13,8 @@ import numpy.typing as npt
 from .._support.display import Facts, Shown, amount, ends
 from .._support.errors import ParameterError
 from .._support.messages import Message
-from .flags import FLAGS
+from .flags import FLAGS, SolutionArray
 from .projection import GeodeticPoint, place_from_origin
-from .solution import SolutionArray
 
 FloatArray = npt.NDArray[np.float64]
 Axes: TypeAlias = Literal["file", "east_north_up", "slope"]
@@ -42,7 +41,7 @@ class Track(Shown):
     speed_sd : (n,) m/s or None
         Standard deviation of the speed stated by the receiver.
     solution : (n,) of "fixed", "float", "code", "", or None
-        Kind of solution of each place, see `skisnow.track.solution`; None if unknown.
+        Kind of solution of each place, see `skisnow.track.flags`; None if unknown.
     odometer : (n,) m or None
         Distance recorded by the device.
     start : datetime or None

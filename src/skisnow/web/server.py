@@ -14,7 +14,7 @@ import ifaddr
 import segno
 import uvicorn
 
-from .._support.certificates import load_certificate
+from .._support.environment import load_certificate
 from .._support.errors import ParameterError
 from .._support.messages import Message
 from .application import lab_application

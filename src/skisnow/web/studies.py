@@ -19,9 +19,9 @@ from typing import TYPE_CHECKING, Any, Final
 from .._support.errors import ParameterError, SkisnowError
 from .._support.language import ENGLISH
 from .._support.messages import Message
+from .._support.processes.batch import available_cores
 from .._support.processes.executors import LOCAL
 from .._support.processes.kept_rows import KeptRows
-from .._support.processes.pool import available_cores
 from .._support.staging import write_file
 from .runs import AROUND_S, JOB, LOOKED_AT, Job, Runs, duration_words, new_name, simulated_s, slowness
 from .study_fields import CARVE, STUDY, TABLE, require_few_points

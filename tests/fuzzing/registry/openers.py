@@ -55,7 +55,7 @@ NO_READERS: Final[Mapping[str, str]] = {
     "web.pages.replay:_in_words": "summary.json, by read_record as web.runs:Runs._over",
     "cli.compare:_slope_angle_of_run": "summary.json of a run, by read_json as other records",
     "web.server:Certificate.__post_init__": "a certificate, parsed by OpenSSL",
-    "_support.certificates:load_certificate": "a certificate, parsed by OpenSSL",
+    "_support.environment:load_certificate": "a certificate, parsed by OpenSSL",
     "_support.processes.dask_cluster:_require_certificates": "certificates, parsed by OpenSSL",
     "cli.serve:run": "opens the store as campaign.store.store:Store.open",
     "cli.store:run": "opens the store as campaign.store.store:Store.open",

@@ -111,7 +111,7 @@ def test_it_is_looked_after_while_nothing_comes_and_not_while_rows_come(monkeypa
             return futures[-1]
 
     monkeypatch.setattr(client, "get_executor", lambda **_: Waiting())
-    monkeypatch.setattr("skisnow._support.processes.pool.LOOKED_AFTER_S", 0.01)
+    monkeypatch.setattr("skisnow._support.processes.batch.LOOKED_AFTER_S", 0.01)
 
     def give_up() -> None:
         for each in futures:

@@ -12,12 +12,11 @@ import pytest
 
 from skisnow._support.errors import ParameterError, SkisnowError
 from skisnow._support.processes import chunk, crews, dask_cluster
-from skisnow._support.processes.batch import run_batch
+from skisnow._support.processes.batch import Pool, run_batch
 from skisnow._support.processes.chunk import Identity
 from skisnow._support.processes.crews import LOST
 from skisnow._support.processes.executors import require_executor
 from skisnow._support.processes.kept_rows import KeptRows, row_text
-from skisnow._support.processes.pool import Pool
 from skisnow.identification import identify
 from tests.coded import Coded, coded, raises
 from tests.identification.straight_tracks import SCENARIO, track

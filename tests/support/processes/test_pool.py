@@ -13,10 +13,10 @@ import pytest
 
 from skisnow._support.errors import ParameterError, SkisnowError
 from skisnow._support.messages import Message
+from skisnow._support.processes.batch import Pool, workers_in_force
 from skisnow._support.processes.chunk import computed
 from skisnow._support.processes.crews import LARGEST_FOR_A_PIPE, ProcessCrew, _in_worker
 from skisnow._support.processes.kept_rows import NumberedText
-from skisnow._support.processes.pool import Pool, workers_in_force
 from tests.coded import raises
 
 

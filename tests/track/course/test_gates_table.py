@@ -11,7 +11,7 @@ import pytest
 from skisnow._support.errors import ParameterError
 from skisnow.track.course import MovingPoint, passages
 from skisnow.track.course.gates_table import COLUMNS, gates_csv, gates_dict, time_warnings
-from skisnow.track.course.moving_point import track_point
+from skisnow.track.course.passages import track_point
 from skisnow.track.track import Axes, Track
 from tests.coded import raises
 

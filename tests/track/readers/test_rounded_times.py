@@ -6,7 +6,7 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from skisnow.track.readers.times import spread_times
+from skisnow.track.readers.text import spread_times
 
 FloatArray = npt.NDArray[np.float64]
 

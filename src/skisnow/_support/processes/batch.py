@@ -1,15 +1,20 @@
-"""Many points, one function, all cores: parallel, resumable, and the same rows whatever the number of workers."""
+"""One function for many points on all cores: resumable, with the same rows for any number of workers."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from typing import Any, TypeAlias
+import os
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
+from concurrent.futures import FIRST_COMPLETED, Future, wait
+from itertools import islice
+from types import TracebackType
+from typing import Any, Final, Self, TypeAlias
 
+from ..errors import ParameterError, SkisnowError
 from ..messages import Message
-from .chunk import PointFunction
-from .executors import ExecutorLike
-from .kept_rows import KeptRows, Row
-from .pool import Pool, workers_in_force
+from .chunk import Done, Numbered, PointFunction
+from .crews import LOST, Crew, ProcessCrew, lost
+from .executors import ExecutorLike, crew_of
+from .kept_rows import KeptRows, NumberedText, Row, row_text
 
 Progress: TypeAlias = Callable[[int, int], None]
 """Takes the number of finished points and that of all."""
@@ -117,3 +122,126 @@ def compute_missing(
 
 def _silent(_done: int, _total: int) -> None:
     return
+
+
+LOOKED_AFTER_S: Final = 2.0
+"""While nothing comes it is looked so often whether anything can (modelling assumption)."""
+
+
+class Pool:
+    """Workers that compute rows of points; to be used in a ``with`` statement, which ends them.
+
+    Parameters
+    ----------
+    function
+        From a point to a row of JSON values. With several workers it is pickled once for each of them.
+    workers
+        Number of processes or threads, as `workers_in_force` gives it; 1 with no executor: this process itself.
+    advice
+        What is kept and what to do, in words, should a process end unexpectedly.
+    executor
+        As `crew_of` takes it; None: processes of this computer.
+    """
+
+    def __init__(
+        self, function: PointFunction, workers: int, *, advice: str, executor: ExecutorLike | None = None
+    ) -> None:
+        self._function, self._workers, self._advice, self._executor = function, workers, advice, executor
+        self._crew: Crew | None = None
+        self._running: set[Future[Done]] = set()
+
+    def rows(self, points: Iterable[Numbered], count: int | None = None) -> Iterator[list[NumberedText]]:
+        """Rows as they come, in any order.
+
+        Parameters
+        ----------
+        points
+            They may be made as they are needed.
+        count
+            How many they are; may be left out of a list.
+
+        Raises
+        ------
+        SkisnowError
+            A process ended unexpectedly. What the function raises is passed on.
+        """
+        if self._executor is None and self._workers == 1:
+            return ([(number, row_text(self._function(point)))] for number, point in points)
+        if count is None:
+            if not isinstance(points, Collection):
+                raise ParameterError(Message("count, the number of points, is missing."), code="count_missing")
+            count = len(points)
+        if count == 0:
+            return iter(())
+        return self._shared(iter(points), count)
+
+    def __enter__(self) -> Self:
+        """Start nothing yet."""
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        """End the workers; after an error or an interrupt at once, in the middle of what they do."""
+        unfinished = [future for future in self._running if not future.done()]
+        for future in unfinished:
+            future.cancel()
+        if self._crew is not None:
+            self._crew.end(at_once=kind is not None or bool(unfinished))
+        self._crew = None
+
+    def _shared(self, points: Iterator[Numbered], left: int) -> Iterator[list[NumberedText]]:
+        """Hand out chunks, two for each worker at a time; their size follows from the time that points take."""
+        if self._crew is None:
+            self._crew = (
+                ProcessCrew(self._function, self._workers)
+                if self._executor is None
+                else crew_of(self._executor, self._function, self._workers)
+            )
+        crew, size, self._running = self._crew, 1, set()
+        try:
+            while left or self._running:
+                most = 2 * crew.size()
+                fair = max(1, min(size, left // most))  # small at the end: all workers end together
+                while left and len(self._running) < most:
+                    chunk = list(islice(points, min(fair, left)))
+                    left -= len(chunk)
+                    self._running.add(crew.submit(chunk))
+                ended, self._running = wait(self._running, LOOKED_AFTER_S, return_when=FIRST_COMPLETED)
+                if not ended:
+                    crew.require_alive()
+                for future in ended:
+                    done = future.result()
+                    size = max(1, min(crew.largest, int(crew.chunk_s / max(done.seconds_per_point, 1e-9))))
+                    yield done.rows
+        except Exception as error:
+            message = lost() if isinstance(error, SkisnowError) and error.code == LOST else crew.told(error)
+            if message is None:
+                raise
+            raise SkisnowError(
+                Message("{problem} {advice}", problem=message, advice=self._advice), code="pool_failed"
+            ) from error
+
+
+def workers_in_force(workers: int | None) -> int:
+    """A number of workers; None: as many as this process has cores.
+
+    Raises
+    ------
+    ParameterError
+        It is below 1.
+    """
+    if workers is None:
+        return available_cores()
+    if workers < 1:
+        raise ParameterError(
+            Message("workers is {workers}; at least 1 is needed.", workers=workers), code="too_few_workers"
+        )
+    return workers
+
+
+def available_cores() -> int:
+    """Cores that this process may use."""
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1

@@ -11,11 +11,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
 
-from ..certificates import load_certificate
-from ..errors import ParameterError, SkisnowError
+from ..environment import load_certificate, needed
+from ..errors import ParameterError, SkisnowError, nearest
 from ..messages import Message, template
-from ..nearest import nearest
-from ..optional_packages import needed
 from ..user_files import read_toml
 from .chunk import PointFunction
 from .crews import LOST, Crew, GivenCrew, lost

@@ -6,7 +6,7 @@ from .folder import RECORD, undo_import, write_import
 from .proposal import Proposal, propose
 from .questions import Question
 from .rows import ImportedTable
-from .sections import Section
+from .sheets import Section
 
 __all__ = [
     "RECORD",

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from ..reading.table_forms import TableForm
     from .answers import Answers
     from .notes import Note
-    from .sections import Section
+    from .sheets import Section
 
 _NO_UNIT: Final = frozenset({"", "-", "–", "#", "nr", "nr.", "no", "no."})
 FROM_NOTES: Final = ("site", "tool", "plate")

@@ -15,13 +15,11 @@ from ..problems import Problem, error
 from ..reading.campaign import campaign_of_files
 from .answers import NONE, Answers
 from .columns import choose_columns
-from .folder import campaign_files, csv_text, description
+from .folder import PlateText, ToolText, campaign_files, csv_text, description, plates_of, tools_of
 from .notes import Note, gauge_steps_mm, is_about_numbers, stated_days, stated_observers, stated_sites
 from .questions import Question, ask
 from .rows import ImportedTable, stored_rows
-from .sections import KINDS, Ignored, Section, find_sections, likely_table, table_of
-from .sheets import Sheet, read_sheets
-from .tools import PlateText, ToolText, plates_of, tools_of
+from .sheets import KINDS, Ignored, Section, Sheet, find_sections, likely_table, read_sheets, table_of
 
 if TYPE_CHECKING:
     from ..reading.table_forms import TableForm

@@ -10,7 +10,7 @@ from ..problems import error
 
 if TYPE_CHECKING:
     from ..problems import Problem
-    from .sections import Section
+    from .sheets import Section
 
 
 @dataclass(frozen=True, slots=True)

@@ -21,8 +21,7 @@ if TYPE_CHECKING:
     from ..reading.table_forms import TableForm
     from .answers import Answers
     from .columns import ColumnChoice
-    from .sections import Ignored, Section
-    from .sheets import Sheet
+    from .sheets import Ignored, Section, Sheet
 
 _SUMMARY: Final = {
     "mittel", "mittelwert", "mean", "average", "durchschnitt", "summe", "sum", "total", "gesamt", "stabw", "std",

@@ -11,9 +11,8 @@ from typing import Final, Literal, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from ..._support.errors import ParameterError
+from ..._support.errors import ParameterError, require_choice
 from ..._support.messages import Message
-from ..._support.nearest import require_choice
 from ..._support.units import DEGREE
 from ...geometry.boot_axes import angles_of
 from ...scenario.boots import ANGLES, LARGEST, OF_SLOPE, SIDES, Boots

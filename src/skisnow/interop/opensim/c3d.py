@@ -14,9 +14,9 @@ from typing import Any, Final, TypeAlias
 
 import numpy as np
 
+from ..._support.environment import needed
 from ..._support.errors import OutputError, ParameterError
 from ..._support.messages import Message
-from ..._support.optional_packages import needed
 from ..._support.staging import write_file
 from ..._support.user_files import GivenError, plain_bytes
 from .markers import METRES, FloatArray, Markers

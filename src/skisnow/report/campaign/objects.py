@@ -7,10 +7,9 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from ..._support.errors import ParameterError
+from ..._support.environment import needed
+from ..._support.errors import ParameterError, nearest
 from ..._support.messages import Message
-from ..._support.nearest import nearest
-from ..._support.optional_packages import needed
 from ..._support.units import unit_of_name
 from ..figures.drawing import Drawing
 from ..figures.style import journal_style, site_styles

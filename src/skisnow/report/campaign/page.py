@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Any, Final
 
 from markupsafe import Markup
 
+from ..._support.environment import paused_collector
 from ..._support.errors import ParameterError
 from ..._support.language import ENGLISH, require_language
-from ..._support.memory import paused_collector
 from ..._support.messages import Message
 from ..._support.staging import staged, tidied, write_file
 from ...estimation import Analysis

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 from scipy.io import netcdf_file
 
+from ..._support.environment import needed
 from ..._support.messages import Message
-from ..._support.optional_packages import needed
 from ..._support.staging import write_file
 from ...scenario.keys import SCENARIO_KEYS, in_sections, scenario_values
 from ...simulation.run_tables import track_columns, track_table

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from .course import Course, Discipline, Gate, course_names
 from .course_file import on_slope, read_course
-from .moving_point import MovingPoint
-from .passages import CourseResult, Passage, passages
+from .passages import CourseResult, MovingPoint, Passage, passages
 from .rules import course_warnings
 
 __all__ = [

@@ -13,9 +13,8 @@ import numpy as np
 import numpy.typing as npt
 
 from ..._support.display import Facts, Shown, ShownFields, amount
-from ..._support.errors import ParameterError
+from ..._support.errors import ParameterError, require_choice
 from ..._support.messages import Message, template
-from ..._support.nearest import require_choice
 from ...parameters import Quantity, Word, require_declared
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]

@@ -12,7 +12,7 @@ from ..flags import FASTEST, GAP_FACTOR, point_flags
 from ..projection import GeodeticPoint, east_north_up, rotate_to_origin
 from ..track import Track
 from .recording import GEODETIC, LOCAL, MOTION, Recording, track_error
-from .times import spread_times
+from .text import spread_times
 
 if TYPE_CHECKING:
     import numpy.typing as npt

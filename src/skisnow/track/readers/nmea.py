@@ -15,7 +15,7 @@ from typing import Any, Final
 import numpy as np
 
 from ..._support.units import DEGREE
-from ..solution import Solution, solution_array
+from ..flags import Solution, solution_array
 from .nmea_sentences import SENTENCE, WRONG_CHECKSUM, sentences
 from .recording import Recording, track_error
 

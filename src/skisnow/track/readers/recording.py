@@ -18,7 +18,7 @@ from ..track import Axes
 if TYPE_CHECKING:
     import numpy.typing as npt
 
-    from ..solution import SolutionArray
+    from ..flags import SolutionArray
 
     BoolArray = npt.NDArray[np.bool_]
     FloatArray = npt.NDArray[np.float64]

@@ -16,8 +16,8 @@ import numpy as np
 import numpy.typing as npt
 
 from ..._support.spreadsheet_text import number
+from ..flags import Solution, solution_array
 from ..projection import GeodeticPoint, earth_centred, east_north_up_axes, geodetic
-from ..solution import Solution, solution_array
 from .recording import FARTHEST, FASTEST_NUMBER, Recording, is_not_finite, track_error
 
 SCALES: Final = {"GPST": "GPS", "UTC": "UTC", "JST": "JST"}

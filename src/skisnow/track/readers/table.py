@@ -15,8 +15,7 @@ import numpy as np
 
 from ..._support.spreadsheet_text import number
 from .recording import FARTHEST, Recording, is_not_finite, track_error
-from .text import Cells, decimal_mark_of, moment, require_width, split_cells
-from .times import convert_serial_dates
+from .text import Cells, convert_serial_dates, decimal_mark_of, moment, require_width, split_cells
 
 if TYPE_CHECKING:
     from datetime import datetime

@@ -17,7 +17,7 @@ from typing import Any, Final
 import numpy as np
 
 from ..._support.units import MM
-from ..solution import Solution, solution_array
+from ..flags import Solution, solution_array
 from .nmea_sentences import SENTENCE
 from .recording import Recording, track_error
 

@@ -1,12 +1,19 @@
-"""Packages that only some work needs (an extra each): loaded when they are needed."""
+"""Environment of the process: optional packages, certificates, and the collector of reference cycles."""
 
 from __future__ import annotations
 
+import gc
+import ssl
+from contextlib import contextmanager
 from importlib import import_module
-from typing import Any
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 from .errors import ParameterError
 from .messages import Message, joined
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
 
 
 def needed(module: str, *, extra: str, what: Message, instead: Message | None = None) -> Any:
@@ -39,3 +46,30 @@ def needed(module: str, *, extra: str, what: Message, instead: Message | None = 
             extra=extra,
         )
         raise ParameterError(joined([problem, instead]) if instead else problem, code="package_missing") from error
+
+
+@contextmanager
+def paused_collector() -> Iterator[None]:
+    """No search for reference cycles: it would walk over the millions of cells of a large campaign again and again."""
+    running = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if running:
+            gc.enable()
+
+
+def load_certificate(context: ssl.SSLContext, file: str | Path, key: str | Path | None = None) -> None:
+    """Load a certificate and its private key, which may be in the same file.
+
+    Raises
+    ------
+    OSError, ssl.SSLError, ValueError
+        They cannot be read, or the key has a password: OpenSSL would ask for it on the terminal.
+    """
+    context.load_cert_chain(file, key, password=_no_password)
+
+
+def _no_password() -> str:
+    raise ValueError("the private key has a password")
