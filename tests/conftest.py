@@ -8,6 +8,7 @@ import signal
 from collections.abc import Iterator
 from contextlib import contextmanager
 from itertools import count
+from typing import Any
 from unittest.mock import patch
 
 import pytest
@@ -18,6 +19,7 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 from build_backend.messages import compile_changed
 
+from skisnow._support.errors import SkisnowError
 from skisnow.report.figures import drawing as figure_drawing
 from skisnow.report.figures.drawing import Drawing, Picture
 
@@ -42,6 +44,20 @@ def pytest_collection_finish() -> None:
     """Look for garbage again, in what comes from now on."""
     gc.freeze()
     gc.enable()
+
+
+@pytest.fixture
+def noted_errors(monkeypatch: pytest.MonkeyPatch) -> list[SkisnowError]:
+    """Errors of skisnow in the order in which they are made: where only their text arrives, tests assert the code."""
+    errors: list[SkisnowError] = []
+    begin = SkisnowError.__init__
+
+    def noted(error: SkisnowError, *given: Any, **named: Any) -> None:
+        begin(error, *given, **named)
+        errors.append(error)
+
+    monkeypatch.setattr(SkisnowError, "__init__", noted)
+    return errors
 
 
 @pytest.fixture

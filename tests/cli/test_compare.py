@@ -16,6 +16,7 @@ from skisnow.cli import main
 
 SCHEMA = json.loads((files(skisnow.track) / "schemas" / "compare.schema.json").read_text(encoding="utf-8"))
 NUMBERS = {"max_m", "mean_m", "rms_m", "max_share", "mean_share", "rms_share"}
+NORTH = ("--fall-line-azimuth-deg", "0")
 Printed = pytest.CaptureFixture[str]
 
 
@@ -178,19 +179,17 @@ def test_a_gpx_beside_a_run_names_what_is_missing_and_has_no_digits_that_nobody_
     words = ["compare", str(run), str(tmp_path / "watch.gpx")]
     assert main(words) == 0
     told = capsys.readouterr()
-    assert all(
-        word in told.out for word in ("--fall-line-azimuth-deg", "--slope-angle-deg", "--fit-offset start,heading")
-    )
+    for option in ("--fall-line-azimuth-deg", "--slope-angle-deg", "--fit-offset"):
+        assert option in told.out
     assert "largest" not in told.out
-    assert "not in one frame" in told.err
-    assert main([*words, "--fall-line-azimuth-deg", "0"]) == 0
+    assert told.err
+    assert main([*words, *NORTH]) == 0
     told = capsys.readouterr()
-    assert re.search(r"  largest 12 m, 28 % of the measured track's length, \d+ m along it\n", told.out)
-    assert "A place is known to 3 m: no further digits are printed." in told.out
-    assert main([*words, "--fall-line-azimuth-deg", "0", "--known-to-m", "0.1"]) == 0
-    assert "  largest 12.3 m, 28 % of" in capsys.readouterr().out
+    assert re.search(r"largest 12 m, 28 %", told.out)
+    assert main([*words, *NORTH, "--known-to-m", "0.1"]) == 0
+    assert "largest 12.3 m, 28 %" in capsys.readouterr().out
     assert main([*words, "--fit-offset", "start,heading"]) == 0
-    assert "  mean    below 1 m, below 1 % of the measured" in capsys.readouterr().out
+    assert " below 1 m, " in capsys.readouterr().out
     found = answer([*words[1:], "--fall-line-azimuth-deg", "0"], capsys)
     assert (found["in_one_frame"], found["known_to_m"]) == (True, 3.0)
     assert found["nearest"]["max_m"] == pytest.approx(12.34, abs=1e-3)
@@ -239,14 +238,15 @@ def test_a_run_on_a_slope_is_laid_on_the_map_before_it_is_fitted(
     words = [str(file.parent), str(there), "--fit-offset", "start,heading"]
     found = answer([*words, *(["--slope-angle-deg", str(slope)] if known == "option" else [])], capsys)
     fitted = found["fitted"]
-    assert fitted["fall_line_azimuth_deg"] == pytest.approx(azimuth, abs=0.2)  # metres of a degree are rounded
+    azimuth_found = fitted["fall_line_azimuth_deg"]
+    assert azimuth_found == pytest.approx(azimuth, abs=0.2)  # metres of a degree are rounded
     assert math.remainder(fitted["turned_deg"] + azimuth - 90.0, 360.0) == pytest.approx(0.0, abs=0.2)
     assert fitted["slope_angle_deg"] == pytest.approx(slope, abs=0.2)
     assert found["dimensions"] == (3 if known == "heights" else 2)
     assert found["nearest"]["max_m"] < 0.05
     assert found["nearest"]["compared_share"] > 0.99
     [told] = [each for each in found["warnings"] if "from north" in each]
-    assert f"{fitted['fall_line_azimuth_deg']:.1f}°" in told
+    assert f"{azimuth_found:.1f}°" in told
 
 
 def test_an_unknown_slope_and_a_slope_that_the_heights_contradict_are_warned_of(
@@ -259,10 +259,10 @@ def test_an_unknown_slope_and_a_slope_that_the_heights_contradict_are_warned_of(
     words = ["--fit-offset", "start,heading"]
     found = answer([str(run), str(flat), *words], capsys)
     assert found["fitted"]["slope_angle_deg"] is None
-    assert any("slope's angle is unknown" in each for each in found["warnings"])
+    assert any("unknown" in each for each in found["warnings"])
     high = written_map_track(tmp_path / "high.csv", 20.0, 18.0, along, aside, heights=True)
     found = answer([str(run), str(high), *words, "--slope-angle-deg", "8"], capsys)
-    assert any("falls by 18.0°, the slope by 8.0°" in each for each in found["warnings"])
+    assert any("18.0°" in each and "8.0°" in each for each in found["warnings"])
 
 
 def test_the_slope_of_a_run_counts_with_a_known_azimuth(tmp_path: Path, capsys: Printed) -> None:
@@ -286,7 +286,8 @@ def test_the_shared_track_of_a_carved_turn_is_found(tmp_path: Path, capsys: Prin
     assert main(["simulate", "carved-46m", "--set", "run.duration_s=4", "--out", str(run)]) == 0
     capsys.readouterr()
     found = answer([str(run), str(CASE), "--fit-offset", "start,heading"], capsys)
-    assert found["fitted"]["fall_line_azimuth_deg"] == pytest.approx(135.0, abs=1.0)
+    azimuth = found["fitted"]["fall_line_azimuth_deg"]
+    assert azimuth == pytest.approx(135.0, abs=1.0)
     assert found["nearest"]["compared_share"] > 0.95
 
 
@@ -309,10 +310,7 @@ def test_two_tracks_in_degrees_are_put_on_one_plane(tmp_path: Path, capsys: Prin
 
 @pytest.mark.parametrize(
     ("words", "status", "told"),
-    [
-        (["--fit-offset", "scale"], 1, "'scale' is no offset that can be fitted; start, heading, time are"),
-        (["--slope-angle-deg", "10"], 2, "needs --fall-line-azimuth-deg"),
-    ],
+    [(["--fit-offset", "scale"], 1, "'scale'"), (["--slope-angle-deg", "10"], 2, NORTH[0])],
 )
 def test_wrong_words(words: list[str], status: int, told: str, straight: Path, capsys: Printed) -> None:
     try:
@@ -325,6 +323,6 @@ def test_wrong_words(words: list[str], status: int, told: str, straight: Path, c
 def test_another_country_and_a_missing_file(straight: Path, capsys: Printed) -> None:
     far = write(straight.parent / "far.csv", [[0.0, 5000.0, 0.0], [40.0, 5000.0, 0.0]])
     assert main(["compare", str(far), str(straight)]) == 1
-    assert "nowhere nearer than 5 km" in capsys.readouterr().err
+    assert " 5 km" in capsys.readouterr().err
     assert main(["compare", str(straight), str(straight.parent / "none.csv")]) == 1
     assert "none.csv" in capsys.readouterr().err

@@ -46,9 +46,9 @@ def test_a_model_as_asked(
 def test_wrong_words_and_names_are_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     out = str(tmp_path / "sledge.zip")
     assert main(["export", "fmu", "carved-46m", "--out", out]) == 1
-    assert "does not end in .fmu" in capsys.readouterr().err
+    assert ".fmu" in capsys.readouterr().err
     with pytest.raises(SystemExit) as ended:
         main(["export", "fmu", "carved-46m", "--out", out, "--skis", "1"])
     assert ended.value.code == 2
-    assert "--skis goes with --contact" in capsys.readouterr().err
+    assert "--contact" in capsys.readouterr().err
     assert not list(tmp_path.iterdir())

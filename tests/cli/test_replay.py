@@ -20,6 +20,7 @@ from ..report.runs import circle_run
 from ..report.test_run_report import summary_of
 
 Printed: TypeAlias = pytest.CaptureFixture[str]
+FALL_LINE = "--fall-line-azimuth-deg"
 GPX = """<gpx version="1.1" creator="test" xmlns="http://www.topografix.com/GPX/1/1"><trk><trkseg>
 <trkpt lat="47.0" lon="11.0"><ele>2000</ele><time>2026-01-10T10:00:00Z</time></trkpt>
 <trkpt lat="46.9999" lon="11.0"><ele>1998</ele><time>2026-01-10T10:00:01Z</time></trkpt>
@@ -71,7 +72,7 @@ def test_a_report_that_lies_there_gets_the_link_once(folder: Path, language: str
     page.write_text(without, encoding="utf-8")
     assert main(["replay", str(folder / "run.nc")]) == 0
     assert page.read_text(encoding="utf-8") == linked
-    assert "report.html now has a link" in capsys.readouterr().err
+    assert "report.html" in capsys.readouterr().err
     assert main(["replay", str(folder)]) == 0
     assert page.read_text(encoding="utf-8") == linked
     assert "link" not in capsys.readouterr().err
@@ -100,8 +101,8 @@ def test_a_track_in_latitude_and_longitude_needs_the_fall_line(folder: Path, tmp
     track = tmp_path / "measured.gpx"
     track.write_text(GPX, encoding="utf-8")
     assert main(["replay", str(folder), "--track", str(track)]) == 1
-    assert "--fall-line-azimuth-deg" in capsys.readouterr().err
-    assert main(["replay", str(folder), "--track", str(track), "--fall-line-azimuth-deg", "180"]) == 0
+    assert FALL_LINE in capsys.readouterr().err
+    assert main(["replay", str(folder), "--track", str(track), FALL_LINE, "180"]) == 0
     shown = replay_of_bytes(held_replay(folder / "replay.html", "run"))
     assert shown.track is not None
     # horizontally 11.1 m and 2 m down, on a plane of 10° in its own axes
@@ -114,10 +115,10 @@ def test_a_track_in_latitude_and_longitude_needs_the_fall_line(folder: Path, tmp
 @pytest.mark.parametrize(
     ("words", "said"),
     [
-        (["--starts-at-s", "2"], "name it with --track"),
-        (["--exaggeration", "21"], "allowed is a number from 1 to 20"),
+        (["--starts-at-s", "2"], "--track"),
+        (["--exaggeration", "21"], "from 1 to 20"),
         (["--moment-s", "x"], "x"),
-        (["other", "--ghost", "another"], "one second run is shown"),
+        (["other", "--ghost", "another"], "--ghost"),
     ],
 )
 def test_wrong_words_are_refused_before_anything_is_read(words: list[str], said: str, capsys: Printed) -> None:
@@ -129,7 +130,7 @@ def test_wrong_words_are_refused_before_anything_is_read(words: list[str], said:
 
 def test_a_folder_without_a_run_is_named(tmp_path: Path, capsys: Printed) -> None:
     assert main(["replay", str(tmp_path)]) == 1
-    assert "run.nc cannot be read" in capsys.readouterr().err
+    assert "run.nc" in capsys.readouterr().err
     assert not list(tmp_path.iterdir())
 
 

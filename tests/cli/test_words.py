@@ -19,23 +19,17 @@ def test_ends_are_allowed_but_the_lowest_above_which_it_must_be() -> None:
     within = number("s", lowest=0.0, highest=10.0)
     assert (within("0"), within("10")) == (0.0, 10.0)
     for word in ("-1e-9", "10.1", "nan"):
-        with pytest.raises(argparse.ArgumentTypeError, match=r"allowed is a number from 0 to 10 in s"):
+        with pytest.raises(argparse.ArgumentTypeError, match="from 0 to 10"):
             within(word)
     above = number("s", lowest=0.0, highest=10.0, above=True)
     assert (above("1e-9"), above("10")) == (1e-9, 10.0)
-    with pytest.raises(argparse.ArgumentTypeError, match=r"'0' is not allowed; allowed is a number above 0 to 10 in s"):
+    with pytest.raises(argparse.ArgumentTypeError, match="above 0 to 10"):
         above("0")
 
 
 @pytest.mark.parametrize(
-    ("unit", "word", "told"),
-    [
-        ("N", "800 N", "in N, without the unit, such as 800"),
-        ("", "1,5", "write one with a decimal point, such as 1.5"),
-        ("m", "much", "in m, without the unit"),
-    ],
+    ("unit", "word", "told"), [("N", "800 N", "in N, .* 800"), ("", "1,5", r" 1\.5"), ("m", "much", "in m")]
 )
 def test_what_is_no_number_gets_an_example(unit: str, word: str, told: str) -> None:
-    with pytest.raises(argparse.ArgumentTypeError) as refused:
+    with pytest.raises(argparse.ArgumentTypeError, match=told):
         number(unit)(word)
-    assert str(refused.value).endswith(told)

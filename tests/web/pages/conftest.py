@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import pytest
 
@@ -25,15 +25,9 @@ def kept_desk(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Desk]:
 
 
 @pytest.fixture
-def desk(kept_desk: Desk, monkeypatch: pytest.MonkeyPatch) -> Iterator[Desk]:
-    """An empty lab that notes every error of skisnow; no handler may fail unless the test removes the failure."""
+def desk(kept_desk: Desk, noted_errors: list[SkisnowError]) -> Iterator[Desk]:
+    """An empty lab; no handler may fail unless the test removes the failure."""
     kept_desk.empty()
-    begin = SkisnowError.__init__
-
-    def noted(error: SkisnowError, *given: Any, **named: Any) -> None:
-        begin(error, *given, **named)
-        kept_desk.errors.append(error)
-
-    monkeypatch.setattr(SkisnowError, "__init__", noted)
+    kept_desk.errors = noted_errors
     yield kept_desk
     assert kept_desk.failures == []
