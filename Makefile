@@ -86,7 +86,8 @@ demo: $(VENV)/.skisnow
 	@echo "To enter tests and look at turns in a browser: $(BIN)/skisnow serve"
 	@echo
 	@echo "Open $(DEMO)/turn/report.html (the turn) and $(DEMO)/results/report.html (the campaign) in a browser,"
-	@echo "and $(DEMO)/slalom/replay.html: a skier through twenty gates, in three dimensions."
+	@echo "and this one, a skier through twenty gates, in three dimensions:"
+	@echo "$(abspath $(DEMO))/slalom/replay.html"
 
 set-up: $(VENV)/.skisnow-dev
 

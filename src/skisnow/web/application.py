@@ -19,6 +19,7 @@ from .guard import Access, Guard
 from .language import COOKIE
 from .layout import KEEPING, LANGUAGE, LOG, SCRIPT, STYLES, add_error_pages, log_to
 from .pages import INNER, PAGES
+from .replay_addresses import FIRST_SCRIPT
 from .settings import PING_EVERY_S, PING_WAIT_S, RECONNECT_S
 from .ski_uploads import add_ski_uploads
 from .transfer import add_transfer
@@ -51,6 +52,7 @@ def lab_application(lab: Lab, *, host: str, token: str | None) -> ASGIApp:
     outer = FastAPI(openapi_url=None, docs_url=None, redoc_url=None)
     outer.add_api_route(STYLES, lambda: _asset("lab.css", "text/css"), include_in_schema=False)
     outer.add_api_route(SCRIPT, lambda: _asset("lab.js", "text/javascript"), include_in_schema=False)
+    outer.add_api_route(FIRST_SCRIPT, lambda: _asset("first.js", "text/javascript"), include_in_schema=False)
     outer.add_api_route(KEEPING, lambda: _asset("kept.js", "text/javascript"), include_in_schema=False)
     outer.add_api_route(LANGUAGE + "/{code}", _set_language, include_in_schema=False, response_model=None)
     add_transfer(outer, lab)

@@ -26,6 +26,11 @@
   let toPutRight = null; // the field of the last reading, which was refused
   const telling = new Map(); // readings that the lab has not answered yet, by their numbers
 
+  document.addEventListener("click", (event) => {
+    const menu = event.target.closest?.(".lab-head .menu");
+    if (menu) menu.setAttribute("aria-expanded", String(menu.closest(".lab-head").classList.toggle("open")));
+  });
+
   const fieldsets = () => document.querySelectorAll("fieldset.lab");
 
   // The connection

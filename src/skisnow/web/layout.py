@@ -70,7 +70,11 @@ def framed(title: str, *, here: str = "", ahead: bool = False, keeps: bool = Fal
         Words("Skip to the content")
     with ui.element("header").classes("lab-head"):
         Words("skisnow").classes("lab-name")
-        with named(ui.element("nav"), "Pages"):
+        menu = ui.button(said(Message("Menu")), color=None).props(
+            "flat no-caps aria-expanded=false aria-controls=pages"
+        )
+        menu.classes("menu")  # lab.js opens the navigation
+        with named(ui.element("nav").props("id=pages"), "Pages"):
             for name in PAGES:
                 _navigation_link(name, here)
         _language_links()

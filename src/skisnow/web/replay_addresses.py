@@ -42,6 +42,10 @@ FILES: Final = f"{LIST}/files"
 DATA: Final = f"{LIST}/data"
 MODEL: Final = f"{LIST}/model"
 MOVING_MODEL: Final = f"{LIST}/moving-model"
+FIRST: Final = f"{LIST}/first"
+FIRST_SCRIPT: Final = "/first.js"
+FIRST_FILE: Final = Path(__file__).with_name("first_replay.bin.gz")
+"""Replay of the first page, which build_backend/write_first_replay.py writes."""
 _TYPES: Final = {".js": "text/javascript", ".css": "text/css"}
 _LARGEST_FACTOR: Final = 20.0
 
@@ -144,7 +148,12 @@ def add_addresses(app: FastAPI, runs: RunFolders) -> None:
             return plain_page("This cannot be shown", f"{sentence[0].upper()}{sentence[1:]}.", 404, request)
         return HTMLResponse(page)
 
-    for address, answer in ((SHOW, show), (GATES, gates), (f"{FILES}/{{name}}", program_file)):
+    def first() -> Response:
+        headers = {"content-encoding": "gzip", "cache-control": "no-cache"}
+        return Response(FIRST_FILE.read_bytes(), media_type="application/octet-stream", headers=headers)
+
+    answers = ((SHOW, show), (GATES, gates), (FIRST, first), (f"{FILES}/{{name}}", program_file))
+    for address, answer in answers:
         app.add_api_route(address, answer, include_in_schema=False, response_model=None)
     models = ((f"{MODEL}/{{name}}.glb", model), (f"{MOVING_MODEL}/{{name}}.glb", moving_model))
     for address, of_run in ((f"{DATA}/{{name}}", data), *models):

@@ -11,11 +11,12 @@ from nicegui import background_tasks, run, ui
 
 from ..._support.errors import FieldDataError, ParameterError, StoreError
 from ..._support.user_files import natural_number
-from ...campaign.reading.table_forms import PENETRATION
+from ...campaign.reading.table_forms import PENETRATION, SHEAR
 from ...campaign.store import NewEntry, OvertakenError
 from ...campaign.store.stored_tables import FORMS
+from ...report.formatting import significant
 from ..elements import StatusLine, Words, choice, field, link, named
-from ..language import said
+from ..language import minute_words, said
 from ..layout import error_sentence, heading
 from ..line_chart import BEHIND, ChartLine, LineChart
 from ..page_addresses import entering
@@ -159,30 +160,80 @@ MOST: Final = 40
 
 
 class SeriesList:
-    """List of links to series below the form."""
+    """Tests of a table by site below the form: angle, result, flags, who and when; results are added as they come."""
 
     def __init__(self, view: TableView) -> None:
         self._view = view
         self._place = ui.element("div")
-        self._drawn: tuple[str, list[tuple[str, bool]]] = ("", [])
+        self._current = ""
+        self._results: dict[str, tuple[str, list[str]]] = {}
+        """Result in short and codes of the flags by test."""
+        self._drawn: object = None
+        if view.file in RESULTS:
+            background_tasks.create(self._load(), name="list", context=self._place.client)
+
+    async def _load(self) -> None:
+        """Compute the results of each site once."""
+        for site in dict.fromkeys(test.rows[0].cells["site"] for test in self._shown()):
+            try:
+                results = await run.io_bound(self._view.session.quick_results, site)
+            except (FieldDataError, StoreError):  # the form shows the error
+                continue
+            if results is None or self._place.is_deleted:  # the server ends, or the page was left
+                return
+            self.take(results)
+
+    def take(self, results: QuickResults) -> None:
+        """Add the results of a site."""
+        symbol, column = RESULTS.get(self._view.file, ("", ""))
+        for (file, name), row in results.experiments.items():
+            if file == self._view.file and column:
+                value = row[column]
+                short = f"{symbol} {significant(value)}" if value is not None else ""
+                self._results[name] = short, list(results.flags.get((file, name), {}))
+        self.show(self._current)
+
+    def _shown(self) -> list[ReplayedTest]:
+        return [test for test in self._view.tests()[-MOST:] if test.rows]
 
     def show(self, current: str) -> None:
-        """Draw the list again if a series or its state is new; ``current``: name of the series in the form."""
-        tests = [(test.name, bool(test.cancelled)) for test in self._view.tests()[-MOST:]]
-        if self._drawn == (current, tests):
+        """Draw the list again if a test is new or changed; ``current``: name of the test in the form."""
+        self._current = current
+        tests = list(reversed(self._shown()))
+        lines = [(test.name, test.rows[0].cells["site"], *self._words(test)) for test in tests]
+        if self._drawn == (current, lines):
             return
-        self._drawn = current, tests
+        self._drawn = current, lines
         self._place.clear()
-        if not tests:
+        if not lines:
             return
         with self._place:
             heading("Series so far", 3)
-            with ui.element("div").classes("acts so-far"):
-                for name, cancelled in reversed(tests):
-                    address = entering(self._view.session.id, table=self._view.file, test=name)
-                    made = link(f"{name}{' (cancelled)' if cancelled else ''}", address, "small")
-                    if name == current:
-                        made.props('aria-current="page"')
+            for site in dict.fromkeys(line[1] for line in lines):
+                heading(site, 4)
+                with ui.element("ul").classes("so-far"):
+                    for name, _, text, about in (line for line in lines if line[1] == site):
+                        with ui.element("li"):
+                            self._add(name, text, about, is_current=name == current)
+
+    def _add(self, name: str, text: str, about: str, *, is_current: bool) -> None:
+        made = link(text, entering(self._view.session.id, table=self._view.file, test=name), "small")
+        if is_current:
+            made.props('aria-current="page"')
+        Words(about).classes("quiet")
+
+    def _words(self, test: ReplayedTest) -> tuple[str, str]:
+        """Text of the link, such as "2 · 45° · H_V 0.84", and who entered it when, with its flags."""
+        value, flags = self._results.get(test.name, ("", []))
+        angle = test.rows[0].cells.get("edge_angle_deg", "")
+        words = " · ".join(filter(None, (test.name, f"{angle}°" if angle else "", value)))
+        last = test.history[-1]
+        about = " · ".join(filter(None, (last.who, minute_words(last.at), *(flag.replace("_", " ") for flag in flags))))
+        return f"{words} (cancelled)" if test.cancelled else words, about
+
+
+RESULTS: Final = {PENETRATION.file: ("H_V", "H_V_N_per_mm3"), SHEAR.file: ("S_f", "S_f_N_per_mm2")}
+"""Symbol and key in results.json of the result of a test, by table."""
 
 
 def table_links(tables: Mapping[str, str], here: str, further: Mapping[str, str]) -> None:
@@ -241,6 +292,8 @@ class LiveResults:
 
     def __init__(self, view: TableView) -> None:
         self._view = view
+        self.series_list: SeriesList | None = None
+        """List that takes each result, too."""
         self._wanted: tuple[str, str, frozenset[str]] | None = None
         self._working = False
         is_pressed = view.file == PENETRATION.file
@@ -288,6 +341,8 @@ class LiveResults:
 
     def _show(self, name: str, results: QuickResults, unsaid: frozenset[str]) -> None:
         key = self._view.file, name
+        if self.series_list is not None:
+            self.series_list.take(results)
         row = results.experiments.get(key)
         self._name.set_text(f"Test {name}" if row else "")
         self._value.set_text(_value(row, pressed=self._view.file == PENETRATION.file))

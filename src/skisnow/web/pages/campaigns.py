@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import json
 from functools import partial
+from html import escape
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Final
@@ -14,12 +16,14 @@ from ..._support.messages import Message
 from ...campaign import write_reference
 from ...campaign.importing import RECORD
 from ...campaign.store import Journals
+from ...replay.page import STYLE, page_words
 from ...report.formatting import counted
 from ..edit_session import EditSession
-from ..elements import button, link
-from ..language import minute_words
+from ..elements import Words, button, link, named
+from ..language import language_of, minute_words
 from ..layout import framed, heading, sentence
 from ..page_addresses import analysis, correcting, entering, export
+from ..replay_addresses import FILES, FIRST_SCRIPT
 from ..transfer import IMPORT
 from ..upload_forms import file_input, submit_button, upload_form
 
@@ -34,6 +38,12 @@ WHAT_THIS_IS: Final = (
     "tests, analyse them, carve and simulate."
 )
 SAMPLE_SEED: Final = 1
+CARDS: Final = (
+    (Message("Enter tests"), Message("From plate tests on a slope to snow hardness and shear stress."), "/describe"),
+    (Message("Try a ski"), Message("Depth, radius and grip of a carving ski on your snow."), "/carve"),
+    (Message("Simulate a turn"), Message("A sledge or a skier down a slope, as a replay."), "/simulate"),
+)
+"""Title, explanation and address of each way to begin."""
 
 
 def add_page(lab: Lab) -> None:
@@ -44,6 +54,7 @@ def add_page(lab: Lab) -> None:
         with framed("Campaigns", here=PATH):
             if added:
                 sentence("The campaign is imported, byte for byte.", "good").props("role=status")
+            _first_minute()
             is_first = not Journals(lab.store).list() and not lab.store.list()
             if is_first:
                 sentence(WHAT_THIS_IS)
@@ -54,6 +65,21 @@ def add_page(lab: Lab) -> None:
             _list_drafts(lab)
             _list_imported(lab)
             _import_form(lab)
+
+
+def _first_minute() -> None:
+    """Replay of a skier, and the three ways to begin."""
+    words = escape(json.dumps(page_words(language_of()), ensure_ascii=False))
+    ui.add_head_html(
+        f'<link rel="stylesheet" href="{FILES}/{STYLE}"><script src="{FIRST_SCRIPT}" data-words="{words}"></script>'
+    )
+    with ui.element("div").classes("first"):
+        with ui.element("div").classes("cards"):
+            for title, about, address in CARDS:
+                with ui.element("a").props(f'href="{address}"').classes("way"):
+                    Words(title).classes("way-title")
+                    Words(about).classes("quiet")
+        named(ui.element("div").props("id=first-replay role=figure"), Message("A simulated skier through gates"))
 
 
 def _list_drafts(lab: Lab) -> None:

@@ -50,7 +50,7 @@ def add_page(lab: Lab) -> None:
                 live_results,
                 places,
             ):
-                series_list = SeriesList(view) if view.file == FILE else None
+                series_list = live_results.series_list = SeriesList(view) if view.file == FILE else None
             head = {"experiment": test, "site": site, "spot": spot, "tool": tool, "edge_angle_deg": edge_angle_deg}
             _show_form(view, (test, row), head, (live_results, places), series_list)
 

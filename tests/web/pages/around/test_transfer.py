@@ -76,6 +76,7 @@ def test_a_campaign_is_taken_in_as_it_is(desk: Desk, here: list[Any], sent: list
     ("form", "code"),
     [
         ({"files": [("other", ("a.csv", b"x"))]}, "no_file"),
+        ({"files": [("files", ("a.dat", b"x"))]}, "no_campaign"),
         ({"files": [("files", ("a.csv", b"x"))] * 201}, ""),
         ({"files": [("files", ("a.csv", b"x"))] * 2}, "same_name"),
         ({"files": [("files", ("a.zip", b"x"))]}, "damaged"),

@@ -408,9 +408,10 @@ def test_a_changed_depth_after_waiting_is_not_shown_as_stored(desk: Desk) -> Non
 
 
 def series_listed(page: Sheet) -> list[str]:
-    """The series so far; the one in the form in brackets."""
+    """Names of the series so far, with the word cancelled; the one in the form in brackets."""
     links = [each for each in page.of(ui.link) if "small" in each.classes]
-    return [f"[{each.text}]" if "aria-current" in each.props else each.text for each in links]
+    names = {each: each.text.split(" ·")[0] + " (cancelled)" * ("(cancelled)" in each.text) for each in links}
+    return [f"[{names[each]}]" if "aria-current" in each.props else names[each] for each in links]
 
 
 def test_the_series_so_far_are_listed_as_they_are(desk: Desk) -> None:

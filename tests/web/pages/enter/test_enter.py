@@ -6,10 +6,12 @@ import json
 from typing import TYPE_CHECKING
 from urllib.parse import urlencode
 
+import numpy as np
 import pytest
 from nicegui import ui
 
 from skisnow.campaign.store import NewEntry
+from skisnow.geometry import SkiPiece
 from skisnow.web.elements import StatusLine
 from skisnow.web.entry.series import ON_BLUR, ON_ENTER
 
@@ -165,7 +167,8 @@ def test_the_next_series_has_what_it_shares_with_the_last_one(desk: Desk) -> Non
     assert list(values(page.between("h2 New series", CHART)).values()) == ["8", "B", "ski piece", "45", ""]
     assert page.focused() is page.field("Edge angle (°)")
     assert selected(page) == [page.field("Edge angle (°)")]
-    assert [page.link(name).rpartition("=")[2] for name in ("a", "7")] == ["a", "7"]
+    listed = [line for line in page.outline() if line.startswith("link[small]")]
+    assert [line.rpartition("=")[2] for line in listed] == ["a", "7"]
 
 
 def test_a_tool_that_the_campaign_has_no_more_is_not_proposed(desk: Desk) -> None:
@@ -204,7 +207,7 @@ def test_a_series_is_there_again_by_its_address(desk: Desk) -> None:
     assert [each for each in page.at_first if "replaceState" in each] == [
         f'history.replaceState({{}}, "", "{address}");'
     ]
-    (link,) = (each for each in page.tagged("nicegui-link") if each.text == "1")
+    (link,) = (each for each in page.tagged("nicegui-link") if each.text.split(" ·")[0] == "1")
     assert link.props["aria-current"] == "page"
 
 
@@ -222,10 +225,23 @@ def test_the_last_forty_series_have_links(desk: Desk) -> None:
     for number in range(41):
         add_series(desk, id_, f"n{number}", ("20", "1.5"))
     write(desk, id_, NewEntry(action="cancel", file=PENETRATION, test="n40", why="slip"))
-    lines = desk.open(f"/enter/{id_}").between("h3 Series so far")
-    assert len(lines) == 41
-    assert lines[1].startswith("link[small] n40 (cancelled) -> ")
-    assert lines[-1].startswith("link[small] n1 -> ")
+    lines = [line for line in desk.open(f"/enter/{id_}").between("h3 Series so far") if line.startswith("link")]
+    assert len(lines) == 40
+    assert lines[0].startswith("link[small] n40 · 30°") and "(cancelled)" in lines[0]
+    assert lines[-1].startswith("link[small] n1 · 30°")
+
+
+def test_the_list_of_a_site_has_angle_result_writer_and_flags(desk: Desk) -> None:
+    id_ = begun(desk)
+    add_series(desk, id_, "1", ("20", "1.5"), ("40.5", "2.1"))
+    page = desk.open(f"/enter/{id_}")
+    row = page.shows("H_V")
+    # from the wedge of the ski piece at 30 degrees: F/V of the largest load
+    volume = float(SkiPiece(0.2, 0.062).displaced_volume(2.1e-3, np.radians(30.0))) * 1e9
+    assert f"1 · 30° · H_V {40.5 / volume:.3g}" in row
+    lines = page.between("h3 Series so far")
+    assert lines[1] == "h4 A"
+    assert any("too few loads" in line for line in lines)
 
 
 def test_a_reading_is_stored_as_it_is_typed(desk: Desk) -> None:
