@@ -3,7 +3,8 @@
  *     cc contact_in_c.c -I HEADERS LIBRARY -Wl,-rpath,FOLDER_OF_LIBRARY -lm -o contact_in_c
  *     ./contact_in_c MOTION FORCES
  *
- * HEADERS and LIBRARY: python -c "from skisnow.contact import c_header, c_library; print(c_header().parent, c_library())"
+ * HEADERS and LIBRARY: python -c "from skisnow.contact import c_header, c_library; print(c_header().parent,
+ * c_library())"
  *
  * MOTION: doubles as this machine writes them, 19 in a row: place of the boot (3), rotation (9), velocity (6), dt.
  * FORCES: 6 in a row, force (N) and moment about the boot (N m).
@@ -25,7 +26,7 @@ int main(int count, char** words) {
   if (motion == NULL || forces == NULL) return complain(words[motion == NULL ? 1 : 2], "cannot be opened");
 
   const double place[] = {0.8, 0.0, -0.8}, half_width[] = {0.05, 0.033, 0.045}, base_height[] = {0.01, 0.0, 0.004};
-  const skisnow_runner ski = {3, place, half_width, base_height, 0, NULL};
+  const skisnow_runner ski = {3, place, half_width, base_height, 0, NULL, 0, 0, 0, 0};
   skisnow_snow snow;
   skisnow_snow_defaults(&snow);
   snow.snow_hardness = 2e8;        /* N/m^3: 0.2 N/mm^3, a hard piste */

@@ -1,6 +1,7 @@
 /* skisnow's snow as MuJoCo's passive force, in C: mjcb_passive = snow_passive.
  *
- *     cc -shared -fPIC snow_in_mujoco.c -I MUJOCO/include -I HEADERS LIBRARY MUJOCO/libmujoco.so… -lm -o snow_in_mujoco.so
+ *     cc -shared -fPIC snow_in_mujoco.c -I MUJOCO/include -I HEADERS LIBRARY MUJOCO/libmujoco.so… -lm -o
+ * snow_in_mujoco.so
  *
  * MUJOCO: the folder of MuJoCo. HEADERS and LIBRARY: python -c "from skisnow.contact import c_header, c_library;
  * print(c_header().parent, c_library())". From Python, after snow_open: mujoco.set_mjcb_passive(library.snow_passive),
@@ -29,7 +30,7 @@ int snow_open(const double* snow_numbers, const double* position, const double* 
   snow.unloading_ratio = snow_numbers[2];
   snow.friction_constant = snow_numbers[3];
   for (int k = 0; k < count; k++) {
-    const skisnow_runner shape = {positions, position, half_width, base_height, 0, NULL};
+    const skisnow_runner shape = {positions, position, half_width, base_height, 0, NULL, 0, 0, 0, 0};
     shapes[k] = shape;
     sites[k] = at[k];
   }

@@ -17,14 +17,16 @@ from skisnow.carving.solve import Conditions, _core_ski, solved
 from skisnow.compiled import core
 from skisnow.ski import read_ski
 from skisnow.ski.beam import CLAMP_LENGTH, ClampedSki, clamped
+from skisnow.ski.checks import EdgeShape
 
 Array = npt.NDArray[np.complex128]
+Hinges = list[tuple[float, complex]]
 BAND_HALF = 5
 VIRGIN = -1e3
 """Depth (m) of a groove that nothing has cut."""
 
 
-def conditions(*, angle: float, hardness: float, ratio: float, bevel: float, width: float) -> Conditions:
+def conditions(*, angle: float, hardness: float, ratio: float, edges: EdgeShape) -> Conditions:
     return Conditions(
         edge_angle=math.radians(angle),
         hardness=hardness,
@@ -34,8 +36,10 @@ def conditions(*, angle: float, hardness: float, ratio: float, bevel: float, wid
         side_force=800.0 * math.tan(math.radians(angle)),
         side_force_bending=True,
         twists=True,
-        bevel=bevel,
-        bevel_width=width,
+        bevel=edges.base_bevel,
+        bevel_width=edges.edge_width,
+        side=edges.side_edge,
+        radius=edges.edge_radius,
         pitch_of_force=math.cos(math.radians(angle)),
         pitch_of_shear=math.sin(math.radians(angle)),
         by_reaction=False,
@@ -87,11 +91,16 @@ def residual(model: ClampedSki, given: Conditions, places: npt.NDArray[np.float6
         half, place, weight = stations.width[i] / 2.0, stations.station[i], stations.weight[i]
         height = cosine * (stations.base_height[i] + bends @ u[dof[free]])
         corner = border[0] + border[1] * place - height + half * np.sin(angle)
-        rise = np.sin(angle) - np.sin(angle - given.bevel) if given.bevel > 0.0 else 0j
+        tangent, strip = math.tan(0.5 * (given.side + given.bevel)), angle - given.bevel
+        hinges = [
+            (given.bevel_width, np.sin(angle) - np.sin(strip)),
+            (given.radius / tangent, np.sin(strip) - (1.0 - np.cos(strip)) * tangent),
+        ]
 
-        def base(xi: complex, angle: complex = angle, corner: complex = corner, rise: complex = rise) -> complex:
-            strip = given.bevel_width - xi / np.cos(angle)
-            return complex(corner - xi * np.tan(angle) - (strip * rise if strip.real > 0.0 else 0.0))
+        def base(xi: complex, angle: complex = angle, corner: complex = corner, hinges: Hinges = hinges) -> complex:
+            raised = [(far - xi / np.cos(angle)) * rise for far, rise in hinges]
+            inside = [far - (xi / np.cos(angle)).real > 0.0 for far, _ in hinges]
+            return complex(corner - xi * np.tan(angle) - sum(np.compress(inside, raised)))
 
         reach, force, moment = 2.0 * half * np.cos(angle), 0j, 0j
         for k in range(len(places) - 1):
@@ -109,7 +118,7 @@ def residual(model: ClampedSki, given: Conditions, places: npt.NDArray[np.float6
             deep = base(xi)
             if deep.real >= groove[k].real:
                 groove[k] = deep
-        edge = corner - given.bevel_width * rise if given.bevel > 0.0 else corner
+        edge = base(0j)
         bite = edge if edge.real > 0.0 else 0j
         other = corner - 2.0 * half * np.sin(angle)
         turned = bite - 2.0 * other if other.real > 0.0 else bite  # the other edge holds its own depth, on its side
@@ -127,24 +136,26 @@ def residual(model: ClampedSki, given: Conditions, places: npt.NDArray[np.float6
 
 
 @pytest.mark.parametrize(
-    ("angle", "hardness", "ratio", "bevel"),
+    ("angle", "hardness", "ratio", "bevel", "radius"),
     [
-        (45.0, 0.21e9, 1.0, 0.0),
-        (45.0, 0.21e9, 10.0, 0.0),
-        (20.0, 0.04e9, 1000.0, 0.0),
-        (65.0, 1e9, 10.0, 0.0),
-        (45.0, 0.21e9, 10.0, 1.0),
-        (20.0, 0.21e9, 10.0, 1.0),
-        (10.0, 0.005e9, 10.0, 0.0),  # the base ends in the snow
-        (20.0, 0.005e9, 10.0, 1.0),
-        (3.0, 0.005e9, 10.0, 0.0),  # it lies in the snow with both edges
+        (45.0, 0.21e9, 1.0, 0.0, 0.0),
+        (45.0, 0.21e9, 10.0, 0.0, 0.0),
+        (20.0, 0.04e9, 1000.0, 0.0, 0.0),
+        (65.0, 1e9, 10.0, 0.0, 0.0),
+        (45.0, 0.21e9, 10.0, 1.0, 0.0),
+        (20.0, 0.21e9, 10.0, 1.0, 0.0),
+        (45.0, 0.21e9, 10.0, 1.0, 0.2),
+        (20.0, 1e9, 10.0, 0.0, 0.2),
+        (10.0, 0.005e9, 10.0, 0.0, 0.0),  # the base ends in the snow
+        (20.0, 0.005e9, 10.0, 1.0, 0.0),
+        (3.0, 0.005e9, 10.0, 0.0, 0.0),  # it lies in the snow with both edges
     ],
 )
-def test_the_matrix_is_the_derivative(angle: float, hardness: float, ratio: float, bevel: float) -> None:
+def test_the_matrix_is_the_derivative(angle: float, hardness: float, ratio: float, bevel: float, radius: float) -> None:
     """Memory, bevel and the end of the base in the snow: each had a wrong term, off by 1e-6 to 2e-3."""
-    ski = replace(read_ski("slalom"), base_bevel=math.radians(bevel))
+    ski = replace(read_ski("slalom"), base_bevel=math.radians(bevel), edge_radius=radius * 1e-3, side_edge=1.5)
     model = clamped(ski, CLAMP_LENGTH, 160)
-    given = conditions(angle=angle, hardness=hardness, ratio=ratio, bevel=ski.base_bevel, width=ski.edge_width)
+    given = conditions(angle=angle, hardness=hardness, ratio=ratio, edges=ski.edge_shape)
     found = solved(model, given)
     assert found.converged
     u, border = found.u, np.array([found.boot_depth, found.boot_slope, found.shear_stress])
@@ -152,8 +163,10 @@ def test_the_matrix_is_the_derivative(angle: float, hardness: float, ratio: floa
     reach = float(model.stations.width.max()) * math.cos(given.edge_angle)
     inside = min(float(found.edge_depth.max()) / tangent, 0.5 * reach)
     places = [0.0, 0.5 * inside, inside, 1.7 * inside, 1.05 * reach]
-    if bevel > 0.0:
-        places = sorted([*places, ski.edge_width * math.cos(given.edge_angle)])
+    if bevel > 0.0 or radius > 0.0:
+        rounding = ski.edge_radius / math.tan(0.5 * (ski.side_edge + ski.base_bevel))
+        hinges = [width * math.cos(given.edge_angle) for width in (ski.edge_width, rounding) if width > 0.0]
+        places = sorted([*places, *hinges])
     across = np.array(places)
 
     random = np.random.default_rng(1)

@@ -22,6 +22,8 @@ CASES: list[dict[str, Any]] = [
     {"ski": "carver", "angle": 20.0, "ratio": 1.0},
     {"angle": 3.0, "hardness": 0.005e9},  # it lies in the snow with both edges
     {"bevel": 1.0},
+    {"bevel": 1.0, "radius": 1e-4},
+    {"radius": 2e-4, "side": 1.5},
     {"by_reaction": True},
     {"pitch_of_force": math.cos(0.7), "pitch_of_shear": math.sin(0.7), "moment": 10.0},
     {"side_force_bending": False},
@@ -39,7 +41,7 @@ def model_and_conditions(
     **changes: Any,
 ) -> tuple[ClampedSki, Conditions]:
     shape = replace(read_ski(ski), base_bevel=math.radians(bevel))
-    given = conditions(angle=angle, hardness=hardness, ratio=ratio, bevel=shape.base_bevel, width=shape.edge_width)
+    given = conditions(angle=angle, hardness=hardness, ratio=ratio, edges=shape.edge_shape)
     return clamped(shape, CLAMP_LENGTH, 160), given._replace(**changes)
 
 
@@ -97,7 +99,7 @@ def test_the_last_correction_is_rounding(case: dict[str, Any]) -> None:
     assert refined(model, given, solved(model, given)).state()[0] <= 1e-15  # m
 
 
-@pytest.mark.parametrize("case", CASES[:5], ids=str)
+@pytest.mark.parametrize("case", CASES[:7], ids=str)
 def test_a_warm_start_finds_the_same(case: dict[str, Any]) -> None:
     model, given = model_and_conditions(**case)
     elsewhere = solved(model, given._replace(load=1.2 * given.load, side_force=1.2 * given.side_force))

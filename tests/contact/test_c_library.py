@@ -94,6 +94,7 @@ class CRunner(ctypes.Structure):
         *((name, ctypes.POINTER(ctypes.c_double)) for name in ("position", "half_width", "base_height")),
         ("nodes", ctypes.c_int),
         ("node", ctypes.POINTER(ctypes.c_double)),
+        *((name, ctypes.c_double) for name in ("base_bevel", "edge_width", "side_edge", "edge_radius")),
     )
 
 

@@ -30,13 +30,20 @@ def test_no_edge_angle_is_warned_of() -> None:
             simulate(turn(**{"sledge.edge_angle_deg": edge_angle}))
 
 
-def test_a_base_bevel_is_warned_of() -> None:
-    ground = replace(ski_named("giant-slalom"), base_bevel=1.0 * DEGREE, edge_width=0.002)
-    assert list(model_limits(ground)) == ["base_bevel_ignored"]
+@pytest.mark.parametrize(
+    ("change", "codes"),
+    [
+        ({"base_bevel": 1.0 * DEGREE}, []),
+        ({"side_edge": 88.0 * DEGREE}, ["side_edge_without_radius"]),
+        ({"side_edge": 88.0 * DEGREE, "edge_radius": 1e-4}, ["edge_radius_unmeasured"]),
+    ],
+)
+def test_grinding_without_a_measurement_is_warned_of(change: dict[str, Any], codes: list[str]) -> None:
+    assert list(model_limits(replace(ski_named("giant-slalom"), **change))) == codes
 
 
 def test_the_terminal_and_the_report_have_the_warning(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    ground = replace(ski_named("giant-slalom"), base_bevel=1.0 * DEGREE, edge_width=0.002)
+    ground = replace(ski_named("giant-slalom"), edge_radius=1e-4)
     write_ski(ground, tmp_path / "ground.toml")
     settings = ["--set", f"ski.file={tmp_path / 'ground.toml'}", "--set", "run.duration_s=0.05"]
     main(["simulate", "carved-46m", *settings, "--out", str(tmp_path / "out")])

@@ -17,7 +17,7 @@ def test_what_is_usual_is_allowed() -> None:
 
 
 def test_a_file_says_shape_stiffness_mass_and_where_the_rest_stands() -> None:
-    assert len(SKI_KEYS) == 28
+    assert len(SKI_KEYS) == 30
     assert {key.kind for key in SKI_KEYS.values()} == {"text", "number", "numbers", "switch"}
     assert all(SKI_KEYS[name].factor == 1e-3 for name in BASE)
 

@@ -45,8 +45,9 @@ double between_rows(const std::vector<double>& position, const std::vector<doubl
 }  // namespace
 
 Runner Runner::of(const std::vector<double>& position, const std::vector<double>& half_width,
-                  const std::vector<double>& base_height, std::vector<double> node) {
+                  const std::vector<double>& base_height, std::vector<double> node, const EdgeShape& edge_shape) {
   Runner out;
+  out.edge_shape = edge_shape;
   out.tip = position.front(), out.tail = position.back(), out.node = std::move(node);
   const int steps = std::max(2, int(std::ceil((out.tip - out.tail) / TABLE_STEP)));
   const double step = (out.tip - out.tail) / steps;

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "beam/edge_shape.hpp"
 #include "support/columns.hpp"
 #include "support/vectors.hpp"
 
@@ -17,9 +18,10 @@ struct Runner {
   std::vector<double> node;          // beam nodes, tip to tail; a rigid runner has the two ends
   std::vector<int> element;          // (places,) the beam element of each place of the table
   std::vector<double> element_rows;  // (elements, 4): front node, length, its inverse, number
+  EdgeShape edge_shape;
   // From positions that fall from tip to tail, half widths and heights there, and the beam's nodes.
   static Runner of(const std::vector<double>& position, const std::vector<double>& half_width,
-                   const std::vector<double>& base_height, std::vector<double> node);
+                   const std::vector<double>& base_height, std::vector<double> node, const EdgeShape& edge_shape);
   void fill_element_rows();
   double places_per_metre() const { return (places - 1) / (tip - tail); }
   int nodes() const { return int(node.size()); }

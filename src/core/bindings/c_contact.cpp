@@ -118,6 +118,16 @@ bool falls(const double* values, int count) {
   return std::adjacent_find(values, values + count, std::less_equal<>()) == values + count;
 }
 
+EdgeShape edges_of(const skisnow_runner& given, const std::string& name) {
+  const double numbers[] = {given.base_bevel, given.edge_width, given.side_edge, given.edge_radius};
+  require_finite(numbers, 4, (name + ": edges").c_str());
+  require(*std::min_element(numbers, numbers + 4) >= 0.0, name + ": a number of the edges is below 0");
+  const EdgeShape out(given.base_bevel, given.edge_width, given.side_edge > 0.0 ? given.side_edge : EdgeShape::SQUARE,
+                      given.edge_radius);
+  require(out.width(1) <= out.width(0) || out.width(1) == 0.0, name + ": edge_radius does not fit into edge_width");
+  return out;
+}
+
 Runner runner_of(const skisnow_runner& given, const std::string& name) {
   require(given.positions >= 2, name + " needs two positions or more");
   const auto count = std::size_t(given.positions);
@@ -136,7 +146,7 @@ Runner runner_of(const skisnow_runner& given, const std::string& name) {
     node.assign(given.node, given.node + given.nodes);
   }
   return Runner::of({given.position, given.position + count}, {given.half_width, given.half_width + count},
-                    {given.base_height, given.base_height + count}, std::move(node));
+                    {given.base_height, given.base_height + count}, std::move(node), edges_of(given, name));
 }
 
 int made(std::shared_ptr<Snow> snow, double spacing, const skisnow_runner* runner, int runners, skisnow_contact** out) {

@@ -209,13 +209,14 @@ void bind_carve(nb::module_& m) {
   nb::class_<CarvedSki>(m, "CarvedSki");
   m.def("carved_ski", &carved_ski);
   nb::class_<CarveConditions>(m, "CarveConditions")
-      .def("__init__", [](CarveConditions* at, double edge_angle, double hardness, double excess, double load,
-                          double moment, double side_force, bool side_force_bending, bool twists, double bevel,
-                          double bevel_width, double pitch_of_force, double pitch_of_shear, bool by_reaction) {
-        new (at) CarveConditions{edge_angle,     hardness,           excess,     load,  moment,
-                                 side_force,     side_force_bending, twists,     bevel, bevel_width,
-                                 pitch_of_force, pitch_of_shear,     by_reaction};
-      });
+      .def("__init__",
+           [](CarveConditions* at, double edge_angle, double hardness, double excess, double load, double moment,
+              double side_force, bool side_force_bending, bool twists, double bevel, double bevel_width, double side,
+              double radius, double pitch_of_force, double pitch_of_shear, bool by_reaction) {
+             new (at) CarveConditions{edge_angle,         hardness,       excess,     load,        moment, side_force,
+                                      side_force_bending, twists,         bevel,      bevel_width, side,   radius,
+                                      pitch_of_force,     pitch_of_shear, by_reaction};
+           });
   nb::class_<CarveLaws>(m, "CarveLaws")
       .def(
           "__init__",

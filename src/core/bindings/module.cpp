@@ -22,11 +22,13 @@ Grid grid(double x0, double dx, double y0, double dy, const Array& values, bool 
   return Grid(x0, dx, nx, y0, dy, ny, {values.data(), values.data() + values.size()}, goes_on);
 }
 
-Runner runner(const Array& position, const Array& half_width, const Array& base_height, const Array& node) {
+Runner runner(const Array& position, const Array& half_width, const Array& base_height, const Array& node,
+              double base_bevel, double edge_width, double side_edge, double edge_radius) {
   const auto numbers = [](const Array& given) {
     return std::vector<double>(given.data(), given.data() + given.size());
   };
-  return Runner::of(numbers(position), numbers(half_width), numbers(base_height), numbers(node));
+  return Runner::of(numbers(position), numbers(half_width), numbers(base_height), numbers(node),
+                    EdgeShape(base_bevel, edge_width, side_edge, edge_radius));
 }
 
 using Beams = std::optional<std::vector<Array>>;
@@ -69,8 +71,8 @@ struct PythonLaws {
     for (std::size_t i = 0; i < n; i++) {
       const bool touches = s.touches(int(i));
       speed[i] = touches ? std::hypot(s[SLIDING][i], s[SLIDING_ASIDE][i]) : 0.0;
-      angle[i] = touches ? std::asin(std::min(std::fabs(s[EDGE_SINE][i]), 1.0)) : 0.0;
-      depth[i] = touches ? s[DEEPEST][i] : 0.0;
+      angle[i] = touches ? s.base.face_angle(int(i)) : 0.0;
+      depth[i] = touches ? std::max({s[LEFT_DEPTH][i], s[RIGHT_DEPTH][i], 0.0}) : 0.0;
     }
     if (!friction.is_none()) {
       const auto mu = nb::cast<Array>(friction(array(speed, {n})));

@@ -66,6 +66,9 @@ typedef struct skisnow_runner {
   const double* base_height; /* of the unloaded base off the snow, 0 at the boot (m) */
   int nodes;                 /* of a beam; 0: rigid */
   const double* node;        /* their positions (m), falling, the first at the tip, the last at the tail */
+  /* how the edges are ground: angle (rad) and width (m) of a strip of the base, angle between base and side (rad; 0: a
+   * right angle), radius of the corner (m); all 0: sharp and flat */
+  double base_bevel, edge_width, side_edge, edge_radius;
 } skisnow_runner;
 
 /* Fingerprint of the sources that the library was built from. */

@@ -36,7 +36,8 @@ class Pass {
         at_(at),
         out_(out),
         sine_(std::sin(conditions.edge_angle)),
-        cosine_(std::cos(conditions.edge_angle)) {}
+        cosine_(std::cos(conditions.edge_angle)),
+        edges_(conditions.edges()) {}
 
   template <class Groove>
   void from_tip_to_tail(Groove& groove);
@@ -48,7 +49,8 @@ class Pass {
   CarvePressure& pressure_;
   const CarveState& at_;
   CarveEquations& out_;
-  double sine_, cosine_;            // edge angle of the boot
+  double sine_, cosine_;  // edge angle of the boot
+  const EdgeShape edges_;
   std::vector<Strength> strength_;  // one for each station, if a law gives it
 
   void begin();
@@ -98,12 +100,9 @@ CarveSection Pass::section(const CarveStation& s) const {
   const double angle = conditions_.edge_angle + twist(s), sine = std::sin(angle), cosine = std::cos(angle);
   const double height = cosine_ * (s.base_height + deflection);
   const double corner = at_.border[0] + at_.border[1] * s.place - height + s.half_width * sine;
-  const bool bevelled = conditions_.bevel > 0.0;
-  const double strip = bevelled ? conditions_.bevel_width : 0.0;
-  const double rise = bevelled ? sine - std::sin(angle - conditions_.bevel) : 0.0;
-  const double rise_by_angle = bevelled ? cosine - std::cos(angle - conditions_.bevel) : 0.0;
-  return {s.half_width, sine, cosine,       sine / cosine, corner, corner - strip * rise, 2.0 * s.half_width * cosine,
-          strip,        rise, rise_by_angle};
+  CarveSection out{s.half_width, sine, cosine, sine / cosine, corner, corner, 2.0 * s.half_width * cosine};
+  if (edges_.acts()) out.grind(edges_);
+  return out;
 }
 
 // [load] The snow's force along its normal turns the section about its middle, with the lever W/2 cos at the edge and
@@ -277,7 +276,8 @@ void Pass::ask_strength() {
     for (const CarveStation& station : ski_.stations) {
       const CarveSection found = section(station);
       depth.push_back(std::max(found.depth, 0.0) + (change == 1 ? STEP : 0.0));
-      angle.push_back(std::asin(std::min(std::fabs(found.sine), 1.0)) + (change == 2 ? ANGLE_STEP : 0.0));
+      const double face = std::asin(std::min(std::fabs(found.sine), 1.0)) - edges_.bevel();
+      angle.push_back(std::max(face, 0.0) + (change == 2 ? ANGLE_STEP : 0.0));
     }
   const auto found = conditions_.laws->strength(depth, angle);
   for (std::size_t i = 0; i < n; i++)

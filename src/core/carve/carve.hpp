@@ -7,6 +7,7 @@
 #include <functional>
 #include <vector>
 
+#include "beam/edge_shape.hpp"
 #include "carve/law.hpp"
 #include "support/columns.hpp"
 
@@ -43,12 +44,14 @@ struct CarveConditions {
   double edge_angle, hardness, excess;  // ϑ (rad), H_V, k_u - H_V (N/m³)
   double load, moment, side_force;      // at the boot (N, N m, N)
   bool side_force_bending, twists;
-  double bevel, bevel_width;              // angle and width along the edge of the base (rad, m)
-  double pitch_of_force, pitch_of_shear;  // shares of snow force and side force in the balance of moments
+  double bevel, bevel_width, side, radius;  // of the edge, see `EdgeShape`
+  double pitch_of_force, pitch_of_shear;    // shares of snow force and side force in the balance of moments
   bool by_reaction = false;         // the side force goes along the edge as the force on the base, not as its depth
   const CarveLaws* laws = nullptr;  // from outside; hardness and excess are then where the search begins
   double law_share = 1.0;           // share of the pressure from these laws
   double law_memory = 1.0;          // share of the groove's lead over the base that they see
+
+  EdgeShape edges() const { return {bevel, bevel_width, side, radius}; }
 };
 
 struct CarveState {

@@ -6,10 +6,10 @@ namespace {
 
 constexpr double FAR_ABOVE = -1e3;  // depth (m) that marks untouched snow
 
-// Growth of the pressure on a bevelled interval with the edge angle, beyond that of a straight base. `growth`: moments
-// of ∂p/∂ε over the interval; the bend of the base's own growth is straight between its ends.
-void add_bevel_growth(const CarveSection& section, double start, double length, const double (&growth)[3],
-                      StripSums& sums) {
+// Growth of the pressure on an interval of a ground edge with the edge angle, beyond that of a straight base. `growth`:
+// moments of ∂p/∂ε over the interval; the bend of the base's own growth is straight between its ends.
+void add_ground_growth(const CarveSection& section, double start, double length, const double (&growth)[3],
+                       StripSums& sums) {
   const double square = 1.0 + section.tangent * section.tangent, end = start + length;
   const double at_start = section.base_by_angle(start) + start * square;
   const double at_end = section.base_by_angle(end) + end * square;
@@ -62,7 +62,7 @@ void GrooveAlongEdge::across(const CarveSection& section, int, CarvePressure& pr
     std::copy_n(sums.by_depth, 3, growth);
     pressure.add({start, length, depth0, depth1, groove0, groove1, section.sine}, sums);
     for (int n = 0; n < 3; n++) growth[n] = sums.by_depth[n] - growth[n];
-    if (section.strip > 0.0) add_bevel_growth(section, start, length, growth, sums);
+    if (section.edge != nullptr) add_ground_growth(section, start, length, growth, sums);
     if (length < spacing && depth1 > 0.0) {  // the base ends in the snow, at W cos α
       const double end = 2.0 * section.half * section.sine * pressure.at(depth1, groove1);
       sums.by_angle[0] -= end;
@@ -91,7 +91,9 @@ void GrooveAlongEdge::pass(const CarveSection& section, int station) {
 void GrooveAlongPath::across(const CarveSection& section, int station, CarvePressure& pressure, StripSums& sums,
                              CarveLinks& links) const {
   const double aside = offset[std::size_t(station)], level = section.corner - aside * tangent;
-  const double bevel_end = section.strip * section.cosine;
+  double hinge[EdgeShape::HINGES] = {};
+  for (int h = 0; section.edge != nullptr && h < EdgeShape::HINGES; h++)
+    hinge[h] = section.edge->width(h) * section.cosine;
   double low = 0.0;
   for (std::size_t k = 0; k <= steps_.size(); k++) {
     double high = section.reach;
@@ -103,8 +105,10 @@ void GrooveAlongPath::across(const CarveSection& section, int station, CarvePres
       const double depth0 = section.base_depth(start), depth1 = section.base_depth(end);
       pressure.add({start, end - start, depth0, depth1, depth0 + deeper, depth1 + deeper, section.sine}, sums);
     };
-    add(low, std::min(high, bevel_end));
-    add(std::max(low, bevel_end), high);
+    double from = low;
+    for (int h = EdgeShape::HINGES - 1; h >= 0; h--)
+      add(from, std::min(high, hinge[h])), from = std::max(from, hinge[h]);
+    add(from, high);
     if (sums.by_groove[0] != 0.0) links.pull(steps_[k - 1].source, 0.0, sums.by_groove[0], sums.by_groove[1]);
     low = std::max(low, high);
   }

@@ -13,25 +13,40 @@ namespace skisnow {
 struct CarveSection {
   double half;                   // half its width
   double sine, cosine, tangent;  // functions of its edge angle, twist included
-  double corner;                 // depth that the edge would have without a bevel
+  double corner;                 // depth that an edge would have that is not ground
   double depth;                  // depth of the edge (m)
   double reach;                  // reach of the base across (m)
-  double strip, rise;            // width of the bevelled strip; its rise against the base, per length
-  double rise_by_angle;          // derivative of that rise by the edge angle
+  const EdgeShape* edge = nullptr;
+  double rise[EdgeShape::HINGES] = {}, rise_by_angle[EdgeShape::HINGES] = {};  // see `EdgeShape`
 
-  // Depth ε of the base: a straight line, but for the bevelled strip along the edge.
-  double base_depth(double xi) const {
-    const double bevel = strip > 0.0 ? std::max(0.0, strip - xi / cosine) * rise : 0.0;
-    return corner - xi * tangent - bevel;
+  void grind(const EdgeShape& shape) {
+    edge = &shape;
+    shape.find_rises(sine, cosine, rise);
+    shape.find_growth(sine, cosine, rise_by_angle);
+    depth = base_depth(0.0);
   }
-  // Derivative of that depth by the edge angle α, the corner held: -ξ/cos² α, and, if ξ is under the strip of width
-  // b also ξ sin α/cos² α · rise - (b - ξ/cos α) ∂rise/∂α.
+  // Depth ε of the base: a straight line, but for what is ground off along the edge.
+  double base_depth(double xi) const {
+    double out = corner - xi * tangent;
+    for (int h = 0; edge != nullptr && h < EdgeShape::HINGES; h++)
+      out -= std::max(0.0, edge->width(h) - xi / cosine) * rise[h];
+    return out;
+  }
+  // Derivative of that depth by the edge angle α, the corner held: -ξ/cos² α, and for each hinge at a distance b from
+  // the edge that ξ lies before also ξ sin α/cos² α · rise - (b - ξ/cos α) ∂rise/∂α.
   double base_by_angle(double xi) const {
-    const double growth = -xi * (1.0 + tangent * tangent), left = strip > 0.0 ? strip - xi / cosine : 0.0;
-    return left > 0.0 ? growth + xi * sine / (cosine * cosine) * rise - left * rise_by_angle : growth;
+    double out = -xi * (1.0 + tangent * tangent);
+    for (int h = 0; edge != nullptr && h < EdgeShape::HINGES; h++)
+      if (const double left = edge->width(h) - xi / cosine; left > 0.0)
+        out += xi * sine / (cosine * cosine) * rise[h] - left * rise_by_angle[h];
+    return out;
   }
   // Derivative of the edge's depth by the edge angle, the middle of the section held.
-  double edge_by_angle() const { return half * cosine - strip * rise_by_angle; }
+  double edge_by_angle() const {
+    double out = half * cosine;
+    for (int h = 0; edge != nullptr && h < EdgeShape::HINGES; h++) out -= edge->width(h) * rise_by_angle[h];
+    return out;
+  }
 };
 
 // How the force on a section and ∫p ξ grow with depth and twist of a station ahead, by the groove that it cut.

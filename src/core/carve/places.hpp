@@ -20,17 +20,19 @@ inline double straight_waterline(const CarvedSki& ski, const CarveConditions& at
 }
 
 // [places] ξ of the edge, of five shares of that distance, of the end of the base, of two places that divide the rest
-// evenly in their logarithm, and of the end of the bevel (m), rising. The edge of a stiff ski, that hard snow carries
-// at its ends alone, is up to ten times as deep as a straight one. On snow so soft that the base drowns, the distance
-// is 0.4 of its reach. `reach`: greatest width times cos ϑ; `bevel_end`: width of the bevel times cos ϑ, 0 without one.
+// evenly in their logarithm, and of the hinges of a ground edge (m), rising. The edge of a stiff ski, that hard snow
+// carries at its ends alone, is up to ten times as deep as a straight one. On snow so soft that the base drowns, the
+// distance is 0.4 of its reach. `reach`: greatest width times cos ϑ; `hinges`: their distance from the edge times cos
+// ϑ, 0 without one.
 template <class T>
-std::vector<T> places_across(T waterline, T reach, T bevel_end) {
+std::vector<T> places_across(T waterline, T reach, const T (&hinges)[EdgeShape::HINGES]) {
   using std::cbrt;
   const T line = std::min(waterline, T(0.4) * reach), end = T(1.05) * reach, far = T(2.4) * line;
   std::vector<T> place = {T(0.0)};
   for (double share : {0.4, 0.8, 1.2, 1.6}) place.push_back(T(share) * line);
   for (const T& each : {far, cbrt(far * far * end), cbrt(far * end * end), end}) place.push_back(each);
-  if (bevel_end > T(0.0)) place.push_back(bevel_end);
+  for (const T& each : hinges)
+    if (each > T(0.0)) place.push_back(each);
   std::sort(place.begin(), place.end());
   place.erase(std::unique(place.begin(), place.end()), place.end());
   return place;
@@ -38,8 +40,9 @@ std::vector<T> places_across(T waterline, T reach, T bevel_end) {
 
 inline std::vector<double> places_across(const CarvedSki& ski, const CarveConditions& at) {
   const double cosine = std::cos(at.edge_angle);
-  return places_across(straight_waterline(ski, at), ski.greatest_width * cosine,
-                       at.bevel > 0.0 ? at.bevel_width * cosine : 0.0);
+  const EdgeShape edges = at.edges();
+  const double bevel_end = at.bevel > 0.0 ? at.bevel_width * cosine : 0.0;
+  return places_across(straight_waterline(ski, at), ski.greatest_width * cosine, {bevel_end, edges.width(1) * cosine});
 }
 
 }  // namespace skisnow

@@ -12,12 +12,12 @@ namespace skisnow {
 
 namespace {
 
-constexpr int MOST_PLACES = 10;
+constexpr int MOST_PLACES = 11;
 constexpr int MOST_CORRECTIONS = 6;
 constexpr double FAR_ABOVE = -1e3;  // depth (m) that marks untouched snow
 
 // Directions in which the forces on a section are differentiated; from GROOVE on: depth of the groove at each place.
-enum Along { CORNER, ANGLE, HALF, HARDNESS, EXCESS, BEVEL, BEVEL_WIDTH, LINE, REACH, BEVEL_END, GROOVE };
+enum Along { CORNER, ANGLE, HALF, HARDNESS, EXCESS, BEVEL, BEVEL_WIDTH, LINE, REACH, BEVEL_END, ROUND_END, GROOVE };
 constexpr int DIRECTIONS = GROOVE + MOST_PLACES;
 using Number = Slopes<DIRECTIONS>;
 
@@ -44,7 +44,7 @@ struct Felt {  // a section in the snow, or that deepens the groove
 struct CarvePoint::Passed {
   const CarvedSki& ski;
   const CarveConditions given;
-  double bevel_width, sine, cosine;
+  double bevel_width, round_width, sine, cosine;
   std::vector<Number> place;
   std::vector<Felt> felt;
 
@@ -53,12 +53,14 @@ struct CarvePoint::Passed {
       : ski(of),
         given(conditions),
         bevel_width(conditions.bevel > 0.0 ? conditions.bevel_width : 0.0),
+        round_width(conditions.edges().width(1)),
         sine(std::sin(conditions.edge_angle)),
         cosine(std::cos(conditions.edge_angle)) {
     if (own_place.empty())
       place = places_across(Number::along(straight_waterline(ski, given), LINE),
                             Number::along(ski.greatest_width * cosine, REACH),
-                            bevel_width > 0.0 ? Number::along(bevel_width * cosine, BEVEL_END) : Number(0.0));
+                            {bevel_width > 0.0 ? Number::along(bevel_width * cosine, BEVEL_END) : Number(0.0),
+                             round_width > 0.0 ? Number::along(round_width * cosine, ROUND_END) : Number(0.0)});
     else
       place.assign(own_place.begin(), own_place.end());
     if (place.size() > MOST_PLACES) throw std::invalid_argument("too many places for derivatives");
@@ -69,9 +71,16 @@ struct CarvePoint::Passed {
   }
 
   SectionIn<Number> section(const CarveStation& s, const Felt& f) const {
-    return {Number::along(f.corner, CORNER), Number::along(f.angle, ANGLE), Number::along(s.half_width, HALF),
-            Number::along(given.bevel, BEVEL),
-            bevel_width > 0.0 ? Number::along(bevel_width, BEVEL_WIDTH) : Number(0.0)};
+    const Number angle = Number::along(f.angle, ANGLE), bevel = Number::along(given.bevel, BEVEL);
+    SectionIn<Number> out(Number::along(f.corner, CORNER), angle, Number::along(s.half_width, HALF), bevel,
+                          bevel_width > 0.0 ? Number::along(bevel_width, BEVEL_WIDTH) : Number(0.0));
+    round_off(out, angle, bevel);
+    return out;
+  }
+
+  template <class T>
+  void round_off(SectionIn<T>& section, const T& angle, const T& bevel) const {
+    if (round_width > 0.0) section.round_off(angle - bevel, T(0.5) * (T(given.side) + bevel), given.radius);
   }
 
   void feel(const CarveStation& s, const CarveState& at, std::vector<Number>& groove, Felt& f) {
@@ -81,7 +90,8 @@ struct CarvePoint::Passed {
     for (int a = 0; a < 2 && given.twists; a++) f.angle += s.twist[a] * u[TURNS[a]];
     f.sine = std::sin(f.angle), f.cosine = std::cos(f.angle);
     f.corner = at.border[0] + at.border[1] * s.place - cosine * (s.base_height + f.deflection) + s.half_width * f.sine;
-    const SectionIn<double> flat(f.corner, f.angle, s.half_width, given.bevel, bevel_width);
+    SectionIn<double> flat(f.corner, f.angle, s.half_width, given.bevel, bevel_width);
+    round_off(flat, f.angle, given.bevel);
     std::vector<double> depth;
     for (const Number& each : place) depth.push_back(flat.base_depth(each.value));
     const bool deep = *std::max_element(depth.begin(), depth.end()) > 0.0 || flat.other_depth() > 0.0;
@@ -102,7 +112,7 @@ struct CarvePoint::Passed {
   CarveGradient backward(const CarveState& at, CarveState adjoint, const CarveSeed& seed, CarveState& by_state) const;
 
  private:
-  void through_places(CarveGradient& out, double by_line, double by_reach, double by_bevel_end) const;
+  void through_places(CarveGradient& out, const double (&by)[GROOVE]) const;
 };
 
 // [backward] From tail to tip. `back`: how the sum grows with the groove's depth at each place, behind the station.
@@ -116,7 +126,7 @@ CarveGradient CarvePoint::Passed::backward(const CarveState& at, CarveState adjo
   const double *mu = adjoint.border.data(), stress = at.border[2], shears = given.side_force_bending ? 1.0 : 0.0;
   const double by_force = given.pitch_of_force, by_shear = given.pitch_of_shear;
   const bool reacts = given.by_reaction;
-  double back[MOST_PLACES] = {}, by_line = 0.0, by_reach = 0.0, by_bevel_end = 0.0;
+  double back[MOST_PLACES] = {}, by_places[GROOVE] = {};
   for (std::size_t i = n; i-- > 0;) {
     const CarveStation& s = ski.stations[i];
     const Felt& f = felt[i];
@@ -161,8 +171,8 @@ CarveGradient CarvePoint::Passed::backward(const CarveState& at, CarveState adjo
                                  turns * shears * half * f.sine * turned + (reacts ? 0.0 : mu[2] * bite));
     } else {  // a depth that is asked for above the snow
       by[CORNER] += seed.depth[i];
-      by[ANGLE] -=
-          seed.depth[i] * (bevel_width > 0.0 ? bevel_width * (f.cosine - std::cos(f.angle - given.bevel)) : 0.0);
+      const Number edge = section(s, f).edge_depth();
+      by[ANGLE] += seed.depth[i] * edge.by[ANGLE];
     }
     const double corner = by[CORNER], angle = by[ANGLE] + corner * s.half_width * f.cosine;
     out.width[i] = 0.5 * (by[HALF] + corner * f.sine);
@@ -172,29 +182,32 @@ CarveGradient CarvePoint::Passed::backward(const CarveState& at, CarveState adjo
     out.edge_angle += angle + corner * sine * (s.base_height + f.deflection);
     out.hardness += by[HARDNESS], out.excess += by[EXCESS];
     out.bevel += by[BEVEL], out.bevel_width += by[BEVEL_WIDTH];
-    by_line += by[LINE], by_reach += by[REACH], by_bevel_end += by[BEVEL_END];
+    for (int along = LINE; along < GROOVE; along++) by_places[along] += by[along];
     by_state.border[0] += corner, by_state.border[1] += corner * s.place;
     for (int a = 0; a < 4; a++) by_state.u[std::size_t(s.first + BENDS[a])] -= cosine * s.deflection[a] * corner;
     for (int a = 0; a < 2 && given.twists; a++) by_state.u[std::size_t(s.first + TURNS[a])] += s.twist[a] * angle;
   }
   out.load -= mu[0], out.moment -= mu[1], out.side_force -= mu[2];
   if (reacts) out.load += mu[2] * stress, by_state.border[2] += mu[2] * given.load;
-  through_places(out, by_line, by_reach, by_bevel_end);
+  through_places(out, by_places);
   out.adjoint = std::move(adjoint);
   return out;
 }
 
 // The places across depend on the question: the chain rule through `straight_waterline` and the widths.
-void CarvePoint::Passed::through_places(CarveGradient& out, double by_line, double by_reach,
-                                        double by_bevel_end) const {
-  const double line = straight_waterline(ski, given), tangent = std::tan(given.edge_angle);
+void CarvePoint::Passed::through_places(CarveGradient& out, const double (&by)[GROOVE]) const {
+  const double line = straight_waterline(ski, given), tangent = std::tan(given.edge_angle), by_line = by[LINE];
   out.load += 0.5 * by_line * line / given.load;
   out.hardness -= 0.5 * by_line * line / given.hardness;
   out.running_length -= 0.5 * by_line * line / ski.running_length;
   if (given.edge_angle > SHALLOWEST_WEDGE) out.edge_angle -= 0.5 * by_line * line * (1.0 + tangent * tangent) / tangent;
-  out.greatest_width += by_reach * cosine;
-  out.bevel_width += by_bevel_end * cosine;
-  out.edge_angle -= (by_reach * ski.greatest_width + by_bevel_end * bevel_width) * sine;
+  out.greatest_width += by[REACH] * cosine;
+  out.bevel_width += by[BEVEL_END] * cosine;
+  if (round_width > 0.0) {  // r cot(γ/2) falls with half the bevel
+    const double cotangent = round_width / given.radius;
+    out.bevel -= by[ROUND_END] * cosine * 0.5 * given.radius * (1.0 + cotangent * cotangent);
+  }
+  out.edge_angle -= (by[REACH] * ski.greatest_width + by[BEVEL_END] * bevel_width + by[ROUND_END] * round_width) * sine;
 }
 
 CarvePoint::CarvePoint(const CarvedSki& ski, const CarveConditions& conditions, std::vector<double> place,

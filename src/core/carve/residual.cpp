@@ -47,7 +47,11 @@ class Refined {
     const Long sine = std::sin(Long(given_.edge_angle)), cosine = std::cos(Long(given_.edge_angle));
     const Long corner =
         at_.border[0] + at_.border[1] * place - cosine * (s.base_height + deflection) + half * std::sin(angle);
-    const SectionIn<Long> section(corner, angle, half, given_.bevel, given_.bevel > 0.0 ? given_.bevel_width : 0.0);
+    SectionIn<Long> section(corner, angle, half, given_.bevel, given_.bevel > 0.0 ? given_.bevel_width : 0.0);
+    if (given_.radius > 0.0) {
+      const Long bevel = given_.bevel_width > 0.0 ? given_.bevel : 0.0;
+      section.round_off(angle - bevel, 0.5L * (given_.side + bevel), given_.radius);
+    }
     const auto sums = strip_across<Long>(section, place_, groove_, given_.hardness, given_.excess);
     for (std::size_t k = 0; k < place_.size(); k++) groove_[k] = std::max(groove_[k], section.base_depth(place_[k]));
     const bool reacts = given_.by_reaction;

@@ -70,6 +70,7 @@ struct Slopes {
 template <class T>
 struct SectionIn {
   T half, sine, cosine, tangent, corner, strip, rise;
+  T round = 0.0, round_rise = 0.0;  // width of the rounding of the corner, what is lost for each metre of it
 
   SectionIn(const T& corner_depth, const T& angle, const T& half_width, const T& bevel, const T& bevel_width)
       : half(half_width), corner(corner_depth), strip(bevel_width) {
@@ -78,15 +79,26 @@ struct SectionIn {
     sine = sin(angle), cosine = cos(angle), tangent = sine / cosine;
     rise = strip > T(0.0) ? sine - sin(angle - bevel) : T(0.0);
   }
+  // `on_strip`: the edge angle less the bevel; `half_corner`: half the angle between strip and side.
+  void round_off(const T& on_strip, const T& half_corner, double radius) {
+    using std::cos;
+    using std::sin;
+    const T half_tangent = sin(half_corner) / cos(half_corner);
+    const T lost = sin(on_strip) - (T(1.0) - cos(on_strip)) * half_tangent;
+    round = T(radius) / half_tangent;
+    if (lost > T(0.0)) round_rise = lost;
+  }
   T reach() const { return T(2.0) * half * cosine; }
-  T edge_depth() const { return corner - strip * rise; }
+  T edge_depth() const { return corner - strip * rise - round * round_rise; }
   // depth of the other edge; the bevel there is not counted
   T other_depth() const { return corner - T(2.0) * half * sine; }
   T base_depth(const T& xi) const {
-    const T straight = corner - xi * tangent;
-    if (!(strip > T(0.0))) return straight;
-    const T left = strip - xi / cosine;
-    return left > T(0.0) ? straight - left * rise : straight;
+    T out = corner - xi * tangent;
+    if (!(strip > T(0.0)) && !(round > T(0.0))) return out;
+    const T far = xi / cosine;
+    if (strip > far) out -= (strip - far) * rise;
+    if (round > far) out -= (round - far) * round_rise;
+    return out;
   }
 };
 

@@ -50,14 +50,19 @@ void Bearing::add_base(const GrooveLines& lines, int slot, const Cut& base) {
     const alone::CutGround<double> cut(lines, slot, base, k, from, to);
     if (cut.is_there()) ground.press(base.place + cut.from, cut.at(cut.from), base.place + cut.to, cut.at(cut.to));
   }
+  const alone::BasePieces<double> pieces(base);
   double reached = from;
   const auto add = [&](double a, double b, double deepest, double deepening) {
     const double low = std::max(a, reached), high = std::min(b, to);
     if (!(high > low)) return;
-    add_straight({owner, low, high, base.grip_depth, base.fall, deepest, deepening, false});
+    for (int k = 0; k < pieces.COUNT; k++) {
+      const double first = std::max(low, pieces.place[k]), last = std::min(high, pieces.place[k + 1]);
+      if (last > first)
+        add_straight({owner, first, last, pieces.at_grip[k], pieces.fall[k], deepest, deepening, false});
+    }
     reached = high;
   };
-  const auto add_virgin = [&](double until) { add(reached, until, base.grip_depth, base.fall); };
+  const auto add_virgin = [&](double until) { add(reached, until, -1.0, 0.0); };  // never pressed
   for (int j = 0; j + 1 < ground.count; j++) {
     const double a = ground.place[j] - base.place, b = ground.place[j + 1] - base.place;
     if (j == 0) add_virgin(a);

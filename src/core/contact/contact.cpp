@@ -31,7 +31,7 @@ void load_beam(const Runner& runner, const Sections& s, std::vector<double>& bea
 void strengthen(const ShearLaw& law, Sections& s) {
   for (int i = 0; i < s.count(); i++) {
     if (!s.touches(i)) continue;
-    const double angle = std::asin(std::min(std::fabs(s[EDGE_SINE][i]), 1.0)), strength = s[EDGE_STRENGTH][i];
+    const double angle = s.base.face_angle(i), strength = s[EDGE_STRENGTH][i];
     if (law.cuts) {
       const double cotangent = 1.0 / std::tan(std::max(0.5 * (angle - law.friction_angle), law.least_plane));
       s.edge[EDGE_STRENGTH][i] = 2.0 * cotangent * strength;

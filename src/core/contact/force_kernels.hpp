@@ -188,7 +188,9 @@ struct EdgeForces {
     const MaskOf<V> is_between = wet & c.is_between();
     if (!any(is_between)) {  // both edges would give the same bits
       const MaskOf<V> on_left = c.side > 0.0;
-      const V used = within(select(on_left, by.used[0], by.used[1]), -1.0, 1.0), area = c.deepest * by.share;
+      const V used = within(select(on_left, by.used[0], by.used[1]), -1.0, 1.0);
+      const V deep = c.shape->acts() ? maximum(V(select(on_left, c.depth[0], c.depth[1])), V{}) : c.deepest;
+      const V area = deep * by.share;
       const V all_shear = select(wet, by.strength * area * used, V{});
       shear[0] = select(on_left, all_shear, V{}), shear[1] = select(on_left, V{}, all_shear);
       add(c, {c.reach, c.grip_left, c.grip_up, c.across}, all_shear,

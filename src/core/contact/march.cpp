@@ -34,7 +34,7 @@ constexpr double SLIPPING = 0.999;  // share of the displacement above which an 
 // The polyline that a section presses into its line: the base where it is wet, and the way of its edge since it was
 // marked last. Both are straight and meet at the edge, so that one of them is the deeper wherever both are.
 struct Pressing {
-  double place[5], depth[5];
+  double place[alone::BasePieces<double>::COUNT + 1], depth[alone::BasePieces<double>::COUNT + 1];
   int count = 0;
 
   // Numbers across are from the edge: the base from a to b, the way from the edge to `w`; depths are `fall` and
@@ -50,6 +50,17 @@ struct Pressing {
     } else {
       add(b, fall * b);
       if (w > b) add(b, way_fall * b), add(w, way_fall * w);
+    }
+  }
+
+  // The wet part of a base as it is ground.
+  void fill_ground(const alone::Cut<double>& c) {
+    const alone::BasePieces<double> pieces(c);
+    for (int k = 0; k < pieces.COUNT; k++) {
+      const double from = std::max(pieces.place[k], c.wet_from), to = std::min(pieces.place[k + 1], c.wet_to);
+      if (!(from < to)) continue;
+      if (count == 0) add(c.place + from, pieces.depth(k, from));
+      add(c.place + to, pieces.depth(k, to));
     }
   }
 
@@ -141,11 +152,17 @@ void Touch::press_base() const {
   const DelayedGround& delayed = lines.delayed[std::size_t(slot)];
   const double at = s[GRIP_PLACE][i], from = s[WET_FROM][i], to = std::max(s[WET_TO][i], from);
   const bool both = edge_depth(0) > 0.0 && edge_depth(1) > 0.0;
-  const int alone = edge_depth(0) > 0.0 ? 0 : 1;
-  bool changed = press_undelayed(
-      both ? Pressing{{at + from, at + to}, {edge_depth(1), edge_depth(0)}, 2} : base_and_way(alone), delayed, ground);
+  const int first = edge_depth(0) > 0.0 ? 0 : 1;
+  const bool is_plane = !s.edge_shape.acts();
+  Pressing base;
+  if (!is_plane)
+    base.fill_ground(alone::Cut<double>::stored(s, i));
+  else
+    base = both ? Pressing{{at + from, at + to}, {edge_depth(1), edge_depth(0)}, 2} : base_and_way(first);
+  bool changed = base.count > 1 && press_undelayed(base, delayed, ground);
   for (int k = 0; k < 2; k++)
-    if (was_in_snow(k) && (both || k != alone)) changed = press_undelayed(way_of(k), delayed, ground) || changed;
+    if (was_in_snow(k) && (both || !is_plane || k != first))
+      changed = press_undelayed(way_of(k), delayed, ground) || changed;
   if (!changed) return;
   ground.simplify(snow.knot_area * s[DEEPEST][i] * (to - from), KNOTS);
   lines.keep(slot, ground);

@@ -121,6 +121,7 @@ template <class V>
 struct CutGrounds {
   CutGround<V> of[2];
 
+  CutGrounds() = default;
   CutGrounds(const GrooveLines& lines, int j, const Cut<V>& c, V wet_from, V wet_to) {
     for (int k = 0; k < 2; k++)
       if (any(CutGround<V>::was_in_snow(lines, j, k))) of[k] = CutGround<V>(lines, j, c, k, wet_from, wet_to);
@@ -215,7 +216,8 @@ SKISNOW_INLINE void add_ground(const GrooveLines& lines, int j, V edge, V wet_fr
 template <class V>
 struct PressedGrowth {
   static constexpr int COUNT = 8;
-  V force_depth, force_fall, force_place, moment_depth, moment_fall, moment_place, force_from, force_to;
+  V force_depth{}, force_fall{}, force_place{}, moment_depth{}, moment_fall{}, moment_place{};
+  V force_from{}, force_to{};
 
   PressedGrowth(const Pressure<V>& sums, const GrowthSums<V>& g) {
     const V from = g.wet_from, to = g.wet_to, hardness = sums.hardness, excess = sums.excess;
@@ -230,6 +232,16 @@ struct PressedGrowth {
     moment_place = g.ends1 - g.at_to * to + g.at_from * from - excess * g.place1;
     force_to = hardness * (sums.depth + sums.fall * to) - g.at_to;
     force_from = g.at_from - hardness * (sums.depth + sums.fall * from);
+  }
+
+  PressedGrowth() = default;
+
+  // The growth of pieces of one base that follow each other, whose pressure is continuous: the wet base's own ends
+  // alone are ends.
+  void add(const PressedGrowth& piece, MaskOf<V> begins, MaskOf<V> ends) {
+    force_depth += piece.force_depth, force_fall += piece.force_fall, force_place += piece.force_place;
+    moment_depth += piece.moment_depth, moment_fall += piece.moment_fall, moment_place += piece.moment_place;
+    force_from += select(begins, piece.force_from, V{}), force_to += select(ends, piece.force_to, V{});
   }
 
   PressedGrowth(const Pressures& pressure, int i) {
@@ -265,20 +277,40 @@ struct PressedGrowth {
 // energy.
 template <class V>
 struct Pressed {
-  V force, moment, energy;
+  V force{}, moment{}, energy{};
 
   // With `grows`, `keep_growth` gets the derivatives.
   template <class Keep>
   Pressed(const Snow& snow, const GrooveLines& lines, int j, const Cut<V>& c, bool grows, const Keep& keep_growth) {
     const V wet_to = maximum(c.wet_to, c.wet_from);
-    GrowthSums<V> more{c.wet_from, wet_to};
-    Pressure<V> sums;
-    sums.hardness = load<V>(lines.values[HARDNESS] + j), sums.excess = load<V>(lines.values[EXCESS] + j);
-    sums.depth = c.grip_depth, sums.fall = c.fall, sums.growth = grows ? &more : nullptr;
-    if (snow.unloading_ratio > 1.0)
-      add_ground(lines, j, c.place, c.wet_from, wet_to, CutGrounds<V>(lines, j, c, c.wet_from, wet_to), sums);
-    sums.resultants(c.wet_from, wet_to, force, moment, energy);
-    if (grows) keep_growth(PressedGrowth<V>(sums, more));
+    const bool remembers = snow.unloading_ratio > 1.0;
+    const CutGrounds<V> cuts = remembers ? CutGrounds<V>(lines, j, c, c.wet_from, wet_to) : CutGrounds<V>();
+    // a straight piece of the base
+    const auto bear = [&](V from, V to, V depth, V fall, V& pressed, V& turned, V& stored) {
+      GrowthSums<V> more{from, to};
+      Pressure<V> sums;
+      sums.hardness = load<V>(lines.values[HARDNESS] + j), sums.excess = load<V>(lines.values[EXCESS] + j);
+      sums.depth = depth, sums.fall = fall, sums.growth = grows ? &more : nullptr;
+      if (remembers) add_ground(lines, j, c.place, from, to, cuts, sums);
+      sums.resultants(from, to, pressed, turned, stored);
+      return grows ? PressedGrowth<V>(sums, more) : PressedGrowth<V>();
+    };
+    if (!c.shape->acts()) {
+      const PressedGrowth<V> growth = bear(c.wet_from, wet_to, c.grip_depth, c.fall, force, moment, energy);
+      if (grows) keep_growth(growth);
+      return;
+    }
+    const BasePieces<V> pieces(c);
+    PressedGrowth<V> growth;
+    for (int k = 0; k < BasePieces<V>::COUNT; k++) {
+      const V from = inside(pieces.place[k], c.wet_from, wet_to), to = inside(pieces.place[k + 1], c.wet_from, wet_to);
+      if (!any(from < to)) continue;
+      V pressed, turned, stored;
+      const PressedGrowth<V> more = bear(from, to, pieces.at_grip[k], pieces.fall[k], pressed, turned, stored);
+      force += pressed, moment += turned, energy += stored;
+      growth.add(more, (from < to) & (from == c.wet_from), (from < to) & (to == wet_to));
+    }
+    if (grows) keep_growth(growth);
   }
 };
 

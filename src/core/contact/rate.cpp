@@ -131,6 +131,7 @@ struct BaseOnLine {
   PointLaw law;
   Ground ground;
   double from, to;  // ends of the wet base
+  alone::BasePieces<double> pieces;
 
   BaseOnLine(const Snow& snow, const GrooveLines& lines, int slot, const Section& base, double dt)
       : c(base),
@@ -138,7 +139,8 @@ struct BaseOnLine {
         law(snow, lines, slot, base, dt),
         ground(lines.ground(slot)),
         from(base.wet_from),
-        to(std::max(base.wet_to, base.wet_from)) {
+        to(std::max(base.wet_to, base.wet_from)),
+        pieces(base) {
     for (int k = 0; k < 2; k++) {
       const alone::CutGround<double> cut(lines, slot, c, k, from, to);
       if (!cut.is_there()) continue;
@@ -166,16 +168,24 @@ struct BaseOnLine {
     return knot;
   }
 
+  int piece_behind(double x) const {
+    int piece = 0;
+    while (piece + 1 < pieces.COUNT && pieces.place[piece + 1] <= x + THIN) piece++;
+    return piece;
+  }
+
   double stress(double x) const {
-    return x < from || x > to ? 0.0 : law.stress(c.grip_depth + c.fall * x - known(x), deepest(knot_behind(x))(x));
+    const double depth = pieces.depth(piece_behind(x), x);
+    return x < from || x > to ? 0.0 : law.stress(depth - known(x), deepest(knot_behind(x))(x));
   }
 
   Sums bear(const Straight& rate) const {
     Sums out;
     for (double x = from; x < to - THIN;) {
-      const int knot = knot_behind(x);
-      double next = knot < ground.count ? std::min(to, ground.place[knot] - c.place) : to;
-      Straight depth{c.grip_depth, c.fall};
+      const int knot = knot_behind(x), piece = piece_behind(x);
+      double next = std::min(to, pieces.place[piece + 1]);
+      if (knot < ground.count) next = std::min(next, ground.place[knot] - c.place);
+      Straight depth{pieces.at_grip[piece], pieces.fall[piece]};
       if (!delayed.empty()) {
         const double place = (std::floor((c.place + x) / delayed.spacing + 1e-6) + 1.0) * delayed.spacing;
         next = std::min(next, place - c.place);

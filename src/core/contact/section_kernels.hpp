@@ -175,6 +175,9 @@ struct Edge {
   Vector<V> across;
 };
 
+template <class V>
+struct BasePieces;
+
 // The section of one line through the base.
 template <class V>
 struct Cut {
@@ -188,9 +191,10 @@ struct Cut {
   V fall, climb, widening, wet_from, wet_to;
   Vector<V> across, along;
   V size;  // one over the length of `along` before it was made a unit
+  const EdgeShape* shape;
 
   // The base as it is bent, not yet cut.
-  Cut(const Base& s, int i) {
+  Cut(const Base& s, int i) : shape(&s.edge_shape) {
     station = load<V>(s[STATION] + i), half = load<V>(s[HALF_WIDTH] + i), flare = load<V>(s[FLARE] + i);
     height = load<V>(s[BASE_HEIGHT] + i), rise = load<V>(s[BASE_RISE] + i);
     sp = load<V>(s[TWIST_SINE] + i), cp = load<V>(s[TWIST_COSINE] + i), twist_slope = load<V>(s[TWIST_SLOPE] + i);
@@ -200,7 +204,7 @@ struct Cut {
   }
 
   // The bent base at a place, before any section of this line was cut.
-  Cut(const BentBase<V>& bent, V place_along, const Base& s, int i) {
+  Cut(const BentBase<V>& bent, V place_along, const Base& s, int i) : shape(&s.edge_shape) {
     station = place_along, half = bent.shape[0], flare = bent.shape[1], height = bent.shape[2], rise = bent.shape[3];
     sp = bent.sine, cp = bent.cosine, twist_slope = bent.twist_slope;
     from = load3<V>(s, FROM_BOOT_0, i), ahead = load3<V>(s, LINE_AHEAD_0, i);
@@ -277,7 +281,11 @@ struct Cut {
       depth[k] = grip_depth + fall * x[k];
     }
     deepest = maximum(depth[0], depth[1]);
+    if (!shape->acts()) return;
+    for (int k = 0; k < 2; k++) depth[k] -= shape->lost(k == 0 ? sine : V(-sine), cosine());
   }
+
+  V cosine() const { return root(V(maximum(V(1.0 - sine * sine), V{}))); }
 
   // [wet_base] Where on the line the base is in the snow.
   void find_wet() {
@@ -285,6 +293,7 @@ struct Cut {
     const V down = select(absolute(fall) > LEVEL, fall, all<V>(LEVEL)), water = -grip_depth / down;
     wet_from = select(down > 0.0, maximum(x[1], water), x[1]);
     wet_to = select(down > 0.0, x[0], minimum(x[0], water));
+    if (shape->acts()) BasePieces<V>(*this).find_wet(deepest, wet_from, wet_to);
   }
 
   // [edge_directions] In the surface: across the edge and along it; how fast the depth grows along it.
@@ -323,6 +332,57 @@ struct Cut {
   static constexpr double LEVEL = 1e-12;  // fall of the depth across below which a base is level
   Vector<V> raw_;                         // along the grip, 1 ahead
   V normal_ahead_, steep_, skew_;         // skew: way of the grip across the line per way ahead of it
+};
+
+// [base_pieces] The base of a section as it is ground: straight pieces from the right edge to the left one. Between
+// the inner hinges it is the plane; towards an edge it is raised from each hinge on.
+template <class V>
+struct BasePieces {
+  static constexpr int COUNT = 2 * EdgeShape::HINGES + 1;
+  V place[COUNT + 1];             // ends of the pieces in x
+  V at_grip[COUNT], fall[COUNT];  // depth that each piece has if it goes on to the grip, its fall to the left
+
+  explicit BasePieces(const Cut<V>& c) {
+    constexpr int HINGES = EdgeShape::HINGES, MIDDLE = HINGES;
+    at_grip[MIDDLE] = c.grip_depth, fall[MIDDLE] = c.fall;
+    place[0] = c.x[1], place[COUNT] = c.x[0];
+    const V cosine = c.cosine(), half = 0.5 * (c.x[0] - c.x[1]);
+    for (int k = 0; k < 2; k++) {
+      const double to = k == 0 ? 1.0 : -1.0;
+      V rises[HINGES];
+      c.shape->find_rises(V(to * c.sine), cosine, rises);
+      for (int hinge = 0; hinge < HINGES; hinge++) {
+        const int inner = MIDDLE + (k == 0 ? hinge : -hinge), outer = inner + (k == 0 ? 1 : -1);
+        const V width = minimum(V(c.shape->width(hinge) / c.widening), half), at = c.x[k] - to * width;
+        const V rise = to * rises[hinge] * c.widening;
+        place[k == 0 ? outer : inner] = at;
+        fall[outer] = fall[inner] - rise, at_grip[outer] = at_grip[inner] + rise * at;
+      }
+    }
+  }
+
+  V depth(int piece, V x) const { return at_grip[piece] + fall[piece] * x; }
+  // Depth at an end of pieces.
+  V end_depth(int end) const { return depth(std::min(end, COUNT - 1), place[end]); }
+
+  // The deepest place, and the stretch that is in the snow: nothing at the deepest place if that is above it.
+  void find_wet(V& deepest, V& from, V& to) const {
+    V deep = end_depth(0), at = place[0];
+    for (int end = 1; end <= COUNT; end++) {
+      const V next = end_depth(end);
+      at = select(next > deep, place[end], at), deep = maximum(next, deep);
+    }
+    deepest = deep, from = to = at;
+    for (int end = 0; end < COUNT; end++) {
+      const V a = end_depth(end), b = end_depth(end + 1), width = place[end + 1] - place[end];
+      const MaskOf<V> crosses = (a > 0.0) != (b > 0.0);
+      const V water = place[end] + width * (a / select(crosses, V(a - b), all<V>(1.0)));
+      from = select(crosses & (b > 0.0), water, from), to = select(crosses & (a > 0.0), water, to);
+    }
+    const MaskOf<V> wet = deep > 0.0;
+    from = select(wet & (end_depth(0) > 0.0), place[0], from);
+    to = select(wet & (end_depth(COUNT) > 0.0), place[COUNT], to);
+  }
 };
 
 // [cross_bent_edge] The straight ski's stations, which `cross_lines` gives, miss the lines under a bent ski that is
@@ -379,6 +439,7 @@ void cut_base(const Runner& runner, const Pose& pose, const GrooveLines& lines, 
 template <class V>
 void find_sections(const Runner& runner, const Pose& pose, const GrooveLines& lines, std::int64_t first, Base& s) {
   s.cover(lines, first);
+  s.edge_shape = runner.edge_shape;
   cross_lines<V>(runner, pose, lines, s);
   cross_bent_edge<V>(runner, pose, lines, s);
   give_share<V>(runner, lines, s);

@@ -2,6 +2,9 @@
 // answers.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+
 #include "beam/runner.hpp"
 #include "linear_algebra/bordered.hpp"
 #include "snow/lines.hpp"
@@ -78,12 +81,17 @@ enum ForceField {
 
 struct Base : Columns<BaseField, BASE_FIELDS> {
   std::int64_t first_block = 0;  // first block of lines
+  EdgeShape edge_shape;          // of the runner
   int blocks = 0;
 
   int count() const { return blocks * BLOCK; }
   std::int64_t line(int i) const { return first_block * BLOCK + i; }
   int index(std::int64_t line) const { return int(line - first_block * BLOCK); }
   bool touches(int i) const { return (*this)[SHARE][i] > 0.0 && (*this)[DEEPEST][i] > 0.0; }
+  // Angle of the base next to the edge with the snow (rad): that of the strip where it is bevelled.
+  double face_angle(int i) const {
+    return std::max(std::asin(std::min(std::fabs((*this)[EDGE_SINE][i]), 1.0)) - edge_shape.bevel(), 0.0);
+  }
   void cover(const GrooveLines& lines, std::int64_t first);  // the lines from the first one
 };
 // A field of the left edge (0) or of the right one (1).

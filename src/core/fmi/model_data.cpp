@@ -90,6 +90,8 @@ void put_runners(const std::vector<Runner>& runners, double spacing, Fields& out
     out.put(of("runner", k, "table"), each.table);
     out.put(of("runner", k, "node"), each.node);
     out.put(of("runner", k, "element"), each.element);
+    const auto& edges = each.edge_shape.given();
+    out.put(of("runner", k, "edges"), std::vector(edges.begin(), edges.end()));
   }
 }
 
@@ -105,6 +107,8 @@ std::vector<Runner> runners_of(const Fields& data) {
     for (double element : data.at(of("runner", k, "element"), std::size_t(each.places)))
       each.element.push_back(int(element));
     each.fill_element_rows();
+    const auto& edges = data.at(of("runner", k, "edges"), 4);
+    each.edge_shape = EdgeShape(edges[0], edges[1], edges[2], edges[3]);
   }
   return out;
 }

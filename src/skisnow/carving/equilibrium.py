@@ -259,6 +259,8 @@ def _conditions(
         twists=twist and edge_angle > 0.0,
         bevel=ski.base_bevel,
         bevel_width=ski.edge_width,
+        side=ski.side_edge,
+        radius=ski.edge_radius,
         pitch_of_force=1.0,
         pitch_of_shear=0.0,
         by_reaction=False,

@@ -11,7 +11,16 @@ SOURCE_HASH: str
 
 def instruction_sets() -> list[str]: ...
 def grid(x0: float, dx: float, y0: float, dy: float, values: FloatArray, goes_on: bool) -> Grid: ...
-def runner(position: FloatArray, half_width: FloatArray, base_height: FloatArray, node: FloatArray) -> Runner: ...
+def runner(
+    position: FloatArray,
+    half_width: FloatArray,
+    base_height: FloatArray,
+    node: FloatArray,
+    base_bevel: float,
+    edge_width: float,
+    side_edge: float,
+    edge_radius: float,
+) -> Runner: ...
 
 class Grid:
     def __init__(self, constant: float) -> None: ...
@@ -180,6 +189,8 @@ class CarveConditions:
         twists: bool,
         bevel: float,
         bevel_width: float,
+        side: float,
+        radius: float,
         pitch_of_force: float,
         pitch_of_shear: float,
         by_reaction: bool,

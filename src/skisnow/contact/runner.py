@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, TypeAlias
 
@@ -34,6 +35,8 @@ class Runner(Shown):
         Height of the unloaded base off the snow, 0 at the boot (m): camber, shovel. (n,).
     nodes
         Positions (m) of the nodes of a beam, falling, the first at the tip, the last at the tail; ``None``: rigid.
+    edge_shape
+        How its edges are ground, as `Ski.edge_shape`; default: flat and sharp.
 
     Raises
     ------
@@ -49,6 +52,7 @@ class Runner(Shown):
     half_width: FloatArray
     base_height: FloatArray
     nodes: FloatArray | None = None
+    edge_shape: tuple[float, float, float, float] = (0.0, 0.0, math.pi / 2.0, 0.0)
 
     def _facts(self) -> Facts:
         length = amount(float(self.position[0] - self.position[-1]), "m")
@@ -109,7 +113,7 @@ class Runner(Shown):
     def of(cls, ski: Ski, *, nodes: npt.ArrayLike | None = None) -> Runner:
         """The base of a ski, rigid, or with these beam nodes bending with what `SnowContact` is given of them."""
         beam = None if nodes is None else np.asarray(nodes, float)
-        return cls(ski.station, ski.width / 2.0, ski.base_height, beam)
+        return cls(ski.station, ski.width / 2.0, ski.base_height, beam, ski.edge_shape)
 
     @property
     def tip(self) -> float:
@@ -124,6 +128,7 @@ class Runner(Shown):
     def compiled(self) -> core.Runner:
         """The runner as the core's type."""
         nodes = np.array([self.tip, self.tail]) if self.nodes is None else self.nodes
-        return core.runner(
-            *(np.ascontiguousarray(each) for each in (self.position, self.half_width, self.base_height, nodes))
+        position, half_width, base_height, nodes = (
+            np.ascontiguousarray(each) for each in (self.position, self.half_width, self.base_height, nodes)
         )
+        return core.runner(position, half_width, base_height, nodes, *self.edge_shape)

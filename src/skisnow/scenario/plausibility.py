@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Final
 
 from .._support.errors import RangeWarning
 from .._support.messages import Message
-from .._support.units import DEGREE, N_PER_MM3, in_degrees_if_radians
+from .._support.units import DEGREE, MM, N_PER_MM3, in_degrees_if_radians
 from ..forces.measured_ranges import (
     DRAG_AREA,
     FAILURE_SHEAR_STRESS,
@@ -124,7 +124,7 @@ def _outside_ranges(scenario: Scenario) -> list[str]:
 
 
 def model_limits(ski: Ski) -> dict[str, Message]:
-    """Warnings by code: `base_bevel_ignored`.
+    """Warnings by code: `edge_radius_unmeasured`, `side_edge_without_radius`.
 
     Parameters
     ----------
@@ -132,10 +132,17 @@ def model_limits(ski: Ski) -> dict[str, Message]:
         The ski.
     """
     limits = {}
-    if ski.base_bevel != 0.0:
-        limits["base_bevel_ignored"] = Message(
-            "base_bevel_deg of ski {name} is {bevel:.3g}: runs ignore it; only skisnow carve computes with it",
+    if ski.edge_radius > 0.0:
+        limits["edge_radius_unmeasured"] = Message(
+            "edge_radius_mm of ski {name} is {radius:.3g}: no measurement relates the radius of an edge to its hold; "
+            "skisnow takes the depth that the rounding loses",
             name=ski.name,
-            bevel=ski.base_bevel / DEGREE,
+            radius=ski.edge_radius / MM,
+        )
+    elif abs(ski.side_edge - math.pi / 2.0) > 1e-9:
+        limits["side_edge_without_radius"] = Message(
+            "side_edge_deg of ski {name} is {side:.4g}: it changes nothing, because it acts only with edge_radius_mm",
+            name=ski.name,
+            side=ski.side_edge / DEGREE,
         )
     return limits

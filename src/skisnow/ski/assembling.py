@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -28,7 +29,7 @@ class SkiParts:
 
     Attributes
     ----------
-    name, source, layout, base_bevel, edge_width
+    name, source, layout, base_bevel, edge_width, side_edge, edge_radius
         As in `Ski` and `Layout`.
     width, bending_stiffness, torsional_stiffness
         As in `Ski`.
@@ -54,6 +55,8 @@ class SkiParts:
     mass: float = 0.0
     base_bevel: float = 0.0
     edge_width: float = 0.002
+    side_edge: float = math.pi / 2.0
+    edge_radius: float = 0.0
     stations: FloatArray | None = None
 
     def assembled(self) -> Ski:
@@ -83,6 +86,8 @@ class SkiParts:
             sidecut_length=self.layout.sidecut_length,
             base_bevel=self.base_bevel,
             edge_width=self.edge_width,
+            side_edge=self.side_edge,
+            edge_radius=self.edge_radius,
             sidecut_middle=self.layout.middle,
             base=shape,
         )

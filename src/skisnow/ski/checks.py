@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
@@ -21,6 +21,10 @@ STRAIGHT: Final = 1e-7
 
 GREATEST_BEVEL: Final = 0.1
 """Greatest base bevel (rad), 5.7°; skis are ground to 0-2°."""
+
+LEAST_SIDE: Final = math.radians(80.0)
+"""Smallest angle between base and side of a ski (rad); sides are ground to 85-90°."""
+GREATEST_SIDE: Final = math.radians(95.0)
 
 _ROUNDING = 1e-9  # m
 _ZERO_AT_BOOT = 1e-5  # m, a hundredth of a millimetre
@@ -142,20 +146,46 @@ def require_lengths(name: str, tables: SkiSections, *, running: float, sidecut: 
     require_on_ski(name, tables.station, np.zeros(1))
 
 
-def require_edge(name: str, *, bevel: float, width: float, waist: float) -> None:
-    """Check base bevel (rad), and edge width against the waist (m).
+class EdgeShape(NamedTuple):
+    """How an edge is ground: strip of base (rad, m), angle between base and side (rad), radius of the corner (m)."""
+
+    base_bevel: float
+    edge_width: float
+    side_edge: float
+    edge_radius: float
+
+
+def require_edge(name: str, edge: EdgeShape, *, waist: float) -> None:
+    """Check how an edge is ground, its width against the waist (m).
 
     Raises
     ------
     ParameterError
-        One is out of range.
+        A number is out of range.
     """
+    bevel, width, side, radius = edge
     if not 0.0 <= bevel <= GREATEST_BEVEL:
         problem = Message("base_bevel is {bevel!r} rad; it must be 0 to {limit}", bevel=bevel, limit=GREATEST_BEVEL)
         _refuse(name, problem, Message("Give it in radians"))
     if not 0.0 <= width < waist / 2.0:
         problem = Message(
             "edge_width is {width!r} m; it must be 0 to half the waist, {limit:.4f} m", width=width, limit=waist / 2.0
+        )
+        _refuse(name, problem, _CORRECT)
+    if not LEAST_SIDE <= side <= GREATEST_SIDE:
+        problem = Message(
+            "side_edge is {side!r} rad; it must be {low:.4f} to {high:.4f}",
+            side=side,
+            low=LEAST_SIDE,
+            high=GREATEST_SIDE,
+        )
+        _refuse(name, problem, Message("Give it in radians"))
+    largest = width * math.tan(0.5 * (side + bevel))
+    if not 0.0 <= radius <= largest:
+        problem = Message(
+            "edge_radius is {radius!r} m; it must be 0 to {largest:.6f} m, so that the round lies within edge_width",
+            radius=radius,
+            largest=largest,
         )
         _refuse(name, problem, _CORRECT)
 

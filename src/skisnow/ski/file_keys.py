@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 from typing import Annotated, Final
 
@@ -112,6 +113,16 @@ class SkiFile:
             "2 (modelling assumption: a usual steel edge)",
         ),
     ] = 2e-3
+    side_edge: Annotated[
+        float,
+        ski_quantity("side_edge_deg", "angle between base and side at the edge", (80, 95), (85, 90), "90"),
+    ] = math.pi / 2.0
+    edge_radius: Annotated[
+        float,
+        ski_quantity(
+            "edge_radius_mm", "radius of the corner between base and side, within the strip", (0, 2), (0.005, 0.5), "0"
+        ),
+    ] = 0.0
     bending_stiffness: Annotated[
         tuple[float, ...] | None,
         ski_quantity(

@@ -74,6 +74,8 @@ class FileParts:
             mass=0.0 if mass_per_length else values.needed("mass_kg"),
             base_bevel=said.base_bevel,
             edge_width=said.edge_width,
+            side_edge=said.side_edge,
+            edge_radius=said.edge_radius,
             stations=self.table["station_m"].station if self.table else None,
         ).assembled()
         self._require_mass(ski)

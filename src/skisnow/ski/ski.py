@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, fields, replace
 from typing import Annotated, TypeAlias
 
@@ -15,6 +16,7 @@ from ..parameters import APART
 from .base_profile import BaseShape
 from .checks import (
     STRAIGHT,
+    EdgeShape,
     require_base_at_boot,
     require_edge,
     require_lengths,
@@ -61,6 +63,10 @@ class Ski(Shown):
         Angle by which the edge strip is ground up from the base (rad), 0 to 0.1.
     edge_width
         Width of the bevelled strip (m). Modelling assumption: 2 mm, a usual steel edge.
+    side_edge
+        Angle between base and side at the edge (rad).
+    edge_radius
+        Radius of the corner between base and side (m); its round lies within the strip.
     sidecut_middle
         Station of the middle of running length and sidecut length (m): 0 where the boot is there.
     base
@@ -92,6 +98,8 @@ class Ski(Shown):
     sidecut_length: float
     base_bevel: float = 0.0
     edge_width: float = 0.002
+    side_edge: float = math.pi / 2.0
+    edge_radius: float = 0.0
     sidecut_middle: float = 0.0
     base: Annotated[BaseShape | None, APART] = None
 
@@ -105,9 +113,14 @@ class Ski(Shown):
         require_lengths(
             self.name, tables, running=self.running_length, sidecut=self.sidecut_length, middle=self.sidecut_middle
         )
-        require_edge(self.name, bevel=self.base_bevel, width=self.edge_width, waist=self.waist_width)
+        require_edge(self.name, self.edge_shape, waist=self.waist_width)
         require_narrow_waist(self.name, self.sidecut_widths)
         require_base_at_boot(self.name, float(self.at(0.0).base_height))
+
+    @property
+    def edge_shape(self) -> EdgeShape:
+        """How the edges are ground."""
+        return EdgeShape(self.base_bevel, self.edge_width, self.side_edge, self.edge_radius)
 
     @property
     def _tables(self) -> SkiSections:

@@ -183,6 +183,8 @@ def _keys_text(ski: Ski, table: str) -> str:
         "boot_position_mm": _plain(-ski.sidecut_middle / MM),
         "base_bevel_deg": _plain(ski.base_bevel / DEGREE),
         "edge_width_mm": _plain(ski.edge_width / MM),
+        "side_edge_deg": _plain(ski.side_edge / DEGREE),
+        "edge_radius_mm": _plain(ski.edge_radius / MM),
     }
     if not ski.source.strip():
         del values["source"]
