@@ -157,7 +157,7 @@ nb::tuple point_gradient(CarvePoint& at, const Array& u, const Array& depth, con
   const std::size_t n = found.place.size();
   std::vector<double> columns;
   for (const auto* each :
-       {&found.place, &found.weight, &found.width, &found.base_height, &found.by_deflection, &found.normal})
+       {&found.place, &found.weight, &found.width, &found.base_height, &found.deflection, &found.normal})
     columns.insert(columns.end(), each->begin(), each->end());
   std::vector<double> adjoint = at.ski().gathered(found.adjoint.u);
   const std::size_t size = adjoint.size();
@@ -167,6 +167,30 @@ nb::tuple point_gradient(CarvePoint& at, const Array& u, const Array& depth, con
              found.bevel_width, found.pitch_of_force, found.pitch_of_shear, found.running_length, found.greatest_width},
             {12}),
       array(std::move(adjoint), {size}));
+}
+
+// Growth of unknowns, border, depth and force along a direction, and the distance to the next kink in its unit.
+// `columns`: place, weight, width, base height, stretch; `numbers` as of `point_gradient`; `bent`: of elastic forces.
+nb::tuple point_growth(CarvePoint& at, const Array& columns, const Array& numbers, const Array& bent) {
+  CarveDirection along;
+  const std::size_t n = columns.shape(1);
+  const double* from = columns.data();
+  for (auto* each : {&along.place, &along.weight, &along.width, &along.base_height, &along.stretch}) {
+    each->assign(from, from + n);
+    from += n;
+  }
+  from = numbers.data();
+  for (auto* each :
+       {&along.edge_angle, &along.hardness, &along.excess, &along.load, &along.moment, &along.side_force, &along.bevel,
+        &along.bevel_width, &along.pitch_of_force, &along.pitch_of_shear, &along.running_length, &along.greatest_width})
+    *each = *from++;
+  along.bent = at.ski().spread(bent.data());
+  CarveGrowth found = at.growth(along);
+  std::vector<double> u = at.ski().gathered(along.state.u);
+  const std::size_t size = u.size();
+  const auto& border = along.state.border;
+  return nb::make_tuple(array(std::move(u), {size}), nb::make_tuple(border[0], border[1], border[2]),
+                        array(std::move(found.depth), {n}), array(std::move(found.force), {n}), found.kink);
 }
 
 // Behind the rows of a banded matrix, or of a right side, the zeros that loops over it need.
@@ -230,7 +254,8 @@ void bind_carve(nb::module_& m) {
       .def("__init__", &make_point, nb::keep_alive<1, 2>(), nb::arg("ski"), nb::arg("conditions"), nb::arg("u"),
            nb::arg("border"), nb::arg("places").none())
       .def("state", &point_state)
-      .def("gradient", &point_gradient);
+      .def("gradient", &point_gradient)
+      .def("growth", &point_growth);
   m.def("banded_factors", &banded_factors);
   m.def("banded_solution", &banded_solution);
   m.def("strip_sums", &strip_sums);

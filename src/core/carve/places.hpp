@@ -22,12 +22,13 @@ inline double straight_waterline(const CarvedSki& ski, const CarveConditions& at
 // [places] ξ of the edge, of five shares of that distance, of the end of the base, of two places that divide the rest
 // evenly in their logarithm, and of the hinges of a ground edge (m), rising. The edge of a stiff ski, that hard snow
 // carries at its ends alone, is up to ten times as deep as a straight one. On snow so soft that the base drowns, the
-// distance is 0.4 of its reach. `reach`: greatest width times cos ϑ; `hinges`: their distance from the edge times cos
-// ϑ, 0 without one.
+// distance is 0.4 of its reach; it is never below a thousandth of that. `reach`: greatest width times cos ϑ; `hinges`:
+// their distance from the edge times cos ϑ, 0 without one.
 template <class T>
 std::vector<T> places_across(T waterline, T reach, const T (&hinges)[EdgeShape::HINGES]) {
   using std::cbrt;
-  const T line = std::min(waterline, T(0.4) * reach), end = T(1.05) * reach, far = T(2.4) * line;
+  const T line = std::max(std::min(waterline, T(0.4) * reach), T(1e-3) * reach), end = T(1.05) * reach,
+          far = T(2.4) * line;
   std::vector<T> place = {T(0.0)};
   for (double share : {0.4, 0.8, 1.2, 1.6}) place.push_back(T(share) * line);
   for (const T& each : {far, cbrt(far * far * end), cbrt(far * end * end), end}) place.push_back(each);

@@ -120,7 +120,7 @@ CarveGradient CarvePoint::Passed::backward(const CarveState& at, CarveState adjo
                                            CarveState& by_state) const {
   const std::size_t n = felt.size(), places = place.size();
   CarveGradient out;
-  for (auto* each : {&out.place, &out.weight, &out.width, &out.base_height, &out.by_deflection, &out.normal})
+  for (auto* each : {&out.place, &out.weight, &out.width, &out.base_height, &out.deflection, &out.normal})
     each->assign(n, 0.0);
   by_state.u.assign(at.u.size(), 0.0), by_state.border = {};
   const double *mu = adjoint.border.data(), stress = at.border[2], shears = given.side_force_bending ? 1.0 : 0.0;
@@ -169,15 +169,14 @@ CarveGradient CarvePoint::Passed::backward(const CarveState& at, CarveState adjo
       out.pitch_of_shear += w * mu[1] * s.place * stress * bite;
       by_state.border[2] += w * ((mu[1] * s.place * by_shear - bends * shears * sine) * bite +
                                  turns * shears * half * f.sine * turned + (reacts ? 0.0 : mu[2] * bite));
-    } else {  // a depth that is asked for above the snow
-      by[CORNER] += seed.depth[i];
+    } else if (seed.depth[i] != 0.0) {  // a depth that is asked for above the snow
       const Number edge = section(s, f).edge_depth();
-      by[ANGLE] += seed.depth[i] * edge.by[ANGLE];
+      for (int along = 0; along < GROOVE; along++) by[along] += seed.depth[i] * edge.by[along];
     }
     const double corner = by[CORNER], angle = by[ANGLE] + corner * s.half_width * f.cosine;
     out.width[i] = 0.5 * (by[HALF] + corner * f.sine);
     out.base_height[i] = -cosine * corner;
-    out.by_deflection[i] = -cosine * corner;
+    out.deflection[i] = -cosine * corner;
     out.place[i] += corner * at.border[1];
     out.edge_angle += angle + corner * sine * (s.base_height + f.deflection);
     out.hardness += by[HARDNESS], out.excess += by[EXCESS];
@@ -251,6 +250,15 @@ CarveGradient CarvePoint::gradient(const CarveSeed& seed) {
   for (std::size_t a = 0; a < CARVE_BORDER; a++) adjoint.border[a] = -right.border[a];
   factors_.solve_transposed(ski_, adjoint);
   return passed_->backward(state_, std::move(adjoint), seed, right);
+}
+
+CarveGrowth CarvePoint::growth(CarveDirection& along) {
+  CarveGrowth explicit_part = growth_along(ski_, conditions_, place_, state_, along);
+  at_.residual = std::move(explicit_part.residual);
+  std::copy_n(explicit_part.border, CARVE_BORDER, at_.border_residual);
+  along.state = state_;
+  if (!factors_.correct(ski_, at_, along.state)) throw std::invalid_argument("the equations are singular");
+  return growth_along(ski_, conditions_, place_, state_, along);
 }
 
 }  // namespace skisnow

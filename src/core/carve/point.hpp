@@ -6,15 +6,14 @@
 #include <memory>
 #include <vector>
 
-#include "carve/equations.hpp"
+#include "carve/residual.hpp"
 
 namespace skisnow {
 
 // Growth of an output with what the equations contain; the ski's unknowns of the adjoint state λ.
 struct CarveGradient {
-  // one for each station: its place, length, width, base height; for the growth of an element with its own length:
-  // depth's part, and the load normal to the base, times the station's length
-  std::vector<double> place, weight, width, base_height, by_deflection, normal;
+  // one for each station: its place, length, width, base height, deflection; and its load normal to the base (N)
+  std::vector<double> place, weight, width, base_height, deflection, normal;
   double edge_angle = 0.0, hardness = 0.0, excess = 0.0, load = 0.0, moment = 0.0, side_force = 0.0, bevel = 0.0,
          bevel_width = 0.0, pitch_of_force = 0.0, pitch_of_shear = 0.0, running_length = 0.0, greatest_width = 0.0;
   CarveState adjoint;
@@ -40,6 +39,8 @@ class CarvePoint {
   double last_correction() const { return last_correction_; }  // (m) root mean square over the edge
 
   CarveGradient gradient(const CarveSeed& seed);
+  // How the equilibrium moves along a direction, the growth of whose state is set; depth, force and kink with it.
+  CarveGrowth growth(CarveDirection& along);
 
  private:
   struct Passed;

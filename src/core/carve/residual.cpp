@@ -1,81 +1,212 @@
 #include "carve/residual.hpp"
 
+#include <limits>
+
+#include "carve/places.hpp"
+
 namespace skisnow {
 
 namespace {
 
 using Long = long double;
+using Growing = Slopes<1>;
 
-constexpr Long FAR_ABOVE = -1e3L;  // depth (m) that marks untouched snow
+constexpr double FAR_ABOVE = -1e3;  // depth (m) that marks untouched snow
 
-class Refined {
+Growing growing(double value, double growth) {
+  Growing out(value);
+  out.by[0] = growth;
+  return out;
+}
+
+double of(const std::vector<double>& column, std::size_t i) { return column.empty() ? 0.0 : column[i]; }
+
+// The equations' numbers, exact for their derivatives or digits.
+template <class T>
+struct Conditions {
+  T edge_angle, hardness, excess, load, moment, side_force, bevel, bevel_width, pitch_of_force, pitch_of_shear;
+  bool shears, twists, by_reaction;
+  double side, radius;
+
+  Conditions(const CarveConditions& c, const auto& number)
+      : edge_angle(number(c.edge_angle, &CarveDirection::edge_angle)),
+        hardness(number(c.hardness, &CarveDirection::hardness)),
+        excess(number(c.excess, &CarveDirection::excess)),
+        load(number(c.load, &CarveDirection::load)),
+        moment(number(c.moment, &CarveDirection::moment)),
+        side_force(number(c.side_force, &CarveDirection::side_force)),
+        bevel(number(c.bevel, &CarveDirection::bevel)),
+        bevel_width(c.bevel > 0.0 ? number(c.bevel_width, &CarveDirection::bevel_width) : T(0.0)),
+        pitch_of_force(number(c.pitch_of_force, &CarveDirection::pitch_of_force)),
+        pitch_of_shear(number(c.pitch_of_shear, &CarveDirection::pitch_of_shear)),
+        shears(c.side_force_bending),
+        twists(c.twists),
+        by_reaction(c.by_reaction),
+        side(c.side),
+        radius(c.radius) {}
+
+  T on_strip() const { return bevel_width > T(0.0) ? bevel : T(0.0); }
+  T half_corner() const { return T(0.5) * (T(side) + on_strip()); }
+};
+
+template <class T>
+struct Station {
+  T place, weight, half, base_height, deflection[4];
+  const double* twist;
+  std::size_t first;
+};
+
+// A pass from tip to tail. `residual` begins with the beam's elastic forces.
+template <class T>
+class Residual {
  public:
-  Refined(const CarvedSki& ski, const CarveConditions& given, const std::vector<double>& place, const CarveState& at)
-      : ski_(ski),
+  Residual(const Conditions<T>& given, std::vector<T> place, std::vector<T> u, const T (&border)[CARVE_BORDER],
+           std::vector<T> elastic)
+      : residual(std::move(elastic)),
         given_(given),
-        at_(at),
-        place_(place.begin(), place.end()),
-        groove_(place.size(), FAR_ABOVE),
-        residual_(std::size_t(ski.size), 0.0L),
-        border_{-Long(given.load), -Long(given.moment), -Long(given.side_force)} {
-    for (int i = 0; i < ski.size; i++)
-      for (int k = std::max(0, BAND_HALF - i); k < CARVE_BAND; k++)
-        residual_[std::size_t(i)] +=
-            Long(ski.stiffness[std::size_t(CARVE_BAND * i + k)]) * at.u[std::size_t(i + k - BAND_HALF)];
-    if (given.by_reaction) border_[2] += Long(at.border[2]) * given.load;
-    for (const CarveStation& station : ski.stations) add(station);
+        place_(std::move(place)),
+        groove_(place_.size(), T(FAR_ABOVE)),
+        u_(std::move(u)) {
+    std::copy_n(border, CARVE_BORDER, at_);
+    this->border[0] -= given.load, this->border[1] -= given.moment, this->border[2] -= given.side_force;
+    if (given.by_reaction) this->border[2] += at_[2] * given.load;
   }
 
-  void write(CarveEquations& system) const {
-    for (std::size_t j = 0; j < residual_.size(); j++) system.residual[j] = double(residual_[j]);
-    for (int a = 0; a < CARVE_BORDER; a++) system.border_residual[a] = double(border_[a]);
+  std::vector<T> residual, depth, force;
+  T border[CARVE_BORDER] = {};
+
+  // `event`: takes how far a station is from touching the snow, or from deepening the groove
+  void add(const Station<T>& s, const auto& event) {
+    using std::cos;
+    using std::sin;
+    const T zero(0.0), sine = sin(given_.edge_angle), cosine = cos(given_.edge_angle);
+    T deflection(0.0), angle = given_.edge_angle;
+    for (std::size_t a = 0; a < 4; a++) deflection += s.deflection[a] * u_[s.first + std::size_t(BENDS[a])];
+    for (std::size_t a = 0; a < 2 && given_.twists; a++) angle += T(s.twist[a]) * u_[s.first + std::size_t(TURNS[a])];
+    const T corner = at_[0] + at_[1] * s.place - cosine * (s.base_height + deflection) + s.half * sin(angle);
+    SectionIn<T> section(corner, angle, s.half, given_.bevel, given_.bevel_width);
+    if (given_.radius > 0.0) section.round_off(angle - given_.on_strip(), given_.half_corner(), given_.radius);
+    const auto sums = strip_across<T>(section, place_, groove_, given_.hardness, given_.excess);
+    for (std::size_t k = 0; k < place_.size(); k++) {
+      const T base = section.base_depth(place_[k]);
+      event(base - groove_[k]);
+      if (!(base < groove_[k])) groove_[k] = base;
+    }
+    const T edge = section.edge_depth(), other = section.other_depth(), held = edge > zero ? edge : zero;
+    event(edge);
+    const T bite = given_.by_reaction ? sums.force : held;
+    const T turned = given_.by_reaction || !(other > zero) ? bite : bite - T(2.0) * other;
+    const T sheared = given_.shears ? at_[2] : zero;
+    const T normal = cosine * sums.force + sine * sheared * bite;
+    const T moment = sums.moment - s.half * (section.cosine * sums.force + section.sine * sheared * turned);
+    border[0] += s.weight * sums.force;
+    border[1] += s.weight * (given_.pitch_of_force * sums.force + given_.pitch_of_shear * at_[2] * bite) * s.place;
+    if (!given_.by_reaction) border[2] += s.weight * at_[2] * bite;
+    for (std::size_t a = 0; a < 4; a++)
+      residual[s.first + std::size_t(BENDS[a])] -= s.weight * s.deflection[a] * normal;
+    for (std::size_t a = 0; a < 2 && given_.twists; a++)
+      residual[s.first + std::size_t(TURNS[a])] -= s.weight * T(s.twist[a]) * moment;
+    depth.push_back(edge), force.push_back(sums.force);
   }
 
  private:
-  const CarvedSki& ski_;
-  const CarveConditions& given_;
-  const CarveState& at_;
-  std::vector<Long> place_, groove_, residual_;
-  Long border_[CARVE_BORDER];
-
-  void add(const CarveStation& s) {
-    const double* u = at_.u.data() + s.first;
-    Long deflection = 0.0L, twist = 0.0L;
-    for (int a = 0; a < 4; a++) deflection += Long(s.deflection[a]) * u[BENDS[a]];
-    for (int a = 0; a < 2 && given_.twists; a++) twist += Long(s.twist[a]) * u[TURNS[a]];
-    const Long angle = given_.edge_angle + twist, half = s.half_width, place = s.place;
-    const Long sine = std::sin(Long(given_.edge_angle)), cosine = std::cos(Long(given_.edge_angle));
-    const Long corner =
-        at_.border[0] + at_.border[1] * place - cosine * (s.base_height + deflection) + half * std::sin(angle);
-    SectionIn<Long> section(corner, angle, half, given_.bevel, given_.bevel > 0.0 ? given_.bevel_width : 0.0);
-    if (given_.radius > 0.0) {
-      const Long bevel = given_.bevel_width > 0.0 ? given_.bevel : 0.0;
-      section.round_off(angle - bevel, 0.5L * (given_.side + bevel), given_.radius);
-    }
-    const auto sums = strip_across<Long>(section, place_, groove_, given_.hardness, given_.excess);
-    for (std::size_t k = 0; k < place_.size(); k++) groove_[k] = std::max(groove_[k], section.base_depth(place_[k]));
-    const bool reacts = given_.by_reaction;
-    const Long stress = at_.border[2], shears = given_.side_force_bending ? 1.0L : 0.0L;
-    const Long bite = reacts ? sums.force : std::max(section.edge_depth(), 0.0L);
-    const Long turned = reacts ? bite : bite - 2.0L * std::max(section.other_depth(), 0.0L);
-    const Long normal = cosine * sums.force + shears * sine * stress * bite;
-    const Long moment =
-        sums.moment - half * section.cosine * sums.force - shears * half * section.sine * stress * turned;
-    const Long weight = s.weight;
-    border_[0] += weight * sums.force;
-    border_[1] += weight * (given_.pitch_of_force * sums.force + given_.pitch_of_shear * stress * bite) * place;
-    if (!reacts) border_[2] += weight * stress * bite;
-    for (int a = 0; a < 4; a++) residual_[std::size_t(s.first + BENDS[a])] -= weight * s.deflection[a] * normal;
-    for (int a = 0; a < 2 && given_.twists; a++)
-      residual_[std::size_t(s.first + TURNS[a])] -= weight * s.twist[a] * moment;
-  }
+  const Conditions<T>& given_;
+  std::vector<T> place_, groove_, u_;
+  T at_[CARVE_BORDER];
 };
+
+template <class T>
+std::vector<T> elastic_forces(const CarvedSki& ski, const std::vector<T>& u) {
+  std::vector<T> out(std::size_t(ski.size), T(0.0));
+  for (int i = 0; i < ski.size; i++)
+    for (int k = std::max(0, BAND_HALF - i); k < CARVE_BAND; k++)
+      out[std::size_t(i)] += T(ski.stiffness[std::size_t(CARVE_BAND * i + k)]) * u[std::size_t(i + k - BAND_HALF)];
+  return out;
+}
+
+// Places across with their growth.
+std::vector<Growing> growing_places(const CarvedSki& ski, const CarveConditions& at, const CarveDirection& along) {
+  const double line = straight_waterline(ski, at), tangent = std::tan(at.edge_angle);
+  const double steeper =
+      at.edge_angle > SHALLOWEST_WEDGE ? along.edge_angle * (1.0 + tangent * tangent) / tangent : 0.0;
+  const double growth =
+      0.5 * line *
+      (along.load / at.load - along.hardness / at.hardness - along.running_length / ski.running_length - steeper);
+  const double cosine = std::cos(at.edge_angle), turn = -std::sin(at.edge_angle) * along.edge_angle;
+  const double width = at.bevel > 0.0 ? at.bevel_width : 0.0, round = at.edges().width(1);
+  // r cot(γ/2) falls with half the bevel
+  const double round_growth =
+      round > 0.0 && width > 0.0 ? -0.5 * along.bevel * (at.radius + round * round / at.radius) : 0.0;
+  const Growing hinges[] = {
+      growing(width * cosine, width > 0.0 ? along.bevel_width * cosine + width * turn : 0.0),
+      growing(round * cosine, round_growth * cosine + round * turn),
+  };
+  return places_across(growing(line, growth),
+                       growing(ski.greatest_width * cosine, along.greatest_width * cosine + ski.greatest_width * turn),
+                       hinges);
+}
 
 }  // namespace
 
 void refine_residual(const CarvedSki& ski, const CarveConditions& conditions, const std::vector<double>& place,
                      const CarveState& at, CarveEquations& system) {
-  Refined(ski, conditions, place, at).write(system);
+  const Conditions<Long> given(conditions, [](double value, auto) { return Long(value); });
+  const std::vector<Long> u(at.u.begin(), at.u.end());
+  const Long border[] = {at.border[0], at.border[1], at.border[2]};
+  Residual<Long> sum(given, {place.begin(), place.end()}, u, border, elastic_forces(ski, u));
+  for (const CarveStation& s : ski.stations)
+    sum.add({s.place,
+             s.weight,
+             s.half_width,
+             s.base_height,
+             {s.deflection[0], s.deflection[1], s.deflection[2], s.deflection[3]},
+             s.twist,
+             std::size_t(s.first)},
+            [](Long) {});
+  for (std::size_t j = 0; j < sum.residual.size(); j++) system.residual[j] = double(sum.residual[j]);
+  for (int a = 0; a < CARVE_BORDER; a++) system.border_residual[a] = double(sum.border[a]);
+}
+
+CarveGrowth growth_along(const CarvedSki& ski, const CarveConditions& conditions, const std::vector<double>& own_place,
+                         const CarveState& at, const CarveDirection& along) {
+  const Conditions<Growing> given(
+      conditions, [&](double value, double CarveDirection::* growth) { return growing(value, along.*growth); });
+  std::vector<Growing> place(own_place.begin(), own_place.end()), u;
+  if (own_place.empty()) place = growing_places(ski, conditions, along);
+  for (std::size_t j = 0; j < at.u.size(); j++)
+    u.push_back(growing(at.u[j], along.state.u.empty() ? 0.0 : along.state.u[j]));
+  Growing border[CARVE_BORDER];
+  for (std::size_t a = 0; a < CARVE_BORDER; a++) border[a] = growing(at.border[a], along.state.border[a]);
+  std::vector<Growing> elastic = elastic_forces(ski, u);
+  for (std::size_t j = 0; j < elastic.size() && !along.bent.empty(); j++) elastic[j].by[0] += along.bent[j];
+  Residual<Growing> sum(given, std::move(place), std::move(u), border, std::move(elastic));
+  CarveGrowth out;
+  out.kink = std::numeric_limits<double>::infinity();
+  const auto event = [&](const Growing& phi) {
+    if (phi.value < -0.5 * FAR_ABOVE && phi.by[0] != 0.0)
+      out.kink = std::min(out.kink, std::fabs(phi.value / phi.by[0]));
+  };
+  for (std::size_t i = 0; i < ski.stations.size(); i++) {
+    const CarveStation& s = ski.stations[i];
+    Station<Growing> station{growing(s.place, of(along.place, i)),
+                             growing(s.weight, of(along.weight, i)),
+                             growing(s.half_width, 0.5 * of(along.width, i)),
+                             growing(s.base_height, of(along.base_height, i)),
+                             {},
+                             s.twist,
+                             std::size_t(s.first)};
+    for (int a = 0; a < 4; a++)  // the shapes of slopes are as long as the element
+      station.deflection[a] = growing(s.deflection[a], a % 2 == 1 ? s.deflection[a] * of(along.stretch, i) : 0.0);
+    sum.add(station, event);
+  }
+  out.residual.assign(std::size_t(ski.size + BAND_HALF), 0.0);
+  for (std::size_t j = 0; j < sum.residual.size(); j++) out.residual[j] = sum.residual[j].by[0];
+  for (int a = 0; a < CARVE_BORDER; a++) out.border[a] = sum.border[a].by[0];
+  for (std::size_t i = 0; i < sum.depth.size(); i++) {
+    out.depth.push_back(sum.depth[i].by[0]);
+    out.force.push_back(sum.force[i].by[0]);
+  }
+  return out;
 }
 
 }  // namespace skisnow

@@ -168,4 +168,25 @@ StripIn<T> strip_across(const SectionIn<T>& section, const std::vector<T>& place
 void refine_residual(const CarvedSki& ski, const CarveConditions& conditions, const std::vector<double>& place,
                      const CarveState& at, CarveEquations& system);
 
+// Direction in which all numbers of the equations change at once.
+struct CarveDirection {
+  // at each station, empty for none; `stretch`: growth of its element's length over that length
+  std::vector<double> place, weight, width, base_height, stretch;
+  Column bent;  // growth of the beam's elastic forces at the same unknowns
+  double edge_angle = 0.0, hardness = 0.0, excess = 0.0, load = 0.0, moment = 0.0, side_force = 0.0, bevel = 0.0,
+         bevel_width = 0.0, pitch_of_force = 0.0, pitch_of_shear = 0.0, running_length = 0.0, greatest_width = 0.0;
+  CarveState state;  // empty for none
+};
+
+// Growth along a direction; `kink`: least |φ|/|φ'| of the events φ = 0 at which a station touches or leaves the snow,
+// or another becomes the source of the groove.
+struct CarveGrowth {
+  Column residual;
+  double border[CARVE_BORDER];
+  std::vector<double> depth, force;
+  double kink;
+};
+CarveGrowth growth_along(const CarvedSki& ski, const CarveConditions& conditions, const std::vector<double>& own_place,
+                         const CarveState& at, const CarveDirection& along);
+
 }  // namespace skisnow

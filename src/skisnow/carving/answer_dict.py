@@ -14,6 +14,7 @@ from .._support.units import DEGREE, MM, N_PER_MM2, N_PER_MM3
 from .._support.user_files.json_text import json_number
 from ..snow.from_results import snow_dict
 from .answer import CarveAnswer
+from .outputs import OUTPUTS
 from .result import Equilibrium
 from .solve import RIGID_PLASTIC
 
@@ -44,6 +45,25 @@ def answers_dict(answers: Sequence[CarveAnswer]) -> dict[str, Any]:
     """The JSON of `skisnow carve`: one answer as it is, several under `skis`."""
     each = [answer_dict(answer) for answer in answers]
     return each[0] if len(each) == 1 else {"skis": each}
+
+
+def sensitivities_dict(equilibrium: Equilibrium, parameters: Sequence[str] = ()) -> list[dict[str, Any]]:
+    """Derivatives of all outputs that exist by parameters (default: `everyday_parameters`), as JSON values."""
+    exact = equilibrium.derivatives()
+    names = parameters or exact.everyday_parameters
+    return [
+        {
+            "output": each.output,
+            "parameter": each.parameter,
+            "value": each.output_value,
+            "derivative": each.derivative,
+            "percent_per_percent": each.relative,
+            "relative_distance_to_kink": json_number(each.kink),
+        }
+        for output in OUTPUTS
+        if exact.output(output) is not None
+        for each in exact.sensitivity(output, names)
+    ]
 
 
 def equilibrium_dict(equilibrium: Equilibrium) -> dict[str, Any]:

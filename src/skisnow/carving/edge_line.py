@@ -35,10 +35,13 @@ class EdgeLine:
 
     def at(self, station: npt.ArrayLike) -> FloatArray:
         """Position (m) of the edge at stations (m)."""
-        where = np.atleast_1d(np.asarray(station, float))
+        return self._across(*self.sections(np.atleast_1d(np.asarray(station, float))))
+
+    def sections(self, station: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+        """Width, height of the unloaded base, deflection (m) and twist (rad) at stations (m)."""
         ski = self._model.ski
-        width, height = (np.interp(where, ski.station[::-1], each[::-1]) for each in (ski.width, ski.base_height))
-        return self._across(width, height, *beam_at(self._model, self._u, where))
+        width, height = (np.interp(station, ski.station[::-1], each[::-1]) for each in (ski.width, ski.base_height))
+        return (width, height, *beam_at(self._model, self._u, station))
 
     def _across(
         self, width: FloatArray, base_height: FloatArray, deflection: FloatArray, twist: FloatArray

@@ -166,7 +166,8 @@ def carve(
         note = (f"computed with k_u/H_V = {gentler:g}: the steeper unloading that was asked did not converge",)
     if laws is not None and not solution.converged:
         laws.require_finite()
-    found = equilibrium_of(model, conditions, snow, solution, note)
+    exact = laws is None and groove == "edge" and footprint_stiffness is None
+    found = equilibrium_of(model, conditions, snow, solution, note, elements=elements if exact else None)
     if found.turn_radius_boot is None:
         return found
     other = find(model, conditions._replace(by_reaction=not conditions.by_reaction))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Final, Literal, TypeAlias
 
@@ -10,10 +11,13 @@ import numpy as np
 import numpy.typing as npt
 
 from .._support.display import Facts, Shown, amount
+from .._support.errors import ParameterError
+from .._support.messages import Message
 from .._support.units import MM
 from ..ski.beam import ClampedSki
 from ..snow.properties import SnowProperties
 from .edge_line import EdgeLine
+from .sensitivity import CarveDerivatives, CarveRequest, Sensitivity
 from .solve import Conditions, Solution
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
@@ -96,6 +100,8 @@ class Equilibrium(Shown):
         Where the answer is outside what the model can say, in words.
     iterations
         Of Newton's method.
+    request
+        What it was computed from, for `sensitivity`; None where that has no derivatives.
 
     See Also
     --------
@@ -127,6 +133,53 @@ class Equilibrium(Shown):
     residual_moment: float | None
     warnings: tuple[str, ...]
     iterations: int
+    request: CarveRequest | None = None
+
+    def derivatives(self) -> CarveDerivatives:
+        """Exact derivatives of outputs by parameters, at this equilibrium.
+
+        Raises
+        ------
+        ParameterError
+            There is no equilibrium, or its groove follows the path, other laws of the snow act, or the footprint is
+            not rigid.
+        """
+        if self.request is None:
+            raise ParameterError(
+                Message(
+                    "the carve has no derivatives. They exist for an equilibrium with the groove along the edge, the "
+                    "snow's own H_V and S_f, and a rigid footprint."
+                ),
+                code="no_derivatives",
+            )
+        return CarveDerivatives(self.request)
+
+    def sensitivity(self, output: str, parameters: Iterable[str]) -> tuple[Sensitivity, ...]:
+        """Derivatives of an output by parameters.
+
+        Parameters
+        ----------
+        output
+            A name of `skisnow.carving.outputs.OUTPUTS`, such as ``turn_radius_boot_m``.
+        parameters
+            Such as ``ski.waist_width_mm``, ``ski.EI_N_m2[2]`` (second of the list), ``edit.sidecut_depth``,
+            ``snow.H_V_N_per_mm3``, ``load_N``: `derivatives` lists them.
+
+        Returns
+        -------
+        tuple of Sensitivity
+            In units per unit and in % per %, with the distance to the next kink.
+
+        Raises
+        ------
+        ParameterError
+            A name is unknown, or there are no derivatives.
+
+        References
+        ----------
+        The page docs/methods/carve-derivatives.md.
+        """
+        return self.derivatives().sensitivity(output, parameters)
 
     @property
     def total_force(self) -> float | None:
@@ -165,9 +218,18 @@ def _too_soft(model: ClampedSki, conditions: Conditions) -> bool:
 
 
 def equilibrium_of(
-    model: ClampedSki, conditions: Conditions, snow: SnowProperties, solution: Solution, note: tuple[str, ...] = ()
+    model: ClampedSki,
+    conditions: Conditions,
+    snow: SnowProperties,
+    solution: Solution,
+    note: tuple[str, ...] = (),
+    *,
+    elements: int | None = None,
 ) -> Equilibrium:
-    """Outcome and numbers of a solution; `note` stands before its own warnings."""
+    """Outcome and numbers of a solution; `note` stands before its own warnings.
+
+    `elements`: those that were asked for; None where the equilibrium has no derivatives.
+    """
     station = model.stations.station
     deepest = float(np.max(solution.edge_depth))
     sinks = deepest > SINKING_DEPTH if solution.converged else _too_soft(model, conditions)
@@ -212,6 +274,9 @@ def equilibrium_of(
         residual_moment=conditions.pitch_of_force * of_force + conditions.pitch_of_shear * of_shear - conditions.moment,
         warnings=(*note, *_warnings(line)),
         iterations=solution.iterations,
+        request=None
+        if elements is None
+        else CarveRequest(model, conditions, snow.failure_shear_stress, solution, elements),
     )
 
 

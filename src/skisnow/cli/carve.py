@@ -27,6 +27,14 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     _add_question(parser)
     _add_snow(parser)
     _add_choices(parser)
+    sensitivity: dict[str, Any] = {"action": "append", "nargs": "?", "const": "", "metavar": "PARAMETER"}
+    parser.add_argument(
+        "--sensitivity",
+        **sensitivity,
+        help="exact derivatives of radius, depth, grip, deflection and force by a parameter, such as "
+        "ski.waist_width_mm, ski.EI_N_m2[2], edit.sidecut_depth, snow.H_V_N_per_mm3, load_N (repeatable; "
+        "default: by turn, snow, and the ski's widths, camber and stiffness)",
+    )
     parser.add_argument("--json", action="store_true", help="print JSON alone to standard output")
     parser.add_argument("--figure", type=Path, metavar="FILE", help="draw a figure: .png, .svg or .pdf")
     add_language(parser, "the figure")
@@ -92,6 +100,9 @@ def run(options: argparse.Namespace) -> int:
     answers = _answers(options)
     _warn(answers)
     result = answers_dict(answers)
+    derivatives = [] if options.sensitivity is None else _sensitivities(answers, options.sensitivity)
+    for each, found in zip(result.get("skis", [result]), derivatives, strict=False):
+        each["sensitivity"] = found
     if options.figure is not None:
         from ..report.carving_figure import carved_skis
         from ..report.figures.figure_files import write_figure
@@ -106,7 +117,24 @@ def run(options: argparse.Namespace) -> int:
         from ..report.summaries import carve_summary
 
         print(carve_summary(result))
+        for answer, found in zip(answers, derivatives, strict=False):
+            print(_sensitivity_table(answer.ski.name, found))
     return _status(answers)
+
+
+def _sensitivities(answers: list[CarveAnswer], names: list[str]) -> list[list[dict[str, Any]]]:
+    from ..carving.answer_dict import sensitivities_dict
+
+    return [sensitivities_dict(answer.equilibrium, [name for name in names if name]) for answer in answers]
+
+
+def _sensitivity_table(ski: str, found: list[dict[str, Any]]) -> str:
+    """Derivatives of each output in its units per unit, and in % per %."""
+    lines = [f"Derivatives, {ski}:", f"  {'output':26} {'parameter':26} {'per unit':>12} {'% per %':>9}"]
+    for row in found:
+        relative = "" if row["percent_per_percent"] is None else f"{row['percent_per_percent']:9.4f}"
+        lines.append(f"  {row['output']:26} {row['parameter']:26} {row['derivative']:12.6g} {relative:>9}")
+    return "\n".join(lines)
 
 
 def _status(answers: list[CarveAnswer]) -> int:

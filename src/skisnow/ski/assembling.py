@@ -59,15 +59,21 @@ class SkiParts:
     edge_radius: float = 0.0
     stations: FloatArray | None = None
 
-    def assembled(self) -> Ski:
+    def assembled(self, *, like: Ski | None = None) -> Ski:
         """Tabulate the parts densely.
+
+        Parameters
+        ----------
+        like
+            A ski of nearly the same lengths, whose stations are moved with tip, tail, contact points and widest points:
+            tables of as many rows, which differ smoothly; None: stations of its own.
 
         Raises
         ------
         ParameterError
             The result breaks a rule of `Ski`.
         """
-        station = self._grid()
+        station = self._grid() if like is None else self._moved_grid(like)
         width, shape = self.width(station), self.base if isinstance(self.base, BaseShape) else None
         base_height = self.base(station) if callable(self.base) else self.base.height_at(station, self.layout)
         mass_per_length = width if self.mass_per_length is None else self.mass_per_length(station)
@@ -91,6 +97,15 @@ class SkiParts:
             sidecut_middle=self.layout.middle,
             base=shape,
         )
+
+    def _moved_grid(self, like: Ski) -> FloatArray:
+        if self.stations is not None:
+            return like.station
+        own = self.layout
+        before = np.array([like.station[-1], *like.sidecut_ends, *like.contact_points, 0.0, like.station[0]])
+        now = np.array([own.tail, *own.widest_points, *own.contact_points, 0.0, own.tip])
+        _, first = np.unique(np.round(before, 9), return_index=True)
+        return np.asarray(like.station + np.interp(like.station, before[first], now[first] - before[first]))
 
     def _grid(self) -> FloatArray:
         own_stations = np.empty(0) if self.stations is None else self.stations

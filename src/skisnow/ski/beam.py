@@ -291,6 +291,11 @@ def clamped(ski: Ski, clamp_length: float, elements: int, footprint_stiffness: f
     )
 
 
+def model_nodes(ski: Ski, clamp_length: float, elements: int) -> FloatArray:
+    """Nodes (m) of the model that `clamped` makes of a ski whose clamp is rigid."""
+    return _nodes(float(ski.station[0]), float(ski.station[-1]), clamp_length, elements, bedded=False)
+
+
 def beam_at(model: ClampedSki, u: FloatArray, station: npt.ArrayLike) -> tuple[FloatArray, FloatArray]:
     """Deflection (m) and twist (rad) of the base relative to the boot at stations (m), for the unknowns u (size,)."""
     where = np.atleast_1d(np.asarray(station, float))

@@ -16,6 +16,8 @@ if TYPE_CHECKING:
 GREATEST_SPACING: Final = 2.5e-3
 """Greatest distance of neighbouring stations (m): linear interpolation of a sidecut is then good to 0.1 micrometre."""
 
+_STRETCH: Final = 1.01  # of that distance, where stations move with a length that changes a little
+
 STRAIGHT: Final = 1e-7
 """Depth of a curve (m) below which an edge counts as straight: far below what can be made or measured."""
 
@@ -97,7 +99,7 @@ def _require_stations(name: str, station: FloatArray) -> None:
             "station[{place}] = {station:.6g} m is not below the one before it", place=place, station=station[place]
         )
         _refuse(name, problem, Message("List the stations from tip to tail, positive in front of the boot"))
-    if np.max(steps) > GREATEST_SPACING + _ROUNDING:
+    if np.max(steps) > _STRETCH * GREATEST_SPACING:
         problem = Message(
             "stations are up to {spacing:.3g} mm apart; at most 2.5 mm is allowed", spacing=np.max(steps) * 1e3
         )

@@ -126,6 +126,7 @@ def edited_ski(ski: Ski, edit: SkiEdit, *, name: str, source: str) -> Ski:
         ski,
         name=name,
         source=source,
+        keys=None,
         mass_per_length=mass,
         width=changed["width"],
         base_height=changed["base_height"],

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import warnings
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -52,8 +52,8 @@ class FileParts:
     values: FileValues
     table: dict[str, StationTable]
 
-    def ski(self) -> Ski:
-        """Put the ski together."""
+    def ski(self, *, like: Ski | None = None) -> Ski:
+        """Put the ski together; `like`: see `SkiParts.assembled`."""
         values = self.values
         if self.table.keys() >= set(STIFFNESSES):
             values.refuse_together(
@@ -77,7 +77,9 @@ class FileParts:
             side_edge=said.side_edge,
             edge_radius=said.edge_radius,
             stations=self.table["station_m"].station if self.table else None,
-        ).assembled()
+        ).assembled(like=like)
+        if not self.table and "shape" not in values:
+            ski = replace(ski, keys=dict(values.values))
         self._require_mass(ski)
         self._warn_of_lengths(ski)
         return ski

@@ -192,7 +192,11 @@ def file_values(path: Path) -> FileValues:
     ParameterError
         The file cannot be read, is no TOML, or has a key that no ski file has; the nearest key is named.
     """
-    values = read_toml(path)
+    return values_of_keys(read_toml(path), path)
+
+
+def values_of_keys(values: dict[str, Any], path: Path) -> FileValues:
+    """Check the keys of a ski file that were parsed already; `path`: the file that errors name."""
     for key in values:
         if key not in SKI_KEYS:
             raise ParameterError(

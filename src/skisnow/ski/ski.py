@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, fields, replace
-from typing import Annotated, TypeAlias
+from typing import Annotated, Any, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
@@ -71,6 +72,9 @@ class Ski(Shown):
         Station of the middle of running length and sidecut length (m): 0 where the boot is there.
     base
         What ``base_height`` follows from; None where the heights themselves are given.
+    keys
+        Keys of the file that the ski was read from, in its units; None where the file has a table, or the ski was
+        changed since.
 
     The tables are copied and made read-only.
 
@@ -102,6 +106,7 @@ class Ski(Shown):
     edge_radius: float = 0.0
     sidecut_middle: float = 0.0
     base: Annotated[BaseShape | None, APART] = None
+    keys: Annotated[Mapping[str, Any] | None, APART] = None
 
     def __post_init__(self) -> None:
         for field in fields(SkiSections):
@@ -146,6 +151,7 @@ class Ski(Shown):
             self,
             bending_stiffness=self.bending_stiffness * factor,
             torsional_stiffness=self.torsional_stiffness * factor,
+            keys=None,
         )
 
     def camber_rounded(self, length: float) -> Ski:
@@ -175,7 +181,9 @@ class Ski(Shown):
             sidecut_length=self.sidecut_length,
         )
         height = base.height_at(self.station, layout)
-        return replace(self, base=base, base_height=height - np.interp(0.0, self.station[::-1], height[::-1]))
+        return replace(
+            self, keys=None, base=base, base_height=height - np.interp(0.0, self.station[::-1], height[::-1])
+        )
 
     def _facts(self) -> Facts:
         """Name, length, widths, the radius of the side line in use, mass."""

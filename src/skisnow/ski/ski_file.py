@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from importlib.resources import as_file, files
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -17,10 +17,12 @@ from .._support.user_files import is_file
 from ..parameters import SMALLEST, nearest
 from .file_keys import COLUMNS, RIGID
 from .file_parts import FileParts
-from .file_values import file_values
+from .file_values import file_values, values_of_keys
 from .table_file import read_table
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from .ski import Ski
 
 _CATALOGUE = files(__package__) / "catalogue"
@@ -146,6 +148,41 @@ def _ski_in(path: Path) -> Ski:
         raise error.at(path) from error
 
 
+def ski_of_keys(keys: Mapping[str, Any], *, path: Path = Path("ski.toml"), like: Ski | None = None) -> Ski:
+    """Ski of the keys of a ski file without a table.
+
+    Parameters
+    ----------
+    keys
+        As in the file, in its units.
+    path
+        File that errors name.
+    like
+        See `SkiParts.assembled`.
+
+    Raises
+    ------
+    ParameterError
+        As `read_ski`.
+    """
+    values = values_of_keys(dict(keys), path)
+    try:
+        return FileParts(values, {}).ski(like=like)
+    except ParameterError as error:
+        raise (error if str(error).startswith(str(path)) else error.at(path)) from error
+
+
+def write_keys(keys: Mapping[str, Any], path: Path, *, digits: int = 9) -> None:
+    """Write a ski file without a table; numbers with that many digits."""
+
+    def text(value: Any) -> str:
+        if isinstance(value, list | tuple):
+            return f"[{', '.join(text(each) for each in value)}]"
+        return _toml(float(f"{value:.{digits}g}") if isinstance(value, float) else value)
+
+    write_file(path, "".join(f"{key} = {text(value)}\n" for key, value in keys.items()))
+
+
 def write_ski(ski: Ski, path: str | Path) -> None:
     """Write a ski so that `read_ski` gives the same one, but for the last digits.
 
@@ -218,5 +255,7 @@ def _plain(value: float) -> float:
 
 
 def _toml(value: str | float) -> str:
+    if isinstance(value, bool):
+        return str(value).lower()
     # a JSON text is a TOML text but for the character that JSON leaves as it is
     return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f") if isinstance(value, str) else repr(value)

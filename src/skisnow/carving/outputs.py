@@ -1,0 +1,241 @@
+"""Outputs of a carve that have derivatives: their values, and how they grow with state, snow and ski."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, Final, NamedTuple, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from .._support.units import MM
+from ..ski.beam import deflection_shape, twist_shape
+from .edge_line import BOOT_REACH, EdgeLine, circle_radius
+
+if TYPE_CHECKING:
+    from ..ski.beam import ClampedSki
+    from .solve import Conditions, Solution
+
+FloatArray: TypeAlias = npt.NDArray[np.float64]
+
+AT_BOOT: Final = np.array([BOOT_REACH, 0.0, -BOOT_REACH])
+"""Places (m) of the circle of the boot's turn radius."""
+_IMAGINARY: Final = 1e-30
+_NEAR: Final = 1e-7  # m, over which the slope of the edge line is taken
+
+
+class At(NamedTuple):
+    """A refined equilibrium; `strength`: S_f (N/m²)."""
+
+    model: ClampedSki
+    conditions: Conditions
+    strength: float | None
+    solution: Solution
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class OutputGrowth:
+    """An output, and its growth with each of the numbers that it is computed from, all others held.
+
+    Attributes
+    ----------
+    value
+        The output.
+    depth, force, weight, place
+        With depth (m) and force (N/m) of the stations, their length and place (m); None: none.
+    edge_angle, load, strength
+        With ϑ (rad), load (N), S_f (N/m²).
+    edge, edge_by
+        Places of the edge line (m), and the growth with the ski's section there, shape (4, k): width, height of the
+        base, deflection (m), twist (rad).
+    """
+
+    value: float
+    depth: FloatArray | None = None
+    force: FloatArray | None = None
+    weight: FloatArray | None = None
+    place: FloatArray | None = None
+    edge_angle: float = 0.0
+    load: float = 0.0
+    strength: float = 0.0
+    edge: FloatArray = field(default_factory=lambda: np.zeros(0))
+    edge_by: FloatArray = field(default_factory=lambda: np.zeros((4, 0)))
+
+    def scaled(self, unit: float) -> OutputGrowth:
+        """The same in another unit of the output."""
+
+        def each(column: FloatArray | None) -> FloatArray | None:
+            return None if column is None else column / unit
+
+        return OutputGrowth(
+            value=self.value / unit,
+            depth=each(self.depth),
+            force=each(self.force),
+            weight=each(self.weight),
+            place=each(self.place),
+            edge_angle=self.edge_angle / unit,
+            load=self.load / unit,
+            strength=self.strength / unit,
+            edge=self.edge,
+            edge_by=self.edge_by / unit,
+        )
+
+    def by_unknowns(self, model: ClampedSki) -> FloatArray:
+        """Growth with the unknowns of the beam (size,)."""
+        out = np.zeros(model.size)
+        if not len(self.edge):
+            return out
+        element = np.clip(np.searchsorted(-model.node, -self.edge, side="right") - 1, 0, len(model.dof) - 1)
+        length = model.node[element] - model.node[element + 1]
+        local = (model.node[element] - self.edge) / length
+        shape = self.edge_by[2, :, None] * deflection_shape(local, length) + self.edge_by[3, :, None] * twist_shape(
+            local
+        )
+        dof = model.dof[element]
+        np.add.at(out, dof[dof >= 0], shape[dof >= 0])
+        return out
+
+
+def _circle_gradient(x: FloatArray, y: FloatArray) -> tuple[float, FloatArray, FloatArray]:
+    """Radius of the circle through front, boot and rear (m), and its growth with their x and y."""
+
+    def radius(x: npt.NDArray[np.complexfloating[Any, Any]], y: npt.NDArray[np.complexfloating[Any, Any]]) -> complex:
+        def apart(i: int, j: int) -> complex:
+            return complex(np.sqrt((x[i] - x[j]) ** 2 + (y[i] - y[j]) ** 2))
+
+        twice_area = (x[0] - x[2]) * (y[1] - y[2]) - (x[1] - x[2]) * (y[0] - y[2])
+        return complex(-apart(1, 0) * apart(1, 2) * apart(0, 2) / (2.0 * twice_area))
+
+    tiny = 1j * _IMAGINARY * np.eye(3)
+    by = [[radius(x + tiny[k], y + 0j).imag for k in range(3)], [radius(x + 0j, y + tiny[k]).imag for k in range(3)]]
+    return radius(x + 0j, y + 0j).real, np.array(by[0]) / _IMAGINARY, np.array(by[1]) / _IMAGINARY
+
+
+def _radius_over(at: At, x: FloatArray) -> tuple[OutputGrowth, FloatArray] | None:
+    """The circle through the edge at three places, and its growth with these."""
+    line = EdgeLine(at.model, at.conditions.edge_angle, at.solution)
+    y = line.at(x)
+    if circle_radius((x[0], y[0]), (x[1], y[1]), (x[2], y[2])) is None:
+        return None
+    value, by_x, by_y = _circle_gradient(x, y)
+    angle = at.conditions.edge_angle
+    width, height, deflection, twist = line.sections(x)
+    turned = angle + twist
+    slope = (line.at(x + _NEAR) - line.at(x - _NEAR)) / (2.0 * _NEAR)
+    by_twist = -by_y * width / 2.0 * np.sin(turned)
+    growth = OutputGrowth(
+        value=value,
+        edge_angle=float(by_twist.sum() + (by_y * (height + deflection)).sum() * math.cos(angle)),
+        edge=x,
+        edge_by=np.array([by_y * np.cos(turned) / 2.0, by_y * math.sin(angle), by_y * math.sin(angle), by_twist]),
+    )
+    return growth, by_x + by_y * slope
+
+
+def _radius_at_boot(at: At) -> OutputGrowth | None:
+    found = _radius_over(at, AT_BOOT)
+    return None if found is None else found[0]
+
+
+def _radius_of_chord(at: At) -> OutputGrowth | None:
+    ends = _contact_ends(at)
+    if ends is None:
+        return None
+    x = np.array([ends[0].value, 0.0, ends[1].value])
+    found = _radius_over(at, x) if x[0] > 0.0 > x[2] else None
+    if found is None:
+        return None
+    growth, by_x = found
+    columns = [
+        np.asarray(by_x[0] * getattr(ends[0], name) + by_x[2] * getattr(ends[1], name)) for name in ("depth", "place")
+    ]
+    return OutputGrowth(
+        value=growth.value, depth=columns[0], place=columns[1], edge_angle=growth.edge_angle, edge=x,
+        edge_by=growth.edge_by,
+    )  # fmt: skip
+
+
+def _contact_ends(at: At) -> tuple[OutputGrowth, OutputGrowth] | None:
+    """Stations at which the depth of the edge passes zero, front first; None where the contact reaches tip or tail."""
+    depth, station = at.solution.edge_depth, at.model.stations.station
+    below = np.flatnonzero(depth > 0.0)
+    if below[0] == 0 or below[-1] == len(depth) - 1:
+        return None
+
+    def end(last: int, beyond: int) -> OutputGrowth:
+        by_depth, by_place = 0.0 * depth, 0.0 * depth
+        fall, way = depth[last] - depth[beyond], station[beyond] - station[last]
+        share = depth[last] / fall
+        by_depth[last], by_depth[beyond] = -depth[beyond] * way / fall**2, depth[last] * way / fall**2
+        by_place[last], by_place[beyond] = 1.0 - share, share
+        return OutputGrowth(value=float(station[last] + share * way), depth=by_depth, place=by_place)
+
+    return end(int(below[0]), int(below[0]) - 1), end(int(below[-1]), int(below[-1]) + 1)
+
+
+def _contact_length(at: At) -> OutputGrowth | None:
+    ends = _contact_ends(at)
+    if ends is None:
+        return None
+    front, rear = ends
+    depth, place = (np.asarray(getattr(front, name) - getattr(rear, name)) for name in ("depth", "place"))
+    return OutputGrowth(value=front.value - rear.value, depth=depth, place=place)
+
+
+def _largest(values: FloatArray) -> FloatArray:
+    return np.asarray(np.eye(1, len(values), int(np.argmax(values)))[0])
+
+
+def _depth(at: At) -> OutputGrowth | None:
+    depth = at.solution.edge_depth
+    return OutputGrowth(value=float(depth.max()), depth=_largest(depth))
+
+
+def _force(at: At) -> OutputGrowth | None:
+    force = at.solution.force_per_length
+    return OutputGrowth(value=float(force.max()), force=_largest(force))
+
+
+def _deflection(at: At) -> OutputGrowth | None:
+    x = np.array([BOOT_REACH])
+    by = np.array([[0.0], [0.0], [1.0], [0.0]])
+    line = EdgeLine(at.model, at.conditions.edge_angle, at.solution)
+    return OutputGrowth(value=float(line.sections(x)[2][0]), edge=x, edge_by=by)
+
+
+def _grip_utilisation(at: At) -> OutputGrowth | None:
+    weight, depth, given = at.model.stations.weight, at.solution.edge_depth, at.conditions
+    if at.strength is None or given.side_force == 0.0:
+        return None
+    below = np.where(depth > 0.0, 1.0, 0.0)
+    area = float(weight @ (below * depth))
+    value = given.side_force / (at.strength * area)
+    return OutputGrowth(
+        value=value,
+        depth=-value / area * weight * below,
+        weight=-value / area * depth * below,
+        edge_angle=given.load / math.cos(given.edge_angle) ** 2 / (at.strength * area),
+        load=value / given.load,
+        strength=-value / at.strength,
+    )
+
+
+OUTPUTS: Final[dict[str, tuple[Callable[[At], OutputGrowth | None], float, str]]] = {
+    "turn_radius_boot_m": (_radius_at_boot, 1.0, "circle through the edge at the boot and 0.4 m before and behind"),
+    "turn_radius_chord_m": (_radius_of_chord, 1.0, "circle through the edge at the boot and both ends of the contact"),
+    "edge_depth_mm": (_depth, MM, "greatest depth of the edge"),
+    "grip_utilisation": (_grip_utilisation, 1.0, "side force over its limit"),
+    "deflection_mm": (_deflection, MM, "deflection of the base 0.4 m before the boot"),
+    "force_per_length_N_per_m": (_force, 1.0, "greatest force per length along the edge"),
+    "contact_length_m": (_contact_length, 1.0, "between the ends of the contact, if it reaches neither tip nor tail"),
+}
+"""By name: computation, unit, definition."""
+
+
+def output_growth(name: str, at: At) -> OutputGrowth | None:
+    """An output in the unit of its name; None where it does not exist."""
+    compute, unit, _ = OUTPUTS[name]
+    found = compute(at)
+    return None if found is None else found.scaled(unit)

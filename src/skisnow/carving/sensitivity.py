@@ -1,0 +1,316 @@
+"""Exact derivatives of a carve by the adjoint state: how an output grows with ski, snow, load and edge angle.
+
+Equations: docs/methods/carve-derivatives.md.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Final, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from .._support.errors import ParameterError
+from .._support.messages import Message
+from .._support.units import DEGREE, N_PER_MM2, N_PER_MM3
+from ..parameters import nearest
+from ..ski.variation import LINEAR, shape_parameters, shape_value
+from .outputs import AT_BOOT, OUTPUTS, At, OutputGrowth, output_growth
+from .shape import Shape, beam_gradient, beam_moved, bent_by, shape_growth
+from .solve import Solution, refined
+
+if TYPE_CHECKING:
+    from ..compiled import core
+    from ..ski.beam import ClampedSki
+    from .solve import Conditions
+
+FloatArray: TypeAlias = npt.NDArray[np.float64]
+
+CONDITIONS: Final = (
+    "edge_angle_deg",
+    "load_N",
+    "moment_Nm",
+    "unloading_ratio",
+    "snow.H_V_N_per_mm3",
+    "snow.S_f_N_per_mm2",
+)
+"""Parameters besides those of the ski. Load and edge angle change the side force, load × tan ϑ, with them."""
+_ANGLE, _HARDNESS, _EXCESS, _LOAD, _MOMENT, _SIDE_FORCE, _BEVEL, _BEVEL_WIDTH, _PITCH, _PITCH_OF_SHEAR = range(10)
+_RUNNING_LENGTH, _GREATEST_WIDTH = 10, 11  # numbers of the core
+
+
+@dataclass(frozen=True, slots=True)
+class Sensitivity:
+    """Derivative of an output by a parameter.
+
+    Attributes
+    ----------
+    output, parameter
+        Names, with their units.
+    output_value, parameter_value
+        Values at the equilibrium.
+    derivative
+        Units of the output per unit of the parameter.
+    relative
+        Change of the output in % per % of the parameter; None where either is 0.
+    kink
+        Relative change of the parameter at which a station touches or leaves the snow or the groove, to first order:
+        beyond it the derivative is another.
+    """
+
+    output: str
+    parameter: str
+    output_value: float
+    parameter_value: float
+    derivative: float
+    relative: float | None
+    kink: float
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class CarveRequest:
+    """What an equilibrium was computed from."""
+
+    model: ClampedSki
+    conditions: Conditions
+    strength: float | None
+    solution: Solution
+    elements: int
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Direction:
+    """Growth of the equations' numbers with a parameter, per its unit."""
+
+    numbers: FloatArray
+    strength: float = 0.0
+    shape: Shape | None = None
+    bent: FloatArray | None = None
+
+    def columns(self, model: ClampedSki) -> FloatArray:
+        """Growth of the stations' place, weight, width, base height, and of their element's length over itself."""
+        if self.shape is None:
+            return np.zeros((5, len(model.stations.station)))
+        stretch = self.shape.length / (model.node[:-1] - model.node[1:])
+        return np.array(
+            [
+                self.shape.place,
+                np.repeat(self.shape.length / 2.0, 2),
+                self.shape.width,
+                self.shape.base_height,
+                np.repeat(stretch, 2),
+            ]
+        )
+
+
+@dataclass(slots=True, eq=False)
+class CarveDerivatives:
+    """Derivatives at one equilibrium; what outputs and parameters share is computed once.
+
+    Parameters
+    ----------
+    request
+        Of a carve with the groove along the edge, by the snow's own numbers.
+    """
+
+    request: CarveRequest
+    point: core.CarvePoint = field(init=False)
+    at: At = field(init=False)
+    _directions: dict[str, _Direction] = field(default_factory=dict)
+    _gradients: dict[str, tuple[OutputGrowth, tuple[FloatArray, FloatArray, FloatArray]] | None] = field(
+        default_factory=dict
+    )
+
+    def __post_init__(self) -> None:
+        asked = self.request
+        self.point = refined(asked.model, asked.conditions, asked.solution)
+        _, u, (depth, slope, stress), edge_depth, force = self.point.state()
+        solution = Solution(True, 0, u, depth, slope, stress, edge_depth, force)
+        self.at = At(asked.model, asked.conditions, asked.strength, solution)
+
+    @property
+    def parameters(self) -> tuple[str, ...]:
+        """Names of all parameters."""
+        return (*CONDITIONS, *shape_parameters(self.request.model.ski))
+
+    @property
+    def everyday_parameters(self) -> tuple[str, ...]:
+        """Turn and snow, the ski's widths and camber, factors of its sidecut and stiffness."""
+        kept = (*CONDITIONS, *(f"ski.{key}" for key in LINEAR), "edit.sidecut_depth", "edit.EI_N_m2", "edit.GJ_N_m2")
+        return tuple(name for name in self.parameters if name in kept)
+
+    def value(self, parameter: str) -> float:
+        """Value of a parameter, in the unit of its name."""
+        given = self.request.conditions
+        values = {
+            "edge_angle_deg": given.edge_angle / DEGREE,
+            "load_N": given.load,
+            "moment_Nm": given.moment,
+            "unloading_ratio": 1.0 + given.excess / given.hardness,
+            "snow.H_V_N_per_mm3": given.hardness / N_PER_MM3,
+            "snow.S_f_N_per_mm2": (self.request.strength or 0.0) / N_PER_MM2,
+        }
+        if parameter in values:
+            return values[parameter]
+        if parameter.partition(".")[0] not in ("ski", "edit"):
+            raise ParameterError(
+                Message(
+                    "{name} is no parameter of a carve. {allowed}",
+                    name=parameter,
+                    allowed=nearest(parameter, self.parameters),
+                ),
+                code="unknown_name",
+            )
+        return shape_value(self.request.model.ski, parameter)
+
+    def sensitivity(self, output: str, parameters: Iterable[str]) -> tuple[Sensitivity, ...]:
+        """Derivatives of an output by parameters.
+
+        Raises
+        ------
+        ParameterError
+            An output or a parameter is unknown, or the output does not exist here.
+        """
+        found = self._gradient(output)
+        if found is None:
+            raise ParameterError(
+                Message("the carve has no {output}, so it has no derivative.", output=output), code="no_value"
+            )
+        out = []
+        for name in parameters:
+            value, growth = self.value(name), self._derivative(name, *found)
+            relative = growth * value / found[0].value if value and found[0].value else None
+            kink = self._kink(name) / (abs(value) or 1.0)
+            out.append(Sensitivity(output, name, found[0].value, value, growth, relative, kink))
+        return tuple(out)
+
+    def output(self, name: str) -> float | None:
+        """Value of an output, in the unit of its name; None where it does not exist."""
+        found = self._gradient(name)
+        return None if found is None else found[0].value
+
+    def force_growth(self, parameter: str) -> FloatArray:
+        """Growth of the force per length at each station (N/m) with a parameter, per its unit."""
+        return self._growth(parameter)[3]
+
+    def fields(self, output: str) -> dict[str, FloatArray]:
+        """Growth of an output with the curves of the ski, per metre of ski.
+
+        With width and base height (mm) at ``station_m``, and with EI and GJ (N m²) at ``beam_m``.
+        """
+        found = self._gradient(output)
+        model = self.request.model
+        if found is None:
+            raise ParameterError(
+                Message("the carve has no {output}, so it has no derivative.", output=output), code="no_value"
+            )
+        _, (columns, _, adjoint) = found
+        length = model.node[:-1] - model.node[1:]
+        bending, torsion = beam_gradient(model, self.at.solution.u, adjoint)
+        weight = model.stations.weight
+        return {
+            "station_m": model.stations.station,
+            "width_per_mm_m": columns[2] / weight * 1e-3,
+            "base_height_per_mm_m": columns[3] / weight * 1e-3,
+            "beam_m": (model.node[:-1] + model.node[1:]) / 2.0,
+            "EI_per_N_m3": bending.sum(axis=1) / length,
+            "GJ_per_N_m3": torsion.sum(axis=1) / length,
+        }
+
+    def _gradient(self, output: str) -> tuple[OutputGrowth, tuple[FloatArray, FloatArray, FloatArray]] | None:
+        if output not in OUTPUTS:
+            raise ParameterError(
+                Message(
+                    "{name} is no output with derivatives. {allowed}", name=output, allowed=nearest(output, OUTPUTS)
+                ),
+                code="unknown_name",
+            )
+        if output not in self._gradients:
+            growth = output_growth(output, self.at)
+            self._gradients[output] = None if growth is None else (growth, self._adjoint(growth))
+        return self._gradients[output]
+
+    def _adjoint(self, growth: OutputGrowth) -> tuple[FloatArray, FloatArray, FloatArray]:
+        none = np.zeros(len(self.at.solution.edge_depth))
+        depth, force = (none if each is None else each for each in (growth.depth, growth.force))
+        return self.point.gradient(growth.by_unknowns(self.request.model), depth, force)
+
+    def _derivative(
+        self, name: str, growth: OutputGrowth, gradient: tuple[FloatArray, FloatArray, FloatArray]
+    ) -> float:
+        direction, model = self._direction(name), self.request.model
+        columns, numbers, adjoint = gradient
+        total = float(numbers @ direction.numbers) + growth.strength * direction.strength
+        total += growth.edge_angle * direction.numbers[_ANGLE] + growth.load * direction.numbers[_LOAD]
+        shape = direction.shape
+        if shape is None or direction.bent is None:
+            return total
+        along = direction.columns(model)
+        total += float(np.sum(columns[:4] * along[:4])) + float(adjoint @ direction.bent)
+        if along[4].any():  # the shapes of slopes are as long as the element
+            own, back = (_slopes_at_stations(model, each) for each in (self.at.solution.u, adjoint))
+            total += float((columns[4] * own - columns[5] * back) @ along[4])
+        for by, column in ((growth.place, along[0]), (growth.weight, along[1])):
+            total += 0.0 if by is None else float(by @ column)
+        if len(growth.edge):
+            total += float(np.sum(growth.edge_by[2:] * beam_moved(model, self.at.solution.u, growth.edge, shape)))
+        if growth.edge_by[:2].any():
+            at_boot = np.array_equal(growth.edge, AT_BOOT)
+            sections = shape.edge if at_boot else self._shape_growth(name, growth.edge).edge
+            total += float(np.sum(growth.edge_by[:2] * sections[1:]))
+        return total
+
+    def _growth(self, name: str) -> tuple[FloatArray, tuple[float, float, float], FloatArray, FloatArray, float]:
+        direction, model = self._direction(name), self.request.model
+        bent = np.zeros(model.size) if direction.bent is None else direction.bent
+        return self.point.growth(direction.columns(model), direction.numbers, bent)
+
+    def _kink(self, name: str) -> float:
+        return math.inf if name == "snow.S_f_N_per_mm2" else self._growth(name)[4]
+
+    def _direction(self, name: str) -> _Direction:
+        if name not in self._directions:
+            if name in CONDITIONS:
+                self._directions[name] = self._of_conditions(name)
+            else:
+                shape = self._shape_growth(name, AT_BOOT)
+                numbers = np.zeros(12)
+                numbers[[_RUNNING_LENGTH, _GREATEST_WIDTH, _BEVEL, _BEVEL_WIDTH]] = shape.numbers
+                bent = bent_by(self.request.model, self.at.solution.u, shape)
+                self._directions[name] = _Direction(numbers, 0.0, shape, bent)
+        return self._directions[name]
+
+    def _shape_growth(self, name: str, edge: FloatArray) -> Shape:
+        ski, asked = self.request.model.ski, self.request
+        return shape_growth(ski, name, shape_value(ski, name), asked.model.clamp_length, asked.elements, edge)
+
+    def _of_conditions(self, name: str) -> _Direction:
+        given, numbers, strength = self.request.conditions, np.zeros(12), 0.0
+        turns = given.side_force > 0.0
+        if name == "edge_angle_deg":
+            numbers[_ANGLE] = DEGREE
+            numbers[_SIDE_FORCE] = turns * given.load / math.cos(given.edge_angle) ** 2 * DEGREE
+            if given.pitch_of_shear != 0.0:  # free: cos ϑ and sin ϑ
+                numbers[_PITCH] = -math.sin(given.edge_angle) * DEGREE
+                numbers[_PITCH_OF_SHEAR] = math.cos(given.edge_angle) * DEGREE
+        elif name == "load_N":
+            numbers[_LOAD], numbers[_SIDE_FORCE] = 1.0, turns * math.tan(given.edge_angle)
+        elif name == "moment_Nm":
+            numbers[_MOMENT] = 1.0
+        elif name == "unloading_ratio":
+            numbers[_EXCESS] = given.hardness
+        elif name == "snow.H_V_N_per_mm3":
+            numbers[_HARDNESS], numbers[_EXCESS] = N_PER_MM3, given.excess / given.hardness * N_PER_MM3
+        else:
+            strength = N_PER_MM2
+        return _Direction(numbers, strength)
+
+
+def _slopes_at_stations(model: ClampedSki, u: FloatArray) -> FloatArray:
+    """Part of the deflection at the stations that comes from slopes of nodes (m)."""
+    stations = model.stations
+    value = np.where(stations.dof >= 0, u[stations.dof], 0.0)
+    return np.asarray(np.sum((stations.deflection * value)[:, [1, 4]], axis=1))

@@ -1,0 +1,162 @@
+"""What a clamped ski is to the equations of a carve, and how it grows with a parameter of the ski."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+from typing import TYPE_CHECKING, Final, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from ..ski.beam import (
+    GAUSS_POINTS,
+    GAUSS_WEIGHTS,
+    ClampedSki,
+    curvature_shape,
+    deflection_shape,
+    model_nodes,
+    twist_shape,
+)
+from ..ski.variation import LINEAR, varied_ski
+
+if TYPE_CHECKING:
+    from ..ski.ski import Ski
+
+FloatArray: TypeAlias = npt.NDArray[np.float64]
+
+_GAUSS_PLACES: Final = np.array([(1.0 - 1.0 / np.sqrt(3.0)) / 2.0, (1.0 + 1.0 / np.sqrt(3.0)) / 2.0])
+_STEP: Final = 1e-3  # of a parameter; in mm of a length
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Shape:
+    """Numbers of a ski in the equations, SI; as a growth: per unit of a parameter.
+
+    Attributes
+    ----------
+    node, length
+        Of the beam, and of its n elements.
+    place, width, base_height
+        At two stations of each element.
+    bending, torsion
+        EI and GJ at the Gauss points of each element, shape (n, 4).
+    edge
+        Place, width and base height at the places of the edge line that an output names, shape (3, k).
+    numbers
+        Running length, greatest width at the stations, base bevel, edge width.
+    """
+
+    node: FloatArray
+    length: FloatArray
+    place: FloatArray
+    width: FloatArray
+    base_height: FloatArray
+    bending: FloatArray
+    torsion: FloatArray
+    edge: FloatArray
+    numbers: FloatArray
+
+    def combined(self, other: Shape, own: float, others: float) -> Shape:
+        """The sum of both, each times a factor."""
+        return Shape(*(own * getattr(self, f.name) + others * getattr(other, f.name) for f in fields(Shape)))
+
+
+def shape_of(ski: Ski, clamp_length: float, elements: int, edge: FloatArray) -> Shape:
+    """Shape of a ski; `edge`: places (m from the boot) of the edge line."""
+    node = model_nodes(ski, clamp_length, elements)
+    length = node[:-1] - node[1:]
+    place = (node[:-1, None] - length[:, None] * _GAUSS_PLACES).ravel()
+    here, stiff = ski.at(place), ski.at(node[:-1, None] - length[:, None] * GAUSS_POINTS)
+    on_edge = ski.at(edge)
+    return Shape(
+        node,
+        length,
+        place,
+        here.width,
+        here.base_height,
+        stiff.bending_stiffness,
+        stiff.torsional_stiffness,
+        np.array([edge, on_edge.width, on_edge.base_height]),
+        np.array([ski.running_length, here.width.max(), ski.base_bevel, ski.edge_width]),
+    )
+
+
+def shape_growth(ski: Ski, name: str, value: float, clamp_length: float, elements: int, edge: FloatArray) -> Shape:
+    """Growth of the shape with a parameter of the ski, per its unit; meshes and tables keep their numbers of rows.
+
+    Central differences of the ski alone, exact where it is linear in the parameter; else extrapolated (Richardson).
+    """
+    # a length moves stations over rows of the tables, between which they are linear: a small step
+    step = _STEP * abs(value) if value and not name.endswith("_mm") else _STEP
+
+    def central(h: float) -> Shape:
+        ends = [shape_of(varied_ski(ski, name, side * h), clamp_length, elements, edge) for side in (1.0, -1.0)]
+        return ends[0].combined(ends[1], 0.5 / h, -0.5 / h)
+
+    if name.startswith("edit.") or name.removeprefix("ski.") in LINEAR:
+        return central(1e-2 * abs(value) or _STEP)
+    return central(step / 2.0).combined(central(step), 4.0 / 3.0, -1.0 / 3.0)
+
+
+def bent_by(model: ClampedSki, u: FloatArray, growth: Shape) -> FloatArray:
+    """Growth of the beam's elastic forces at the same unknowns (size,)."""
+    value = _values(model, u)
+    length = _lengths(model)
+    curvature = curvature_shape(GAUSS_POINTS[None, :], length[:, None])
+    stiff = model.ski.at(model.node[:-1, None] - length[:, None] * GAUSS_POINTS)
+    kappa = np.einsum("ngi,ni->ng", curvature, value)
+    stretch = (growth.length / length)[:, None, None]
+    # shapes of curvature fall as 1/ℓ² with deflections and as 1/ℓ with slopes
+    falls = -stretch * np.array([2.0, 1.0, 0.0, 2.0, 1.0, 0.0]) * curvature
+    weight = GAUSS_WEIGHTS * length[:, None]
+    moment = stiff.bending_stiffness * kappa
+    grown = growth.bending * kappa + stiff.bending_stiffness * np.einsum("ngi,ni->ng", falls, value)
+    force = np.einsum("ng,ngi->ni", weight * (grown + moment * stretch[:, :, 0]), curvature)
+    force += np.einsum("ng,ngi->ni", weight * moment, falls)
+    turn = (value[:, 5] - value[:, 2]) / length
+    torque = (growth.torsion - stiff.torsional_stiffness * stretch[:, :, 0]) @ GAUSS_WEIGHTS * turn
+    force[:, 5] += torque
+    force[:, 2] -= torque
+    out = np.zeros(model.size)
+    np.add.at(out, model.dof[model.dof >= 0], force[model.dof >= 0])
+    return out
+
+
+def beam_gradient(model: ClampedSki, u: FloatArray, adjoint: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Growth of λ·K u with EI and GJ at the Gauss points: w ℓ κ_u κ_λ, and with the rates of twist; (n, 4) each."""
+    length = _lengths(model)
+    both = np.array([_values(model, each) for each in (u, adjoint)])
+    curvature = curvature_shape(GAUSS_POINTS[None, :], length[:, None])
+    kappa = np.einsum("ngi,kni->kng", curvature, both)
+    turn = (both[:, :, 5] - both[:, :, 2]) / length
+    weight = GAUSS_WEIGHTS * length[:, None]
+    return weight * kappa[0] * kappa[1], weight * (turn[0] * turn[1])[:, None]
+
+
+def beam_moved(model: ClampedSki, u: FloatArray, place: FloatArray, growth: Shape) -> tuple[FloatArray, FloatArray]:
+    """Growth of deflection and twist at fixed places for the same unknowns, where nodes move."""
+    if not growth.node.any():
+        return np.zeros(len(place)), np.zeros(len(place))
+    element = np.clip(np.searchsorted(-model.node, -place, side="right") - 1, 0, len(model.dof) - 1)
+    value = _values(model, u)[element]
+    step = 1e-6 / max(1e-12, float(np.max(np.abs(growth.node))))
+
+    def at(side: float) -> tuple[FloatArray, FloatArray]:
+        node = model.node + side * step * growth.node
+        length = node[element] - node[element + 1]
+        local = (node[element] - place) / length
+        return (
+            np.sum(deflection_shape(local, length) * value, axis=-1),
+            np.sum(twist_shape(local) * value, axis=-1),
+        )
+
+    (w1, t1), (w0, t0) = at(1.0), at(-1.0)
+    return (w1 - w0) / (2.0 * step), (t1 - t0) / (2.0 * step)
+
+
+def _values(model: ClampedSki, u: FloatArray) -> FloatArray:
+    return np.where(model.dof >= 0, u[model.dof], 0.0)
+
+
+def _lengths(model: ClampedSki) -> FloatArray:
+    return np.asarray(model.node[:-1] - model.node[1:])

@@ -1,0 +1,108 @@
+"""A ski with one of its parameters changed a little: keys of its file (`ski.…`) and factors of an edit (`edit.…`)."""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from .._support.errors import ParameterError
+from .._support.messages import Message
+from ..parameters import nearest
+from .editing import EDITED_COLUMNS, SIDECUT, SkiEdit, edit_stations, edited_ski
+from .file_keys import LISTS, SKI_KEYS
+from .ski_file import ski_of_keys
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from .ski import Ski
+
+FACTORS: Final = tuple(f"edit.{column}" for column in (SIDECUT, *EDITED_COLUMNS))
+"""Factors of whole curves, as in `SkiEdit`; the rest of the ski is held."""
+LINEAR: Final = ("tip_width_mm", "waist_width_mm", "tail_width_mm", "camber_mm", "base_bevel_deg", "edge_width_mm")
+"""Keys in which the ski's tables are linear."""
+_WITHOUT: Final = ("mass_kg", "side_edge_deg", "edge_radius_mm")  # no part in a carve, or no derivative
+_ROW: Final = re.compile(r"(\w+)\[(\d+)\]")
+
+
+def shape_parameters(ski: Ski) -> tuple[str, ...]:
+    """Names of the parameters of a ski: numbers of its file, rows of its lists (`ski.EI_N_m2[2]`), factors."""
+    numbers = []
+    for key, value in (ski.keys or {}).items():
+        if key in LISTS and isinstance(value, list | tuple):
+            numbers += [f"ski.{key}[{row}]" for row in range(1, len(value) + 1)]
+        elif isinstance(value, int | float) and not isinstance(value, bool) and key not in _WITHOUT:
+            numbers += [] if key == "base_bevel_deg" and value == 0 else [f"ski.{key}"]  # it cannot fall
+    default = ["ski.boot_position_mm"] if ski.keys and "boot_position_mm" not in ski.keys else []
+    return (*numbers, *default, *FACTORS)
+
+
+def shape_value(ski: Ski, name: str) -> float:
+    """Value of a parameter, in the unit of the file; 1 of a factor.
+
+    Raises
+    ------
+    ParameterError
+        The ski has no such parameter; the nearest is named.
+    """
+    known = shape_parameters(ski)
+    if name not in known:
+        if ski.keys is None and name.startswith("ski."):
+            raise ParameterError(
+                Message(
+                    "{name}: the ski {ski} was not read from a file of keys alone, or was changed since. Take one "
+                    "of {allowed}.",
+                    name=name,
+                    ski=ski.name,
+                    allowed=list(FACTORS),
+                ),
+                code="no_keys",
+            )
+        raise ParameterError(
+            Message("the ski has no parameter {name}. {allowed}", name=name, allowed=nearest(name, known)),
+            code="unknown_name",
+        )
+    return 1.0 if name in FACTORS else _key_value(ski.keys or {}, name.removeprefix("ski."))
+
+
+def _key_value(keys: Mapping[str, Any], place: str) -> float:
+    row = _ROW.fullmatch(place)
+    if row:
+        return float(keys[row[1]][int(row[2]) - 1])
+    return float(keys.get(place, SKI_KEYS[place].default or 0.0))
+
+
+def changed_keys(keys: Mapping[str, Any], values: Mapping[str, float]) -> dict[str, Any]:
+    """Keys of a ski file with other values; names as of `shape_parameters`, without their ``ski.``."""
+    out = dict(keys)
+    for place, value in values.items():
+        row = _ROW.fullmatch(place)
+        if row:
+            rows = list(out[row[1]])
+            rows[int(row[2]) - 1] = value
+            out[row[1]] = rows
+        else:
+            out[place] = value
+    return out
+
+
+def varied_ski(ski: Ski, name: str, change: float) -> Ski:
+    """The ski with a parameter of `shape_parameters` changed, on stations that move with it; the others are held."""
+    value = shape_value(ski, name) + change
+    if name in FACTORS:
+        column = name.removeprefix("edit.")
+        edit = SkiEdit(edit_stations(ski), {column: value})
+        return edited_ski(ski, edit, name=ski.name, source=ski.source)
+    keys = ski.keys or {}
+    own = ski_of_keys(keys, like=ski)
+    if not all(
+        np.allclose(getattr(own, table), getattr(ski, table), rtol=1e-9, atol=1e-12)
+        for table in ("width", "base_height", "bending_stiffness", "torsional_stiffness")
+    ):
+        raise ParameterError(
+            Message("{name}: the tables of the ski {ski} are not those of its keys.", name=name, ski=ski.name),
+            code="no_keys",
+        )
+    return ski_of_keys(changed_keys(keys, {name.removeprefix("ski."): value}), like=ski)

@@ -1,0 +1,207 @@
+"""Derivatives of a carve against differences of refined equilibria, at points that were drawn beforehand."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from skisnow._support.errors import ParameterError
+from skisnow.carving.equilibrium import carve
+from skisnow.carving.outputs import At, output_growth
+from skisnow.carving.result import Equilibrium
+from skisnow.carving.sensitivity import CONDITIONS, CarveDerivatives, CarveRequest
+from skisnow.carving.solve import Solution, refined
+from skisnow.ski import Ski, read_ski
+from skisnow.ski.beam import clamped
+from skisnow.ski.ski_file import ski_of_keys
+from skisnow.ski.variation import shape_parameters, varied_ski
+from skisnow.snow import SnowProperties
+from tests.coded import raises
+
+from .synthetic import FloatArray, rigid_ski, snow
+
+OUTPUTS = (
+    "turn_radius_boot_m", "turn_radius_chord_m", "edge_depth_mm", "grip_utilisation", "deflection_mm",
+    "force_per_length_N_per_m", "contact_length_m",
+)  # fmt: skip
+LENGTHS = {"ski.length_mm", "ski.running_length_mm", "ski.sidecut_length_mm"}
+"""Stations pass rows of the ski's tables, between which these are linear: few differences are accurate to 1e-7."""
+STEPS = (1e-2, 3e-3, 1e-3, 3e-4, 1e-4, 1e-5)
+"""Of a parameter. A difference counts with its error, that against the step before."""
+
+
+def drawn(random: np.random.Generator) -> tuple[Ski, SnowProperties, dict[str, Any]]:
+    """A ski of the catalogue with other widths, camber and stiffness, on some snow, in some turn."""
+    keys: dict[str, Any] = dict(read_ski(str(random.choice(["slalom", "giant-slalom", "carver"]))).keys or {})
+    for key in ("tip_width_mm", "waist_width_mm", "tail_width_mm"):
+        keys[key] += random.uniform(-4.0, 4.0)
+    keys["camber_mm"] = random.uniform(0.5, 12.0)
+    keys["boot_position_mm"] = random.uniform(-30.0, 30.0)
+    keys["base_bevel_deg"] = float(random.choice([0.0, random.uniform(0.3, 1.5)]))
+    for key in ("EI_N_m2", "GJ_N_m2"):
+        keys[key] = [each * random.uniform(0.7, 1.4) for each in keys[key]]
+    hardness, ratio = np.exp(random.uniform(np.log([0.02, 1.05]), np.log([5.0, 50.0])))
+    turn = {
+        "edge_angle": math.radians(random.uniform(10.0, 70.0)),
+        "load": random.uniform(300.0, 2500.0),
+        "moment": random.uniform(-30.0, 30.0),
+        "unloading_ratio": ratio,
+        "moment_balance": str(random.choice(["boot", "free"])),
+        "side_force_spread": str(random.choice(["depth", "base-reaction"])),
+    }
+    return ski_of_keys(keys), snow(hardness, random.uniform(0.1, 0.6)), turn
+
+
+def derivatives(found: Equilibrium) -> CarveDerivatives:
+    assert found.request is not None
+    return CarveDerivatives(found.request)
+
+
+def moved(request: CarveRequest, near: Solution, name: str, change: float) -> FloatArray:
+    """Outputs of the refined equilibrium with a parameter changed, on a mesh and tables that move with the ski."""
+    model, given, strength = request.model, request.conditions, request.strength
+    if name in CONDITIONS:
+        unit = {"edge_angle_deg": math.pi / 180.0, "snow.H_V_N_per_mm3": 1e9, "snow.S_f_N_per_mm2": 1e6}.get(name, 1.0)
+        ratio = given.excess / given.hardness + (change if name == "unloading_ratio" else 0.0)
+        angle = given.edge_angle + (unit * change if name == "edge_angle_deg" else 0.0)
+        load = given.load + (change if name == "load_N" else 0.0)
+        hardness = given.hardness + (unit * change if name == "snow.H_V_N_per_mm3" else 0.0)
+        strength = (strength or 0.0) + (unit * change if name == "snow.S_f_N_per_mm2" else 0.0)
+        free = given.pitch_of_shear != 0.0
+        given = given._replace(
+            edge_angle=angle,
+            load=load,
+            side_force=load * math.tan(angle),
+            hardness=hardness,
+            excess=hardness * ratio,
+            moment=given.moment + (change if name == "moment_Nm" else 0.0),
+            pitch_of_force=math.cos(angle) if free else 1.0,
+            pitch_of_shear=math.sin(angle) if free else 0.0,
+        )
+    else:
+        ski = varied_ski(model.ski, name, change)
+        model = clamped.__wrapped__(ski, model.clamp_length, request.elements)
+        given = given._replace(bevel=ski.base_bevel, bevel_width=ski.edge_width)
+    correction, u, (depth, slope, stress), edge_depth, force = refined(model, given, near).state()
+    if not correction < 1e-13:
+        return np.full(len(OUTPUTS), np.nan)
+    at = At(model, given, strength, Solution(True, 0, u, depth, slope, stress, edge_depth, force))
+    growths = [output_growth(output, at) for output in OUTPUTS]
+    return np.array([np.nan if growth is None else growth.value for growth in growths])
+
+
+def differences(request: CarveRequest, near: Solution, name: str, value: float) -> tuple[FloatArray, FloatArray]:
+    """Derivatives of all outputs by Richardson extrapolation at the best of some steps, and their errors."""
+    found = []
+    for step in STEPS:
+        h = step * (abs(value) or 10.0) * (0.03 if name.endswith("length_mm") else 1.0)
+        ends = [moved(request, near, name, side * h) for side in (1.0, -1.0, 0.5, -0.5)]
+        found.append((4.0 * (ends[2] - ends[3]) / h - (ends[0] - ends[1]) / (2.0 * h)) / 3.0)
+    apart = np.abs(np.diff(found, axis=0))
+    best = np.argmin(np.where(np.isnan(apart), np.inf, apart), axis=0)
+    each = np.arange(len(OUTPUTS))
+    return np.array(found)[best + 1, each], apart[best, each]
+
+
+def comparisons(points: int, parameters: int, seed: int) -> dict[str, list[tuple[float, float]]]:
+    """By parameter: error of the derivative, and of the reference, over max(|derivative|, |output/parameter|)."""
+    random = np.random.default_rng(seed)
+    out: dict[str, list[tuple[float, float]]] = {}
+    for _ in range(points):
+        ski, found_snow, turn = drawn(random)
+        found = carve(ski, found_snow, **turn)
+        names = random.permutation([*CONDITIONS, *shape_parameters(ski)])[:parameters]
+        if found.request is None:
+            continue
+        exact = derivatives(found)
+        for name in map(str, names):
+            value = exact.value(name)
+            reference, error = differences(exact.request, exact.at.solution, name, value)
+            for output, by_differences, own_error in zip(OUTPUTS, reference, error, strict=True):
+                if exact.output(output) is None:
+                    continue
+                (by_adjoint,) = exact.sensitivity(output, [name])
+                size = max(abs(by_adjoint.derivative), abs(by_adjoint.output_value / (value or 10.0)))
+                pair = (abs(by_adjoint.derivative - by_differences) / size, own_error / size)
+                out.setdefault(name, []).append(pair)
+    return out
+
+
+def require_agreement(found: dict[str, list[tuple[float, float]]], *, share: float) -> None:
+    pairs = np.array([pair for each in found.values() for pair in each])
+    counts = pairs[:, 1] < 1e-7
+    assert np.mean(counts) >= share
+    assert np.mean(pairs[counts, 0] < 1e-6) >= 0.99
+    assert np.max(pairs[counts, 0]) < 1e-4
+
+
+def test_derivatives_are_those_of_differences() -> None:
+    require_agreement(comparisons(points=4, parameters=4, seed=3), share=0.8)
+
+
+@pytest.mark.slow
+def test_derivatives_at_200_points() -> None:
+    found = comparisons(points=200, parameters=8, seed=58)
+    require_agreement(found, share=0.9)
+    for name in set(found) - LENGTHS:
+        pairs = found[name]
+        assert np.mean(np.array(pairs)[:, 1] < 1e-7) >= 0.7, name
+
+
+def test_strength_and_mass_play_no_part_in_the_radius() -> None:
+    found = carve(read_ski("slalom"), snow(0.21, 0.52), edge_angle=math.radians(45.0), load=800.0, unloading_ratio=10.0)
+    (by_strength,) = found.sensitivity("turn_radius_boot_m", ["snow.S_f_N_per_mm2"])
+    assert (by_strength.derivative, by_strength.kink) == (0.0, math.inf)
+    (grip,) = found.sensitivity("grip_utilisation", ["snow.S_f_N_per_mm2"])
+    assert grip.relative == pytest.approx(-1.0, rel=1e-12)
+
+
+def test_a_rigid_wedge_in_closed_form() -> None:
+    """e = √(2 F tan ϑ/(H_V L)): half a per cent per per cent of the load, minus half of H_V; grip F tan ϑ/(S_f e L)."""
+    case: dict[str, Any] = {"edge_angle": math.radians(45.0), "load": 800.0, "unloading_ratio": 10.0}
+    found = carve(rigid_ski(), snow(0.2), **case)
+    names = ["load_N", "snow.H_V_N_per_mm3", "unloading_ratio", "edge_angle_deg"]
+    depth = [each.relative for each in found.sensitivity("edge_depth_mm", names)]
+    grip = [each.relative for each in found.sensitivity("grip_utilisation", names)]
+    steeper = math.radians(45.0) / (math.sin(math.radians(45.0)) * math.cos(math.radians(45.0)))
+    assert depth == pytest.approx([0.5, -0.5, 0.0, steeper / 2.0], abs=1e-6)
+    assert grip == pytest.approx([0.5, 0.5, 0.0, steeper / 2.0], abs=1e-6)
+
+
+def test_fields_sum_to_the_derivative_by_a_factor() -> None:
+    found = carve(read_ski("slalom"), snow(0.21, 0.52), edge_angle=math.radians(45.0), load=800.0, unloading_ratio=10.0)
+    exact = derivatives(found)
+    fields = exact.fields("edge_depth_mm")
+    model = exact.request.model
+    length = model.node[:-1] - model.node[1:]
+    for column, table in (("EI", "bending_stiffness"), ("GJ", "torsional_stiffness")):
+        values = getattr(model.ski.at(fields["beam_m"]), table)
+        (factor,) = exact.sensitivity("edge_depth_mm", [f"edit.{column}_N_m2"])
+        assert fields[f"{column}_per_N_m3"] @ (length * values) == pytest.approx(factor.derivative, rel=2e-3)
+
+
+def test_forces_grow_as_the_largest_does() -> None:
+    found = carve(read_ski("carver"), snow(0.21, 0.52), edge_angle=math.radians(45.0), load=800.0, unloading_ratio=10.0)
+    exact = derivatives(found)
+    for name in ("load_N", "ski.waist_width_mm", "ski.EI_N_m2[2]", "ski.boot_position_mm"):
+        (largest,) = exact.sensitivity("force_per_length_N_per_m", [name])
+        place = int(np.argmax(exact.at.solution.force_per_length))
+        assert exact.force_growth(name)[place] == pytest.approx(largest.derivative, rel=1e-8, abs=1e-9)
+
+
+def test_what_has_no_derivative_is_rejected() -> None:
+    case: dict[str, Any] = {"edge_angle": math.radians(45.0), "load": 800.0, "unloading_ratio": 10.0}
+    found = carve(read_ski("slalom"), snow(0.21), **case)
+    with raises(ParameterError, "unknown_name", name="turn_radius"):
+        found.sensitivity("turn_radius", ["load_N"])
+    with raises(ParameterError, "unknown_name", name="ski.waist_mm"):
+        found.sensitivity("edge_depth_mm", ["ski.waist_mm"])
+    with raises(ParameterError, "no_derivatives"):
+        carve(read_ski("slalom"), snow(0.21), **case, groove="path").sensitivity("edge_depth_mm", ["load_N"])
+    edited = replace(read_ski("slalom"), width=1.01 * read_ski("slalom").width)
+    with raises(ParameterError, "no_keys", name="ski.waist_width_mm"):
+        carve(edited, snow(0.21), **case).sensitivity("edge_depth_mm", ["ski.waist_width_mm"])
