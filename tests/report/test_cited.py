@@ -20,4 +20,4 @@ def test_program_and_papers_are_those_of_the_citation_file() -> None:
         assert journal in CITED
     assert "doi 10.1111/sms.12035" in CITED
     assert "doi: 10.1111/sms.12035" in CITATION
-    assert "name: The skisnow developers" in CITATION
+    assert "skisnow developers" in CITATION

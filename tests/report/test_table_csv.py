@@ -55,7 +55,7 @@ def test_lines_end_as_rfc_4180_has_it() -> None:
     text = table_csv(TABLE)
     assert text.endswith("\r\n")
     assert text.count("\r\n") == 3
-    assert text.startswith("site,n,used,flags,H_V_N_per_mm3,H_V_N_per_mm3_low,H_V_N_per_mm3_high,range_mm_low")
+    assert text.split("\r\n")[0].split(",")[:5] == ["site", "n", "used", "flags", "H_V_N_per_mm3"]
 
 
 def test_a_table_without_rows_is_its_header() -> None:

