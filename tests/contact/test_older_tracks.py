@@ -68,3 +68,26 @@ def test_a_track_is_found_wherever_it_lies(x: float, y: float) -> None:
     over = SnowContact(snow, [straight(length=0.3)])
     force = over.force([[x, y, -1e-3]], [LEVEL], np.zeros((1, 6)), 0.0).wrench[0]
     assert abs(force[2]) < 1e-9
+
+
+@pytest.mark.parametrize("shift", np.arange(0.0, 0.02, 0.0025))
+@pytest.mark.parametrize("turn", [0.5 * math.pi, 0.49 * math.pi, 0.3 * math.pi])
+def test_a_thin_track_is_met_or_its_width_is_told(shift: float, turn: float) -> None:
+    """An edge of 4 mm crosses the way of a ski: wherever its lines lie, they meet the track, or its width is told."""
+    snow, ahead = SnowField(H, S, 10.0), np.array([math.cos(turn), math.sin(turn), 0.0])
+    thin = SnowContact(snow, [straight(length=0.05, width=0.004)])
+    for step in np.arange(-0.3, 0.3, 0.02):
+        thin.update([ahead * step + [shift, 0.0, -2e-3]], [edged(0.0, turn=turn)], 5e-4)
+    over = SnowContact(snow, [straight(length=1.0, width=0.06)])
+    force = over.force([[0.0, 0.0, -1e-3]], [LEVEL], np.zeros((1, 6)), 0.0).wrench[0][2]
+    per_length = H * 1e-3 * 0.06
+    missing, told = per_length * 1.0 - force, over.unseen_track_width
+    assert told > 0.0 or missing > 0.5 * 0.004 * per_length / math.sin(turn)
+    if turn == 0.5 * math.pi:
+        assert (told, missing) in (
+            (pytest.approx(0.004), pytest.approx(0.0, abs=1e-9)),
+            (0.0, pytest.approx(0.02 * per_length)),
+        )
+    if turn == 0.3 * math.pi:
+        assert told == 0.0
+    assert thin.unseen_track_width == 0.0

@@ -304,6 +304,8 @@ void bind_contact(nb::module_& m) {
       .def("sections", &sections_of)
       .def("tracks", [](const SnowContact& self, const Snow& snow) { return tracks_of(snow, self); })
       .def("groove_energy", &SnowContact::groove_energy)
+      .def("unseen_track",
+           [](const SnowContact& self) { return nb::make_tuple(self.unseen_width(), self.unseen_force()); })
       .def("elastic_energy", &SnowContact::elastic_energy)
       .def("delayed_energy", &SnowContact::delayed_energy)
       .def("state", &SnowContact::state)

@@ -220,8 +220,17 @@ void SnowContact::take_back() {
   begun_ = false;
 }
 
+void SnowContact::weigh_unseen() {
+  double most = 0.0;  // of pressure and shear for each metre of ski
+  for (const Sections& s : sections_)
+    for (int i = 0; i < s.count(); i++)
+      if (s.touches(i)) most = std::max(most, std::hypot(s[FORCE][i], s[SHEAR][i]) / s[SHARE][i]);
+  unseen_force_ = std::max(unseen_force_, most * unseen_width_);
+}
+
 void SnowContact::accept(const Situation& at) {
   begun_ = false;
+  if (unseen_width_ > 0.0) weigh_unseen();
   pass_time(at.dt);
   for (int k = 0; k < runners(); k++) settle_history(k, at.poses[std::size_t(k)]);
   stand(at.poses);

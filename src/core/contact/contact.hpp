@@ -78,6 +78,11 @@ class SnowContact {
   double shear_displacement() const { return snow_->shear_displacement; }
   bool touches(int k) const;  // at the situation looked at last
 
+  // Older tracks that lay between two lines and so were not met: greatest width along a ski (m), and the greatest force
+  // (N) on as much of a ski at an accepted pose, which may be missing.
+  double unseen_width() const { return unseen_width_; }
+  double unseen_force() const { return unseen_force_; }
+
   double groove_energy() const;   // lost in grooves, those under the runners included (J)
   double held_energy() const;     // in the displaced shear of the edges at the last situation looked at (J)
   double stuck_energy() const;    // in the friction of the bases that stick, at that situation (J)
@@ -132,6 +137,7 @@ class SnowContact {
   std::vector<Before> before_;
   bool begun_ = false;
   Pose on_way_;  // between two poses
+  double unseen_width_ = 0.0, unseen_force_ = 0.0;
 
   std::uint64_t fingerprint() const;
   GrooveLines& history(int k, const Situation& at);
@@ -141,7 +147,8 @@ class SnowContact {
   Reaction reaction(int k, const GrooveLines& lines, const Pose& pose, const Motion& motion);
   class Standing;
   void prepare(int k, GrooveLines& lines, const Pose& pose);
-  void learn(GrooveLines& lines, int slot, double from, double to, Standing& standing) const;
+  void learn(GrooveLines& lines, int slot, double from, double to, Standing& standing);
+  void weigh_unseen();
   bool strength_varies() const;
   void hold_strength(int k, GrooveLines& lines) const;
   void settle_history(int k, const Pose& pose);

@@ -132,7 +132,7 @@ void SnowContact::prepare(int k, GrooveLines& lines, const Pose& pose) {
 }
 
 // Grooves of older tracks enter a line's ground; the energy that they took is not this runner's.
-void SnowContact::learn(GrooveLines& lines, int slot, double from, double to, Standing& standing) const {
+void SnowContact::learn(GrooveLines& lines, int slot, double from, double to, Standing& standing) {
   auto& v = lines.values;
   const Vector3 ahead{v[AHEAD_X][slot], v[AHEAD_Y][slot], v[AHEAD_Z][slot]};
   const Vector3 origin = lines.origin(slot), lateral = lines.lateral(slot);
@@ -142,7 +142,9 @@ void SnowContact::learn(GrooveLines& lines, int slot, double from, double to, St
   Ground older;
   DelayedRecall recalled{snow_->rate.retardation, {snow_->rate.spacing}};
   DelayedRecall* delayed = snow_->rate.is_delayed() ? &recalled : nullptr;
-  snow_->archive.recall(origin, lateral, from, to, older, delayed);
+  UnseenTracks unseen{ahead, lines.spacing()};
+  snow_->archive.recall(origin, lateral, from, to, older, delayed, unseen);
+  unseen_width_ = std::max(unseen_width_, unseen.widest);
   standing.recall(origin, lateral, ahead, from, to, older, delayed);
   if (delayed != nullptr) lines.delayed[std::size_t(slot)].take_over(recalled.ground);
   if (older.empty()) return;

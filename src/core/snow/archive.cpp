@@ -208,8 +208,27 @@ void Archive::enter_squares(int later) {
     }
 }
 
+void UnseenTracks::add(const Track& before, const Track& after, const Vector3& origin, const Vector3& lateral,
+                       double from, double to) {
+  const Vector3 way = minus(after.origin, before.origin);
+  // over the stretch a track that is less parallel comes to the next line
+  if (!(std::fabs(dot(way, ahead)) * (to - from) < spacing * std::fabs(dot(way, lateral)))) return;
+  double along_ski[2] = {1e300, -1e300}, across[2] = {1e300, -1e300};
+  for (const Track* each : {&before, &after})
+    for (const double y : {each->place[0], each->place[each->count - 1]}) {
+      const Vector3 corner = minus(along(each->origin, each->lateral, y), origin);
+      const double x = dot(corner, ahead), aside = dot(corner, lateral);
+      along_ski[0] = std::min(along_ski[0], x), along_ski[1] = std::max(along_ski[1], x);
+      across[0] = std::min(across[0], aside), across[1] = std::max(across[1], aside);
+    }
+  if (across[0] > to || across[1] < from) return;
+  const bool is_ahead = along_ski[0] > 0.0 && along_ski[1] < spacing;
+  const bool is_behind = along_ski[1] < 0.0 && along_ski[0] > -spacing;
+  if (is_ahead || is_behind) widest = std::max(widest, along_ski[1] - along_ski[0]);
+}
+
 void Archive::recall(const Vector3& origin, const Vector3& lateral, double from, double to, Ground& ground,
-                     DelayedRecall* delayed) const {
+                     DelayedRecall* delayed, UnseenTracks& unseen) const {
   if (tracks_.empty()) return;
   std::vector<int> near;
   std::optional<std::uint64_t> region;  // the region met last, and whether it has any track
@@ -223,8 +242,11 @@ void Archive::recall(const Vector3& origin, const Vector3& lateral, double from,
   });
   std::sort(near.begin(), near.end());  // in the order in which they were left
   near.erase(std::unique(near.begin(), near.end()), near.end());
-  for (int later : near)
-    press_strip({*before(later), tracks_[std::size_t(later)]}, origin, lateral, from, to, time, ground, delayed);
+  for (int later : near) {
+    const Strip strip{*before(later), tracks_[std::size_t(later)]};
+    press_strip(strip, origin, lateral, from, to, time, ground, delayed);
+    unseen.add(strip.before, strip.after, origin, lateral, from, to);
+  }
 }
 
 void Archive::require_kept(const Mark& mark) const {

@@ -36,6 +36,17 @@ struct DelayedRecall {
   DelayedGround ground;
 };
 
+// Tracks beside a line that neither it nor its neighbours cross: so nearly parallel to them, and so narrow, that they
+// lie between two of them all the way. Their greatest width is found (m).
+struct UnseenTracks {
+  Vector3 ahead;   // direction in which the neighbours follow
+  double spacing;  // of the lines (m)
+  double widest = 0.0;
+
+  void add(const Track& before, const Track& after, const Vector3& origin, const Vector3& lateral, double from,
+           double to);
+};
+
 // Press the groove between two tracks, as far as a line crosses it between two places across it (m), into its ground.
 void press_between(const Track& before, const Track& after, const Vector3& origin, const Vector3& lateral, double from,
                    double to, double now, Ground& ground, DelayedRecall* delayed);
@@ -47,7 +58,7 @@ class Archive {
 
   // Press the older tracks that a line crosses, between two places across it (m), into its ground.
   void recall(const Vector3& origin, const Vector3& lateral, double from, double to, Ground& ground,
-              DelayedRecall* delayed) const;
+              DelayedRecall* delayed, UnseenTracks& unseen) const;
   double time = 0.0;  // to which the contacts have come (s)
 
   const std::vector<Track>& tracks() const { return tracks_; }

@@ -238,6 +238,11 @@ class SnowContact(Shown):
         return self.compiled.tracks(self.snow.compiled)
 
     @property
+    def unseen_track_width(self) -> float:
+        """Greatest width (m) along a runner of older tracks that lay between two lines of snow, and so were not met."""
+        return self.compiled.unseen_track()[0]
+
+    @property
     def groove_energy(self) -> float:
         """Energy (J) lost in all grooves of this snow: ½ H_V ε² (1 - H_V/k_u) over their area."""
         return self.compiled.groove_energy()

@@ -13,6 +13,7 @@ import numpy as np
 
 from .._support.errors import ModelLimitWarning, SolverError
 from .._support.messages import Message
+from .._support.units import MM
 from ..contact import Laws
 from ..scenario import Scenario
 from ..scenario.plausibility import model_limits
@@ -141,7 +142,23 @@ def simulate(
         outcome = "interrupted"
     run = computed_run(setup, record, outcome, time.perf_counter() - begin)
     _warn_of_zero_friction(run)
+    _warn_of_unseen_tracks(setup)
     return replace(run, laws=laws, strength_along=strength_along)
+
+
+def _warn_of_unseen_tracks(setup: Setup) -> None:
+    """Warn of older tracks between the lines of snow, with the largest force that is missing."""
+    width, force = setup.dynamics.contact.compiled.unseen_track()
+    if width > 0.0:
+        text = Message(
+            "older tracks of up to {width:.2g} mm crossed between two lines of snow, {spacing:.3g} mm apart, and were "
+            "not seen: up to {force:.2g} N of the force on a ski may be wrong there. Use a solver.line_spacing_mm "
+            "below {width:.2g}",
+            width=width / MM,
+            spacing=setup.numbers["line_spacing_m"] / MM,
+            force=force,
+        )
+        warnings.warn(ModelLimitWarning(text, code="tracks_between_lines"), stacklevel=3)
 
 
 def _warn_of_zero_friction(run: Run) -> None:

@@ -8,11 +8,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from skisnow.contact import SnowField
+from skisnow._support.errors import ModelLimitWarning
+from skisnow.contact import SnowContact, SnowField
 from skisnow.simulation.run_record import Record
 from skisnow.simulation.run_setup import Setup, set_up
+from skisnow.simulation.simulated_run import _warn_of_unseen_tracks
 
 from ...carving.synthetic import shovel
+from ...contact.conftest import edged, straight
 from .sledges import rigid_ski, scenario
 
 MIDDLE = np.array([1.9, 0.0, 0.0])
@@ -74,3 +77,25 @@ def test_a_groove_that_is_crossed(first: tuple[float, Setup], angle_deg: float) 
     per_area = first[0] / (2.0 * width * 3.88)  # of the first sledge, on its 3.88 m
     crossed = 4.0 * width**2 / math.sin(math.radians(angle_deg))
     assert 0.25 < (first[0] - lost) / (per_area * crossed) < 1.0
+
+
+def test_thin_tracks_between_the_lines_are_warned_of() -> None:
+    """Tracks of 4 mm at right angles, placed apart by a quarter of the spacing of 20 mm: one is between lines."""
+    snow = sledge().snow
+    thin = SnowContact(snow, [straight(length=0.05, width=0.004)])
+    for x in (1.2, 1.305, 1.41, 1.515):
+        for y in np.arange(-0.5, 0.5, 0.02):
+            thin.update([[x, y, -5e-3]], [edged(0.0, turn=0.5 * math.pi)], 5e-4)
+        thin.update([[x, 5.0, 1.0]], [edged(0.0)], 0.0)
+    setup = sledge(snow=snow)
+    record = Record(setup)
+    for moment in range(1, 31):
+        assert record.advance(0.01 * moment) is None
+    with pytest.warns(ModelLimitWarning) as caught:
+        _warn_of_unseen_tracks(setup)
+    warning = caught[0].message
+    assert isinstance(warning, ModelLimitWarning)
+    assert warning.code == "tracks_between_lines"
+    assert warning.fields["width"] == pytest.approx(4.0, rel=1e-6)
+    mean = 0.5 * setup.scenario.sledge.mass * setup.scenario.gravity / 1.6  # N/m, but for the skis
+    assert mean * 4e-3 < warning.fields["force"] < 10.0 * mean * 4e-3
