@@ -5,41 +5,13 @@ import math
 import numpy as np
 import pytest
 from scipy import stats
-from statsmodels.stats.multitest import multipletests
 
 import skisnow
 from skisnow.estimation import campaign_notes
 from skisnow.estimation.comparisons import compare_with_published, own_mean
-from skisnow.estimation.sites import compare_sites, site_means
+from skisnow.estimation.sites import site_means
 
 from .conftest import MakeCampaign
-
-
-def test_ratio_of_sites_is_welch_on_logarithms() -> None:
-    rng = np.random.default_rng(2)
-    a, b = 2.0 * np.exp(rng.normal(0, 0.2, 12)), np.exp(rng.normal(0, 0.4, 8))
-    (row,) = compare_sites("H_V", np.concatenate((b, a)), ["B"] * 8 + ["A"] * 12)
-    assert (row.site_a, row.site_b) == ("A", "B")
-    assert row.ratio == pytest.approx(math.exp(np.log(a).mean() - np.log(b).mean()), rel=1e-12)
-    assert row.p == pytest.approx(stats.ttest_ind(np.log(a), np.log(b), equal_var=False).pvalue, rel=1e-9)
-    assert row.interval[0] < row.ratio < row.interval[1]
-
-
-def test_number_of_tests_that_tell_ten_percent() -> None:
-    """Normal approximation n = 2 (z₀.₉₇₅ + z₀.₈)² s²/ln²1.1; Student's t asks for one or two more."""
-    rng = np.random.default_rng(3)
-    logs = rng.normal(0, 0.2, (2, 30))
-    (row,) = compare_sites("S_f", np.exp(logs).ravel(), ["A"] * 30 + ["B"] * 30)
-    pooled = math.sqrt((logs[0].var(ddof=1) + logs[1].var(ddof=1)) / 2)
-    normal = 2 * (1.959964 + 0.841621) ** 2 * pooled**2 / math.log(1.1) ** 2
-    assert row.n_for_10_percent is not None
-    assert normal < row.n_for_10_percent < normal + 3
-
-
-def test_a_site_with_one_test_has_no_interval() -> None:
-    (row,) = compare_sites("H_V", np.array([1.0, 2.0, 3.0]), ["A", "B", "B"])
-    assert math.isnan(row.p)
-    assert np.isnan(row.interval).all()
 
 
 def test_own_mean_over_one_site_is_the_classical_interval() -> None:
@@ -146,24 +118,3 @@ def test_corrections_leave_their_trace_in_the_results(make_campaign: MakeCampaig
         "33",
     )
     assert (told["who"], told["when"], told["why"]) == ("AM", "2024-03-14", "misread")
-
-
-def test_pairs_are_corrected_for_their_number() -> None:
-    """Against statsmodels; of equal sites some pair is below 0.05 in one campaign of twenty, 400 campaigns."""
-    rng = np.random.default_rng(6)
-    names = np.repeat(list("ABCDE"), 8).tolist()
-    below = []
-    for _ in range(400):
-        rows = compare_sites("H_V", np.exp(rng.normal(0.0, 0.3, 40)), names)
-        below.append(min(row.p_holm for row in rows) < 0.05)
-    assert [row.n_pairs for row in rows] == [10] * 10
-    _, expected, _, _ = multipletests([row.p for row in rows], method="holm")
-    np.testing.assert_allclose([row.p_holm for row in rows], expected, rtol=1e-12)
-    assert np.mean(below) < 0.05 + 3.0 * math.sqrt(0.05 * 0.95 / 400)
-
-
-def test_a_site_with_one_test_does_not_count_as_a_pair() -> None:
-    rows = compare_sites("H_V", np.array([1.0, 1.2, 1.1, 2.0, 2.2, 3.0]), ["A", "A", "A", "B", "B", "C"])
-    assert [row.n_pairs for row in rows] == [1, 1, 1]
-    assert [math.isnan(row.p_holm) for row in rows] == [False, True, True]
-    assert rows[0].p_holm == pytest.approx(rows[0].p)

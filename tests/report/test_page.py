@@ -11,10 +11,12 @@ from typing import Any
 
 import numpy as np
 import pytest
+from markupsafe import escape
 
 from skisnow.campaign import QUALITY_FLAGS, Campaign
 from skisnow.campaign.records import TurningReadings
 from skisnow.report.campaign.data import ReportData
+from skisnow.report.campaign.verdicts import verdicts
 
 from .conftest import Reported, analysis_of, first_series, first_shear, reported
 
@@ -137,13 +139,20 @@ def test_regressions_are_those_of_the_results(reference: Reported, read: _Reader
         assert all(map(_agrees, ends, found["interval"][1], (3, 3)))
 
 
-def test_the_headline_is_the_hardness_with_its_interval(reference: Reported) -> None:
-    row = next(row for row in reference.results["comparisons"] if row["quantity"] == "H_V_N_per_mm3" and row["own"])
+@pytest.mark.usefixtures("svg_alone")
+def test_the_headline_of_one_site_is_its_hardness(campaign: Campaign, tmp_path: Path) -> None:
+    one = reported(replace(campaign, shear=None, penetration=first_series(campaign, 30)), tmp_path)
+    row = next(row for row in one.results["comparisons"] if row["quantity"] == "H_V_N_per_mm3" and row["own"])
     low, high = row["own_interval"]
-    (headline,) = re.findall(r'<p class="headline">(.*?)</p>', reference.html)
+    (headline,) = re.findall(r'<p class="headline">(.*?)</p>', one.html)
     told = re.findall(r"-?\d+\.\d+|\d+", re.sub(r"<su[bp]>.*?</su[bp]>", "", headline).replace("95 %", ""))
     assert [float(each) for each in told[:3]] == pytest.approx([row["own"], low, high], rel=0.005)
-    assert told[3] == "8"
+
+
+def test_a_report_on_several_sites_begins_with_the_verdicts(reference: Reported) -> None:
+    top = reference.html.partition("<dl")[0]
+    assert 'class="headline"' not in top
+    assert [escape(verdict) for verdict in verdicts(reference.results)] == re.findall("<li>(.*?)</li>", top)
 
 
 def test_every_cell_says_on_a_telephone_what_it_is(reference: Reported) -> None:
@@ -202,7 +211,7 @@ def test_pictures_inside_the_page_fetch_nothing_either(reference: Reported) -> N
 def test_the_page_is_built_of_meaning(read: _Reader) -> None:
     names = [tag for tag, _ in read.tags]
     assert names.count("h1") == names.count("main") == 1
-    assert names.count("figure") == names.count("figcaption") == names.count("img") == 11
+    assert names.count("figure") == names.count("figcaption") == names.count("img") == 12
     assert all(attributes.get("alt") for tag, attributes in read.tags if tag == "img")
     assert all(attributes.get("scope") in ("row", "col") for tag, attributes in read.tags if tag == "th")
     assert names.count("caption") == names.count("table")

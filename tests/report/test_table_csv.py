@@ -94,7 +94,7 @@ HEADS = {
     "shear_displacement_sites": "site n shear_displacement_mm",
     "shear_displacement": "experiment site edge_angle_deg n_turning used shear_displacement_mm",
     "regressions": "response predictor group n intercept slope slope_by_site rmse rmse_dof r2 F p",
-    "site_comparisons": "quantity site_a site_b ratio p n_for_10_percent",
+    "group_comparisons": "quantity by group_a n_a group_b n_b ratio p p_holm n_needed",
     "comparisons": "source quantity value range own own_range own_over_published",
     "marks": "code sentence excludes penetration_n penetration_experiments shear_n shear_experiments",
     "penetration_experiments": "experiment site tool edge_angle_deg n_loads used flags H_e_N_per_mm H_A_N_per_mm2 "

@@ -29,6 +29,7 @@ from skisnow.scenario.keys import SCENARIO_KEYS
 from skisnow.track.summary import track_summary
 from skisnow.track.track import Track
 
+from ..conftest import only_drawn
 from .conftest import Reported
 from .runs import circle_run
 from .test_run_report import summary_of
@@ -55,8 +56,11 @@ def texts(html: str) -> set[str]:
 
 
 @pytest.fixture(scope="module")
-def german(reference: Reported) -> str:
-    return translated_html(reference.html, "de", names=ReportData(reference.analysis).names)
+def german(reference: Reported, tmp_path_factory: pytest.TempPathFactory) -> str:
+    folder = tmp_path_factory.mktemp("german")
+    with only_drawn("svg"):
+        write_report(reference.analysis, folder, language="de")
+    return (folder / "report.html").read_text(encoding="utf-8")
 
 
 def test_no_text_of_a_german_report_is_left_in_english(reference: Reported, german: str) -> None:

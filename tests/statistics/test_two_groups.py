@@ -1,4 +1,4 @@
-"""Two groups: Welch's test against scipy, numbers of tests against statsmodels."""
+"""Groups: numbers of tests against statsmodels, and letters."""
 
 from __future__ import annotations
 
@@ -9,48 +9,26 @@ import pytest
 from tests.coded import raises
 
 from skisnow._support.errors import FitError, ParameterError
-from skisnow.statistics import ratio_of_means, two_groups
+from skisnow.statistics import two_groups
 
 needed = two_groups.tests_per_group  # under its own name pytest would take it for a test
 
 
-@pytest.mark.parametrize("seed", range(4))
-def test_against_scipy(seed: int) -> None:
-    from scipy.stats import ttest_ind
-
+@pytest.mark.parametrize("seed", range(20))
+def test_groups_share_a_letter_exactly_where_they_do_not_differ(seed: int) -> None:
     rng = np.random.default_rng(seed)
-    a, b = rng.normal(0.3, 0.2, 9), rng.normal(0.0, 0.6, 5)
-    peer = ttest_ind(a, b, equal_var=False)
-    interval = peer.confidence_interval(0.9)
-    found = ratio_of_means(a, b, confidence=0.9)
-    assert found.ratio == pytest.approx(math.exp(a.mean() - b.mean()), rel=1e-13)
-    assert found.p == pytest.approx(float(peer.pvalue), rel=1e-10)
-    np.testing.assert_allclose(found.interval, np.exp([interval.low, interval.high]), rtol=1e-10)
+    upper = np.triu(rng.random((7, 7)) < rng.random(), 1)
+    differ = upper | upper.T
+    letters = two_groups.compact_letters(differ)
+    for a in range(7):
+        for b in range(7):
+            assert bool(set(letters[a]) & set(letters[b])) == (a == b or not differ[a, b])
 
 
-def test_swapping_the_groups_inverts_the_ratio() -> None:
-    a, b = np.log([2.0, 3.0, 5.0]), np.log([1.0, 1.5, 1.2, 0.9])
-    one, other = ratio_of_means(a, b), ratio_of_means(b, a)
-    assert one.ratio > 1
-    assert one.ratio * other.ratio == pytest.approx(1.0, rel=1e-14)
-    assert one.p == other.p
-    np.testing.assert_allclose(one.interval * other.interval[::-1], 1.0, rtol=1e-13)
-
-
-def test_groups_that_tell_too_little() -> None:
-    single = ratio_of_means([math.log(6.0)], np.log([2.0, 2.0, 2.0]))
-    assert single.ratio == pytest.approx(3.0)
-    still = ratio_of_means([0.5, 0.5], [0.5, 0.5])
-    for found in (single, still):
-        assert np.isnan(found.interval).all()
-        assert math.isnan(found.p)
-    for a in ([], [0.1, float("nan")]):
-        found = ratio_of_means(a, [0.1, 0.2])
-        assert math.isnan(found.ratio)
-        assert np.isnan(found.interval).all()
-        assert math.isnan(found.p)
-    with raises(ParameterError, "wrong_shape", name="logs_b"):
-        ratio_of_means([0.1, 0.2], [0.1, -math.inf])
+def test_many_different_groups_have_letters_with_a_number() -> None:
+    letters = two_groups.compact_letters(~np.eye(28, dtype=bool))
+    assert letters[:2] == ["a", "b"]
+    assert letters[26:] == ["a1", "b1"]
 
 
 @pytest.mark.parametrize("sd_log", [0.05, 0.15, 0.4, 1.0])

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from .ending import ready
-from .options import MOST_RESAMPLES, add_language, seed_number, whole_number
+from .options import MOST_RESAMPLES, add_language, number, seed_number, whole_number
 
 
 def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -31,6 +31,14 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         metavar="N",
         help="bootstrap resamples of whole experiments, 100 or more",
     )
+    parser.add_argument(
+        "--difference",
+        type=number("percent", lowest=0.0, highest=1e6, above=True),
+        default=20.0,
+        metavar="PERCENT",
+        help="difference of two sites, tools, observers or days that the campaign is to detect, for the number of "
+        "tests that this takes (default: 20)",
+    )
     parser.set_defaults(run=run)
 
 
@@ -51,7 +59,13 @@ def run(options: argparse.Namespace) -> int:
         campaign = read_campaign(options.campaign, progress=progress)
         if options.out is not None:
             ready(options.out)
-        analysis = analyse(campaign, geometry=options.geometry, progress=progress, **chosen)
+        analysis = analyse(
+            campaign,
+            geometry=options.geometry,
+            difference=options.difference / 100.0,
+            progress=progress,
+            **chosen,
+        )
         if options.out is not None:
             from ..report import write_report
 

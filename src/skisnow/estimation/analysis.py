@@ -19,6 +19,7 @@ from ..campaign.records import Campaign
 from ..snow import SnowProperties
 from .comparisons import Comparison, OwnValue, compare_with_published, own_mean
 from .errors_in_depth import fit_models_with_depth_errors, fitted_hardness
+from .group_comparisons import DIFFERENCE, GroupComparison, compare_groups, group_labels, measured
 from .layering import growing_hardness, site_growth
 from .model_choice import bootstrap_intervals, compare_nested_rows
 from .models import Model, fit_models, select_model, why_no_choice
@@ -38,7 +39,7 @@ from .screening import screened_penetration, screened_shear
 from .seating import seating
 from .series_estimates import reading_uncertainty
 from .shear import shear_displacement, shear_stress, site_displacement
-from .sites import SiteComparison, SiteMean, compare_sites, site_means, site_snow
+from .sites import SiteMean, site_means, site_snow
 from .snow_micro_pen import SnowMicroPenAnalysis, evaluate_recordings
 from .spread_groups import scatter_warning
 from .unloading import site_unloading
@@ -70,8 +71,11 @@ class Analysis(Shown):
         How: see `analyse`.
     penetration, shear
         Results of each kind of experiment, in SI; None if the campaign has no such data.
-    regressions, site_means, site_comparisons, comparisons
-        Relations between the quantities, sites beside each other, published values beside the campaign's own.
+    difference
+        Relative difference of two groups that ``n_needed`` of the comparisons is for.
+    regressions, site_means, group_comparisons, comparisons
+        Relations between the quantities, means of the sites, ratios of sites, tools, observers and days, published
+        values next to the campaign's own.
     own_hardness, own_stress
         Means over all sites.
     observations
@@ -96,7 +100,7 @@ class Analysis(Shown):
     shear: ShearAnalysis | None
     regressions: tuple[Regression, ...]
     site_means: tuple[SiteMean, ...]
-    site_comparisons: tuple[SiteComparison, ...]
+    group_comparisons: tuple[GroupComparison, ...]
     comparisons: tuple[Comparison, ...]
     own_hardness: OwnValue
     own_stress: OwnValue
@@ -104,6 +108,7 @@ class Analysis(Shown):
     time: datetime = field(default_factory=lambda: datetime.now(UTC))
     snow_micro_pen: SnowMicroPenAnalysis | None = None
     weather: WeatherAtTests | None = None
+    difference: float = DIFFERENCE
 
     @cached_property
     def results(self) -> dict[str, Any]:
@@ -222,6 +227,7 @@ def analyse(
     geometry: GeometryForm = "extended",
     seed: int = DEFAULT_SEED,
     n_resamples: int = DEFAULT_RESAMPLES,
+    difference: float = DIFFERENCE,
     progress: Callable[[str], None] | None = None,
 ) -> Analysis:
     """Estimate H_V, S_f, the model table, regressions and comparisons of a campaign.
@@ -236,6 +242,9 @@ def analyse(
         Seed of the bootstrap; the same seed gives the same numbers bit for bit on one machine.
     n_resamples
         Bootstrap resamples of whole experiments, ≥ 100.
+    difference
+        Relative difference of two sites, tools, observers or days that the campaign is to detect, > 0; the result tells
+        how many experiments that takes.
     progress
         Called with a line of text now and then.
 
@@ -272,8 +281,13 @@ def analyse(
             ),
             code="out_of_range",
         )
+    if not 0.0 < difference < np.inf:
+        raise ParameterError(
+            Message("difference is {difference!r}; a number above 0 is needed, 0.2 for 20 %", difference=difference),
+            code="out_of_range",
+        )
     read = campaign if isinstance(campaign, Campaign) else read_campaign(campaign, progress=progress)
-    return _analysis(read, geometry, seed, n_resamples, progress)
+    return _analysis(read, geometry, seed, n_resamples, difference, progress)
 
 
 def _analysis(
@@ -281,6 +295,7 @@ def _analysis(
     geometry: GeometryForm,
     seed: int,
     n_resamples: int,
+    difference: float,
     progress: Callable[[str], None] | None,
 ) -> Analysis:
     rng = np.random.default_rng(seed)
@@ -293,6 +308,8 @@ def _analysis(
     observations = _observations(campaign, penetration, shear, pen)
     pressed, sheared = observations["penetration"].known(HARDNESS_KEY), observations["shear"].known(STRESS_KEY)
     own_hardness, own_stress = own_mean(*pressed, geometric=True), own_mean(*sheared, geometric=False)
+    pairs = group_comparisons(campaign, penetration, shear, difference)
+    of_sites = {name: [pair for pair in pairs if (pair.quantity, pair.by) == (name, "site")] for name in ("H_V", "S_f")}
     return Analysis(
         campaign=campaign,
         geometry=geometry,
@@ -302,10 +319,10 @@ def _analysis(
         shear=shear,
         regressions=regressions(observations),
         site_means=(
-            *site_means(HARDNESS_KEY, *pressed, geometric=True),
-            *site_means(STRESS_KEY, *sheared, geometric=False),
+            *site_means(HARDNESS_KEY, *pressed, geometric=True, pairs=of_sites["H_V"]),
+            *site_means(STRESS_KEY, *sheared, geometric=False, pairs=of_sites["S_f"]),
         ),
-        site_comparisons=(*compare_sites("H_V", *pressed), *compare_sites("S_f", *sheared)),
+        group_comparisons=pairs,
         comparisons=compare_with_published(
             own_hardness,
             own_stress,
@@ -317,6 +334,7 @@ def _analysis(
         observations=observations,
         snow_micro_pen=pen,
         weather=weather_at_tests(campaign),
+        difference=difference,
     )
 
 
@@ -380,6 +398,22 @@ def _shear(campaign: Campaign) -> ShearAnalysis | None:
     screened, displacement = screened_shear(campaign), shear_displacement(campaign, campaign.shear)
     by_site = site_displacement(displacement, screened.used, campaign.shear.site)
     return ShearAnalysis(screened, shear_stress(campaign, campaign.shear), displacement, by_site)
+
+
+def group_comparisons(
+    campaign: Campaign, penetration: PenetrationAnalysis | None, shear: ShearAnalysis | None, difference: float
+) -> tuple[GroupComparison, ...]:
+    """Every pair of sites, tools, observers and days, for H_V and S_f."""
+    quantities = []
+    if penetration is not None and campaign.penetration is not None:
+        tests, H = campaign.penetration, penetration.hardness["H_V"]
+        labels = group_labels(tests, tests.tool)
+        quantities.append(measured("H_V", H.value, H.interval, penetration.screened.used, labels))
+    if shear is not None and campaign.shear is not None:
+        blades, S = campaign.shear, shear.stress
+        labels = group_labels(blades, blades.plate)
+        quantities.append(measured("S_f", S.value, S.interval, shear.screened.used, labels))
+    return tuple(pair for data in quantities for by in data.labels for pair in compare_groups(data, by, difference))
 
 
 def _observations(

@@ -76,20 +76,7 @@ def results_dict(analysis: Analysis) -> Json:
         "shear": _shear(analysis),
         "regressions": [_regression(regression) for regression in analysis.regressions],
         "site_means": [_site_mean(row) for row in analysis.site_means],
-        "site_comparisons": [
-            {
-                "quantity": row.quantity,
-                "site_a": row.site_a,
-                "site_b": row.site_b,
-                "ratio": row.ratio,
-                "interval": row.interval.tolist(),
-                "p": row.p,
-                "p_holm": row.p_holm,
-                "n_pairs": row.n_pairs,
-                "n_for_10_percent": row.n_for_10_percent,
-            }
-            for row in analysis.site_comparisons
-        ],
+        "group_comparisons": [asdict(row) | {"interval": row.interval.tolist()} for row in analysis.group_comparisons],
         "comparisons": [row.as_dict() for row in analysis.comparisons],
         "provenance": _provenance(analysis),
     }
@@ -274,6 +261,7 @@ def _site_mean(row: SiteMean) -> Json:
         "mean": own.value,
         "interval": [own.low, own.high],
         "range": [own.minimum, own.maximum],
+        "letters": row.letters,
     }
 
 
@@ -283,7 +271,11 @@ def _provenance(analysis: Analysis) -> Json:
         "files": dict(sorted(analysis.campaign.file_hashes.items())),
         "versions": {"python": platform.python_version()} | {name: version(name) for name in packages},
         "seed": analysis.seed,
-        "options": {"geometry": analysis.geometry, "n_resamples": analysis.n_resamples},
+        "options": {
+            "geometry": analysis.geometry,
+            "n_resamples": analysis.n_resamples,
+            "difference_percent": 100.0 * analysis.difference,
+        },
         "time": analysis.time.isoformat(timespec="seconds"),
     }
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from itertools import combinations
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -20,13 +19,14 @@ from ..snow.mean_snow import (
     with_measured_displacement,
     with_measured_unloading,
 )
-from ..statistics.two_groups import holm_corrected, ratio_of_means, tests_per_group
 from .comparisons import OwnValue, own_mean
+from .group_comparisons import letters_of_groups
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
     from ..campaign.records import Campaign
+    from .group_comparisons import GroupComparison
     from .parts import PenetrationAnalysis, ShearAnalysis
 
 
@@ -37,73 +37,39 @@ TextArray = npt.NDArray[np.object_]
 
 @dataclass(frozen=True, slots=True)
 class SiteMean:
-    """Mean of the n used experiments of one site (``quantity`` as a key of the results, in its unit)."""
+    """Mean of the n used experiments of one site (``quantity`` as a key of the results, in its unit).
+
+    Sites share one of their ``letters`` where their pair is not shown to differ, after Holm's correction.
+    """
 
     quantity: str
     site: str
     n: int
     own: OwnValue
+    letters: str = ""
 
 
-def site_means(quantity: str, values: FloatArray, site: Sequence[str], *, geometric: bool) -> tuple[SiteMean, ...]:
-    """The mean of each site with its interval from the scatter between its experiments, in alphabetical order."""
-    names, site_of = numbered(site)
-    found = []
-    for index, name in enumerate(names):
-        mine = values[site_of == index]
-        found.append(SiteMean(quantity, name, len(mine), own_mean(mine, [name] * len(mine), geometric=geometric)))
-    return tuple(found)
+def site_means(
+    quantity: str,
+    values: FloatArray,
+    site: Sequence[str],
+    *,
+    geometric: bool,
+    pairs: Sequence[GroupComparison] = (),
+) -> tuple[SiteMean, ...]:
+    """The mean of each site with its interval from the scatter between its experiments, in alphabetical order.
 
-
-@dataclass(frozen=True, slots=True)
-class SiteComparison:
-    """Ratio of the geometric means of two sites (a over b).
-
-    Attributes
-    ----------
-    quantity
-        ``H_V`` or ``S_f``.
-    ratio, interval, p
-        Welch's test on logarithms, of this pair alone; NaN where a site has fewer than two tests.
-    p_holm, n_pairs
-        p corrected for the number of pairs of this quantity that have one (Holm 1979, Scand. J. Stat. 6, 65-70).
-    n_for_10_percent
-        Tests at each site that would detect ±10 % with a power of 80 % at 5 %, given the scatter within the two sites;
-        None where the scatter is unknown.
+    ``pairs`` are the comparisons of the sites, for their letters.
     """
-
-    quantity: str
-    site_a: str
-    site_b: str
-    ratio: float
-    interval: FloatArray
-    p: float
-    n_for_10_percent: int | None
-    p_holm: float = float("nan")
-    n_pairs: int = 0
-
-
-def compare_sites(quantity: str, values: FloatArray, site: Sequence[str]) -> tuple[SiteComparison, ...]:
-    """Compare every pair of sites by the used experiments (values above 0 alone), in alphabetical order."""
-    positive = values > 0
-    names, site_of = numbered([name for name, use in zip(site, positive.tolist(), strict=True) if use])
-    logs = np.log(values[positive])
-    groups = {name: logs[site_of == index] for index, name in enumerate(names)}
-    pairs = [_compare(quantity, (a, groups[a]), (b, groups[b])) for a, b in combinations(sorted(groups), 2)]
-    corrected = holm_corrected(np.array([pair.p for pair in pairs]))
-    n_pairs = int(np.isfinite(corrected).sum())
-    return tuple(replace(pair, p_holm=p, n_pairs=n_pairs) for pair, p in zip(pairs, corrected.tolist(), strict=True))
-
-
-def _compare(quantity: str, a: tuple[str, FloatArray], b: tuple[str, FloatArray]) -> SiteComparison:
-    result = ratio_of_means(a[1], b[1])
-    dof = len(a[1]) + len(b[1]) - 2
-    pooled = float("nan")
-    if dof > 0:
-        squares = sum(float(np.sum((logs - logs.mean()) ** 2)) for logs in (a[1], b[1]))
-        pooled = float(np.sqrt(squares / dof))
-    needed = tests_per_group(pooled) if pooled > 0 else None
-    return SiteComparison(quantity, a[0], b[0], result.ratio, np.asarray(result.interval), result.p, needed)
+    names, site_of = numbered(site)
+    means = [own_mean(values[site_of == index], [name] * int(np.sum(site_of == index)), geometric=geometric)
+             for index, name in enumerate(names)]  # fmt: skip
+    by_size = [names[index] for index in np.argsort([-mean.value for mean in means]).tolist()]
+    letters = letters_of_groups(pairs, by_size) if len(names) > 1 else dict.fromkeys(names, "")
+    return tuple(
+        SiteMean(quantity, name, int(np.sum(site_of == index)), means[index], letters[name])
+        for index, name in enumerate(names)
+    )
 
 
 def site_snow(

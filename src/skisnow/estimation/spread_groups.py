@@ -198,9 +198,14 @@ def _log_density(sums: Sequence[tuple[FloatArray, FloatArray]], scales: Sequence
 
 def _bartlett(squares: FloatArray, degrees: FloatArray, index: IntArray) -> SpreadTest:
     """The test from sums of squares and degrees of freedom of the series."""
-    Q, f = (np.bincount(index, weights=values) for values in (squares, degrees))
-    enough = f >= FEWEST_DEGREES
-    Q, f = Q[enough], f[enough]
+    Q, f = (np.bincount(index, weights=values).astype(np.float64) for values in (squares, degrees))
+    return bartlett(Q, f, fewest=FEWEST_DEGREES)
+
+
+def bartlett(squares: FloatArray, degrees: FloatArray, *, fewest: float) -> SpreadTest:
+    """Bartlett's test from the sums of squares of the groups; only those with ``fewest`` degrees of freedom or more."""
+    enough = degrees >= fewest
+    Q, f = squares[enough], degrees[enough]
     if len(f) < 2 or Q.min() <= 0.0:
         return SpreadTest(1.0, 1.0)
     total, variance = f.sum(), Q / f

@@ -8,7 +8,7 @@ from .linear import LinearFit, linear_fit, polynomial_fit
 from .nonlinear import NonlinearFit, nonlinear_fit
 from .regress import Regress, RegressStatistics, regress
 from .resampling import percentile_interval, resampling_counts
-from .two_groups import RatioOfMeans, ratio_of_means, tests_per_group
+from .two_groups import tests_per_group
 from .variance_shares import VarianceShares, variance_shares
 
 __all__ = [
@@ -18,7 +18,6 @@ __all__ = [
     "NestedTest",
     "NonNegativeFit",
     "NonlinearFit",
-    "RatioOfMeans",
     "Regress",
     "RegressStatistics",
     "VarianceShares",
@@ -32,7 +31,6 @@ __all__ = [
     "one_way_anova",
     "percentile_interval",
     "polynomial_fit",
-    "ratio_of_means",
     "regress",
     "resampling_counts",
     "tests_per_group",

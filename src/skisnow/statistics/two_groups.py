@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.special import nctdtr, ndtr, ndtri, stdtr, stdtrit
+from scipy.special import nctdtr, ndtr, ndtri, stdtrit
 
 from .._support.errors import FitError, ParameterError
 from .._support.messages import Message
-from .combined_uncertainty import expanded_factor, require_confidence, welch_satterthwaite
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -19,55 +18,6 @@ if TYPE_CHECKING:
 
 _MOST_TESTS = 10**9
 _FAR, _VERY_FAR = 4.5, 30.0
-
-
-class RatioOfMeans(NamedTuple):
-    """Ratio of the geometric means of a and b, its interval (2,), and p of the test against the ratio 1."""
-
-    ratio: float
-    interval: FloatArray
-    p: float
-
-
-def ratio_of_means(logs_a: npt.ArrayLike, logs_b: npt.ArrayLike, *, confidence: float = 0.95) -> RatioOfMeans:
-    """Compare two groups by Welch's t test on natural logarithms (Welch 1947, Biometrika 34, 28-35).
-
-    Parameters
-    ----------
-    logs_a, logs_b
-        Natural logarithms of the measured values, shapes (n_a,) and (n_b,).
-    confidence
-        Confidence of the interval.
-
-    Returns
-    -------
-    RatioOfMeans
-        ``ratio`` = geometric mean of a / geometric mean of b, NaN for an empty group. ``interval`` and ``p`` are NaN
-        with fewer than two values in a group, and where neither group scatters at all: the scatter is then not known.
-        A NaN among the logarithms makes everything NaN; nothing is left out.
-
-    Examples
-    --------
-    >>> found = ratio_of_means(np.log([2.0, 4.0, 8.0]), np.log([1.0, 2.0, 4.0]))
-    >>> round(found.ratio, 9)
-    2.0
-    """
-    require_confidence(confidence)
-    a, b = _logarithms("logs_a", logs_a), _logarithms("logs_b", logs_b)
-    unknown = np.full(2, np.nan)
-    if a.size == 0 or b.size == 0:
-        return RatioOfMeans(float("nan"), unknown, float("nan"))
-    difference = float(a.mean() - b.mean())
-    if min(a.size, b.size) < 2 or not math.isfinite(difference):
-        return RatioOfMeans(math.exp(difference), unknown, float("nan"))
-    variances = np.array([a.var(ddof=1) / a.size, b.var(ddof=1) / b.size])
-    error = math.sqrt(float(variances.sum()))
-    if error == 0:
-        return RatioOfMeans(math.exp(difference), unknown, float("nan"))
-    dof = float(welch_satterthwaite(variances, [a.size - 1.0, b.size - 1.0]))
-    half = float(expanded_factor(dof, confidence)) * error
-    interval = np.exp([difference - half, difference + half])
-    return RatioOfMeans(math.exp(difference), interval, 2.0 * float(stdtr(dof, -abs(difference) / error)))
 
 
 def holm_corrected(p: npt.ArrayLike) -> FloatArray:
@@ -91,14 +41,41 @@ def holm_corrected(p: npt.ArrayLike) -> FloatArray:
     return corrected
 
 
-def _logarithms(name: str, values: npt.ArrayLike) -> FloatArray:
-    logs = np.asarray(values, dtype=float)
-    if logs.ndim != 1 or np.any(np.isinf(logs)):
-        raise ParameterError(
-            Message("{name} must be one row without infinite values: logarithms of measurements above 0", name=name),
-            code="wrong_shape",
-        )
-    return logs
+def compact_letters(differ: npt.ArrayLike) -> list[str]:
+    """Letters of n groups of which two share one exactly where their pair does not differ (Piepho 2004).
+
+    Parameters
+    ----------
+    differ
+        Symmetric (n, n) mask of the pairs that differ.
+
+    Returns
+    -------
+    list of str
+        Letters of each group, by insertion and absorption (J. Comput. Graph. Stat. 13, 456-466).
+
+    Examples
+    --------
+    The first and the last differ, the middle one from neither.
+
+    >>> compact_letters([[0, 0, 1], [0, 0, 0], [1, 0, 0]])
+    ['a', 'ab', 'b']
+    """
+    mask = np.asarray(differ, dtype=np.bool_)
+    columns = [frozenset(range(len(mask)))]
+    for a, b in np.argwhere(np.triu(mask)).tolist():
+        split = (column - {end} for column in columns if {a, b} <= column for end in (a, b))
+        columns = list(dict.fromkeys([column for column in columns if not {a, b} <= column] + list(split)))
+        columns = [column for column in columns if not any(column < other for other in columns)]
+    columns.sort(key=sorted)
+    return [
+        "".join(_letter(index) for index, column in enumerate(columns) if group in column) for group in range(len(mask))
+    ]
+
+
+def _letter(index: int) -> str:
+    """Letters from a to z, then a1, b1 and so on."""
+    return chr(ord("a") + index % 26) + (str(index // 26) if index >= 26 else "")
 
 
 def tests_per_group(sd_log: float, *, ratio: float = 1.1, power: float = 0.8, alpha: float = 0.05) -> int:

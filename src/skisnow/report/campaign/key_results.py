@@ -28,12 +28,14 @@ def key_results(data: ReportData) -> list[Markup]:
 
 
 def headline(data: ReportData) -> Markup:
-    """Mean H_V with its interval, or S_f in a campaign without H_V; empty without either."""
+    """Mean H_V with its interval, or S_f in a campaign without H_V; empty without either, and with several sites."""
     for key, name, unit in (
         ("H_V_N_per_mm3", "Snow hardness H_V", "N/mm³"),
         ("S_f_N_per_mm2", "Failure shear stress S_f", "N/mm²"),
     ):
         row = own_value(data, key)
+        if row is not None and len(_sites(data, key)) > 1:
+            break
         if row is not None:
             ends = row["own_interval"]
             return prose(
@@ -124,6 +126,8 @@ def _mean(data: ReportData, quantity: Quantity, experiments: list[Json], used: i
     sites = len(set(site.tolist()))
     if 1 < sites < FEWEST_SITES:
         return _few_sites(data, quantity, row, prose("{used} of {n} used", used=whole(used), n=n))
+    if sites > 1:
+        return _many_sites(data, quantity, row, prose("{used} of {n} used", used=whole(used), n=n))
     return prose(
         "{mean_name} {value} {unit}{ends}, single experiments {low} to {high} {unit}; {used} of {n} used, at {sites}.",
         mean_name=html(quantity.mean_name),
@@ -138,10 +142,29 @@ def _mean(data: ReportData, quantity: Quantity, experiments: list[Json], used: i
     )
 
 
+def _many_sites(data: ReportData, quantity: Quantity, pooled: Json, used: Markup) -> Markup:
+    """Means of the sites from the smallest to the largest, then the mean over all sites."""
+    rows = [row for row in data.results["site_means"] if row["quantity"] == quantity.key and row["mean"] is not None]
+    rows.sort(key=lambda row: row["mean"])
+    return prose(
+        "{mean_name} of each site: from {low} {unit} ({softest}) to {high} {unit} ({hardest}), at {sites}; {used}. "
+        "Over all sites {value} {unit}{ends}.",
+        mean_name=html(quantity.mean_name),
+        low=_strong(rows[0]["mean"]),
+        softest=rows[0]["site"],
+        high=_strong(rows[-1]["mean"]),
+        hardest=rows[-1]["site"],
+        unit=quantity.unit,
+        sites=counted(len(rows), "site"),
+        used=used,
+        value=significant(pooled["own"]),
+        ends=_ends(pooled["own_interval"], quantity.unit, len(rows)),
+    )
+
+
 def _few_sites(data: ReportData, quantity: Quantity, pooled: Json, used: Markup) -> Markup:
-    """Means of the sites, their ratios, and the mean over all sites without an interval."""
+    """Means of the sites, and the mean over all sites without an interval."""
     sites = [row for row in data.results["site_means"] if row["quantity"] == quantity.key]
-    pairs = [row for row in data.results["site_comparisons"] if row["quantity"] == quantity.symbol]
     site_means = [
         prose(
             "{site} {value} {unit}{ends}, n = {n}",
@@ -154,11 +177,10 @@ def _few_sites(data: ReportData, quantity: Quantity, pooled: Json, used: Markup)
         for row in sites
     ]
     return prose(
-        "{mean_name} of each site: {site_means}. {ratios}; {used}. Over the {sites} together {value} {unit}, without "
+        "{mean_name} of each site: {site_means}; {used}. Over the {sites} together {value} {unit}, without "
         "an interval: {fewer} sites do not tell how sites scatter. Single experiments {low} to {high} {unit}.",
         mean_name=html(quantity.mean_name),
         site_means=html("; ").join(site_means),
-        ratios=html("; ").join(map(_ratio, pairs)),
         used=used,
         sites=counted(len(sites), "site"),
         value=significant(pooled["own"]),
@@ -166,19 +188,6 @@ def _few_sites(data: ReportData, quantity: Quantity, pooled: Json, used: Markup)
         fewer=f"fewer than {FEWEST_SITES}",
         low=significant(pooled["own_range"][0]),
         high=significant(pooled["own_range"][1]),
-    )
-
-
-def _ratio(pair: Json) -> Markup:
-    ends = "no interval" if pair["interval"] is None else f"95 % interval {interval(pair['interval'])}"
-    p = "" if pair["p"] is None else f", {p_equals(pair['p'])}"
-    return prose(
-        "{a} over {b}: {ratio} ({ends}{p})",
-        a=pair["site_a"],
-        b=pair["site_b"],
-        ratio=significant(pair["ratio"]),
-        ends=ends,
-        p=p,
     )
 
 

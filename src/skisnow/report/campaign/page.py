@@ -39,7 +39,9 @@ from .key_results import headline, key_results
 from .model_figures import model_rmse, residuals
 from .penetration_figures import force_depth, hardness_density, hardness_mean_force, seating_offsets, unloading_ratios
 from .shear_figures import machining, shear_force_depth, stress_angle, stress_density, stress_hardness
+from .site_figure import sites
 from .tables import campaign_tables
+from .verdicts import verdicts
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
@@ -211,6 +213,7 @@ def _frame(data: ReportData) -> dict[str, Any]:
         "dates": None if data.dates is None else days_words(*data.dates),
         "analysed": moment_words(results["provenance"]["time"]),
         "headline": headline(data),
+        "verdicts": verdicts(results),
         "counts": _counts(data),
         "has_penetration": has_penetration,
         "has_unloading": bool(data.unloaded),
@@ -246,6 +249,7 @@ def _uncertainties(campaign: dict[str, Any]) -> dict[str, str]:
 
 
 DRAWERS: Final = (
+    sites,
     force_depth,
     model_rmse,
     residuals,

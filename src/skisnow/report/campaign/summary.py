@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, Final
 
-from ...estimation.comparisons import FEWEST_SITES
 from ...estimation.regressions import FEWEST_VALUES
 from ..formatting import interval, p_equals, plain
+from .verdicts import verdicts
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -34,6 +34,7 @@ def _lines(results: Json) -> Iterator[str]:
     tag = " (synthetic)" if "synthetic" in name.casefold() else ""
     yield f"{name}, {results['campaign']['place']}" if results["campaign"]["place"] else name
     yield ""
+    yield from (f"{verdict}{tag}" for verdict in verdicts(results))
     yield from _experiments(results)
     yield from _measured(results, "H_V_N_per_mm3", f"H_V{tag}", "N/mm³", "geometric mean")
     yield from _unloading(results, tag)
@@ -74,22 +75,18 @@ def _flag_counts(rows: list[Json]) -> str:
 
 
 def _measured(results: Json, quantity: str, symbol: str, unit: str, kind: str) -> Iterator[str]:
-    """Mean over all sites and that of each site; of few sites, first the sites and their ratios."""
+    """Mean of each site, then over all sites."""
     row = next((row for row in results["comparisons"] if row["quantity"] == quantity), None)
     if row is None or row["own"] is None:
         yield f"{symbol}: none"
         return
     sites = [item for item in results["site_means"] if item["quantity"] == quantity]
     pooled = _mean(symbol, kind, unit, (row["own"], row["own_interval"], row["own_range"]), _over(sites))
-    if len(sites) >= FEWEST_SITES or len(sites) == 1:
-        yield pooled
     if len(sites) > 1:
         yield from (_site(item, symbol, unit, kind) for item in sites[:MOST_SITES])
         if len(sites) > MOST_SITES:
             yield f"  and {len(sites) - MOST_SITES} more sites in results.json"
-    if 1 < len(sites) < FEWEST_SITES:
-        yield from (_ratio(pair, symbol) for pair in results["site_comparisons"] if pair["quantity"] == quantity[:3])
-        yield pooled
+    yield pooled
 
 
 def _unloading(results: Json, tag: str) -> Iterator[str]:
@@ -130,14 +127,7 @@ def _mean(symbol: str, kind: str, unit: str, numbers: tuple[float, list[float] |
 
 def _site(item: Json, symbol: str, unit: str, kind: str) -> str:
     numbers = (item["mean"], item["interval"], item["range"])
-    return _mean(f"  {symbol} at {item['site']}", kind, unit, numbers, f"over its experiments, n = {item['n']}")
-
-
-def _ratio(pair: Json, symbol: str) -> str:
-    ends = f" 95 % interval {interval(pair['interval'], style='plain')}" if pair["interval"] else " no interval"
-    p = "" if pair["p"] is None else f", {p_equals(pair['p'], style='plain')}"
-    ratio = plain(pair["ratio"])
-    return f"  {symbol} at {pair['site_a']} over {pair['site_b']}: {ratio},{ends}{p}"
+    return _mean(f"{symbol} at {item['site']}", kind, unit, numbers, f"over its experiments, n = {item['n']}")
 
 
 def _missing_values(campaign: Json) -> Iterator[str]:

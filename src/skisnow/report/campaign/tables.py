@@ -94,23 +94,29 @@ def _mean_and_range(values: FloatArray, sites: TextArray, *, geometric: bool) ->
     return len(values), (value, interval), (mean.minimum, mean.maximum) if np.isfinite(mean.minimum) else None
 
 
-def site_comparison_table(data: ReportData) -> Table:
-    """Ratio of the means of every pair of sites."""
+def group_comparison_table(data: ReportData) -> Table:
+    """Ratio of the means of every pair of sites, tools, observers and days."""
     columns = (
         Column("quantity", "Quantity", "words"),
-        Column("site_a", "Site A", "text"),
-        Column("site_b", "Site B", "text"),
+        Column("by", "Groups", "words"),
+        Column("group_a", "A", "text"),
+        Column("n_a", "n of A", "count"),
+        Column("group_b", "B", "text"),
+        Column("n_b", "n of B", "count"),
         Column("ratio", "A / B", "estimate", interval="interval"),
         Column("p", "p", "p"),
-        Column("n_for_10_percent", "tests per site to tell 10 %", "count"),
+        Column("p_holm", "p, corrected", "p"),
+        Column("n_needed", "tests needed in each group", "count"),
     )
     return record_table(
-        "site_comparisons",
-        "Is one site harder than another: ratio of the geometric means of site A over site B, with 95 % interval.",
+        "group_comparisons",
+        "Ratios of the geometric means of group A over group B, with 95 % intervals.",
         columns,
-        data.results["site_comparisons"],
-        note="Welch's test on logarithms, each pair by itself: of twenty pairs of equal sites one is expected below "
-        "p = 0.05. Last column: tests at each site that would find a difference of 10 % with a power of 80 %.",
+        data.results["group_comparisons"],
+        note="Intervals and p are those of a pair by itself. The corrected p accounts for the number of pairs of the "
+        "same kind (Holm). Tools, observers and days are compared at their common sites. Last column: tests in each "
+        "group that would find a difference of "
+        f"{data.results['provenance']['options']['difference_percent']:.3g} % with a power of 80 %.",
     )
 
 
@@ -312,7 +318,7 @@ BUILDERS: Final = (
     snow_micro_pen_table,
     regressions_table,
     weather_table,
-    site_comparison_table,
+    group_comparison_table,
     published_table,
     quality_flags_table,
     penetration_table,
