@@ -30,8 +30,8 @@ from scipy.linalg import LinAlgError, cho_solve_banded, cholesky_banded, expm
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
 
-DAMPING: Final = 0.3
-"""Damping ratio ζ of the turn rate (modelling assumption: two or three linked turns resemble each other)."""
+DAMPING: Final = 0.07
+"""Damping ratio ζ of the turn rate (modelling assumption: four or five linked turns resemble each other)."""
 USUAL_SPEED: Final = (10.0, 30.0)
 """Mean and standard deviation (m/s) of the first speed (modelling assumption: hardly any information)."""
 HEADING_PRECISION: Final = 1e-2
