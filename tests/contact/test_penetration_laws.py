@@ -12,7 +12,14 @@ import pytest
 from skisnow import read_ski
 from skisnow._support.errors import ParameterError
 from skisnow.contact import Runner, SnowContact, SnowField
-from skisnow.forces.penetration import ElasticPoint, HypoplasticPoint, MeanPressurePoint, PointLaw, VolumeWithAnglePoint
+from skisnow.forces.penetration import (
+    ElasticPoint,
+    HypoplasticPoint,
+    LayeredPoint,
+    MeanPressurePoint,
+    PointLaw,
+    VolumeWithAnglePoint,
+)
 from tests.coded import raises
 
 from .conftest import edged, straight
@@ -104,6 +111,18 @@ def test_the_core_s_law_in_python_gives_the_core_s_forces(ratio: float, seed: in
     assert np.all(np.abs(inside - outside) <= 1e-8 * np.maximum(size, 1.0))
     assert np.array_equal(one.tracks(), other.tracks())
     assert other.groove_energy == pytest.approx(one.groove_energy, rel=1e-12)
+
+
+@pytest.mark.parametrize("degrees", [0.0, 35.0])
+def test_a_rigid_ski_on_two_layers(degrees: float) -> None:
+    """Flat: (H d + H_2 (e - d)) per area. On its edge H V + (H_2 - H) V₂, V₂ the volume below the border."""
+    angle, e, border, lower = math.radians(degrees), 3e-3, 1e-3, 5.0 * H
+    law = LayeredPoint(H, 10.0, layer_depth=border, lower_hardness=lower)
+    if degrees == 0.0:
+        expected = (H * border + lower * (e - border)) * LENGTH * WIDTH
+    else:
+        expected = LENGTH * (H * e**2 + (lower - H) * (e - border) ** 2) / (2.0 * math.tan(angle))
+    assert wrench(law, angle, e)[2] == pytest.approx(expected, rel=1e-12)
 
 
 def test_eqn_11_at_an_angle() -> None:

@@ -54,6 +54,7 @@ _BY_ENDING: Final = {
     "N_s_per_mm3": Unit("N s/mm³", N_PER_MM3),
     "N_per_mm2": Unit("N/mm²", N_PER_MM2),
     "N_per_mm": Unit("N/mm", N_PER_MM),
+    "per_mm": Unit("1/mm", 1.0 / MM),
     "kg_per_m3": Unit("kg/m³", 1.0),
     "kg_per_m": Unit("kg/m", 1.0),
     "m_per_s2": Unit("m/s²", 1.0),

@@ -5,7 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Annotated, Final, Literal, TypeAlias, get_args
 
+from .._support.errors import ParameterError
+from .._support.messages import Message
 from ..forces.friction.load import ActsOn, Direction
+from ..forces.penetration import LayeredPoint, PointLaw
 from ..forces.penetration.rate import DAMPING, DELAYED_SHARE, RETARDATION_TIME
 from ..forces.shear.displacement import SHEAR_DISPLACEMENT
 from ..parameters import Condition, Quantity, Search, Section, Word, declared_text, require_declared
@@ -42,6 +45,8 @@ class Contact:
         Whether the base's slope along the ski counts as resistance.
     shear_displacement
         u_y > 0 (m).
+    hardness_growth, layer_depth, lower_hardness
+        γ' ≥ 0 (1/m); depth (m) at which a lower layer begins, and its H_V (N/m³); None: one layer.
     damping, delayed_share, retardation_time
         c ≥ 0 (N s/m³) of the snow's answer to the rate of depth; H_V/H₂ ≥ 0 and c₂/H₂ > 0 (s) of its delayed depth.
     friction, friction_by_speed, friction_acts_on, friction_direction
@@ -99,6 +104,42 @@ class Contact:
             search=Search(3.0, 0.01, 5.0, logarithmic=True),
         ),
     ] = SHEAR_DISPLACEMENT
+    hardness_growth: Annotated[
+        float,
+        Quantity(
+            "snow.hardness_growth_per_mm",
+            "γ' of p = H_V ε (1 + γ' ε), snow that is harder below; 0: alike at every depth",
+            label="growth of the hardness",
+            symbol="$γ'$",
+            lowest=0.0,
+            highest=10.0,
+            origin="choice: none; a campaign gives γ/e₇",
+        ),
+    ] = 0.0
+    layer_depth: Annotated[
+        float | None,
+        Quantity(
+            "snow.layer_depth_mm",
+            "depth at which a lower layer begins, or the ground",
+            label="depth of the upper layer",
+            symbol="d",
+            lowest=0.01,
+            highest=10000.0,
+            origin="none: one layer",
+        ),
+    ] = None
+    lower_hardness: Annotated[
+        float | None,
+        Quantity(
+            "snow.lower_H_V_N_per_mm3",
+            "H_V of that layer: growth of the pressure with depth there",
+            label="hardness of the lower layer",
+            symbol="$H_2$",
+            lowest=0.0001,
+            highest=10000.0,
+            origin="none; goes with snow.layer_depth_mm",
+        ),
+    ] = None
     damping: Annotated[
         float,
         Quantity(
@@ -210,3 +251,36 @@ class Contact:
 
     def __post_init__(self) -> None:
         require_declared(self)
+        if (self.layer_depth is None) != (self.lower_hardness is None):
+            raise ParameterError(
+                Message("snow.layer_depth_mm and snow.lower_H_V_N_per_mm3 go together: give both, or none"),
+                code="contradiction",
+            )
+        if not self.is_layered:
+            return
+        if self.snow_map is not None and self.snow_map.hardness is not None:
+            raise ParameterError(
+                Message(
+                    "snow.map_file gives H_V over the place, and the snow has layers: H_V then has one value. Leave "
+                    "the layers out, or the map's column H_V_N_per_mm3"
+                ),
+                code="contradiction",
+            )
+        if self.damping > 0.0 or self.delayed_share > 0.0:
+            raise ParameterError(
+                Message("layers of snow do not go with snow.damping_N_s_per_mm3 or snow.delayed_share. Leave one out"),
+                code="contradiction",
+            )
+
+    @property
+    def is_layered(self) -> bool:
+        """Whether the pressure is not in proportion to the depth."""
+        return self.layer_depth is not None or self.hardness_growth > 0.0
+
+    @property
+    def penetration(self) -> PointLaw | None:
+        """The law of layered snow; None: H_V and k_u alone."""
+        if not self.is_layered:
+            return None
+        depth, hardness = self.layer_depth or 1e3, self.lower_hardness or self.snow.snow_hardness
+        return LayeredPoint(self.snow.snow_hardness, self.unloading_ratio, depth, hardness, self.hardness_growth)

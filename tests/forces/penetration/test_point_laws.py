@@ -16,6 +16,7 @@ from skisnow.forces.penetration import (
     POINT_LAWS,
     ElasticPoint,
     HypoplasticPoint,
+    LayeredPoint,
     MeanPressurePoint,
     PointLaw,
     VolumeWithAnglePoint,
@@ -31,6 +32,8 @@ SAMPLES: tuple[PointLaw, ...] = (
     MeanPressurePoint(A, B, 2.0, RAMP),
     MeanPressurePoint(A, B, 10.0, RAMP),
     MeanPressurePoint(A / 4.0, B / 4.0, 5.0, RAMP),
+    LayeredPoint(H_V, 10.0, layer_depth=0.02, lower_hardness=5.0 * H_V),
+    LayeredPoint(H_V, 2.0, layer_depth=0.02, lower_hardness=0.2 * H_V),
 )
 EVERY_LAW = pytest.mark.parametrize("law", SAMPLES, ids=repr)
 
@@ -40,6 +43,8 @@ def stronger(law: PointLaw) -> PointLaw:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", RangeWarning)
             return MeanPressurePoint(3 * law.pressure_slope, 3 * law.pressure_offset, law.unloading_ratio, RAMP)
+    if isinstance(law, LayeredPoint):
+        return LayeredPoint(3 * H_V, law.unloading_ratio, law.layer_depth, 3 * law.lower_hardness)
     if isinstance(law, HypoplasticPoint | VolumeWithAnglePoint):
         return type(law)(3 * H_V, law.unloading_ratio)
     return ElasticPoint(3 * H_V)
@@ -49,6 +54,8 @@ def at_5_cm(law: PointLaw) -> float:
     """Stress of first loading (N/m²)."""
     if isinstance(law, MeanPressurePoint):
         return 2.0 * law.pressure_slope * 0.05 + law.pressure_offset
+    if isinstance(law, LayeredPoint):
+        return H_V * law.layer_depth + law.lower_hardness * (0.05 - law.layer_depth)
     return (0.99 if isinstance(law, VolumeWithAnglePoint) else 1.0) * H_V * 0.05
 
 
@@ -56,6 +63,8 @@ def steepest(law: PointLaw) -> float:
     """Growth of the stress with depth (N/m³) at most."""
     if isinstance(law, MeanPressurePoint):
         return law.unloading_ratio * (2.0 * law.pressure_slope + law.pressure_offset / RAMP)
+    if isinstance(law, LayeredPoint):
+        return law.unloading_ratio * max(H_V, law.lower_hardness)
     ratio = getattr(law, "unloading_ratio", 1.0)
     return float(ratio if ratio < 1e6 else 1.0) * H_V
 
@@ -261,3 +270,21 @@ def test_the_mean_over_a_wedge_is_that_of_federolf() -> None:
 def test_a_mean_pressure_that_unloads_more_softly_is_refused(ratio: float) -> None:
     with raises(ParameterError, "not_a_number"):
         MeanPressurePoint(A, B, ratio)
+
+
+def test_growing_hardness_over_a_wedge() -> None:
+    """F = H_0 (V + γ W/e₇), V = L e²/(2 tan ϑ), W = L e³/(3 tan ϑ), for L/tan ϑ = 1 m and γ/e₇ = 40/m."""
+    law, e = LayeredPoint(H_V, 10.0, layer_depth=1.0, lower_hardness=H_V, hardness_growth=40.0), 0.01
+    depth = e * (np.arange(100_000) + 0.5) / 100_000
+    expected = H_V * (e**2 / 2.0 + 40.0 * e**3 / 3.0)
+    assert e * float(np.mean(law.stress(depth, 0.0))) == pytest.approx(expected, rel=1e-9)
+    assert law.lost_energy(e) + law.stored_energy(e, e) == pytest.approx(expected, rel=1e-12)  # ∫q too
+
+
+def test_equal_layers_are_one() -> None:
+    depth, deepest = np.meshgrid(np.linspace(0.0, 0.04, 41), np.linspace(0.0, 0.04, 41))
+    one, two = HypoplasticPoint(H_V, 10.0), LayeredPoint(H_V, 10.0, layer_depth=0.013, lower_hardness=H_V)
+    for name in ("stress", "stored_energy"):
+        np.testing.assert_allclose(getattr(two, name)(depth, deepest), getattr(one, name)(depth, deepest), atol=1e-6)
+    for name in ("residual_depth", "lost_energy"):
+        np.testing.assert_allclose(getattr(two, name)(deepest), getattr(one, name)(deepest), rtol=1e-12, atol=1e-12)

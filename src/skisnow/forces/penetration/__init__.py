@@ -9,6 +9,7 @@ from .elastic_point import ElasticPoint
 from .element_count import ElementCountLaw
 from .hypoplastic_point import HypoplasticPoint
 from .law import PenetrationLaw
+from .layered_point import LayeredPoint
 from .mean_pressure import MeanPressureLaw
 from .mean_pressure_point import MeanPressurePoint
 from .point_law import PointLaw
@@ -32,6 +33,7 @@ POINT_LAWS: Final[tuple[type[PointLaw], ...]] = (
     HypoplasticPoint,
     VolumeWithAnglePoint,
     MeanPressurePoint,
+    LayeredPoint,
 )
 """Every law for one place on the snow."""
 
@@ -44,6 +46,7 @@ __all__ = [
     "ElasticPoint",
     "ElementCountLaw",
     "HypoplasticPoint",
+    "LayeredPoint",
     "MeanPressureLaw",
     "MeanPressurePoint",
     "PenetrationLaw",
