@@ -39,7 +39,7 @@ The public names are loaded when first used. Functions are verbs; classes are th
 ``race``, ``QuickestLine``
     The fastest line through a course.
 ``SnowField``, ``SnowContact``, ``Runner``, ``ContactForces``
-    History-dependent snow, and contact of your own body with it.
+    History-dependent snow, and contact of user-defined bodies with it.
 ``regress``
     Linear regression with the arguments and results of MATLAB's and Octave's ``regress``.
 ``SkisnowError``, ``ParameterError``, ``FieldDataError``, ``FitError``, ``SolverError``, ``StoreError``, ``OutputError``

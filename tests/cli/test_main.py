@@ -173,7 +173,7 @@ def test_a_seed_is_a_whole_number_that_every_file_can_hold(seed: str, capsys: py
     with pytest.raises(SystemExit) as stop:
         main(["analyse", "x", "--seed", seed])
     assert stop.value.code == 2
-    assert "is no seed" in capsys.readouterr().err
+    assert "is not a whole number from 0 to" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(
@@ -210,7 +210,7 @@ def test_numbers_outside_their_range_are_refused_at_once(
 def test_a_load_that_is_no_quantity_is_refused(capsys: pytest.CaptureFixture[str]) -> None:
     words = "carve --ski slalom --edge-angle-deg 45 --published race-piste --unloading-ratio 10 --load-N 1e-320"
     assert main(words.split()) == 1
-    told = "load_N is 1e-320, which is no quantity; allowed are 0 and sizes from 1e-100 to 1e+100"
+    told = "load_N is 1e-320, not a quantity; allowed are 0 and sizes from 1e-100 to 1e+100"
     assert told in capsys.readouterr().err
 
 

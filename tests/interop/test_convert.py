@@ -211,7 +211,7 @@ def test_weather_becomes_csv_and_plain_smet(tmp_path: Path, capsys: pytest.Captu
     assert again.read_text() == (tmp_path / "s.csv").read_text()
     source.write_text(SMET.replace("TA RH", "HS PSUM"))
     assert main(["convert", str(source), str(tmp_path / "none.csv")]) == 1
-    assert "none of the fields TA, RH" in told(capsys)[1]
+    assert "no field of TA, RH" in told(capsys)[1]
 
 
 def test_densities_beside_experiments_reach_caaml_once(campaign: Path, tmp_path: Path) -> None:

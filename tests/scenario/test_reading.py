@@ -375,7 +375,7 @@ def test_bad_change_is_refused_in_a_sentence(changes: dict[str, object], told: s
                 "unknown_name",
                 name="sledge.mas_kg",
                 similar="sledge.mass_kg",
-                part_0="sledge.mas_kg is no key of a scenario.",
+                part_0="sledge.mas_kg is not a key of a scenario.",
                 part_1="Did you mean sledge.mass_kg?",
             ),
         ),

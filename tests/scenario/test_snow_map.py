@@ -97,7 +97,7 @@ def test_hardness_where_it_matters(tmp_path: Path) -> None:
     ("text", "said"),
     [
         ("y_m,H_V_N_per_mm3\n0,1\n", "row 1: column x_m is missing"),
-        ("x_m,y_m\n0,0\n", "there is none of the columns H_V_N_per_mm3, S_f_N_per_mm2, or no row"),
+        ("x_m,y_m\n0,0\n", "no column of H_V_N_per_mm3, S_f_N_per_mm2, or no row"),
         ("x_m,H_V_N_per_mm3\n0,1\n1,-2\n", "row 3, column H_V_N_per_mm3: '-2'"),
         ("x_m,H_V_N_per_mm3\n0,1\n1,0\n", "row 3, column H_V_N_per_mm3: '0'"),
         ("x_m,H_V_N_per_mm3\n0,1\n1,1e308\n", "row 3, column H_V_N_per_mm3: '1e308'"),
@@ -109,7 +109,7 @@ def test_hardness_where_it_matters(tmp_path: Path) -> None:
         ("x_m,H_V_N_per_mm3\n0,1\n1,soft\n", "row 3, column H_V_N_per_mm3: 'soft': A finite number is needed"),
         ("x_m,H_V_N_per_mm3\n0,1\n0,2\n", "row 3, column x_m: '0': x does not rise"),
         ("x_m,H_V_N_per_mm3\n0,1\n", "there are 1 rows"),
-        (OVER + "20,5,0.3\n", "row 6: x_m = 20, y_m = 5 stand in row 5, too"),
+        (OVER + "20,5,0.3\n", "row 6: x_m = 20, y_m = 5 are in row 5, too"),
     ],
 )
 def test_what_is_wrong_is_told_with_its_place(tmp_path: Path, text: str, said: str) -> None:

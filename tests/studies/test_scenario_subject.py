@@ -161,7 +161,7 @@ def test_scenario_of_a_file_and_files_of_points_count_in_the_fingerprint(tmp_pat
         ("drag_area_m2 = 0", "drag_area_m2 = 0\ndrag = { drag_area_m2 = 1 }", "drag.drag_area_m2 is given twice"),
         ("drag_area_m2 = 0", "drag_area_m2 = -1", "fixed.drag.drag_area_m2 is -1"),
         ("drag_area_m2 = 0", "drag_area_m2 = 0\nski.name = 'slalon'", "Did you mean slalom?"),
-        ("slope.angle_deg", "duration_s", "run.duration_s stands in [grid] and in [fixed]"),
+        ("slope.angle_deg", "duration_s", "run.duration_s is in [grid] and in [fixed]"),
         ("[5, 6, 7]", "[[5, 6, 7], [6, 7, 8]]", "it must be [a, b, c]"),
     ],
 )

@@ -126,7 +126,7 @@ def test_a_cancelled_run_keeps_what_was_computed(page: Page, served: Served) -> 
     waiting.click()
     page.get_by_text("cancelled · It had not begun.").wait_for()
     pressed_while_it_goes_on(page, page.get_by_role("button", name="Cancel"))
-    page.get_by_text("What was computed until then is kept.").wait_for(timeout=LONG_MS)
+    page.get_by_text("The results so far are kept.").wait_for(timeout=LONG_MS)
     (place,) = (served.store.parent / "lab").glob("*/summary.json")
     summary = json.loads(place.read_text(encoding="utf-8"))
     assert summary["outcome"] == "interrupted"

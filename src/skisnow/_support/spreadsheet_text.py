@@ -180,8 +180,8 @@ _AS_FORMULA: Final = re.compile(f"'*[{re.escape(_FORMULA)}]")
 def guarded(text: str) -> str:
     """The cell of a text in a table that people open: no spreadsheet program takes it for a formula.
 
-    A text that begins with = + - @, a tab or a carriage return, and is no number, gets an apostrophe in front; so does
-    one that begins so behind apostrophes, so that `unguarded` gives every text back.
+    A text that begins with = + - @, a tab or a carriage return, and is not a number, gets an apostrophe in front.
+    So does one that begins so behind apostrophes, so that `unguarded` gives every text back.
 
     >>> [guarded(text) for text in ("=1+1", "-1.5", "'=a", "it's", "-")]
     ["'=1+1", '-1.5', "''=a", "it's", "'-"]

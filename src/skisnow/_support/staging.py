@@ -94,7 +94,7 @@ def tidied(folder: Path) -> list[str]:
 
     Returns
     -------
-    What was done, in sentences.
+    Sentences about the actions.
 
     Raises
     ------
@@ -118,7 +118,7 @@ def _tidied(hidden: Path) -> str | None:
         if not (hidden / _PLAN).is_file():
             return f"{hidden} was left by a process that was killed; it is removed"
         _carry_out(hidden)
-        return f"{hidden.parent}: what a killed process had still to move is in place now"
+        return f"{hidden.parent}: the files that a killed process had not yet moved are in place now"
     finally:
         shutil.rmtree(hidden, ignore_errors=True)
         if lock is not None:
@@ -164,7 +164,7 @@ def _require_inside(names: Sequence[str]) -> None:
 
 
 def _is_old(hidden: Path) -> bool:
-    """Where the system has no locks a folder that no one wrote into for a day is no one's."""
+    """Without locks in the system, a folder without writes for a day counts as abandoned."""
     return sys.platform == "win32" and time.time() - hidden.stat().st_mtime > _A_DAY_S
 
 
@@ -206,7 +206,7 @@ def write_file(path: str | Path, content: str | bytes) -> None:
     Raises
     ------
     OutputError
-        The place cannot be written or is full; whatever stood there before still does.
+        The place cannot be written or is full; an earlier file is unchanged.
     """
     data = content.encode("utf-8") if isinstance(content, str) else content
     with place_to_write(path) as place:
@@ -220,7 +220,7 @@ def place_to_write(path: str | Path) -> Iterator[Path]:
     Raises
     ------
     OutputError
-        The place cannot be written or is full; whatever stood there before still does.
+        The place cannot be written or is full; an earlier file is unchanged.
     """
     path = Path(path)
     temporary: Path | None = None

@@ -101,7 +101,7 @@ def without_unit(name: str) -> str:
 
 @cache
 def _ending(name: str) -> str:
-    name = name.partition("[")[0]  # of a list each
+    name = name.partition("[")[0]  # unit of each item of a list
     return next((ending for ending in _BY_ENDING if name.endswith(f"_{ending}")), "")
 
 

@@ -189,7 +189,7 @@ def lines_of(problems: Iterable[Problem]) -> list[Message]:
     >>> told = [warning("separator", f"{name}.csv", value="semicolon", allowed="", action="", needs_action=False)
     ...         for name in ("shear", "density")]
     >>> print(*lines_of(told))
-    note: nothing need be done: semicolon in shear.csv, density.csv.
+    note: no action is needed: semicolon in shear.csv, density.csv.
     """
     every = list(problems)
     files: dict[str, list[str]] = {}
@@ -200,7 +200,7 @@ def lines_of(problems: Iterable[Problem]) -> list[Message]:
             files.setdefault(note or problem.code, []).append(problem.file)
     notes = [Message("{note} in {files}", note=note, files=list(dict.fromkeys(names))) for note, names in files.items()]
     lines = list(_limited_lines(_group_unknown_names(problem for problem in every if problem.needs_action)))
-    no_action = Message("note: nothing need be done: {notes}.", notes=joined(notes, "; "))
+    no_action = Message("note: no action is needed: {notes}.", notes=joined(notes, "; "))
     return [*lines, no_action] if notes else lines
 
 
@@ -282,7 +282,7 @@ _ALL: Final = (
     ),
     QualityFlag(
         "rebound_unresolved",
-        "The tool came back by too little to tell how steep the unloading is: the ratio is only known from below.",
+        "The tool came back by too little to measure how steep the unloading is: the ratio is only known from below.",
         False,
     ),
     QualityFlag(

@@ -42,7 +42,7 @@ _PLAUSIBLE: Final = {
     **dict.fromkeys(("TA", "TD", "TSS", "TSG"), (180.0, math.inf, "above 180 K", "units_offset = 273.15 if °C")),
     "RH": (-0.05, 1.2, "from 0 to 1", "units_multiplier = 0.01 if %"),
 }
-"""By field: between which SI values the median of a station lies, in words, and what is missing in the header."""
+"""By field: between which SI values the median of a station lies, and the missing part of the header."""
 
 
 @dataclass(frozen=True, slots=True, repr=False)
@@ -287,13 +287,13 @@ class WeatherSettings:
     """The section ``[weather]`` of campaign.toml."""
 
     file: Annotated[
-        str | None, Quantity("file", "name of a SMET file in the campaign's folder; left out: no weather")
+        str | None, Quantity("file", "name of a SMET file in the campaign's folder; default: no weather")
     ] = None
     utc_offset_h: Annotated[
         float | None,
         Quantity(
             "utc_offset_h",
-            "hours that the clock of the column `time` is ahead of UTC, where a time does not say it; left out: as in "
+            "hours that the clock of the column `time` is ahead of UTC, where a time does not say it; default: as in "
             "the station's file",
             lowest=-14.0,
             highest=14.0,

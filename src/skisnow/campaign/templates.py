@@ -122,7 +122,7 @@ def campaign_toml(name: str) -> str:
 # A campaign to be filled in: this file, and one row as an example in each table. Keys and columns carry their units.
 # The status of the example rows keeps them out of every estimate; write over them or delete them.
 {keys}
-# Tables that have other headings: say which column each stands for (skisnow check proposes it)
+# Tables that have other headings: map each to a column (skisnow check proposes it)
 # columns."Kantwinkel [°]" = "edge_angle_deg"
 
 [[tool]]

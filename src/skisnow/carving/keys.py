@@ -89,7 +89,7 @@ class CarveQuestion:
         float | None,
         Quantity(
             "footprint_stiffness_N_per_mm2",
-            "stiffness of boot and binding under each metre of the clamp length, against bending; left out: rigid",
+            "stiffness of boot and binding under each metre of the clamp length, against bending; default: rigid",
             label="footprint stiffness",
             lowest=0.0,
             highest=1e4,

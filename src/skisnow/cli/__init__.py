@@ -71,7 +71,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):  # JSON is UTF-8 whatever the terminal's code page
             stream.reconfigure(encoding="utf-8", errors="backslashreplace")
-    try:  # from here on: an interrupt may come while commands are still being loaded
+    try:  # an interrupt may come already while commands are still being loaded
         options = build_parser().parse_args(arguments)
         status: int = options.run(options) or 0
         sys.stdout.flush()

@@ -44,7 +44,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
 def _add_question(parser: argparse.ArgumentParser) -> None:
     named: dict[str, Any] = {"action": "append", "required": True, "metavar": "NAME|FILE"}
     parser.add_argument("--ski", **named, help="a ski of the catalogue or a ski file; several times to compare")
-    angle = "of the base under the boot to the snow, 0 to 85"
+    angle = "angle of the base under the boot to the snow, 0 to 85"
     parser.add_argument("--edge-angle-deg", type=number("degrees"), required=True, metavar="DEGREES", help=angle)
     load = "on this ski, along the snow normal, at the boot"
     parser.add_argument("--load-N", type=number("N"), required=True, metavar="NEWTONS", help=load)
@@ -78,8 +78,8 @@ def _add_choices(parser: argparse.ArgumentParser) -> None:
     )
     spread = "how the side force goes along the edge: as its depth, or as the snow's force on the base"
     choices.add_argument("--side-force-spread", choices=("depth", "base-reaction"), help=spread)
-    choices.add_argument("--groove", choices=("edge", "path"), help="what the groove of the forebody follows")
-    balance = "what holds the side force's moment about the ski's cross axis: boot, or nothing but --moment-Nm (free)"
+    choices.add_argument("--groove", choices=("edge", "path"), help="curve that the groove of the forebody follows")
+    balance = "support of the side force's moment about the ski's cross axis: boot, or nothing but --moment-Nm (free)"
     choices.add_argument("--moment-balance", choices=("boot", "free"), help=balance)
     choices.add_argument("--no-twist", dest="twist", **off, help="the ski keeps its edge angle everywhere")
     choices.add_argument("--elements", type=whole_number(), metavar="N", help="finite elements over the whole ski")
@@ -141,7 +141,7 @@ def _status(answers: list[CarveAnswer]) -> int:
     lost = [answer.question.ski for answer in answers if answer.equilibrium.outcome == "not_converged"]
     if lost:
         print(
-            f"skisnow: no equilibrium was found for {', '.join(map(str, lost))}: these numbers are no answer.",
+            f"skisnow: no equilibrium was found for {', '.join(map(str, lost))}: these numbers are not a solution.",
             file=sys.stderr,
         )
     return 1 if lost else 0

@@ -40,7 +40,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     parser.add_argument(
         "--time-from",
         choices=("clock", "first-point"),
-        help="what equal time counts from: the files' dates or seconds, or each track's first point; default: the "
+        help="origin of equal times: the files' dates or seconds, or each track's first point; default: the "
         "clock, but the first points where only one file has a date",
     )
     add_fall_line_azimuth(parser, "puts a track in latitude and longitude into a simulated run's frame")

@@ -54,7 +54,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     parser.add_argument(
         "shell", choices=(*SHELLS, WORDS), help="words: what the last WORD may become; shells ask for it"
     )
-    parser.add_argument("given", nargs=argparse.REMAINDER, metavar="WORD", help="with words: what stands there already")
+    parser.add_argument("given", nargs=argparse.REMAINDER, metavar="WORD", help="words of the command line so far")
     parser.set_defaults(run=run)
 
 

@@ -30,7 +30,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         help="height of the snow on the ground, where IN does not say it: SnowEx counts from there",
     )
     parser.add_argument(
-        "--time", metavar="TIME", help="day or time such as 2026-11-23T09:10, where IN has none: CAAML demands one"
+        "--time", metavar="TIME", help="day or time such as 2026-11-23T09:10, if IN has no time: CAAML requires one"
     )
     parser.add_argument(
         "--forces", type=Path, metavar="FILE", help="a .mot or .sto whose columns go into a .c3d beside the markers"

@@ -22,7 +22,7 @@ from .progress import announced
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-LATER: Final = "what was computed is being written first; asked again it is given up"
+LATER: Final = "writing the computed results first; a second request stops at once"
 
 
 class Ended(KeyboardInterrupt):

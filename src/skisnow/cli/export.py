@@ -20,7 +20,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     fmu = kinds.add_parser(
         "fmu",
         help="a functional mock-up unit for co-simulation",
-        description="Write the sledge of a scenario, or with --contact its skis in its snow alone, as an FMU for "
+        description="Write the sledge of a scenario, or with --contact only its skis in its snow, as an FMU for "
         "co-simulation. It holds a library for Linux on x86-64, and no Python.",
     )
     fmu.add_argument("scenario", metavar="SCENARIO", help="a built-in one by its name, or a TOML file")
@@ -41,7 +41,9 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     )
     mjcf.add_argument("ski", metavar="SKI", help="a ski of the catalogue by its name, or a ski file")
     mjcf.add_argument("--out", type=Path, metavar="FILE", required=True, help="the file to write, ending in .xml")
-    mjcf.add_argument("--segments", type=whole_number(4, 400), default=20, metavar="N", help="of the ski; default: 20")
+    mjcf.add_argument(
+        "--segments", type=whole_number(4, 400), default=20, metavar="N", help="segments of a ski; default: 20"
+    )
     mjcf.set_defaults(run=_mjcf)
     chrono = kinds.add_parser(
         "chrono",

@@ -37,7 +37,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         help="tracks (CSV, GPX, FIT, NMEA, UBX, .pos), photo-cell times or measured grooves (CSV); several are "
         "fitted together",
     )
-    free = 'what is looked for, such as mu_0,drag_area,S_f; default: what has a table [identify."KEY"] in the file'
+    free = 'parameters to fit, such as mu_0,drag_area,S_f; default: those with a table [identify."KEY"] in the file'
     parser.add_argument("--free", default="", metavar="KEY,KEY", help=free)
     changes = "another value for one key of the scenario, several times for several"
     parser.add_argument("--set", action="append", default=[], dest="changes", metavar="section.key=value", help=changes)
@@ -56,7 +56,7 @@ def _add_ways(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--bootstrap", type=whole_number(40, MOST_RESAMPLES, or_zero=True), default=0, metavar="N", help=bootstrap
     )
-    by = "each resample is refitted, with simulations of its own (default), or by the linearised model"
+    by = "each resample is refitted with separate simulations (default), or by the linearised model"
     parser.add_argument("--bootstrap-by", choices=("refit", "linear"), default="refit", help=by)
     posterior = "also about N samples of the posterior (needs emcee)"
     parser.add_argument("--posterior", type=whole_number(0, MOST_SAMPLES), default=0, metavar="N", help=posterior)
@@ -64,7 +64,7 @@ def _add_ways(parser: argparse.ArgumentParser) -> None:
         "--starts", type=whole_number(1, MOST_STARTS), default=1, metavar="N", help="searches from N places"
     )
     parser.add_argument("--seed", type=seed_number, default=0, metavar="N", help="of every random number")
-    clock = "whether photo-cell clocks show 0 at the start, or each run's has an offset of its own"
+    clock = "whether photo-cell clocks show 0 at the start, or each run's has a separate offset"
     parser.add_argument("--clock", choices=("start", "free"), help=clock)
     parser.add_argument(
         "--workers", type=whole_number(1, MOST_WORKERS), metavar="N", help="processes; default: all cores"
@@ -75,7 +75,7 @@ def _add_ways(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     """Identify, print, write; 0 with an answer, 1 with too few points or without convergence, 130 when interrupted."""
     if options.resume and options.out is None:
-        options.parser.error("--resume goes on with what is kept in --out DIR; name it")
+        options.parser.error("--resume continues the results in --out DIR; name it")
     scenario_input = _prepared(options)
     with ending_is_an_interrupt() as ending:
         result = _identified(options)

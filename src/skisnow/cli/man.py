@@ -34,7 +34,7 @@ def manual_page(parser: argparse.ArgumentParser, version: str) -> str:
         *(line for name, command in _commands(parser) for line in _command(command, _help_of(parser, name))),
         ".SH EXIT STATUS",
         "0: done. 1: the data or the machine refused, with a sentence on standard error. 2: wrong words. 70: an error",
-        "that nobody foresaw. 130: interrupted.",
+        "that was not foreseen. 130: interrupted.",
         ".SH SEE ALSO",
         "docs/files/command\\-line.md in the repository says more, with every default and unit.",
     ]

@@ -98,7 +98,7 @@ def number(
     unit
         Unit of the number; empty without one.
     lowest, highest
-        Allowed range; not given where a table of keys says it, which is checked before the work begins.
+        Allowed range; None if a table of keys declares it, which is checked before the work begins.
     above
         Whether the lowest itself is left out.
     """
@@ -119,7 +119,7 @@ def number(
             example = f", such as {match[0].replace(',', '.')}" if match else ""
             where = f" in {unit}, without the unit" if unit else ""
             raise argparse.ArgumentTypeError(
-                f"{_shown(word)} is no number; write one with a decimal point{where}{example}"
+                f"{_shown(word)} is not a number; write one with a decimal point{where}{example}"
             ) from None
 
     return read
@@ -135,7 +135,7 @@ def whole_number(
             value = int(word)
         except ValueError:
             example = f"write one such as {int(lowest) if lowest > 0 else 160}"
-            raise argparse.ArgumentTypeError(f"{_shown(word)} is no whole number; {example}") from None
+            raise argparse.ArgumentTypeError(f"{_shown(word)} is not a whole number; {example}") from None
         if not (lowest <= value <= highest or (or_zero and value == 0)):
             allowed = f"{'0, or ' if or_zero else ''}{lowest} to {highest}"
             raise argparse.ArgumentTypeError(f"{_shown(word)} is not allowed; allowed is a whole number, {allowed}")
@@ -156,7 +156,7 @@ def seed_number(word: str) -> int:
     except ValueError:
         seed = -1
     if not 0 <= seed < 2**63:
-        raise argparse.ArgumentTypeError(f"{_shown(word)} is no seed; a whole number from 0 to 9223372036854775807 is")
+        raise argparse.ArgumentTypeError(f"{_shown(word)} is not a whole number from 0 to 9223372036854775807")
     return seed
 
 
@@ -170,7 +170,7 @@ def add_scheduler(parser: argparse.ArgumentParser) -> None:
 
 
 def scheduler_of(options: argparse.Namespace) -> str | None:
-    """Who computes, refused where nothing can come of it; that a network must be trusted is said.
+    """Who computes, refused where nothing can come of it; warns that a network must be trusted.
 
     Raises
     ------
@@ -204,6 +204,6 @@ def checked_scheduler(scheduler: str | None) -> str | None:
     if is_plain(scheduler):
         risk = "what is sent to the workers is not encrypted, and whoever reaches it can run programs on them"
         print(
-            f"{scheduler}: {risk}: for trusted networks alone. tls:// with certificates is for others.", file=sys.stderr
+            f"{scheduler}: {risk}: only for trusted networks. Use tls:// with certificates for others.", file=sys.stderr
         )
     return scheduler

@@ -87,7 +87,7 @@ def _add_worth(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--against", action="append", default=[], metavar="SKI", help="another ski on the same line, by name or file"
     )
-    worth = "what a tenth more hardness, strength and less friction, 1 mm of waist and 5 %% of stiffness are worth"
+    worth = "time that a tenth more hardness, strength and less friction, 1 mm of waist and 5 %% of stiffness are worth"
     parser.add_argument("--worth", action="store_true", help=worth)
     parser.add_argument(
         "--snows", type=whole_number(0, MOST_SNOWS), default=0, metavar="N",

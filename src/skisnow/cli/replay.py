@@ -54,7 +54,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         metavar="X",
         help="bending and twist so many times in the models; default: 1",
     )
-    parser.add_argument("--title", help="what the reader sees above it; default: the folder's name")
+    parser.add_argument("--title", help="heading above it; default: the folder's name")
     add_language(parser, "the page")
     parser.add_argument("--out", type=Path, metavar="DIR", help="the folder to write into; default: the run's")
     parser.set_defaults(run=run, parser=parser)
@@ -110,7 +110,7 @@ def _beside(options: argparse.Namespace, shown: Replay) -> ReplayTrack:
 
 
 def _link(folder: Path) -> None:
-    """A report that was written without a replay leads to it from now on."""
+    """A report that was written without a replay gets a link to it."""
     from ..report.run.folder import link_replay
 
     if (page := link_replay(folder)) is not None:

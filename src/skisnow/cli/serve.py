@@ -19,11 +19,11 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         description="Serve the web lab. The first line printed is its address; Ctrl-C ends it. No network is used. "
         "With --host 0.0.0.0 phones in the same network can open it: addresses and a code for the camera are printed.",
     )
-    parser.add_argument("--host", default="127.0.0.1", help="address to listen on (default: this machine alone)")
+    parser.add_argument("--host", default="127.0.0.1", help="address to listen on (default: only this machine)")
     parser.add_argument(
         "--port", type=whole_number(0, 65_535), default=8765, help="port, 0 for a free one (default: 8765)"
     )
-    parser.add_argument("--token", help="word that is asked for before anything else; needed with any other host")
+    parser.add_argument("--token", help="password of the pages; required with any other host")
     parser.add_argument(
         "--certificate",
         type=Path,

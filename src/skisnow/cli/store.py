@@ -32,7 +32,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         "help": "file of the store, or postgresql://USER@HOST/DATABASE (default: the user's own file)",
     }
     alone: dict[str, Any] = {"action": "store_true", "help": "print JSON alone to standard output"}
-    every.add_argument("--store", default=argparse.SUPPRESS, **place)  # what stands before the action stays
+    every.add_argument("--store", default=argparse.SUPPRESS, **place)  # an option before the action stays
     every.add_argument("--json", default=argparse.SUPPRESS, **alone)
     about = "Keep campaigns byte for byte, and give them back."
     parser = subparsers.add_parser("store", help="keep campaigns byte for byte", description=about)
@@ -134,7 +134,7 @@ def _export(store: Store, args: argparse.Namespace) -> Answer:
         else:
             exported = export_corrected(store, args.id, args.out, progress=progress)
     stored, n = exported.stored, exported.n_corrections
-    text = f"{stored.id}  {stored.name}: {_amount(stored.n_files, stored.n_bytes)}, given back in {args.out}"
+    text = f"{stored.id}  {stored.name}: {_amount(stored.n_files, stored.n_bytes)}, exported to {args.out}"
     text += f"\ncells corrected since, in corrections.csv: {n}" if n else ""
     return {**_as_json(stored), "n_corrections": n, "out": str(args.out)}, text, 0
 

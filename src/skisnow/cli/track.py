@@ -23,7 +23,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     """Add the command to the program's."""
     parser = commands.add_parser(
         "track",
-        help="what a measured track says: distance, speed, runs, lifts, turns and their radii",
+        help="evaluation of a measured track: distance, speed, runs, lifts, turns and their radii",
         description="Read a track, flag what is doubtful in it, smooth it, and find its runs, lifts and turns.",
     )
     parser.add_argument("file", type=Path, metavar="FILE", help="CSV, GPX, FIT, NMEA, UBX or RTKLIB .pos")

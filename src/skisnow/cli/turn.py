@@ -42,17 +42,17 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         default=[],
         dest="changes",
         metavar="section.key=value",
-        help="another value for one key of the scenario, several times for several; the section may be left out; what "
-        "the campaign says of H_V and S_f stands, a given unloading_ratio or shear_displacement_mm comes before it",
+        help="another value for one key of the scenario, several times for several; the section is optional; "
+        "the campaign's H_V and S_f count, a given unloading_ratio or shear_displacement_mm comes before it",
     )
     parser.add_argument(
         "--unloading-ratio",
         type=number("", lowest=1.0, highest=1000.0, above=True),
         metavar="RATIO",
-        help="k_u/H_V of the hypoplastic contact; default: what the site's unloading says, else 10",
+        help="k_u/H_V of the hypoplastic contact; default: the site's unloading, otherwise 10",
     )
     parser.add_argument(
-        "--runs", type=whole_number(3, MOST_RUNS), metavar="N", help="of the ensemble, 3 or more; default: 64"
+        "--runs", type=whole_number(3, MOST_RUNS), metavar="N", help="runs of the ensemble, 3 or more; default: 64"
     )
     parser.add_argument(
         "--prior",
@@ -60,8 +60,8 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         default=[],
         dest="priors",
         metavar="key=low:high",
-        help="range of a key of the scenario that the ensemble is drawn over, in place of the usual one or beside the "
-        "usual ones, several times for several; equal ends: it is known",
+        help="range of a key of the scenario that the ensemble is drawn over, instead of a default one or in "
+        "addition to the defaults, several times for several; equal ends: it is known",
     )
     parser.add_argument("--seed", type=seed_number, help="seed of the ensemble, a whole number of 0 or more")
     parser.add_argument(

@@ -108,7 +108,7 @@ def require_offsets(fit: Collection[str]) -> None:
     wrong = [word for word in fit if word not in OFFSETS]
     if wrong:
         raise ParameterError(
-            Message("{value!r} is no offset that can be fitted; {allowed} are", value=wrong[0], allowed=list(OFFSETS)),
+            Message("{value!r} cannot be fitted as an offset; {allowed} are", value=wrong[0], allowed=list(OFFSETS)),
             code="unknown_offset",
         )
 

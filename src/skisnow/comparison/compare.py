@@ -255,7 +255,7 @@ def _warnings(simulated: Track, measured: Track, dimensions: int) -> list[str]:
         without = int((~compared_points(track, dimensions=dimensions)).sum())
         if without:
             flags = ", ".join(f"{count} {code}" for code, count in track.flagged.items()) or "without a place"
-            warnings.append(f"{track.name}: {without} of {len(track)} points are left out; flagged are {flags}")
+            warnings.append(f"{track.name}: {without} of {len(track)} points are excluded; flagged are {flags}")
         inexact = inexact_sentence(track.name, track.solution)
         if inexact:
             warnings.append(inexact)

@@ -7,7 +7,7 @@ from pathlib import Path
 from .sources import fingerprint
 
 SOURCES = Path(__file__).parents[2] / "core"
-"""Of a checkout; an installed package has none."""
+"""Only in a checkout, not in an installed package."""
 REMEDY = "build it with `pip install -e .` in the checkout, as `make test` does"
 
 try:

@@ -1,4 +1,4 @@
-"""A fingerprint of the compiled core's sources; a program of its own, since the build asks for it too."""
+"""A fingerprint of the compiled core's sources; a separate program, since the build runs it too."""
 
 from __future__ import annotations
 

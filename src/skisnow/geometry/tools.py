@@ -64,7 +64,7 @@ class Tool(abc.ABC):
 
     @abc.abstractmethod
     def greatest_depth(self, edge_angle: npt.ArrayLike) -> FloatArray:
-        """Depth (m) beyond which this tool is no longer the body that its name says; readings deeper are marked."""
+        """Depth (m) beyond which this tool does not have the shape of its name; readings deeper are marked."""
 
 
 @dataclass(frozen=True, slots=True)

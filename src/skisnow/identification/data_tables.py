@@ -393,7 +393,7 @@ def parse_grooves(table: TableFile) -> MeasuredGrooves:
     (depth, depth_sd), (width, width_sd), (radius, radius_sd) = (columns[name] for name in GROOVE_COLUMNS)
     if not any(np.isfinite(values).any() for values in (depth, width, radius)):
         raise ParameterError(
-            Message("{name} has none of the columns {columns}", name=table.name, columns=list(GROOVE_COLUMNS)),
+            Message("{name} has no column of {columns}", name=table.name, columns=list(GROOVE_COLUMNS)),
             code="no_columns",
         )
     return MeasuredGrooves(table.name, depth, width, np.abs(radius), depth_sd, width_sd, radius_sd, stated)

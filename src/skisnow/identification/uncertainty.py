@@ -176,7 +176,7 @@ def unknown_warnings(parameters: Sequence[Parameter], spread: Uncertainty) -> It
         else:
             names = " and ".join(parameters[j].name for j in group)
             helps = _pair_help(parameters[group[0]], parameters[group[1]]) if len(group) == 2 else _COMMON
-            yield f"{names} cannot be told apart at all by these data: {helps}"
+            yield f"{names} cannot be distinguished by these data: {helps}"
     for j in np.flatnonzero(spread.unknown).tolist():
         if j not in named:
             yield (

@@ -231,14 +231,14 @@ def _moment(time: str) -> str:
     if not _TIME.fullmatch(time):
         problem = (
             Message(
-                "CAAML demands a day such as 2026-11-23 or a time such as 2026-11-23T09:10, and {time!r} is no such "
+                "CAAML demands a day such as 2026-11-23 or a time such as 2026-11-23T09:10, and {time!r} is not such a "
                 "time: give it with --time",
                 time=time,
             )
             if time
             else Message(
-                "CAAML demands a day such as 2026-11-23 or a time such as 2026-11-23T09:10, and the pit has none: give "
-                "it with --time"
+                "CAAML demands a day such as 2026-11-23 or a time such as 2026-11-23T09:10, and the pit has no time: "
+                "give it with --time"
             )
         )
         raise ParameterError(problem, code="missing")

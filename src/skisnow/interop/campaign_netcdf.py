@@ -55,7 +55,7 @@ def write_campaign_netcdf(campaign: Campaign, path: str | Path) -> None:
     campaign
         From `skisnow.read_campaign`.
     path
-        Of the file; an existing file is replaced.
+        Path of the file; an existing file is replaced.
 
     Raises
     ------

@@ -17,9 +17,9 @@ from ..scenario import Plane, Scenario
 SOIL: Final = "snow.json"
 TERRAIN: Final = "terrain.json"
 SIZE: Final = (20.0, 10.0)
-"""Size of the patch along and across (m) (modelling assumption)."""
+"""Size of the patch along and across (m)."""
 SPACING: Final = 0.02
-"""Of its grid (m) (modelling assumption: that of skisnow's lines)."""
+"""Of its grid (m) (that of skisnow's lines)."""
 
 
 def chrono_soil(scenario: Scenario) -> dict[str, Any]:

@@ -108,7 +108,8 @@ def convert(source: str | Path, target: str | Path, options: ConvertOptions | No
     if options.forces is not None and kinds[1] != ENDINGS[".c3d"]:
         raise ParameterError(
             Message(
-                "forces go into a .c3d file beside its markers; {target} is none. Leave --forces out", target=target
+                "forces go into a .c3d file with its markers; {target} is not one. Leave --forces out",
+                target=target,
             ),
             code="wrong_ending",
         )

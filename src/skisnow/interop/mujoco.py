@@ -21,9 +21,9 @@ from ..ski.beam import CLAMP_LENGTH
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 
 SEGMENTS: Final = 20
-"""Number of segments of a ski, without the part that the binding holds (modelling assumption)."""
+"""Number of segments of a ski, without the part that the binding holds."""
 THICKNESS: Final = 0.01
-"""Thickness of the boxes that are drawn (m); nothing is computed with it (modelling assumption)."""
+"""Thickness of the boxes that are drawn (m); nothing is computed with it."""
 POINTS: Final = 400
 """Number of points of the integrals along a segment."""
 
@@ -209,7 +209,7 @@ class SnowForces:
     Notes
     -----
     Explicit: the force at a step's beginning acts over the step, which MuJoCo's Euler takes to the new velocity at
-    once. How long a step may be says docs/how-to/fmu.md. Other models of the process are left alone. Where the time
+    once. How long a step may be says docs/how-to/fmu.md. Other models of the process are not stopped. Where the time
     goes back (a reset), the snow is as it was when this was made.
     """
 

@@ -49,7 +49,7 @@ def write_weather_csv(series: StationSeries, path: str | Path) -> Path:
     if not available:
         wanted = ", ".join(name for name, *_ in QUANTITIES.values())
         raise ParameterError(
-            Message("{file} has none of the fields {wanted}; nothing was written", file=series.file, wanted=wanted),
+            Message("{file} has no field of {wanted}; nothing was written", file=series.file, wanted=wanted),
             code="no_data",
         )
     columns = [(series.fields[name] * factor + offset).tolist() for name, factor, offset in available.values()]
@@ -87,7 +87,7 @@ def _smet(series: StationSeries) -> Iterator[str]:
         if NO_DATA in values:
             raise ParameterError(
                 Message(
-                    "{file} has a value of {no_data:g} at {when}, which stands for none in SMET",
+                    "{file} has a value of {no_data:g} at {when}, which means a missing value in SMET",
                     file=series.file,
                     no_data=NO_DATA,
                     when=when,

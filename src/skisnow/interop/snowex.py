@@ -53,7 +53,7 @@ def write_snowex_pit(pit: SnowPit, path: str | Path) -> tuple[Path, ...]:
     Raises
     ------
     ParameterError
-        The height of the snow is not known, or the pit has none of the three.
+        The height of the snow is not known, or the pit has no ram, hardness or force profile.
     OutputError
         A file cannot be written.
     """
@@ -158,7 +158,7 @@ def _csv(rows: Iterable[Sequence[str]]) -> str:
 
 BLOCK: Final = 1.0 * MM
 """Forces of a SnowMicroPen are given as means over it (modelling assumption): a pit holds hundreds, not thousands."""
-_NO_DEPTH: Final = "Densities and temperatures were noted without a depth and stand at the surface."
+_NO_DEPTH: Final = "Densities and temperatures were noted without a depth and are placed at the surface."
 
 
 def site_pit(analysis: Analysis, site: str) -> SnowPit:

@@ -65,7 +65,7 @@ class Section(NamedTuple):
 
 
 APART: Final = "apart"
-"""Marks a field whose dataclass is said in a file of its own: the quantities in it are none of the owner's."""
+"""Marks a field whose dataclass is in a separate file: its quantities do not belong to the owner."""
 
 
 class _Slot(NamedTuple):
@@ -283,7 +283,7 @@ def _slots(owner: type) -> tuple[_Slot, ...]:
 
 def _slot(owner: type, field: Field[Any]) -> _Slot:
     hint = field.type
-    if isinstance(hint, str):  # postponed; such a text is a line of this package's own code
+    if isinstance(hint, str):  # postponed; `get_type_hints` needs all names, also those imported for type checking only
         hint = eval(hint, dict(vars(sys.modules[owner.__module__])))
     marks = hint.__metadata__ if get_origin(hint) is Annotated else ()
     members = _members(get_args(hint)[0] if marks else hint)

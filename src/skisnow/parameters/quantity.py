@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 Kind: TypeAlias = Literal["number", "whole number", "text", "switch", "numbers", "three numbers"]
 SMALLEST, LARGEST = 1e-100, 1e100
-"""Sizes of numbers that can be squared and divided by (modelling assumption)."""
+"""Sizes of numbers that can be squared and divided by."""
 InputValue: TypeAlias = float | int | str | bool | tuple[float, ...]
 
 
@@ -236,7 +236,7 @@ class Quantity:
         if number and math.isfinite(number) and not SMALLEST <= abs(number) <= LARGEST:
             raise ParameterError(
                 Message(
-                    "{name} is {value}, which is no quantity; allowed are 0 and sizes from {smallest:g} to {largest:g}",
+                    "{name} is {value}, not a quantity; allowed are 0 and sizes from {smallest:g} to {largest:g}",
                     name=self.name,
                     value=_shown(value),
                     smallest=SMALLEST,

@@ -201,7 +201,7 @@ PRIORS: Final = (
         key="snow.unloading_ratio",
         low=2.0,
         high=50.0,
-        origin="not measured here, not published; from 2 on the snow keeps half of a groove, at 50 all but all of it",
+        origin="not measured here, not published; at 2 the snow keeps half of a groove, at 50 all but all of it",
     ),
     Prior(
         key="snow.shear_displacement_mm",

@@ -71,9 +71,9 @@ class RacingLine(Shown):
 
     Notes
     -----
-    Of the way between two apexes the first turn ends at the share τ₁ and the next one begins at 1 - τ₂. The slope of
-    the line there is P sin(πu/(2τ₁)), P between, P sin(π(1 - u)/(2τ₂)), where P follows from the apexes. With τ = ½ it
-    is a half wave. The greatest edge angle follows from the curvature at the apex, π P/(2τ L).
+    Along the way between two apexes the first turn ends at the share τ₁, and the next one begins at 1 - τ₂. The slope
+    of the line there is P sin(πu/(2τ₁)), P between, P sin(π(1 - u)/(2τ₂)), where P follows from the apexes. With
+    τ = ½ it is a half wave. The greatest edge angle follows from the curvature at the apex, π P/(2τ L).
 
     References
     ----------

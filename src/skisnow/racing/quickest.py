@@ -159,7 +159,7 @@ def quickest_line(
 
     Notes
     -----
-    A line that misses a gate, or on which the skier falls, counts as slower than any that does not, by what is missing.
+    A line that misses a gate, or on which the skier falls, counts as slower than any other, by the missing distance.
     The same call gives the same bits on the same machine, interrupted or not, whatever the number of workers.
 
     References

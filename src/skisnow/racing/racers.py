@@ -60,7 +60,7 @@ def skied(scenario: Scenario, line: RacingLine, *, progress: Progress | None = N
 
 
 def run_score(run: Run) -> Score:
-    """How good a run is; an interrupted one has none.
+    """How good a run is; an interrupted one has no score.
 
     Raises
     ------

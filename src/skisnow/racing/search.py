@@ -80,7 +80,7 @@ class Evaluations:
                 raise ParameterError(
                     Message(
                         "a kept evaluation has another place than this search asks for: its numbers are of "
-                        "another machine or library. Remove the file to begin anew"
+                        "another machine or library. Remove the file to start again"
                     ),
                     code="different_versions",
                 )

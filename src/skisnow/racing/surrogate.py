@@ -19,17 +19,15 @@ from .search import Evaluated
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 
 LENGTHS: Final = (0.05, 5.0)
-"""Within which the process's lengths are, in shares of each range (modelling assumption)."""
+"""Bounds of the process's correlation lengths, in shares of each range."""
 NOISE: Final = (1e-3, 0.5)
-"""Within which the deviation of one evaluation is, over that of all values (modelling assumption)."""
+"""Bounds of the standard deviation of one evaluation, over that of all values."""
 SMALLEST: Final = 1e-9
 """Added to the kernel's diagonal, for rounding."""
 MOST_TIME: Final = 3.0
-"""Largest counted time, in quarter widths above the median; also that of a race that never came to the last gate
-(modelling assumption)."""
+"""Largest counted time, in quarter widths above the median; also that of a race that did not reach the last gate."""
 MOST_MARGIN: Final = 0.5
-"""Distance (m) from a pole that counts at most, to either side; a gate that was not reached counts as missed by it
-(modelling assumption)."""
+"""Distance (m) from a pole that counts at most, to either side; a gate that was not reached counts as missed by it."""
 _UNIT: Final = 0.5 * math.log(2.0 * math.pi)
 
 
@@ -147,7 +145,7 @@ class Prospects:
     Attributes
     ----------
     time, margins
-        `margins` is None where nothing is known to fail.
+        `margins` is None if no failure is known.
     least
         Distribution of the times that the process expects where a race came through (s).
 

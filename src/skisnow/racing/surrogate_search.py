@@ -17,16 +17,16 @@ from .surrogate import Prospects, passed_of
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 
 PATIENCE: Final = 3
-"""Batches without a better value that end a search with `settled` (modelling assumption)."""
+"""Batches without a better value that end a search with `settled`."""
 BOX: Final = (0.02, 0.5)
-"""Half of the box about the best in which it is asked: the least, below which the search is over, and the greatest, in
-shares of each range (modelling assumption)."""
+"""Minimum and maximum half width of the search box about the best point, in shares of each range; below the minimum
+the search ends."""
 BOX_CHANGES: Final = (0.8, 1.3)
-"""Of that box after a batch without a better value, and with one (modelling assumption)."""
+"""Factors of that half width after a batch without a better value, and with one."""
 ASKED: Final = 50
-"""Generations in which the least of the process is sought (modelling assumption)."""
+"""Generations of the search for the minimum of the process."""
 ALIKE: Final = 0.25
-"""Share of all evaluations with the same numbers for all turns (modelling assumption)."""
+"""Share of all evaluations with the same numbers for all turns."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,7 +50,7 @@ class Daring:
 
 
 BATCH: Final = (Daring(0.1, 4.0, 0.0), Daring(1.0, 1.0, 0.5), Daring(0.3, 4.0, 0.5), Daring(1.0, 2.0, 0.0))
-"""The places of a batch (modelling assumption): the first is where the least is expected."""
+"""The places of a batch: the first is where the least is expected."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

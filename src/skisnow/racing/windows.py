@@ -20,8 +20,8 @@ Progress: TypeAlias = Callable[[str], None]
 Search: TypeAlias = Literal["surrogate", "cma"]
 
 RANGES: Final = {"aside": (0.25, 1.75), "along": (-0.25, 0.25), "turning": (0.35, 1.0)}
-"""Bounds of aside (m), along and turning in the search (modelling assumption: nearer to a pole than half
-a stance is not passed)."""
+"""Bounds of aside (m), along and turning in the search; nearer to a pole than half a
+stance the skier does not pass."""
 _WIDTH: Final = np.array([high - low for low, high in RANGES.values()])
 _LOW: Final = np.array([low for low, _ in RANGES.values()])
 

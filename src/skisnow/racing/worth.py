@@ -65,7 +65,7 @@ class Worth(Shown):
 
     @property
     def mean(self) -> float | None:
-        """Of the differences (s)."""
+        """Mean of the differences (s)."""
         differences = self.differences
         return float(differences.mean()) if len(differences) else None
 

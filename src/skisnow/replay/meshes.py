@@ -178,7 +178,7 @@ COLOURS: Final[dict[str, Any]] = {
 
 _LARGE: Final = 0.95
 THICKEST, THINNEST = 0.018, 0.006
-"""Thickness (m) of a ski under the boot and at its ends: drawn, not computed with (modelling assumption)."""
+"""Thickness (m) of a ski under the boot and at its ends: drawn, not computed with."""
 
 
 def drawn_thickness(station: FloatArray) -> FloatArray:

@@ -141,5 +141,5 @@ def static_text(name: str) -> str:
 def _module(name: str) -> Any:
     text = static_text(name)
     if any(words in text for words in _ENDS_A_SCRIPT):
-        raise RuntimeError(f"{name} cannot stand in a page: it has {' or '.join(_ENDS_A_SCRIPT)} in it")
+        raise RuntimeError(f"{name} cannot be put into a page: it has {' or '.join(_ENDS_A_SCRIPT)} in it")
     return Markup(text)

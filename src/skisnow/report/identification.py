@@ -209,7 +209,7 @@ def parameters_table(result: Identification) -> Table:
     """Table of the identified parameters: values, intervals, bounds, priors."""
     return Table(
         "identified",
-        "What was identified, with 95 % intervals; a dash: not asked for, or open.",
+        "Identified parameters with 95 % intervals; a dash: not asked for, or open.",
         (
             Column("key", "Key", "text"),
             Column("value", "Value", digits=4),

@@ -33,9 +33,9 @@ Frame: TypeAlias = Literal["sledge", "slope"]
 Over: TypeAlias = Literal["time", "distance"]
 
 LARGEST: Final = 1e7
-"""Largest time (s), distance and coordinate (m) of a pose (modelling assumption: coordinates of a map are below it)."""
+"""Largest time (s), distance and coordinate (m) of a pose (coordinates of a map are below it)."""
 SHORTEST_STEP: Final = 1e-6
-"""Shortest step from row to row (s, m), so that a spline through the rows is finite (modelling assumption)."""
+"""Shortest step from row to row (s, m), so that a spline through the rows is finite."""
 FURTHEST_TURN: Final = 1e3
 """Largest rotation that the spline between two rows may make (rad): it makes about the half turn that rows can show."""
 FEWEST_POSES: Final = 4
@@ -123,6 +123,19 @@ class Boots(Shown):
         return splines
 
     def _require_sound(self) -> None:
+        self._require_shapes()
+        self._require_numbers()
+        self._require_steps()
+        self._require_rotations()
+        require_choice("boots: frame", self.frame, get_args(Frame))
+        require_choice("boots: over", self.over, get_args(Over))
+        if self.frame == "slope" and self.over == "distance":
+            raise ParameterError(
+                Message("boots in the slope's frame go over time: the distance run is what they make it"),
+                code="contradiction",
+            )
+
+    def _require_shapes(self) -> None:
         n = len(self.at) if self.at.ndim == 1 else 0
         if n < FEWEST_POSES or self.place.shape != (n, 2, 3) or self.axes.shape != (n, 2, 3, 3):
             raise ParameterError(
@@ -136,6 +149,8 @@ class Boots(Shown):
                 ),
                 code="wrong_shape",
             )
+
+    def _require_numbers(self) -> None:
         for name in ("at", "place", "axes"):
             if not np.isfinite(getattr(self, name)).all():
                 raise ParameterError(
@@ -146,44 +161,33 @@ class Boots(Shown):
                     Message("boots: {name} has a number beyond ±{largest:g}. Correct it.", name=name, largest=LARGEST),
                     code="out_of_range",
                 )
-        if not (np.diff(self.at) > 0.0).all():
-            row = int(np.argmin(np.diff(self.at) > 0.0))
+
+    def _require_steps(self) -> None:
+        steps = np.diff(self.at)
+        row = int(np.argmin(steps > 0.0 if (steps <= 0.0).any() else steps >= SHORTEST_STEP))
+        step = {"over": self.over, "row": row + 2, "at": self.at[row + 1], "before": self.at[row]}
+        if steps[row] <= 0.0:
             raise ParameterError(
-                Message(
-                    "boots: {over} of row {row} is {at:g} after {before:g}; it must rise",
-                    over=self.over,
-                    row=row + 2,
-                    at=self.at[row + 1],
-                    before=self.at[row],
-                ),
+                Message("boots: {over} of row {row} is {at:g} after {before:g}; it must rise", **step),
                 code="not_rising",
             )
-        if not (np.diff(self.at) >= SHORTEST_STEP).all():
-            row = int(np.argmin(np.diff(self.at) >= SHORTEST_STEP))
+        if steps[row] < SHORTEST_STEP:
             raise ParameterError(
                 Message(
                     "boots: {over} of row {row} is {at:g} after {before:g}. Allowed: steps of "
                     "{shortest_step:g} or more. Correct the number, or omit one of the rows.",
-                    over=self.over,
-                    row=row + 2,
-                    at=self.at[row + 1],
-                    before=self.at[row],
                     shortest_step=SHORTEST_STEP,
+                    **step,
                 ),
                 code="out_of_range",
             )
+
+    def _require_rotations(self) -> None:
         off = np.abs(self.axes @ np.swapaxes(self.axes, -1, -2) - np.eye(3)).max()
         if off > 1e-9 or np.any(np.linalg.det(self.axes) < 0.0):
             raise ParameterError(
                 Message("boots: axes are off by {off:.1e} from right-handed orthonormal ones", off=off),
                 code="not_a_rotation",
-            )
-        require_choice("boots: frame", self.frame, get_args(Frame))
-        require_choice("boots: over", self.over, get_args(Over))
-        if self.frame == "slope" and self.over == "distance":
-            raise ParameterError(
-                Message("boots in the slope's frame go over time: the distance run is what they make it"),
-                code="contradiction",
             )
 
     def _facts(self) -> Facts:
@@ -276,7 +280,7 @@ def _rows(path: Path, text: str) -> list[Row]:
     else:
         raise ParameterError(
             Message(
-                "{path}: boots are read from .csv, .mot and .sto; give the file the ending of what it is", path=path
+                "{path}: boots are read from .csv, .mot and .sto; give the file the ending of its format", path=path
             ),
             code="wrong_ending",
         )
@@ -306,7 +310,7 @@ def _of_csv(path: Path, text: str) -> list[Row]:
         rows = [(table.line_num, row) for row in table if any(cell.strip() for cell in row)]
     except csv.Error as error:
         raise ParameterError(
-            Message("{path} is no CSV text ({error})", path=path, error=error), code="wrong_kind"
+            Message("{path} is not CSV text ({error})", path=path, error=error), code="wrong_kind"
         ) from error
     cells = (cell for _, row in rows[1:] for cell in row)
     if separator == "," or decimal_mark([cells], separator=separator) == ".":
@@ -419,7 +423,7 @@ def _column(path: Path, rows: list[Row], head: list[str], place: int) -> npt.NDA
         if len(row) != len(head):
             raise ParameterError(
                 Message(
-                    "{path}, row {line}: {n_row} cells stand under {n_head} names of columns",
+                    "{path}, row {line}: {n_row} cells for {n_head} names of columns",
                     path=path,
                     line=line,
                     n_row=len(row),
@@ -434,7 +438,7 @@ def _column(path: Path, rows: list[Row], head: list[str], place: int) -> npt.NDA
         if not math.isfinite(values[i]):
             raise ParameterError(
                 Message(
-                    "{path}, row {line}, column {head}: {value!r} is no finite number; write one",
+                    "{path}, row {line}, column {head}: {value!r} is not a finite number; write one",
                     path=path,
                     line=line,
                     head=head[place],

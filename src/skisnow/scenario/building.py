@@ -138,7 +138,7 @@ def _ski(resolution: Resolution, sources: Sources) -> tuple[Ski, tuple[str, ...]
     if name not in ski_names():
         raise ParameterError(
             Message(
-                "ski.name is {name!r}, no ski of the catalogue. {allowed} A path stands under ski.file",
+                "ski.name is {name!r}, not a ski of the catalogue. {allowed} Put a path under ski.file",
                 name=name,
                 allowed=nearest(str(name), ski_names()),
             ),
@@ -155,7 +155,7 @@ def _contact(resolution: Resolution) -> Contact:
         fields = {"name": UNLOADING, "meaning": SCENARIO_KEYS[UNLOADING].meaning}
         problem = (
             Message(
-                "{name} is missing: {meaning}; {source} has none that was measured. Give it",
+                "{name} is missing: {meaning}; {source} has no measured value. Give it",
                 **fields,
                 source=snow.source,
             )

@@ -170,7 +170,7 @@ class Contact:
         float,
         Quantity(
             "snow.retardation_time_ms",
-            "time in which 63 % of the delayed depth has come; without effect where there is none",
+            "time in which 63 % of the delayed depth has come; without effect if there is no delayed depth",
             label="retardation time",
             symbol="$c_2/H_2$",
             lowest=1.0,
@@ -210,9 +210,9 @@ class Contact:
         ActsOn,
         Quantity(
             "friction.acts_on",
-            "what μ is multiplied with: the load along the snow's normal, or square on the base, side force included",
+            "load that μ is multiplied with: along the snow's normal, or square on the base, side force included",
             label="friction acts on",
-            origin="choice: it does not hang on how the side force spreads along the edge, which nobody measured",
+            origin="choice: it does not hang on how the side force spreads along the edge, which was not measured",
         ),
     ] = "snow-normal"
     friction_direction: Annotated[
@@ -228,7 +228,7 @@ class Contact:
         SnowMap | None,
         Word(
             "snow.map_file",
-            "CSV file of H_V, S_f or both over the place, in place of these: x_m, y_m or not, H_V_N_per_mm3, "
+            "CSV file of H_V, S_f or both over the place, instead of these: x_m, y_m or not, H_V_N_per_mm3, "
             "S_f_N_per_mm2",
             word_of=_map_source,
             names_file=True,

@@ -23,12 +23,10 @@ from .keys import SCENARIO_KEYS, free_key
 class Sought:
     """Entries of ``[identify."KEY"]``, in the unit of that key."""
 
-    start: Annotated[float | None, Quantity("start", "where the search begins; left out: the scenario's value")] = None
+    start: Annotated[float | None, Quantity("start", "where the search begins; default: the scenario's value")] = None
     lower: Annotated[float | None, Quantity("lower", "bound")] = None
     upper: Annotated[float | None, Quantity("upper", "bound")] = None
-    prior_mean: Annotated[
-        float | None, Quantity("prior_mean", "mean of what is known of it, a normal distribution")
-    ] = None
+    prior_mean: Annotated[float | None, Quantity("prior_mean", "mean of a prior normal distribution")] = None
     prior_sd: Annotated[float | None, Quantity("prior_sd", "its standard deviation", lowest=0.0, above=True)] = None
 
 
@@ -99,7 +97,7 @@ def given_parameters(section: Mapping[str, Any]) -> dict[str, dict[str, float]]:
             raise ParameterError(
                 Message(
                     'identify."{word}" is {table!r}; it must be a table with {given}, begun by the line '
-                    '[identify."{key}"]. A value of the scenario stands in its own section, [{section}]',
+                    '[identify."{key}"]. A value of the scenario belongs to its own section, [{section}]',
                     word=word,
                     table=table,
                     given=list(GIVEN),
@@ -209,7 +207,7 @@ def prior_of(word: str) -> Prior:
     except ValueError:
         raise ParameterError(
             Message(
-                "{word!r} is no prior; write KEY=LOW:HIGH, such as snow.unloading_ratio=5:20, with equal "
+                "{word!r} is not a prior; write KEY=LOW:HIGH, such as snow.unloading_ratio=5:20, with equal "
                 "ends where it is known",
                 word=word,
             ),

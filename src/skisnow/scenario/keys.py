@@ -45,7 +45,7 @@ def full_name(name: str) -> str:
         return _FULL_NAMES[key]
     if key in _FULL_NAMES:
         raise ParameterError(
-            Message("{name} is no key of a scenario. Did you mean {similar}?", name=name, similar=_FULL_NAMES[key]),
+            Message("{name} is not a key of a scenario. Did you mean {similar}?", name=name, similar=_FULL_NAMES[key]),
             code="unknown_name",
         )
     keys = [full for full in SCENARIO_KEYS if full.startswith(f"{section}.")] if section in SECTIONS else []
@@ -55,7 +55,7 @@ def full_name(name: str) -> str:
 
 
 def _unknown_key(name: str, similar: str | None, allowed: Sequence[str]) -> Message:
-    sentences = [Message("{name} is no key of a scenario.", name=name)]
+    sentences = [Message("{name} is not a key of a scenario.", name=name)]
     if similar:
         sentences.append(Message("Did you mean {similar}?", similar=similar))
     if allowed:
@@ -233,7 +233,7 @@ def free_key(word: str) -> str:
             code="not_free",
         )
     raise ParameterError(
-        Message("{word!r} is no key of a scenario. {allowed}", word=word, allowed=_near(word)),
+        Message("{word!r} is not a key of a scenario. {allowed}", word=word, allowed=_near(word)),
         code="unknown_name",
     )
 

@@ -19,7 +19,7 @@ FloatArray: TypeAlias = npt.NDArray[np.float64]
 
 MOST_CELLS: Final = 50_000_000
 FINEST, COARSEST = 0.01, 1e5
-"""Smallest and largest allowed cell (m): below, coordinates within ±360 look like degrees (modelling assumption)."""
+"""Smallest and largest allowed cell (m): below, coordinates within ±360 look like degrees."""
 
 
 class Limits(NamedTuple):

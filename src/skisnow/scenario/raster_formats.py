@@ -76,7 +76,7 @@ def _require_one_band(path: str | Path, source: Any) -> None:
         raise ParameterError(
             Message(
                 "{path} has {n_colours} bands ({colours}). Allowed: one band of heights. Fix: write the "
-                "band of the heights alone, such as by gdal_translate -b 1.",
+                "band with only the heights, such as by gdal_translate -b 1.",
                 path=path,
                 n_colours=len(colours),
                 colours=list(colours),
@@ -316,7 +316,7 @@ def _coordinates_of_prj(path: str | Path) -> MapSystem | None:
 
 
 ROUNDED: Final = 0.01
-"""Share of the spacing by which a place may lie off its even place: it was written rounded (modelling assumption)."""
+"""Share of the spacing by which a place may lie off its even place: it was written rounded."""
 
 SPARSE: Final = 10
 """Places for each row beyond which rows lie on no grid at all."""
@@ -419,7 +419,7 @@ def _require_each_once(
         first, again = (rows[int(index)] for index in twice)
         raise ParameterError(
             Message(
-                "{path}, row {row}: x_m = {x_m}, y_m = {y_m} stand in row {first}, too; keep one of them",
+                "{path}, row {row}: x_m = {x_m}, y_m = {y_m} are in row {first}, too; keep one of them",
                 path=path,
                 row=again.row,
                 x_m=again.cells["x_m"],

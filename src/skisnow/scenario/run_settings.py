@@ -169,7 +169,7 @@ class Solver:
         int | None,
         Quantity(
             "solver.elements",
-            "finite elements over a ski; left out: from ski and snow",
+            "finite elements over a ski; default: from ski and snow",
             label="elements of a ski",
             lowest=4,
             highest=MOST_ELEMENTS,
@@ -179,7 +179,7 @@ class Solver:
         float | None,
         Quantity(
             "solver.line_spacing_mm",
-            "distance along the path between the lines that keep the snow's groove; left out: from ski and snow",
+            "distance along the path between the lines that keep the snow's groove; default: from ski and snow",
             label="distance of the snow lines",
             lowest=0.1,
             highest=200.0,

@@ -109,7 +109,7 @@ class Scenario(Shown):
         Word("ski.name", "a ski of the catalogue", label="ski", word_of=_ski_name),
         Word(
             "ski.file",
-            "the path of a ski file, in place of a name",
+            "the path of a ski file, instead of a name",
             label="file of the ski",
             word_of=_ski_file,
             names_file=True,
@@ -119,7 +119,7 @@ class Scenario(Shown):
         float | None,
         Quantity(
             "ski.camber_rounding_mm",
-            "length before each contact point over which the camber levels out; left out: the ski's own",
+            "length before each contact point over which the camber levels out; default: the ski's own",
             label="rounding of the camber",
             lowest=1.0,
             highest=1000.0,
@@ -129,7 +129,7 @@ class Scenario(Shown):
         float,
         Quantity(
             "ski.stiffness_factor",
-            "what the ski's EI and GJ are multiplied with",
+            "factor of the ski's EI and GJ",
             label="stiffness factor",
             lowest=0.01,
             highest=100.0,
@@ -151,7 +151,7 @@ class Scenario(Shown):
         float | None,
         Quantity(
             "ski.footprint_stiffness_N_per_mm2",
-            "stiffness of boot and binding under each metre of the clamp length, against bending; left out: rigid",
+            "stiffness of boot and binding under each metre of the clamp length, against bending; default: rigid",
             label="footprint stiffness",
             lowest=0.0,
             highest=1e4,
@@ -173,7 +173,7 @@ class Scenario(Shown):
         Boots | None,
         Word(
             "boots.file",
-            "poses of the boots over time or distance (CSV, .mot or .sto); left out: they stay where the sledge has "
+            "poses of the boots over time or distance (CSV, .mot or .sto); default: they stay where the sledge has "
             "them",
             word_of=_boots_file,
             names_file=True,
@@ -284,4 +284,4 @@ class Scenario(Shown):
             ("end", " or ".join(amount(value, unit) for value, unit in end if value is not None)),
             ("solver", f"{solver.method}, {'fixed steps of' if solver.fixed else 'from'} {solver.step * 1e3:.4g} ms"),
         )
-        return Facts("of a sledge on two skis", rows)
+        return Facts("sledge on two skis", rows)

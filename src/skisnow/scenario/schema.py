@@ -45,7 +45,7 @@ def scenario_schema() -> Schema:
         "$schema": DRAFT,
         "$id": "urn:skisnow:schema:scenario:1",
         "title": "A scenario for skisnow simulate",
-        "description": "Units stand in the keys. Slope, snow, ski and the end of the run are given in one way each.",
+        "description": "Keys end with their units. Slope, snow, ski and the end of the run are given in one way each.",
         "type": "object",
         "additionalProperties": False,
         "required": [name for name, part in sections.items() if "required" in part or name in _TOGETHER],
@@ -66,7 +66,7 @@ def _keys(section: str) -> list[Quantity]:
 def _identify() -> Schema:
     clock: dict[str, Any] = {
         "type": "string",
-        "description": "whether photo cells count from the start, or each run's clock has an offset of its own",
+        "description": "whether photo cells count from the start, or each run's clock has a separate offset",
         "enum": list(CLOCKS),
         "default": CLOCKS[0],
     }
@@ -83,7 +83,7 @@ def _identify() -> Schema:
     parameter = "one parameter, by its full key in quotes; numbers in the key's unit"
     return {
         "type": "object",
-        "description": "what skisnow identify looks for; a simulated run does not heed it",
+        "description": "parameters for skisnow identify; a simulated run ignores them",
         "properties": {
             "clock": clock,
             "runs": runs,

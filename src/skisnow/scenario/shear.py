@@ -63,7 +63,7 @@ class Shear:
         float | None,
         Quantity(
             "shear.snow_density_kg_per_m3",
-            'density of law = "by-density", whose S_f (Eqn 14) then counts in place of the snow\'s',
+            'density of law = "by-density", whose S_f (Eqn 14) then counts instead of the snow\'s',
             label="density of the snow",
             symbol="ρ",
             lowest=151.7,  # below, Eqn 14 gives none
@@ -75,7 +75,7 @@ class Shear:
         float | None,
         Quantity(
             "shear.dynamic_shear_strength_N_per_mm2",
-            'S of law = "machining"; left out: half of S_f, with which an upright edge without μ_t fails at S_f',
+            'S of law = "machining"; default: half of S_f, with which an upright edge without μ_t fails at S_f',
             label="dynamic shear strength",
             lowest=0.0,
             above=True,
@@ -141,7 +141,7 @@ class Shear:
 
     def of(self, failure_shear_stress: float) -> ShearLaw | None:
         """The law of a snow with this S_f (N/m²); None: S_f as it is."""
-        with warnings.catch_warnings():  # a scenario has its own words for what was not measured
+        with warnings.catch_warnings():  # a scenario has separate warnings about unmeasured ranges
             warnings.simplefilter("ignore", RangeWarning)
             if self.law == "by-angle":
                 return AngleShear(flat_shear_stress=failure_shear_stress, relative_decrease=self.relative_decrease)

@@ -34,7 +34,7 @@ class Skier:
     leg_gain, leg_yielding, carving_share, edge_beyond_lean, blunt_edge, edge_gain, edge_change, edge_filter,
     share_filter, load_filter, lean_more, reach, lag, correction, trusted_edge, touch, lifted_share, bearing_share,
     foresight, foresight_step, slowest, greatest_pressed, control_period
-        Of the control; the page docs/methods/skier.md has what they do.
+        Parameters of the control, explained in docs/methods/skier.md.
 
     See Also
     --------
@@ -49,7 +49,7 @@ class Skier:
         Steers,
         Quantity(
             "skier.steers",
-            "what it steers by: turns planned over time, or the gates of the course",
+            "basis of the steering: turns planned over time, or the gates of the course",
             label="steers by",
             origin="choice: needs no course",
         ),
@@ -155,7 +155,7 @@ class Skier:
             label="greatest edge angle",
             lowest=1.0,
             highest=80.0,
-            origin="what was measured of slalom racers at gates 10 m apart, 65.7 ± 1.7° (Reid 2020)",
+            origin="measured of slalom racers at gates 10 m apart, 65.7 ± 1.7° (Reid 2020)",
         ),
     ] = 66.0 * DEGREE
     greatest_lean: Annotated[
@@ -173,7 +173,7 @@ class Skier:
         float,
         Quantity(
             "skier.leg_gain",
-            "of the legs on the error of the capture point",
+            "gain of the legs on the error of the capture point",
             label="gain of the legs",
             lowest=0.0,
             highest=100.0,
@@ -184,18 +184,18 @@ class Skier:
         float,
         Quantity(
             "skier.leg_yielding_per_s",
-            "speed aside at which legs give way, over how far the centre of pressure is from where it is asked for",
+            "speed aside at which legs give way, over how far the centre of pressure is from the requested place",
             label="yielding of the legs",
             lowest=0.0,
             highest=100.0,
-            origin="found by trial: below 0.6 the loads swing at 5 to 8 Hz, from 2 on by the steps of the control",
+            origin="found by trial: below 0.6 the loads swing at 5 to 8 Hz, above 2 by the steps of the control",
         ),
     ] = 1.0
     carving_share: Annotated[
         float,
         Quantity(
             "skier.carving_share",
-            "share of the straightest carve's acceleration from which on edges go over from a skid to a carve",
+            "share of the straightest carve's acceleration at which edges change from a skid to a carve",
             label="carving from",
             lowest=0.0,
             highest=1.0,
@@ -229,7 +229,7 @@ class Skier:
         float,
         Quantity(
             "skier.edge_gain",
-            "of the turn, by the edges, on the same error",
+            "gain of the turn, by the edges, on the same error",
             label="gain of the edges",
             lowest=0.0,
             highest=100.0,
@@ -273,7 +273,7 @@ class Skier:
         float,
         Quantity(
             "skier.load_filter_per_s",
-            "the same of what is learnt from the loads",
+            "the same of the estimates from the loads",
             label="speed of what the loads teach",
             lowest=0.1,
             highest=1000.0,
@@ -295,7 +295,7 @@ class Skier:
         float,
         Quantity(
             "skier.reach",
-            "share of half the stance within which the centre of pressure is asked for",
+            "share of half the stance within which the centre of pressure is requested",
             label="reach",
             lowest=0.0,
             highest=1.0,
@@ -328,7 +328,7 @@ class Skier:
         float,
         Quantity(
             "skier.trusted_edge_deg",
-            "edge angle from which on loads are believed in full, with its square below: flatter skis follow the feet",
+            "edge angle above which loads count fully, with its square below: flatter skis follow the feet",
             label="edge of trusted loads",
             lowest=0.1,
             highest=80.0,

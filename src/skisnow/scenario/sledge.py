@@ -161,7 +161,7 @@ class Air:
         float,
         Quantity(
             "drag.centre_of_pressure_height_m",
-            "height of the centre of pressure above the bases; left out: that of the centre of mass",
+            "height of the centre of pressure above the bases; default: that of the centre of mass",
             label="height of the centre of pressure",
             lowest=0.0,
             highest=3.0,

@@ -118,7 +118,7 @@ class Profile(Shown):
             "slope.profile_gap",
             "what to do where points of the profile are more than 5 m apart",
             label="gaps in the profile",
-            origin="choice: nobody measured what lies between",
+            origin="choice: there are no measurements in between",
             condition=Condition("slope.kind", "profile"),
         ),
     ] = field(default="error", kw_only=True)

@@ -158,7 +158,7 @@ PLACES_PER_STEP: Final = 16
 """Places of an uneven row's even table for each of its shortest distances."""
 MOST_PLACES: Final = 20_000
 CLOSEST: Final = 1e-6
-"""Rows nearer to each other (m) are at the same place (modelling assumption)."""
+"""Rows nearer to each other (m) are at the same place."""
 _ACTION: Final = Message(
     "Write x_m and H_V_N_per_mm3, S_f_N_per_mm2 or both, one row for each place along the slope; with y_m one row for "
     "each place of an even grid."
@@ -178,15 +178,15 @@ def read_snow_map(path: str | Path) -> SnowMap:
     Raises
     ------
     ParameterError
-        The file cannot be read, a column is missing, a cell holds no number above 0, or places are no grid; file, row,
-        column and value are named.
+        The file cannot be read, a column is missing, a cell has no number above 0, or places do not form a grid; file,
+        row, column and value are named.
     """
     rows = [_positive(row) for row in csv_rows(path, ("x_m",), further=("y_m", *SIZES), action=_ACTION)]
     names = [name for name in SIZES if rows and name in rows[0].cells]
     if not names:
         raise ParameterError(
             Message(
-                "{path}: there is none of the columns {columns}, or no row. {action}",
+                "{path}: no column of {columns}, or no row. {action}",
                 path=path,
                 columns=list(SIZES),
                 action=_ACTION,

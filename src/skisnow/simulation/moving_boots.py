@@ -71,9 +71,9 @@ it acts in the sledge's frame (m), until the next. Its attribute ``period`` is t
 """
 
 CONTROL_PERIOD: Final = 0.01
-"""Time between two calls of a control that has no period (s) (modelling assumption)."""
+"""Time between two calls of a control that has no period (s)."""
 SHORTEST_PERIOD: Final = 1e-4
-"""Shortest period of a table of boots (s), however near its rows are (modelling assumption)."""
+"""Shortest period of a table of boots (s), however near its rows are."""
 SAME_TIME: Final = 1e-9
 """Difference of two times (s) that are one: a step between them would be rounding."""
 

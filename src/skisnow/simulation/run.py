@@ -44,7 +44,7 @@ Strength: TypeAlias = Callable[[float], float]
 OPEN_SHARE, LEAST_OPEN = 0.005, 1e-3
 """Energy residual as a share of the energy exchanged, and in J: a run that exceeds both ends as `energy_open`."""
 STEADY_SPEED, STEADY_FROM = 1.0, 0.5
-"""Speed (m/s) above which, and time (s) from which on, a run's turn radius counts: before, it is that of the start."""
+"""Speed (m/s) above which, and time (s) after which, a run's turn radius counts: before, it is that of the start."""
 STORED: Final = ("kinetic", "potential", "elastic_ski", "elastic_snow", "delayed_snow")
 LOST: Final = ("penetration", "shear", "friction", "drag", "damping", "snow_damping")
 GIVEN: Final = ("boots", "push")
@@ -152,7 +152,7 @@ class Run(Shown):
     groove
         Grooves of the skis.
     energies
-        (n,) each (J): STORED, what is LOST since the start, and what was GIVEN by boots that move and by pushes.
+        (n,) each (J): STORED, LOST since the start, and GIVEN by moving boots and pushes.
     run_length
         Length of the middle's path (m).
     steps, rejected_steps

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 
 LEAST_LOAD: Final = 50.0
-"""Load (N) of both skis from which on there is a centre of pressure (modelling assumption)."""
+"""Load (N) of both skis above which there is a centre of pressure (modelling assumption)."""
 
 
 def balance_of(run: Run) -> BalanceHistory:
@@ -39,7 +39,7 @@ def balance_of(run: Run) -> BalanceHistory:
     boots = run.boots
     if boots is None:
         raise ParameterError(
-            Message("this run knows nothing of its boots: it was not made by skisnow.simulate"),
+            Message("this run has no data of its boots: it was not made by skisnow.simulate"),
             code="no_data",
         )
     normal = normals_of(run.scenario.slope, run.place[:, 0], run.place[:, 1])

@@ -1,4 +1,4 @@
-"""A run taken from output to output, and what is stored of it."""
+"""A run taken from output to output, and the stored rows."""
 
 from __future__ import annotations
 

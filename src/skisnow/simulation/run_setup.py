@@ -30,20 +30,19 @@ from .sledge_body import sledge_body
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 
 ELEMENTS: Final = 40
-"""Finite elements over a ski at least: 4.5 cm each (modelling assumption, see the convergence of the docs)."""
+"""Finite elements over a ski at least: 4.5 cm each, by the convergence tests of the docs."""
 LINE_SPACING: Final = 0.02
-"""Largest spacing (m) of the snow's lines (modelling assumption)."""
+"""Largest spacing (m) of the snow's lines."""
 FAST: Final = 10.0
-"""Times the tolerance, to which the fast method controls a step's error (modelling assumption)."""
+"""Times the tolerance, to which the fast method controls a step's error."""
 FAST_LONGEST: Final = 10e-3
-"""Longest step (s) of the fast method (modelling assumption: that of outputs)."""
+"""Longest step (s) of the fast method (that of outputs)."""
 FAST_GROOVE: Final = 3.0
-"""Times the groove's tolerance, to which the fast method simplifies grooves (modelling assumption)."""
+"""Times the groove's tolerance, to which the fast method simplifies grooves."""
 FAST_PART: Final = 0.02
-"""Path along a ski (m) over which its history is marched at once with the fast method (modelling assumption: the
-lines' spacing)."""
+"""Path along a ski (m) over which the fast method advances its history at once: the lines' spacing."""
 FLOATING_DEPTH: Final = 0.1
-"""Depth (m) by which a flat base must carry the sledge, or it has sunk from the start (modelling assumption)."""
+"""Depth (m) by which a flat base must carry the sledge, or it has sunk from the start."""
 SET_DOWN: Final = 0.1
 """Distance (m) of the boots past a border that still counts as on it: a sledge may start there and settle."""
 AT_REST: Final = 1e-6

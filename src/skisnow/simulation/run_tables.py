@@ -184,7 +184,7 @@ def write_boots(run: Run, path: str | Path) -> None:
 def _boots(run: Run) -> BootHistory:
     if run.boots is None:
         raise ParameterError(
-            Message("this run knows nothing of its boots: it was not made by skisnow.simulate"),
+            Message("this run has no data of its boots: it was not made by skisnow.simulate"),
             code="no_data",
         )
     return run.boots

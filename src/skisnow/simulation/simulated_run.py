@@ -61,7 +61,7 @@ REMEDIES: Final[dict[Outcome, str]] = {
     "sunk": "The boots went more than half a metre below the surface, or would: this snow does not carry the sledge. "
     "Take harder snow, less mass or a wider ski.",
     "missed_gate": "Change line or start, or the course; gates.csv says of each gate what became of it.",
-    "straddled": "By the rules that is no passage. Change line or start, or the course; gates.csv says of each gate "
+    "straddled": "By the rules this is not a passage. Change line or start, or the course; gates.csv says of each gate "
     "what became of it.",
     "energy_open": "The energy residual is more than 0.5 % of the energy exchanged: do not rely on these numbers. Take "
     "smaller steps, or the error control (solver.fixed false); on very hard snow, or at more than 50° of edge angle, a "
@@ -93,8 +93,8 @@ def simulate(
         S_f over that of the scenario, > 0, by the distance run (m): snow that is weaker or stronger in places.
         Evaluated every 10 ms, for both skis and all along them.
     laws
-        Instead of the scenario's: laws of `skisnow.forces`, or of your own. Run, summary.json and report name them
-        with their numbers.
+        Instead of the scenario's: laws of `skisnow.forces`, or user-defined ones. Run, summary.json and report name
+        them with their numbers.
     boots
         Moves the boots against the sledge, instead of the scenario's boots.file: called with a `BootMoment` every
         10 ms, or after its attribute ``period`` (s), it gives the `BootPose` of the left and the right boot at the end
@@ -303,7 +303,7 @@ def why_no_start(setup: Setup) -> str:
     if not -right_end <= left <= left_end:
         side, reach = ("left", left_end) if left > left_end else ("right", right_end)
         return (
-            "the sledge cannot stand at its start: on this slope, at this heading, its weight passes "
+            "the sledge falls over at its start: on this slope, at this heading, its weight passes "
             f"{abs(left):.3g} m to the {side} of the boots' middle, and the skis carry to {reach:.3g} m there. Lower "
             "sledge.centre_of_mass_height_m, widen sledge.stance_width_m, or bring start.heading_deg nearer to 0"
         )
@@ -311,7 +311,7 @@ def why_no_start(setup: Setup) -> str:
     if not rear <= ahead <= front:
         side, reach = ("before", front) if ahead > front else ("behind", -rear)
         return (
-            "the sledge cannot stand at its start: on this slope, at this heading, its weight passes "
+            "the sledge falls over at its start: on this slope, at this heading, its weight passes "
             f"{abs(ahead):.3g} m {side} the boots, and the skis carry to {reach:.3g} m there. Change "
             "sledge.centre_of_mass_forward_m, or lower sledge.centre_of_mass_height_m"
         )

@@ -175,7 +175,7 @@ def limit_sentences(moves: Mapping[str, float], length: float) -> tuple[str, ...
         return ()
     return (
         f"near the limit of grip: the end moves {moves[worst]:.2g} m for {100.0 * NUDGE:g} % of {worst}. A run "
-        "there tells what may happen and not where it ends: look at many, over what the inputs leave open",
+        "there shows a possible end and does not predict it: look at many, over what the inputs leave open",
     )
 
 

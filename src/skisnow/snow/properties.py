@@ -87,7 +87,7 @@ class SnowProperties(Shown):
     source: Annotated[
         str,
         Word("results", "results.json of an analysed campaign, in place of H_V and S_f", names_file=True),
-        Word("site", "one site of those results; left out: all of them"),
+        Word("site", "one site of those results; default: all of them"),
         Word("published", "name of a published snow, in place of H_V and S_f"),
     ]
     snow_hardness_interval: Interval | None = None

@@ -20,10 +20,10 @@ from ..parameters import Quantity, checked_table, made
 Point: TypeAlias = dict[str, Any]
 
 AT_ONCE: Final = 1000
-"""Points whose text is made in one piece: some hundred kilobytes (modelling assumption)."""
+"""Points whose text is made in one piece: some hundred kilobytes."""
 FloatArray = npt.NDArray[np.float64]
 MOST_POINTS: Final = 1_000_000
-"""Of one study: a table of about half a gigabyte on disk; memory does not grow with it (modelling assumption)."""
+"""Of one study: a table of about half a gigabyte on disk; memory does not grow with it."""
 
 
 class Points(Sequence[Point], ABC):

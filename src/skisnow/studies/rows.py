@@ -24,7 +24,7 @@ from ..parameters import Quantity
 from .cells import Reader, is_text, require_kinds, row_of
 
 ROWS_OF_A_BLOCK: Final = 1000
-"""Rows that are read at once: a few megabytes (modelling assumption)."""
+"""Rows that are read at once: a few megabytes."""
 
 
 class StoredRows(Sequence[Row], ABC):
@@ -122,7 +122,7 @@ def csv_block(path: Path, data: bytes, columns: Sequence[str], readers: Sequence
     except (UnicodeDecodeError, csv.Error) as error:
         raise ParameterError(
             Message(
-                "{path} is no table of a study, from about line {first} on: {error}",
+                "{path} is not a table of a study, from about line {first} on: {error}",
                 path=path,
                 first=first,
                 error=error,

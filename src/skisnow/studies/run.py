@@ -108,7 +108,7 @@ def run_study(
     See Also
     --------
     skisnow.read_study : the study of a file.
-    skisnow.run_batch : points and a function of your own.
+    skisnow.run_batch : points and your own function.
 
     References
     ----------
@@ -186,7 +186,7 @@ def written(
     keys
         The study's inputs.
     previous
-        Where a table in its place goes; None: there is none.
+        Where a table in its place goes; None: no table is there.
 
     Raises
     ------
@@ -274,7 +274,7 @@ class StudyRows:
         return cls(study.subject, study.columns[:-1], tuple((path, _hash(path)) for path in files))
 
     def __call__(self, point: Point) -> list[Any]:
-        """Values in the order of the columns, None where a row has none."""
+        """Values in the order of the columns, None for missing values."""
         row = self.subject(point)
         return [row.get(name) for name in self.columns]
 

@@ -24,7 +24,7 @@ from .table import StudyTable
 from .writing import writer_of
 
 MOST_SHARDS: Final = 10_000
-"""Of one study (modelling assumption: more than a job array has)."""
+"""Of one study (more than a job array has)."""
 _SHARD: Final = re.compile(r"(\d{1,9})/(\d{1,9})")
 
 
@@ -102,7 +102,7 @@ def run_shard(
     Raises
     ------
     ParameterError
-        The file is of another study, or the shard is none.
+        The file is of another study, or the shard is not valid.
     OutputError
         The file cannot be written, or another run is writing it.
 
@@ -199,7 +199,7 @@ class _Parts:
                 )
         if "points" not in about[0] or parts[0].columns is None:
             raise ParameterError(
-                Message("{path} is no part of a study. Name the files that --shard left", path=parts[0].path),
+                Message("{path} is not a part of a study. Name the files that --shard left", path=parts[0].path),
                 code="unknown_name",
             )
         self.columns: tuple[str, ...] | None = parts[0].columns
@@ -225,7 +225,7 @@ class _Parts:
             elif text[1] != last[1]:
                 raise ParameterError(
                     Message(
-                        "two parts have different rows for point {each}. Compute one of them anew", each=text[0] + 1
+                        "two parts have different rows for point {each}. Compute one of them again", each=text[0] + 1
                     ),
                     code="contradiction",
                 )

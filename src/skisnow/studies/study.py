@@ -40,7 +40,7 @@ class StudyModel(Protocol):
         ...
 
     def named(self, table: Mapping[str, Any]) -> dict[str, Any]:
-        """The values of a table of the study under the names of `keys`; a name that is none may stay."""
+        """The values of a table of the study under the names of `keys`; an unknown name may stay."""
         ...
 
     def require_sound(self, points: Points, fixed: Point) -> None:
@@ -187,7 +187,7 @@ def _study(path: Path, values: Mapping[str, Any], subject: ModelReader) -> Study
     for key in values:
         if key not in TOP_KEYS:
             raise ParameterError(
-                Message("{key} is no key of a study. {allowed}", key=key, allowed=nearest(key, TOP_KEYS)),
+                Message("{key} is not a key of a study. {allowed}", key=key, allowed=nearest(key, TOP_KEYS)),
                 code="unknown_name",
             )
     subject_ = _subject(path, values, subject)
@@ -250,7 +250,7 @@ def _fixed(table: Mapping[str, Any], keys: Mapping[str, Quantity]) -> Point:
         if isinstance(value, dict) or (isinstance(value, list) and keys[name].kind != "three numbers"):
             raise ParameterError(
                 Message(
-                    "fixed.{name} is {value!r}; it takes one value. What varies stands in [grid]",
+                    "fixed.{name} is {value!r}; it takes one value. Put varying values into [grid]",
                     name=name,
                     value=value,
                 ),
@@ -271,7 +271,7 @@ def _axis(form: str, name: str, value: object, keys: Mapping[str, Quantity], fix
     _require_key(form, name, (*OWN_KEYS[form], *keys))
     if name in fixed:
         raise ParameterError(
-            Message("{name} stands in [{form}] and in [fixed]. Remove one of them", name=name, form=form),
+            Message("{name} is in [{form}] and in [fixed]. Remove one of them", name=name, form=form),
             code="contradiction",
         )
     return Axis.of(keys[name], value)
@@ -280,7 +280,7 @@ def _axis(form: str, name: str, value: object, keys: Mapping[str, Quantity], fix
 def _require_key(table: str, name: str, keys: Collection[str]) -> None:
     if name not in keys:
         raise ParameterError(
-            Message("{table}.{name} is no input. {allowed}", table=table, name=name, allowed=nearest(name, keys)),
+            Message("{table}.{name} is not an input. {allowed}", table=table, name=name, allowed=nearest(name, keys)),
             code="unknown_name",
         )
 

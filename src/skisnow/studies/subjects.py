@@ -214,7 +214,7 @@ class ScenarioModel(ShownFields):
         return values
 
     def require_sound(self, points: Points, fixed: Point) -> None:  # noqa: ARG002 - points hold what is fixed
-        """Refuse a study of which none of the first points can be asked, with what is wrong with the first."""
+        """Refuse a study of which none of the first points can be computed, with the problem of the first."""
         first: SkisnowError | None = None
         for point in points[:MOST_TRIED]:
             try:

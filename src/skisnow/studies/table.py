@@ -35,7 +35,7 @@ MOST_ROWS_HELD: Final = 20_000
 MOST_BYTES_HELD: Final = 1 << 24
 MOST_BYTES_AT_ONCE: Final = 1 << 27
 """Largest table of another program, which is read as a whole (bytes)."""
-"""Of a CSV file; a larger one is not read at once."""
+"""Size of a CSV file; a larger one is not read at once."""
 _HEAD: Final = 1 << 16
 FAILED = "error"
 """The outcome of a point that could not be asked."""
@@ -210,7 +210,7 @@ def _read_at_once(path: Path, keys: Mapping[str, Quantity]) -> tuple[tuple[str, 
         raise _unreadable(path, error) from error
     except (NoTextError, csv.Error) as error:
         raise ParameterError(
-            Message("{path} is no table of a study: {error}", path=path, error=error), code="unknown_name"
+            Message("{path} is not a table of a study: {error}", path=path, error=error), code="unknown_name"
         ) from error
     mark = "." if separator == "," else decimal_mark([chain.from_iterable(row for _, row in lines)], separator=";")
     cell_readers = readers(columns, keys, mark)
@@ -226,7 +226,7 @@ def _unreadable(path: Path, error: OSError) -> ParameterError:
 def _require_columns(path: str | Path, columns: Sequence[str]) -> None:
     if not {"outcome", "study"} <= set(columns):
         raise ParameterError(
-            Message("{path} is no table of a study: its first line names no columns outcome and study", path=path),
+            Message("{path} is not a table of a study: its first line names no columns outcome and study", path=path),
             code="unknown_name",
         )
 

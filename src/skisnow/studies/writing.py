@@ -24,7 +24,7 @@ ValueRows: TypeAlias = Callable[[], Iterable[list[Any]]]
 Writer: TypeAlias = Callable[[Path, Sequence[str], ValueRows], "array[int] | None"]
 
 ROWS_OF_A_GROUP: Final = 10 * ROWS_OF_A_BLOCK
-"""Rows of a group of a Parquet file: some megabytes (modelling assumption)."""
+"""Rows of a group of a Parquet file: some megabytes."""
 _DATABASE_TYPES: Final[tuple[tuple[frozenset[type], str], ...]] = (
     (frozenset({bool}), "BOOLEAN"),
     (frozenset({int}), "INTEGER"),

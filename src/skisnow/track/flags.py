@@ -56,7 +56,7 @@ _ALL: Final = (
     PointFlag(
         "float_solution", "By the carrier's phase, but not fixed to whole cycles: decimetres that wander.", False
     ),
-    PointFlag("code_solution", "By the code alone, in a track that has the carrier's phase elsewhere: metres.", False),
+    PointFlag("code_solution", "Only by the code, in a track that has the carrier's phase elsewhere: metres.", False),
 )
 FLAGS: Final[Mapping[str, PointFlag]] = MappingProxyType({flag.code: flag for flag in _ALL})
 """Every flag by its code, in the order in which they are listed."""

@@ -126,7 +126,7 @@ def height_or_reason(track: Track, motion: TrackMotion) -> tuple[FloatArray | No
     if track.axes == "slope":
         return None, ("The track's third axis is that of the slope, not the height: descents are unknown.",)
     if np.count_nonzero(recorded) < max(2, len(track) // _SPARSE):
-        return None, ("No heights in the track: lifts cannot be told from runs, descents are unknown.",)
+        return None, ("No heights in the track: lifts cannot be distinguished from runs, descents are unknown.",)
     height = np.interp(np.arange(len(track)), np.flatnonzero(recorded), track.place[recorded, 2])
     arc_length = float(motion.arc_length[-1] - motion.arc_length[0])
     if track.axes == "file" and np.ptp(height) < _LEVEL_SHARE * arc_length:

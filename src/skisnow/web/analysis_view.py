@@ -114,7 +114,7 @@ class AnalysisView:
         with self._results:
             _list_errors(refusal.errors)
             if self._page.kind == "kept":
-                sentence("Put the files right and import them again. Single cells can be put right under Correct.")
+                sentence("Correct the files and import them again. Single cells can be corrected under Correct.")
 
     def _show(self, result: CachedAnalysis) -> None:
         first, self._page.analysed = not self._choices.default_slot.children, result

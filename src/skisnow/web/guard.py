@@ -166,7 +166,7 @@ class Guard:
         try:
             is_own, sent_by = self.access.allows_host(host), None if origin is None else urlsplit(origin).netloc
         except ValueError:  # such as "["
-            return PlainTextResponse("The Host or the Origin of this request is no address.", 400)
+            return PlainTextResponse("The Host or the Origin of this request is not an address.", 400)
         if not is_own:
             return PlainTextResponse("This address is not one of the lab's.", 421)
         needs_origin = scope["type"] == "websocket" or scope["method"] not in _SAFE

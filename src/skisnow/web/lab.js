@@ -171,7 +171,7 @@
   }
 
   function answered(number, fine) {
-    if (number !== asked) return; // an answer that is no longer awaited
+    if (number !== asked) return; // an outdated answer
     if (number === 0) return resuming || resume();
     clearTimeout(timer);
     waiting = false;

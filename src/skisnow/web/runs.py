@@ -231,7 +231,7 @@ class Runs:
             return replace(job, state="failed", said=error.message)
         words = f"{finished.outcome_in_words}: {finished.extent}"
         if finished.outcome == "interrupted":  # a job that was cancelled after its end counts as finished
-            return replace(job, state="cancelled", said=f"{words}. What was computed until then is kept.")
+            return replace(job, state="cancelled", said=f"{words}. The results so far are kept.")
         return replace(job, state="done", said=f"{words}. {finished.remedy}".strip())
 
     def _keep(self, job: Job) -> None:

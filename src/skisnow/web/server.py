@@ -155,12 +155,10 @@ class _AnnouncingServer(uvicorn.Server):
 ALL_ADDRESSES: Final = ("0.0.0.0", "::")
 """Hosts that mean all addresses of this machine."""
 IN_CLEAR: Final = (
-    "What goes between the machines is not encrypted, the token neither: anybody in the same network can read it. Use "
-    "a network of your own, such as this machine's hotspot, or give --certificate."
+    "The traffic is not encrypted, nor is the token: anybody in the same network can read both. Use "
+    "a private network, such as this machine's hotspot, or give --certificate."
 )
-ENCRYPTED: Final = (
-    "What goes between the machines is encrypted. A browser asks once whether it may trust a certificate of your own."
-)
+ENCRYPTED: Final = "The traffic is encrypted. A browser asks once whether it may trust a self-signed certificate."
 
 
 def lab_addresses(host: str, port: int, *, secure: bool, own: Iterable[str] | None = None) -> list[str]:

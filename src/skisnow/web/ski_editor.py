@@ -106,7 +106,7 @@ class SkiEditor:
         await self._changed()
 
     def _show_origin(self, name: str) -> None:
-        self._begun.set_text(f"Begun from {name}. Nothing is saved until you give it a name of its own.")
+        self._begun.set_text(f"Begun from {name}. Nothing is saved until you give it another name.")
 
     async def _update(self) -> None:
         await self._changed()

@@ -50,7 +50,7 @@ def add_ski_uploads(app: FastAPI, lab: Lab) -> None:
         name = add_ski(LabSkis(lab.runs), str(form.get(NAME, "")), texts)
         return f"/skis?ski={quote(name, safe='')}&added=1"
 
-    too_many = f"Nothing was stored: at most {MOST_FILES} files at once are taken in."
+    too_many = f"Nothing was stored: at most {MOST_FILES} files at once can be imported."
     add_upload(app, SKI_UPLOAD, store, max_files=MOST_FILES, too_many=too_many)
 
 

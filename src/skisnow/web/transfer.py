@@ -55,7 +55,7 @@ def add_transfer(app: FastAPI, lab: Lab) -> None:
     async def kept(request: Request, id_: str) -> Response:
         return await _zip_answer(lambda folder: write_kept(lab, id_, folder), id_, request)
 
-    too_many = f"Nothing was stored: at most {lab.limits.files} files at once are taken in."
+    too_many = f"Nothing was stored: at most {lab.limits.files} files at once can be imported."
     add_upload(app, IMPORT, store, max_files=lab.limits.files, too_many=too_many)
     app.add_api_route("/export/entry/{id_}.zip", entry, response_model=None)
     app.add_api_route("/export/kept/{id_}.zip", kept, response_model=None)

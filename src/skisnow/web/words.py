@@ -138,6 +138,7 @@ def typed_number(what: str, text: str) -> float:
         value = math.nan
     if not math.isfinite(value):
         raise ParameterError(
-            Message("{field}: {value!r} is no number. Correct it", field=what, value=text.strip()), code="not_a_number"
+            Message("{field}: {value!r} is not a number. Correct it", field=what, value=text.strip()),
+            code="not_a_number",
         )
     return value

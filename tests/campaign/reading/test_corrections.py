@@ -109,7 +109,7 @@ REFUSED: list[tuple[tuple[str, str, str, str, str, str], Where, str]] = [
     ((PEN, "P1", "3", "site", "süd", "9"), (2, "old", "P1", "süd"), "'Süd'"),
     ((PEN, "P2", "3", "depth_mm", "2.5", "9"), (2, "experiment", "P2", "P2"), "'P1'"),
     ((PEN, "P1", "1", "depth_mm", "2.5", "9"), (2, "row", "P1", "1"), "header"),
-    ((PEN, "P1", "99", "depth_mm", "2.5", "9"), (2, "row", "P1", "99"), "there is none"),
+    ((PEN, "P1", "99", "depth_mm", "2.5", "9"), (2, "row", "P1", "99"), "the file has no rows"),
     ((PEN, "P1", "3.5", "depth_mm", "2.5", "9"), (2, "row", "P1", "3.5"), "whole"),
     ((PEN, "P1", "3", "Depth", "2.5", "9"), (2, "column", "P1", "Depth"), "depth_mm"),
     ((PEN, "P1", "3", "time", "", "9"), (2, "column", "P1", "time"), "depth_mm"),

@@ -47,8 +47,8 @@ def test_the_proposal_is_one_line_a_file_and_does_what_it_says(
     printed = capsys.readouterr().out.splitlines()
     errors = [line for line in printed if line.startswith("error ")]
     assert len(errors) == 4
-    assert [line for line in printed if line.startswith("note: nothing need be done")] == [
-        "note: nothing need be done: Windows-1252 in penetration.csv, shear.csv, density.csv, drop_cone.csv; "
+    assert [line for line in printed if line.startswith("note: no action is needed")] == [
+        "note: no action is needed: Windows-1252 in penetration.csv, shear.csv, density.csv, drop_cone.csv; "
         "semicolon in penetration.csv, shear.csv, density.csv, drop_cone.csv."
     ]
     lines = [found[0] for line in errors if (found := re.search(r"columns\.\w+ = \{.*?\}", line))]

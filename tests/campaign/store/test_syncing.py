@@ -200,7 +200,7 @@ def test_a_choice_that_was_made_can_be_made_otherwise(ada: Laptop, bo: Laptop, g
     ada.change(id_, "1", cells={"depth_mm": "1.8"}, why="thought again")
     bo.sync(group, {"all": "here"})
     (conflict,) = ada.sync(group).conflicts
-    assert conflict.what == "an entry was taken back in one, and the other has entries of its own"
+    assert conflict.what == "an entry was taken back in one, and the other has further entries"
     ada.sync(group, {"all": "here"})
     both_sync(ada, bo, group)
     assert_alike(id_, ada.store, bo.store, group)

@@ -99,10 +99,10 @@ def test_a_track_is_added_and_drawn_beside_a_run(served: Any, page: Any, tmp_pat
         page.get_by_role("button", name="Add the track").press("Enter")
 
     add("wrong <b>.gpx", "")
-    page.get_by_role("heading", name="This was not taken in").wait_for()
+    page.get_by_role("heading", name="This was not imported").wait_for()
     page.get_by_text("wrong <b>.gpx").wait_for()
     add("measured.gpx", "180")
-    page.get_by_text("Choose the run that it is to stand beside.").wait_for()
+    page.get_by_text("Choose the run to compare it with.").wait_for()
     (name,) = TrackFolders(served.store.parent / "lab").names()
     has_text(page.get_by_label("Measured track beside it"), name)
     page.get_by_role("button", name="Watch together").click()

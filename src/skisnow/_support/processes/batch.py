@@ -125,7 +125,7 @@ def _silent(_done: int, _total: int) -> None:
 
 
 LOOKED_AFTER_S: Final = 2.0
-"""While nothing comes it is looked so often whether anything can (modelling assumption)."""
+"""Interval (s) between checks that the workers are alive while no result arrives."""
 
 
 class Pool:
@@ -182,7 +182,7 @@ class Pool:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        """End the workers; after an error or an interrupt at once, in the middle of what they do."""
+        """End the workers; after an error or an interrupt at once, in the middle of their work."""
         unfinished = [future for future in self._running if not future.done()]
         for future in unfinished:
             future.cancel()

@@ -31,9 +31,9 @@ LOST: Final = "scheduler_lost"
 LARGEST_FOR_A_PIPE: Final = 64
 """Points; their rows stay well below the 64 kB that a pipe takes in one piece."""
 LARGEST: Final = 10_000
-"""Points of one chunk: some megabytes of rows (modelling assumption)."""
+"""Points of one chunk: some megabytes of rows."""
 CHUNK_S: Final = 0.25
-"""Work (s) that is handed over at once, and that a kill loses (modelling assumption: handing over costs 1 ms here)."""
+"""Work (s) that is handed over at once, and that a kill loses (handing over costs 1 ms here)."""
 
 
 def lost() -> Message:
@@ -68,7 +68,7 @@ class Crew(ABC):
 
     @abstractmethod
     def end(self, *, at_once: bool) -> None:
-        """Let go of what this has started; `at_once`: in the middle of what it does, where that is possible."""
+        """Stop the workers that this has started; `at_once`: in the middle of their work, if possible."""
 
 
 class ProcessCrew(Crew):

@@ -33,14 +33,14 @@ _ANY: Final = inspect.Parameter.VAR_KEYWORD
 _NOT_LOADED: Final = ("Can't get attribute", "deserializ")
 """Texts of Python and Dask where a function is not there."""
 WAIT_S: Final = 30.0
-"""How long (s) a scheduler may take to answer, where the file does not say."""
+"""Time-out (s) for the answer of a scheduler (default of the file's key)."""
 AWAY_S: Final = 10.0
-"""How long (s) a scheduler may be away in the middle of the work (modelling assumption)."""
+"""Time (s) that a scheduler may be unreachable during the work."""
 CHUNK_S: Final = 1.0
-"""Work (s) that is handed over at once (modelling assumption: from one piece to the next a worker takes some 10 ms, and
+"""Work (s) that is handed over at once (from one piece to the next a worker takes some 10 ms, and
 some 50 where its cores are wanted by others)."""
 COUNTED_EVERY_S: Final = 1.0
-"""Workers come and go; interval (s) between counts (modelling assumption: asking takes milliseconds)."""
+"""Interval (s) between counts of the workers, which come and go."""
 
 
 @dataclass(frozen=True, slots=True)

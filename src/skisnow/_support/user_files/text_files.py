@@ -45,11 +45,11 @@ def plain_bytes(path: str | Path, *, most_bytes: int) -> bytes:
         ) from error
     except UnicodeEncodeError as error:
         raise GivenError(
-            Message("{path!r} cannot be read: its name is no valid text. Correct it.", path=path), code="cannot_read"
+            Message("{path!r} cannot be read: its name is not valid text. Correct it.", path=path), code="cannot_read"
         ) from error
     except ValueError as error:  # the system's paths end at a NUL character
         raise GivenError(
-            Message("{path!r} is no path: it has a NUL character. Correct it.", path=path), code="invalid_character"
+            Message("{path!r} is not a path: it has a NUL character. Correct it.", path=path), code="invalid_character"
         ) from error
     if len(data) > most_bytes:
         raise GivenError(
@@ -101,7 +101,7 @@ class GivenError(ParameterError):
     Parameters
     ----------
     what
-        Problem and what is allowed, without the file.
+        Problem and allowed values, without the file.
     code
         As in `skisnow.SkisnowError`.
     line

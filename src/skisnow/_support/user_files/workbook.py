@@ -113,7 +113,7 @@ def _merged_in(archive: zipfile.ZipFile, part: str) -> list[tuple[int, int, int,
 
 
 def _undamaged(doing: Callable[[], Any]) -> Any:
-    """What openpyxl does: it tells of damage by a dozen kinds of errors, from any of its steps."""
+    """Steps of openpyxl, which raises a dozen kinds of errors for damaged files."""
     try:
         return doing()
     except GivenError:

@@ -54,8 +54,8 @@ class CampaignFile:
         float | None,
         Quantity(
             "gauge_resolution_mm",
-            "step of the depth gauge; a reading's standard uncertainty is step/√12. Left out: no depth uncertainty and "
-            "no `below_resolution` flag, which the report says",
+            "step of the depth gauge; a reading's standard uncertainty is step/√12. Default: no depth uncertainty and "
+            "no `below_resolution` flag, with a note in the report",
             lowest=0.0,
             above=True,
             usual=(0.0005, 5.0),
@@ -65,7 +65,7 @@ class CampaignFile:
         float | None,
         Quantity(
             "load_uncertainty_N",
-            "standard uncertainty of a load; left out it counts as 0, which the report says, as for the next two",
+            "standard uncertainty of a load; default: 0, with a note in the report, as for the next two",
             lowest=0.0,
         ),
     ] = None
@@ -91,7 +91,7 @@ class CampaignFile:
         Quantity(
             "pole_stiffness_Nm_per_deg",
             "moment that twists the shear device's pole by a degree between where its turning angle is read and the "
-            "plate; left out: rigid, or read at the plate",
+            "plate; default: rigid, or read at the plate",
             lowest=0.0,
             above=True,
         ),
@@ -166,7 +166,7 @@ def _parsed(text: str, problems: list[Problem]) -> dict[str, Any] | None:
         return toml_values(text.replace("\r\n", "\n").replace("\r", "\n"))
     except GivenError as failure:
         row, what = failure.line, failure.what
-    action = Message("Correct the line: texts stand in quotes, numbers have a decimal point, lists stand in brackets.")
+    action = Message("Correct the line: write texts in quotes, numbers with a decimal point, and lists in brackets.")
     problems.append(
         error("bad_toml", CAMPAIGN_FILE, row=row, value=what, allowed=Message("TOML (toml.io)"), action=action)
     )
@@ -263,9 +263,7 @@ def _length(entry: TomlValues, quantity: Quantity) -> float | None:
                 column=entry.path_of(quantity.name),
                 value=f"{value:g}",
                 allowed=Message("a number in mm; {low:g} to {high:g} is usual", low=low, high=high),
-                action=Message(
-                    "If this is in {unit} convert it to mm; if it is in mm nothing need be done.", unit=unit
-                ),
+                action=Message("If this is in {unit} convert it to mm; if it is in mm no action is needed.", unit=unit),
             )
         )
     return None if value is None else quantity.in_si(value)

@@ -132,7 +132,7 @@ class RawFiles:
             self._refuse(name, failure.strerror or str(failure))
             return None
         if data is None:
-            self._refuse(name, Message("something that is no plain file"))
+            self._refuse(name, Message("something other than a plain file"))
             return None
         self.hashes[name] = hashlib.sha256(data).hexdigest()
         return data
@@ -196,7 +196,7 @@ def recording_contents(table: Table | None, files: RawFiles) -> dict[str, bytes]
 
 def _content(table: Table, row: int, name: str, files: RawFiles) -> bytes | None:
     if "/" in name or "\\" in name or not name.lower().endswith(ENDING):
-        action = Message("Write the file's name alone, and lay the file beside the tables.")
+        action = Message("Write only the file's name, and put the file next to the tables.")
         allowed = Message("the name of a .PNT file in the campaign's folder")
         files.problems.append(_refusal(table, row, "file", "unreadable_file", allowed, action))
         return None

@@ -143,7 +143,7 @@ class NumberCollector:
                 values = self._unit.convert(values)
         outside = self._column.outside(values) | np.isinf(values)
         for index in np.flatnonzero(outside).tolist():
-            action = Message("Correct the cell; its unit stands in the column's name.")
+            action = Message("Correct the cell; its unit is in the column's name.")
             cell = cells[index].strip() + (f" {self._unit.name}" if self._unit is not None else "")
             problems.append(self._refusal("out_of_range", index, cell, rows, action))
         values[outside] = np.nan

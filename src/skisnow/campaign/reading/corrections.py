@@ -7,7 +7,7 @@ raw file or the correction is not the intended one.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING, TypeAlias
 
 from ..._support.messages import Message
@@ -27,25 +27,14 @@ STATUS = "status"
 
 
 @dataclass(frozen=True, slots=True)
-class Correction:
+class Correction(AppliedCorrection):
     """One row of corrections.csv; ``line`` is its line in corrections.csv, ``row`` the corrected line."""
 
     line: int
-    file: str
-    experiment: str
-    row: int
-    column: str
-    old: str
-    new: str
-    who: str
-    when: str
-    why: str
 
     def applied(self) -> AppliedCorrection:
         """The correction for the records of the campaign."""
-        return AppliedCorrection(
-            self.file, self.experiment, self.row, self.column, self.old, self.new, self.who, self.when, self.why
-        )
+        return AppliedCorrection(*(getattr(self, field.name) for field in fields(AppliedCorrection)))
 
     def mismatch(self, column: str, value: str, allowed: str) -> Problem:
         """Error of a correction that does not match the raw file."""
@@ -77,7 +66,8 @@ def corrections_by_file(table: Table, problems: list[Problem]) -> dict[str, dict
     for line, row, file, experiment, column, *rest in zip(lines, rows, *names, *texts, strict=True):
         if math.isnan(row) or not file:
             continue  # already reported: no number, or blank
-        correction = Correction(line, file, experiment, int(row), column, *rest)
+        old, new, who, when, why = rest
+        correction = Correction(file, experiment, int(row), column, old, new, who, when, why, line)
         if file not in files:
             problems.append(correction.mismatch("file", file, f"one of {', '.join(files)}"))
         elif row != int(row):
@@ -146,7 +136,7 @@ class Corrector:
             allowed = (
                 Message("a row of measurements; this is the header")
                 if row == self._header.row
-                else Message("a row of measurements; there is none")
+                else Message("a row of measurements; the file has no rows")
             )
             self._problems.extend(correction.mismatch("row", str(row), allowed) for correction in of_one_row)
 
@@ -164,7 +154,7 @@ class Corrector:
         key_position = self._position.get(self._key)
         experiment = cells[key_position].strip() if key_position is not None else correction.experiment
         if experiment != correction.experiment:
-            allowed = Message("what stands there: {experiment!r}", experiment=experiment)
+            allowed = Message("the stored value: {experiment!r}", experiment=experiment)
             self._problems.append(correction.mismatch("experiment", correction.experiment, allowed))
             return False
         standing = cells[position].strip()

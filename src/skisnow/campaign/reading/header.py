@@ -190,7 +190,7 @@ def _unknown(form: TableForm, name: str, header: Header) -> Problem:
     action = (
         Message("The column is kept as text and not interpreted. Rename it if {similar!r} is meant.", similar=near[0])
         if near
-        else Message("The column is kept as text and not interpreted; nothing need be done.")
+        else Message("The column is kept as text and not interpreted; no action is needed.")
     )
     return warning(
         "unknown_column",

@@ -102,7 +102,7 @@ def _warn_of_column(table: Table, name: str, likely: LikelyColumn, middle: float
             high=likely.high,
         ),
         action=Message(
-            "If these are {unit} convert them to {unit_2}; if they are {unit_2} nothing need be done.",
+            "If these are {unit} convert them to {unit_2}; if they are {unit_2} no action is needed.",
             unit=unit,
             unit_2=likely.unit,
         ),

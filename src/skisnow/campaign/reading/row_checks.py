@@ -101,7 +101,7 @@ def check_unit(table: Table) -> Iterator[Problem]:
             column=COLUMN,
             value=f"{tilted.min():g} to {tilted.max():g}",
             allowed=Message("degrees"),
-            action=Message("If these are radians multiply them by 57.29578; if they are degrees nothing need be done."),
+            action=Message("If these are radians multiply them by 57.29578; if they are degrees no action is needed."),
         )
 
 
@@ -181,7 +181,7 @@ def _refusal(table: Table, row: int, code: str, allowed: str) -> Problem:
         value=table.names[BRANCH][row],
         allowed=allowed,
         action=Message(
-            "Correct the cell; the rows stand in the order of reading, and a second loading is another experiment."
+            "Correct the cell; the rows are in the order of reading, and a second loading is another experiment."
         ),
     )
 

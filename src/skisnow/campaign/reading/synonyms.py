@@ -70,7 +70,7 @@ def columns_by_synonym(form: TableForm, headings: Sequence[str]) -> dict[str, st
 
 
 def stated_column(form: TableForm, heading: str) -> str:
-    """Column that a heading states: its own name, or a whole synonym of this column alone; otherwise "".
+    """Column that a heading states: its own name, or a whole synonym of only this column; otherwise "".
 
     >>> from .table_forms import PENETRATION
     >>> [stated_column(PENETRATION, each) for each in ("Last [kg]", "load_N", "Last oben", "F [N]")]

@@ -147,7 +147,7 @@ class RecordingRow:
 
     surface: Annotated[
         float | None,
-        Quantity("surface_mm", "where the snow begins, from the first sample; blank: it is looked for", lowest=0.0),
+        Quantity("surface_mm", "where the snow begins, from the first sample; blank: estimated", lowest=0.0),
     ] = None
 
 

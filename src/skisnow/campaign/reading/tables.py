@@ -287,7 +287,7 @@ def decimal_mark_of(form: TableForm, header: Header, text: CsvText) -> str:
     try:
         return decimal_mark(groups(), separator=text.separator)
     except UnreadableTextError:
-        return "."  # what is unreadable is reported where the records are taken in
+        return "."  # what is unreadable is reported where the records are read
 
 
 def _format_notes(file: str, separator: str, mark: str) -> Iterator[Problem]:
@@ -298,6 +298,6 @@ def _format_notes(file: str, separator: str, mark: str) -> Iterator[Problem]:
             file,
             value=value,
             allowed=Message("commas between cells and decimal points, in the plain form"),
-            action=Message("It was read as found; nothing need be done."),
+            action=Message("It was read as found; no action is needed."),
             needs_action=False,
         )

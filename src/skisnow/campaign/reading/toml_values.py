@@ -103,7 +103,7 @@ class TomlValues:
         return tuple(value for value in checked if value is not None)
 
     def _checked(self, value: object, quantity: Quantity) -> float | None:
-        """The number in the key's unit; None and a problem if it is none or out of range."""
+        """The number in the key's unit; None and a problem if it is not a number or out of range."""
         allowed = Message("a finite number {allowed}", allowed=quantity.allowed)
         if isinstance(value, bool) or not isinstance(value, int | float):
             action = Message("Write a number with a decimal point, without quotes.")
@@ -112,7 +112,7 @@ class TomlValues:
         try:
             quantity.in_range(value)
         except ParameterError:
-            action = Message("Correct the number; its unit stands in the key's name.")
+            action = Message("Correct the number; its unit is in the key's name.")
             self.refuse(quantity.name, allowed, action, code="out_of_range", value=value)
             return None
         return float(value)
@@ -179,7 +179,7 @@ class TomlValues:
                 column=self.path_of(key),
                 value=key,
                 allowed=Message("the keys {allowed_keys}", allowed_keys=list(allowed_keys)),
-                action=Message("The key is not used; nothing need be done."),
+                action=Message("The key is not used; no action is needed."),
             )
         )
 

@@ -106,7 +106,7 @@ def _likely_table(rows: Rows) -> str | None:
 
 def _misnamed_sheet(place: str, table: str) -> Problem:
     names = ", ".join(("campaign", "tools", "plates", "columns", *_FILES))
-    action = Message("It looks like {table}: call the sheet so if it is. Else nothing need be done.", table=table)
+    action = Message("It looks like {table}: call the sheet so if it is. Otherwise no action is needed.", table=table)
     return warning(
         "unread_sheet",
         place,

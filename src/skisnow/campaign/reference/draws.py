@@ -32,7 +32,7 @@ _ANGLE_DECIMALS = 4
 
 
 _REDRAWS = 1000
-"""Of the scatter of a series whose depth would shrink under a larger load: a tool does not rise under it."""
+"""Reduction of a series' scatter whose depth would shrink under a larger load: a tool does not rise under it."""
 
 
 class DrawnPenetration(NamedTuple):

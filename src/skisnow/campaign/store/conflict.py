@@ -33,7 +33,7 @@ _KINDS: Final[dict[Kind, str]] = {
     "begun twice": "a test of this name was begun in both",
     "added to": "rows were added in both",
     "cancelled": "it was cancelled in one and changed in the other",
-    "taken back": "an entry was taken back in one, and the other has entries of its own",
+    "taken back": "an entry was taken back in one, and the other has further entries",
     "corrected": "the same cell was corrected differently",
 }
 

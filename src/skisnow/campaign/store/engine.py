@@ -40,7 +40,7 @@ if TYPE_CHECKING:
     from .server import StorePlace
 
 _DAMAGED: Final = Message("the file is damaged; put a backup in its place, or export what can still be exported")
-_NO_STORE: Final = Message("this file is no store but something else; name another file")
+_NO_STORE: Final = Message("this file is not a store; name another file")
 _NOT_ALLOWED: Final = Message("access is not allowed; change the permissions or name another place")
 _NO_TEXT: Final = "Could not decode to UTF-8"
 _SYSTEM_REASONS: Final = {

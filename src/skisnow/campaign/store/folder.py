@@ -163,7 +163,7 @@ def unsafe_because(path: str, *, for_windows: bool) -> Message | None:
     try:
         path.encode()
     except UnicodeEncodeError:
-        return Message("its name is no valid text")
+        return Message("its name is not valid text")
     return None
 
 
@@ -171,7 +171,7 @@ def _require_safe(path: str, *, for_windows: bool) -> None:
     if (why := unsafe_because(path, for_windows=for_windows)) is not None:
         raise StoreError(
             Message(
-                "The file {path} cannot be taken in or given back: {why}; rename it.",
+                "The file {path} cannot be imported or exported: {why}; rename it.",
                 path=_printable(path),
                 why=why,
             ),

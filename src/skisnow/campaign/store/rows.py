@@ -104,7 +104,7 @@ def required_digits(beginning: str) -> str:
     if not re.fullmatch(rf"[0-9a-f]{{{_SHORTEST_PREFIX},64}}", digits):
         raise StoreError(
             Message(
-                "{digits!r} is no campaign's id: give its {most} hexadecimal digits or the first "
+                "{digits!r} is not the id of a campaign: give its {most} hexadecimal digits or the first "
                 "{fewest} or more of them.",
                 digits=digits,
                 most=ID_DIGITS,
@@ -221,7 +221,7 @@ def text_of(value: object) -> str:
 def require_integer(value: object) -> int:
     """The value, which must be an integer."""
     if not isinstance(value, int):
-        raise TypeError(f"{value!r} is no whole number")
+        raise TypeError(f"{value!r} is not a whole number")
     return value
 
 

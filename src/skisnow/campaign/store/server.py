@@ -203,7 +203,7 @@ def _revision(connection: Connection, address: ServerAddress) -> str | None:
     if tables.get("campaign") != MARK or "alembic_version" not in tables:
         raise StoreError(
             Message(
-                "{address} holds tables of another program, not a store; make a database of its own for the store.",
+                "{address} holds tables of another program, not a store; create a separate database for the store.",
                 address=address,
             ),
             code="other_database",
@@ -312,7 +312,7 @@ def _server_url(text: str) -> URL:
     except (ArgumentError, ValueError):  # their messages contain the address
         raise StoreError(
             Message(
-                "The address of the server cannot be read; it has the form {form}, and what is none of "
+                "The address of the server cannot be read; it has the form {form}, and any other character than "
                 "A–Z, 0–9, - . _ ~ in a user's name or a password is written as % and two hexadecimal "
                 "digits.",
                 form=_FORM,

@@ -208,13 +208,13 @@ class Store(Shown):
     def _files_to_add(self, folder: Path) -> dict[str, FileState]:
         if not folder.is_dir():
             raise StoreError(
-                Message("{folder} is no folder; name the folder that holds the campaign's files.", folder=folder),
+                Message("{folder} is not a folder; name the folder that holds the campaign's files.", folder=folder),
                 code="no_folder",
             )
         if isinstance(self.path, Path) and self.path.resolve().is_relative_to(folder.resolve()):
             raise StoreError(
                 Message(
-                    "The store {path} lies in {folder} itself; keep it somewhere else.", path=self.path, folder=folder
+                    "The store {path} is in {folder} itself; keep it somewhere else.", path=self.path, folder=folder
                 ),
                 code="inside_folder",
             )

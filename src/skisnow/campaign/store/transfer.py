@@ -80,7 +80,7 @@ def take_entries(source: Connection, to: Connection, journal_id: str, uids: Iter
         about = None if entry.about is None else numbers.get(of_source.get(entry.about, ""))
         if entry.about is not None and about is None:
             raise damaged(
-                Message("What the entry {number} of the campaign {id} is about", number=entry.sequence, id=journal_id)
+                Message("The subject of entry {number} of the campaign {id}", number=entry.sequence, id=journal_id)
             )
         once = None if entry.once in sent else entry.once
         taken.append(replace(entry, sequence=number, about=about, once=once))

@@ -134,7 +134,7 @@ def _rows_as_bytes(connection: Connection) -> Iterator[_Row]:
     if is_file(connection):
         query = select(*(cast(column, LargeBinary).label(column.name) for column in columns))
     else:
-        query = select(*columns)  # a server holds nothing in a text that is none
+        query = select(*columns)  # a server has only valid text
     for row in connection.execute(query.order_by(columns.sequence)).mappings().all():
         yield {str(name): as_bytes(value) for name, value in row.items()}
 
@@ -151,7 +151,7 @@ def _form_damage(connection: Connection, row: _Row) -> Iterator[Finding]:
     except StoreError as error:
         yield Finding(_text(row["journal_id"]), None, str(error))
     except (DatabaseError, UnicodeDecodeError):
-        yield _finding(row, _place(row, None), "it holds what is no text")
+        yield _finding(row, _place(row, None), "it contains bytes that are not text")
 
 
 def _sum_damage(row: _Row) -> Iterator[tuple[str | None, str]]:

@@ -64,8 +64,8 @@ def contact_model(scenario: Scenario, *, skis: int, step: float) -> Model:
         variable
         for side in sides
         for name, unit, about in (
-            ("force", "N", "of the snow on the ski"),
-            ("moment", "N.m", "of the snow on the ski, about its boot"),
+            ("force", "N", "load of the snow on the ski"),
+            ("moment", "N.m", "load of the snow on the ski, about its boot"),
         )
         for variable in vector(f"{side}.{name}", "output", unit, about, np.zeros(3))
     ]
@@ -94,14 +94,14 @@ def sledge_model(scenario: Scenario, *, step: float) -> Model:
     _require_own_laws(setup.snow)
     dynamics, outputs = setup.dynamics, list[Variable]()
     for name, unit, about, start in (
-        ("position", "m", "of the middle between the boots", dynamics.position),
+        ("position", "m", "state of the middle between the boots", dynamics.position),
         ("quaternion", "1", "w, x, y, z of the sledge's axes ahead, left, up", _quaternion(dynamics.rotation)),
-        ("velocity", "m/s", "of the middle between the boots", np.zeros(3)),
+        ("velocity", "m/s", "state of the middle between the boots", np.zeros(3)),
         ("angular_velocity", "rad/s", "of the sledge", np.zeros(3)),
     ):
         outputs += vector(name, "output", unit, about, start)
     for side in SIDES:
-        about = "of the ski on its boot: ahead, left across the base, off the base"
+        about = "load of the ski on its boot: ahead, left across the base, off the base"
         outputs += vector(f"{side}.boot_force", "output", "N", about, np.zeros(3))
         outputs += vector(f"{side}.boot_moment", "output", "N.m", about, np.zeros(3))
     inputs = (
@@ -125,7 +125,7 @@ def _starts(variables: tuple[Variable, ...]) -> FloatArray:
 def _require_own_laws(snow: SnowField) -> None:
     if snow.penetration is not None or snow.friction_in_python is not None or snow.shear_in_python is not None:
         raise ParameterError(
-            Message("an FMU has no Python in it: it takes the laws that the core knows, not one of your own"),
+            Message("an FMU has no Python in it: it takes the laws that the core knows, not a user-defined one"),
             code="no_data",
         )
 
@@ -196,7 +196,7 @@ class Variable:
     start
         Its value before anything is set.
     offered
-        Whether the model description names it; its reference is taken in either case.
+        Whether the model description names it; its reference is used in either case.
     """
 
     name: str

@@ -25,7 +25,7 @@ DATA: Final = "skisnow.txt"
 FOLDERS: Final[dict[Version, str]] = {2: "linux64", 3: "x86_64-linux"}
 """Folder of the library within the FMU, by the version of the standard."""
 STEP: Final = {"contact": 2e-4, "sledge": 1e-2}
-"""Step (s) that the model description proposes (modelling assumption: see the page docs/how-to/fmu.md)."""
+"""Step (s) that the model description proposes (see the page docs/how-to/fmu.md)."""
 _DATE: Final = (1980, 1, 1, 0, 0, 0)  # the earliest that a zip knows: the same FMU has the same bytes
 
 
@@ -170,7 +170,7 @@ def description(model: Model, token: str, *, fmi: Version) -> bytes:
         base = {unit: str(power) for unit, power in exponents.items()}
         ET.SubElement(ET.SubElement(units, "Unit", name=name), "BaseUnit", base)
     categories = ET.SubElement(root, "LogCategories")
-    ET.SubElement(categories, "Category", name="logStatusError", description="what was refused, and why")
+    ET.SubElement(categories, "Category", name="logStatusError", description="rejected files with the reasons")
     ET.SubElement(root, "DefaultExperiment", startTime="0", stepSize=repr(model.step))
     offered = [(number, variable) for number, variable in enumerate(model.variables) if variable.offered]
     variables = ET.SubElement(root, "ModelVariables")

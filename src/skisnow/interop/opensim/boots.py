@@ -1,4 +1,4 @@
-"""Poses of boots from markers on them, for ``boots.file`` of a scenario."""
+"""Poses of boots from markers, for ``boots.file`` of a scenario."""
 
 from __future__ import annotations
 

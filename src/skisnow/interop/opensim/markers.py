@@ -65,7 +65,7 @@ class Markers(Shown):
             )
         if len(set(self.names)) < len(self.names):
             raise ParameterError(
-                Message("markers: a name is there twice; each marker needs one of its own"), code="repeated"
+                Message("markers: a name is there twice; each marker needs a separate name"), code="repeated"
             )
         if not (np.isfinite(self.rate) and self.rate > 0.0):
             raise ParameterError(

@@ -144,7 +144,7 @@ def _numbers(path: str | Path, number: int, cells: list[str], names: list[str]) 
     if len(cells) != len(names):
         raise ParameterError(
             Message(
-                "{path}, line {number}: {n_cells} cells stand under {n_names} names of columns",
+                "{path}, line {number}: {n_cells} cells for {n_names} names of columns",
                 path=path,
                 number=number,
                 n_cells=len(cells),
@@ -161,7 +161,7 @@ def number_of(cell: str, where: str) -> float:
         return float(cell)
     except ValueError:
         raise ParameterError(
-            Message("{where}: {cell!r} is no number; write one", where=where, cell=cell), code="not_a_number"
+            Message("{where}: {cell!r} is not a number; write one", where=where, cell=cell), code="not_a_number"
         ) from None
 
 

@@ -106,7 +106,7 @@ def procedure_comparison(data: ReportData) -> Markup:
     low, median, high = np.percentile(fitted[comparable] / largest_load[comparable], (5.0, 50.0, 95.0)).tolist()
     return prose(
         "H_V from all readings over H_V from the largest load: median {middle}, 90 % of the series between {low} and "
-        "{high}. Each experiment's two values stand in {file}.",
+        "{high}. {file} lists both values of each experiment.",
         low=significant(low),
         middle=significant(median),
         high=significant(high),
@@ -124,7 +124,7 @@ def seating_findings(data: ReportData) -> list[Markup]:
     sentences = [
         prose(
             "{shown} of {all} have an offset whose 95 % interval leaves out zero; the median half-width of the "
-            "intervals is {half} mm. Every offset stands in {file}.",
+            "intervals is {half} mm. {file} lists every offset.",
             shown=whole(count_resolved_offsets(rows)),
             all=counted(len(rows), "used series", "used series"),
             half=significant(float(np.nanmedian(half_widths))),
@@ -147,7 +147,7 @@ def unloading_findings(data: ReportData) -> list[Markup]:
     return [
         prose(
             "{resolved} of {all} give both ends of k_u / H_V; of the others only the lower end is known, the "
-            "inverse of the upper end of H_V / k_u. Every series stands in {file}.",
+            "inverse of the upper end of H_V / k_u. {file} lists every series.",
             resolved=whole(len(resolved)),
             all=counted(len(used), "used series with unloading", "used series with unloading"),
             file=_table_file("unloading", data),
@@ -164,7 +164,7 @@ def regression_sentences(data: ReportData) -> list[Markup]:
     rows = data.results["regressions"]
     sentences = [_sentence(row) for row in rows[:MOST_SENTENCES]]
     if len(rows) > MOST_SENTENCES:
-        sentences.append(html(f"{len(rows) - MOST_SENTENCES} further regressions stand in the table alone."))
+        sentences.append(html(f"{len(rows) - MOST_SENTENCES} further regressions are only in the table."))
     return sentences
 
 
@@ -235,7 +235,7 @@ def _by_site(row: Json) -> Markup:
         return html("")
     ends = row["interval_by_site"][1]
     if ends is None:
-        return html(" The sites do not tell an interval of their own.")
+        return html(" The sites do not give a separate interval.")
     contains_zero = ends[0] <= 0.0 <= ends[1]
     sentence = prose(" With sites as clusters the interval is {ends}", ends=_changes(row, ends))
     if contains_zero and row["p"] < SIGNIFICANT:

@@ -178,7 +178,7 @@ def _few_sites(data: ReportData, quantity: Quantity, pooled: Json, used: Markup)
     ]
     return prose(
         "{mean_name} of each site: {site_means}; {used}. Over the {sites} together {value} {unit}, without "
-        "an interval: {fewer} sites do not tell how sites scatter. Single experiments {low} to {high} {unit}.",
+        "an interval: {fewer} sites do not show how sites scatter. Single experiments {low} to {high} {unit}.",
         mean_name=html(quantity.mean_name),
         site_means=html("; ").join(site_means),
         used=used,
@@ -230,7 +230,7 @@ def _relations(data: ReportData) -> Markup | None:
         return None
     return prose(
         "Relations: significant at 5 %: {yes}; not significant: {no}{withheld}. How large each slope could still be "
-        "stands with the regressions.",
+        "is listed with the regressions.",
         withheld=prose(
             "; not judged, as the predictor takes fewer than {few} different values: {rows}",
             few=FEWEST_VALUES,

@@ -150,7 +150,7 @@ def errors_in_depth_table(data: ReportData) -> Table:
         note="No intervals with errors in depth: H of each series comes from the same readings, so a bootstrap of "
         "whole experiments says too little of b; in simulated campaigns it covered b in 7 to 90 %. Both rmse are "
         "unweighted and in force. The second procedure minimises weighted squares and does "
-        "not pass through each series' last reading: the two columns of rmse are no race between procedures.",
+        "not pass through each series' last reading: the two columns of rmse do not rank the procedures.",
         rows_in_html=_rows_in_html(data),
     )
 

@@ -53,7 +53,7 @@ if TYPE_CHECKING:
 RESULTS: Final = "results.json"
 SECTIONS: Final = {
     "key-results": "Key results",
-    "caveats": "Warnings, and what was not stated",
+    "caveats": "Warnings and missing statements",
     "law": "The law of the penetration force",
     "seating": "Seating: offsets of the depth zero",
     "unloading": "Unloading: the permanent depth of a groove",

@@ -224,8 +224,8 @@ def snow_micro_pen_table(data: ReportData) -> Table:
         columns,
         recordings["recordings"],
         note="f₀ is the force at which an element of the snow ruptures, δ its deflection, L the elements' size: "
-        "medians over windows. The relations for density and specific surface area were fitted to snow that nobody "
-        "had groomed; the other published ones stand in results.json.",
+        "medians over windows. The relations for density and specific surface area were fitted to "
+        "ungroomed snow; the other published ones are in results.json.",
     )
 
 

@@ -112,8 +112,8 @@ def run_drawings(run: Run) -> Iterator[Drawing]:
     yield Drawing(
         "energies",
         prose(
-            "(a) Where the energy is and went. Everything on top of each other must stay at the dashed line. (b) The "
-            "losses alone."
+            "(a) Where the energy is and went. Everything on top of each other must stay at the dashed line. (b) "
+            "Only the losses."
         ),
         "Stored energies and losses over time, stacked.",
         run_energies(run),

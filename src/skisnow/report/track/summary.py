@@ -19,14 +19,14 @@ WIDTH: Final = 110
 """Maximum length of a line of prose."""
 
 _RUNS_WORDS: Final = {
-    "height": "A run is what descends between two lifts, from the last stand at its top to the first at its bottom; "
+    "height": "A run is what descends between two lifts, from the last stop at its top to the first at its bottom; "
     "descent is height at the start less height at the end.",
     "motion": "A run is a stretch in motion, faster than 1 m/s but for stops up to 30 s.",
 }
 _TURNS_WORDS: Final = (
     "A turn is a stretch of one sense of curvature in a run, 10 degrees at least; two that follow each other meet "
     "in the switch point. The minimum radius is 1 / the largest curvature of the smoothed track, with its 95 % "
-    "interval from the noise alone. `passed` is the share of the curvature that the smoothing leaves of half a "
+    "interval from only the noise. `passed` is the share of the curvature that the smoothing leaves of half a "
     "sine as long as the turn."
 )
 

@@ -133,7 +133,7 @@ def _drawings(chain: TurnChain) -> Iterator[Drawing]:
         "band",
         prose(
             "The turn ({name}) over what is not known of snow, friction and ski: tracks from above, and below how far "
-            "each run lies beside and ahead of the nominal one at the same time.",
+            "each run is beside and ahead of the nominal one at the same time.",
             name=html(name),
         ),
         "Band of tracks from above, and offsets over time.",
@@ -151,7 +151,7 @@ def _header(chain: TurnChain) -> Header:
         ("Computed", f"skisnow {version('skisnow')}"),
     ]
     said = (
-        "Nobody measured this snow: the campaign, and with it every parameter, turn and band below, comes from a "
+        "This snow was not measured: the campaign, and with it every parameter, turn and band below, comes from a "
         "random number generator."
     )
     return Header(
@@ -169,8 +169,8 @@ def _sections(chain: TurnChain, pictures: Sequence[Picture]) -> list[Section]:
     contacts = html(
         "The hypoplastic contact depends on the history of loading: the forebody leaves a permanent groove, and the "
         "afterbody runs in it. The elastic contact has no history: the groove closes under the afterbody as the load "
-        "passes. What that changes in this turn stands under the key results: most where the turn needs a little more "
-        "side force than elastic snow can give. " + _ratio_in_words(chain)
+        "passes. What that changes in this turn is listed under the key results: most where the turn needs a little "
+        "more side force than elastic snow can give. " + _ratio_in_words(chain)
     )
     drawn = prose(
         "{count} runs with all that the table below names drawn at random (Latin hypercube, seed {seed}). The "
@@ -332,7 +332,7 @@ def shares_table(chain: TurnChain) -> Table:
     shares = band_shares(middle_track(chain.nominal), chain.ensemble)
     return Table(
         "band_inputs",
-        "What the band counts, and what each of it adds to the variance of the places at its end.",
+        "Inputs of the band, and how much each adds to the variance of the places at its end.",
         (
             Column("key", "Input", "text"),
             Column("range", "Range", "range"),

@@ -48,8 +48,8 @@ _WRONG_SIDE: Final = {
     ),
 }
 _NOT_FINITE: Final = {
-    "turning": template("gate {name}: the turning pole stands at {place}; both must be finite, in m"),
-    "outer": template("gate {name}: the outer pole stands at {place}; both must be finite, in m"),
+    "turning": template("gate {name}: the turning pole is at {place}; both must be finite, in m"),
+    "outer": template("gate {name}: the outer pole is at {place}; both must be finite, in m"),
 }
 
 
@@ -99,14 +99,14 @@ class Course(Shown):
     discipline: Annotated[
         Discipline | None,
         Quantity(
-            "course.discipline", "whose rules the course is checked against; left out: no rules", label="discipline"
+            "course.discipline", "whose rules the course is checked against; default: no rules", label="discipline"
         ),
     ] = None
     latitude_deg: Annotated[
         float | None,
         Quantity(
             "course.latitude_deg",
-            "latitude (WGS84) of x = y = 0, for a course in degrees; left out: the first gate",
+            "latitude (WGS84) of x = y = 0, for a course in degrees; default: the first gate",
             label="latitude of the origin",
             lowest=-90.0,
             highest=90.0,
@@ -151,7 +151,7 @@ class Course(Shown):
             if before.turning == gate.turning:
                 raise ParameterError(
                     Message(
-                        "the gates {first} and {second} stand at one place; move one, or drop it",
+                        "the gates {first} and {second} are at one place; move one, or drop it",
                         first=before.name,
                         second=gate.name,
                     ),
@@ -160,14 +160,14 @@ class Course(Shown):
         name, count = Counter(gate.name for gate in self.gates).most_common(1)[0]
         if count > 1:
             raise ParameterError(
-                Message("two gates are called {name!r}; give each a name or number of its own", name=name),
+                Message("two gates are called {name!r}; give each a different name or number", name=name),
                 code="repeated_name",
             )
         for gate in self.gates:
             if not max(map(abs, (*gate.turning, *(gate.outer or ())))) <= FARTHEST:
                 raise ParameterError(
                     Message(
-                        "gate {name} stands at {place}. Allowed: coordinates of finite numbers, at most "
+                        "gate {name} is at {place}. Allowed: coordinates of finite numbers, at most "
                         "{farthest:g} m. Correct them, or their unit",
                         name=gate.name,
                         place=gate.turning,
@@ -192,7 +192,7 @@ class Course(Shown):
         if not size.min() > 0.0:
             at = int(np.argmin(size))
             raise ParameterError(
-                Message("the gates before and behind {name} stand at one place; move one", name=self.gates[at].name),
+                Message("the gates before and behind {name} are at one place; move one", name=self.gates[at].name),
                 code="same_place",
             )
         return np.asarray(chord / size[:, None])
@@ -304,7 +304,7 @@ class Gate(ShownFields):
         if self.outer is not None and not self.width > 0.0:
             raise ParameterError(
                 Message(
-                    "gate {name}: both poles stand at {turning}; move one, or leave the outer out",
+                    "gate {name}: both poles are at {turning}; move one, or leave the outer out",
                     name=self.name,
                     turning=self.turning,
                 ),

@@ -92,7 +92,7 @@ def read_waypoints(path: str | Path) -> list[Waypoint]:
         parser.Parse(plain_text(path, most_bytes=MOST_BYTES).lstrip(), True)
     except (_RefusedError, expat.ExpatError) as error:
         raise ParameterError(
-            Message("{path} is no GPX that can be read ({error}); export it again", path=path, error=error),
+            Message("{path} is not a readable GPX file ({error}); export it again", path=path, error=error),
             code="not_gpx",
         ) from error
     return [_waypoint(path, row, point) for row, point in enumerate(reader.points, start=1)]
@@ -117,7 +117,7 @@ def _number(path: str | Path, row: int, what: str, text: str | None, limit: floa
         return value
     raise ParameterError(
         Message(
-            "{path}, waypoint {row}, {what}: {text!r} is no number from {lowest:g} to {limit:g}; correct it",
+            "{path}, waypoint {row}, {what}: {text!r} is not a number from {lowest:g} to {limit:g}; correct it",
             path=path,
             row=row,
             what=what,

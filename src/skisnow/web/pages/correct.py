@@ -48,7 +48,7 @@ def add_page(lab: Lab) -> None:
             missing = Message("this campaign has no such table")
             raise ParameterError(missing if session.tables else UNREAD, code="no_table")
         with framed(session.stored.name or "Campaign", here=HERE, keeps=True):
-            sentence("Imported: its files stay as they came in. What is corrected here stands beside them.", "quiet")
+            sentence("Imported: its files stay unchanged. Corrections made here are stored with them.", "quiet")
             further = {"Analysis": analysis("kept", session.id), "Export": export("kept", session.id)}
             table_links({name: correcting(session.id, table=name) for name in session.tables}, file, further)
             if test in session.tables[file].tests:

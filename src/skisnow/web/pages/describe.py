@@ -137,7 +137,7 @@ class DescriptionForm:
         if described is None:
             self._name.run_method("focus")
         heading("Discs and gauges")
-        sentence("What is left empty counts as 0, and the report says so.", "quiet")
+        sentence("Empty fields count as 0, with a note in the report.", "quiet")
         loads = " ".join(f"{load:g}" for load in values.get("load_steps_N", ()))
         with ui.element("div").classes("fields"):
             self._loads = field("Disc loads (N), with blanks between", loads, wide=True)

@@ -45,7 +45,7 @@ def add_page(lab: Lab) -> None:
         with framed(session.described.name or "Campaign", here=HERE, ahead=True):
             further = {"Analysis": analysis("entry", id_), "Campaign": f"/describe?entry={id_}"}
             table_links({file: entering(id_, table=file) for file in TABLES}, table, further)
-            with table_view(session, table, form="Entry", below="Changes, and what was entered") as (
+            with table_view(session, table, form="Entry", below="Changes and entries") as (
                 view,
                 live_results,
                 places,

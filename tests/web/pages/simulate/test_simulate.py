@@ -110,10 +110,10 @@ def test_all_else_stands_under_expert_inputs(desk: Desk) -> None:
         ("an angle", "An angle."),
         ("c of p", "c of p."),
         ("aϑ of it", "aϑ of it."),
-        ('angle; left out: none; "x" is', "Angle."),
+        ('angle; default: none; "x" is', "Angle."),
         ("angle; file_name; so", "Angle; so."),
         ("turns, said again", ""),
-        ("left out: none", ""),
+        ("default: none", ""),
     ],
 )
 def test_what_an_input_means_is_a_sentence_without_words_of_files(meaning: str, words: str) -> None:
