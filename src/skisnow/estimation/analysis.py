@@ -19,7 +19,7 @@ from ..campaign.records import Campaign
 from ..snow import SnowProperties
 from .comparisons import Comparison, OwnValue, compare_with_published, own_mean
 from .errors_in_depth import fit_models_with_depth_errors, fitted_hardness
-from .group_comparisons import DIFFERENCE, GroupComparison, compare_groups, group_labels, measured
+from .group_comparisons import DIFFERENCE, GroupComparison, compare_campaign
 from .layering import growing_hardness, site_growth
 from .model_choice import bootstrap_intervals, compare_nested_rows
 from .models import Model, fit_models, select_model, why_no_choice
@@ -308,7 +308,8 @@ def _analysis(
     observations = _observations(campaign, penetration, shear, pen)
     pressed, sheared = observations["penetration"].known(HARDNESS_KEY), observations["shear"].known(STRESS_KEY)
     own_hardness, own_stress = own_mean(*pressed, geometric=True), own_mean(*sheared, geometric=False)
-    pairs = group_comparisons(campaign, penetration, shear, difference)
+    screened = (kind.screened if kind else None for kind in (penetration, shear))
+    pairs = compare_campaign(campaign, *screened, difference=difference)
     of_sites = {name: [pair for pair in pairs if (pair.quantity, pair.by) == (name, "site")] for name in ("H_V", "S_f")}
     return Analysis(
         campaign=campaign,
@@ -398,22 +399,6 @@ def _shear(campaign: Campaign) -> ShearAnalysis | None:
     screened, displacement = screened_shear(campaign), shear_displacement(campaign, campaign.shear)
     by_site = site_displacement(displacement, screened.used, campaign.shear.site)
     return ShearAnalysis(screened, shear_stress(campaign, campaign.shear), displacement, by_site)
-
-
-def group_comparisons(
-    campaign: Campaign, penetration: PenetrationAnalysis | None, shear: ShearAnalysis | None, difference: float
-) -> tuple[GroupComparison, ...]:
-    """Every pair of sites, tools, observers and days, for H_V and S_f."""
-    quantities = []
-    if penetration is not None and campaign.penetration is not None:
-        tests, H = campaign.penetration, penetration.hardness["H_V"]
-        labels = group_labels(tests, tests.tool)
-        quantities.append(measured("H_V", H.value, H.interval, penetration.screened.used, labels))
-    if shear is not None and campaign.shear is not None:
-        blades, S = campaign.shear, shear.stress
-        labels = group_labels(blades, blades.plate)
-        quantities.append(measured("S_f", S.value, S.interval, shear.screened.used, labels))
-    return tuple(pair for data in quantities for by in data.labels for pair in compare_groups(data, by, difference))
 
 
 def _observations(

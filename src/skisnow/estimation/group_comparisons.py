@@ -27,12 +27,14 @@ from .._support.content import numbered
 from .._support.units import CONFIDENCE
 from ..statistics.combined_uncertainty import expanded_factor, welch_satterthwaite
 from ..statistics.two_groups import compact_letters, holm_corrected, tests_per_group
+from .shear import shear_stress
 from .spread_groups import bartlett
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from ..campaign.records import PenetrationTests, ShearTests
+    from ..campaign.records import Campaign, PenetrationTests, ShearTests
+    from .screening import Screened
 
 FloatArray = npt.NDArray[np.float64]
 BoolArray = npt.NDArray[np.bool_]
@@ -149,6 +151,22 @@ def compare_groups(data: Measured, by: str, difference: float = DIFFERENCE) -> t
     corrected = holm_corrected(np.array([pair.p for pair in pairs]))
     n_pairs = int(np.isfinite(corrected).sum())
     return tuple(replace(pair, p_holm=p, n_pairs=n_pairs) for pair, p in zip(pairs, corrected.tolist(), strict=True))
+
+
+def compare_campaign(
+    campaign: Campaign, penetration: Screened | None, shear: Screened | None, *, difference: float = DIFFERENCE
+) -> tuple[GroupComparison, ...]:
+    """Every pair of sites, tools, observers and days, for H_V and S_f of the used experiments."""
+    quantities = []
+    if penetration is not None and penetration.estimates is not None and campaign.penetration is not None:
+        H = penetration.estimates.hardness["H_V"]
+        labels = group_labels(campaign.penetration, campaign.penetration.tool)
+        quantities.append(measured("H_V", H.value, H.interval, penetration.used, labels))
+    if shear is not None and campaign.shear is not None:
+        S = shear_stress(campaign, campaign.shear)
+        labels = group_labels(campaign.shear, campaign.shear.plate)
+        quantities.append(measured("S_f", S.value, S.interval, shear.used, labels))
+    return tuple(pair for data in quantities for by in data.labels for pair in compare_groups(data, by, difference))
 
 
 def letters_of_groups(pairs: Sequence[GroupComparison], names: Sequence[str]) -> dict[str, str]:

@@ -146,6 +146,9 @@ class AnalysisView:
         with self._results:
             heading(numbers.results["campaign"]["name"])
             with ui.element("ul").classes("results"):
+                for verdict in numbers.verdicts:
+                    with ui.element("li"):
+                        sentence(verdict)
                 for words in numbers.key_results:
                     with ui.element("li"):
                         html_words(words, numbers.names)

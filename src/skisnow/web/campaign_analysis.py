@@ -17,12 +17,14 @@ from ..report.campaign.data import ReportData
 from ..report.campaign.key_results import key_results
 from ..report.campaign.page import DRAWERS, tables_html
 from ..report.campaign.tables import campaign_tables
+from ..report.campaign.verdicts import verdicts
 from ..report.figures.drawing import Drawing, data_uri, drawing_svg
 from ..report.figures.style import journal_style, site_styles
 from ..report.figures.translated import translate_figure
 from ..report.symbols import figure_text
 
 if TYPE_CHECKING:
+    from .._support.messages import Message
     from ..campaign.reading import FilesInMemory
     from ..campaign.records import Campaign, PenetrationTests, ShearTests
     from ..estimation import Analysis
@@ -50,9 +52,10 @@ class Choice:
 
 @dataclass(frozen=True, slots=True)
 class Numbers:
-    """Analysis of a campaign with a choice, and the report's key results and tables (by name) as HTML."""
+    """Analysis of a campaign with a choice, its verdicts, and the report's key results and tables (by name) as HTML."""
 
     analysis: Analysis
+    verdicts: tuple[Message, ...]
     key_results: tuple[str, ...]
     tables: dict[str, str]
 
@@ -106,7 +109,7 @@ def analyse_files(files: FilesInMemory, choice: Choice) -> Numbers | Refusal:
     data = ReportData(analysis)
     html = tables_html({name: table for name, table in campaign_tables(data).items() if table.rows})
     shown: dict[str, str] = {name: str(html[name]) for name in SHOWN_TABLES if name in html}
-    return Numbers(analysis, tuple(map(str, key_results(data))), shown)
+    return Numbers(analysis, tuple(verdicts(analysis.results)), tuple(map(str, key_results(data))), shown)
 
 
 def figure(analysis: Analysis, number: int, language: str) -> FigureImage | None:

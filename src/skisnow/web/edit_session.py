@@ -19,6 +19,7 @@ from ..campaign.store.stored_tables import cell_key
 from ..estimation import quality_flags
 from ..estimation.result_rows import experiment_hardness, experiment_results
 from ..estimation.screening import screened_both
+from ..report.campaign.verdicts import quick_verdicts
 from ..report.charts import SeriesCurve, series_curves
 from .words import TABLES
 
@@ -107,6 +108,11 @@ class EditSession:
     def quick_results(self, site: str) -> QuickResults:
         """Quick results of a site, computed as an analysis of the exported folder would."""
         return quick_results(campaign_in_memory(self.campaign, of=self.tests_of_site(site)), site)
+
+    def quick_verdicts(self, file: str) -> list[Message]:
+        """Comparisons of the sites by H_V or S_f over the whole campaign; empty for other tables."""
+        quantity = {PENETRATION.file: "H_V", SHEAR.file: "S_f"}.get(file)
+        return quick_verdicts(campaign_in_memory(self.campaign), quantity) if quantity else []
 
 
 def quick_results(campaign: Campaign, site: str) -> QuickResults:

@@ -2,13 +2,19 @@
 
 from __future__ import annotations
 
+import math
+from collections import Counter
+from dataclasses import asdict
 from typing import TYPE_CHECKING, Any, Final
 
 from ..._support.messages import Message, template
-from ...estimation.group_comparisons import LEVEL
+from ...estimation.group_comparisons import DIFFERENCE, LEVEL, compare_campaign
+from ...estimation.screening import screened_both
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
+
+    from ...campaign.records import Campaign
 
 Json = dict[str, Any]
 
@@ -54,35 +60,46 @@ def verdicts(results: Mapping[str, Any]) -> list[Message]:
     results
         Contents of `skisnow.results_dict`.
     """
-    difference = results["provenance"]["options"]["difference_percent"]
-    found: list[Message] = []
-    for quantity in ("H_V", "S_f"):
-        for by in ("site", "tool", "observer", "day"):
-            rows = [row for row in results["group_comparisons"] if (row["quantity"], row["by"]) == (quantity, by)]
-            found += _of_kind(results, rows, quantity, by, difference)
-    return found
+    return _of_rows(results["group_comparisons"], results["provenance"]["options"]["difference_percent"])
 
 
-def _of_kind(
-    results: Mapping[str, Any], rows: list[Json], quantity: str, by: str, difference: float
-) -> Iterator[Message]:
+def quick_verdicts(campaign: Campaign, quantity: str) -> list[Message]:
+    """The verdicts on H_V or S_f of a campaign that is still being entered, without the other results."""
+    penetration, shear = screened_both(campaign, geometry="extended")
+    pairs = compare_campaign(campaign, penetration, shear)
+    return _of_rows([asdict(pair) for pair in pairs if pair.quantity == quantity], 100.0 * DIFFERENCE)
+
+
+def _of_rows(rows: list[Json], difference: float) -> list[Message]:
+    kinds: dict[tuple[str, str], list[Json]] = {}
+    for row in rows:
+        kinds.setdefault((row["quantity"], row["by"]), []).append(row)
+    return [sentence for (quantity, by), mine in kinds.items() for sentence in _of_kind(mine, quantity, by, difference)]
+
+
+def _of_kind(rows: list[Json], quantity: str, by: str, difference: float) -> Iterator[Message]:
     if len(rows) > MOST_PAIRS:
         uncertain = [row for row in rows if not _is_certain(row)]
         if by == "site":
-            yield _survey(results, rows, quantity, len(rows) - len(uncertain))
-        rows = sorted(uncertain, key=lambda row: row["p"] if row["p"] is not None else 2.0)[:MOST_PAIRS]
+            yield _survey(rows, quantity, len(rows) - len(uncertain))
+        rows = sorted(uncertain, key=lambda row: row["p"] if _is_number(row["p"]) else 2.0)[:MOST_PAIRS]
     yield from (verdict(row, difference) for row in rows)
 
 
-def _survey(results: Mapping[str, Any], rows: list[Json], quantity: str, certain: int) -> Message:
-    means = [row for row in results["site_means"] if row["quantity"].startswith(quantity) and row["mean"] is not None]
-    means.sort(key=lambda row: row["mean"])
-    corrected = Message(_SURVEY[quantity], certain=certain, pairs=len(rows), a=means[-1]["site"], b=means[0]["site"])
+def _survey(rows: list[Json], quantity: str, certain: int) -> Message:
+    won = Counter(row["group_a"] if row["ratio"] > 1.0 else row["group_b"] for row in rows)
+    lost = Counter(row["group_b"] if row["ratio"] > 1.0 else row["group_a"] for row in rows)
+    largest, smallest = won.most_common(1)[0][0], lost.most_common(1)[0][0]
+    corrected = Message(_SURVEY[quantity], certain=certain, pairs=len(rows), a=largest, b=smallest)
     return Message("{survey} (corrected for the number of pairs).", survey=corrected)
 
 
+def _is_number(value: float | None) -> bool:
+    return value is not None and math.isfinite(value)
+
+
 def _is_certain(row: Json) -> bool:
-    return row["p_holm"] is not None and bool(row["p_holm"] < LEVEL)
+    return _is_number(row["p_holm"]) and bool(row["p_holm"] < LEVEL)
 
 
 def verdict(row: Json, difference_percent: float) -> Message:
@@ -140,7 +157,8 @@ def _p(p: float) -> Message:
 def _comparison(row: Json) -> tuple[Message, tuple[float, float] | None]:
     """The larger group first; also the interval of that ratio."""
     larger, smaller, ratio = row["group_a"], row["group_b"], row["ratio"]
-    ends = tuple(row["interval"]) if row["interval"] and None not in row["interval"] else None
+    known = row["interval"] is not None and all(map(_is_number, row["interval"]))
+    ends = tuple(row["interval"]) if known else None
     if ratio < 1.0:
         larger, smaller, ratio = smaller, larger, 1.0 / ratio
         ends = None if ends is None else (1.0 / ends[1], 1.0 / ends[0])

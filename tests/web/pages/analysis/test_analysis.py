@@ -20,6 +20,7 @@ from skisnow.campaign.store import Journals
 from skisnow.estimation import analyse
 from skisnow.report.campaign.data import ReportData
 from skisnow.report.campaign.key_results import key_results
+from skisnow.report.campaign.verdicts import verdicts
 from skisnow.web import analysis_cache as analyses_module
 from skisnow.web import analysis_view
 from skisnow.web.campaign_analysis import Choice, Refusal, analyse_files
@@ -86,18 +87,21 @@ def test_numbers_tables_and_figures_stand_in_their_order(desk: Desk, tmp_path: P
     results = [each.content for each in page.of(ui.html)]
     assert results[:2] == [str(each) for each in key_results(ReportData(theirs))]
     assert "A <strong>0.0512</strong> N/mm³" in results[0]
-    assert lines[8] == f"[quiet] {theirs.results['penetration']['warnings'][0]}"
+    compared = list(map(str, verdicts(theirs.results)))
+    assert len(compared) == 2
+    assert lines[6:8] == compared
+    assert lines[10] == f"[quiet] {theirs.results['penetration']['warnings'][0]}"
     assert [line.split(".")[0] for line in lines if line.startswith("html Table")] == ["html Table 1", "html Table 4"]
     page.shows(INCLUDED)
     assert [each.props["aria-label"] for each in page.tagged("section")] == [
         "Key results", "Included data", "Tables", "Figures",
     ]  # fmt: skip
     assert [(each.tag, len(each.default_slot.children)) for each in page.of() if "results" in each.classes] == [
-        ("ul", 2)
+        ("ul", 4)
     ]
     desk.do(drawing.gate.set)
     finally_says(page, COUNTED)
-    assert page.outline()[16:] == ["h2 Figures", "html Figure 0. A", "html Figure 2. A"]
+    assert page.outline()[18:] == ["h2 Figures", "html Figure 0. A", "html Figure 2. A"]
     assert figures(page) == [("data:0", "3 points"), ("data:2", "3 points")]
     assert [box.props["aria-label"] for box in page.of() if "scroll" in box.classes] == ["3 points"]
     tags = [element.tag for element in page.of() if element.tag in ("figure", "figcaption")]

@@ -465,3 +465,17 @@ def test_two_rejected_fields_are_listed_in_german_each_by_its_own_sentences(desk
     ]
     assert page.refusals() == page.faults("Kantwinkel (°)", "Tiefe (mm)", "Moment (N m)")
     assert history(desk, id_) == []
+
+
+def test_after_a_series_the_sites_are_compared(desk: Desk) -> None:
+    """B is harder by 2.1 mm against 1.05 mm under the same load: by the square of 2 for an edge."""
+    id_ = begun(desk)
+    for site, factor in (("A", 1.0), ("B", 0.5)):
+        for number in (1.0, 1.02):
+            readings = [
+                (load, f"{depth * factor * number:.2f}") for load, depth in (("20", 1.5), ("40.5", 2.1), ("60", 2.6))
+            ]
+            add_series(desk, id_, f"{site}{number}", *readings, site=site)
+    page = desk.open(f"/enter/{id_}?test=B1.0")
+    ratio = float(page.shows("times as hard as A").removeprefix("B is ").partition(" ")[0])
+    assert ratio == pytest.approx(4.0, rel=0.02)
