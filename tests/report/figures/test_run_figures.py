@@ -18,10 +18,12 @@ from skisnow.report.figures.style import BLUE, VERMILLION, journal_style
 from skisnow.report.run.time_figures import (
     drawn_radius,
     grip_utilisation,
+    gross_grip_utilisation,
     run_along_ski,
     run_energies,
     run_grip,
     run_motion,
+    slip_of_a_place,
     stacked_energies,
 )
 from skisnow.report.run.track_figure import beside_track, groove_corners, run_track
@@ -154,13 +156,31 @@ def test_share_of_the_shear_strength(run: Run) -> None:
     assert grip_utilisation(replace(run, skis=to_the_right)) == pytest.approx(np.full((len(run.time), 2), 0.4))
 
 
+def test_opposite_pulls_count_in_the_gross_share_and_slip(run: Run) -> None:
+    """The rear quarter pulls against the rest: twice its share is taken off the net one, and the gross one stays."""
+    station = run.skis.station
+    sense = np.where(station < station[-1] + 0.25 * (station[0] - station[-1]), -1.0, 1.0)
+    against = replace(run, skis=replace(run.skis, shear_per_length=sense * run.skis.shear_per_length))
+    assert gross_grip_utilisation(against) == pytest.approx(gross_grip_utilisation(run))
+    shear = run.skis.shear_per_length
+    rear = shear[..., sense < 0.0].sum(axis=2) / shear.sum(axis=2)
+    assert grip_utilisation(against) == pytest.approx((1.0 - 2.0 * rear) * grip_utilisation(run), rel=0.05)
+    # W = u S_f e for each metre of way and ski
+    strength, depth = run.scenario.contact.snow.failure_shear_stress, run.skis.edge_depth
+    assert strength is not None
+    per_length = strength * float(depth[depth > 0.0].mean())
+    work = np.linspace(0.0, 2.0 * run.run_length * per_length * 1.8e-3, len(run.time))
+    assert slip_of_a_place(replace(run, energies=run.energies | {"shear": work})) == pytest.approx(1.8e-3)
+
+
 def test_grip_is_drawn_for_each_ski_not_for_each_section(run: Run) -> None:
     """Sections slip one by one at 1 while the ski holds: a map of them would say the contrary of the ski's number."""
     with journal_style():
         (axes,) = run_grip(run).axes
-    left, right, limit = (np.asarray(line.get_ydata()) for line in axes.lines)
+    left, gross_left, right, gross_right, limit = (np.asarray(line.get_ydata()) for line in axes.lines)
     assert not axes.collections
     assert np.stack([left, right], axis=1) == pytest.approx(grip_utilisation(run))
+    assert np.stack([gross_left, gross_right], axis=1) == pytest.approx(gross_grip_utilisation(run))
     assert np.all(limit == 1.0)
 
 

@@ -13,7 +13,7 @@ from ...simulation.run import OPEN_SHARE
 from ...track.course.gates_table import COLUMNS, gate_rows
 from ..formatting import significant
 from ..table import Column, Table
-from .time_figures import grip_utilisation
+from .time_figures import grip_utilisation, gross_grip_utilisation
 
 if TYPE_CHECKING:
     from ...simulation.run import Run
@@ -100,9 +100,9 @@ def _text(value: Any) -> str | None:
 
 def skis_table(run: Run) -> Table:
     """Table with total force, normal force and grip utilisation of each ski."""
-    total, normal, grip = run.skis.total_force, run.skis.normal_force, grip_utilisation(run)
+    histories = run.skis.total_force, run.skis.normal_force, grip_utilisation(run), gross_grip_utilisation(run)
     rows = [
-        (name, *_middle_and_high(total[:, ski]), *_middle_and_high(normal[:, ski]), *_middle_and_high(grip[:, ski]))
+        (name, *(value for each in histories for value in _middle_and_high(each[:, ski])))
         for ski, name in enumerate(("left ski", "right ski"))
     ]
     return Table(
@@ -116,10 +116,12 @@ def skis_table(run: Run) -> Table:
             Column("normal_force_p95_N", "95 %", unit="N"),
             Column("grip_utilisation", "Grip utilisation"),
             Column("grip_utilisation_p95", "95 %"),
+            Column("gross_grip_utilisation", "Gross"),
+            Column("gross_grip_utilisation_p95", "95 %"),
         ),
         rows,
         note="Total force: normal force, shear and friction as one vector. Grip utilisation: side force over shear "
-        "capacity; at 1 the ski side-slips.",
+        "capacity; at 1 the ski side-slips. Gross: sum of the sizes of the shear along the edge over the capacity.",
     )
 
 

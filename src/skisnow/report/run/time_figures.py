@@ -209,8 +209,10 @@ def run_grip(run: Run) -> Figure:
     """Draw the grip utilisation of each ski over time."""
     figure = new_figure(width_mm=DOUBLE_MM, height_mm=62.0)
     axes = figure.subplots()
-    for share, colour, name in zip(grip_utilisation(run).T, SKI_COLOURS, SKIS, strict=True):
-        axes.plot(run.time, share, color=colour, label=name)
+    shares = zip(grip_utilisation(run).T, gross_grip_utilisation(run).T, SKI_COLOURS, SKIS, strict=True)
+    for net, gross, colour, name in shares:
+        axes.plot(run.time, net, color=colour, label=name)
+        axes.plot(run.time, gross, color=colour, linewidth=0.7, linestyle=(0, (1, 1)))
     axes.axhline(1.0, color=GREY, linewidth=0.8, linestyle=(0, (4, 2)))
     axes.set_xlim(float(run.time[0]), float(run.time[-1]))
     axes.set_ylim(-0.02, 1.12)
@@ -224,9 +226,28 @@ def run_grip(run: Run) -> Figure:
 
 def grip_utilisation(run: Run) -> FloatArray:
     """Grip utilisation |∫ shear ds| / (S_f ∫ e ds) of each ski, shape (n, 2); NaN if a ski is off the snow."""
-    station = run.skis.station
-    force = np.abs(np.trapezoid(run.skis.shear_per_length, -station, axis=2))
-    limit = np.trapezoid(_shear_capacity(run), -station, axis=2)
+    return _over_capacity(run, np.abs(np.trapezoid(run.skis.shear_per_length, -run.skis.station, axis=2)))
+
+
+def gross_grip_utilisation(run: Run) -> FloatArray:
+    """∫ |shear| ds / (S_f ∫ e ds) of each ski, shape (n, 2): more than the net one where parts pull against another."""
+    return _over_capacity(run, np.trapezoid(np.abs(run.skis.shear_per_length), -run.skis.station, axis=2))
+
+
+def slip_of_a_place(run: Run) -> float:
+    """Way (m) by which a place of snow slips across while one ski passes, from the shear's work; NaN without a hold.
+
+    W/s = u ∫ S_f e ds/l for both skis, with the work W over the way s and the length l of ski in the snow.
+    """
+    capacity = _shear_capacity(run)
+    per_length = float(capacity[capacity > 0.0].mean()) if np.any(capacity > 0.0) else 0.0
+    work = float(run.energies["shear"][-1] - run.energies["shear"][0])
+    holding = 2.0 * run.run_length * per_length
+    return work / holding if holding > 0.0 else math.nan
+
+
+def _over_capacity(run: Run, force: FloatArray) -> FloatArray:
+    limit = np.trapezoid(_shear_capacity(run), -run.skis.station, axis=2)
     with np.errstate(divide="ignore", invalid="ignore"):
         return np.where(limit > 0.0, force / limit, np.nan)
 
