@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from html import escape
 from typing import TYPE_CHECKING, Any, Final
 
 from nicegui import ui
 
+from ..report.symbols import SYMBOL
 from ..report.translated import translated_html
 from .language import language_of, said
 
@@ -58,10 +60,20 @@ def link(text: str, address: str, kind: str = "") -> ui.link:
 
 
 class Words(ui.label):
-    """Label in the language of the page; ``text`` stays English."""
+    """Label in the language of the page, with subscripts in symbols such as H_V; ``text`` stays English."""
 
     def _text_to_model_text(self, text: str) -> None:
-        super()._text_to_model_text(said(text, self.client))
+        shown = said(text, self.client)
+        markup = SYMBOL.sub(_SUBSCRIPT, escape(shown, quote=False)) if SYMBOL.search(shown) else ""
+        if markup:
+            self._props["innerHTML"] = markup
+        else:
+            self._props.pop("innerHTML", None)
+        super()._text_to_model_text("" if markup else shown)
+
+
+_SUBSCRIPT: Final = r'<i>\1</i><span class="under">_</span><sub>\2</sub>'
+"""The underscore has no width; it is there for copied text and screen readers."""
 
 
 class TypedField(ui.input):

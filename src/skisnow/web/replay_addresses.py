@@ -15,7 +15,7 @@ from starlette.responses import HTMLResponse, PlainTextResponse, Response
 from .._support.errors import ParameterError
 from .._support.language import ENGLISH, catalogue
 from .._support.messages import Message
-from .._support.user_files import read_json
+from .._support.user_files import GivenError, read_json, read_record
 from ..replay.binary import replay_bytes
 from ..replay.model import moving_replay_model, replay_model
 from ..replay.page import MODULES, STYLE, in_language, page_words, static_text
@@ -25,7 +25,7 @@ from ..ski import read_ski
 from .lab_tracks import Placing, TrackFolders, number_of, points_of_track, track_on_slope
 from .language import language_of_request
 from .layout import plain_page
-from .runs import JOB
+from .runs import JOB, Job
 from .subprocesses import BOUNDS, confined
 from .upload_forms import add_upload, uploaded_files
 
@@ -63,6 +63,13 @@ class RunFolders:
         folders = [place for place in self.folder.iterdir() if (place / RUN_FILE).is_file()]
         return [place.name for place in sorted(folders, key=lambda place: -(place / RUN_FILE).stat().st_mtime)]
 
+    def title(self, name: str) -> str:
+        """Title of a run of the lab, or the name of its folder."""
+        try:
+            return read_record(self.folder / name / JOB, Job, only_known=False).shown_name
+        except GivenError:
+            return name
+
     def folder_of(self, name: str) -> Path:
         """Folder of a run; only names of `names` are accepted.
 
@@ -89,13 +96,14 @@ class RunFolders:
         """
         place = self.folder_of(name)
         ski = _ski_of_job(place / JOB)
-        alone = replay_of_file(place, title=name, ski=ski)
+        title = self.title(name)
+        alone = replay_of_file(place, title=title, ski=ski)
         if not track:
             return alone
         beside = TrackFolders(self.folder).beside(
             track, alone, read=lambda *what: confined(BOUNDS, track_on_slope, *what)
         )
-        return replay_of_file(place, title=name, ski=ski, track=beside)
+        return replay_of_file(place, title=title, ski=ski, track=beside)
 
 
 def _ski_of_job(job: Path) -> Ski | None:
@@ -115,7 +123,8 @@ def add_addresses(app: FastAPI, runs: RunFolders) -> None:
                 runs.folder_of(name)
         except ParameterError as error:
             return PlainTextResponse(str(error), 404)
-        return HTMLResponse(show_page(run, ghost or None, track, language_of_request(request)))
+        language = language_of_request(request)
+        return HTMLResponse(show_page(run, ghost or None, track, language, title=runs.title(run)))
 
     def data(request: Request, name: str, track: str = "") -> Response:
         try:
@@ -178,13 +187,13 @@ def program_file(name: str) -> Response:
     return Response(static_text(name), media_type=kind, headers={"cache-control": "no-cache"})
 
 
-def show_page(run: str, ghost: str | None, track: str = "", language: str = ENGLISH) -> str:
+def show_page(run: str, ghost: str | None, track: str = "", language: str = ENGLISH, *, title: str = "") -> str:
     """HTML of the replay of a run, with a second run and a measured track if they are named."""
     environment = Environment(
         loader=PackageLoader("skisnow.replay", "static"), autoescape=True, undefined=StrictUndefined
     )
     return environment.get_template("show.html").render(
-        title=run,
+        title=title or run,
         language=language,
         said=catalogue(language).translated,
         words=page_words(language),

@@ -17,6 +17,7 @@ import time
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, replace
 from datetime import UTC, datetime
+from itertools import count
 from typing import TYPE_CHECKING, Any, Final, Literal, NamedTuple, TypeAlias
 
 from .._support.errors import ParameterError
@@ -33,6 +34,7 @@ State: TypeAlias = Literal["waiting", "running", "done", "failed", "cancelled"]
 
 JOB: Final = "job.json"
 LAST_WORDS: Final = 600
+LONGEST_TITLE: Final = 80
 COMMAND: tuple[str, ...] = (sys.executable, "-m", "skisnow")
 _PAUSE_S: Final = 0.3
 
@@ -42,7 +44,7 @@ class Job:
     """A simulation: name of its folder, scenario, changed keys, time of the request (UTC), state.
 
     ``given``: inputs that were chosen by name, in words. ``took_s``: time from start to report of a finished job.
-    ``language``: language of the report.
+    ``language``: language of the report. ``title``: name for people, which can be changed.
     """
 
     name: str
@@ -54,6 +56,12 @@ class Job:
     given: str = ""
     took_s: float = 0.0
     language: str = ENGLISH
+    title: str = ""
+
+    @property
+    def shown_name(self) -> str:
+        """The title, or the name of the folder without one."""
+        return self.title or self.name
 
 
 @dataclass(frozen=True, slots=True)
@@ -115,6 +123,7 @@ class Runs:
         files: Mapping[str, NamedFile] | None = None,
         given: str = "",
         language: str = ENGLISH,
+        title: str = "",
     ) -> Job:
         """Store a simulation at the end of the queue.
 
@@ -130,6 +139,8 @@ class Runs:
             See `Job`.
         language
             Language of the report.
+        title
+            Words for the title, which get a number.
         """
         asked_at = datetime.now(UTC)
         name = new_name(scenario, asked_at)
@@ -137,9 +148,36 @@ class Runs:
         for key, (file, content) in (files or {}).items():
             write_file(self.folder / name / file, content)
             every[key] = str((self.folder / name / file).absolute())
-        job = Job(name, scenario, every, asked_at.isoformat(), given=given, language=language)
+        title = self._numbered(title) if title else ""
+        job = Job(name, scenario, every, asked_at.isoformat(), given=given, language=language, title=title)
         self._keep(job)
         return job
+
+    def _numbered(self, words: str) -> str:
+        """Words with the next number among the titles that begin with them."""
+        titles = {job.title for job in self.jobs()}
+        return next(title for number in count(1) if (title := f"{words}, {number}") not in titles)
+
+    def rename(self, name: str, title: str) -> None:
+        """Change the title of a job.
+
+        Raises
+        ------
+        ParameterError
+            The title is blank or longer than 80 characters, or there is no such job.
+        """
+        title = " ".join(title.split())
+        job = self._job(name)
+        if not 0 < len(title) <= LONGEST_TITLE:
+            raise ParameterError(
+                Message("Give the run a name of 1 to {most} characters.", most=LONGEST_TITLE), code="bad_title"
+            )
+        if job is None:
+            raise ParameterError(Message("There is no run {name}.", name=name), code="unknown_run")
+        self._keep(replace(job, title=title))
+
+    def _job(self, name: str) -> Job | None:
+        return next((job for job in self.jobs() if job.name == name), None)
 
     def cancel(self, name: str) -> None:
         """Remove a waiting job from the queue, or end the running one and keep its results.
@@ -149,7 +187,7 @@ class Runs:
         ParameterError
             The job is neither waiting nor running.
         """
-        job = next((job for job in self.jobs() if job.name == name), None)
+        job = self._job(name)
         if job is not None and job.state == "waiting":
             self._keep(replace(job, state="cancelled", said="It had not begun."))
         elif job is not None and name == self._running:
@@ -195,7 +233,9 @@ class Runs:
         cancelled = self._cancelling == job.name
         self._process, self._running, self._cancelling, self.progress = None, "", "", ""
         if not self._ended:
-            self._keep(await self._ended_as(job, last, time.monotonic() - begun, cancelled=cancelled))
+            ended = await self._ended_as(job, last, time.monotonic() - begun, cancelled=cancelled)
+            renamed = self._job(job.name)
+            self._keep(ended if renamed is None else replace(ended, title=renamed.title))
 
     def _command(self, job: Job) -> list[str]:
         """Arguments of the command line for a job."""

@@ -224,12 +224,14 @@ class SeriesList:
         Words(about).classes("quiet")
 
     def _words(self, test: ReplayedTest) -> tuple[str, str]:
-        """Text of the link, such as "2 · 45° · H_V 0.84", and who entered it when, with its flags."""
+        """Text of the link, such as "2 · 45°"; then result, writer, time and flags."""
         value, flags = self._results.get(test.name, ("", []))
         angle = test.rows[0].cells.get("edge_angle_deg", "")
-        words = " · ".join(filter(None, (test.name, f"{angle}°" if angle else "", value)))
+        words = f"{test.name} · {angle}°" if angle else test.name
         last = test.history[-1]
-        about = " · ".join(filter(None, (last.who, minute_words(last.at), *(flag.replace("_", " ") for flag in flags))))
+        about = " · ".join(
+            filter(None, (value, last.who, minute_words(last.at), *(flag.replace("_", " ") for flag in flags)))
+        )
         return f"{words} (cancelled)" if test.cancelled else words, about
 
 

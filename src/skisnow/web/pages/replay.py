@@ -51,15 +51,15 @@ def add_page(lab: Lab) -> None:
             if not names:
                 sentence("Simulate one, then it can be watched here.")
             if names:
-                _side_by_side_form(names, tracks.names(), track)
+                _side_by_side_form({name: runs.title(name) for name in names}, tracks.names(), track)
             _track_form()
             for name in names:
-                _add_run(runs.folder_of(name), name)
+                _add_run(runs.folder_of(name), name, runs.title(name))
 
 
-def _add_run(place: Path, name: str) -> None:
+def _add_run(place: Path, name: str, title: str) -> None:
     with ui.element("section").classes("card"):
-        heading(name, 2)
+        heading(title, 2)
         sentence(_in_words(place), "quiet")
         with ui.element("div").classes("acts"):
             named(link("Watch", show_address(name), "main"), f"Watch {name}")
@@ -74,26 +74,27 @@ def _in_words(place: Path) -> str:
         return "without a readable summary"
 
 
-def _side_by_side_form(names: list[str], tracks: list[str], track: str) -> None:
-    """Form for a run, a second one and a measured track that are shown together."""
+def _side_by_side_form(titles: dict[str, str], tracks: list[str], track: str) -> None:
+    """Form for a run, a second one and a measured track that are shown together; `titles` of the runs by name."""
+    names = list(titles)
     if len(names) == 1 and not tracks:
         return
     heading("Side by side", 2)
     with ui.element("form").props(f'action="{SHOW}" method="get"').classes("acts"):
-        _select("run", "Run", names, names[0])
+        _select("run", "Run", titles, names[0])
         other = names[1] if len(names) > 1 and not track else NONE
-        _select("ghost", "Laid over it, translucent", [NONE, *names], other)
-        _select("track", "Measured track beside it", [NONE, *tracks], track or NONE)
+        _select("ghost", "Laid over it, translucent", {NONE: NONE, **titles}, other)
+        _select("track", "Measured track beside it", {name: name for name in (NONE, *tracks)}, track or NONE)
         submit_button("Watch together", kind="main")
         submit_button("Compare times at gates", address=GATES)
 
 
-def _select(key: str, text: str, names: list[str], chosen: str) -> None:
+def _select(key: str, text: str, names: dict[str, str], chosen: str) -> None:
     with ui.element("label").props(f"for=replay-{key}"):
         Words(text)
     with ui.element("select").props(f"id=replay-{key} name={key}").classes("act"):
-        for name in names:
-            shown = _quoted(said(NONE) if name == NONE else name)
+        for name, title in names.items():
+            shown = _quoted(said(NONE) if name == NONE else title)
             properties = f'value="{_quoted("" if name == NONE else name)}" label="{shown}"'
             ui.element("option").props(properties + (" selected" if name == chosen else ""))
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+from functools import partial
 from typing import TYPE_CHECKING, Any, Final
 from urllib.parse import quote
 
@@ -10,7 +12,7 @@ from nicegui import app, background_tasks, run, ui
 from ..._support.errors import ParameterError, SkisnowError
 from ..._support.messages import Message
 from ...replay.run_file import RUN_FILE
-from ..elements import Words, button, choice, link, named
+from ..elements import Words, button, choice, field, link, named
 from ..job_list import JobList
 from ..lab_skis import LabSkis
 from ..lab_tracks import LabCourses
@@ -46,6 +48,8 @@ CHOSEN_ABOVE: Final = ("snow.results", "snow.site", "snow.published", "ski.name"
 """Keys that are set by the menus of snow, ski and course."""
 WITH_FILES: Final = ("slope.kind", "slope.profile_gap", "slope.smooth_m", "slope.origin_x_m", "slope.origin_y_m")
 """Keys that need files on the server; they are only available on the command line."""
+_ID: Final = re.compile(r" \([0-9a-f]{12}\)")
+"""Id of a campaign in the words of its snow."""
 BASIC: Final = (
     *OF_SNOW,
     "snow.unloading_ratio",
@@ -87,10 +91,12 @@ def add_page(lab: Lab) -> None:
 
     @ui.page(PATH)
     def simulate(course: str = "") -> None:
-        with framed("Simulate", here=PATH):
-            _Form(lab, runs, course)
-            _course_form()
-            JobList(runs, _Card, "Nothing was simulated yet.")
+        with framed("Simulate", here=PATH), ui.element("div").classes("two wide-form"):
+            with ui.element("section"):
+                _Form(lab, runs, course)
+                _course_form()
+            with ui.element("section"):
+                JobList(runs, _Card, "Nothing was simulated yet.")
 
 
 class _Form:
@@ -191,7 +197,7 @@ class _Form:
         except SkisnowError as error:
             self._refuse(error)
             return
-        self._status.set_text(f"{job.name} is in the queue.")
+        self._status.set_text(f"{job.shown_name} is in the queue.")
         self._status.classes(remove="bad")
 
     def _refuse(self, error: SkisnowError) -> None:
@@ -206,8 +212,8 @@ class _Form:
         self._status.classes(add="bad")
 
     async def _add_job(self, scenario: str, changes: dict[str, str]) -> Job:
-        for field in self._fields.values():
-            field.refuse("")
+        for made in self._fields.values():
+            made.refuse("")
         for name in changes:
             self._fields[name].check()
         ski, snow, chosen = str(self._ski.value), self._snow.chosen(), list[str]()
@@ -228,7 +234,18 @@ class _Form:
                 chosen.append(f"snow: {snow.words}, {snow_words(snow.snow)}")
             await run.io_bound(require_scenario, scenario, changes)
         return self._runs.ask(
-            scenario, changes, files=files, given="; ".join(chosen), language=language_of(self._ski.client)
+            scenario,
+            changes,
+            files=files,
+            given="; ".join(chosen),
+            language=language_of(self._ski.client),
+            title=" ".join(
+                (
+                    scenario.replace("-", " "),
+                    *([ski] if ski != GIVEN else []),
+                    *([_ID.sub("", snow.words)] if snow else []),
+                )
+            ),
         )
 
     def _give_course(self, course: str, changes: dict[str, str]) -> str:
@@ -300,20 +317,31 @@ def _changes_in_words(changes: dict[str, str]) -> str:
     return ", ".join(f"{called(SCENARIO_KEYS[key])}: {value}" for key, value in changes.items())
 
 
+def _rename(runs: Runs, title: ui.input, name: str) -> None:
+    runs.rename(name, str(title.value))
+
+
 class _Card:
     """Card of a run with its buttons."""
 
     def __init__(self, runs: Runs, job: Job, act: Act) -> None:
         self._runs = runs
         with ui.element("section").classes("card") as self.place:
-            heading(job.name, 3)
+            with ui.element("h3"):
+                self._title = Words("")
             self._words = sentence("", "quiet").props("aria-live=polite")
             self._progress = sentence("", "quiet progress")  # not announced, as it changes each second
             with ui.element("div").classes("acts"):
                 self._cancel = named(button("Cancel", lambda: act(runs.cancel, job.name)), f"Cancel {job.name}")
                 self._watch = named(link("Watch", show_address(job.name), "main"), f"Watch {job.name}")
+            with ui.element("details"):
+                with ui.element("summary"):
+                    Words(Message("Rename"))
+                title = field(Message("Name of the run"), job.shown_name)
+                button(Message("Use this name"), lambda: act(partial(_rename, runs, title), job.name))
 
     def show(self, job: Job) -> None:
+        self._title.set_text(job.shown_name)
         changed = _changes_in_words({key: value for key, value in job.changes.items() if key not in GIVEN_BY_NAME})
         self._words.set_text(" · ".join(filter(None, (job.scenario, changed, job.given, job.state, job.said))))
         self._progress.set_text(self._runs.progress if job.state == "running" else "")

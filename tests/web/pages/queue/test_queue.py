@@ -87,6 +87,7 @@ def test_a_run_is_on_the_disk_as_it_was_asked(tmp_path: Path) -> None:
     assert json.loads(kept) == {
         "name": job.name, "scenario": "carved-46m", "changes": {"run.duration_s": "1", "ski.file": str(place)},
         "asked_at": job.asked_at, "state": "waiting", "said": "", "given": "ski: a ü", "took_s": 0.0, "language": "de",
+        "title": "",
     }  # fmt: skip
     assert "ü" in kept and '\n "name": ' in kept
     assert datetime.fromisoformat(job.asked_at).tzinfo == UTC

@@ -31,7 +31,7 @@ def asked(desk: Desk, page: Sheet) -> dict[str, Any]:
     page.press("Simulate")
     page.until(lambda: len(jobs(desk)) > before)
     job = jobs(desk)[0]
-    page.shows(f"[status] {job['name']} is in the queue.")
+    page.shows(f"[status] {job['title']} is in the queue.")
     return job
 
 
