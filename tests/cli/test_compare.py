@@ -280,7 +280,7 @@ def test_the_slope_of_a_run_counts_with_a_known_azimuth(tmp_path: Path, capsys: 
 CASE = Path(__file__).parents[3] / "shared" / "cases" / "compare" / "north.gpx"
 
 
-@pytest.mark.skipif(not CASE.is_file(), reason="the shared cases are not beside the repository")
+@pytest.mark.skipif(not CASE.is_file(), reason="no ../shared")
 def test_the_shared_track_of_a_carved_turn_is_found(tmp_path: Path, capsys: Printed) -> None:
     run = tmp_path / "run"
     assert main(["simulate", "carved-46m", "--set", "run.duration_s=4", "--out", str(run)]) == 0

@@ -33,7 +33,11 @@ def commands(folder: Path) -> list[list[str]]:
 
 @pytest.mark.filterwarnings("error")
 @pytest.mark.parametrize("reduced", [True, pytest.param(False, marks=pytest.mark.slow)])
-def test_the_demo_prints_no_warning(reduced: bool, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_demo_prints_no_warning(
+    reduced: bool, tmp_path: Path, capsys: pytest.CaptureFixture[str], request: pytest.FixtureRequest
+) -> None:
+    if reduced:
+        request.getfixturevalue("undrawn")
     found = commands(tmp_path / "demo")
     assert [arguments[0] for arguments in found] == ["reference", "analyse", "turn", "simulate"]
     for arguments in found:

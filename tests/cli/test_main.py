@@ -274,7 +274,7 @@ def test_json_is_utf_8_whatever_the_terminal(campaign: Path, encoding: str) -> N
     assert json.loads(done.stdout.decode("utf-8"))["campaign"]["place"] == "Kühtai ϑ"
 
 
-@pytest.mark.skipif(not Path("/dev/full").exists(), reason="no device that is always full on this system")
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="no /dev/full")
 def test_a_full_disk_behind_stdout_is_a_sentence(campaign: Path) -> None:
     with Path("/dev/full").open("wb") as full:
         done = run_program("analyse", str(campaign), "--json", "--resamples", "100", stdout=full)

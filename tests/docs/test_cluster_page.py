@@ -36,7 +36,7 @@ def test_job_script_asks_for_each_part_once() -> None:
     assert numbers == list(range(1000))
 
 
-@pytest.mark.skipif(shutil.which("bash") is None, reason="there is no bash")
+@pytest.mark.skipif(shutil.which("bash") is None, reason="no bash")
 def test_job_script_is_one_of_bash() -> None:
     (script,) = blocks("bash")
     assert subprocess.run(["bash", "-n"], input=script.encode(), check=False).returncode == 0

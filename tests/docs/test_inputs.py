@@ -15,7 +15,7 @@ tables: Any = importlib.import_module("key_tables")
 
 
 def test_schemas_and_tables_are_what_the_code_declares() -> None:
-    assert write_inputs.stale() == {}, "run docs/write_inputs.py"
+    assert write_inputs.stale() == {}, "write_inputs.py"
 
 
 def test_tables_have_a_row_for_each_key(tmp_path: Path) -> None:

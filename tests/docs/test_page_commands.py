@@ -32,7 +32,7 @@ def test_every_command_is_in_a_fenced_block(page: str) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.skipif(os.name != "posix", reason="the commands are run by bash")
+@pytest.mark.skipif(os.name != "posix", reason="needs bash")
 @pytest.mark.parametrize("page", [page for page in PAGES if any(not block.is_doctest for block in blocks(page))])
 def test_the_commands_of_a_page_run(page: str, tmp_path: Path) -> None:
     environment = _environment(tmp_path)

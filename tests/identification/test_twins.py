@@ -132,7 +132,7 @@ def test_an_error_of_half_an_interval_is_1_96_standard_errors() -> None:
 def test_a_twin_of_photo_cells_has_the_standard_errors_of_the_closed_form() -> None:
     """As in test_photo_cell_times, 10⁻⁴ leaves room for the step of integration."""
     ((case, row),) = one_glide("photo cells, three free", 4)
-    assert case == "photo cells, three free"
+    assert "photo cells" in case
     assert row["outcome"] == "converged"
     for key in ("friction.mu_0", "drag.drag_area_m2", "start.speed_m_per_s"):
         assert float(row[f"{key} error over Fisher"]) == pytest.approx(1.0, abs=1e-4)

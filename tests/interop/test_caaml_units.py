@@ -172,7 +172,7 @@ def test_an_encoding_that_cannot_be_read_is_an_error_of_the_first_line(tmp_path:
     assert len(str(problem)) < 500
 
 
-@pytest.mark.skipif(not CASES.is_dir(), reason="../shared is not beside this folder")
+@pytest.mark.skipif(not CASES.is_dir(), reason="no ../shared")
 def test_shared_cases() -> None:
     assert read_caaml(CASES / "elev_ft.caaml").elevation == pytest.approx(2499.36)
     assert read_caaml(CASES / "v603_tempF.caaml").temperatures[0].temperature_C == pytest.approx(-5.0)

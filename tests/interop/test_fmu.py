@@ -211,14 +211,14 @@ def test_bytes_of_another_fmu_and_damaged_ones_are_refused(pair: Fmu, made: Made
         with pytest.raises(AssertionError, match=words):
             instance.from_bytes(wrong)
     runs = made("sledge", 2).instance()
-    with pytest.raises(AssertionError, match="that of another model"):
+    with pytest.raises(AssertionError, match="another model"):
         runs.from_bytes(data)
-    with pytest.raises(AssertionError, match="the state is NULL"):
+    with pytest.raises(AssertionError, match="is NULL"):
         instance.to_bytes(ctypes.c_void_p())
     instance.set({"left.quaternion[1]": 3.0})
-    with pytest.raises(AssertionError, match="a quaternion has the length"):
+    with pytest.raises(AssertionError, match="a quaternion"):
         instance.step(0.0, 1e-3)
-    with pytest.raises(AssertionError, match="a step that has failed"):
+    with pytest.raises(AssertionError, match="has failed"):
         instance.to_bytes(instance.state())
 
 
@@ -273,24 +273,24 @@ def test_one_ski_in_snow_that_is_set(tmp_path: Path) -> None:
 def test_what_cannot_be_is_refused_in_words(pair: Fmu, made: Made) -> None:
     assert pair.instance("{another}").at.value is None
     instance = pair.instance()
-    with pytest.raises(AssertionError, match="a step is not allowed now"):
+    with pytest.raises(AssertionError, match="not allowed"):
         instance.step(0.0, 1e-3)
-    with pytest.raises(AssertionError, match="cannot be set now"):
+    with pytest.raises(AssertionError, match="cannot be set"):
         instance.set({"left.force[1]": 1.0})
     with pytest.raises(AssertionError, match="not finite"):
         instance.set({"left.position[1]": float("nan")})
-    with pytest.raises(AssertionError, match=r"snow\.hardness must be above 0"):
+    with pytest.raises(AssertionError, match=r"snow\.hardness"):
         instance.begin(values={"snow.hardness": -1.0})
     instance.call("Reset")
     instance.begin()
-    with pytest.raises(AssertionError, match="cannot be set now"):
+    with pytest.raises(AssertionError, match="cannot be set"):
         instance.set({"snow.hardness": 1e8})
     instance.set({"left.quaternion[1]": 3.0})
-    with pytest.raises(AssertionError, match="a quaternion has the length"):
+    with pytest.raises(AssertionError, match="a quaternion"):
         instance.step(0.0, 1e-3)
     runs = made("sledge", 2).instance()
     runs.begin()
-    with pytest.raises(AssertionError, match=r"a step begins at 1\.0+ s; the sledge is at 0\.0+ s"):
+    with pytest.raises(AssertionError, match=r"at 1\.0+ s; .* at 0\.0+ s"):
         runs.step(1.0, 0.1)
 
 
@@ -298,7 +298,7 @@ def test_of_other_kinds_there_are_no_variables_and_of_what_is_not_offered_words(
     instance = sledge.instance()
     nothing = ctypes.c_size_t(0)
     instance.call("GetBoolean", None, nothing, None, nothing)
-    with pytest.raises(AssertionError, match="all variables of this model"):
+    with pytest.raises(AssertionError, match="all variables"):
         instance.call("GetBoolean", None, ctypes.c_size_t(1), None, nothing)
     with pytest.raises(AssertionError, match="is not offered"):
         instance.call("GetDirectionalDerivative", None, nothing, None, nothing, None, None)

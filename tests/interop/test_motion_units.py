@@ -15,7 +15,7 @@ from tests.coded import raises
 from .c3d_files import c3d_bytes
 
 CASES = Path(__file__).parents[2].parent / "shared" / "cases" / "motion"
-shared = pytest.mark.skipif(not CASES.is_dir(), reason="../shared is not beside this folder")
+shared = pytest.mark.skipif(not CASES.is_dir(), reason="no ../shared")
 TABLE = "endheader\ntime\tknee_angle_r\n0.0\t0.5\n0.1\t0.7\n"
 
 

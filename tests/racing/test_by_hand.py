@@ -185,7 +185,7 @@ def test_the_time_of_a_race_that_failed() -> None:
     early = scored(0.0, last - 15.0, finished=False)
     assert (early.value, early.passed) == (pytest.approx(2000.0 + 15.0), 1)
     assert early.words == "fell"
-    assert scored(0.0, last - 15.0).words == "gate 20 was not reached"
+    assert scored(0.0, last - 15.0).words.startswith("gate 20 ")
     assert scored(0.0, last + 5.0, finished=False).value == pytest.approx(1000.0)
     through = scored(0.0, last + 5.0)
     assert through.time == through.value == pytest.approx(10.0 * (last + 5.0) / (last + 10.0))
@@ -228,9 +228,9 @@ def test_a_search_begins_from_a_line_of_some_of_the_gates() -> None:
     assert len(_begun(SLALOM, 3, start).turns) == 3
     assert len(_begun(SLALOM, 4, start).turns) == 4
     assert len(_begun(SLALOM, None, None).turns) == 20
-    with pytest.raises(ParameterError, match="has 4 turns and the course 20 gates"):
+    with pytest.raises(ParameterError, match="4 turns"):
         _begun(SLALOM, None, start)
-    with pytest.raises(ParameterError, match="gates is 5; it must be from 2 to 4"):
+    with pytest.raises(ParameterError, match="from 2 to 4"):
         _begun(SLALOM, 5, start)
 
 

@@ -76,7 +76,7 @@ def test_numbers_from_a_gate_on() -> None:
 @pytest.mark.parametrize(
     ("turns", "words"),
     [
-        ((LineTurn(aside=0.5),), "1 turns and the course 2 gates"),
+        ((LineTurn(aside=0.5),), "1 turns"),
         ((LineTurn(aside=0.5, turning=0.1), LineTurn(aside=0.5)), "gate 1: turning is 0.1"),
         ((LineTurn(aside=0.5, along=0.6), LineTurn(aside=0.5, along=-0.6)), "gate 2: its apex"),
     ],

@@ -66,6 +66,7 @@ def test_unknown_kind_of_experiment(analysis: Analysis) -> None:
     assert caught.value.code == "unknown_kind"
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_report(analysis: Analysis, tmp_path: Path) -> None:
     page = analysis.report(tmp_path)
     assert page == tmp_path / "report.html"

@@ -51,7 +51,8 @@ def test_few_sites_come_first_with_their_comparison_and_no_interval_over_them(ca
             f"{significant(row['mean'])} N/mm³, 95 % interval {interval(row['interval'])} over its experiments, n = 30"
         )
         assert told in lines[place]
-    ratio = lines.index(*verdicts(results))
+    (verdict,) = verdicts(results)
+    ratio = lines.index(str(verdict))
     pooled = next(i for i, line in enumerate(lines) if line.startswith("H_V: geometric mean"))
     assert ratio < places[0] < places[1] < pooled
     assert "over 2 sites" in lines[pooled]

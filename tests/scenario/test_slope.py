@@ -12,7 +12,7 @@ from tests.coded import Coded, coded, raises
 
 MEASURED = Path(__file__).resolve().parents[3] / "shared" / "data" / "slope-profiles"
 UTAH, CALIFORNIA = MEASURED / "utah-2010-surface.csv", MEASURED / "california-2002-surface.csv"
-measured = pytest.mark.skipif(not UTAH.is_file(), reason="the measured profiles are not beside the repository")
+measured = pytest.mark.skipif(not UTAH.is_file(), reason="no ../shared")
 
 
 @pytest.mark.parametrize("degrees", [-1.0, 75.1, 90.0, math.nan])

@@ -297,9 +297,8 @@ def test_of_more_and_less_of_an_input_what_moves_the_end_farther_counts() -> Non
     assert edge.now > edge.was
     assert edge.end_moves is None
     assert limit_sentences({"start.speed_m_per_s": 0.1, "solver.elements": 9.0}, 20.0) == ()
-    assert limit_sentences({"start.speed_m_per_s": 0.1001, "snow.H_V_N_per_mm3": 0.05}, 20.0)[0].startswith(
-        "near the limit of grip: the end moves 0.1 m for 0.1 % of start.speed_m_per_s"
-    )
+    (first, *_) = limit_sentences({"start.speed_m_per_s": 0.1001, "snow.H_V_N_per_mm3": 0.05}, 20.0)
+    assert "0.1 m" in first and "start.speed_m_per_s" in first
 
 
 def test_an_interrupted_repetition_of_an_input_is_the_last() -> None:

@@ -116,10 +116,10 @@ def test_an_open_balance_is_warned_of() -> None:
     assert run_warnings(opened(0.0049 * over)) == ()
     assert len(run_warnings(opened(0.0052 * over))) == 1
     (told,) = summary_dict(opened(0.03 * over), warnings=("another",))["warnings"][1:]
-    assert told.startswith(f"the energy residual is 2.9 % of the energy exchanged, {0.03 * over:.3g} J")
+    assert "2.9 %" in told and f"{0.03 * over:.3g} J" in told
     nothing = replace(at_rest(), energies=at_rest().energies | {"damping": np.linspace(0.0, -3.0, 201)})
     assert nothing.energy_balance_error is None  # what was turned over is less than nothing: no share, but a word
-    assert run_warnings(nothing)[0].startswith("the energy residual is 3 J: ")
+    assert " 3 J: " in run_warnings(nothing)[0]
     still = replace(at_rest(), energies=at_rest().energies | {"damping": np.linspace(0.0, 0.9e-3, 201)})
     assert still.energy_balance_error == 1.0
     assert run_warnings(still) == ()  # less than 1 mJ
@@ -139,7 +139,7 @@ def test_energy_open_is_an_outcome_of_the_schema() -> None:
     found = summary_dict(replace(opened(1e4), outcome="energy_open", remedy=REMEDIES["energy_open"]), ASKED.values)
     assert list(jsonschema.Draft202012Validator(SCHEMA).iter_errors(found)) == []
     assert (found["outcome"], found["remedy"]) == ("energy_open", REMEDIES["energy_open"])
-    with pytest.raises(jsonschema.ValidationError, match="'energy_shut' is not one of"):
+    with pytest.raises(jsonschema.ValidationError, match="energy_shut"):
         jsonschema.validate(found | {"outcome": "energy_shut"}, SCHEMA)
 
 

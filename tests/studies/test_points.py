@@ -105,5 +105,5 @@ def test_rows_and_points_are_equal_to_sequences_alone() -> None:
     ],
 )
 def test_more_points_than_anybody_waits_for_take_no_memory(grid: str, points: int, tmp_path: Path) -> None:
-    with pytest.raises(ParameterError, match=f"the study has {points} points; at most 1000000 are allowed"):
+    with pytest.raises(ParameterError, match=f"{points} points"):
         study_of(f"{HEAD}[grid]\n{grid}\n", tmp_path)

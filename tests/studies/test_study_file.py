@@ -124,7 +124,6 @@ def test_fingerprint_follows_points_and_files_but_not_the_place_of_the_table(tmp
                 value="-800",
                 allowed="above 0",
                 unit="N",
-                problem="fixed.load_N is -800; allowed is above 0 N",
             ),
         ),
         (
@@ -138,7 +137,7 @@ def test_fingerprint_follows_points_and_files_but_not_the_place_of_the_table(tmp
         (OUT + FIXED + "[grid]\nedge_angle_deg = { from = 3, to = 3, n = 6 }\n", "out_of_range"),
         (
             OUT + FIXED + "[grid]\nedge_angle_deg = { from = 3, to = nan, n = 6 }\n",
-            coded("out_of_range", name="to", value="nan", allowed="any finite number"),
+            coded("out_of_range", name="to", value="nan"),
         ),
         (
             OUT + FIXED + "[grid]\nedge_angle_deg = { from = 0, to = 3, n = 6, log = true }\n",
@@ -146,7 +145,7 @@ def test_fingerprint_follows_points_and_files_but_not_the_place_of_the_table(tmp
         ),
         (
             OUT + FIXED + "[grid]\nedge_angle_deg = { from = 3, to = 60, n = 1 }\n",
-            coded("out_of_range", low=2, name="n", value="1", allowed="whole numbers 2 or more"),
+            coded("out_of_range", low=2, name="n", value="1"),
         ),
         (OUT + FIXED + '[grid]\nedge_angle_deg = { from = 3, to = 60, n = 6, log = "yes" }\n', "wrong_kind"),
         (
@@ -162,7 +161,7 @@ def test_fingerprint_follows_points_and_files_but_not_the_place_of_the_table(tmp
         ),
         (
             OUT + FIXED + "[latin_hypercube]\nn = 0\nseed = 1\nelements = [80]\n",
-            coded("out_of_range", low=1, name="n", value="0", allowed="whole numbers 1 or more"),
+            coded("out_of_range", low=1, name="n", value="0"),
         ),
         (
             OUT + FIXED + "[latin_hypercube]\nn = 5\nseed = 1\nedge_angle_deg = { from = 3, to = 60, n = 3 }\n",

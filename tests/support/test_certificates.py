@@ -33,5 +33,5 @@ def test_a_certificate_and_its_key_in_two_files_and_in_one(tmp_path: Path) -> No
 
 def test_a_key_with_a_password_is_refused(tmp_path: Path) -> None:
     cert, key = made(tmp_path, "-passout", "pass:secret")
-    with pytest.raises(ValueError, match="the private key has a password"):
+    with pytest.raises(ValueError, match="password"):
         load_certificate(ssl.SSLContext(ssl.PROTOCOL_TLS_SERVER), cert, key)

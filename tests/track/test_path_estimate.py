@@ -112,9 +112,9 @@ def test_gap_is_straight_and_a_pause_is_nothing() -> None:
 
 
 def test_standing_still_is_hardly_a_path() -> None:
-    """120 s of noise; its polyline would have more than 100 m."""
-    place = np.column_stack([0.7 * np.random.default_rng(5).standard_normal((121, 2)), np.full(121, np.nan)])
-    assert float(np.sum(np.hypot(*np.diff(place[:, :2], axis=0).T))) > 100.0
+    """60 s of noise; its polyline would have more than 50 m."""
+    place = np.column_stack([0.7 * np.random.default_rng(5).standard_normal((61, 2)), np.full(61, np.nan)])
+    assert float(np.sum(np.hypot(*np.diff(place[:, :2], axis=0).T))) > 50.0
     assert estimate(place).length().value < 10.0
 
 

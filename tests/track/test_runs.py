@@ -42,12 +42,12 @@ def split(track: Track) -> Day:
     return split_day(track, track_motion(track))
 
 
-@pytest.mark.parametrize("recorded", [True, False])
-def test_day_of_three_runs(recorded: bool) -> None:
+@pytest.mark.parametrize(("recorded", "n_runs"), [(True, 3), (False, 2)])
+def test_day_of_runs(recorded: bool, n_runs: int) -> None:
     """A cycle is 540 s; a run begins when the rest at the top ends, 360 s into it, and takes 100 s."""
-    found = split(day([*([LIFT, REST, RUN, QUEUE] * 3)], recorded=recorded))
+    found = split(day([*([LIFT, REST, RUN, QUEUE] * n_runs)], recorded=recorded))
     assert found.split_by == "height"
-    assert len(found.runs) == len(found.lifts) == 3
+    assert len(found.runs) == len(found.lifts) == n_runs
     for number, (run, lift) in enumerate(zip(found.runs, found.lifts, strict=True)):
         begin = 540.0 * number
         assert run.start == pytest.approx(begin + 360.0, abs=1.0 if recorded else 5.0)  # 8 s of smoothing

@@ -40,8 +40,8 @@ def test_sine_has_its_turns_switch_points_angles_and_radii(seed: int) -> None:
 
 
 def test_straight_line_has_no_turn() -> None:
-    straight = np.stack([np.arange(300.0), np.zeros(300)], axis=1)
-    for seed in range(10):
+    straight = np.stack([np.arange(200.0), np.zeros(200)], axis=1)
+    for seed in range(5):
         assert find_turns(track_motion(track(straight, noise=NOISE, seed=seed))) == ()
 
 

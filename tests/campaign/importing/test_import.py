@@ -132,6 +132,9 @@ def _second_sheet(book: Workbook) -> None:
     copy["A1"] = "Alle Daten"
 
 
+TOOLS = "Werkzeug: Skistück 20 x 6,2 cm; Scherblatt 10 cm"
+
+
 @pytest.mark.parametrize(
     "change",
     [
@@ -140,7 +143,7 @@ def _second_sheet(book: Workbook) -> None:
         _set("Hang oben", "A3", "Ort: Hang oben"),
         _set("Hang oben", "C5", "Gewicht"),
         _set("Hang oben", "C6", "[kg]"),
-        _set("Notizen", "A1", "Werkzeug: Skistück 20 x 6,2 cm; Scherblatt 10 cm"),
+        _set("Notizen", "A1", TOOLS),
         _set("Hang oben", "F8", "gut"),
     ],
     ids=lambda change: getattr(change, "__name__", "cell"),

@@ -68,9 +68,9 @@ def test_without_unloading_there_is_none(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("rows", "code", "row", "told"),
     [
-        ([*UP, ("P1", 20, 2.9, "down")], "out_of_range", 5, "loading, unloading or nothing"),
+        ([*UP, ("P1", 20, 2.9, "down")], "out_of_range", 5, "unloading"),
         ([*UP, *DOWN, ("P1", 40, 4.0, "loading")], "branch_order", 7, "unloading: a row"),
-        ([*OTHER, ("P3", 20, 2.9, "unloading")], "branch_order", 5, "begins under its first load"),
+        ([*OTHER, ("P3", 20, 2.9, "unloading")], "branch_order", 5, "first load"),
     ],
 )
 def test_what_cannot_be_is_refused_with_its_row(

@@ -129,7 +129,7 @@ def test_a_cell_that_is_no_number_in_either_way_of_writing(
     problems = check_campaign(write_campaign({**small_campaign, CONE: text}))
     (error,) = [problem for problem in problems if problem.severity == "error"]
     assert where(error) == ("not_a_number", CONE, 4, "drop_cone_depth_mm", "C2", cell)
-    assert error.action.startswith(f"Write a plain number such as 12{mark}5, without unit")
+    assert f" 12{mark}5" in error.action
 
 
 def test_text_in_a_column_that_nobody_named(write_campaign: WriteCampaign, small_campaign: dict[str, str]) -> None:

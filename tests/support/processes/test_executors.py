@@ -113,7 +113,7 @@ class Needy:
 
 
 def test_a_worker_with_other_files_is_refused() -> None:
-    with pytest.raises(SkisnowError, match="the files are others here"):
+    with pytest.raises(SkisnowError, match="files are others"):
         run_batch(POINTS, Needy(), executor=Here())
 
 

@@ -131,4 +131,4 @@ def test_sixty_kills_lose_nothing_and_nothing_is_computed_twice(
 ) -> None:
     monkeypatch.setenv("PYTHONPATH", f"{ROOT / 'src'}:{ROOT}")  # a worker elsewhere has what it is to compute
     noted = killed_again_and_again(tmp_path, KILLS, seed=23)
-    assert len(noted) == len(set(noted)), "a row that was kept was computed again"
+    assert len(noted) == len(set(noted))
