@@ -52,7 +52,7 @@ def test_figures_and_json_are_written(turn: Path, tmp_path: Path, capsys: Printe
     assert main(["track", str(turn), "--json", "--out", str(out)]) == 0
     assert json.loads((out / "track.json").read_text(encoding="utf-8")) == json.loads(capsys.readouterr().out)
     written = sorted(path.name for path in (out / "figures").iterdir())
-    assert written == sorted(f"{name}.{form}" for name in ("along", "map") for form in FORMS)
+    assert written == sorted(f"{name}.{form}" for name in ("along", "map", "radius", "speed") for form in FORMS)
 
 
 def test_window_and_noise_are_obeyed(turn: Path, capsys: Printed) -> None:

@@ -1,17 +1,23 @@
 """The figures and the words of a measured track."""
 
+import math
 import re
 from dataclasses import replace
+from datetime import UTC, datetime
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from skisnow.report.figures.style import journal_style
+from skisnow.report.track.exports import track_gpx, turn_rows
 from skisnow.report.track.figures import drawn_points, named_radii, switch_times, track_along, track_map
 from skisnow.report.track.report import write_track_report
 from skisnow.report.track.summary import track_text
+from skisnow.track.projection import GeodeticPoint
+from skisnow.track.read import read_track
 from skisnow.track.summary import TrackSummary, summary_dict, track_summary
+from skisnow.track.track import Track
 
 from ..conftest import only_drawn
 from ..track.paths import NOISE, along, circle, track
@@ -83,7 +89,8 @@ def test_files_are_written_and_the_same_each_time(tmp_path: Path) -> None:
         write_track_report(summary, tmp_path / "two")
     assert written == tmp_path / "one" / "track.json"
     names = sorted(path.relative_to(tmp_path / "one") for path in (tmp_path / "one").rglob("*.*"))
-    assert len(names) == 9
+    assert {name.name for name in names if name.parent == Path()} == {"track.json", "turns.csv", "points.csv"}
+    assert len(names) == 19
     for name in names:
         assert (tmp_path / "one" / name).read_bytes() == (tmp_path / "two" / name).read_bytes()
 
@@ -113,3 +120,26 @@ def test_text_counts_and_defines() -> None:
     )
     many = values | {"turns": values["turns"] * 20}
     assert "and 40 more" in track_text(many)
+
+
+def test_turn_table_of_a_circle_has_its_radius_speed_and_lean_of_balance() -> None:
+    row = turn_rows(track_summary(track(circle(15.0, 8.0))))[0]
+    lean = math.degrees(math.atan(8.0**2 / (9.81 * 15.0)))  # by hand: tan of the lean is v²/(g r)
+    assert row["minimum_radius_m"] == pytest.approx(15.0, rel=0.02)
+    assert (row["speed_in_m_per_s"], row["speed_out_m_per_s"]) == pytest.approx((8.0, 8.0), rel=0.02)
+    assert row["lean_deg"] == pytest.approx(lean, rel=0.03)
+    assert row["lean_low_deg"] <= row["lean_deg"] <= row["lean_high_deg"]
+
+
+def test_gpx_of_a_track_is_the_same_track(tmp_path: Path) -> None:
+    origin, time = GeodeticPoint(47.0, 11.0, 2000.0), np.arange(0.0, 20.0, 0.5)
+    place = np.column_stack([8.0 * time, 3.0 * np.sin(time), -2.0 * time])
+    start = datetime(2026, 2, 14, 9, 30, tzinfo=UTC)
+    made = Track(
+        "a", time, place, np.full(40, np.nan), "UTC", "local", axes="east_north_up", origin=origin, start=start
+    )
+    (tmp_path / "a.gpx").write_text(track_gpx(track_summary(made)) or "", encoding="utf-8")
+    again = read_track(tmp_path / "a.gpx", origin=origin)
+    assert np.abs(again.place - place).max() < 0.01
+    assert again.start == start
+    assert track_gpx(slalom()) is None

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Final, Literal
 
 import numpy as np
 import numpy.typing as npt
+from matplotlib.collections import LineCollection
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.ticker import MaxNLocator
@@ -54,6 +55,34 @@ def track_map(summary: TrackSummary) -> Figure:
     _draw_ends(axes, summary)
     _set_axes(axes, limits, summary.track.axes)
     legend_below(figure, _handles(summary))
+    return figure
+
+
+def coloured_map(summary: TrackSummary, what: Literal["speed", "radius"]) -> Figure:
+    """Draw the places from above, coloured by speed, or by the signed curvature with radii as labels."""
+    limits = map_limits(summary.track.place[summary.track.usable])
+    height = float(np.clip((limits[3] - limits[2]) / (limits[1] - limits[0]) * 150.0, 3.0 * _SMALLEST_MM, _LARGEST_MM))
+    figure = new_figure(width_mm=DOUBLE_MM, height_mm=height + _FRAME_MM)
+    axes = figure.add_subplot()
+    numbers = drawn_points(0, len(summary.track) - 1)
+    numbers = numbers[summary.track.usable[numbers]]
+    values = summary.motion.speed if what == "speed" else _ridden_curvature(summary)
+    place, joined = summary.track.place[numbers, :2], np.diff(summary.motion.smoothed.part[numbers]) == 0
+    pieces, middle = np.stack([place[:-1], place[1:]], axis=1), 0.5 * (values[numbers[:-1]] + values[numbers[1:]])
+    line = LineCollection(list(pieces[joined]), array=middle[joined], linewidth=1.8, capstyle="round")
+    line.set_cmap("viridis" if what == "speed" else "PuOr_r")
+    axes.add_collection(line)
+    _draw_ends(axes, summary)
+    _set_axes(axes, limits, summary.track.axes)
+    if what == "speed":
+        figure.colorbar(line, ax=axes, label="speed (m/s)", pad=0.01, aspect=22)
+        return figure
+    reach = curvature_reach(summary)
+    line.set_clim(-reach, reach)
+    bar = figure.colorbar(line, ax=axes, label="turn radius (m),\nleft above, right below", pad=0.01, aspect=22)
+    radii = named_radii(reach)
+    bar.set_ticks([*(-1.0 / radius for radius in radii), 0.0, *(1.0 / radius for radius in reversed(radii))])
+    bar.set_ticklabels([*map(str, radii), "straight", *map(str, reversed(radii))])
     return figure
 
 

@@ -32,7 +32,8 @@ from ..figures.style import (
 from ..formatting import json_text, significant
 from ..run.track_figure import plan_axes, plan_height_mm, track_limits
 from ..symbols import figure_text, prose
-from .figures import track_along, track_map
+from .exports import GPX_FILE, POINTS_FILE, TURNS_FILE, points_csv, track_gpx, turns_csv
+from .figures import coloured_map, track_along, track_map
 from .summary import TITLES
 
 if TYPE_CHECKING:
@@ -45,7 +46,7 @@ if TYPE_CHECKING:
     from ...track.course import CourseResult
     from ...track.summary import TrackSummary
 
-FIGURES: Final = ("map", "along")
+FIGURES: Final = ("map", "speed", "radius", "along")
 """Names of a track's figures, in figures/ as .png and .svg."""
 OF_COURSE: Final = "course"
 """Name of the further figure of a track with gates."""
@@ -60,7 +61,7 @@ def write_track_report(
     language: str = ENGLISH,
     progress: Callable[[str], None] | None = None,
 ) -> Path:
-    """Write figures/map, figures/along (each .png and .svg) and track.json.
+    """Write figures, track.json, turns.csv, points.csv, and track.gpx of a track with latitude and longitude.
 
     Parameters
     ----------
@@ -91,7 +92,11 @@ def write_track_report(
     require_writable(folder)
     text = json_text(summary_dict(summary) if values is None else values)
     with staged(folder, last="track.json") as stage:
-        stage.stale += [*picture_files((*FIGURES, OF_COURSE)), "gates.csv"]
+        stage.stale += [*picture_files((*FIGURES, OF_COURSE)), "gates.csv", GPX_FILE]
+        tables = {TURNS_FILE: turns_csv(summary), POINTS_FILE: points_csv(summary), GPX_FILE: track_gpx(summary)}
+        for name, content in tables.items():
+            if content is not None:
+                write_file(stage.path / name, content)
         if gates is not None:
             write_file(stage.path / "gates.csv", gates_csv(gates))
         names = frozenset({figure_text(summary.track.name)})
@@ -124,6 +129,20 @@ def track_drawings(summary: TrackSummary, gates: CourseResult | None = None) -> 
         prose("{name} from above, the same scale along both axes.", name=name),
         f"{name} from above.",
         track_map(summary),
+        wide=True,
+    )
+    yield Drawing(
+        "speed",
+        prose("{name} from above; colour: speed.", name=name),
+        f"{name} from above, coloured by speed.",
+        coloured_map(summary, "speed"),
+        wide=True,
+    )
+    yield Drawing(
+        "radius",
+        prose("{name} from above; colour: turn radius, even in 1/radius, positive to the left.", name=name),
+        f"{name} from above, coloured by turn radius.",
+        coloured_map(summary, "radius"),
         wide=True,
     )
     yield Drawing(
