@@ -195,8 +195,8 @@ def lines_of(problems: Iterable[Problem]) -> list[Message]:
     files: dict[str, list[str]] = {}
     for problem in every:
         if not problem.needs_action:
-            kept = Message("column {column!r} kept as text", column=problem.value)
-            note = kept if problem.code == "unknown_column" else problem.value
+            as_text = Message("column {column!r} kept as text", column=problem.value)
+            note = as_text if problem.code == "unknown_column" else problem.value
             files.setdefault(note or problem.code, []).append(problem.file)
     notes = [Message("{note} in {files}", note=note, files=list(dict.fromkeys(names))) for note, names in files.items()]
     lines = list(_limited_lines(_group_unknown_names(problem for problem in every if problem.needs_action)))

@@ -101,8 +101,8 @@ def run(options: argparse.Namespace) -> int:
     _warn(answers)
     result = answers_dict(answers)
     derivatives = [] if options.sensitivity is None else _sensitivities(answers, options.sensitivity)
-    for each, found in zip(result.get("skis", [result]), derivatives, strict=False):
-        each["sensitivity"] = found
+    for answer, derivative in zip(result.get("skis", [result]), derivatives, strict=False):
+        answer["sensitivity"] = derivative
     if options.figure is not None:
         from ..report.carving_figure import carved_skis
         from ..report.figures.figure_files import write_figure
@@ -117,8 +117,8 @@ def run(options: argparse.Namespace) -> int:
         from ..report.summaries import carve_summary
 
         print(carve_summary(result))
-        for answer, found in zip(answers, derivatives, strict=False):
-            print(_sensitivity_table(answer.ski.name, found))
+        for answer, derivative in zip(answers, derivatives, strict=False):
+            print(_sensitivity_table(answer.ski.name, derivative))
     return _status(answers)
 
 
@@ -128,10 +128,10 @@ def _sensitivities(answers: list[CarveAnswer], names: list[str]) -> list[list[di
     return [sensitivities_dict(answer.equilibrium, [name for name in names if name]) for answer in answers]
 
 
-def _sensitivity_table(ski: str, found: list[dict[str, Any]]) -> str:
+def _sensitivity_table(ski: str, derivatives: list[dict[str, Any]]) -> str:
     """Derivatives of each output in its units per unit, and in % per %."""
     lines = [f"Derivatives, {ski}:", f"  {'output':26} {'parameter':26} {'per unit':>12} {'% per %':>9}"]
-    for row in found:
+    for row in derivatives:
         relative = "" if row["percent_per_percent"] is None else f"{row['percent_per_percent']:9.4f}"
         lines.append(f"  {row['output']:26} {row['parameter']:26} {row['derivative']:12.6g} {relative:>9}")
     return "\n".join(lines)

@@ -79,8 +79,8 @@ def run(options: argparse.Namespace) -> int:
 def _answers(options: argparse.Namespace) -> Answers:
     from ..campaign.importing import Answers, read_template
 
-    given = Answers.of_options({option: getattr(options, option) for option in OPTIONS})
-    return given if options.template is None else read_template(options.template).updated(given)
+    from_options = Answers.of_options({option: getattr(options, option) for option in OPTIONS})
+    return from_options if options.template is None else read_template(options.template).updated(from_options)
 
 
 def _answered(options: argparse.Namespace, answers: Answers, *, asks: bool) -> Proposal:

@@ -176,11 +176,11 @@ def _sync(store: Store, args: argparse.Namespace) -> Answer:
     return asdict(done), "\n".join(lines), 1 if done.conflicts or done.problems else 0
 
 
-def _group_place(given: str) -> StorePlace:
+def _group_place(word: str) -> StorePlace:
     """Where the group's store is; a file is made in a folder that exists, not where a stick is not plugged in."""
     from ..campaign.store import store_place
 
-    place = store_place(given)
+    place = store_place(word)
     if isinstance(place, Path) and not place.parent.is_dir():
         raise StoreError(
             Message(

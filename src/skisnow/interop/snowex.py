@@ -226,8 +226,8 @@ def _cells(campaign: Campaign, site: str, column: str) -> Iterator[str]:
 
 def _station_air(analysis: Analysis, site: str) -> float | None:
     """Mean at the site's experiments by the weather station; None where it is not known."""
-    found = () if analysis.weather is None else analysis.weather.site_means()
-    mean = next((means["air_temperature_C"] for name, _, means in found if name == site), math.nan)
+    site_means = () if analysis.weather is None else analysis.weather.site_means()
+    mean = next((means["air_temperature_C"] for name, _, means in site_means if name == site), math.nan)
     return mean if math.isfinite(mean) else None
 
 

@@ -166,10 +166,10 @@ class Quantity:
         if self.kind == "text":
             return _allowed_texts(self.choices, self.blank)
         if self.kind in ("numbers", "three numbers"):
-            each = replace(self, kind="number").allowed
+            allowed = replace(self, kind="number").allowed
             if self.kind == "numbers":
-                return Message("numbers, each {allowed}", allowed=each)
-            return Message("three numbers, each {allowed}", allowed=each)
+                return Message("numbers, each {allowed}", allowed=allowed)
+            return Message("three numbers, each {allowed}", allowed=allowed)
         whole = self.kind == "whole number"
         if self.highest < math.inf:
             text = _RANGES[self.above, self.below, whole]

@@ -264,8 +264,8 @@ class Axis:
             raise ParameterError(
                 Message("{name} is an empty list; write at least one value", name=key.name), code="out_of_range"
             )
-        checked = tuple(key.of_kind(each) for each in values)
-        repeated = next((each for place, each in enumerate(checked) if each in checked[:place]), None)
+        checked = tuple(key.of_kind(value) for value in values)
+        repeated = next((value for place, value in enumerate(checked) if value in checked[:place]), None)
         if repeated is not None:
             raise ParameterError(
                 Message("{name} holds {repeated!r} twice; write each value once", name=key.name, repeated=repeated),

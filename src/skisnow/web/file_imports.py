@@ -87,7 +87,9 @@ class FileImports:
     def templates(self) -> dict[str, str]:
         """Names of the campaigns with a template, by id, the newest first."""
         stored = reversed(self._lab.store.list())
-        return {each.id: each.name for each in stored if any(file.path == RECORD for file in each.files)}
+        return {
+            campaign.id: campaign.name for campaign in stored if any(file.path == RECORD for file in campaign.files)
+        }
 
     def template(self, id_: str) -> Answers:
         """Answers of an imported campaign."""

@@ -237,9 +237,9 @@ def add_uploaded(store: StorePlace, place: str, names: Sequence[str], limits: Li
     folder = campaign_folder(unpacking.folder)
     files = unfolded(FilesOfFolder(folder))
     if CAMPAIGN_FILE not in files.names():
-        found = files.problems
+        problems = files.problems
         raise ParameterError(
-            joined([found[0].value, found[0].action], ". ") if found else UNDESCRIBED, code="no_campaign"
+            joined([problems[0].value, problems[0].action], ". ") if problems else UNDESCRIBED, code="no_campaign"
         )
     with Store.open(store) as opened:
         return opened.add(folder).id

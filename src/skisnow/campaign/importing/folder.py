@@ -20,7 +20,7 @@ from ..problems import error
 from ..reading.campaign_file import CAMPAIGN_FILE
 from .answers import SECTION
 from .notes import PLATE, TOOL, Note, length_mm, stated_plates, stated_tools
-from .questions import Question, ask
+from .questions import Question, ask, is_asked
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -61,9 +61,9 @@ def description(
     lines = [f"name = {_quoted(title)}", f"observers = {_list(observers)}"]
     lines += [f"gauge_resolution_mm = {step:g}" for step in gauges if len(gauges) == 1]
     for kind, described in (("tool", tools), ("plate", plates)):
-        for each in described:
-            keys = (f"{key} = {value}" for key, value in each.keys)
-            lines += ["", f"[[{kind}]]", f"name = {_quoted(each.name)}", *keys]
+        for entry in described:
+            keys = (f"{key} = {value}" for key, value in entry.keys)
+            lines += ["", f"[[{kind}]]", f"name = {_quoted(entry.name)}", *keys]
     lines += [
         "",
         f"[{SECTION}]",
@@ -188,7 +188,7 @@ def parse_tool(name: str, text: str) -> ToolText | None:
     elif match := re.fullmatch(r"disc\s+(\d+(?:[.,]\d+)?)\s*(mm|cm|m)", text.strip()):
         keys = (("shape", '"disc"'), ("diameter_mm", f"{length_mm(match[1], match[2]):g}"))
     elif match := _CYLINDER.fullmatch(text.strip()):
-        radius, width = (length_mm(match[each], match[3]) for each in (1, 2))
+        radius, width = (length_mm(match[group], match[3]) for group in (1, 2))
         keys = (("shape", '"cylinder"'), ("radius_mm", f"{radius:g}"), ("width_mm", f"{width:g}"))
     else:
         return None
@@ -240,7 +240,7 @@ def _described(
                 described[sheet, name] = tool
             elif name in answers and parse(name, answers[name]) is None:
                 open_.append(_bad_answer(kind, table.section.key, answers[name], form))
-            elif not any(isinstance(each, Question) and (each.option, each.key) == (kind, name) for each in open_):
+            elif not is_asked(open_, kind, name):
                 value = ", ".join(sorted(filter(None, texts))) or name or None
                 open_.append(ask(kind, name, table.section, value=value, proposed=form))
     return described

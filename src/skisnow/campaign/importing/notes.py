@@ -132,7 +132,7 @@ def is_about_numbers(note: Note) -> bool:
     words = letters(note.text).split()
     synonyms = {word for column in MEASURED for word in SYNONYMS[column] if len(word) > 2}
     named = any(
-        word in synonyms or any(word == f"{each}{end}" for each in synonyms for end in ("e", "en", "n", "s"))
+        word in synonyms or any(word == f"{synonym}{end}" for synonym in synonyms for end in ("e", "en", "n", "s"))
         for word in words
     )
     rest = _DAY.sub("", note.text)

@@ -17,7 +17,7 @@ from .answers import NONE, Answers
 from .columns import choose_columns
 from .folder import PlateText, ToolText, campaign_files, csv_text, description, plates_of, tools_of
 from .notes import Note, gauge_steps_mm, is_about_numbers, stated_days, stated_observers, stated_sites
-from .questions import Question, ask
+from .questions import Question, ask, is_asked
 from .rows import ImportedTable, stored_rows
 from .sheets import KINDS, Ignored, Section, Sheet, find_sections, likely_table, read_sheets, table_of
 
@@ -72,12 +72,12 @@ def propose(name: str, data: bytes, answers: Answers = Answers()) -> Proposal:  
     sheets = read_sheets(name, data)
     sections = {sheet.name: find_sections(sheet, answers.table, ignored) for sheet in sheets}
     open_: list[Question | Problem] = []
-    kinds = [(section, _kind(section, answers, open_)) for found in sections.values() for section in found]
-    known = [(section, form) for section, form in kinds if form is not None]
+    kinds = [(section, _kind(section, answers, open_)) for on_sheet in sections.values() for section in on_sheet]
+    forms = [(section, form) for section, form in kinds if form is not None]
     notes = _notes(sheets, [section for section, _ in kinds], ignored)
     if not kinds:
         open_.append(_no_table(name))
-    tables = [_table(section, form, answers, ignored, notes, open_) for section, form in known]
+    tables = [_table(section, form, answers, ignored, notes, open_) for section, form in forms]
     open_.extend(
         ask("ignore", f"{note.sheet}!{note.row}", note.sheet, row=note.row, value=note.text)
         for note in notes
@@ -86,8 +86,8 @@ def propose(name: str, data: bytes, answers: Answers = Answers()) -> Proposal:  
     open_.extend(_repeated(tables))
     tools, plates = tools_of(tables, answers, notes, open_), plates_of(tables, answers, notes, open_)
     tables = _with_names(tables, answers, notes, (tools, plates), open_)
-    questions = tuple(each for each in open_ if isinstance(each, Question))
-    problems = tuple(each.problem if isinstance(each, Question) else each for each in open_)
+    questions = tuple(item for item in open_ if isinstance(item, Question))
+    problems = tuple(item.problem if isinstance(item, Question) else item for item in open_)
     files: Mapping[str, bytes] = {}
     if not problems:
         described = _description(name, data, answers, tables, tools, plates, notes)
@@ -133,7 +133,7 @@ def _notes(sheets: Sequence[Sheet], sections: Sequence[Section], ignored: Ignore
 def _has(section: Section, row: int, column: int) -> bool:
     if not section.header <= row < section.end or column not in section.columns:
         return False
-    texts = sum(bool(section.sheet.cell(row, each)) for each in section.columns)
+    texts = sum(bool(section.sheet.cell(row, column)) for column in section.columns)
     return row < section.start or texts > 1 or section.sheet.cell(row, section.columns[0]) == ""
 
 
@@ -222,8 +222,7 @@ def _site(
     stated = stated_sites(sheet, notes)
     if len(stated) == 1:
         return stated.pop()
-    is_asked = any(isinstance(each, Question) and (each.option, each.key) == ("site", sheet) for each in open_)
-    if not is_asked:
+    if not is_asked(open_, "site", sheet):
         value = ", ".join(sorted(stated)) or None
         open_.append(ask("site", sheet, table.section, value=value, choices=tuple(sorted(stated)), proposed=sheet))
     return ""
@@ -294,7 +293,9 @@ def _problems(name: str, files: Mapping[str, bytes], tables: Sequence[ImportedTa
     try:
         campaign_of_files(files)
     except FieldDataError as failure:
-        problems = [each for each in failure.problems if isinstance(each, Problem) and each.severity == "error"]
+        problems = [
+            problem for problem in failure.problems if isinstance(problem, Problem) and problem.severity == "error"
+        ]
         return tuple(_at_source(name, problem, tables) for problem in problems)
     return ()
 

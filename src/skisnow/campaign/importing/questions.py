@@ -9,6 +9,8 @@ from ..._support.messages import Message
 from ..problems import error
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
     from ..problems import Problem
     from .sheets import Section
 
@@ -70,3 +72,8 @@ def ask(
     place = section if isinstance(section, str) else section.key
     problem = error("not_stated", place, row=row, column=key or None, value=value, allowed=WORDS[option], action=action)
     return Question(option, key, choices, proposed, problem)
+
+
+def is_asked(questions: Iterable[Question | Problem], option: str, key: str) -> bool:
+    """True if one of the questions has this option and key."""
+    return any(isinstance(item, Question) and (item.option, item.key) == (option, key) for item in questions)

@@ -13,7 +13,7 @@ from ..._support.spreadsheet_text import is_number
 from ..problems import error
 from ..reading.synonyms import letters
 from .columns import number_columns
-from .questions import Question, ask
+from .questions import Question, ask, is_asked
 from .sheets import column_letters
 
 if TYPE_CHECKING:
@@ -176,7 +176,7 @@ def _fill_down(
             continue
         if answers.cells.get(FILL_DOWN) == "yes":
             cells[name] = above[name]
-        elif not any(isinstance(each, Question) and each.key == FILL_DOWN for each in open_):
+        elif not is_asked(open_, "cells", FILL_DOWN):
             value = Message("a blank cell below {value}", value=above[name])
             open_.append(ask("cells", FILL_DOWN, section, row=row + 1, value=value, choices=("yes",), proposed="yes"))
 

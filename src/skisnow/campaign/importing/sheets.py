@@ -175,10 +175,10 @@ def find_sections(sheet: Sheet, tables: Mapping[str, str], ignored: Ignored) -> 
     """Tables of a sheet in their order, also side by side; `tables` are answers by heading row."""
     heads: list[tuple[int, range]] = []
     for row in range(len(sheet.rows)):
-        asked = tables.get(f"{sheet.name}:{row + 1}")
-        if asked == NONE or ignored.row(sheet.name, row):
+        answer = tables.get(f"{sheet.name}:{row + 1}")
+        if answer == NONE or ignored.row(sheet.name, row):
             continue
-        heads += [(row, group) for group in _groups(sheet, row, ignored) if asked or _is_header(sheet, row, group)]
+        heads += [(row, group) for group in _groups(sheet, row, ignored) if answer or _is_header(sheet, row, group)]
     sections = [_section(sheet, row, columns, heads) for row, columns in heads]
     return [section for section in sections if any(_is_filled(section, row) for row in _body(section))]
 
@@ -264,9 +264,9 @@ class Ignored:
 
 def table_of(section: Section, answers: Answers) -> TableForm | None:
     """Table of a section: the answer, or the only one whose numbers are all among the stated columns."""
-    asked = answers.table.get(section.key, "")
-    if asked in KINDS:
-        return KINDS[asked]
+    answer = answers.table.get(section.key, "")
+    if answer in KINDS:
+        return KINDS[answer]
     counts: dict[str, int] = {}
     for name, form in KINDS.items():
         stated = {

@@ -181,11 +181,11 @@ def density(generator: np.random.Generator) -> DensitySamples:
 
 def drop_cone(generator: np.random.Generator) -> DropConeTests:
     """Draw the repeats of the drop-cone tests of the penetration sites, then of the sites of shear tests at 90°."""
-    known: tuple[design.PenetrationSite | design.ShearSite, ...] = (
+    measured_sites: tuple[design.PenetrationSite | design.ShearSite, ...] = (
         *design.PENETRATION_SITES,
         *design.FURTHER_SHEAR_SITES,
     )
-    sites = [site for site in known for _ in range(design.DROP_CONE_TESTS)]
+    sites = [site for site in measured_sites for _ in range(design.DROP_CONE_TESTS)]
     repeats = design.DROP_CONE_REPEATS
     centre = np.repeat([site.drop_cone_depth for site in sites], repeats)
     depth = _normal_within(generator, centre, design.DROP_CONE_SD, design.DROP_CONE_RANGE)

@@ -185,9 +185,9 @@ def _with_unit(column: ColumnChoice) -> str:
     """Heading with the unit of its numbers, and the unit in which they are stored if it is another one."""
     if column.unit is None:
         return column.heading
-    stored, given = units_for(column.column).split(", ")[0], column.unit.name
-    fields = {"heading": column.heading, "unit": given}
-    if given == stored:
+    stored, unit = units_for(column.column).split(", ")[0], column.unit.name
+    fields = {"heading": column.heading, "unit": unit}
+    if unit == stored:
         return Message("{heading}, in {unit}", **fields)
     return Message("{heading}, {unit} to {stored}", **fields, stored=stored)
 
@@ -197,8 +197,8 @@ def _choice_words(text: str) -> str:
 
 
 def _list_problems(proposal: Proposal) -> None:
-    asked = [question.problem for question in proposal.questions]
-    problems = [problem for problem in proposal.problems if problem not in asked]
+    questions = [question.problem for question in proposal.questions]
+    problems = [problem for problem in proposal.problems if problem not in questions]
     if problems:
         heading(Message("Errors"))
         with ui.element("ul").classes("errors"):
