@@ -40,7 +40,7 @@ UPWARD = {
     ("skisnow.simulation.run", "skisnow.report.run.drawings"),
     ("skisnow.simulation.run", "skisnow.report.run.folder"),
     ("skisnow.simulation.run", "skisnow.report.run.file"),
-    ("skisnow.simulation.run", "skisnow.simulation.run_balance"),
+    ("skisnow.simulation.run", "skisnow.simulation.run_forces"),
 }
 """Files that a method of a lower file imports when it is called."""
 

@@ -10,7 +10,7 @@ from skisnow._support.units import DEGREE, N_PER_MM2, N_PER_MM3
 from skisnow.scenario import Air, Contact, Plane, RigidSledge, Scenario, Solver, Start, Stop
 from skisnow.simulation.moving_boots import BootHistory
 from skisnow.simulation.run import Groove, Run, SkiHistory
-from skisnow.simulation.snow_forces import node_lengths
+from skisnow.simulation.run_forces import node_lengths
 from skisnow.ski import ski_named
 from skisnow.snow import SnowProperties
 

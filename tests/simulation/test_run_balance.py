@@ -13,7 +13,7 @@ from skisnow._support.errors import ParameterError
 from skisnow.scenario import Profile, load_scenario
 from skisnow.simulation.moving_boots import BootHistory
 from skisnow.simulation.run import Run
-from skisnow.simulation.run_balance import balance_of
+from skisnow.simulation.run_forces import balance_of
 
 from .straight_run import STRAIGHT, straight_run
 

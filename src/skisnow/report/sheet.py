@@ -1,4 +1,4 @@
-"""A report as one self-contained HTML file: sections of sentences, figures and tables."""
+"""A report as one self-contained HTML file: sections of sentences, figures and tables, in a language."""
 
 from __future__ import annotations
 
@@ -8,14 +8,17 @@ from importlib.metadata import version
 from importlib.resources import files
 from typing import TYPE_CHECKING, Any, Final
 
+from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 
 from .._support.language import ENGLISH
-from .environment import page_environment
+from .._support.messages import Message, translated, translations
 from .table import table_html
 from .translated import translated_html
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from .figures.drawing import Picture
     from .table import Table
 
@@ -89,3 +92,24 @@ def render_template(name: str, language: str, /, **values: Any) -> str:
     """HTML of a template of this package in a language; ``css`` is the style sheet. A missing value is an error."""
     css = files("skisnow.report").joinpath("templates", "report.css").read_text(encoding="utf-8")
     return page_environment(language).get_template(name).render(css=Markup(css), **values)
+
+
+def page_environment(language: str, *, package: str = "skisnow.report", folder: str = "templates") -> Environment:
+    """Environment whose pages have ``{% trans %}``; ``{{ message }}`` and ``{{ value | text }}`` are translated."""
+
+    def text(value: object) -> str:
+        return translated(value, language)
+
+    environment = Environment(
+        loader=PackageLoader(package, folder), autoescape=True, undefined=StrictUndefined, trim_blocks=True,
+        extensions=["jinja2.ext.i18n"], finalize=_finalize(text),
+    )  # fmt: skip
+    environment.policies["ext.i18n.trimmed"] = True
+    environment.filters["text"] = text
+    install: Callable[..., None] = environment.install_gettext_translations  # type: ignore[attr-defined]
+    install(translations(language), newstyle=True)
+    return environment
+
+
+def _finalize(text: Callable[[object], str]) -> Callable[[Any], Any]:
+    return lambda value: text(value) if isinstance(value, Message) else value

@@ -13,14 +13,14 @@ from .._support.display import Facts, Shown, amount, field_facts, name_with_valu
 from .._support.units import DEGREE, MM
 from ..scenario import Plane, Scenario, Terrain
 from ..track.track import Track
-from .snow_forces import node_lengths
+from .run_forces import node_lengths
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     from ..contact import Laws
     from .moving_boots import BootHistory
-    from .run_balance import BalanceHistory
+    from .run_forces import BalanceHistory
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 Outcome: TypeAlias = Literal[
@@ -206,7 +206,7 @@ class Run(Shown):
     @property
     def balance(self) -> BalanceHistory:
         """How the body leant over its skis, and what would have been in balance; needs `boots`."""
-        from .run_balance import balance_of
+        from .run_forces import balance_of
 
         return balance_of(self)
 

@@ -14,8 +14,8 @@ from ..dynamics import Ended
 from ..scenario.terrain import down_and_left, heights_of, normals_of
 from .moving_boots import BootHistory
 from .run import GIVEN, LOST, STORED, Outcome, SkiHistory
+from .run_forces import AlongEdge, snow_forces, thrust_per_length
 from .run_setup import Setup
-from .snow_forces import AlongEdge, snow_forces, thrust_per_length
 
 if TYPE_CHECKING:
     from ..contact.snow_contact import Sections

@@ -89,7 +89,7 @@ READERS = (
     Reader(
         name="course.gpx", target="course.gpx", files=_course_folder,
         read=lambda folder: repr(read_course(folder / "course.gpx")), mutations=XML,
-        covers=("track.course.gpx_course:read_waypoints",),
+        covers=("track.course.course_file:read_waypoints",),
     ),
     Reader(
         name="line.csv", target="line.csv", files=_course_folder, read=_read_line, mutations=TABLE,

@@ -13,7 +13,8 @@ import re
 from ast import literal_eval
 from copy import copy
 from dataclasses import dataclass
-from functools import cached_property, lru_cache
+from functools import cache, cached_property, lru_cache
+from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from ..errors import ParameterError
@@ -199,3 +200,37 @@ def _entries(path: Path) -> Iterator[tuple[str, str]]:
         entry[key] = entry.get(key, "") + str(literal_eval(said[2]))
     if "msgstr" in entry:
         yield entry["msgid"], entry["msgstr"]
+
+
+FOLDER: Final = Path(__file__).parent / "texts"
+NAME: Final = "English"
+"""What a language calls itself: in a catalogue the translation of this word."""
+
+
+def codes() -> list[str]:
+    """The codes of all languages; a further one is one more file."""
+    return [ENGLISH, *sorted(place.stem for place in FOLDER.glob("*.po"))]
+
+
+@cache
+def languages() -> Mapping[str, str]:
+    """What each language calls itself, by its code."""
+    return {code: catalogue(code).translated(NAME) for code in codes()}
+
+
+@cache
+def catalogue(code: str) -> Catalogue:
+    """The words of a language; English has none."""
+    return Catalogue({} if code == ENGLISH else read_catalogue(FOLDER / f"{code}.po"), language=code)
+
+
+def require_language(code: str) -> None:
+    """Refuse a language before long work is done for it.
+
+    Raises
+    ------
+    ParameterError
+        There are no texts of it.
+    """
+    if code not in codes():
+        raise ParameterError(f"the language is one of {', '.join(codes())}; {code!r} is given")
