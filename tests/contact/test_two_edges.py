@@ -141,3 +141,25 @@ def test_mirrored_motions_have_the_same_bits(degrees: float) -> None:
         found.append(np.array(rows))
     size = np.abs(found[0]).max()
     assert found[1] * MIRROR == pytest.approx(found[0], abs=1e-10 * size)
+
+
+@pytest.mark.parametrize("sense", [1.0, -1.0])
+def test_loaded_height_holds_inwards_alone(sense: float) -> None:
+    """A wedge that rises by d bears (1 - κ d/e)² of its force: it then holds by that root inwards, by all outwards.
+
+    e is the depth that it was pressed to; virgin snow at the depth e - d bears ((e - d)/e)².
+    """
+    angle, deep, risen, ratio = math.radians(30.0), 2e-3, 5e-5, 10.0
+    snow = SnowField(H, S, ratio, shear_bearing="loaded-height")
+
+    def placed(depth: float, y: float) -> Placed:
+        return np.array([[0.0, y, HALF * math.sin(angle) - depth]]), edged(sense * angle)[None]
+
+    contact = SnowContact(snow, [straight(length=LENGTH, width=WIDTH)])
+    contact.update(*placed(deep, 0.0), 5e-4)
+    contact.update(*placed(deep - risen, 0.0), 5e-4)
+    tiny = 1e-3 * SHEAR_DISPLACEMENT  # the ground hardly moves under the base
+    share = (1.0 - ratio * risen / deep) / (1.0 - risen / deep)
+    for way, held in ((-sense, share), (sense, 1.0)):
+        found = wrench(contact, placed(deep - risen, way * tiny))[1]
+        assert found == pytest.approx(-way * 1e-3 * S * (deep - risen) * LENGTH * held, rel=1e-3)

@@ -217,7 +217,8 @@ void bind_laws(nb::module_& m) {
       .def_rw("friction_angle", &ShearLaw::friction_angle)
       .def_rw("least_plane", &ShearLaw::least_plane)
       .def_rw("residual_ratio", &ShearLaw::residual_ratio)
-      .def_rw("weakening", &ShearLaw::weakening);
+      .def_rw("weakening", &ShearLaw::weakening)
+      .def_rw("loaded_only", &ShearLaw::loaded_only);
 
   nb::class_<RateLaw>(m, "RateLaw")
       .def(nb::init<>())

@@ -162,6 +162,7 @@ void slide(const Motion& motion, const Pose& pose, double dt, const Snow& snow, 
 template <class V>
 struct Acting {
   V share, force, moment, friction, friction_aside, strength, thrust, used[2];
+  V loaded = all<V>(1.0);  // share of the depth that holds an edge inwards
 
   // That share at a section, where the base is or near it.
   void find_used(const Snow& snow, const GrooveLines& lines, int j, const Cut<V>& c) {
@@ -190,7 +191,8 @@ struct EdgeForces {
       const MaskOf<V> on_left = c.side > 0.0;
       const V used = within(select(on_left, by.used[0], by.used[1]), -1.0, 1.0);
       const V deep = c.shape->acts() ? maximum(V(select(on_left, c.depth[0], c.depth[1])), V{}) : c.deepest;
-      const V area = deep * by.share;
+      const MaskOf<V> inwards = select(on_left, used, V(-used)) > 0.0;
+      const V area = select(inwards, V(deep * by.loaded), deep) * by.share;
       const V all_shear = select(wet, by.strength * area * used, V{});
       shear[0] = select(on_left, all_shear, V{}), shear[1] = select(on_left, V{}, all_shear);
       add(c, {c.reach, c.grip_left, c.grip_up, c.across}, all_shear,
@@ -199,7 +201,7 @@ struct EdgeForces {
     }
     for (int k = 0; k < 2; k++) {
       const V used = within(by.used[k], -1.0, 1.0), deep = maximum(c.depth[k], V{});
-      const V slope = maximum(V(deep - maximum(c.depth[1 - k], V{})), V{});
+      const V slope = by.loaded * maximum(V(deep - maximum(c.depth[1 - k], V{})), V{});
       const V area = select(k == 0 ? used > 0.0 : used < 0.0, slope, deep) * by.share;
       shear[k] = select(wet, by.strength * area * used, V{});
       add(c, c.edge(k), shear[k], select(wet, by.thrust * area * absolute(used), V{}));
@@ -298,7 +300,8 @@ void push(const Snow& snow, const Base& base, const Pressures& pressure, const E
                        load<V>(sliding[MU] + i) * load<V>(sliding[RUB_ASIDE] + i),
                        load<V>(edge[EDGE_STRENGTH] + i),
                        load<V>(edge[EDGE_THRUST] + i),
-                       {load<V>(edge[LEFT_USED] + i), load<V>(edge[RIGHT_USED] + i)}};
+                       {load<V>(edge[LEFT_USED] + i), load<V>(edge[RIGHT_USED] + i)},
+                       snow.shear.loaded_only ? load<V>(edge[LOADED] + i) : all<V>(1.0)};
     const Pushed<V> pushed(Cut<V>::stored(base, i), by, snow);
     for (int k = 0; k < Pushed<V>::PARTS; k++) store(forces[ForceField(FORCE_0 + k)] + i, pushed.parts[k]);
     for (int k = 0; k < 6; k++) sums[k].add(i % BLOCK, pushed.parts[k]);
@@ -327,6 +330,7 @@ void differ(const Snow& snow, const GrooveLines& lines, const Sections& s, doubl
     by.share = load<V>(s[SHARE] + i);
     const V mu = load<V>(s[MU] + i);
     by.friction = mu * load<V>(s[RUB] + i), by.friction_aside = mu * load<V>(s[RUB_ASIDE] + i);
+    if (snow.shear.loaded_only) by.loaded = load<V>(s[LOADED] + i);
     by.strength = load<V>(s[EDGE_STRENGTH] + i), by.thrust = load<V>(s[EDGE_THRUST] + i);
     for (int change = 0; change < CHANGES; change++) {
       const int sides = is_level && change != SectionDifferences::OFF ? 2 : 1;

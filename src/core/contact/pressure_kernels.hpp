@@ -354,6 +354,21 @@ V strength_left(const ShearLaw& law, V slipped) {
   return 1.0 - (1.0 - law.residual_ratio) * minimum(slipped * (1.0 / law.weakening), all<V>(1.0));
 }
 
+// [loaded_share] Of a wedge with the force F the upper part alone bears F over the force of virgin snow: a height whose
+// square is in that proportion.
+template <class V>
+V loaded_share(const GrooveLines& lines, int j, const Cut<V>& c, V force) {
+  const BasePieces<V> pieces(c);
+  const V wet_to = maximum(c.wet_to, c.wet_from);
+  V virgin{};
+  for (int k = 0; k < BasePieces<V>::COUNT; k++) {
+    const V from = inside(pieces.place[k], c.wet_from, wet_to), to = inside(pieces.place[k + 1], c.wet_from, wet_to);
+    virgin += (to - from) * (pieces.at_grip[k] + 0.5 * pieces.fall[k] * (to + from));
+  }
+  virgin = load<V>(lines.values[HARDNESS] + j) * virgin;
+  return root(within(V(force / select(virgin > 0.0, virgin, all<V>(1.0))), 0.0, 1.0));
+}
+
 // [press] What the snow answers to each section, and how far the shear at its edges is displaced; how the answers grow,
 // where that is wanted.
 template <class V>
@@ -380,6 +395,7 @@ void press(const Snow& snow, const GrooveLines& lines, const Base& base, bool gr
       const MaskOf<V> holds = wet & (c.depth[k] > 0.0);
       if (any(holds)) store(edge[of_edge(LEFT_USED, k)] + i, select(holds, shear_used(snow, lines, j, c, k), none));
     }
+    if (snow.shear.loaded_only) store(edge[LOADED] + i, select(wet, loaded_share(lines, j, c, answer.force), none));
     const V left = strength_left(snow.shear, load<V>(lines.values[SLIPPED] + j));
     store(edge[STRENGTH_LEFT] + i, select(wet, left, none));
     store(edge[EDGE_STRENGTH] + i, select(wet, snow.strength_share * load<V>(lines.values[STRENGTH] + j) * left, none));

@@ -55,7 +55,11 @@ enum PressureField {
 // The hold of the snow at the edges (press, or a law from outside): share of the strength that is left after slip, shear
 // strength S_f and the thrust off the snow that comes with it (Pa); of each edge the share of the displacement to full
 // strength in use, and the part of it by which the edge was eased.
-enum EdgeField { STRENGTH_LEFT, EDGE_STRENGTH, EDGE_THRUST, LEFT_USED, RIGHT_USED, LEFT_EASED, RIGHT_EASED, EDGE_FIELDS };
+enum EdgeField {
+  STRENGTH_LEFT, EDGE_STRENGTH, EDGE_THRUST, LEFT_USED, RIGHT_USED, LEFT_EASED, RIGHT_EASED,
+  LOADED,  // share of the depth whose base bears; only where the law asks for it
+  EDGE_FIELDS
+};
 
 // Sliding (slide, or a law from outside), along the edge and aside: velocity of the base at the centre of pressure (m/s),
 // μ and its growth with the speed (s/m), share of μ in use in parts, each with the sign of its way.

@@ -52,7 +52,7 @@ void put_snow(const Snow& snow, Fields& out) {
   out.put("snow.friction_on_base", snow.friction_on_base ? 1.0 : 0.0);
   const ShearLaw& shear = snow.shear;
   out.put("snow.shear", std::vector{shear.decrease, shear.cuts ? 1.0 : 0.0, shear.friction_angle, shear.least_plane,
-                                    shear.residual_ratio, shear.weakening});
+                                    shear.residual_ratio, shear.weakening, shear.loaded_only ? 1.0 : 0.0});
   const RateLaw& rate = snow.rate;
   out.put("snow.rate", std::vector{rate.damping, rate.delayed_share, rate.retardation, rate.spacing});
   out.put("snow.knot_area", snow.knot_area);
@@ -71,8 +71,8 @@ std::shared_ptr<Snow> snow_of(const Fields& data) {
   const auto& mu = data.at("snow.friction", 8);
   out->friction = {mu[0], mu[1], mu[2], mu[3], mu[4], mu[5], mu[6] != 0.0, mu[7] != 0.0};
   out->friction_on_base = data.number("snow.friction_on_base") != 0.0;
-  const auto& shear = data.at("snow.shear", 6);
-  out->shear = {shear[0], shear[1] != 0.0, shear[2], shear[3], shear[4], shear[5]};
+  const auto& shear = data.at("snow.shear", 7);
+  out->shear = {shear[0], shear[1] != 0.0, shear[2], shear[3], shear[4], shear[5], shear[6] != 0.0};
   const auto& rate = data.at("snow.rate", 4);
   out->rate = {rate[0], rate[1], rate[2], rate[3]};
   out->knot_area = data.number("snow.knot_area");

@@ -23,6 +23,7 @@ struct ShearLaw {
   double least_plane = 0.087;   // φ where the edge is flatter (rad)
   double residual_ratio = 1.0;  // strength after slip over that before, reached linearly over a slip (m)
   double weakening = 1e-3;
+  bool loaded_only = false;  // inwards an edge holds by the height of the base that bears, not by all of it
 
   bool by_angle() const { return cuts || decrease != 0.0; }
 };

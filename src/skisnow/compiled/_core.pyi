@@ -48,6 +48,7 @@ class ShearLaw:
     least_plane: float
     residual_ratio: float
     weakening: float
+    loaded_only: bool
 
 class RateLaw:
     damping: float

@@ -20,7 +20,7 @@ from ..forces.penetration import PointLaw
 from ..forces.penetration.rate import DAMPING, DELAYED_SHARE, DELAYED_SPACING, RETARDATION_TIME
 from ..forces.shear import AngleShear, ConstantShear, DensityShear, MachiningShear, NaturalDensityShear, ShearLaw
 from ..forces.shear.displacement import SHEAR_DISPLACEMENT
-from ..forces.shear.slip import RESIDUAL_RATIO, SLIP_WEAKENING
+from ..forces.shear.slip import RESIDUAL_RATIO, SLIP_WEAKENING, Bearing
 from ..geometry.surfaces import Grid, Plane
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
@@ -62,6 +62,9 @@ class SnowField(Shown):
         across the ski of its own: with it the vector's part across the ski is left out.
     residual_ratio, slip_weakening
         Share of the strength that is left where an edge has slipped, 0 to 1, and the slip (m) over which it is reached.
+    shear_bearing
+        Height by which an edge holds against a motion inwards: of the whole edge, or of the part of the base that bears
+        (``loaded-height``), not with ``penetration``.
     penetration
         A law for the stress over depth and deepest depth, asked at three Gauss points of each straight piece; ``None``:
         H_V and k_u, in closed form.
@@ -99,6 +102,7 @@ class SnowField(Shown):
     strength_share: float | Grid = 1.0
     residual_ratio: float = RESIDUAL_RATIO
     slip_weakening: float = SLIP_WEAKENING
+    shear_bearing: Bearing = "whole-edge"
     penetration: PointLaw | None = None
     damping: float = DAMPING
     delayed_share: float = DELAYED_SHARE
@@ -198,6 +202,15 @@ class SnowField(Shown):
             )
 
     def _require_own_law_for_rate(self) -> None:
+        if self.penetration is not None and self.shear_bearing != "whole-edge":
+            raise ParameterError(
+                Message(
+                    "SnowField: shear_bearing compares with H_V and k_u, not with {kind}; leave it out, or give no "
+                    "penetration law",
+                    kind=type(self.penetration).__name__,
+                ),
+                code="contradiction",
+            )
         if self.penetration is not None and (self.damping > 0.0 or self.delayed_share > 0.0):
             raise ParameterError(
                 Message(
@@ -264,6 +277,7 @@ class SnowField(Shown):
     def _shear(self) -> core.ShearLaw:
         law, out = self.shear, core.ShearLaw()
         out.residual_ratio, out.weakening = self.residual_ratio, self.slip_weakening
+        out.loaded_only = self.shear_bearing == "loaded-height"
         if isinstance(law, AngleShear):
             out.decrease = law.relative_decrease
         elif isinstance(law, MachiningShear):

@@ -11,7 +11,7 @@ from .._support.errors import ParameterError, RangeWarning
 from .._support.messages import Message
 from .._support.units import DEGREE
 from ..forces.shear import AngleShear, DensityShear, MachiningShear, ShearLaw
-from ..forces.shear.slip import RESIDUAL_RATIO, SLIP_WEAKENING
+from ..forces.shear.slip import RESIDUAL_RATIO, SLIP_WEAKENING, Bearing
 from ..parameters import Condition, Quantity, declared_text, require_declared
 from ..snow.published.moessner_2013 import STRESS_BY_ANGLE
 
@@ -36,6 +36,8 @@ class Shear:
         S (N/m²), μ_t and the least (ϑ - β)/2 (rad) of ``machining``.
     residual_ratio, slip_weakening
         Share of the strength that slip leaves, and the slip (m) over which it is reached.
+    bearing
+        Height that holds an edge against a motion inwards.
     """
 
     law: Annotated[
@@ -129,6 +131,15 @@ class Shear:
             condition=Condition("shear.residual_ratio", 1.0, differs=True),
         ),
     ] = SLIP_WEAKENING
+    bearing: Annotated[
+        Bearing,
+        Quantity(
+            "shear.bearing",
+            "height that holds an edge against a motion inwards: the whole edge's, or that of the base that bears",
+            label="height that holds",
+            origin="choice: the paper's depth of the edge; no measurement decides",
+        ),
+    ] = "whole-edge"
 
     __repr__ = declared_text
 

@@ -318,6 +318,7 @@ def _snow(scenario: Scenario, laws: Laws) -> SnowField:
         strength_share=_strength_share(over_place),
         residual_ratio=scenario.shear.residual_ratio,
         slip_weakening=scenario.shear.slip_weakening,
+        shear_bearing=scenario.shear.bearing,
         penetration=laws.penetration or contact.penetration,
         damping=contact.damping,
         delayed_share=contact.delayed_share,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Final
+from typing import Final, Literal, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
@@ -45,3 +45,8 @@ def strength_left(
     gone = np.minimum(np.asarray(slip, float) / slip_weakening, 1.0)
     result: FloatArray = 1.0 - (1.0 - residual_ratio) * gone
     return result
+
+
+Bearing: TypeAlias = Literal["whole-edge", "loaded-height"]
+"""Height by which an edge holds against a motion inwards: all of its depth, or the part whose base bears, the square
+root of the force over that of virgin snow (modelling assumption)."""
