@@ -24,6 +24,7 @@ INSIDE = {
     "identification": "friction, drag and snow from tracks",
     "studies": "grids and samples of carves and runs",
     "racing": "the quickest line",
+    "design": "the ski for a wanted turn",
     "simulation": "the run of a sledge on two skis, and how exact it is",
     "skier": "plans of turns, balance",
     "carving": "a ski in equilibrium",

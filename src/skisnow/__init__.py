@@ -16,6 +16,8 @@ The public names are loaded when first used. Functions are verbs; classes are th
     A ski from a file or from the catalogue.
 ``carve``, ``rest``, ``Equilibrium``
     A ski in snow under a load, carving steadily or at rest.
+``design_ski``, ``Design``
+    The ski that makes a wanted turn.
 ``load_scenario``, ``scenario_names``, ``Scenario``
     Input of a run: a built-in scenario by name, or one from a file; `Scenario.with_` changes it.
 ``Profile``, ``Terrain``, ``SnowMap``, ``RigidSledge``, ``Solver``
@@ -74,6 +76,7 @@ if TYPE_CHECKING:
     from .comparison import Comparison
     from .comparison import compare_tracks as compare
     from .contact import ContactForces, Runner, SnowContact, SnowField
+    from .design import Design, design_ski
     from .dynamics import BootPose
     from .estimation import Analysis, analyse, results_dict
     from .identification import Identification
@@ -123,6 +126,7 @@ __all__ = [
     "ContactForces",
     "Course",
     "CourseResult",
+    "Design",
     "Equilibrium",
     "FieldDataError",
     "FitError",
@@ -162,6 +166,7 @@ __all__ = [
     "check_campaign",
     "compare",
     "course_names",
+    "design_ski",
     "identify",
     "in_slope_frame",
     "load_scenario",
@@ -209,6 +214,7 @@ _PACKAGES = {
     "carving": ("Equilibrium", "rest"),
     "carving.equilibrium": ("carve",),
     "contact": ("ContactForces", "Runner", "SnowContact", "SnowField"),
+    "design": ("Design", "design_ski"),
     "dynamics": ("BootPose",),
     "estimation": ("Analysis", "analyse", "results_dict"),
     "identification": ("Identification", "identify"),

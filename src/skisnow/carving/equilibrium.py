@@ -30,6 +30,7 @@ from .checks import (
 from .edge_line import EdgeLine
 from .laws import SnowLaws, equivalent_snow, snow_laws
 from .result import Equilibrium, equilibrium_of, radius_at_boot
+from .sensitivity import CarveDerivatives, CarveRequest
 from .solve import RIGID_PLASTIC, Conditions, Solution, solved
 
 if TYPE_CHECKING:
@@ -172,6 +173,40 @@ def carve(
         return found
     other = find(model, conditions._replace(by_reaction=not conditions.by_reaction))
     return replace(found, turn_radius_boot_other_spread=radius_at_boot(model, conditions, other))
+
+
+def differentiable_carve(
+    ski: Ski,
+    snow: SnowProperties,
+    *,
+    edge_angle: float,
+    load: float,
+    unloading_ratio: float | None = None,
+    moment: float = 0.0,
+    clamp_length: float = CLAMP_LENGTH,
+    side_force_bending: bool = True,
+    side_force_spread: SideForceSpread = "depth",
+    moment_balance: MomentBalance = "boot",
+    twist: bool = True,
+    elements: int = ELEMENTS,
+    near: Solution | None = None,
+) -> CarveDerivatives | None:
+    """Refined equilibrium of `carve` with its derivatives, without the answer's other numbers; None: not converged.
+
+    Arguments as in `carve`; `near`: a solution of nearly the same question, which is tried first.
+    """
+    ratio = _unloading_ratio(snow, unloading_ratio, None)
+    require_ranges(edge_angle, load, ratio, moment)
+    require_strength(snow)
+    model = clamped(ski, clamp_length, elements)
+    conditions = _conditions(ski, snow, edge_angle, load, moment, min(ratio, RIGID_PLASTIC), side_force_bending, twist)
+    conditions = conditions._replace(by_reaction=side_force_spread == "base-reaction")
+    if moment_balance == "free":
+        conditions = conditions._replace(pitch_of_force=math.cos(edge_angle), pitch_of_shear=math.sin(edge_angle))
+    solution = solved(model, conditions, near=near if near is not None and len(near.u) == model.size else None)
+    if not solution.converged:
+        return None
+    return CarveDerivatives(CarveRequest(model, conditions, snow.failure_shear_stress, solution, elements))
 
 
 def rest(

@@ -166,8 +166,8 @@ class CarveDerivatives:
             )
         return shape_value(self.request.model.ski, parameter)
 
-    def sensitivity(self, output: str, parameters: Iterable[str]) -> tuple[Sensitivity, ...]:
-        """Derivatives of an output by parameters.
+    def sensitivity(self, output: str, parameters: Iterable[str], *, kinks: bool = True) -> tuple[Sensitivity, ...]:
+        """Derivatives of an output by parameters; `kinks`: whether the distances to them are computed, else infinite.
 
         Raises
         ------
@@ -183,7 +183,7 @@ class CarveDerivatives:
         for name in parameters:
             value, growth = self.value(name), self._derivative(name, *found)
             relative = growth * value / found[0].value if value and found[0].value else None
-            kink = self._kink(name) / (abs(value) or 1.0)
+            kink = self._kink(name) / (abs(value) or 1.0) if kinks else math.inf
             out.append(Sensitivity(output, name, found[0].value, value, growth, relative, kink))
         return tuple(out)
 
@@ -284,8 +284,8 @@ class CarveDerivatives:
         return self._directions[name]
 
     def _shape_growth(self, name: str, edge: FloatArray) -> Shape:
-        ski, asked = self.request.model.ski, self.request
-        return shape_growth(ski, name, shape_value(ski, name), asked.model.clamp_length, asked.elements, edge)
+        model = self.request.model
+        return shape_growth(model.ski, name, model.clamp_length, self.request.elements, tuple(edge.tolist()))
 
     def _of_conditions(self, name: str) -> _Direction:
         given, numbers, strength = self.request.conditions, np.zeros(12), 0.0

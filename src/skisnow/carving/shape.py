@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING, Final, TypeAlias
 
@@ -17,7 +18,7 @@ from ..ski.beam import (
     model_nodes,
     twist_shape,
 )
-from ..ski.variation import LINEAR, varied_ski
+from ..ski.variation import LINEAR, shape_value, varied_ski
 
 if TYPE_CHECKING:
     from ..ski.ski import Ski
@@ -81,16 +82,18 @@ def shape_of(ski: Ski, clamp_length: float, elements: int, edge: FloatArray) -> 
     )
 
 
-def shape_growth(ski: Ski, name: str, value: float, clamp_length: float, elements: int, edge: FloatArray) -> Shape:
+@functools.lru_cache(maxsize=256)
+def shape_growth(ski: Ski, name: str, clamp_length: float, elements: int, edge: tuple[float, ...]) -> Shape:
     """Growth of the shape with a parameter of the ski, per its unit; meshes and tables keep their numbers of rows.
 
     Central differences of the ski alone, exact where it is linear in the parameter; else extrapolated (Richardson).
     """
+    value, places = shape_value(ski, name), np.array(edge)
     # a length moves stations over rows of the tables, between which they are linear: a small step
     step = _STEP * abs(value) if value and not name.endswith("_mm") else _STEP
 
     def central(h: float) -> Shape:
-        ends = [shape_of(varied_ski(ski, name, side * h), clamp_length, elements, edge) for side in (1.0, -1.0)]
+        ends = [shape_of(varied_ski(ski, name, side * h), clamp_length, elements, places) for side in (1.0, -1.0)]
         return ends[0].combined(ends[1], 0.5 / h, -0.5 / h)
 
     if name.startswith("edit.") or name.removeprefix("ski.") in LINEAR:

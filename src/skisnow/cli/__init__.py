@@ -28,6 +28,7 @@ def build_parser() -> argparse.ArgumentParser:
         compare,
         completion,
         convert,
+        design,
         export,
         identify,
         import_file,
@@ -54,8 +55,8 @@ def build_parser() -> argparse.ArgumentParser:
     commands = parser.add_subparsers(title="commands", metavar="COMMAND", parser_class=Parser)
     parser.set_defaults(run=lambda _: parser.print_help(), program=parser)
     every = (
-        new, import_file, check, analyse, store, reference, samples, carve, simulate, replay, turn, study, race, track,
-        compare, identify, export, convert, serve, completion, man,
+        new, import_file, check, analyse, store, reference, samples, carve, design, simulate, replay, turn, study, race,
+        track, compare, identify, export, convert, serve, completion, man,
     )  # fmt: skip
     for command in every:
         command.add_parser(commands)

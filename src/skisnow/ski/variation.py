@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import re
 from typing import TYPE_CHECKING, Any, Final
 
@@ -95,14 +96,16 @@ def varied_ski(ski: Ski, name: str, change: float) -> Ski:
         column = name.removeprefix("edit.")
         edit = SkiEdit(edit_stations(ski), {column: value})
         return edited_ski(ski, edit, name=ski.name, source=ski.source)
-    keys = ski.keys or {}
-    own = ski_of_keys(keys, like=ski)
-    if not all(
-        np.allclose(getattr(own, table), getattr(ski, table), rtol=1e-9, atol=1e-12)
-        for table in ("width", "base_height", "bending_stiffness", "torsional_stiffness")
-    ):
-        raise ParameterError(
-            Message("{name}: the tables of the ski {ski} are not those of its keys.", name=name, ski=ski.name),
-            code="no_keys",
-        )
-    return ski_of_keys(changed_keys(keys, {name.removeprefix("ski."): value}), like=ski)
+    _require_own_tables(ski)
+    return ski_of_keys(changed_keys(ski.keys or {}, {name.removeprefix("ski."): value}), like=ski)
+
+
+@functools.lru_cache(maxsize=64)
+def _require_own_tables(ski: Ski) -> None:
+    """Reject a ski whose tables were changed after it was read."""
+    own = ski_of_keys(ski.keys or {}, like=ski)
+    for table in ("width", "base_height", "bending_stiffness", "torsional_stiffness"):
+        if not np.allclose(getattr(own, table), getattr(ski, table), rtol=1e-9, atol=1e-12):
+            raise ParameterError(
+                Message("the tables of the ski {ski} are not those of its keys.", ski=ski.name), code="no_keys"
+            )

@@ -11,6 +11,7 @@ from tempfile import TemporaryDirectory
 
 from skisnow import read_study
 from skisnow._support.processes.dask_cluster import scheduler_of
+from skisnow.design import read_design
 from skisnow.studies import merge_shards, read_table, run_shard, run_study
 from skisnow.studies.table import stored_rows
 
@@ -101,7 +102,33 @@ def _rows(name: str, target: str, files: Callable[[], Files], read: Callable[[Pa
     return Reader(name=name, target=target, files=files, read=read, mutations=SQLITE, covers=covers)
 
 
+_DESIGN = """ski = "slalom"
+monotone = ["EI_N_m2"]
+starts = 8
+seed = 1
+[variables]
+waist_width_mm = [64, 72]
+"EI_N_m2[2]" = [200, 300]
+[[conditions]]
+published = "race-piste"
+unloading_ratio = 10
+edge_angle_deg = [30, 60]
+load_N = 800
+[[goals]]
+output = "turn_radius_boot_m"
+target = 12.0
+over = "worst"
+[[constraints]]
+terms = { tip_width_mm = 1, waist_width_mm = -1 }
+at_least = 20
+"""
+
 READERS = (
+    Reader(
+        name="design.toml", target="design.toml", files=lambda: {"design.toml": _DESIGN.encode()},
+        read=lambda folder: repr(read_design(folder / "design.toml")), mutations=TOML,
+        covers=("design.task:read_design",),
+    ),
     Reader(
         name="study.toml", target="study.toml", files=lambda: {"study.toml": (_STUDY % "table.csv").encode()},
         read=lambda folder: repr(read_study(folder / "study.toml")), mutations=TOML,

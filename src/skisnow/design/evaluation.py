@@ -1,0 +1,149 @@
+"""Outputs of a design at its conditions, with exact derivatives by the variables."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from .._support.errors import ParameterError, SolverError
+from .._support.messages import Message
+from ..carving.answer import asked_snow
+from ..carving.equilibrium import differentiable_carve
+from ..ski.ski_file import ski_of_keys
+from .variables import COMBINED, combined_names, designed_keys, start_value
+
+if TYPE_CHECKING:
+    from ..carving.keys import CarveQuestion
+    from ..carving.sensitivity import CarveDerivatives
+    from ..carving.solve import Solution
+    from ..ski import Ski
+    from ..snow import SnowProperties
+    from .task import DesignTask, Goal
+
+FloatArray: TypeAlias = npt.NDArray[np.float64]
+
+
+@dataclass(slots=True, eq=False)
+class Evaluator:
+    """Equilibria of a task's ski at its conditions, each computed once; variables count from 0 to 1 of their bounds."""
+
+    task: DesignTask
+    equilibria: int = 0
+    snows: tuple[SnowProperties, ...] = ()
+    _near: dict[int, Solution] = field(default_factory=dict)
+    _points: dict[bytes, tuple[CarveDerivatives, ...]] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        self.snows = tuple(asked_snow(each, self.task.sources) for each in self.task.conditions)
+
+    @property
+    def start(self) -> FloatArray:
+        """The ski to begin with, moved into the bounds."""
+        keys = self.task.ski.keys or {}
+        values = [(start_value(keys, each.name) - each.lowest) / each.width for each in self.task.variables]
+        return np.clip(values, 0.0, 1.0)
+
+    def values(self, z: FloatArray) -> FloatArray:
+        """Values of the variables, in the units of the ski file."""
+        return np.array([each.lowest + each.width * share for each, share in zip(self.task.variables, z, strict=True)])
+
+    def keys(self, z: FloatArray) -> dict[str, Any]:
+        """Keys of the ski file."""
+        return designed_keys(self.task.ski.keys or {}, self.task.variables, self.values(z).tolist())
+
+    def points(self, z: FloatArray) -> tuple[CarveDerivatives, ...]:
+        """Refined equilibria at all conditions.
+
+        Raises
+        ------
+        SolverError
+            There is no such ski, or no equilibrium.
+        """
+        place = z.tobytes()
+        if place not in self._points:
+            if len(self._points) > 3:
+                self._points.pop(next(iter(self._points)))
+            try:
+                ski = ski_of_keys(self.keys(z))
+            except ParameterError as error:
+                raise SolverError(Message("there is no such ski: {reason}", reason=error), code="no_ski") from error
+            self._points[place] = tuple(self._point(n, ski, each) for n, each in enumerate(self.task.conditions))
+        return self._points[place]
+
+    def _point(self, number: int, ski: Ski, asked: CarveQuestion) -> CarveDerivatives:
+        self.equilibria += 1
+        found = carve_at(ski, asked, self.snows[number], near=self._near.get(number))
+        if found is None:
+            raise SolverError(
+                Message("there is no equilibrium at condition {number}.", number=number + 1), code="no_equilibrium"
+            )
+        self._near[number] = found.at.solution
+        return found
+
+    def goal_values(self, goal: Goal, z: FloatArray) -> FloatArray:
+        """The goal's output at each of its conditions, or the ratio of two."""
+        values = np.array([_output(point, goal.output) for point in self._chosen(goal, z)])
+        return values[:1] / values[1:] if goal.ratio else values
+
+    def goal_growth(self, goal: Goal, z: FloatArray) -> FloatArray:
+        """Growth of these with the variables, shape (values, variables)."""
+        values = self.goal_values(goal, z)
+        rows = np.array([self.output_growth(point, goal.output, z) for point in self._chosen(goal, z)])
+        if goal.ratio:
+            second = _output(self._chosen(goal, z)[1], goal.output)
+            return np.asarray((rows[:1] - values[0] * rows[1:]) / second)
+        return rows
+
+    def output_growth(self, point: CarveDerivatives, output: str, z: FloatArray) -> FloatArray:
+        """Growth of an output at a condition with each variable, from 0 to 1 of its bounds."""
+        out = []
+        for variable, value in zip(self.task.variables, self.values(z), strict=True):
+            growth = sum(
+                each.derivative for each in point.sensitivity(output, combined_names(variable.name), kinks=False)
+            )
+            out.append(growth * variable.width * self._factor(variable.name, value, z))
+        return np.array(out)
+
+    def _factor(self, name: str, value: float, z: FloatArray) -> float:
+        """What a parameter of the ski grows by with a variable: factors and rows of a list multiply each other."""
+        if name in COMBINED:
+            return 1.0 if name == "sidecut_mm" else 1.0 / value
+        now = zip(self.task.variables, self.values(z), strict=True)
+        factors = {COMBINED[each.name][0]: float(at) for each, at in now if each.name in COMBINED}
+        return factors.get(name.partition("[")[0], 1.0) if "[" in name else 1.0
+
+    def _chosen(self, goal: Goal, z: FloatArray) -> list[CarveDerivatives]:
+        points = self.points(z)
+        return [points[int(number) - 1] for number in goal.conditions] if goal.conditions else list(points)
+
+
+def _output(point: CarveDerivatives, name: str) -> float:
+    value = point.output(name)
+    if value is None or not math.isfinite(value):
+        raise SolverError(Message("the carve has no {output}.", output=name), code="no_value")
+    return value
+
+
+def carve_at(
+    ski: Ski, asked: CarveQuestion, snow: SnowProperties, *, near: Solution | None = None
+) -> CarveDerivatives | None:
+    """Refined equilibrium of a question for this ski on this snow; None: not converged."""
+    return differentiable_carve(
+        ski,
+        snow,
+        edge_angle=math.radians(asked.edge_angle_deg),
+        load=asked.load_N,
+        unloading_ratio=asked.unloading_ratio,
+        moment=asked.moment_Nm,
+        clamp_length=asked.clamp_length_m,
+        side_force_bending=asked.side_force_bending,
+        side_force_spread=asked.side_force_spread,
+        moment_balance=asked.moment_balance,
+        twist=asked.twist,
+        elements=asked.elements,
+        near=near,
+    )

@@ -1,0 +1,199 @@
+"""Objective and constraints of a design, and a search from one start: SciPy's SLSQP with exact derivatives."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Final, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from .._support.errors import SolverError
+from .evaluation import Evaluator
+from .variables import designed_keys, start_value
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
+    from .task import Goal
+
+FloatArray: TypeAlias = npt.NDArray[np.float64]
+
+REACHED: Final = 1e-6
+"""Relative deviation at which a target counts as reached."""
+_NO_SKI: Final = 1e3  # objective where there is no ski or no equilibrium
+_FTOL: Final = 1e-8  # of the objective, and of relative deviations in constraints
+_PERCENT: Final = 1e4  # squares of deviations count in %
+_MOST_ITERATIONS: Final = 60
+
+
+class Search:
+    """Objective and constraints of a task, in the variables from 0 to 1, and for worst-case goals one slack each."""
+
+    def __init__(self, evaluator: Evaluator) -> None:
+        self.evaluator = evaluator
+        task = evaluator.task
+        self.targets = [goal for goal in task.goals if goal.target is not None]
+        self.limits = [goal for goal in task.goals if goal.target is None]
+        self.worst = [goal for goal in self.targets if goal.over == "worst"]
+
+    @property
+    def count(self) -> int:
+        """Number of variables."""
+        return len(self.evaluator.task.variables)
+
+    def deviations(self, goal: Goal, z: FloatArray) -> FloatArray:
+        """Relative deviations from a target, times the root of the goal's weight."""
+        return np.asarray(np.sqrt(goal.weight) * (self.evaluator.goal_values(goal, z) / (goal.target or 1.0) - 1.0))
+
+    def deviation_growth(self, goal: Goal, z: FloatArray) -> FloatArray:
+        """Growth of these, shape (values, variables)."""
+        return np.asarray(np.sqrt(goal.weight) * self.evaluator.goal_growth(goal, z) / (goal.target or 1.0))
+
+    def room(self, goal: Goal, z: FloatArray) -> FloatArray:
+        """How far a limit is kept, relative; negative where it is broken."""
+        limit, side = (goal.at_most, -1.0) if goal.at_most is not None else (goal.at_least or 1.0, 1.0)
+        return np.asarray(side * (self.evaluator.goal_values(goal, z) / limit - 1.0))
+
+    def room_growth(self, goal: Goal, z: FloatArray) -> FloatArray:
+        """Growth of that, shape (values, variables)."""
+        limit, side = (goal.at_most, -1.0) if goal.at_most is not None else (goal.at_least or 1.0, 1.0)
+        return np.asarray(side * self.evaluator.goal_growth(goal, z) / limit)
+
+    def objective(self, x: FloatArray) -> float:
+        """Sum of squares of deviations and slacks, in %."""
+        z, slack = x[: self.count], x[self.count :]
+        try:
+            squares = [float(np.sum(self.deviations(goal, z) ** 2)) for goal in self.targets if goal.over == "mean"]
+        except SolverError:
+            return _NO_SKI
+        return _PERCENT * (sum(squares) + float(slack @ slack))
+
+    def gradient(self, x: FloatArray) -> FloatArray:
+        """Gradient of the objective."""
+        z, out = x[: self.count], 2.0 * np.concatenate([np.zeros(self.count), x[self.count :]])
+        for goal in self.targets:
+            if goal.over == "mean":
+                out[: self.count] += 2.0 * self.deviations(goal, z) @ self.deviation_growth(goal, z)
+        return _PERCENT * out
+
+    def constraints(self, *, exact: bool = False) -> list[dict[str, Any]]:
+        """Limits, linear constraints, slacks; `exact`: all targets as equalities."""
+        found = [_constraint(self, self.room, self.room_growth, goal) for goal in self.limits]
+        if exact:
+            found += [
+                _constraint(self, self.deviations, self.deviation_growth, goal, kind="eq") for goal in self.targets
+            ]
+        else:
+            for number, goal in enumerate(self.worst):
+                found += [_slack(self, goal, number, side) for side in (1.0, -1.0)]
+        matrix, lowest = linear_constraints(self.evaluator)
+        if len(lowest):
+            found.append(
+                {"type": "ineq", "fun": lambda x: matrix @ x[: self.count] - lowest, "jac": self._padded(matrix)}
+            )
+        return found
+
+    def _padded(self, matrix: FloatArray) -> Callable[[FloatArray], FloatArray]:
+        return lambda x: np.pad(matrix, ((0, 0), (0, len(x) - self.count)))
+
+    def run(self, z: FloatArray) -> FloatArray:
+        """Smallest deviations from a start; where all targets are reached, the design with the least change."""
+        from scipy import optimize
+
+        minimize: Any = optimize.minimize  # its overloads know no vectors of constraints
+
+        slack = [float(np.max(np.abs(self.deviations(goal, z)))) for goal in self.worst]
+        options = {"ftol": _FTOL, "maxiter": _MOST_ITERATIONS}
+        bounds = [(0.0, 1.0)] * self.count + [(0.0, None)] * len(slack)
+        begin = np.concatenate([z, slack])
+        if self.targets:
+            found = minimize(
+                self.objective, begin, jac=self.gradient, method="SLSQP", bounds=bounds,
+                constraints=self.constraints(), options=options,
+            )  # fmt: skip
+            z = np.clip(found.x[: self.count], 0.0, 1.0)
+            if self.worst_deviation(z) > 1e-3:
+                return z
+        home = self.evaluator.start
+        nearest = minimize(
+            lambda x: float((x - home) @ (x - home)), z, jac=lambda x: 2.0 * (x - home), method="SLSQP",
+            bounds=bounds[: self.count], constraints=self.constraints(exact=True), options=options,
+        )  # fmt: skip
+        near = np.clip(nearest.x, 0.0, 1.0)
+        return near if self.broken(near) <= REACHED and self.worst_deviation(near) <= REACHED else z
+
+    def worst_deviation(self, z: FloatArray) -> float:
+        """Largest relative deviation from a target; 0 without targets."""
+        try:
+            return max((float(np.max(np.abs(self.deviations(goal, z)))) for goal in self.targets), default=0.0)
+        except SolverError:
+            return _NO_SKI
+
+    def broken(self, z: FloatArray) -> float:
+        """Largest breach of limits and linear constraints, relative."""
+        matrix, lowest = linear_constraints(self.evaluator)
+        try:
+            rooms = [float(np.min(self.room(goal, z))) for goal in self.limits]
+        except SolverError:
+            return _NO_SKI
+        return max([0.0, *(-room for room in rooms), *(lowest - matrix @ z).tolist()])
+
+    def result(self, z: FloatArray) -> float:
+        """Value of a design: mean squares, and squares of worst deviations, where the limits are kept."""
+        if self.broken(z) > REACHED:
+            return _NO_SKI * (1.0 + self.broken(z))
+        slack = [float(np.max(np.abs(self.deviations(goal, z)))) for goal in self.worst]
+        home = self.evaluator.start
+        nearest = 1e-9 * float((z - home) @ (z - home))  # among designs that reach all targets
+        return self.objective(np.concatenate([z, slack])) + nearest
+
+
+def _constraint(search: Search, value: Any, growth: Any, goal: Goal, *, kind: str = "ineq") -> dict[str, Any]:
+    def fun(x: FloatArray) -> FloatArray:
+        try:
+            return np.asarray(value(goal, x[: search.count]))
+        except SolverError:
+            return np.full(len(goal.conditions or search.evaluator.task.conditions), -_NO_SKI)
+
+    return {"type": kind, "fun": fun, "jac": lambda x: search._padded(growth(goal, x[: search.count]))(x)}
+
+
+def _slack(search: Search, goal: Goal, number: int, side: float) -> dict[str, Any]:
+    """Slack + side × deviation is 0 or more."""
+
+    def fun(x: FloatArray) -> FloatArray:
+        try:
+            return np.asarray(x[search.count + number] + side * search.deviations(goal, x[: search.count]))
+        except SolverError:
+            return np.full(len(goal.conditions or search.evaluator.task.conditions), -_NO_SKI)
+
+    def jac(x: FloatArray) -> FloatArray:
+        out = search._padded(side * search.deviation_growth(goal, x[: search.count]))(x)
+        out[:, search.count + number] = 1.0
+        return out
+
+    return {"type": "ineq", "fun": fun, "jac": jac}
+
+
+def linear_constraints(evaluator: Evaluator) -> tuple[FloatArray, FloatArray]:
+    """Rows a and limits b of a·z ≥ b, each over the size of its limit in the units of the ski file."""
+    task = evaluator.task
+    keys = task.ski.keys or {}
+
+    def total(terms: Mapping[str, float], z: FloatArray) -> float:
+        now = designed_keys(keys, task.variables, evaluator.values(z).tolist())
+        return sum(factor * start_value(now, name) for name, factor in terms.items())
+
+    rows, limits = [], []
+    zero = np.zeros(len(task.variables))
+    for each in task.constraints:
+        base = total(each.terms, zero)
+        row = np.array([total(each.terms, zero + one) - base for one in np.eye(len(zero))])
+        size = float(np.max(np.abs(row), initial=0.0)) or 1.0
+        if np.isfinite(each.at_least):
+            rows.append(row / size)
+            limits.append((each.at_least - base) / size)
+        if np.isfinite(each.at_most):
+            rows.append(-row / size)
+            limits.append((base - each.at_most) / size)
+    return np.array(rows).reshape(-1, len(zero)), np.array(limits)

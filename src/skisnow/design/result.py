@@ -1,0 +1,297 @@
+"""A design: the ski before and after, its outputs, the local optima, goals that were not reached, files."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import math
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from .._support.display import Facts, Shown
+from .._support.messages import Message
+from .._support.staging import write_file
+from .._support.units import N_PER_MM2, N_PER_MM3
+from ..carving.outputs import OUTPUTS
+from ..ski import Ski
+from ..ski.ski_file import ski_of_keys, write_keys
+from .evaluation import carve_at
+from .problem import Search, linear_constraints
+
+if TYPE_CHECKING:
+    from ..carving.sensitivity import CarveDerivatives
+    from .task import Goal
+
+FloatArray: TypeAlias = npt.NDArray[np.float64]
+
+_AT_BOUND: Final = 1e-6  # of the distance of the bounds
+_SAME_RESULT: Final = 1e-3  # relative, of two starts that reached the same optimum
+_SAME_DESIGN: Final = 0.02  # of the bounds
+_MISSED: Final = 1e-4  # relative deviation of a target that is reported
+CONFIRM: Final = Message(
+    "Confirm the ski by simulated runs and on snow: a carve is a steady turn on one snow, without skier."
+)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Start:
+    """A start of the search: where it began and ended (variables from 0 to 1), its result, its equilibria."""
+
+    begin: FloatArray
+    end: FloatArray | None
+    result: float
+    equilibria: int
+
+
+@dataclass(frozen=True, slots=True)
+class DesignRow:
+    """An output at a condition, None where it does not exist.
+
+    Attributes
+    ----------
+    condition, output
+        Number of the condition, from 1; name.
+    before, after, rounded
+        Of the ski to begin with, the design and the rounded design.
+    change_percent
+        Of the design against before.
+    half_interval
+        Half the 95 % interval that the snow's intervals give, to first order.
+    """
+
+    condition: int
+    output: str
+    before: float | None
+    after: float | None
+    rounded: float | None
+    change_percent: float | None
+    half_interval: float | None
+
+
+@dataclass(frozen=True, slots=True)
+class Optimum:
+    """A local optimum: its result and the share of starts that reached it."""
+
+    result: float
+    share: float
+    values: dict[str, float]
+
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Design(Shown):
+    """Result of a design.
+
+    Attributes
+    ----------
+    before, ski
+        The ski to begin with, and the design.
+    keys, rounded_keys
+        Keys of the design's ski file with all digits, and rounded to 0.1 mm and 1 N m².
+    values
+        Variables of the design, in the units of the ski file.
+    rows
+        Outputs at each condition.
+    reached
+        Whether all goals are reached.
+    remarks
+        Goals that are not reached, with the reason; bounds and constraints that are active.
+    optima
+        Local optima, the best first.
+    equilibria
+        Number of equilibria that the search computed.
+
+    See Also
+    --------
+    skisnow.design_ski
+    """
+
+    before: Ski
+    ski: Ski
+    keys: dict[str, Any]
+    rounded_keys: dict[str, Any]
+    values: dict[str, float]
+    rows: tuple[DesignRow, ...]
+    reached: bool
+    remarks: tuple[Message, ...]
+    optima: tuple[Optimum, ...]
+    equilibria: int
+
+    def _facts(self) -> Facts:
+        values = ", ".join(f"{name} {value:.6g}" for name, value in self.values.items())
+        return Facts("all goals reached" if self.reached else "not all goals reached", (("design", values),))
+
+    def as_dict(self) -> dict[str, Any]:
+        """The result as JSON values."""
+        return {
+            "schema_version": 1,
+            "reached": self.reached,
+            "values": self.values,
+            "keys": self.keys,
+            "rounded_keys": self.rounded_keys,
+            "rows": [asdict(row) for row in self.rows],
+            "remarks": [str(each) for each in self.remarks],
+            "optima": [asdict(each) for each in self.optima],
+            "equilibria": self.equilibria,
+        }
+
+    def write(self, folder: str | Path) -> tuple[Path, ...]:
+        """Write ``ski.toml`` (9 digits), ``ski-rounded.toml``, ``table.csv`` and ``design.json``; returns their paths.
+
+        Raises
+        ------
+        OutputError
+            A file cannot be written.
+        """
+        folder = Path(folder)
+        folder.mkdir(parents=True, exist_ok=True)
+        paths = [folder / name for name in ("ski.toml", "ski-rounded.toml", "table.csv", "design.json")]
+        write_keys(self.keys, paths[0])
+        write_keys(self.rounded_keys, paths[1])
+        text = io.StringIO()
+        table = csv.DictWriter(text, DesignRow.__slots__, lineterminator="\n")
+        table.writeheader()
+        table.writerows({k: "" if v is None else v for k, v in asdict(row).items()} for row in self.rows)
+        write_file(paths[2], text.getvalue())
+        write_file(paths[3], json.dumps(self.as_dict(), ensure_ascii=False, allow_nan=False, indent=1) + "\n")
+        return tuple(paths)
+
+
+def design_of(search: Search, z: FloatArray, starts: tuple[Start, ...]) -> Design:
+    """The design at variables from 0 to 1."""
+    evaluator, task = search.evaluator, search.evaluator.task
+    keys = evaluator.keys(z) | {
+        "name": f"{task.ski.name}, designed",
+        "source": f"designed by skisnow from the ski {task.ski.name}",
+    }
+    keys = {key: _digits(value) for key, value in keys.items()}
+    rounded = {key: _rounded(key, value) for key, value in keys.items()}
+    remarks = _missed_goals(search, z)
+    return Design(
+        before=task.ski,
+        ski=ski_of_keys(keys),
+        keys=keys,
+        rounded_keys=rounded,
+        values={each.name: float(value) for each, value in zip(task.variables, evaluator.values(z), strict=True)},
+        rows=_rows(search, keys, rounded),
+        reached=not remarks,
+        remarks=(*remarks, *_active(search, z), CONFIRM),
+        optima=_optima(search, starts),
+        equilibria=evaluator.equilibria,
+    )
+
+
+def _digits(value: Any) -> Any:
+    """Numbers with the nine digits of the file, so that the answer is that of the file."""
+    if isinstance(value, list):
+        return [_digits(each) for each in value]
+    return float(f"{value:.9g}") if isinstance(value, float) else value
+
+
+def _rounded(key: str, value: Any) -> Any:
+    if isinstance(value, list):
+        return [_rounded(key, each) for each in value]
+    if not isinstance(value, float):
+        return value
+    return round(value, 0 if key.endswith("N_m2") else 1 if key.endswith("_mm") else 3)
+
+
+def _rows(search: Search, keys: dict[str, Any], rounded: dict[str, Any]) -> tuple[DesignRow, ...]:
+    evaluator = search.evaluator
+    skis = [search.evaluator.task.ski, ski_of_keys(keys), ski_of_keys(rounded)]
+    rows = []
+    for number, asked in enumerate(evaluator.task.conditions):
+        found = [carve_at(ski, asked, evaluator.snows[number]) for ski in skis]
+        for output in OUTPUTS:
+            before, after, after_rounding = (None if point is None else point.output(output) for point in found)
+            change = None if not before or after is None else 100.0 * (after / before - 1.0)
+            half = None if found[1] is None or after is None else _half_interval(search, number, found[1], output)
+            rows.append(DesignRow(number + 1, output, before, after, after_rounding, change, half))
+    return tuple(rows)
+
+
+def _half_interval(search: Search, number: int, point: CarveDerivatives, output: str) -> float | None:
+    """Half the 95 % interval of an output by those of H_V and S_f, to first order; None where the snow has none."""
+    snow = search.evaluator.snows[number]
+    parts = [
+        (name, interval, unit)
+        for name, interval, unit in (
+            ("snow.H_V_N_per_mm3", snow.snow_hardness_interval, N_PER_MM3),
+            ("snow.S_f_N_per_mm2", snow.failure_shear_stress_interval, N_PER_MM2),
+        )
+        if interval is not None
+    ]
+    if not parts:
+        return None
+    growth = point.sensitivity(output, [name for name, _, _ in parts], kinks=False)
+    halves = [each.derivative * (i[1] - i[0]) / 2.0 / unit for each, (_, i, unit) in zip(growth, parts, strict=True)]
+    return math.hypot(*halves)
+
+
+def _missed_goals(search: Search, z: FloatArray) -> list[Message]:
+    active = _active(search, z)
+    reason = (
+        Message("Active are: {bounds}", bounds=" ".join(str(each) for each in active))
+        if active
+        else Message("No bound is active: the goals contradict each other, or the search ended at a local optimum.")
+    )
+    out = []
+    for goal in search.evaluator.task.goals:
+        values = search.evaluator.goal_values(goal, z)
+        missed = _miss(search, goal, z)
+        if missed > _MISSED:
+            out.append(
+                Message(
+                    "{output}: the goal {wanted:g} is not reached. The design has {values}, {missed:.2g} % off. "
+                    "{reason}",
+                    output=goal.output,
+                    wanted=goal.target or goal.at_most or goal.at_least,
+                    values=[float(f"{value:.6g}") for value in values],
+                    missed=100.0 * missed,
+                    reason=reason,
+                )
+            )
+    return out
+
+
+def _miss(search: Search, goal: Goal, z: FloatArray) -> float:
+    if goal.target is None:
+        return -float(np.min(search.room(goal, z)))
+    return float(np.max(np.abs(search.evaluator.goal_values(goal, z) / goal.target - 1.0)))
+
+
+def _active(search: Search, z: FloatArray) -> list[Message]:
+    out = []
+    for variable, share in zip(search.evaluator.task.variables, z, strict=True):
+        for at, bound in ((share, variable.lowest), (1.0 - share, variable.highest)):
+            if at <= _AT_BOUND:
+                out.append(Message("{name} is at its bound {bound:g}.", name=variable.name, bound=bound))
+    matrix, lowest = linear_constraints(search.evaluator)
+    for number in np.flatnonzero(matrix @ z - lowest <= _AT_BOUND):
+        out.append(Message("Constraint {number} is active.", number=int(number) + 1))
+    return out
+
+
+def _optima(search: Search, starts: tuple[Start, ...]) -> tuple[Optimum, ...]:
+    found: list[tuple[Start, int]] = []
+    for start in sorted((each for each in starts if each.end is not None), key=lambda each: each.result):
+        for n, (first, count) in enumerate(found):
+            near = abs(start.result - first.result) <= _SAME_RESULT * abs(first.result) + 1e-12
+            if near and np.max(np.abs(np.subtract(start.end, first.end))) <= _SAME_DESIGN:  # type: ignore[arg-type]
+                found[n] = (first, count + 1)
+                break
+        else:
+            found.append((start, 1))
+    names = [each.name for each in search.evaluator.task.variables]
+    return tuple(
+        Optimum(
+            first.result,
+            count / len(starts),
+            dict(zip(names, search.evaluator.values(first.end).tolist(), strict=True)) if first.end is not None else {},
+        )
+        for first, count in found
+    )

@@ -1,0 +1,279 @@
+"""A design task, DESIGN.toml: the ski to begin with, variables with bounds, conditions, goals and constraints."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Annotated, Any, Final, Literal
+
+from .._support.errors import ParameterError
+from .._support.messages import Message
+from .._support.user_files import read_toml
+from ..carving.keys import CARVE_KEYS, CarveQuestion
+from ..carving.outputs import OUTPUTS
+from ..carving.question import carve_question
+from ..parameters import Quantity, checked_table, made, nearest
+from ..ski import Ski
+from ..ski.file_keys import LISTS
+from ..ski.sources import Sources
+from ..ski.variation import shape_parameters
+from .variables import COMBINED, Variable, combined_names
+
+FEWEST_STARTS: Final = 8
+"""Starts of the search: a worst case over contact with snow has several local optima."""
+_LISTED: Final = ("edge_angle_deg", "load_N", "published")
+_WITHOUT: Final = ("ski", "groove", "footprint_stiffness_N_per_mm2", "at_rest")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Goal:
+    """A goal for one output at some conditions: a target, or a limit on one side."""
+
+    output: Annotated[str, Quantity("output", "name of an output, such as turn_radius_boot_m")]
+    target: Annotated[float | None, Quantity("target", "value to reach", lowest=0.0, above=True)] = None
+    at_most: Annotated[float | None, Quantity("at_most", "upper limit", lowest=0.0, above=True)] = None
+    at_least: Annotated[float | None, Quantity("at_least", "lower limit", lowest=0.0, above=True)] = None
+    over: Annotated[
+        Literal["mean", "worst"],
+        Quantity("over", "what of a target's relative deviations is smallest: the mean square, or the worst one"),
+    ] = "mean"
+    weight: Annotated[float, Quantity("weight", "factor of the deviations", lowest=0.0, above=True)] = 1.0
+    conditions: Annotated[
+        tuple[float, ...] | None, Quantity("conditions", "numbers of the conditions, from 1", origin="all")
+    ] = None
+    ratio: Annotated[bool, Quantity("ratio", "the output at the first of two conditions over that at the second")] = (
+        False
+    )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Constraint:
+    """Limits of a sum of keys of the ski file, each times a factor."""
+
+    terms: Mapping[str, float]
+    at_least: float = -math.inf
+    at_most: float = math.inf
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class DesignTask:
+    """A checked task.
+
+    Attributes
+    ----------
+    ski
+        The ski to begin with.
+    variables
+        What may change, in the order of the file.
+    conditions
+        Questions of a carve, one for each combination of the listed edge angles, loads and snows.
+    goals, constraints
+        As in the file.
+    starts, seed
+        Number of starts of the search, the first at the ski itself; seed of the others.
+    """
+
+    ski: Ski
+    variables: tuple[Variable, ...]
+    conditions: tuple[CarveQuestion, ...]
+    goals: tuple[Goal, ...]
+    constraints: tuple[Constraint, ...] = ()
+    starts: int = FEWEST_STARTS
+    seed: int = 1
+    sources: Sources = field(default_factory=Sources)
+
+
+def read_design(path: str | Path) -> DesignTask:
+    """Read a DESIGN.toml; paths in it start at its folder.
+
+    Raises
+    ------
+    ParameterError
+        A key is unknown or missing, or a value is not allowed; file and place are named.
+    """
+    path = Path(path)
+    try:
+        return design_task(read_toml(path), sources=Sources(folder=path.parent))
+    except ParameterError as error:
+        raise (error if str(error).startswith(str(path)) else error.at(path)) from error
+
+
+def design_task(values: Mapping[str, Any], *, sources: Sources | None = None) -> DesignTask:
+    """Check a task of the form of DESIGN.toml."""
+    known = ("ski", "variables", "conditions", "goals", "constraints", "monotone", "starts", "seed")
+    for name in values:
+        if name not in known:
+            _refuse(Message("there is no {name}. {allowed}", name=name, allowed=nearest(name, known)), "unknown_name")
+    for name in ("ski", "variables", "conditions", "goals"):
+        if not values.get(name):
+            _refuse(Message("{name} is missing. Add it, as on the page docs/files/design.md.", name=name), "missing")
+    _require_tables(values)
+    sources = sources or Sources()
+    ski, _ = sources.ski(str(values["ski"]))
+    if ski.keys is None:
+        _refuse(
+            Message(
+                "the ski {ski} has a table or a shape file. A design changes keys of a ski file: give lengths, widths "
+                "and lists of stiffness as keys.",
+                ski=ski.name,
+            ),
+            "no_keys",
+        )
+    conditions = tuple(
+        itertools.chain.from_iterable(map(_conditions, values["conditions"], itertools.repeat(ski.name)))
+    )
+    goals = tuple(_goal(n, table, len(conditions)) for n, table in enumerate(values["goals"], start=1))
+    constraints = [_constraint(table) for table in values.get("constraints", ())]
+    for key in values.get("monotone", ()):
+        constraints += _monotone(ski, str(key))
+    return DesignTask(
+        ski=ski,
+        variables=tuple(_variable(ski, name, bounds) for name, bounds in values["variables"].items()),
+        conditions=conditions,
+        goals=goals,
+        constraints=tuple(constraints),
+        starts=_whole("starts", values.get("starts", FEWEST_STARTS), 1),
+        seed=_whole("seed", values.get("seed", 1), 0),
+        sources=sources,
+    )
+
+
+def _require_tables(values: Mapping[str, Any]) -> None:
+    """Check that each key has a value of its kind."""
+    variables, monotone = values["variables"], values.get("monotone", [])
+    if not isinstance(variables, dict):
+        _refuse(Message("variables is {value}. Write it as a table: [variables].", value=variables), "wrong_kind")
+    if not isinstance(monotone, list) or not all(isinstance(each, str) for each in monotone):
+        _refuse(Message('monotone is {value}. Write a list, such as ["EI_N_m2"].', value=monotone), "wrong_kind")
+    for name in ("conditions", "goals", "constraints"):
+        tables = values.get(name, [])
+        if not isinstance(tables, list) or not all(isinstance(each, dict) for each in tables):
+            _refuse(Message("{name} is {value}. Write tables: [[{name}]].", name=name, value=tables), "wrong_kind")
+
+
+def _refuse(problem: Message, code: str) -> None:
+    raise ParameterError(problem, code=code)
+
+
+def _whole(name: str, value: object, lowest: int) -> int:
+    if not isinstance(value, int) or isinstance(value, bool) or value < lowest:
+        raise ParameterError(
+            Message("{name} is {value}. Allowed: a whole number from {lowest}.", name=name, value=value, lowest=lowest),
+            code="out_of_range",
+        )
+    return value
+
+
+def _variable(ski: Ski, name: str, bounds: object) -> Variable:
+    known = (*(each.removeprefix("ski.") for each in shape_parameters(ski) if each.startswith("ski.")), *COMBINED)
+    if name not in known:
+        _refuse(
+            Message("variables: there is no {name}. {allowed}", name=name, allowed=nearest(name, known)), "unknown_name"
+        )
+    if (
+        not isinstance(bounds, list | tuple)
+        or len(bounds) != 2
+        or not all(map(_is_number, bounds))
+        or bounds[0] >= bounds[1]
+    ):
+        raise ParameterError(
+            Message(
+                "variables: {name} is {value}. Allowed: a lower and a higher bound, such as [64, 72].",
+                name=name,
+                value=bounds,
+            ),
+            code="out_of_range",
+        )
+    return Variable(name, float(bounds[0]), float(bounds[1]))
+
+
+def _is_number(value: object) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
+
+
+def _conditions(table: Mapping[str, Any], ski: str) -> list[CarveQuestion]:
+    for name in table:
+        if name not in CARVE_KEYS or name in _WITHOUT:
+            known = [key for key in CARVE_KEYS if key not in _WITHOUT]
+            _refuse(
+                Message("conditions: there is no {name}. {allowed}", name=name, allowed=nearest(name, known)),
+                "unknown_name",
+            )
+    lists = {name: table[name] for name in _LISTED if isinstance(table.get(name), list)}
+    return [
+        carve_question({**table, "ski": ski, **dict(zip(lists, each, strict=True))})
+        for each in itertools.product(*lists.values())
+    ]
+
+
+def _goal(number: int, table: Mapping[str, Any], conditions: int) -> Goal:
+    place = f"goals, {number}"
+    goal: Goal = made(Goal, checked_table(Goal, table, place))
+    if goal.output not in OUTPUTS:
+        raise ParameterError(
+            Message(
+                "{place}: there is no output {name}. {allowed}",
+                place=place,
+                name=goal.output,
+                allowed=nearest(goal.output, OUTPUTS),
+            ),
+            code="unknown_name",
+        )
+    if sum(each is not None for each in (goal.target, goal.at_most, goal.at_least)) != 1:
+        raise ParameterError(
+            Message("{place}: give one of target, at_most and at_least.", place=place), code="contradiction"
+        )
+    chosen = goal.conditions or tuple(range(1, conditions + 1))
+    if any(not 1 <= each <= conditions or each != int(each) for each in chosen) or (goal.ratio and len(chosen) != 2):
+        raise ParameterError(
+            Message(
+                "{place}: conditions is {chosen}. Allowed: numbers from 1 to {count}, two of them for a ratio.",
+                place=place,
+                chosen=list(chosen),
+                count=conditions,
+            ),
+            code="out_of_range",
+        )
+    return goal
+
+
+def _constraint(table: Mapping[str, Any]) -> Constraint:
+    terms = table.get("terms")
+    limits = {name: table[name] for name in ("at_least", "at_most") if name in table}
+    sound = (
+        isinstance(terms, dict)
+        and terms
+        and all(isinstance(each, str) for each in terms)
+        and all(map(_is_number, terms.values()))
+        and limits
+    )
+    if not sound or set(table) - {"terms", "at_least", "at_most"} or not all(map(_is_number, limits.values())):
+        raise ParameterError(
+            Message(
+                "constraints: {table} is not allowed. Write terms = {{tip_width_mm = 1, waist_width_mm = -1}} and "
+                "at_least or at_most.",
+                table=dict(table),
+            ),
+            code="out_of_range",
+        )
+    return Constraint(terms=dict(terms or {}), **limits)
+
+
+def _monotone(ski: Ski, key: str) -> list[Constraint]:
+    """A stiffness that rises from the tip to the largest row of the start, and falls behind it."""
+    values = (ski.keys or {}).get(key)
+    if key not in LISTS or not isinstance(values, list):
+        raise ParameterError(
+            Message("monotone: {key} is no list of stiffness of this ski.", key=key), code="unknown_name"
+        )
+    top = values.index(max(values))
+    pairs = ((row, row + 1) if row < top else (row + 1, row) for row in range(len(values) - 1))
+    return [
+        Constraint(terms={f"{key}[{high + 1}]": 1.0, f"{key}[{low + 1}]": -1.0}, at_least=0.0) for low, high in pairs
+    ]
+
+
+__all__ = ["Constraint", "DesignTask", "Goal", "combined_names", "design_task", "read_design"]

@@ -1,0 +1,154 @@
+"""Designs: confirmed by the public carve from the written file, limits kept, what is out of reach is said."""
+
+from __future__ import annotations
+
+import json
+import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import skisnow
+from skisnow._support.errors import ParameterError
+from skisnow.cli import main
+from skisnow.design.evaluation import Evaluator
+from skisnow.design.problem import Search
+from skisnow.design.task import design_task
+from tests.coded import raises
+
+RACE: dict[str, Any] = {"H_V_N_per_mm3": 0.21, "S_f_N_per_mm2": 0.52, "unloading_ratio": 10, "load_N": 800}
+TWELVE: dict[str, Any] = {
+    "ski": "slalom",
+    "variables": {"sidecut_mm": [-10, 10], "EI_factor": [0.6, 1.6]},
+    "conditions": [{**RACE, "edge_angle_deg": 45}],
+    "goals": [{"output": "turn_radius_boot_m", "target": 12.0}],
+    "starts": 2,
+}
+
+
+def carved(path: Path, *, edge_angle_deg: float = 45.0, hardness: float = 0.21) -> skisnow.Equilibrium:
+    snow = skisnow.SnowProperties(hardness * 1e9, 0.52e6, source="test")
+    angle = math.radians(edge_angle_deg)
+    return skisnow.carve(skisnow.read_ski(path), snow, edge_angle=angle, load=800.0, unloading_ratio=10.0)
+
+
+def test_twelve_metres_from_the_file(tmp_path: Path) -> None:
+    found = skisnow.design_ski(TWELVE)
+    assert found.reached
+    ski, rounded, *_ = found.write(tmp_path)
+    assert carved(ski).turn_radius_boot == pytest.approx(12.0, rel=1e-6)
+    (row,) = (each for each in found.rows if each.output == "turn_radius_boot_m")
+    assert carved(rounded).turn_radius_boot == pytest.approx(row.rounded, rel=1e-6)
+    assert row.change_percent == pytest.approx(100.0 * (12.0 / row.before - 1.0), rel=1e-5)  # type: ignore[operator]
+    assert sum(each.share for each in found.optima) == pytest.approx(1.0)
+
+
+def test_two_targets_and_a_constraint(tmp_path: Path) -> None:
+    """Two radii fix two widths; the ratio of radii at 30° and 60° is another way to ask."""
+    task = TWELVE | {
+        "variables": {"waist_width_mm": [60, 75], "tail_width_mm": [90, 112]},
+        "conditions": [{**RACE, "edge_angle_deg": [30, 60]}],
+        "goals": [{"output": "turn_radius_boot_m", "target": 12.5, "conditions": [1]},
+                  {"output": "edge_depth_mm", "at_most": 6.2, "conditions": [2]}],
+        "constraints": [{"terms": {"tail_width_mm": 1, "waist_width_mm": -1}, "at_least": 32.0}],
+        "starts": 1,
+    }  # fmt: skip
+    found = skisnow.design_ski(task)
+    assert found.reached
+    assert found.values["tail_width_mm"] - found.values["waist_width_mm"] >= 32.0 - 1e-5
+    ski = found.write(tmp_path)[0]
+    assert carved(ski, edge_angle_deg=30.0).turn_radius_boot == pytest.approx(12.5, rel=1e-6)
+
+
+def test_the_worst_of_three_snows(tmp_path: Path) -> None:
+    """A worst case has its deviations of equal size on both sides; no other sidecut does better."""
+    snows = (0.04, 0.21, 1.0)
+    task = TWELVE | {
+        "variables": {"sidecut_mm": [-10, 10]},
+        "conditions": [{**RACE, "H_V_N_per_mm3": each, "edge_angle_deg": 45} for each in snows],
+        "goals": [{"output": "turn_radius_boot_m", "target": 12.0, "over": "worst"}],
+    }
+    found = skisnow.design_ski(task)
+    ski = found.write(tmp_path)[0]
+    radii = np.array([carved(ski, hardness=each).turn_radius_boot for each in snows], dtype=float)
+    assert radii.max() - 12.0 == pytest.approx(12.0 - radii.min(), rel=1e-3)
+    rows = [each.after for each in found.rows if each.output == "turn_radius_boot_m"]
+    assert rows == pytest.approx(radii.tolist(), rel=1e-6)
+
+
+def test_what_is_out_of_reach_is_named() -> None:
+    found = skisnow.design_ski(TWELVE | {"variables": {"sidecut_mm": [-1, 1]}, "starts": 1})
+    assert not found.reached
+    missed = found.remarks[0]
+    assert missed.fields["output"] == "turn_radius_boot_m"
+    assert found.values["sidecut_mm"] == pytest.approx(-1.0, abs=1e-5)
+    assert any(each.fields.get("bound") == -1.0 for each in found.remarks)
+
+
+def test_growth_of_goals_is_that_of_differences() -> None:
+    variables = {"sidecut_mm": [-10, 10], "EI_factor": [0.6, 1.6], "EI_N_m2[2]": [200, 300], "camber_mm": [2, 9],
+                 "waist_width_mm": [60, 75]}  # fmt: skip
+    goals = [
+        {"output": "turn_radius_boot_m", "target": 1.3, "ratio": True},
+        {"output": "grip_utilisation", "at_most": 1},
+    ]
+    task = design_task(
+        TWELVE | {"variables": variables, "goals": goals, "conditions": [{**RACE, "edge_angle_deg": [30, 60]}]}
+    )
+    evaluator = Evaluator(task)
+    search, z, step = Search(evaluator), np.full(5, 0.45), 1e-5
+    for goal in task.goals:
+        exact = evaluator.goal_growth(goal, z)
+        for n, one in enumerate(step * np.eye(5)):
+            ends = [evaluator.goal_values(goal, z + side * one) for side in (1.0, -1.0)]
+            differences = (ends[0] - ends[1]) / (2.0 * step)
+            assert exact[:, n] == pytest.approx(differences, rel=1e-4, abs=1e-6)
+    assert search.worst_deviation(z) > 0.0
+
+
+@pytest.mark.parametrize(
+    ("change", "code"),
+    [
+        ({"variables": {"waist_mm": [60, 70]}}, "unknown_name"),
+        ({"variables": {"waist_width_mm": [70, 60]}}, "out_of_range"),
+        ({"goals": [{"output": "radius", "target": 12.0}]}, "unknown_name"),
+        ({"goals": [{"output": "edge_depth_mm", "target": 12.0, "at_most": 13.0}]}, "contradiction"),
+        ({"goals": [{"output": "edge_depth_mm", "at_most": 1.0, "conditions": [2]}]}, "out_of_range"),
+        ({"conditions": [{"snow": 1}]}, "unknown_name"),
+        ({"constraints": [{"terms": {}}]}, "out_of_range"),
+        ({"monotone": ["width"]}, "unknown_name"),
+        ({"starts": 0}, "out_of_range"),
+        ({"targets": 1}, "unknown_name"),
+        ({"goals": []}, "missing"),
+    ],
+)
+def test_rejected_tasks(change: dict[str, Any], code: str) -> None:
+    with raises(ParameterError, code):
+        design_task(TWELVE | change)
+
+
+def test_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    text = """ski = "slalom"
+starts = 1
+[variables]
+sidecut_mm = [-10, 10]
+[[conditions]]
+published = "race-piste"
+unloading_ratio = 10
+edge_angle_deg = 45
+load_N = 800
+[[goals]]
+output = "turn_radius_boot_m"
+target = 11.0
+"""
+    (tmp_path / "eleven.toml").write_text(text, encoding="utf-8")
+    assert main(["design", str(tmp_path / "eleven.toml"), "--out", str(tmp_path / "out"), "--json"]) == 0
+    printed = json.loads(capsys.readouterr().out)
+    assert printed == json.loads((tmp_path / "out" / "design.json").read_text(encoding="utf-8"))
+    names = sorted(each.name for each in (tmp_path / "out").iterdir())
+    assert names == ["design.json", "ski-rounded.toml", "ski.toml", "table.csv"]
+    assert skisnow.read_ski(tmp_path / "out" / "ski.toml").tip_width == pytest.approx(
+        printed["keys"]["tip_width_mm"] / 1e3, rel=1e-9
+    )
