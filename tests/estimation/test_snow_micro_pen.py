@@ -7,7 +7,7 @@ import math
 from importlib.resources import files
 from pathlib import Path
 from types import SimpleNamespace
-from typing import Any, cast
+from typing import Any, Literal, cast
 
 import jsonschema
 import numpy as np
@@ -18,7 +18,8 @@ from skisnow._support.units import MM
 from skisnow.campaign import read_snow_micro_pen
 from skisnow.campaign.snow_micro_pen import SnowMicroPenProfile
 from skisnow.campaign.snow_micro_pen_records import SnowMicroPenSettings, snow_surface
-from skisnow.estimation.snow_micro_pen import SnowMicroPenAnalysis, evaluate_profile
+from skisnow.estimation.snow_micro_pen import SnowMicroPenAnalysis, depth_profile, evaluate_profile
+from skisnow.report.campaign.summary import summary
 from skisnow.snow.penetrometer_relations import PENETROMETER_RELATIONS
 
 from ..campaign.recordings import AIR_N, LONG, SHORT, built, plain_snow, recording
@@ -211,6 +212,43 @@ def test_mean_force_is_over_the_stated_depth_and_pairs_by_spot_else_by_site(make
     assert on_force["p"] < 1e-6
     assert on_density["terms"] == ["intercept", "smp_snow_density_kg_per_m3"]
     assert on_density["n"] == 6
+
+
+def test_recordings_without_plate_tests_are_a_campaign(tmp_path: Path) -> None:
+    """The resistance is the mean force over the cross-section of the tip of 5 mm: 2 N on 19.6 mm² are 102 kPa."""
+    (tmp_path / "campaign.toml").write_text('name = "pens"\n', encoding="utf-8")
+    (tmp_path / "snow_micro_pen.csv").write_text("recording,site,file\nr1,A,one.PNT\n", encoding="utf-8")
+    (tmp_path / "one.PNT").write_bytes(plain_snow(2.0))
+    analysis = skisnow.analyse(tmp_path, n_resamples=100)
+    (row,) = analysis.results["snow_micro_pen"]["recordings"]
+    assert row["penetration_resistance_kPa"] == pytest.approx(2.0 / (math.pi / 4 * 0.005**2) / 1e3, rel=0.002)
+    assert analysis.results["campaign"]["remarks"] == []
+    assert analysis.results["group_comparisons"] == []
+    assert "SnowMicroPen at A: mean force 2.00 N" in summary(analysis.results)
+
+
+@pytest.mark.usefixtures("undrawn")
+def test_a_report_of_recordings_alone_has_their_profiles(tmp_path: Path) -> None:
+    (tmp_path / "campaign.toml").write_text('name = "pens"\n', encoding="utf-8")
+    (tmp_path / "snow_micro_pen.csv").write_text("recording,site,file\nr1,A,one.PNT\n", encoding="utf-8")
+    (tmp_path / "one.PNT").write_bytes(plain_snow(2.0))
+    skisnow.write_report(skisnow.analyse(tmp_path, n_resamples=100), tmp_path / "out")
+    assert 'id="figure-snow_profiles"' in (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize("name", ["calonne-2020", "king-2020a"])
+def test_a_profile_has_the_values_of_the_windows_over_depth(name: Literal["calonne-2020", "king-2020a"]) -> None:
+    """Between the two depths its mean is that of the evaluation, but for the windows at the ends."""
+    profile, settings = read_snow_micro_pen(recording(LONG)), SnowMicroPenSettings(relation=name)
+    found = evaluate_profile(profile, settings)
+    drawn = depth_profile(profile, settings, found.surface)
+    window = PENETROMETER_RELATIONS[name].window
+    np.testing.assert_allclose(np.diff(drawn.depth), window / 2, rtol=0.01)
+    assert drawn.depth[0] == pytest.approx(window / 2, rel=0.01)
+    part = (drawn.depth > settings.from_depth) & (drawn.depth < settings.to_depth)
+    assert np.nanmean(drawn.snow_density[part]) == pytest.approx(found.windows[name].snow_density, rel=0.02)
+    assert np.median(drawn.force[part]) == pytest.approx(found.median_force, rel=0.05)
+    assert np.isfinite(drawn.specific_surface_area).any() == (name == "calonne-2020")
 
 
 def test_few_forces_are_not_called_significant(make_campaign: MakeCampaign) -> None:

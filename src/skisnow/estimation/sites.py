@@ -160,6 +160,8 @@ def _alike(campaign: Campaign) -> Iterator[str]:
 
 def _without_tests(campaign: Campaign) -> Iterator[str]:
     tested = _tested(campaign)
+    if not tested:  # recordings or samples alone
+        return
     for name, sites in _described(campaign).items():
         lost = sorted(sites - tested)
         if lost:

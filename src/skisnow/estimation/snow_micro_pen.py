@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Final, TypeAlias
+from typing import TYPE_CHECKING, Any, Final, NamedTuple, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
@@ -14,7 +14,7 @@ from .._support.units import MM
 from ..campaign.snow_micro_pen_records import SnowSurface, snow_surface
 from ..parameters import values_of
 from ..snow.penetrometer_relations import PENETROMETER_RELATIONS
-from ..statistics.shot_noise import shot_noise, windows_of
+from ..statistics.shot_noise import ShotNoise, shot_noise, windows_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -77,6 +77,9 @@ class EvaluatedRecording:
         In the air before the surface (N).
     mean_force, median_force
         Between the two depths (N).
+    resistance
+        Penetration resistance: the mean force over the cross-section of the tip (Pa). It is the hardness of the
+        international classification of seasonal snow (Fierz and others 2009), not H_V.
     windows
         By the name of each published relation.
     """
@@ -87,6 +90,7 @@ class EvaluatedRecording:
     air_force: float
     mean_force: float
     median_force: float
+    resistance: float
     windows: dict[str, WindowMeans]
 
     @property
@@ -188,10 +192,10 @@ def evaluate_profile(
         round((found.depth + depth) / profile.sample_distance) for depth in (settings.from_depth, settings.to_depth)
     )
     part = force[first:last]
-    area = 0.25 * math.pi * profile.tip_diameter**2
+    area = _cone_area(profile)
     windows = {name: _windows(part, profile.sample_distance, area, name) for name in PENETROMETER_RELATIONS}
     mean, median = float(part.mean()), float(np.median(part))
-    return EvaluatedRecording(tuple(flags), found.depth, reach, found.air_force, mean, median, windows)
+    return EvaluatedRecording(tuple(flags), found.depth, reach, found.air_force, mean, median, mean / area, windows)
 
 
 def _surface(profile: SnowMicroPenProfile, settings: SnowMicroPenSettings, stated: float) -> SnowSurface | None:
@@ -206,27 +210,83 @@ def _nothing(flags: tuple[str, ...], surface: SnowSurface | None = None, reach: 
     none = WindowMeans(*(math.nan,) * 5, n=0)
     depth, air = (math.nan, math.nan) if surface is None else (surface.depth, surface.air_force)
     windows = dict.fromkeys(PENETROMETER_RELATIONS, none)
-    return EvaluatedRecording(flags, depth, reach, air, math.nan, math.nan, windows)
+    return EvaluatedRecording(flags, depth, reach, air, math.nan, math.nan, math.nan, windows)
 
 
-def _windows(force: FloatArray, sample_distance: float, area: float, name: str) -> WindowMeans:
+@dataclass(frozen=True, slots=True)
+class DepthProfile:
+    """Force, density and surface area over the depth below the snow surface, at the middle of each window.
+
+    Attributes
+    ----------
+    depth
+        m, downwards.
+    force
+        Median (N).
+    snow_density, specific_surface_area
+        kg/m³ and m²/kg, NaN where the relation gives no value.
+    """
+
+    depth: FloatArray
+    force: FloatArray
+    snow_density: FloatArray
+    specific_surface_area: FloatArray
+
+
+def depth_profile(profile: SnowMicroPenProfile, settings: SnowMicroPenSettings, surface: float) -> DepthProfile:
+    """Values of the windows of a recording from its ``surface`` (m from the first sample) to its end."""
+    air = profile.force[: round(surface / profile.sample_distance)]
+    taken_off = float(np.median(air)) if settings.subtract_air_force and len(air) else 0.0
+    force = profile.force[len(air) :] - taken_off
+    found = _values_of_windows(force, profile.sample_distance, _cone_area(profile), settings.relation)
+    step = found.step * profile.sample_distance
+    depth: FloatArray = np.arange(len(found.median)) * np.float64(step) + 0.5 * found.size * profile.sample_distance
+    return DepthProfile(depth, found.median, found.snow_density, found.specific_surface_area)
+
+
+def _cone_area(profile: SnowMicroPenProfile) -> float:
+    return 0.25 * math.pi * profile.tip_diameter**2
+
+
+class _Windows(NamedTuple):
+    """Values of the windows, NaN where the shot noise of one is not determined; size and step in samples."""
+
+    size: int
+    step: int
+    noise: ShotNoise
+    median: FloatArray
+    element_size: FloatArray
+    snow_density: FloatArray
+    specific_surface_area: FloatArray
+
+
+def _values_of_windows(force: FloatArray, sample_distance: float, area: float, name: str) -> _Windows:
     relation = PENETROMETER_RELATIONS[name]
     size = max(round(relation.window / sample_distance), 3)
-    windows = windows_of(force, size, max(round(size * (1.0 - OVERLAP)), 1))
+    step = max(round(size * (1.0 - OVERLAP)), 1)
+    windows = windows_of(force, size, step)
     noise = shot_noise(windows, sample_distance)
     median = np.median(windows, axis=-1)
     usable = np.isfinite(noise.intensity) & (median > 0.0)
+    element_size, density, surface_area = np.full((3, len(median)), np.nan)
+    element_size[usable] = np.cbrt(area / noise.intensity[usable])
+    density[usable] = relation.snow_density(median[usable], element_size[usable])
+    if relation.specific_surface_area is not None:
+        surface_area[usable] = relation.specific_surface_area(median[usable], element_size[usable])
+    return _Windows(size, step, noise, median, element_size, density, surface_area)
+
+
+def _windows(force: FloatArray, sample_distance: float, area: float, name: str) -> WindowMeans:
+    found = _values_of_windows(force, sample_distance, area, name)
+    usable = np.isfinite(found.element_size)
     if not usable.any():
         return WindowMeans(*(math.nan,) * 5, n=0)
-    element_size = np.cbrt(area / noise.intensity[usable])
-    median = median[usable]
-    surface_area = relation.specific_surface_area
     return WindowMeans(
-        rupture_force=float(np.median(noise.rupture_force[usable])),
-        deflection=float(np.median(noise.deflection[usable])),
-        element_size=float(np.median(element_size)),
-        snow_density=float(relation.snow_density(median, element_size).mean()),
-        specific_surface_area=math.nan if surface_area is None else float(surface_area(median, element_size).mean()),
+        rupture_force=float(np.median(found.noise.rupture_force[usable])),
+        deflection=float(np.median(found.noise.deflection[usable])),
+        element_size=float(np.median(found.element_size[usable])),
+        snow_density=float(found.snow_density[usable].mean()),
+        specific_surface_area=float(found.specific_surface_area[usable].mean()),
         n=int(usable.sum()),
     )
 
@@ -254,6 +314,7 @@ def _row(recording: EvaluatedRecording, chosen: WindowMeans) -> Json:
         "air_force_N": recording.air_force,
         "mean_force_N": recording.mean_force,
         "median_force_N": recording.median_force,
+        "penetration_resistance_kPa": recording.resistance / 1e3,
         "rupture_force_N": chosen.rupture_force,
         "deflection_mm": chosen.deflection / MM,
         "element_size_mm": chosen.element_size / MM,

@@ -160,8 +160,8 @@ def test_binary_files(write_campaign: WriteCampaign, small_campaign: dict[str, s
 
 
 def test_no_measurements(write_campaign: WriteCampaign, small_campaign: dict[str, str]) -> None:
-    del small_campaign[PEN], small_campaign[SHEAR]
-    (problem,) = check_campaign(write_campaign(small_campaign))
+    description = {"campaign.toml": small_campaign["campaign.toml"]}
+    (problem,) = check_campaign(write_campaign(description))
     assert (problem.severity, problem.code, problem.file) == ("error", "unreadable_file", PEN)
     assert SHEAR in problem.allowed
 

@@ -124,7 +124,6 @@ def test_errors_are_those_of_the_exported_files(entered: Entered, depth: str, to
 
 def test_without_measurements_the_error_is_that_of_the_exported_files(store: Store) -> None:
     entered = Entered(store)
-    entered.append(sample("1", "300"))
     with pytest.raises(FieldDataError) as theirs:
         campaign_of_files(exported(entered.campaign))
     with pytest.raises(FieldDataError) as ours:

@@ -141,7 +141,7 @@ def campaign_of_cells(
         if table is not None:
             tables[form.file] = table
             problems.extend(check_rows(table, described))
-    if not {PENETRATION.file, SHEAR.file} & set(cells):
+    if not {form.file for form in MEASUREMENTS} & set(cells):
         problems.append(_missing_measurements())
     return _require_valid(_Contents(Path("campaign"), described, tables, {}, _sort_problems(problems), corrections))
 
@@ -228,7 +228,7 @@ def _read(campaign_files: CampaignFiles, progress: Callable[[str], None] | None)
     weather = None if described is None else campaign_weather(described.weather, files)
     names = campaign.names()
     files.problems.extend(_misnamed_files(names, files.absent))
-    if {PENETRATION.file, SHEAR.file} <= files.absent:
+    if {form.file for form in MEASUREMENTS} <= files.absent:
         files.problems.append(_missing_measurements())
     hashes = {name: digest for name, digest in files.hashes.items() if name not in campaign.of_sheets}
     applied = sorted(
@@ -291,11 +291,15 @@ def _misnamed_files(there: Mapping[str, bool], absent: set[str]) -> list[Problem
     ]
 
 
+MEASUREMENTS: Final = (PENETRATION, SHEAR, SNOW_MICRO_PEN, DENSITY, DROP_CONE)
+"""Tables of which a campaign needs one: recordings or samples of a pit alone are a campaign."""
+
+
 def _missing_measurements() -> Problem:
     return error(
         "unreadable_file",
         PENETRATION.file,
-        allowed=Message("at least one of {file} and {file_2}", file=PENETRATION.file, file_2=SHEAR.file),
+        allowed=Message("at least one of {files}", files=[form.file for form in MEASUREMENTS]),
         action=Message("Put the tables of the experiments into the folder, under these names."),
     )
 

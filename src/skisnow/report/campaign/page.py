@@ -38,6 +38,7 @@ from .findings import (
 from .key_results import headline, key_results
 from .model_figures import model_rmse, residuals
 from .penetration_figures import force_depth, hardness_density, hardness_mean_force, seating_offsets, unloading_ratios
+from .profile_figure import snow_profiles
 from .shear_figures import machining, shear_force_depth, stress_angle, stress_density, stress_hardness
 from .site_figure import sites
 from .tables import campaign_tables
@@ -263,7 +264,7 @@ DRAWERS: Final = (
     stress_hardness,
 )
 """Functions that draw one figure each, in the order of the report."""
-RECORDING_DRAWERS: Final = (hardness_mean_force,)
+RECORDING_DRAWERS: Final = (snow_profiles, hardness_mean_force)
 """Figures of a campaign with recordings of a SnowMicroPen."""
 
 

@@ -15,6 +15,11 @@ Json = dict[str, Any]
 
 MOST_REGRESSIONS: Final = 20
 MOST_SITES: Final = 8
+_OF_RECORDINGS: Final = (
+    ("mean_force_N", "force", "N"),
+    ("penetration_resistance_kPa", "penetration resistance", "kPa"),
+    ("snow_density_kg_per_m3", "density", "kg/m³"),
+)
 
 
 def summary(results: Json) -> str:
@@ -40,7 +45,9 @@ def _lines(results: Json) -> Iterator[str]:
     yield from _unloading(results, tag)
     yield from _measured(results, "S_f_N_per_mm2", f"S_f{tag}", "N/mm²", "mean")
     yield from _displacement(results, tag)
-    yield from _missing_values(results["campaign"])
+    yield from _recordings(results, tag)
+    has_tests = any(results[kind]["experiments"] for kind in ("penetration", "shear"))
+    yield from _missing_values(results["campaign"], has_tests=has_tests or "snow_micro_pen" not in results)
     if results["penetration"]["selected"]:
         yield ""
         yield from _models(results["penetration"], tag)
@@ -105,6 +112,20 @@ def _displacement(results: Json, tag: str) -> Iterator[str]:
         yield f"u_y{tag}: {plain(row['shear_displacement_mm'])} mm{spread}, n = {row['n']} tests"
 
 
+def _recordings(results: Json, tag: str) -> Iterator[str]:
+    """Force, resistance and density of each site by the recordings of a SnowMicroPen."""
+    pen = results.get("snow_micro_pen", {"recordings": []})
+    rows = [row for row in pen["recordings"] if row["used"]]
+    for site in dict.fromkeys(row["site"] for row in rows):
+        mine = [row for row in rows if row["site"] == site]
+        means = [
+            f"{name} {plain(sum(known) / len(known))} {unit}"
+            for key, name, unit in _OF_RECORDINGS
+            if (known := [row[key] for row in mine if row[key] is not None])
+        ]
+        yield f"SnowMicroPen{tag} at {site}: mean {', '.join(means)} (by {pen['relation']}), recordings: {len(mine)}"
+
+
 def _ratio_in_words(row: Json) -> str:
     ends, rebound = row["unloading_ratio_interval"], row["rebound_ratio_interval"]
     if ends:
@@ -130,10 +151,12 @@ def _site(item: Json, symbol: str, unit: str, kind: str) -> str:
     return _mean(f"{symbol} at {item['site']}", kind, unit, numbers, f"over its experiments, n = {item['n']}")
 
 
-def _missing_values(campaign: Json) -> Iterator[str]:
+def _missing_values(campaign: Json, *, has_tests: bool) -> Iterator[str]:
     if campaign["corrections"]:
         yield f"corrections applied: {len(campaign['corrections'])}"
     yield from (f"note: {note}" for note in campaign["remarks"])
+    if not has_tests:
+        return
     if campaign["gauge_resolution_mm"] is None:
         yield "gauge_resolution_mm is not stated: no depth uncertainty in any interval"
     keys = ("load_uncertainty_N", "moment_uncertainty_Nm", "lever_arm_uncertainty_mm")

@@ -209,6 +209,7 @@ def snow_micro_pen_table(data: ReportData) -> Table:
         Column("surface_mm", "surface at", unit="mm", digits=4),
         Column("air_force_N", "force in air", unit="N"),
         Column("mean_force_N", "mean force", unit="N"),
+        Column("penetration_resistance_kPa", "penetration resistance", unit="kPa"),
         Column("rupture_force_N", "f₀", unit="N"),
         Column("deflection_mm", "δ", unit="mm"),
         Column("element_size_mm", "L", unit="mm"),
@@ -223,9 +224,10 @@ def snow_micro_pen_table(data: ReportData) -> Table:
         f"Recordings of the SnowMicroPen, {depths}, density and surface area by {recordings['relation']}.",
         columns,
         recordings["recordings"],
-        note="f₀ is the force at which an element of the snow ruptures, δ its deflection, L the elements' size: "
-        "medians over windows. The relations for density and specific surface area were fitted to "
-        "ungroomed snow; the other published ones are in results.json.",
+        note="The penetration resistance is the mean force over the cross-section of the tip, the hardness of the "
+        "international classification (Fierz and others 2009); it is not H_V. f₀ is the force at which an element of "
+        "the snow ruptures, δ its deflection, L the elements' size: medians over windows. The relations for density "
+        "and specific surface area were fitted to ungroomed snow; the other published ones are in results.json.",
     )
 
 
