@@ -9,13 +9,17 @@ from __future__ import annotations
 import math
 import re
 import sys
-from collections.abc import Iterator
+import warnings
+from collections.abc import Callable, Iterator
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from skisnow import Run, load_scenario, simulate
+from skisnow._support.errors import RangeWarning
+from skisnow.forces.shear import AngleShear, ConstantShear, MachiningShear, ShearLaw
 
 DOCS = Path(__file__).resolve().parent
 LAWS: dict[str, dict[str, object]] = {
@@ -30,6 +34,19 @@ LAWS: dict[str, dict[str, object]] = {
 SNOWS = {"0.2, 0.5": tuple(LAWS), "0.2, 0.1": tuple(LAWS), "1, 0.3": tuple(LAWS)[:5]}
 TURNS = ("carved-46m", "carver-42m", "giant-slalom-67m")
 SKIDS = {"skid: H_V 0.2, S_f 0.1": (0.2, 0.1), "skid: 1, 0.25": (1.0, 0.25), "ice: 90, S_f 10": (90.0, 10.0)}
+SKID_LENGTH = 1.45
+"""Edge (m) of a ski that slides across."""
+SKID_LAWS: dict[str, tuple[Callable[[float], ShearLaw], float]] = {
+    "S_f": (ConstantShear, 1.0),
+    "S_f (1 − 0.266 ϑ)": (lambda stress: AngleShear(stress, 0.266), 1.0),
+    "r = 0.7": (ConstantShear, 0.7),
+    "r = 0.5": (ConstantShear, 0.5),
+    "r = 0.3": (ConstantShear, 0.3),
+    "cutting, μ_t = 0": (lambda stress: MachiningShear(0.5 * stress, 0.0), 1.0),
+    "cutting, μ_t = 0.2": (lambda stress: MachiningShear(0.5 * stress, 0.2), 1.0),
+}
+"""Law of an S_f (N/m²), and the share of its strength that is left after slip."""
+SKID_SNOWS = ((0.21, 0.52), (0.16, 0.086), (0.2, 0.1), (1.0, 0.52), (1.0, 0.3), (5.0, 0.52))
 DISPLACEMENTS = (1.0, 0.5, 0.25, 0.1, 0.05, 0.02, 0.01)
 
 
@@ -74,6 +91,44 @@ def shear_laws() -> Iterator[str]:
             yield f"{head} {run.speed[-1]:.2f} | {deepest(run):.2f} | {run.energies['shear'][-1]:.0f} |"
 
 
+def skid_force(angle: float, load: float, *, hardness: float, law: ShearLaw, left: float = 1.0) -> float:
+    """Side force (N) of a straight ski that slides across new snow at an edge angle (rad) under a load (N).
+
+    The edge lies as deep as H_V L e²/(2 tan ϑ) and the law's thrust carry the load; the shear keeps the share `left`.
+    """
+    stress, thrust = (left * float(each) for each in law.stress_and_thrust(np.array([1e-3]), np.array([angle])).ravel())
+    spring = hardness * SKID_LENGTH / (2.0 * math.tan(angle))
+    pressed = thrust * SKID_LENGTH
+    depth = (math.sqrt(pressed**2 + 4.0 * spring * load) - pressed) / (2.0 * spring)
+    return stress * depth * SKID_LENGTH
+
+
+def holding_angle(load: float, **snow: Any) -> float:
+    """Smallest edge angle (degrees) whose side force is the load, 1 g sideways; infinite above 85°."""
+    angles = np.radians(np.arange(0.1, 85.0, 0.1))
+    holds = [skid_force(float(angle), load, **snow) >= load for angle in angles]
+    return float(np.degrees(angles[holds.index(True)])) if True in holds else math.inf
+
+
+def skid_angles() -> Iterator[str]:
+    """Rows of the smallest edge angles that hold 1 g in a skid, by snow and law."""
+    yield "| H_V, S_f | " + " | ".join(SKID_LAWS) + " |"
+    yield "| --- |" + " ---: |" * len(SKID_LAWS)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", RangeWarning)
+        for hardness, strength in SKID_SNOWS:
+            found = []
+            for law, left in SKID_LAWS.values():
+                snow = {"hardness": hardness * 1e9, "law": law(strength * 1e6), "left": left}
+                found.append(", ".join(degrees(holding_angle(load, **snow)) for load in (400.0, 800.0)))
+            yield f"| {hardness:g}, {strength:g} | " + " | ".join(found) + " |"
+
+
+def degrees(angle: float) -> str:
+    """An angle in whole degrees; none if it is infinite."""
+    return f"{angle:.0f}°" if math.isfinite(angle) else "none"
+
+
 def friction_loads() -> Iterator[str]:
     """The built-in turns with friction on both loads."""
     heads = ("run", "friction (J): snow-normal, base-normal", "their ratio", "1/cos ϑ", "speed at the end (m/s)")
@@ -101,6 +156,7 @@ def displacements() -> Iterator[str]:
 
 PAGES = {
     "methods/shear-in-turns.md": {"shear laws": shear_laws},
+    "methods/skid-law.md": {"skid angles": skid_angles},
     "methods/glide-friction.md": {"friction loads": friction_loads},
     "methods/shear-displacement.md": {"displacements": displacements},
 }
