@@ -144,7 +144,7 @@ def test_several_skis_share_one_answer_one_table_and_one_figure(tmp_path: Path, 
     assert figure.read_bytes().startswith(b"\x89PNG")
     assert main(["carve", *words]) == 0
     head, *_ = (line for line in capsys.readouterr().out.splitlines() if line.startswith(" "))
-    assert head.split() == ["slalom", "giant-slalom"]
+    assert head.split() == ["slalom", "giant-slalom", "giant-slalom/%"]
 
 
 @pytest.mark.parametrize("at_rest", [(), ("--at-rest",)])
@@ -165,8 +165,8 @@ def test_table_has_skis_own_names_sidecut_radius_and_bearing_length(tmp_path: Pa
     found = answer(words, capsys)["skis"][0]
     assert main(["carve", *words]) == 0
     lines = capsys.readouterr().out.splitlines()
-    assert next(line for line in lines if line.startswith(" ")).split() == ["slalom", "mine"]
-    told = {line[:44].strip(): line[44:].split() for line in lines}
+    assert next(line for line in lines if line.startswith(" ")).split() == ["slalom", "mine", "mine/%"]
+    told = {line[:44].strip(): line[44:].split()[:2] for line in lines}
     radius, bearing = (told[f"{row} (m)"][0] for row in ("sidecut radius of three widths", "loaded contact length"))
     exact = found["ski"]["sidecut_radius_of_three_widths_m"]
     assert float(radius) == pytest.approx(exact, rel=5e-3)  # three digits
@@ -385,3 +385,38 @@ def test_help_loads_no_numbers() -> None:
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.splitlines()[-1] == "set()"
     assert "--H-V-N-per-mm3" in done.stdout
+
+
+def test_sensitivities_are_in_the_json_and_the_table(capsys: Printed) -> None:
+    words = [*ASKED, *SNOW, "--sensitivity", "load_N", "--sensitivity", "ski.waist_width_mm"]
+    rows = answer(words, capsys)["sensitivity"]
+    assert {row["parameter"] for row in rows} == {"load_N", "ski.waist_width_mm"}
+    (depth,) = (row for row in rows if (row["output"], row["parameter"]) == ("edge_depth_mm", "load_N"))
+    more = answer([*ASKED[:-1], "801", *SNOW], capsys)["edge_depth_mm"]
+    assert max(more) - depth["value"] == pytest.approx(depth["derivative"], rel=1e-3)
+    assert main(["carve", *words]) == 0
+    assert "ski.waist_width_mm" in capsys.readouterr().out
+
+
+def test_skis_are_compared_in_percent_and_by_definitions_of_the_radius(capsys: Printed) -> None:
+    from skisnow.report.summaries import carve_summary
+
+    found = answer([*ASKED, "--ski", "carver", *SNOW], capsys)
+    slalom, carver = found["skis"]
+    percent = 100.0 * (carver["side_force_limit_N"] / slalom["side_force_limit_N"] - 1.0)
+    (row,) = (line for line in carve_summary(found).splitlines() if line.startswith("shear capacity"))
+    assert float(row.split()[-1]) == pytest.approx(percent, rel=0.05)
+    assert "differently" not in carve_summary(found)
+    carver["turn_radius_chord_m"] = slalom["turn_radius_chord_m"] - 0.5
+    assert "slalom and carver differently" in carve_summary(found)
+
+
+def test_intervals_of_the_snow_give_intervals_of_the_answer() -> None:
+    """H_V within ±10 %: the depth falls by 0.4 % for each % of H_V."""
+    snow = skisnow.SnowProperties(0.2e9, 0.35e6, source="test", snow_hardness_interval=(0.18e9, 0.22e9))
+    found = skisnow.carve(
+        skisnow.read_ski("slalom"), snow, edge_angle=math.radians(45.0), load=800.0, unloading_ratio=10.0
+    )
+    exact = found.derivatives()
+    (depth,) = exact.sensitivity("edge_depth_mm", ["snow.H_V_N_per_mm3"])
+    assert exact.half_interval("edge_depth_mm", snow) == pytest.approx(0.02 * abs(depth.derivative), rel=1e-9)

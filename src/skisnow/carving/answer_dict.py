@@ -36,9 +36,19 @@ def answer_dict(answer: CarveAnswer) -> dict[str, Any]:
             "sidecut_radius_of_three_widths_m": json_number(answer.ski.sidecut_radius_of_three_widths),
             "sidecut_radius_of_edge_line_m": json_number(answer.ski.sidecut_radius_of_edge_line),
         },
+        **_half_intervals(answer),
         "warnings": list(answer.warnings),
         "provenance": {"skisnow": version("skisnow")},
     }
+
+
+def _half_intervals(answer: CarveAnswer) -> dict[str, Any]:
+    """Half the 95 % interval of each output by the snow's intervals; nothing where there are none."""
+    if answer.equilibrium.request is None or answer.snow.snow_hardness_interval is None:
+        return {}
+    exact = answer.equilibrium.derivatives()
+    outputs = [name for name in OUTPUTS if exact.output(name) is not None]
+    return {"half_intervals": {name: exact.half_interval(name, answer.snow) for name in outputs}}
 
 
 def answers_dict(answers: Sequence[CarveAnswer]) -> dict[str, Any]:

@@ -25,6 +25,7 @@ from .solve import Solution, refined
 if TYPE_CHECKING:
     from ..compiled import core
     from ..ski.beam import ClampedSki
+    from ..snow.properties import SnowProperties
     from .solve import Conditions
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
@@ -191,6 +192,19 @@ class CarveDerivatives:
         """Value of an output, in the unit of its name; None where it does not exist."""
         found = self._gradient(name)
         return None if found is None else found[0].value
+
+    def half_interval(self, output: str, snow: SnowProperties) -> float | None:
+        """Half the 95 % interval of an output by those of H_V and S_f, to first order; None where the snow has none."""
+        growth = {
+            "snow.H_V_N_per_mm3": (snow.snow_hardness_interval, N_PER_MM3),
+            "snow.S_f_N_per_mm2": (snow.failure_shear_stress_interval, N_PER_MM2),
+        }
+        halves = [
+            self.sensitivity(output, [name], kinks=False)[0].derivative * (interval[1] - interval[0]) / 2.0 / unit
+            for name, (interval, unit) in growth.items()
+            if interval is not None
+        ]
+        return math.hypot(*halves) if halves else None
 
     def force_growth(self, parameter: str) -> FloatArray:
         """Growth of the force per length at each station (N/m) with a parameter, per its unit."""

@@ -5,7 +5,6 @@ from __future__ import annotations
 import csv
 import io
 import json
-import math
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, TypeAlias
@@ -16,7 +15,6 @@ import numpy.typing as npt
 from .._support.display import Facts, Shown
 from .._support.messages import Message
 from .._support.staging import write_file
-from .._support.units import N_PER_MM2, N_PER_MM3
 from ..carving.outputs import OUTPUTS
 from ..ski import Ski
 from ..ski.ski_file import ski_of_keys, write_keys
@@ -24,7 +22,6 @@ from .evaluation import carve_at
 from .problem import Search, linear_constraints
 
 if TYPE_CHECKING:
-    from ..carving.sensitivity import CarveDerivatives
     from .task import Goal
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
@@ -209,27 +206,10 @@ def _rows(search: Search, keys: dict[str, Any], rounded: dict[str, Any]) -> tupl
         for output in OUTPUTS:
             before, after, after_rounding = (None if point is None else point.output(output) for point in found)
             change = None if not before or after is None else 100.0 * (after / before - 1.0)
-            half = None if found[1] is None or after is None else _half_interval(search, number, found[1], output)
+            snow = evaluator.snows[number]
+            half = None if found[1] is None or after is None else found[1].half_interval(output, snow)
             rows.append(DesignRow(number + 1, output, before, after, after_rounding, change, half))
     return tuple(rows)
-
-
-def _half_interval(search: Search, number: int, point: CarveDerivatives, output: str) -> float | None:
-    """Half the 95 % interval of an output by those of H_V and S_f, to first order; None where the snow has none."""
-    snow = search.evaluator.snows[number]
-    parts = [
-        (name, interval, unit)
-        for name, interval, unit in (
-            ("snow.H_V_N_per_mm3", snow.snow_hardness_interval, N_PER_MM3),
-            ("snow.S_f_N_per_mm2", snow.failure_shear_stress_interval, N_PER_MM2),
-        )
-        if interval is not None
-    ]
-    if not parts:
-        return None
-    growth = point.sensitivity(output, [name for name, _, _ in parts], kinks=False)
-    halves = [each.derivative * (i[1] - i[0]) / 2.0 / unit for each, (_, i, unit) in zip(growth, parts, strict=True)]
-    return math.hypot(*halves)
 
 
 def _missed_goals(search: Search, z: FloatArray) -> list[Message]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Callable, Iterator, Mapping
 from typing import TYPE_CHECKING, Any, Final, TypeAlias
@@ -50,6 +51,8 @@ def _carve_lines(answers: list[Json]) -> Iterator[str]:
     yield f"model: {_model_in_words(inputs)}"
     yield ""
     yield from _carve_table(answers)
+    yield from _snow_intervals(answers)
+    yield from _ranks(answers)
     for title, answer in zip(ski_titles(answers), answers, strict=True):
         if answer["remedy"]:
             yield ""
@@ -88,23 +91,21 @@ def _yes_or_no(value: bool) -> str:
     return "yes" if value else "no"
 
 
-def _maximum(key: str, *, by: Callable[[float], float] = float) -> Callable[[Json], str]:
-    def maximum(answer: Json) -> str:
-        values = [value for value in answer[key] or () if value is not None]
-        return plain(max(values, key=by)) if values else "-"
-
-    return maximum
+def _maximum(key: str, *, by: Callable[[float], float] = float) -> Callable[[Json], float | None]:
+    return lambda answer: max((value for value in answer[key] or () if value is not None), key=by, default=None)
 
 
-def _number(key: str) -> Callable[[Json], str]:
-    return lambda answer: plain(answer[key])
+def _number(key: str) -> Callable[[Json], float | None]:
+    return lambda answer: answer[key]
 
 
-def _ski_number(key: str) -> Callable[[Json], str]:
-    return lambda answer: plain(answer["ski"][key])
+def _ski_number(key: str) -> Callable[[Json], float | None]:
+    return lambda answer: answer["ski"][key]
 
 
-_ROWS: Final[tuple[tuple[str, Callable[[Json], str]], ...]] = (
+_SAME: Final = 1e-6  # %, of rounding
+_NOTHING: Final = 1e-6  # of a force or moment that is out of balance by rounding
+_ROWS: Final[tuple[tuple[str, Callable[[Json], str | float | None]], ...]] = (
     ("outcome", lambda answer: answer["outcome"].replace("_", " ")),
     ("grip holds", lambda answer: "-" if answer["holds"] is None else _yes_or_no(answer["holds"])),
     ("side force (N)", _number("side_force_N")),
@@ -130,12 +131,48 @@ _ROWS: Final[tuple[tuple[str, Callable[[Json], str]], ...]] = (
 
 
 def _carve_table(answers: list[Json]) -> Iterator[str]:
-    cells = [["", *ski_titles(answers)]]
-    cells += [[name, *(of(answer) for answer in answers)] for name, of in _ROWS]
+    titles = ski_titles(answers)
+    cells = [["", *titles, *(f"{title}/%" for title in titles[1:])]]
+    for name, of in _ROWS:
+        values = [of(answer) for answer in answers]
+        cells.append([name, *map(_cell, values), *(_difference(values[0], value) for value in values[1:])])
     widths = [max(len(row[column]) for row in cells) for column in range(len(cells[0]))]
     for row in cells if len(answers) > 1 else cells[1:]:
         first, *rest = (cell.rjust(width) for cell, width in zip(row, widths, strict=True))
         yield "  ".join([first.strip().ljust(widths[0]), *rest]).rstrip()
+
+
+def _cell(value: str | float | None) -> str:
+    return value if isinstance(value, str) else plain(value)
+
+
+def _difference(first: str | float | None, other: str | float | None) -> str:
+    """Difference from the first ski in %; empty where it is not a quantity."""
+    if not isinstance(first, float) or not isinstance(other, float) or abs(first) < _NOTHING:
+        return ""
+    percent = 100.0 * (other / first - 1.0)
+    return "0" if abs(percent) < _SAME else f"{percent:+.2g}"
+
+
+def _snow_intervals(answers: list[Json]) -> Iterator[str]:
+    """Half the 95 % intervals that those of the snow give the outputs, where the snow has any."""
+    for title, answer in zip(ski_titles(answers), answers, strict=True):
+        halves = answer.get("half_intervals")
+        if halves:
+            words = ", ".join(f"{output} ±{plain(half, 2)}" for output, half in halves.items())
+            yield f"95 % intervals by the snow, {title}: {words}"
+
+
+def _ranks(answers: list[Json]) -> Iterator[str]:
+    """A line for each pair of skis that two definitions of the radius rank differently."""
+    for (one, first), (two, second) in itertools.combinations(zip(ski_titles(answers), answers, strict=True), 2):
+        radii = [(name, of(first), of(second)) for name, of in _ROWS if "radius" in name]
+        known = [(name, a, b) for name, a, b in radii if isinstance(a, float) and isinstance(b, float)]
+        tighter, wider = ([(n, a, b) for n, a, b in known if (b - a) * side > 0.0] for side in (1.0, -1.0))
+        if tighter and wider:
+            (name, a, b), (other, c, d) = tighter[0], wider[0]
+            yield f"Definitions of the radius rank {one} and {two} differently: {name} {plain(a)} and {plain(b)},"
+            yield f"  {other} {plain(c)} and {plain(d)}."
 
 
 def identify_summary(result: Identification) -> str:
