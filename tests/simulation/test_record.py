@@ -59,10 +59,22 @@ def test_stored_and_lost_energies_are_separate() -> None:
         snow_energies=(5.0, 3.0, 0.25, 0.5), energies=(100.0, 200.0, 7.0), work=(10.0, 20.0, -30.0, 4.0, 5.0, 6.0),
         snow_losses=(19.5, 9.0, 19.75, 6.5, 0.0), work_given=(8.0, 9.0), body=SimpleNamespace(skis=()), time=0.0,
         position=np.zeros(3), rotation=np.eye(3), boots=None, boot_wrench=None, beam_dofs=np.zeros((0, 0)),
+        pushes=np.zeros((0, 3)),
     )  # fmt: skip
     setup: Any = SimpleNamespace(dynamics=dynamics, place=np.zeros(3), attitude=np.eye(3), velocity=np.zeros(3))
     stored, lost = (100.0, 200.0, 7.0, 8.25, 0.5), (19.5, 9.0, 19.75, 4.0, 5.0, 6.5)
     assert Record(setup)._present().energies == (*stored, *lost, 8.0, 9.0)
+
+
+def test_forces_of_friction_are_sums_over_the_sections() -> None:
+    record = Record(set_up(load_scenario("carved-46m", changes={"friction.mu_0": 0.1})))
+    record.advance(0.03)
+    dynamics = record.setup.dynamics
+    for ski, pushes in enumerate(dynamics.pushes):
+        sections = dynamics.contact.sections(ski)
+        sums = [float(force.sum()) for force in (sections.push, sections.push_across, sections.push_off)]
+        assert sums[0] < -10.0
+        assert pushes == pytest.approx(sums, rel=1e-12)
 
 
 def test_steps_that_cannot_go_on_are_an_outcome() -> None:

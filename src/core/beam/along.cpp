@@ -8,11 +8,12 @@ namespace skisnow {
 Along along_nodes(const Runner& runner, const Sections& s) {
   const int last = runner.nodes() - 1;
   const auto nodes = std::size_t(last + 1);
-  Along out{std::vector<double>(nodes), std::vector<double>(nodes), std::vector<double>(nodes)};
+  Along out{std::vector<double>(nodes), std::vector<double>(nodes), std::vector<double>(nodes), {}};
   const auto& node = runner.node;
   int e = last - 1, at = last, before = -1;
   for (int i = 0; i < s.count(); i++) {  // from the tail
     if (!(s[SHARE][i] > 0.0)) continue;
+    for (int a = 0; a < 3; a++) out.push[a] += s[ForceField(PUSH + a)][i];
     const double here = s[STATION][i], depth = s[DEEPEST][i];
     while (e > 0 && here > node[std::size_t(e)]) e--;
     const auto front = std::size_t(e), rear = front + 1;

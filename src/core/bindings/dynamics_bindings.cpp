@@ -108,6 +108,13 @@ Result along_of(const Dynamics& self, int k) {
   return array(std::move(all), {3, n});
 }
 
+// Forces of the snow on each ski along the edge, of friction across it and off the surface, (skis, 3).
+Result pushes_of(const Dynamics& self) {
+  std::vector<double> all;
+  for (int k = 0; k < self.layout().beams(); k++) all.insert(all.end(), self.along(k).push, self.along(k).push + 3);
+  return array(std::move(all), {std::size_t(self.layout().beams()), 3});
+}
+
 nb::tuple energies_of(const Dynamics& self) {
   const Energies e = self.total_energies();
   return nb::make_tuple(e.kinetic, e.potential, e.elastic);
@@ -192,6 +199,7 @@ void bind_dynamics(nb::module_& m) {
       .def("assign", [](Dynamics& self, const Dynamics& other) { self = other; })
       .def_prop_ro("bend", &bend_of, nb::rv_policy::automatic)
       .def("along", &along_of)
+      .def_prop_ro("pushes", &pushes_of, nb::rv_policy::automatic)
       .def_prop_ro("snow_store", &snow_store_of)
       .def_prop_ro("snow_losses", &snow_losses_of)
       .def_prop_ro("touches", &Dynamics::touches)

@@ -288,6 +288,14 @@ class Dynamics:
         return self._core.along(ski)
 
     @property
+    def pushes(self) -> FloatArray:
+        """Forces on each ski at the last time reached (N), (skis, 3).
+
+        Along the edge, forward positive; of friction across it, and off the surface.
+        """
+        return self._core.pushes
+
+    @property
     def touches(self) -> bool:
         """Whether any ski was in the snow at the last time reached."""
         return bool(self._core.touches)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Any, Final, TypeAlias
+from typing import Any, Final, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
@@ -16,9 +16,6 @@ from .moving_boots import BootHistory
 from .run import GIVEN, LOST, STORED, Outcome, SkiHistory
 from .run_forces import AlongEdge, snow_forces, thrust_per_length
 from .run_setup import Setup
-
-if TYPE_CHECKING:
-    from ..contact.snow_contact import Sections
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 
@@ -59,7 +56,7 @@ class Moment:
     velocity: FloatArray
     energies: tuple[float, ...]
     along: tuple[FloatArray, ...]
-    push: tuple[tuple[float, float, float], ...]
+    push: FloatArray
     dofs: FloatArray
     body: tuple[FloatArray, FloatArray]
     boots: FloatArray
@@ -97,9 +94,8 @@ class Record:
         setup, dynamics = self.setup, self.setup.dynamics
         skis = range(len(dynamics.body.skis))
         along = tuple(dynamics.along(k) for k in skis)
-        push = tuple(_push(dynamics.contact.sections(k)) for k in skis)
         return Moment(
-            dynamics.time, setup.place, setup.attitude, setup.velocity, self._energies(), along, push,
+            dynamics.time, setup.place, setup.attitude, setup.velocity, self._energies(), along, dynamics.pushes,
             dynamics.beam_dofs,
             (dynamics.position, dynamics.rotation), dynamics.boots, dynamics.boot_wrench,
         )  # fmt: skip
@@ -220,10 +216,6 @@ def _at_boot(node: FloatArray, values: FloatArray) -> FloatArray:
     i = min(int(np.count_nonzero(node > 0.0)), len(node) - 1) - 1
     f = node[i] / (node[i] - node[i + 1])
     return np.asarray(values[..., i] + f * (values[..., i + 1] - values[..., i]))
-
-
-def _push(ski: Sections) -> tuple[float, float, float]:
-    return float(ski.push.sum()), float(ski.push_across.sum()), float(ski.push_off.sum())
 
 
 def _arc(one: Moment, other: Moment) -> float:
