@@ -53,7 +53,7 @@ inline void beam_rates(const Motion& motion, const Base& base, int i, double& de
 
 // The same for all lanes.
 template <class V>
-void find_beam_rates(const Motion& motion, const Base& base, int i, V& deflection, V& twist) {
+SKISNOW_INLINE void find_beam_rates(const Motion& motion, const Base& base, int i, V& deflection, V& twist) {
   deflection = twist = V{};
   if (motion.beam.empty()) return;
   Row front[WIDTH<V>], rear[WIDTH<V>];
@@ -229,7 +229,7 @@ struct Pushed {
   V shear, edge_shear[2], along, load, across, off;
   V parts[PARTS];  // force and moment about the boot in the ski's axes; force and moment on the beam
 
-  Pushed(const Cut<V>& c, const Acting<V>& by, const Snow& snow) {
+  SKISNOW_INLINE Pushed(const Cut<V>& c, const Acting<V>& by, const Snow& snow) {
     const V none{};
     const double compaction = snow.compaction_resistance ? 1.0 : 0.0;
     const MaskOf<V> wet = (by.share > 0.0) & (c.deepest > 0.0);

@@ -5,6 +5,7 @@
 
 #include "contact/force_kernels.hpp"
 #include "contact/line_kernels.hpp"
+#include "contact/mark_kernels.hpp"
 #include "contact/tangent_kernels.hpp"
 
 namespace skisnow::SKISNOW_LANES {

@@ -5,7 +5,7 @@
 #include "contact/contact.hpp"
 
 #define SKISNOW_LANES alone
-#include "contact/force_kernels.hpp"
+#include "contact/mark_kernels.hpp"
 
 namespace skisnow {
 
@@ -114,7 +114,6 @@ struct Touch {
   bool was_in_snow(int k) const { return was_marked() && of_line(LEFT_MARK_DEPTH, k) > 0.0; }
 
   void press_base() const;
-  double keep_anchor(int k, double eased) const;
 
  private:
   Pressing base_and_way(int k) const;
@@ -168,68 +167,21 @@ void Touch::press_base() const {
   lines.keep(slot, ground);
 }
 
-// Keep where an edge holds: where it came through the surface, not farther off than its full displacement. How far it
-// slips; `eased`: share of the displacement by which it was eased, see [ease].
-double Touch::keep_anchor(int k, double eased) const {
-  const double edge = edge_place(k), depth = edge_depth(k), reach = snow.shear_displacement;
-  const double mark = of_line(LEFT_MARK, k), before = of_line(LEFT_MARK_DEPTH, k);
-  double anchor = edge, &kept = of_line(LEFT_ANCHOR, k);
-  if (was_in_snow(k))
-    anchor = kept;
-  else if (was_marked())
-    anchor = edge - depth / (depth - before) * (edge - mark);
-  anchor += reach * eased;
-  kept = std::clamp(anchor, edge - reach, edge + reach);
-  return std::fabs(kept - anchor);
-}
-
-// Keep where friction is 0: not farther off than the way to full friction, on a line that comes under the base here.
-void keep_stuck(const Base& s, int i, const Snow& snow, GrooveLines& lines, int slot) {
-  auto& v = lines.values;
-  const auto c = alone::Cut<double>::stored(s, i);
-  const double station = alone::Way<double>::station_of(c), stick = snow.friction.stick;
-  double most = 0.0, over = 0.0;
-  if (v[STUCK][slot] > 0.5) {
-    const double zero[] = {v[STUCK_STATION][slot], v[STUCK_PLACE][slot], v[STUCK_ARM][slot]};
-    const alone::Way<double> way(c, alone::aside_of(c, snow), zero[0], zero[1], zero[2]);
-    const double far =
-        snow.friction.is_vector ? std::sqrt(way.ahead * way.ahead + way.aside * way.aside) : std::fabs(way.ahead);
-    most = stick / std::max(far, stick), over = c.place + (zero[2] - c.reach) / c.widening - zero[1];
-  }
-  v[STUCK][slot] = 1.0, v[STUCK_ARM][slot] = c.reach;
-  v[STUCK_STATION][slot] = station + most * (v[STUCK_STATION][slot] - station);
-  v[STUCK_PLACE][slot] = c.place - most * over;
-}
-
-// `eased`: of both edges.
-void remember_section(const Touch& at, const double (&eased)[2]) {
-  double& marked = at.lines.values[MARKED][at.slot];
-  const bool touches = at.s.touches(at.i);
-  if (!touches) at.lines.values[STUCK][at.slot] = 0.0;
-  if (!(at.s[SHARE][at.i] > 0.0)) {
-    marked = 0.0;
-    return;
-  }
-  if (touches) at.press_base();
-  double slipped = 0.0;
-  for (int k = 0; k < 2; k++)
-    if (at.edge_depth(k) > 0.0) slipped = std::max(slipped, at.keep_anchor(k, eased[k]));
-  at.lines.values[SLIPPED][at.slot] += slipped;
-  for (int k = 0; k < 2; k++)
-    at.of_line(LEFT_MARK, k) = at.edge_place(k), at.of_line(LEFT_MARK_DEPTH, k) = at.edge_depth(k);
-  if (touches) keep_stuck(at.s, at.i, at.snow, at.lines, at.slot);
-  marked = 1.0;
-}
-
 }  // namespace
 
+// The ground takes the base that touches it; then the marks follow the base.
 void SnowContact::remember(int k, GrooveLines& lines, bool is_eased) const {
   const Sections& s = sections(k);
-  for (std::int64_t n = lines.first; n < lines.end; n++) {
-    const int i = s.index(n);
-    remember_section({s.base, i, *snow_, lines, lines.slot(n)},
-                     {is_eased ? s[LEFT_EASED][i] : 0.0, is_eased ? s[RIGHT_EASED][i] : 0.0});
-  }
+  for (std::int64_t n = lines.first; n < lines.end; n++)
+    if (s.touches(s.index(n))) Touch{s.base, s.index(n), *snow_, lines, lines.slot(n)}.press_base();
+  kernels_->mark(*snow_, s.base, is_eased ? &s.edge : nullptr, lines);
+}
+
+// The same of one line, where no edge was eased.
+void SnowContact::remember_line(const Base& s, std::int64_t line, GrooveLines& lines) const {
+  const int i = s.index(line), slot = lines.slot(line);
+  if (s.touches(i)) Touch{s, i, *snow_, lines, slot}.press_base();
+  alone::mark_lanes<double>(*snow_, s, i, {0.0, 0.0}, lines, slot);
 }
 
 // Into how many parts the way from the accepted pose is divided; one where the runner was put there in no time.
@@ -319,8 +271,7 @@ void SnowContact::march_where_needed(int k, const Situation& to) {
   for (int part = 1; part < parts; part++) {
     interpolate(from, end, double(part) / parts, on_way_);
     kernels_->find_sections(runner(k), on_way_, lines, first, s.base);
-    for (const std::int64_t n : needed_)
-      remember_section({s.base, s.index(n), *snow_, lines, lines.slot(n)}, {0.0, 0.0});
+    for (const std::int64_t n : needed_) remember_line(s.base, n, lines);
     if (rearmost_slip_) kernels_->drag_anchors(*snow_, s.base, slips_.data(), lines);
   }
 }

@@ -314,19 +314,26 @@ struct Pressed {
   }
 };
 
-// [shear_used] The share of the way to full strength by which an edge is displaced. It holds where it did before, else
-// where it came through the surface since it was last looked at.
+// Where an edge in the snow holds (m, across): where it did before, else where it came through the surface since it was
+// last looked at.
 template <class V>
-SKISNOW_INLINE V shear_used(const Snow& snow, const GrooveLines& lines, int j, const Cut<V>& c, int k) {
+SKISNOW_INLINE V anchor_before(const GrooveLines& lines, int j, int k, V place, V depth) {
   const auto before = [&](LineField left) { return load<V>(lines.values[of_edge(left, k)] + j); };
-  const V place = c.place + c.x[k], depth = c.depth[k], deep = before(LEFT_MARK_DEPTH);
+  const V deep = before(LEFT_MARK_DEPTH);
   const MaskOf<V> marked = load<V>(lines.values[MARKED] + j) > 0.5, enters = marked & (deep <= 0.0);
   V anchor = select(marked, before(LEFT_ANCHOR), place);
   if (any(enters)) {
     const V fallen = depth - deep, per_fallen = depth / select(fallen > 0.0, fallen, all<V>(1.0));
     anchor = select(enters, V(place - per_fallen * (place - before(LEFT_MARK))), anchor);
   }
-  return (anchor - place) / snow.shear_displacement;
+  return anchor;
+}
+
+// [shear_used] The share of the way to full strength by which an edge is displaced.
+template <class V>
+SKISNOW_INLINE V shear_used(const Snow& snow, const GrooveLines& lines, int j, const Cut<V>& c, int k) {
+  const V place = c.place + c.x[k];
+  return (anchor_before(lines, j, k, place, c.depth[k]) - place) / snow.shear_displacement;
 }
 
 // [eased] An edge that holds stores ½ S e u_y u² for each metre of its length. A strength S that rises must not add to

@@ -119,8 +119,8 @@ struct BentBase {
 // their depths in the snow. It is 1 (left) or -1 where one edge alone is in it, and above the snow where one comes
 // first. The base at the station is taken as a plane through its middle.
 template <class V>
-V grip_side(const BentBase<V>& base, V station, const Vector<V>& from, const Vector<V>& ahead,
-            const Vector<V>& normal) {
+SKISNOW_INLINE V grip_side(const BentBase<V>& base, V station, const Vector<V>& from, const Vector<V>& ahead,
+                           const Vector<V>& normal) {
   const V rise = base.shape[3], height = base.shape[2], x = from.x - station, z = from.z - height;
   const V climb = (normal.x + rise * normal.z) / (ahead.x + rise * ahead.z);
   const V middle =
@@ -213,7 +213,7 @@ struct Cut {
   }
 
   // A section that was cut and stored.
-  static Cut stored(const Base& s, int i) {
+  SKISNOW_INLINE static Cut stored(const Base& s, int i) {
     Cut c(s, i);
     c.sine = load<V>(s[EDGE_SINE] + i), c.deepest = load<V>(s[DEEPEST] + i), c.reach = load<V>(s[GRIP_REACH] + i);
     c.grip_depth = load<V>(s[GRIP_DEPTH] + i), c.grip_left = load<V>(s[GRIP_LEFT] + i);
@@ -321,7 +321,7 @@ struct Cut {
     return beyond / dot(raw_, ahead);
   }
 
-  void cut() {
+  SKISNOW_INLINE void cut() {
     find_grip();
     find_places();
     find_wet();
