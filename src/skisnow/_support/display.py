@@ -12,6 +12,8 @@ import numpy as np
 MOST_ROWS: Final = 8
 """With its title an object stays below ten lines."""
 _WIDEST: Final = 120
+_ROUNDING: Final = 1e-12
+"""Share of the larger end of a range, and at least of 1, below which the other end is a rounding error of 0."""
 
 
 class Facts(NamedTuple):
@@ -79,7 +81,11 @@ def span(low: float, high: float, unit: str = "", *, digits: int = 4) -> str:
 
     >>> span(7.0, 10.25, "m/s")
     '7 to 10.25 m/s'
+    >>> span(-2e-17, 30.0, "°")
+    '0 to 30°'
     """
+    negligible = _ROUNDING * max(abs(low), abs(high), 1.0)
+    low, high = (0.0 if abs(end) < negligible else end for end in (low, high))
     return f"{amount(low, digits=digits)} to {amount(high, unit, digits=digits)}"
 
 

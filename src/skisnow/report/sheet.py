@@ -6,13 +6,14 @@ from collections.abc import Sequence, Set
 from dataclasses import dataclass
 from importlib.metadata import version
 from importlib.resources import files
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 
 from .._support.language import ENGLISH
 from .._support.messages import Message, translated, translations
+from .citation import bibtex, cited_text
 from .table import table_html
 from .translated import translated_html
 
@@ -59,16 +60,6 @@ class Section:
     after: Sequence[Markup] = ()
 
 
-CITED: Final = (
-    "The skisnow developers, skisnow {version}; Mössner, Innerhofer, Schindelwig, Kaps, Schretter, Nachbauer (2013), "
-    "Measurement of mechanical properties of snow for simulation of skiing, Journal of Glaciology; Mössner, Heinrich, "
-    "Schindelwig, Kaps, Schretter, Nachbauer (2013), Modeling the ski-snow contact in skiing turns using a hypoplastic "
-    "vs an elastic force-penetration relation, Scandinavian Journal of Medicine & Science in Sports, "
-    "doi 10.1111/sms.12035."
-)
-"""Citations on such a page: the program and the papers of its methods, as in CITATION.cff."""
-
-
 def sheet(
     header: Header, sections: Sequence[Section], *, language: str = ENGLISH, names: Set[str] = frozenset()
 ) -> str:
@@ -81,7 +72,8 @@ def sheet(
         header=header,
         sections=sections,
         version=version("skisnow"),
-        cited=CITED.format(version=version("skisnow")),
+        cited=cited_text(),
+        bibtex=bibtex(),
         figure_numbers={picture.name: number for number, picture in enumerate(pictures, start=1)},
         tables={table.name: table_html(table, number=number) for number, table in enumerate(every, start=1)},
     )

@@ -17,6 +17,7 @@ from ..._support.messages import Message
 from ..._support.staging import staged, tidied, write_file
 from ...estimation import Analysis
 from ...estimation.results import results_json
+from ..citation import bibtex, cited_text
 from ..figures.drawing import Drawing
 from ..figures.figure_files import picture_files, render_pictures, silent, write_picture
 from ..figures.style import site_styles
@@ -186,6 +187,8 @@ def page(
         missing=missing,
         figure_numbers={picture.name: number for number, picture in enumerate(pictures, start=1)},
         matplotlib_version=version("matplotlib"),
+        cited=cited_text(),
+        bibtex=bibtex(data.results["campaign"] | {"files": data.campaign.file_hashes}),
     )
     return translated_html(english, language, names=data.names)
 
