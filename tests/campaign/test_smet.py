@@ -107,8 +107,7 @@ def test_what_does_not_fit_is_told_with_its_line(path: Path, text: str, words: s
 
 
 @pytest.mark.parametrize(
-    ("units", "column"),
-    [("", "TA"), ("units_offset = 0 273.15 0 0", "RH"), ("units_multiplier = 1 1 0.01 1", "TA")],
+    ("units", "column"), [("", "TA"), ("units_offset = 0 273.15 0 0", "RH"), ("units_multiplier = 1 1 0.01 1", "TA")]
 )
 def test_celsius_and_percent_without_units_are_rejected(path: Path, units: str, column: str) -> None:
     path.write_text(re.sub(r"units_offset.*\nunits_multiplier.*\n", f"{units}\n", HEAD) + ROWS)

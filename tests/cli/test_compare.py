@@ -309,8 +309,7 @@ def test_two_tracks_in_degrees_are_put_on_one_plane(tmp_path: Path, capsys: Prin
 
 
 @pytest.mark.parametrize(
-    ("words", "status", "told"),
-    [(["--fit-offset", "scale"], 1, "'scale'"), (["--slope-angle-deg", "10"], 2, NORTH[0])],
+    ("words", "status", "told"), [(["--fit-offset", "scale"], 1, "'scale'"), (["--slope-angle-deg", "10"], 2, NORTH[0])]
 )
 def test_wrong_words(words: list[str], status: int, told: str, straight: Path, capsys: Printed) -> None:
     try:

@@ -86,11 +86,7 @@ def test_analyse_prints_json_alone_and_writes_nothing_without_out(
     assert main(["analyse", str(campaign), "--json", "--resamples", "100", "--seed", "7"]) == 0
     results = json.loads(capsys.readouterr().out)
     assert results["provenance"]["seed"] == 7
-    assert results["provenance"]["options"] == {
-        "geometry": "extended",
-        "n_resamples": 100,
-        "difference_percent": 20.0,
-    }
+    assert results["provenance"]["options"] == {"geometry": "extended", "n_resamples": 100, "difference_percent": 20.0}
     assert files_below(tmp_path) == before
 
 

@@ -196,14 +196,7 @@ def test_as_many_stations_as_times_and_at_least_one() -> None:
 
 def test_progress_names_each_profile() -> None:
     lines: list[str] = []
-    identify(
-        "carved-46m",
-        cells(truth()),
-        "mu_0,drag_area",
-        changes=CHANGES,
-        profile=True,
-        progress=lines.append,
-    )
+    identify("carved-46m", cells(truth()), "mu_0,drag_area", changes=CHANGES, profile=True, progress=lines.append)
     profiles = [line for line in lines if line.startswith("profile")]
     assert [line.split()[-1] for line in profiles] == ["mu_0", "drag_area"]
 

@@ -100,10 +100,7 @@ def test_places_without_residuals_are_avoided() -> None:
 def test_the_last_steps_go_with_other_residuals() -> None:
     """The quick ones miss by 0.1; the Jacobian is the same."""
     search = Search(
-        lambda many: [each - 0.4 for each in many],
-        -FAR,
-        FAR,
-        replace(CLOSED_FORM_SEARCH, accuracy_is_stated=True),
+        lambda many: [each - 0.4 for each in many], -FAR, FAR, replace(CLOSED_FORM_SEARCH, accuracy_is_stated=True)
     )
     found = search.run(np.zeros(2))
     assert found is not None

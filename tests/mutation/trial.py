@@ -101,10 +101,7 @@ class Trials:
         words = [sys.executable, "-m", "pytest", "-x", "-q", "--hypothesis-profile=ci", "--doctest-modules"]
         words += [word for name in ("cacheprovider", "xdist", "randomly") for word in ("-p", f"no:{name}")]
         words += [*more, *(f"--ignore={name}" for name in self.left_out), *(tests or self.tests)]
-        own = {
-            "PYTHONPATH": str(self.tree / "src"),
-            "PYTHONDONTWRITEBYTECODE": "1",
-        }
+        own = {"PYTHONPATH": str(self.tree / "src"), "PYTHONDONTWRITEBYTECODE": "1"}
         outer = {name: value for name, value in os.environ.items() if name != "PYTEST_CURRENT_TEST"}
         status = _status(words, self.tree, {**outer, **own, **environment}, self.limit)
         return 0 if status == pytest.ExitCode.NO_TESTS_COLLECTED else status

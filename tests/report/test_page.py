@@ -290,11 +290,7 @@ def test_small_campaigns_have_a_report(case: str, figures: int, campaign: Campai
     cases: dict[str, dict[str, Any]] = {
         "only shear": {"penetration": None},
         "only penetration": {"shear": None},
-        "one of each": {
-            "penetration": first_series(campaign, 1),
-            "shear": first_shear(campaign, 1),
-            "density": None,
-        },
+        "one of each": {"penetration": first_series(campaign, 1), "shear": first_shear(campaign, 1), "density": None},
         "nothing used": {
             "penetration": replace(first_series(campaign, 2), cancelled=("crushed", "tilted")),
             "shear": replace(first_shear(campaign, 1), cancelled=("slipped",)),

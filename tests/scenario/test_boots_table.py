@@ -155,11 +155,7 @@ MOT = "turn\nnRows=4\nEndHeader\n\ntime left_edge_angle_deg\n0 0\n1 10\n2 20\n3 
         (MOT.replace("EndHeader\n", ""), "a.mot", coded("no_data", head_end="endheader")),
         (MOT.replace("2 20\n", ""), "a.mot", coded("head_says", key="nRows", word="4", there=3)),
         (MOT.replace("nRows=4", "nColumns=3"), "a.sto", coded("head_says", key="nColumns", word="3", there=2)),
-        (
-            MOT.replace("nRows=4", "inDegrees = No"),
-            "a.mot",
-            "in_degrees",
-        ),
+        (MOT.replace("nRows=4", "inDegrees = No"), "a.mot", "in_degrees"),
         (
             MOT.replace("2 20", "2 -200"),
             "a.mot",

@@ -29,10 +29,7 @@ def test_with_and_without_section_and_unit(word: str, key: str) -> None:
         ("x_ms", coded("unknown_name", word="x_ms")),
         ("MASS", "unknown_name"),
         ("speeds", "unknown_name"),
-        (
-            "step",
-            coded("not_free", key="solver.step_ms"),
-        ),
+        ("step", coded("not_free", key="solver.step_ms")),
         ("inertia", coded("not_free", key="sledge.inertia_kg_m2")),
         ("ski.name", coded("not_free", key="ski.name")),
         ("mu_0@ ", coded("missing", word="mu_0@ ", own="mu_0", each="each")),

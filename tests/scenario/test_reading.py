@@ -228,9 +228,7 @@ def measured(tmp_path_factory: pytest.TempPathFactory) -> tuple[Analysis, Path]:
     unloading = (replace(pressed.site_unloading[0], site="site C"), *pressed.site_unloading[1:])
     ways = (SiteDisplacement("site C", 3, 2.5e-4, 2.0e-4, 3.2e-4), SiteDisplacement(None, 3, 2.5e-4, 2.0e-4, 3.2e-4))
     analysis = replace(
-        analysis,
-        penetration=replace(pressed, site_unloading=unloading),
-        shear=replace(sheared, site_displacement=ways),
+        analysis, penetration=replace(pressed, site_unloading=unloading), shear=replace(sheared, site_displacement=ways)
     )
     folder = tmp_path_factory.mktemp("measured")
     (folder / "results.json").write_bytes(results_json(skisnow.results_dict(analysis)))
@@ -335,10 +333,7 @@ def test_scenario_tells_its_values_back(name: str) -> None:
     [
         ({"snow.H_V": 1}, coded("unknown_name", similar="snow.H_V_N_per_mm3")),
         ({"sledge.H_V_N_per_mm3": 1}, coded("unknown_name", similar="snow.H_V_N_per_mm3")),
-        (
-            {"edge_angel_deg": 1},
-            coded("unknown_name", similar="sledge.edge_angle_deg"),
-        ),
+        ({"edge_angel_deg": 1}, coded("unknown_name", similar="sledge.edge_angle_deg")),
         (
             {"slope.profile": "a.csv"},
             coded(
@@ -369,18 +364,8 @@ def test_bad_change_is_refused_in_a_sentence(changes: dict[str, object], told: s
     ("replaced", "told"),
     [
         ({"[snow]": "[sno]"}, coded("missing", similar="snow", section="sno")),
-        (
-            {"mass_kg": "mas_kg = 80"},
-            coded(
-                "unknown_name",
-                name="sledge.mas_kg",
-                similar="sledge.mass_kg",
-            ),
-        ),
-        (
-            {"mass_kg": ""},
-            coded("missing", name="sledge.mass_kg"),
-        ),
+        ({"mass_kg": "mas_kg = 80"}, coded("unknown_name", name="sledge.mas_kg", similar="sledge.mass_kg")),
+        ({"mass_kg": ""}, coded("missing", name="sledge.mass_kg")),
         ({"unloading_ratio": ""}, coded("missing", name="snow.unloading_ratio")),
         ({"H_V": ""}, "missing"),
         ({"S_f": ""}, coded("missing", name="snow.S_f_N_per_mm2")),

@@ -140,10 +140,7 @@ def _without_slope() -> str:
         ),
         (CSV.replace("0,2,3\n", "0,2,30\n"), "out_of_range"),
         (CSV.replace("0,2,3", '0,2,"3,5"'), coded("not_a_number", value="3,5")),
-        (
-            CSV.replace("0,2,3", "0,2,3,5"),
-            coded("too_many_cells", row=4, count=4, columns=3),
-        ),
+        (CSV.replace("0,2,3", "0,2,3,5"), coded("too_many_cells", row=4, count=4, columns=3)),
         (
             "".join(["x_m,y_m,z_m\n", *(f"{0.1 * i * i},{0.3 * i * i},0\n" for i in range(30))]),
             coded("uneven_places", column="x_m"),

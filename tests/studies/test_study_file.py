@@ -117,14 +117,7 @@ def test_fingerprint_follows_points_and_files_but_not_the_place_of_the_table(tmp
         ),
         (
             OUT + FIXED.replace("= 800", "= -800") + GRID,
-            coded(
-                "out_of_range",
-                low=0.0,
-                name="load_N",
-                value="-800",
-                allowed="above 0",
-                unit="N",
-            ),
+            coded("out_of_range", low=0.0, name="load_N", value="-800", allowed="above 0", unit="N"),
         ),
         (
             OUT + FIXED.replace("slalom", "paper-tool") + GRID,

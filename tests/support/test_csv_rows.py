@@ -64,10 +64,7 @@ def test_a_cell_without_a_finite_number_is_refused_with_its_place(tmp_path: Path
         ("", coded("missing_column", column="x", action="Mend it.")),
         ("x,y,x\n1,2,3\n", coded("repeated_column", column="x")),
         ("x,y,z,z\n1,2,3,4\n", coded("repeated_column", column="z")),
-        (
-            'x,y\n1,"' + "a" * 140_000 + '"\n',
-            coded("not_csv", action="Mend it."),
-        ),
+        ('x,y\n1,"' + "a" * 140_000 + '"\n', coded("not_csv", action="Mend it.")),
         ("x,y\n1,2\n1,5,2\n", coded("too_many_cells", row=3, count=3, columns=2, action="Mend it.")),
     ],
 )

@@ -17,13 +17,7 @@ from .test_entering import NAMELESS
 if TYPE_CHECKING:
     from playwright.sync_api import Page
 
-READY = {
-    "skis": "td",
-    "carve": "td",
-    "simulate": "summary",
-    "study": ".range",
-    "replay": ".card",
-}
+READY = {"skis": "td", "carve": "td", "simulate": "summary", "study": ".range", "replay": ".card"}
 
 
 def test_every_page_of_the_navigation_is_looked_at() -> None:

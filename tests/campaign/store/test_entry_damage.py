@@ -56,30 +56,15 @@ def as_bytes(old: str, entry: int) -> str:
     ("statement", "said"),
     [
         (cells('"3"', '"2"', 4), "penetration.csv: test 1, row 3, column depth_mm: '2'"),
-        (
-            cells("piece", "pigce", 2),
-            "penetration.csv: test 1, row 1, column tool: 'pigce'",
-        ),
-        (
-            as_bytes("piece", 2),
-            "penetration.csv: test 1, row 1, column tool: 'piec\ufffd'",
-        ),
+        (cells("piece", "pigce", 2), "penetration.csv: test 1, row 1, column tool: 'pigce'"),
+        (as_bytes("piece", 2), "penetration.csv: test 1, row 1, column tool: 'piec\ufffd'"),
         (cells("depth_mm", "depth_mn", 3), "penetration.csv: test 1, row 2, column depth_mm"),
         (cells("2.5", "6.5", 5), "penetration.csv: test 1, row 2, column depth_mm: '6.5'"),
         (cells("}", "|", 3), "penetration.csv: test 1, row 2: its cells"),
         (cells("a day", "a bay", 1), 'campaign.toml: column campaign.toml: \'name = "a bay"'),
-        (
-            "UPDATE journal_entry SET who = 'Ava' WHERE sequence = 2",
-            "penetration.csv: test 1, row 1: its who",
-        ),
-        (
-            f"UPDATE journal_entry SET position = CAST('{'9' * 5000}' AS BLOB) WHERE sequence = 2",
-            "test 1",
-        ),
-        (
-            "UPDATE journal_entry SET position = 6 WHERE sequence = 2",
-            "test 1, row 7: its position",
-        ),
+        ("UPDATE journal_entry SET who = 'Ava' WHERE sequence = 2", "penetration.csv: test 1, row 1: its who"),
+        (f"UPDATE journal_entry SET position = CAST('{'9' * 5000}' AS BLOB) WHERE sequence = 2", "test 1"),
+        ("UPDATE journal_entry SET position = 6 WHERE sequence = 2", "test 1, row 7: its position"),
         ("UPDATE journal_entry SET file = 'x.csv' WHERE sequence = 2", "x.csv: test 1, row 1: its file"),
         (
             "UPDATE journal_entry SET sums = replace(sums, '\"who\"', '\"hwo\"'), who = 'Ava' WHERE sequence = 3",
@@ -89,14 +74,8 @@ def as_bytes(old: str, entry: int) -> str:
             "UPDATE journal_entry SET sums = replace(sums, 'depth', 'death') WHERE sequence = 3",
             "test 1, row 2: its checksum",
         ),
-        (
-            "UPDATE journal_entry SET sha256 = '0' WHERE sequence = 3",
-            "test 1, row 2: its checksum",
-        ),
-        (
-            "UPDATE journal_entry SET sha256 = '0', sums = '{' WHERE sequence = 3",
-            "test 1, row 2: neither",
-        ),
+        ("UPDATE journal_entry SET sha256 = '0' WHERE sequence = 3", "test 1, row 2: its checksum"),
+        ("UPDATE journal_entry SET sha256 = '0', sums = '{' WHERE sequence = 3", "test 1, row 2: neither"),
         ("UPDATE journal_entry SET sums = NULL WHERE sequence = 3", "test 1, row 2: it has no checksum"),
     ],
 )

@@ -185,10 +185,7 @@ def test_entries_can_only_be_added_by_the_rules(store: Store, action: str, about
     """The table itself refuses what no program should write."""
     id_, _ = campaign_with(Journals(store), "1.5")
     before = Journals(store).entries(id_)
-    with (
-        writing(store.engine) as connection,
-        pytest.raises(IntegrityError, match=f"ck_journal_entry_{rule}"),
-    ):
+    with writing(store.engine) as connection, pytest.raises(IntegrityError, match=f"ck_journal_entry_{rule}"):
         row = {"sequence": 99, "at": "", "who": "", "file": "", "test": "", "cells": "{}", "why": ""}
         connection.execute(insert(journal_entry).values(journal_id=id_, action=action, about=about, **row))
     assert Journals(store).entries(id_) == before

@@ -50,15 +50,9 @@ def test_a_campaign_is_given_back_byte_for_byte(address: str, tmp_path: Path) ->
         (["UPDATE chunk SET data = '\\x00' WHERE position = 2"], "SMP.PNT: the bytes"),
         (["DELETE FROM campaign_file WHERE path = 'case.csv'"], "added with"),
         (["UPDATE campaign SET added_at = 'yesterday'"], "is damaged"),
-        (
-            ["SET session_replication_role = replica", "DELETE FROM content WHERE size = 0"],
-            "table campaign_file",
-        ),
+        (["SET session_replication_role = replica", "DELETE FROM content WHERE size = 0"], "table campaign_file"),
         (["DROP TABLE chunk"], "cannot be read"),
-        (
-            ["UPDATE journal_entry SET cells = replace(cells, '2.25', '2.35') WHERE sequence = 3"],
-            "'2.35'",
-        ),
+        (["UPDATE journal_entry SET cells = replace(cells, '2.25', '2.35') WHERE sequence = 3"], "'2.35'"),
         (["UPDATE journal_entry SET uid = NULL WHERE sequence = 3"], "its uid"),
     ],
 )
@@ -164,11 +158,7 @@ def store_errors(store: Store) -> AbstractContextManager[None]:
 def test_a_connection_that_breaks_is_told_and_the_next_one_works(server: Server, address: str) -> None:
     with Store.open(address) as store:
         id_, last = campaign_with(Journals(store), "1.5")
-        with (
-            pytest.raises(StoreError, match="connection"),
-            store_errors(store),
-            writing(store.engine) as connection,
-        ):
+        with pytest.raises(StoreError, match="connection"), store_errors(store), writing(store.engine) as connection:
             connection.execute(text("DELETE FROM journal_entry"))
             server.execute("SELECT pg_terminate_backend(pid) FROM pg_stat_activity WHERE datname = 'emptied'")
             connection.execute(text("SELECT 1"))

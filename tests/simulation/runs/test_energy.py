@@ -107,16 +107,7 @@ def test_built_in_scenarios(name: str, contact: str) -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    ("hardness", "strength"),
-    [
-        (0.04, 0.02),
-        (0.2, 0.5),
-        (1.0, 1.0),
-        (1.0, 0.3),
-        (90.0, 10.0),
-        (0.04, 0.2),
-        (0.2, 0.1),
-    ],
+    ("hardness", "strength"), [(0.04, 0.02), (0.2, 0.5), (1.0, 1.0), (1.0, 0.3), (90.0, 10.0), (0.04, 0.2), (0.2, 0.1)]
 )
 def test_every_snow(hardness: float, strength: float) -> None:
     """From powder to ice, with an S_f that carves and one that skids."""

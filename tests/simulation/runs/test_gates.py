@@ -58,11 +58,7 @@ def test_run_ends_a_metre_behind_the_last_gate(straight: Run) -> None:
 
 @pytest.mark.parametrize(
     ("y", "side", "outcome", "said"),
-    [
-        (0.2, "left", "straddled", "2"),
-        (0.5, "left", "missed_gate", "0.25 m"),
-        (0.5, "right", "finished", ""),
-    ],
+    [(0.2, "left", "straddled", "2"), (0.5, "left", "missed_gate", "0.25 m"), (0.5, "right", "finished", "")],
 )
 def test_outcome_is_that_of_the_first_gate_that_was_not_passed(
     straight: Run, y: float, side: str, outcome: str, said: str

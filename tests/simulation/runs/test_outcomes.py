@@ -129,11 +129,7 @@ def test_step_too_small(monkeypatch: pytest.MonkeyPatch) -> None:
     [
         ({}, {"solver.fixed": True, "solver.step_ms": 5.0}, 0.01),
         ({"snow.H_V_N_per_mm3": 20.0, "snow.S_f_N_per_mm2": 3.0}, {"solver.fixed": True, "solver.step_ms": 5.0}, 0.01),
-        (
-            {"snow.H_V_N_per_mm3": 90.0, "snow.S_f_N_per_mm2": 10.0},
-            {"solver.fixed": True, "solver.step_ms": 2.0},
-            0.01,
-        ),
+        ({"snow.H_V_N_per_mm3": 90.0, "snow.S_f_N_per_mm2": 10.0}, {"solver.fixed": True, "solver.step_ms": 2.0}, 0.01),
         ({"start.speed_m_per_s": 50.0}, {"solver.fixed": True, "solver.step_ms": 5.0}, 1.0),
     ],
     ids=["soft", "ice", "hard-ice", "at-50-m-per-s"],

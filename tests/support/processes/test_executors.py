@@ -174,10 +174,7 @@ def test_folder_of_the_parent_is_that_of_a_worker(tmp_path: Path, monkeypatch: p
 
 @pytest.mark.parametrize(
     ("executor", "told"),
-    [
-        (3, coded("unknown_executor", executor=3)),
-        ("host:8786", coded("unknown_executor", scheduler="host:8786")),
-    ],
+    [(3, coded("unknown_executor", executor=3)), ("host:8786", coded("unknown_executor", scheduler="host:8786"))],
 )
 def test_what_is_no_executor_is_refused(executor: Any, told: str | Coded) -> None:
     with raises(ParameterError, told):

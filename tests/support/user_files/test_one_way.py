@@ -8,10 +8,7 @@ from pathlib import Path
 import skisnow
 
 READERS = re.compile(r"\b(tomllib|json|orjson)\.loads?\(|\bfrom (tomllib|json|orjson) import|JSONDecoder")
-ITS_OWN = {
-    Path("_support/user_files/text_files.py"),
-    Path("_support/user_files/json_text.py"),
-}
+ITS_OWN = {Path("_support/user_files/text_files.py"), Path("_support/user_files/json_text.py")}
 
 
 def test_toml_and_json_are_read_in_one_place() -> None:

@@ -77,11 +77,7 @@ FIRST = "xl/worksheets/sheet1.xml"
     ("part", "content", "told"),
     [
         ("xl/bomb.bin", b"\0" * ((1 << 20) + 1), coded("too_large", limit=1)),
-        (
-            FIRST,
-            b'<!DOCTYPE a [<!ENTITY b "bb"><!ENTITY c "&b;&b;">]>' + SHEET % b"",
-            "not_readable",
-        ),
+        (FIRST, b'<!DOCTYPE a [<!ENTITY b "bb"><!ENTITY c "&b;&b;">]>' + SHEET % b"", "not_readable"),
         (FIRST, "<!DOCTYPE a>".encode("utf-16") + SHEET[:0], "not_readable"),
         (FIRST, b"<a>" * 65, "too_large"),
         (FIRST, SHEET % b'<row r="99999999"><c r="A1"><v>1</v></c></row>', coded("too_large", limit=1000)),

@@ -62,18 +62,12 @@ def test_table_is_read_as_it_stands(tmp_path: Path) -> None:
         (HEAD + ROWS.replace("left,10", "up,10"), coded("unknown_choice", row=2, column="side", value="up")),
         (HEAD + ROWS.replace("2,20,1", "2,2o,1"), coded("not_a_number", row=3, column="x_m", value="2o")),
         (HEAD + ROWS.replace("2,20,1", ",20,1"), coded("missing_name", row=3, column="gate")),
-        (
-            HEAD + ROWS.replace("20,-4", "20,"),
-            coded("missing_column", row=3, column="outer_x_m", value="20"),
-        ),
+        (HEAD + ROWS.replace("20,-4", "20,"), coded("missing_column", row=3, column="outer_x_m", value="20")),
         (HEAD + ROWS.replace("2,20,1", "1,20,1"), coded("repeated_name", name="1")),
         (HEAD + "1,10,-1,left,10,4\n", coded("too_few_gates", fewest=2, count=1)),
         (HEAD + ROWS.replace("2,20,1,right,20,-4", "2,10,-1,right,,"), coded("same_place", first="1", second="2")),
         (HEAD + ROWS.replace("10,4", "10,-1"), coded("same_place", name="1")),
-        (
-            HEAD + ROWS.replace("right", "left"),
-            coded("wrong_side", name="2"),
-        ),
+        (HEAD + ROWS.replace("right", "left"), coded("wrong_side", name="2")),
     ],
 )
 def test_what_is_wrong_is_told_with_its_place(tmp_path: Path, text: str, said: str | Coded) -> None:

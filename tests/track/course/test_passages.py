@@ -209,9 +209,7 @@ def test_feet_and_tips_on_both_sides_of_a_pole_straddle_it(
 def test_a_vertical_gate_has_its_own_direction() -> None:
     """Both poles down the fall line: it is passed from left to right, below its upper pole."""
     vertical = course(
-        ((10.0, -3.0), "left", (10.0, 2.0)),
-        ((20.0, 0.0), "left", (25.0, 0.0)),
-        ((30.0, 3.0), "right", (30.0, -2.0)),
+        ((10.0, -3.0), "left", (10.0, 2.0)), ((20.0, 0.0), "left", (25.0, 0.0)), ((30.0, 3.0), "right", (30.0, -2.0))
     )
     line = vertical.lines[1]
     np.testing.assert_allclose(line.across, [1.0, 0.0])

@@ -146,11 +146,7 @@ def test_the_menus_name_what_there_is(desk: Desk) -> None:
     [
         (ANGLE, [str(angle) for angle in range(86)], "45"),
         (LOAD, [str(load) for load in range(100, 3050, 50)], "800"),
-        (
-            HARDNESS,
-            [f"{number:g}" for number in (*_SOFT, *_HARD)],
-            "0.2",
-        ),
+        (HARDNESS, [f"{number:g}" for number in (*_SOFT, *_HARD)], "0.2"),
         (STRESS, [f"{number / 50:g}" for number in range(2, 27)], "0.5"),
     ],
 )

@@ -312,8 +312,7 @@ def test_addresses_that_others_can_open(host: str, own: list[str] | None, expect
 
 
 @pytest.mark.parametrize(
-    ("host", "expected"),
-    [("0.0.0.0", ["10.0.0.2", "192.168.1.7"]), ("::", ["10.0.0.2", "fd00::1", "192.168.1.7"])],
+    ("host", "expected"), [("0.0.0.0", ["10.0.0.2", "192.168.1.7"]), ("::", ["10.0.0.2", "fd00::1", "192.168.1.7"])]
 )
 def test_addresses_of_this_machine_need_no_name_of_an_adapter(
     monkeypatch: pytest.MonkeyPatch, host: str, expected: list[str]

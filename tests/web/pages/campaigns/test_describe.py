@@ -114,11 +114,7 @@ def test_a_description_that_cannot_be_stored_is_rejected_and_stays(
 
 def test_each_shape_asks_for_its_own_lengths(desk: Desk) -> None:
     page = desk.open("/describe")
-    asked = {
-        "ski": ["Length (mm)", "Width (mm)"],
-        "disc": ["Diameter (mm)"],
-        "cylinder": ["Width (mm)", "Radius (mm)"],
-    }
+    asked = {"ski": ["Length (mm)", "Width (mm)"], "disc": ["Diameter (mm)"], "cylinder": ["Width (mm)", "Radius (mm)"]}
     for shape in ("disc", "cylinder", "ski"):
         page.fill("Shape of tool 1", shape)
         lengths = [line.split(" of ")[0] for line in page.outline() if line.endswith("numeric") and "of tool 1" in line]

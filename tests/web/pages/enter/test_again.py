@@ -73,17 +73,7 @@ def test_a_depth_after_waiting_stands_with_the_decimal_mark_of_the_page(desk: De
 
 def test_a_second_depth_that_becomes_another_one_asks_for_a_reason(desk: Desk) -> None:
     id_ = begun(desk)
-    add_series(
-        desk,
-        id_,
-        "1",
-        (
-            "20",
-            "1.5",
-        ),
-        ("60", "2.6"),
-        depth_after_mm="2.7",
-    )
+    add_series(desk, id_, "1", ("20", "1.5"), ("60", "2.6"), depth_after_mm="2.7")
     page = series_page(desk, id_)
     waited(page, "20", "2.8")
     waited(page, "60", "")

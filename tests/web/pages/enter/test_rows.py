@@ -57,10 +57,7 @@ NAMES = {
 
 @pytest.mark.parametrize(
     ("table", "key", "cells"),
-    [
-        (DENSITY, "sample", {KG_PER_M3: "350"}),
-        (DROP_CONE, "test", {"repeat": "1", "drop_cone_depth_mm": "12"}),
-    ],
+    [(DENSITY, "sample", {KG_PER_M3: "350"}), (DROP_CONE, "test", {"repeat": "1", "drop_cone_depth_mm": "12"})],
 )
 def test_a_test_never_shows_the_result_of_another_table(
     desk: Desk, table: str, key: str, cells: dict[str, str]

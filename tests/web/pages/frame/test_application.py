@@ -34,8 +34,7 @@ HERE = Path(skisnow.web.__file__).parent
 
 
 @pytest.mark.parametrize(
-    ("path", "kind"),
-    [("/lab.css", "text/css"), ("/lab.js", "text/javascript"), ("/kept.js", "text/javascript")],
+    ("path", "kind"), [("/lab.css", "text/css"), ("/lab.js", "text/javascript"), ("/kept.js", "text/javascript")]
 )
 def test_own_files_are_asked_for_again(desk: Desk, path: str, kind: str) -> None:
     answer = desk.get(path)

@@ -177,11 +177,7 @@ def test_a_run_that_waits_can_be_cancelled(desk: Desk) -> None:
 
 @pytest.mark.parametrize(
     ("state", "lines"),
-    [
-        ("waiting", ["button Cancel"]),
-        ("running", ["[quiet progress] 1.2 s of 5 s", "button Cancel"]),
-        ("failed", []),
-    ],
+    [("waiting", ["button Cancel"]), ("running", ["[quiet progress] 1.2 s of 5 s", "button Cancel"]), ("failed", [])],
 )
 def test_a_card_shows_how_its_run_stands(desk: Desk, state: Any, lines: list[str]) -> None:
     page, runs, pressed = desk.open("/replay"), Runs(desk.lab.runs), list[object]()

@@ -96,11 +96,7 @@ def test_the_menus_name_what_there_is(desk: Desk) -> None:
 
 def test_nothing_typed_asks_for_turns_over_the_edge_angle(desk: Desk) -> None:
     job, text = asked(desk, desk.open("/study"))
-    assert text == {
-        "out": "table.csv",
-        "fixed": TURN,
-        "grid": {"edge_angle_deg": {"from": 10.0, "to": 70.0, "n": 13}},
-    }
+    assert text == {"out": "table.csv", "fixed": TURN, "grid": {"edge_angle_deg": {"from": 10.0, "to": 70.0, "n": 13}}}
     kept = {key: job[key] for key in ("scenario", "state", "language", "points", "workers", "method", "unit_s")}
     assert list(kept.values()) == [CARVE, "waiting", "en", 13, 2, "", 0.03]
     assert job["changes"] == {
