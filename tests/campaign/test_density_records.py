@@ -1,4 +1,4 @@
-"""Pit densities: the real file's known counts, and what is refused."""
+"""Pit densities: the real file's known counts, and refusals."""
 
 from __future__ import annotations
 

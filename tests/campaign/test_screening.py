@@ -137,7 +137,7 @@ def test_flags_of_one_series(series: Series, codes: list[str]) -> None:
 
 
 def test_neighbouring_series_do_not_touch_each_other() -> None:
-    """A step down from one series to the next is none; the flag stays with its own series."""
+    """A step down from one series to the next is not one; the flag stays with its own series."""
     campaign = campaign_of(GOOD, [(70.5, 1.0), (60.5, 2.0), (210.5, 1.5)], GOOD)
     assert [flagged(campaign, index) for index in range(3)] == [[], ["loads_not_rising", "depth_shrinks"], []]
 

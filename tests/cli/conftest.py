@@ -1,4 +1,4 @@
-"""What tests of the command line need."""
+"""Helpers for tests of the command line."""
 
 from __future__ import annotations
 
@@ -11,6 +11,6 @@ from skisnow.cli.progress import Progress
 
 @pytest.fixture(autouse=True)
 def patient(monkeypatch: pytest.MonkeyPatch) -> None:
-    """No progress is told unless a test asks for it: on a busy machine what takes milliseconds may take a second."""
+    """No progress is shown by default: on a busy machine milliseconds may become a second."""
     assert Progress.__init__.__kwdefaults__ is not None
     monkeypatch.setitem(Progress.__init__.__kwdefaults__, "patience_s", math.inf)

@@ -93,7 +93,7 @@ def test_rigid_tool_at_rest_is_as_deep_as_the_closed_form(capsys: Printed) -> No
 
 
 def test_rigid_ski_of_a_file_carves_as_deep_as_the_closed_form_on_elastic_snow(tmp_path: Path, capsys: Printed) -> None:
-    """A straight rigid ski file: the same equation at another angle, so that tangent and length are told apart."""
+    """A straight rigid ski file: the same equation at another angle, so that tangent and length differ."""
     path = tmp_path / "plank.toml"
     shape = "length_mm = 1000\nrunning_length_mm = 1000\nsidecut_length_mm = 1000\ntail_overhang_mm = 0\n"
     widths = "tip_width_mm = 80\nwaist_width_mm = 80\ntail_width_mm = 80\nmass_kg = 2\nrigid = true\n"

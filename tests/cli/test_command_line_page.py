@@ -30,7 +30,7 @@ EVERY = list(commands(build_parser()))
 
 
 def told(command: str) -> str:
-    """What the page says of a command: its rows, and what begins with its name; of stores their common words."""
+    """The page's rows about a command and those that begin with its name; of stores their common words."""
     group, *rest = command.split()
     own = [piece for piece in PIECES if re.search(rf"`skisnow {command}(?![\w-])", piece)]
     if group == "store":

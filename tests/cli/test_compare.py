@@ -142,7 +142,7 @@ def test_two_runs_through_one_course_are_compared_gate_by_gate(straight: Path, t
 
 @pytest.mark.parametrize("azimuth", [0, 90])
 def test_latitude_and_longitude_come_into_the_slopes_frame(azimuth: int, tmp_path: Path, capsys: Printed) -> None:
-    """A run due north, or east, over y m on the map is y/cos 10° long on a slope of 10°; no heights: it lies on it."""
+    """A run due north, or east, over y m on the map is y/cos 10° long on a slope of 10°; no heights: it is on it."""
     metres = np.linspace(0.0, 30.0, 31)
     e_squared, sine = 0.00669437999, math.sin(math.radians(47.0))
     vertical = 6378137.0 / math.sqrt(1.0 - e_squared * sine**2)

@@ -1,4 +1,4 @@
-"""``skisnow export``: which model is written, and what is refused."""
+"""``skisnow export``: models that are written, and refusals."""
 
 from __future__ import annotations
 

@@ -141,7 +141,7 @@ def test_an_interrupted_search_is_kept_and_gone_on_with(
 
 
 def test_the_strength_alone_from_marks(tmp_path: Path, capsys: Printed) -> None:
-    """What each file was taken for stands in the terminal, and in the JSON."""
+    """The kind of each file is in the terminal, and in the JSON."""
     path = tmp_path / "marks.csv"
     path.write_text("turn_radius_m\n16.1\n16.3\n16.2\n", encoding="utf-8")
     assert main(["identify", "carved-46m", str(path), "--free", "S_f", "--out", str(tmp_path / "found")]) == 0

@@ -214,7 +214,7 @@ class TestLastResort:
     @pytest.fixture(autouse=True)
     def broken(self, monkeypatch: pytest.MonkeyPatch) -> None:
         def run(_: object) -> int:
-            raise ZeroDivisionError("what nobody foresaw\nsecond line")
+            raise ZeroDivisionError("an unforeseen error\nsecond line")
 
         monkeypatch.setattr("skisnow.cli.check.run", run)
 

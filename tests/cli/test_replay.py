@@ -1,4 +1,4 @@
-"""``skisnow replay``: the page and both models of a run that was written, from the terminal alone."""
+"""``skisnow replay``: the page and both models of a run that was written, from the terminal only."""
 
 from __future__ import annotations
 

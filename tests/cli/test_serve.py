@@ -12,7 +12,7 @@ from skisnow.cli import main
 
 @pytest.fixture
 def missing(monkeypatch: pytest.MonkeyPatch) -> Any:
-    """Importing the server fails for want of this module."""
+    """Importing the server fails without this module."""
     imported = builtins.__import__
 
     def put(name: str | None) -> None:

@@ -109,7 +109,7 @@ def test_folder_holds_summary_track_file_and_report(tmp_path: Path, capsys: Prin
 
 @pytest.mark.usefixtures("replaced", "undrawn")
 def test_a_folder_never_holds_two_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Ended while it writes, the folder is as it was; written anew, nothing of the earlier run is left."""
+    """Ended while it writes, the folder is as it was; written again, nothing of the earlier run is left."""
 
     def contents() -> dict[str, bytes]:
         return {str(each.relative_to(tmp_path)): each.read_bytes() for each in tmp_path.rglob("*") if each.is_file()}

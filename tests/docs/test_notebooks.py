@@ -49,7 +49,7 @@ def test_page_has_every_cell(name: str) -> None:
 
 
 def test_reading() -> None:
-    """Both mistakes are found where they were planted, and none is left once they are mended."""
+    """Both mistakes are found where they were planted, and none is left once they are corrected."""
     cells, names = write_notebooks.executed("reading")
     assert write_notebooks.page("reading", cells) == text_of_page("reading")
     tool, unit = names["tool"] + 1, names["unit"] + 1
@@ -96,7 +96,7 @@ def test_turn() -> None:
 
 @pytest.mark.slow
 def test_track() -> None:
-    """What made the track is found again within the intervals, and the rest is the receiver's noise."""
+    """The true values of the track are found within the intervals, and the rest is the receiver's noise."""
     cells, names = write_notebooks.executed("track")
     assert write_notebooks.page("track", cells) == text_of_page("track")
     for name, truth in (("mu_0", 0.04), ("drag_area", 0.45)):

@@ -59,7 +59,7 @@ def test_every_mark_is_whole(page: str) -> None:
 
 
 def test_every_block_of_output_has_its_command() -> None:
-    """What stands right behind a command that begins with skisnow is its output, and made by it."""
+    """The text right behind a command that begins with skisnow is its output, and made by it."""
     bare = {}
     for page in ALWAYS:
         blocks = re.findall(r"^```\nskisnow [^`]*?^```\n\n(```\n.*?)^```", text_of(page), re.MULTILINE | re.DOTALL)

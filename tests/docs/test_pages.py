@@ -34,7 +34,7 @@ def test_pictures_exist_and_have_words(page: str) -> None:
         if place.startswith("http"):
             continue
         assert (DOCS / page).parent.joinpath(place).exists(), place
-        assert words or page == "gallery/index.md", place  # there the title stands beside it
+        assert words or page == "gallery/index.md", place  # there the title is beside it
 
 
 def test_chart_of_the_benchmarks_has_every_row_with_a_goal() -> None:

@@ -1,4 +1,4 @@
-"""What the README shows is what happens."""
+"""The README shows true output."""
 
 import doctest
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""What every public name says of itself: the page of the Python interface is made from it."""
+"""Docstrings of every public name: the page of the Python interface is made from them."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ DOI = re.compile(r"\bdoi 10\.\d{4,9}/\S+")
 
 
 def sections(documented: Any) -> dict[str, str]:
-    """Headings of a docstring with what stands below each."""
+    """Headings of a docstring with the text below each."""
     text = inspect.getdoc(documented) or ""
     parts = re.split(r"^(\w[\w ]*)\n-{3,}\n", text, flags=re.MULTILINE)
     return dict(zip(parts[1::2], parts[2::2], strict=True))

@@ -34,7 +34,7 @@ def test_every_key_of_the_summary_and_every_column_is_told() -> None:
     path = Path(skisnow.__file__).parent / "simulation/schemas/summary.schema.json"
     schema = json.loads(path.read_text(encoding="utf-8"))
     del schema["properties"]["scenario"]["properties"]  # the table's
-    keys = {key.replace("_start_J", "_J") for key in keys_of(schema)}  # the page says how the start is named
+    keys = {key.replace("_start_J", "_J") for key in keys_of(schema)}  # the page states how the start is named
     assert {key for key in (*keys, *COLUMNS) if f"`{key}`" not in RUNS} == set()
     assert {column for column in RUN_RESULTS if f"`{column}`" not in PAGE} == set()
 

@@ -1,4 +1,4 @@
-"""Tracks of runs that nobody simulated: straight down the fall line, in closed form."""
+"""Tracks of runs made without a simulation: straight down the fall line, in closed form."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ TRUE_FRICTION, TRUE_SPEED, SD = 0.06, 5.5, 0.02
 
 
 def put(monkeypatch: pytest.MonkeyPatch) -> None:
-    """In place of the simulator, as far as this process goes."""
+    """Instead of the simulator, as far as this process goes."""
     module = ModuleType("skisnow.simulation.simulated_run")
     vars(module)["simulate"] = straight_run
     monkeypatch.setitem(sys.modules, "skisnow.simulation.simulated_run", module)

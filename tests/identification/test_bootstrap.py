@@ -76,7 +76,7 @@ def test_what_is_drawn_scatters_about_nothing() -> None:
 def refits_by_scipy(decay: Decay, found: Identification, linear: np.ndarray) -> np.ndarray:
     """The same resamples fitted by another program.
 
-    What was drawn follows from the linear samples' own draws: the same numbers in the same order.
+    The draws follow from the linear samples' own draws: the same numbers in the same order.
     """
     a, b = (float(found[key].value or 0.0) for key in ("a", "b"))
     best = decay.residuals([{"a": a, "b": b}])[0]

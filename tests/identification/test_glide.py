@@ -94,7 +94,7 @@ def two_planes(first: float, second: float, spacing: float) -> Profile:
 def times_on_two_planes(first: float, second: float, mu: float, drag: float, station: Any) -> Any:
     """On a plane d(v²)/ds = 2 (A - k v²), so v² = A/k + (v₀² - A/k) e^{-2ks}; t = ∫ ds/v.
 
-    At the edge the snow takes m v² dα of pressure alone, dv = -μ v dα: v falls by e^{-μ (α₁ - α₂)}.
+    At the edge the snow takes m v² dα of pressure only, dv = -μ v dα: v falls by e^{-μ (α₁ - α₂)}.
     """
 
     def speed(angle: float, begin: float, way: Any) -> Any:
@@ -124,7 +124,7 @@ def test_times_on_a_profile_of_two_planes(spacing: float) -> None:
 
 
 def test_bodies_together_pass_each_edge_for_themselves() -> None:
-    """Three at once, each at its own time at every point: as each alone."""
+    """Three at once, each at its own time at every point: as each separately."""
     line = slope_line(two_planes(math.radians(20.0), math.radians(10.0), 0.5), 12.3)
     three = Glide(
         friction=np.array([0.0, 0.05, 0.1]), friction_by_speed=np.zeros(3), drag_per_mass=np.full(3, 0.003),

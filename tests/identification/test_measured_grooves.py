@@ -195,7 +195,7 @@ class TestFile:
 
 @pytest.mark.parametrize("stated", [True, False])
 def test_the_strength_alone_from_marks_of_an_edge_that_held(stated: bool) -> None:
-    """Nothing else is looked for: the bound is that of the own snow, with the scatter of the radius."""
+    """Nothing else is identified: the bound is that of the own snow, with the scatter of the radius."""
     own = residuals_of()
     groove = own.groove({})
     assert groove is not None

@@ -164,7 +164,7 @@ def test_a_prior_pulls_as_much_as_it_knows() -> None:
 
 
 def test_a_prior_is_weighed_by_the_noise_that_the_residuals_show() -> None:
-    """Nobody states an accuracy; the noise is a fifth of the nominal 10 ms, and the pull as with that stated."""
+    """No accuracy is stated; the noise is a fifth of the nominal 10 ms, and the pull as with that stated."""
     changes = CHANGES | {"drag.drag_area_m2": AREA}
     noise = 0.002 * np.random.default_rng(5).standard_normal(len(STATION))
     data = cells(truth() + noise, sd=None)

@@ -1,4 +1,4 @@
-"""What is said of a fit: neighbouring residuals that are alike."""
+"""Remarks on a fit: neighbouring residuals that are alike."""
 
 from __future__ import annotations
 

@@ -53,7 +53,7 @@ def test_a_jacobian_of_a_search_is_asked_at_once() -> None:
 
 
 def test_differences_are_taken_over_a_standard_error() -> None:
-    """Residuals 40 x and 300 y of known noise: 1/40, and 1/300 held to the smallest step."""
+    """Residuals 40 x and 300 y of known noise: 1/40, and 1/300 limited to the smallest step."""
     asked: list[Places] = []
 
     def residuals(many: Places) -> list[np.ndarray | None]:

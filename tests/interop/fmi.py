@@ -55,7 +55,7 @@ class Fmu:
 
 
 class Instance:
-    """One instance; every call that is not OK is an AssertionError with what was logged."""
+    """One instance; every call that is not OK is an AssertionError with the log."""
 
     def __init__(self, fmu: Fmu, token: str) -> None:
         self.fmu, self.words = fmu, list[str]()

@@ -1,4 +1,4 @@
-"""Conversions by endings, from the command line: what comes out, and what is refused with nothing written."""
+"""Conversions by endings, from the command line: results, and refusals with nothing written."""
 
 from __future__ import annotations
 

@@ -136,7 +136,7 @@ def test_states_go_back_and_forth_and_instances_share_nothing(sledge: Fmu) -> No
 
 
 def test_the_state_of_a_sledge_as_bytes_serves_another_instance(sledge: Fmu) -> None:
-    """1,000 steps of 0.2 ms from there on, with a push that begins later."""
+    """1,000 steps of 0.2 ms after that, with a push that begins later."""
     assert next(sledge.description.iter("CoSimulation")).attrib[f"canSerializeFMU{'sS'[sledge.fmi - 2]}tate"] == "true"
     instance, other = sledge.instance(), sledge.instance()
     untouched = instance.to_bytes(instance.state())
@@ -193,7 +193,7 @@ def test_the_state_of_a_contact_as_bytes_serves_another_instance_over_older_trac
     other.restore(other.from_bytes(data))
     assert across(other) == expected
     found = np.array(expected).reshape(1000, 12)[50:, 2]
-    assert found.min() < 0.97 * np.median(found)  # over the older tracks it stands on less
+    assert found.min() < 0.97 * np.median(found)  # the older tracks carry less
 
 
 def test_bytes_of_another_fmu_and_damaged_ones_are_refused(pair: Fmu, made: Made) -> None:

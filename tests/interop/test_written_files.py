@@ -1,4 +1,4 @@
-"""What stands in the files that others read, line by line, where little or nothing is known."""
+"""What is in the files that others read, line by line, where little or nothing is known."""
 
 from __future__ import annotations
 

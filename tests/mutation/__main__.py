@@ -108,7 +108,7 @@ def drawn(files: Iterable[Path], count: int, seed: int, *, root: Path = ROOT) ->
 
 
 def verdicts(planted: list[Planted], trials: list[Trials]) -> Iterator[tuple[Planted, str]]:
-    """What the tests say of each error, on as many copies of the tree as there are."""
+    """Results of the tests for each error, on as many copies of the tree as there are."""
     free: Queue[Trials] = Queue()
     for each in trials:
         free.put(each)
@@ -125,7 +125,7 @@ def verdicts(planted: list[Planted], trials: list[Trials]) -> Iterator[tuple[Pla
 
 
 def asked_of(words: list[str] | None) -> argparse.Namespace:
-    """What the command line asks."""
+    """Arguments of the command line."""
     parser = argparse.ArgumentParser(prog="python -m tests.mutation", description=(__doc__ or "").split("\n", 1)[0])
     parser.add_argument("--package", required=True, help="folder or file of src/skisnow: track, field/store, units")
     parser.add_argument("-n", type=int, default=50, help="number of errors (50)")

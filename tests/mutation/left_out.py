@@ -1,4 +1,4 @@
-"""A pytest plugin that leaves out tests that have run already: their names, one a line, stand in a file."""
+"""A pytest plugin that leaves out tests that have run already: their names, one a line, are in a file."""
 
 from __future__ import annotations
 

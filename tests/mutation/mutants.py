@@ -68,7 +68,7 @@ def _is_left_out(node: ast.AST) -> bool:
 
 
 class _Text:
-    """A file's text, and where the nodes of its tree stand in it."""
+    """A file's text, and where the nodes of its tree are in it."""
 
     def __init__(self, source: str) -> None:
         self.source = source

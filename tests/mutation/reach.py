@@ -1,6 +1,6 @@
 """A pytest plugin that writes down which functions of the program each test calls, and how long it takes.
 
-What a fixture of a module or session calls counts for all tests that use it. Processes that a test starts write down
+Calls of a fixture of a module or session count for all tests that use it. Processes that a test starts write down
 theirs by themselves (`children/sitecustomize.py`).
 """
 
@@ -23,13 +23,13 @@ import pytest
 Function: TypeAlias = tuple[str, int]
 """File from the tree's top, and first line."""
 PLACE: Final = "SKISNOW_TESTS_REACH"
-"""Variable of the environment with the path of what is written."""
+"""Variable of the environment with the path of the output."""
 CURRENT, CALLS, SOURCE = (f"{PLACE}_{name}" for name in ("CURRENT", "CALLS", "SOURCE"))
 """Those of the test that runs now, of what other processes call, and of the folder that counts."""
 
 
 class Reach:
-    """What has been called, by test and by fixture."""
+    """Called functions, by test and by fixture."""
 
     def __init__(self, root: Path) -> None:
         self.source = f"{root / 'src'}{os.sep}"

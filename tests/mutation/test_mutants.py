@@ -141,7 +141,7 @@ def test_what_is_compiled_is_copied_beside_what_git_has(tree: Path) -> None:
 
 @pytest.mark.slow
 def test_what_no_test_asks_for_survives(tree: Path, trials: Trials) -> None:
-    """The product is asked for, the limit is not; a loop without end is caught by time; the copy is left as it was."""
+    """The product is tested, the limit is not; a loop without end is caught by time; the copy is left as it was."""
     trials = replace(trials, reach=trials.tree / "reach.json")
     assert trials.look() == 0
     assert trials.reach is not None
@@ -161,7 +161,7 @@ def test_what_no_test_asks_for_survives(tree: Path, trials: Trials) -> None:
 
 
 def test_every_equivalent_stands_in_its_file() -> None:
-    """Of a line that was changed since, nothing is known."""
+    """For a line that was changed since, nothing is known."""
     package = Path(__file__).resolve().parents[2] / "src" / "skisnow"
     named = tomllib.loads(EQUIVALENTS.read_text(encoding="utf-8"))["equivalent"]
     assert len(named) > 10

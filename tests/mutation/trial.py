@@ -97,7 +97,7 @@ class Trials:
         more: Collection[str] = (),
         environment: Mapping[str, str] = MappingProxyType({}),
     ) -> int | None:
-        """Exit status of these tests or all, 0 where there are none; None where time ran out."""
+        """Exit status of these tests or all, 0 if there are none; None where time ran out."""
         words = [sys.executable, "-m", "pytest", "-x", "-q", "--hypothesis-profile=ci", "--doctest-modules"]
         words += [word for name in ("cacheprovider", "xdist", "randomly") for word in ("-p", f"no:{name}")]
         words += [*more, *(f"--ignore={name}" for name in self.left_out), *(tests or self.tests)]

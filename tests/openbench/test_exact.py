@@ -46,7 +46,7 @@ def test_edge_by_adding_up_strips(place: int) -> None:
 
 
 def test_energy_of_a_cycle_by_work() -> None:
-    """Of a wedge at 45°: the force down ½ H L e², up (1 - κ (e_m - e)/e_m)² of the largest, integrated over the way."""
+    """A wedge at 45°: the force down ½ H L e², up (1 - κ (e_m - e)/e_m)² of the largest, integrated over the way."""
     hard, length, ratio, deepest = 1e8, 0.4, 8.0, 0.0
     lost = []
     for peak in read_case("03-cycles")["motion"]["peak_depth_m"]:

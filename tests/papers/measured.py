@@ -112,7 +112,7 @@ FOOTPRINTS: Final = (None, 1000.0, 100.0, 30.0, 10.0, 3.0, 1.0)
 
 
 def footprint_rows() -> list[tuple[str, tuple[Equilibrium, Equilibrium]]]:
-    """What holds 0.3 m of the ski, from rigid to the boot's middle alone: at 45° and at 65.7°."""
+    """Holds for 0.3 m of the ski, from rigid to the boot's middle alone: at 45° and at 65.7°."""
     held: list[tuple[str, Mapping[str, Any]]] = [
         ("rigid" if each is None else f"{each:g}", {"footprint_stiffness": None if each is None else each * 1e6})
         for each in FOOTPRINTS

@@ -56,7 +56,7 @@ def test_the_page_is_what_is_computed() -> None:
 
 
 def test_a_footprint_that_gives_bears_under_the_boot() -> None:
-    """From a rigid one to the boot's middle alone, the headline radius by less than the radius at the boot."""
+    """From a rigid one to the boot's middle only, the headline radius by less than the radius at the boot."""
     rows = measured.footprint_rows()
     for which in range(2):
         found = [each[which] for _, each in rows]

@@ -29,7 +29,7 @@ ALONG, ACROSS, SLOPE_ALONG, SLOPE_ACROSS = range(4)
 
 @dataclass(frozen=True)
 class Chain:
-    """Nodes (m, rising) joined by cables; Exudyn's system with what is needed to hold and load it."""
+    """Nodes (m, rising) joined by cables; Exudyn's system with its supports and loads."""
 
     system: Any
     place: FloatArray

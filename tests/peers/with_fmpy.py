@@ -1,6 +1,6 @@
-"""What FMPy makes of FMUs: ``python -S with_fmpy.py PACKAGES FMU…``, without skisnow; the ends of runs as JSON.
+"""FMPy's runs of FMUs: ``python -S with_fmpy.py PACKAGES FMU…``, without skisnow; the ends of runs as JSON.
 
-FMPy's own check says nothing of an FMU without an interface, so that the model description is held against the
+FMPy's own check says nothing of an FMU without an interface, so that the model description is compared with the
 standard's schema, too, which FMPy brings along.
 """
 

@@ -1,4 +1,4 @@
-"""What a search is made of, by hand: its boxes, scores, a wider ski, and what is just allowed."""
+"""Parts of a search, by hand: its boxes, scores, a wider ski, and the limits of what is allowed."""
 
 from __future__ import annotations
 
@@ -104,7 +104,7 @@ def test_a_batch_begins_where_the_least_is_expected() -> None:
 
 
 def test_failures_are_no_centre() -> None:
-    """What passed is at (0.8, 0.8) alone: the box is about it, though the process expects less elsewhere."""
+    """The only point that passed is (0.8, 0.8): the box is about it, though the process expects less elsewhere."""
     pytest.importorskip("cmaes")
     places = [(0.2, 0.2), (0.2, 0.5), (0.5, 0.2), (0.8, 0.8)]
     chosen = search_of([1000.2, 1000.3, 1000.1, 9.0], places)._chosen(np.eye(2), 0.05, 0)
@@ -119,7 +119,7 @@ def test_numbers_of_a_place() -> None:
 
 
 class Asked:
-    """A search's batches that keep what is asked for, of a function."""
+    """A search's batches that keep what is requested, of a function."""
 
     def __init__(self, function: Any) -> None:
         self.function, self.found, self.sizes = function, [], []  # type: ignore[var-annotated]

@@ -19,7 +19,7 @@ from skisnow.racing.line import cut
 SLALOM = load_scenario("slalom-20-gates")
 FOUR = cut(follower_line(SLALOM), 4)
 NODES = 6
-"""Of each way from gate to gate."""
+"""Length of each way from gate to gate."""
 LOST = 0.01
 """Time (s)."""
 
@@ -56,7 +56,7 @@ def quickest_free_line(racer: PointRacer) -> tuple[float, FreeLine]:
         return float(racer.motion(line(y), x.tolist())[2][-1])
 
     def clear(y: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
-        """Of the nearer side from each pole."""
+        """Distance of the nearer side from each pole."""
         found = []
         for gate in FOUR.course.gates:
             place, slope, _ = line(y).at(gate.turning[0])

@@ -1,4 +1,4 @@
-"""What a race hands back: windows, words, tables, and what variants are worth, by hand."""
+"""Results of a race: windows, words, tables, and gains of variants, by hand."""
 
 from __future__ import annotations
 

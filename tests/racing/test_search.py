@@ -1,4 +1,4 @@
-"""The search against known optima, seeded, interrupted and gone on with."""
+"""The search against known optima, seeded, interrupted and continued."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ class Polyline:
 
 
 def batches(made: Evaluations) -> Batches:
-    """Of places alone, told to nobody."""
+    """Of places only, without reports of progress."""
     return Batches(evaluations=made, point_of=lambda place: tuple(place.tolist()), told=lambda *_: None, first=0)
 
 
@@ -133,7 +133,7 @@ def test_it_is_never_slower_than_where_it_began() -> None:
 
 @pytest.mark.slow
 def test_five_seeds_find_the_same_time_through_four_gates() -> None:
-    """What docs/how-to/race.md says; the first line is too tight for the ski."""
+    """The example of docs/how-to/race.md; the first line is too tight for the ski."""
     found = [raced(gates=4, evaluations=1000, seed=seed) for seed in range(1, 6)]
     times = [each.score.time for each in found]
     assert found[0].start_score.time is None

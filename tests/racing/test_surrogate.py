@@ -73,7 +73,7 @@ def test_kinds_of_values_have_their_own_mean_and_deviation() -> None:
 
 @pytest.mark.parametrize("seed", [pytest.param(1, marks=pytest.mark.slow), 2])
 def test_a_brachistochrone_of_pieces_in_forty_evaluations(seed: int) -> None:
-    """Whose optimum obeys Snell, as the other test says; a simplex finds its time."""
+    """Whose optimum obeys Snell, as the other test shows; a simplex finds its time."""
     pytest.importorskip("cmaes")
     line = Polyline()
     with Pool(line, 1, advice="") as pool:
@@ -195,7 +195,7 @@ def test_a_gate_has_to_be_passed_with_room() -> None:
     score = Score(value=4.0, time=4.0, passed=2, words="finished", gates=gates, margins=(0.04, 0.12, 0.3))
     assert with_room(score, 0.0) == score
     assert with_room(score, 0.03).value == 4.0
-    assert with_room(score, 0.03).margins == pytest.approx((0.01, 0.09, 0.3))  # the last is no gate
+    assert with_room(score, 0.03).margins == pytest.approx((0.01, 0.09, 0.3))  # the last is not a gate
     narrow = with_room(score, 0.05)
     assert narrow.value == pytest.approx(1000.01)
     assert (narrow.time, narrow.passed) == (None, 1)

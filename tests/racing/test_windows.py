@@ -47,7 +47,7 @@ def made_race(point: LinePoint) -> dict[str, Any]:
 
 @dataclass
 class Searched:
-    """What a search did."""
+    """Record of a search."""
 
     race: Callable[[LinePoint], dict[str, Any]] = made_race
     told: list[str] = field(default_factory=list)
@@ -104,7 +104,7 @@ def test_the_whole_course_is_searched_alike_first() -> None:
 
 
 def never(point: LinePoint) -> dict[str, Any]:
-    """Nobody passes the first gate."""
+    """No run passes the first gate."""
     return made_race(point) | {"value": 1000.0 * len(point.line.turns), "time": None, "passed": 0}
 
 

@@ -1,4 +1,4 @@
-"""What variants are worth: paired over the same snows, by the point."""
+"""Gains of variants: paired over the same snows, by the point."""
 
 from __future__ import annotations
 

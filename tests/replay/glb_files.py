@@ -88,7 +88,7 @@ class Playing:
         return self.matrix(self.parent[number]) @ own if number in self.parent else own
 
     def vertices(self, name: str) -> np.ndarray:
-        """(v, 3) of a node's mesh in the world; one with a skin by its joints alone, 3.7.3.2."""
+        """(v, 3) of a node's mesh in the world; one with a skin only by its joints, 3.7.3.2."""
         number = self.file.node(name)
         node = self.nodes[number]
         (primitive,) = self.file.words["meshes"][node["mesh"]]["primitives"]

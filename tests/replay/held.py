@@ -1,4 +1,4 @@
-"""What a replay's page holds."""
+"""Contents of a replay's page."""
 
 from __future__ import annotations
 

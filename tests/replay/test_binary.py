@@ -1,4 +1,4 @@
-"""Bytes and back: nothing is lost but what is said."""
+"""Bytes and back: nothing is lost except for the stated loss."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ def test_errors_are_half_a_step_at_most_and_small_against_what_is_seen(replay: R
     for name, each in described.items():
         if each["type"] == "uint16":
             assert each["error"] <= 0.5 * each["step"] * (1.0 + 1e-9), name
-    # metres: a hundredth of a millimetre on the snow, a micrometre along the ski; N/m: a thousandth of what is told
+    # metres: a hundredth of a millimetre on the snow, a micrometre along the ski; N/m: a thousandth of the stated value
     assert described["place"]["error"] < 1e-5
     assert described["bending"]["error"] < 1e-6
     assert described["force_per_length"]["error"] < 0.02

@@ -54,7 +54,7 @@ def test_a_straight_path_has_no_curvature() -> None:
 
 
 def test_pieces_of_groove_have_the_time_when_the_boot_passed() -> None:
-    """Piece j of the circle lies at the boot's place at every second output, left ski first."""
+    """Piece j of the circle is at the boot's place at every second output, left ski first."""
     run = circle_run()
     groove = replay_of_run(run).groove
     assert groove.time == pytest.approx(np.repeat(run.time[::2], 2), abs=1e-9)

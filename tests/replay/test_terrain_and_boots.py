@@ -36,7 +36,7 @@ def over(height: np.ndarray, **changes: object) -> Run:
 
 
 def run_with_boots() -> Run:
-    """Boots that stand 10 cm farther out than the sledge has them, with angles of their own that grow."""
+    """Boots that stand 10 cm farther out than the sledge has them, with separate angles that grow."""
     run = circle_run(count=5)
     angles = np.linspace(0.1, 0.5, 5)[:, None] * np.array([1.0, -0.5])
     axes = np.array([[axes_of(angle, 0.05, 0.2 + angle) for angle in pair] for pair in angles])

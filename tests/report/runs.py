@@ -1,4 +1,4 @@
-"""Runs that nobody simulated: a left or right turn on a circle, with everything known in closed form."""
+"""Runs made without a simulation: a left or right turn on a circle, with everything known in closed form."""
 
 from __future__ import annotations
 

@@ -39,7 +39,7 @@ def test_each_series_has_the_law_of_its_own_tool_and_angle(tmp_path: Path) -> No
     campaign = read_campaign(tmp_path)
     first, none, disc, last = series_curves(campaign, experiment_hardness(campaign))
     assert (none.experiment, none.law_depth_mm, none.law_load_N) == ("2", (), ())
-    # each lies on its law: the loads of the wedges go with the square of the depth, that of the disc with the depth
+    # each is on its law: the loads of the wedges go with the square of the depth, that of the disc with the depth
     for curve, loads in ((first, (20.0, 80.0)), (disc, (20.0, 40.0)), (last, (30.0, 120.0))):
         middle = len(curve.law_depth_mm) // 2
         assert (curve.law_depth_mm[middle], curve.law_depth_mm[-1]) == pytest.approx((1.0, 2.0), rel=1e-12)

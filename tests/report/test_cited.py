@@ -1,4 +1,4 @@
-"""What a page asks to cite is what CITATION.cff says."""
+"""Pages ask to cite the entry of CITATION.cff."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What an identification says in a terminal, on its page, in its table and in its figures, from numbers made up."""
+"""Results of an identification in a terminal, on its page, in its table and in its figures, from numbers made up."""
 
 from __future__ import annotations
 

@@ -119,7 +119,7 @@ def test_the_headline_of_a_straight_run_is_its_speed(run: Run, tmp_path: Path) -
 
 
 def test_boots_that_are_moved_have_their_angles_and_forces(run: Run, html: str, tmp_path: Path) -> None:
-    """The left ski goes from flat to 30 degrees, the right one stays; nobody edges them at the scenario's angle."""
+    """The left ski goes from flat to 30 degrees, the right one stays; they are not edged at the scenario's angle."""
     assert run.boots is not None
     angle = np.stack([np.linspace(0.0, 30.0, len(run.time)), np.zeros(len(run.time))], axis=1) * DEGREE
     across = np.stack([0.0 * angle, np.cos(angle), -np.sin(angle)], axis=2)

@@ -102,7 +102,7 @@ HEADS = {
     "shear_experiments": "experiment site plate edge_angle_deg depth_mm F_t_N S_f_N_per_mm2 used flags",
     "files": "file sha256",
 }
-"""What other programs read the tables by."""
+"""Settings with which other programs read the tables."""
 
 
 def test_columns_of_every_table_have_their_names(reference: Reported) -> None:

@@ -75,9 +75,9 @@ def test_numbers_stand_below_each_other_by_their_points() -> None:
     assert "table-format=-2.3" in text  # -0.500, 12.2: three places at most, two before
     assert r"a & -0.500 \\" in text
     assert r"a & 12.2 \\" in text
-    assert r"a & {--} \\" in text  # in braces it is no number to siunitx
+    assert r"a & {--} \\" in text  # in braces it is not a number to siunitx
     assert "table-format=4" in numbers([3, 1652], "count")
-    assert r"\begin{tabular}{lr}" in numbers([1.0, 2.0e-7])  # a power of ten stands for itself
+    assert r"\begin{tabular}{lr}" in numbers([1.0, 2.0e-7])  # a power of ten stays as it is
 
 
 def test_notes_stand_below() -> None:

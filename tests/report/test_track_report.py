@@ -39,7 +39,7 @@ def test_map_has_equal_scales_and_its_turns() -> None:
 
 
 def test_radius_axis_is_even_in_curvature() -> None:
-    """At its tick of 15 m the axis stands at 1/15; the drawn curve is the curvature."""
+    """At its tick of 15 m the axis is at 1/15; the drawn curve is the curvature."""
     summary = slalom()
     with journal_style():
         axes = track_along(summary).axes[-1]

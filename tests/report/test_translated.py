@@ -49,7 +49,7 @@ ENGLISH = re.compile(
 
 
 def texts(html: str) -> set[str]:
-    """What a reader sees between the tags of a page, and what tags say; formulas and names of files left out."""
+    """Texts between the tags of a page and in their attributes; formulas and names of files left out."""
     html = re.sub(r"<(style|script|code|math)\b.*?</\1>", "<br>", html, flags=re.DOTALL)
     said = re.findall(r'(?:alt|aria-label|data-name)="([^"]*)"', html)
     return {unescape(each).strip() for each in (*said, *re.findall(r">([^<>]+)<", html))}

@@ -256,7 +256,7 @@ def test_few_runs_tell_no_shares(chain: TurnChain) -> None:
     logs = np.random.default_rng(5).uniform(-1.0, 1.0, (4, 2))
     keys = ("snow.S_f_N_per_mm2", "snow.shear_displacement_mm")
     assert band_shares(middle_track(chain.nominal), drawn_over(keys, logs[:, 0], np.exp(logs))) is None
-    assert band_shares(middle_track(chain.nominal), chain.ensemble) is None  # nothing is known of what was drawn
+    assert band_shares(middle_track(chain.nominal), chain.ensemble) is None  # the draws are unknown
 
 
 def test_runs_beyond_their_grip_are_counted(chain: TurnChain) -> None:

@@ -1,4 +1,4 @@
-"""The folder of a report: which files, what they hold, what stays and what goes."""
+"""The folder of a report: which files, contents, what stays and what goes."""
 
 from __future__ import annotations
 

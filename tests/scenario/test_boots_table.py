@@ -1,4 +1,4 @@
-"""Boots of a scenario: what a table or arrays of poses must be, and what is taken where a table is silent."""
+"""Boots of a scenario: rules for tables and arrays of poses, and the defaults of a table."""
 
 from __future__ import annotations
 

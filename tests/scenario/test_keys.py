@@ -1,4 +1,4 @@
-"""What the dataclasses of a scenario declare holds in files: defaults, ranges, schema."""
+"""Declarations of a scenario's dataclasses hold in files: defaults, ranges, schema."""
 
 import json
 import math
@@ -32,7 +32,7 @@ def test_defaults_stand_in_the_unit_of_their_key() -> None:
 
 
 def test_what_must_be_given() -> None:
-    """Slope, snow, ski and the end of the run have rules of their own."""
+    """Slope, snow, ski and the end of the run have further rules."""
     assert {name for name, key in SCENARIO_KEYS.items() if key.needed} == {
         "friction.mu_0",
         "drag.drag_area_m2",

@@ -1,4 +1,4 @@
-"""What a file refuses Python refuses too, in the same words; a built scenario is changed part by part."""
+"""Python refuses the same values as files, in the same words; a built scenario is changed part by part."""
 
 import math
 import re
@@ -33,7 +33,7 @@ OUT_OF_RANGE: list[tuple[str, str, object, str, object]] = [
     ("stop", "length", 1e6, "run.length_m", 1e6),
     ("slope", "angle", math.radians(80.0), "slope.angle_deg", 80),
 ]
-"""Of each the part of a scenario, the field and its value in SI; the key and its value."""
+"""For each the part of a scenario, the field and its value in SI; the key and its value."""
 
 
 def said(error: pytest.ExceptionInfo[ParameterError]) -> str:

@@ -1,4 +1,4 @@
-"""Scenarios from files and by name, with changes: SI values, ways of saying the same, and what is refused."""
+"""Scenarios from files and by name, with changes: SI values, equivalent forms, and refusals."""
 
 import json
 import math
@@ -243,7 +243,7 @@ def with_results(folder: Path, site: str, **replaced: str) -> Path:
 
 @pytest.mark.parametrize("site", ["C", "E"])
 def test_results_give_what_the_site_measured_by_every_way(measured: tuple[Analysis, Path], site: str) -> None:
-    """A file without numbers of its own, a change of a scenario that has some, and the objects: one and the same."""
+    """A file without further numbers, a change of a scenario that has some, and the objects: one and the same."""
     analysis, folder = measured
     snow = analysis.snow(site)
     assert (snow.unloading_ratio is None, snow.shear_displacement is None) == (site == "E", site == "E")
@@ -467,7 +467,7 @@ def test_angles_are_not_radians() -> None:
 
 @pytest.mark.parametrize("name", scenario_names())
 def test_a_built_in_scenario_is_not_warned_of_itself(name: str) -> None:
-    """Its file says where it lies beyond what was measured. What a user makes of it is."""
+    """Its file states where it is beyond the measurements. Changes by a user are marked."""
     assert scenario_file(name).warnings == ()
     assert scenario_file(name, changes={"start.speed_m_per_s": 8.0}).warnings == ()
     assert len(scenario_file(name, changes={"friction.mu_0": 0.011}).warnings) == 1

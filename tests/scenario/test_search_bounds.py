@@ -1,4 +1,4 @@
-"""How keys are looked for: bounds are in the key's unit, so that they hold its default and lie in its range."""
+"""Search bounds of keys: they are in the key's unit, so that they hold its default and are in its range."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Snow that varies over the place: what the file says, what comes before what, and everything that is refused."""
+"""Snow that varies over the place: contents of the file, order of precedence, and refusals."""
 
 from __future__ import annotations
 

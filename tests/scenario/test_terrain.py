@@ -1,4 +1,4 @@
-"""Grids of heights: what the files say, smoothing, the origin, and everything that is refused with its place."""
+"""Grids of heights: contents of files, smoothing, the origin, and everything that is refused with its place."""
 
 from __future__ import annotations
 

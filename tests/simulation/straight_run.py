@@ -1,4 +1,4 @@
-"""Runs that nobody simulated: straight down the fall line with constant friction, everything known in closed form."""
+"""Runs made without a simulation: straight down the fall line with constant friction, known in closed form."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ STRAIGHT = {"heading_deg": 0.0, "mu_0": 0.05, "drag_area_m2": 0.0, "duration_s":
 
 
 def acceleration(scenario: Scenario) -> float:
-    """Of a body on a plane with constant friction (m/s²)."""
+    """Acceleration of a body on a plane with constant friction (m/s²)."""
     assert isinstance(scenario.slope, Plane)
     angle = scenario.slope.angle
     return scenario.gravity * (math.sin(angle) - scenario.contact.friction * math.cos(angle))

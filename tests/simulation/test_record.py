@@ -18,7 +18,7 @@ from skisnow.simulation.run_setup import Setup, set_up
 
 
 def chords(record: Record) -> float:
-    """Of a turn of some 16 m radius, whose arcs of 0.1 m are longer by two millionths."""
+    """Chord lengths in a turn of about 16 m radius, whose arcs of 0.1 m are two millionths longer."""
     return float(np.linalg.norm(np.diff(record.histories()["place"], axis=0), axis=1).sum())
 
 

@@ -182,7 +182,7 @@ def under_way(t: float, *, driven: bool) -> Any:
 
 @pytest.mark.parametrize("driven", [False, True])
 def test_the_velocity_of_the_boots_is_the_rate_of_their_place(driven: bool) -> None:
-    """By central differences; of boots that stand on the sledge it is the sledge's."""
+    """By central differences; of boots that are on the sledge it is the sledge's."""
     now, before, after = (under_way(1.3 + step, driven=driven) for step in (0.0, -1e-5, 1e-5))
     rate = (after.place - before.place) / 2e-5
     assert now.velocity == pytest.approx(rate, abs=1e-8)

@@ -89,7 +89,7 @@ def test_least_radius_keeps_its_side() -> None:
 
 
 def test_radius_of_the_turn_is_not_that_of_its_start() -> None:
-    """Left out: the first half second, what is no faster than 1 m/s, and what is straight. Without their sign."""
+    """Left out: the first half second, parts below 1 m/s, and straight parts. Without their sign."""
     run = straight_run(ASKED.scenario)
     radius, velocity = np.full(len(run.time), -20.0), run.velocity.copy()
     radius[run.time < 0.5 - 1e-9] = 0.01

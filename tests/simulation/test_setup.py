@@ -196,7 +196,7 @@ def test_a_stiffness_factor_multiplies_both_stiffnesses() -> None:
 
 
 def test_a_rounding_of_the_camber_is_that_of_the_ski_file(tmp_path: Path) -> None:
-    """By the key of a scenario as by that of a ski file; a ski without camber has none."""
+    """By the key of a scenario as by that of a ski file; a ski without camber has neither."""
     plain = load_scenario("carved-46m")
     keys = (Path(skisnow.ski.__file__).parent / "catalogue" / "giant-slalom.toml").read_text(encoding="utf-8")
     (tmp_path / "rounded.toml").write_text(keys + "camber_rounding_mm = 50\n", encoding="utf-8")

@@ -1,4 +1,4 @@
-"""Tables whose rows stay in their file, and tables that are no CSV: what is read is what was computed."""
+"""Tables whose rows stay in their file, and tables in other formats: the rows that are read are those computed."""
 
 from __future__ import annotations
 

@@ -34,7 +34,7 @@ def study_of(text: str, folder: Path) -> Study:
 
 
 def fingerprint_of_list(study: Study) -> str:
-    """As it is said: of everything at once."""
+    """As documented: for everything at once."""
     text = json.dumps([version("skisnow"), study.columns, list(study.points)])
     return hashlib.sha256(text.encode()).hexdigest()[:16]
 

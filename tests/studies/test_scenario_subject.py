@@ -75,7 +75,7 @@ def test_table_has_every_key_and_comes_back_as_it_was(tmp_path: Path) -> None:
 
 @pytest.mark.slow
 def test_two_workers_write_the_bytes_of_one(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """With the simulator itself: workers are processes of their own."""
+    """With the simulator itself: workers are separate processes."""
     monkeypatch.delitem(sys.modules, "skisnow.simulation.simulated_run")
     tables = []
     for workers in (1, 2):

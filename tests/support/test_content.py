@@ -1,4 +1,4 @@
-"""What an object is made of: the same for the same content, another for another."""
+"""Content of an object: the same for the same content, another for another."""
 
 from dataclasses import dataclass, field
 
@@ -9,7 +9,7 @@ from skisnow._support.content import pieces_of
 
 @dataclass
 class Pole:
-    """What counts, and what was worked out from it."""
+    """Fields that count, and values computed from them."""
 
     x: float
     names: tuple[str, ...] = ()

@@ -20,7 +20,7 @@ def rows_of(folder: Path, text: str, further: tuple[str, ...] = ("z",)) -> list[
 
 
 def test_cells_stand_by_column_without_blanks_and_with_their_row(tmp_path: Path) -> None:
-    """Columns in any order, one that may be, one that nobody reads; blank rows count, a short one ends blank."""
+    """Columns in any order, one that may be, one that is not read; blank rows count, a short one ends blank."""
     found = rows_of(tmp_path, " y ,z,note,x\n 2 ,3,n, 1\n\n , ,,\n5\n")
     assert [(each.row, each.cells) for each in found] == [
         (2, {"x": "1", "y": "2", "z": "3"}),

@@ -25,7 +25,7 @@ def write(folder: Path, files: dict[str, str]) -> None:
 
 
 def seen(folder: Path) -> dict[str, str]:
-    """What a user sees: no hidden folders."""
+    """The folders that a user sees: no hidden ones."""
     files = (path for path in folder.rglob("*") if path.is_file())
     return {
         name: path.read_text(encoding="utf-8")

@@ -109,7 +109,7 @@ def test_repeated_times_and_missing_places_are_left_out() -> None:
 
 
 def test_stated_accuracies_are_weights() -> None:
-    """Half of the points are ten times worse and say so: the error is near that of the good half alone."""
+    """Half of the points are ten times worse and say so: the error is near that of the good half only."""
     made = track(circle(15.0, 8.0, duration=20.0), noise=NOISE)
     bad = np.arange(len(made)) % 2 == 1
     made.place[bad, :2] += 10.0 * NOISE * np.random.default_rng(9).standard_normal((int(bad.sum()), 2))
@@ -163,7 +163,7 @@ def test_dense_points_pass_what_the_projection_on_a_parabola_passes(period: floa
     """The second derivative of the projection of exp(iωt) on P₂ is 15 j₂(z)/z² of its own, z = ω · half a window."""
     z = 2.0 * np.pi / period * 0.5
     found = Resolution.of_window(1.0, 0.0005, 0.02, None).share_passed(period)
-    assert found == pytest.approx(15.0 * spherical_jn(2, z) / z**2, abs=3e-3)  # 401 points in place of an integral
+    assert found == pytest.approx(15.0 * spherical_jn(2, z) / z**2, abs=3e-3)  # 401 points instead of an integral
 
 
 def test_long_swings_lose_a_fourteenth_of_z_squared() -> None:

@@ -1,4 +1,4 @@
-"""What a track says as a whole: a real day, a short run, bad input."""
+"""What a whole track gives: a real day, a short run, bad input."""
 
 import json
 from dataclasses import replace

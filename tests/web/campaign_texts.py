@@ -16,7 +16,7 @@ SOFT, HARD = (1.5, 2.1, 2.6), (1.0, 1.4, 1.7)  # mm under 20, 40 and 60 N
 
 
 def pressed(series: Mapping[str, tuple[str, Sequence[float]]], statuses: Mapping[str, str] | None = None) -> str:
-    """A table of penetration tests: site and depths by name, and what cancels one where the table says such a thing."""
+    """A table of penetration tests: site and depths by name, and the column that cancels one, if any."""
     column = "" if statuses is None else ",status"
     rows = [
         f"{name},{site},ski piece,30,{20 * number},{depth}" + (f",{statuses.get(name, '')}" if statuses else "")

@@ -155,7 +155,7 @@ def served(servers: Servers) -> Served:
 
 @pytest.fixture
 def served_with_figures(tmp_path: Path) -> Iterator[Served]:
-    """A lab of its own that draws."""
+    """A separate lab that draws."""
     if "nicegui" in MISSING:
         pytest.skip("NiceGUI is not installed: pip install 'skisnow[web]'")
     lab = Served(tmp_path / "store.sqlite3", are_drawn=True).start()
@@ -181,7 +181,7 @@ def chromium() -> Iterator[Browser]:
 
 @dataclass
 class Watched:
-    """What a page did that it must not."""
+    """Faults of a page."""
 
     foreign: list[str] = field(default_factory=list)
     errors: list[str] = field(default_factory=list)
@@ -216,7 +216,7 @@ def page(chromium: Browser, watched: Watched) -> Iterator[Page]:
 
 
 def killed_and_started_again(page: Page, served: Served) -> None:
-    """Kill the server under an open page, start it again and open the page anew."""
+    """Kill the server under an open page, start it again and open the page again."""
     place = page.url
     served.kill()
     page.goto("about:blank")  # else the page comes back by itself, at the same time
@@ -258,7 +258,7 @@ def has_text(field: Locator, text: str) -> None:
 
 
 def downloaded_results(page: Page) -> dict[str, Any]:
-    """results.json in the zip of the analysis that a page shows, whose report is drawn when it is asked for."""
+    """results.json in the zip of the analysis that a page shows, whose report is drawn when it is requested."""
     with page.expect_download(timeout=DRAWING_MS) as download:
         page.get_by_role("link", name="Download everything").press("Enter", timeout=DRAWING_MS)
     with zipfile.ZipFile(download.value.path()) as packed:

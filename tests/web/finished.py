@@ -1,4 +1,4 @@
-"""Work for an event loop, done in a thread of its own: in this one a loop may run, the one that drives a browser."""
+"""Work for an event loop, done in a separate thread: in this one a loop may run, the one that drives a browser."""
 
 from __future__ import annotations
 
@@ -11,6 +11,6 @@ Answer = TypeVar("Answer")
 
 
 def finished(work: Coroutine[Any, Any, Answer]) -> Answer:
-    """What comes of it."""
+    """The result."""
     with ThreadPoolExecutor(1) as beside:
         return beside.submit(asyncio.run, work).result()

@@ -9,7 +9,7 @@ if TYPE_CHECKING:
 
 
 class HeldAnswers:
-    """What the lab says to a page, which may be held back for a while."""
+    """Answers of the lab to a page, which may be held back."""
 
     def __init__(self, page: Page) -> None:
         self._held: list[tuple[WebSocketRoute, str | bytes]] | None = None

@@ -13,7 +13,7 @@ UNDRAWN = "SKISNOW_TESTS_UNDRAWN"
 
 
 def leave_figures_empty() -> None:
-    """An empty picture in place of every figure."""
+    """An empty picture instead of every figure."""
     from unittest.mock import patch
 
     from skisnow.report.figures.drawing import Drawing, Picture

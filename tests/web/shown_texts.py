@@ -1,6 +1,6 @@
 """Every text of the lab that somebody may read, collected from its source: what a catalogue must translate.
 
-A text is a string, or a string with places for values, that is no docstring, nothing that the program alone reads, and
+A text is a string, or a string with places for values, that is not a docstring, nothing only for the program, and
 has a word in it.
 """
 
@@ -71,7 +71,7 @@ _CODE: Final = re.compile(r"[\w.\-/:#*]+|[\w\-]+=.*|.*[{}<>].*|\(.*=>.*|/.*", re
 
 
 def shown_texts() -> dict[str, str]:
-    """The texts, each with the file that it first stands in."""
+    """The texts, each with the first file that has it."""
     found: dict[str, str] = {}
     for place in sorted(HERE.rglob("*.py")):
         for text in _texts(ast.parse(place.read_text(encoding="utf-8"))):
@@ -104,7 +104,7 @@ def _text(node: ast.AST) -> str | None:
 
 
 def _unread(node: ast.AST) -> Iterator[ast.AST]:
-    """Docstrings, annotations, comparisons, keys, and what programs are told; attributes of elements among them."""
+    """Docstrings, annotations, comparisons, keys, and what other programs read; attributes of elements among them."""
     if isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant):
         yield node.value
     if isinstance(node, ast.AnnAssign):

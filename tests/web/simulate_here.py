@@ -1,4 +1,4 @@
-"""`python -m skisnow` with an empty picture in place of every figure, which takes a second: the pages show words."""
+"""`python -m skisnow` with an empty picture instead of every figure, which takes a second: the pages show words."""
 
 from __future__ import annotations
 

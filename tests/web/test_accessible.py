@@ -1,4 +1,4 @@
-"""What bars people from a page, as axe-core finds it: nothing serious or critical in lab, reports and docs."""
+"""Barriers on a page, as axe-core finds them: nothing serious or critical in lab, reports and docs."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ WIDE_PAGES = "methods/simulated-turn.md", "files/scenario.md"
 
 
 def barred(page: Page) -> list[str]:
-    """What axe-core finds serious or critical, with the first element that has it."""
+    """Serious or critical findings of axe-core, with the first element that has it."""
     from axe_playwright_python.sync_playwright import Axe
 
     found = Axe().run(page).response["violations"]
@@ -47,7 +47,7 @@ def barred(page: Page) -> list[str]:
 
 
 def barred_in(page: Page, files: list[Path]) -> dict[tuple[str, int], list[str]]:
-    """The same of files, on a desk and on a telephone; the page is no wider than either."""
+    """The same of files, on a desk and on a telephone; the page is not wider than either."""
     found = {}
     for width in WIDTHS:
         page.set_viewport_size({"width": width, "height": 844})
@@ -154,7 +154,7 @@ def test_nobody_is_barred_from_the_report_of_a_run(plain: Page, tmp_path: Path) 
 
 @pytest.mark.slow
 def test_nobody_is_barred_from_a_report(plain: Page, tmp_path: Path) -> None:
-    """Of each kind that has a page: campaign, run with its replay, turn, identification."""
+    """One of each kind that has a page: campaign, run with its replay, turn, identification."""
     campaign, run, short = str(tmp_path / "campaign"), str(tmp_path / "run"), ["--set", "run.duration_s=0.2"]
     turn = ["--set", "slope.angle_deg=5", "--set", "start.speed_m_per_s=4.5", "--set", "sledge.edge_angle_deg=40"]
     for words in (
@@ -177,7 +177,7 @@ def built(folder: Path, html: Path) -> None:
 
 @pytest.mark.slow
 def test_nobody_is_barred_from_wide_pages_of_the_documentation(plain: Page, tmp_path: Path) -> None:
-    """Two of them, built alone; links to others lead nowhere."""
+    """Two of them, built separately; links to others lead nowhere."""
     docs = tmp_path / "docs"
     for name in (*WIDE_PAGES, "conf.py", "_static/skisnow.js", "_static/skisnow.css", "../pyproject.toml"):
         (docs / name).parent.mkdir(parents=True, exist_ok=True)

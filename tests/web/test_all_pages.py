@@ -1,4 +1,4 @@
-"""What holds on every page that is not for entering: a phone's width, names of all fields, dark on light."""
+"""Rules for every page that is not for entering: a phone's width, names of all fields, dark on light."""
 
 from __future__ import annotations
 

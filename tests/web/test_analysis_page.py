@@ -48,7 +48,7 @@ def used(results: dict[str, object]) -> tuple[int, int]:
 
 
 def html(served: Served, path: str) -> str:
-    """What the server sends before a browser has asked anything further."""
+    """The server's first answer to a browser."""
     with urllib.request.urlopen(served.address.rstrip("/") + path) as answer:
         return str(answer.read().decode())
 
@@ -77,7 +77,7 @@ def test_one_experiment_less_by_choice(page: Page, served: Served, tmp_path: Pat
     first = next(row for row in results["penetration"]["experiments"] if row["used"])
     words = f"Penetration {first['experiment']}, {first['site']}, {first['edge_angle_deg']:g}°"
     page.get_by_role("checkbox", name=words, exact=True).press("Space")
-    given = downloaded_results(page)  # of what is chosen, though what was chosen before is still shown
+    given = downloaded_results(page)  # of the new choice, while the old one is still shown
     page.get_by_text(told(pressed - 1), exact=True).wait_for(timeout=DRAWING_MS)
     assert page.locator("figure img").count() == drawn
     row = next(row for row in given["penetration"]["experiments"] if row["experiment"] == first["experiment"])

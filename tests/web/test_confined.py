@@ -1,4 +1,4 @@
-"""Reading in a process of its own: what it gives and raises comes back, and what ends it does not end the lab."""
+"""Reading in a separate process: what it gives and raises comes back, and what ends it does not end the lab."""
 
 from __future__ import annotations
 

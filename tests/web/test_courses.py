@@ -1,4 +1,4 @@
-"""Courses in the lab: taken in, chosen for a skier, and two runs through one compared at its gates."""
+"""Courses in the lab: stored, chosen for a skier, and two runs through one compared at its gates."""
 
 from __future__ import annotations
 

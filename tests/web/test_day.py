@@ -49,7 +49,7 @@ VALUES: dict[str, str | float | tuple[str, ...] | tuple[float, ...]] = {
 
 
 def create(page: Page, served: Served) -> None:
-    """Open what `describe` makes, from the store: as good for tests of what comes after, and there at once."""
+    """Open what `describe` makes, from the store: as good for later tests, and there at once."""
     text = description_text(Description(VALUES, [TOOL], [PLATE]))
     with Store.open(served.store) as store:
         id_ = Journals(store).begin(text)
@@ -82,7 +82,7 @@ def describe(page: Page, served: Served) -> None:
 
 
 def enter_series(page: Page, name: str) -> None:
-    """From the form of a new series on, by keyboard alone."""
+    """From the form of a new series on, by keyboard only."""
     angle, depths = SERIES[name]
     fill(page, {"Name of the test": name, "Site": "A", "Edge angle (°)": angle})
     page.keyboard.press("Enter")
@@ -188,7 +188,7 @@ def test_a_day(page: Page, served: Served, tmp_path: Path, capsys: pytest.Captur
     page.get_by_text("below the one before it").wait_for(state="detached")
     next_series(page)
     enter_series(page, "2")
-    killed_and_started_again(page, served)  # what was shown as stored is stored
+    killed_and_started_again(page, served)  # all that was shown as stored is stored
     page.get_by_role("heading", name="Series 2").wait_for()
     has_text(page.get_by_label("Depth under 80 N (mm)"), "2.9")
     next_series(page)

@@ -1,4 +1,4 @@
-"""Entering tests: undo, what is refused, two people at once, a phone, and the keyboard alone."""
+"""Entering tests: undo, what is refused, two people at once, a phone, and only the keyboard."""
 
 from __future__ import annotations
 
@@ -63,7 +63,7 @@ def test_a_series_on_a_phone_from_its_first_reading_to_the_last(page: Page, serv
 
 
 def test_a_refused_last_reading_that_is_put_right_is_no_correction(page: Page, served: Served) -> None:
-    """What is stored is the number that was typed, though it stands there with a comma: nobody is asked why."""
+    """What is stored is the number that was typed, though it is there with a comma: no reason is requested."""
     page.set_viewport_size({"width": 390, "height": 844})
     create(page, served)
     fill(page, {"Name of the test": "1", "Site": "A", "Edge angle (°)": "30"})
@@ -115,7 +115,7 @@ def tab_to(page: Page, place: Locator) -> None:
     for _ in range(150):
         if element.evaluate("element => element === document.activeElement"):
             return
-        if not element.evaluate("element => element.isConnected"):  # drawn anew
+        if not element.evaluate("element => element.isConnected"):  # drawn again
             element = place.element_handle()
         page.keyboard.press("Tab")
     raise AssertionError(f"{place} is not reached by the tabulator")
@@ -157,7 +157,7 @@ def test_the_keyboard_alone_on_a_phone(page: Page, served: Served) -> None:
     page.keyboard.press("Shift+Tab")  # from Next series back to the last reading, and to the one before it
     page.keyboard.press("Shift+Tab")
     has_text(page.get_by_label("Depth under 40 N (mm)").and_(page.locator(":focus")), "22.5")
-    page.keyboard.type("2.15\n\n")  # the tabulator marked what stood there; the usual reason is taken
+    page.keyboard.type("2.15\n\n")  # the tabulator marked the old text; the usual reason is taken
     page.get_by_text("corrected from 22.5").wait_for()
     press(page, "button", "Cancel this test", key="Space")
     press(page, "button", "Leave it as it was")

@@ -1,4 +1,4 @@
-"""What the lab analyses it has in memory: the same numbers as over the folder that is exported, and no folder made."""
+"""The lab analyses campaigns in memory: the same numbers as over the folder that is exported, and no folder made."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ def lab(tmp_path: Path) -> Lab:
 
 @pytest.fixture
 def no_folder(monkeypatch: pytest.MonkeyPatch, lab: Lab) -> None:
-    """No temporary folder is made, from here on."""
+    """Forbid temporary folders."""
 
     def refused(*_: object, **__: object) -> None:
         raise AssertionError("a temporary folder was made")
@@ -269,7 +269,7 @@ def test_flags_of_experiments_say_what_was_found_where_there_is_something() -> N
 
 @pytest.mark.usefixtures("svg_alone")
 def test_a_figure_is_drawn_where_there_are_data_for_it(tmp_path: Path) -> None:
-    """Of a campaign with a few loads alone: force over depth in the page's language, none of shear stress."""
+    """For a campaign with only a few loads: force over depth in the page's language, none of shear stress."""
     (tmp_path / "campaign.toml").write_text(TOML, encoding="utf-8")
     (tmp_path / "penetration.csv").write_text(PENETRATION, encoding="utf-8")
     analysis = analyse(read_campaign(tmp_path), n_resamples=100)

@@ -81,7 +81,7 @@ def contents(folder: Path) -> dict[str, bytes]:
 
 
 def analysed(folder: Path, printed: Printed) -> dict[str, Any]:
-    """What the command prints."""
+    """Output of the command."""
     printed.readouterr()
     assert main(["analyse", str(folder), "--json"]) == 0
     answer: dict[str, Any] = json.loads(printed.readouterr().out)
@@ -120,7 +120,7 @@ def test_an_imported_campaign_is_corrected(page: Page, served: Served, tmp_path:
     page.keyboard.press("Enter")
     page.locator(".refusals li", has_text="“two”").wait_for()
 
-    killed_and_started_again(page, served)  # what was shown as stored is stored
+    killed_and_started_again(page, served)  # all that was shown as stored is stored
     page.get_by_text("History of 1", exact=True).click()
     page.get_by_text("· Ada · corrected Depth (mm) in row 3 to 2.15 (the point)").wait_for()
     page.get_by_text("corrected Depth (mm) in row 4 to 2.7 (misheard) (undone)").wait_for()

@@ -131,12 +131,12 @@ def test_a_series_is_entered_in_german(chromium: Browser, served: Served, watche
     page.reload()
     has_text(depth, "1,5")
     ready(page)
-    depth.press("Enter")  # as it stands there: no correction
+    depth.press("Enter")  # as it is there: no correction
     depth.fill("1,7")
     depth.press("Enter")
     page.get_by_text("20 N: aus 1,5 mm werden 1,7 mm.").wait_for()
     page.get_by_role("link", name="English").click()
-    page.get_by_label("Depth under 20 N (mm)").wait_for()  # the same series, and what was typed is there
+    page.get_by_label("Depth under 20 N (mm)").wait_for()  # the same series, with the typed text
     context.close()
     assert watched.errors == []
 

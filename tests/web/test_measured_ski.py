@@ -92,7 +92,7 @@ def test_a_chart_has_the_numbers_of_the_language_and_its_words_side_by_side(page
 
 @pytest.mark.slow
 def test_a_ski_maker_sees_what_five_per_cent_do(page: Page, served: Served) -> None:
-    """Sidecut and stiffness of a ski that was measured: the carved radii of both stand beside each other."""
+    """Sidecut and stiffness of a ski that was measured: the carved radii of both are beside each other."""
     page.goto(f"{served.address}carve")
     page.get_by_role("link", name="Add or change a ski").click()
     page.locator("summary", has_text="Add a measured ski").click()

@@ -1,4 +1,4 @@
-"""Addresses of pages: what is asked stands in them, whatever letters it has."""
+"""Addresses of pages: what is asked is in them, whatever letters it has."""
 
 from urllib.parse import parse_qs, urlsplit
 

@@ -1,4 +1,4 @@
-"""The lab on a group's store: the server is set up by the lines of the documentation, and what was entered stays."""
+"""The lab on a group's store: the server is set up by the lines of the documentation, and entries stay."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def line_of_page(begin: str) -> str:
 
 
 def set_up(server: Server) -> None:
-    """What the page says: the commands of the user postgres; who may come in from the network, encrypted."""
+    """From the page: the commands of the user postgres; who may come in from the network, encrypted."""
     reached = {"PGHOST": str(server.folder), "PGPORT": str(server.port), "PGUSER": "postgres"}
     for begin in ("createuser", "createdb"):
         words = shlex.split(line_of_page(f"sudo -u postgres {begin}"))[4:]
@@ -55,7 +55,7 @@ def set_up(server: Server) -> None:
 
 @pytest.fixture
 def group_server() -> Iterator[Server]:
-    """A server of its own that speaks TLS, as Debian's does."""
+    """A separate server that speaks TLS, as Debian's does."""
     if (why := why_there_is_none()) is not None:
         pytest.skip(why)
     if shutil.which("openssl") is None:

@@ -45,7 +45,7 @@ def reports(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Path]:
 
 @pytest.fixture
 def page(chromium: Browser) -> Iterator[Page]:
-    """Of a file, not of a server."""
+    """A page of a file, not of a server."""
     made = chromium.new_page()
     yield made
     made.close()
@@ -90,7 +90,7 @@ def test_a_shadow_says_that_rows_of_a_long_table_follow(page: Page, reports: tup
 @pytest.mark.slow
 @pytest.mark.parametrize("which", [0, 1], ids=["campaign", "run"])
 def test_a_report_prints_as_one_pdf(page: Page, reports: tuple[Path, Path], which: int, tmp_path: Path) -> None:
-    """What a person has after Print, Save as PDF: pages of A4, no table wider than the paper."""
+    """A PDF by Print, Save as PDF: pages of A4, no table wider than the paper."""
     page.set_viewport_size({"width": A4_PX, "height": 1000})
     page.emulate_media(media="print")
     page.goto(reports[which].as_uri())

@@ -101,7 +101,7 @@ def test_the_snow_of_a_campaign_comes_with_its_uncertainty(page: Page, served: S
 
 
 def pressed_while_it_goes_on(page: Page, button: Locator) -> None:
-    """The finger goes down, the run's progress is told anew, the finger goes up; the keyboard's focus stays as well."""
+    """The finger goes down, the progress is shown again, the finger goes up; the keyboard's focus stays."""
     told = "document.querySelector('.card .progress:not(.hidden)').innerText"
     button.hover()
     page.mouse.down()

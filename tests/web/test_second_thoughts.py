@@ -1,4 +1,4 @@
-"""What people do beside the straight way: describe anew what is in use, press twice, type before a page is ready."""
+"""Unusual ways of using pages: describe again what is in use, press twice, type before a page is ready."""
 
 from __future__ import annotations
 

@@ -55,7 +55,7 @@ def test_the_first_line_is_the_address_of_this_machine_alone(served: Served) -> 
 
 @pytest.fixture
 def unserved(monkeypatch: pytest.MonkeyPatch) -> None:
-    """What would be served fails the test."""
+    """Serving fails the test."""
     monkeypatch.setattr("skisnow.web.server.serve", lambda *_, **__: pytest.fail("it is served"))
 
 

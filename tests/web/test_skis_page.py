@@ -1,4 +1,4 @@
-"""A ski is edited with the drawing beside it, saved under a name of its own, and carved and simulated with."""
+"""A ski is edited with the drawing beside it, saved under a new name, and carved and simulated with."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""One side stands still, or the lab is killed, or the page is loaded anew, while a hand types on: nothing is lost."""
+"""One side stands still, or the lab is killed, or the page is loaded again, while a hand types on: nothing is lost."""
 
 from __future__ import annotations
 
@@ -69,7 +69,7 @@ def opened(page: Page, served: Served, table: str = "") -> None:
 
 
 def test_the_heartbeat_outlasts_a_stall(served: Served) -> None:
-    """What the server tells a socket that opens: the browser gives it up after both together, in ms."""
+    """The server's message to a socket that opens: the browser gives it up after both together, in ms."""
     parts = urlsplit(served.address)
     connection = http.client.HTTPConnection(parts.hostname or "", parts.port, timeout=30)
     connection.request("GET", "/_nicegui_ws/socket.io/?EIO=4&transport=polling")
@@ -160,7 +160,7 @@ def test_all_rows_outlive_a_reload_and_a_kill(page: Page, served: Served) -> Non
         ("third", "ski", 70.0, 40.0),
     ]
     plates = [tuple(each.values()) for each in described["plate"]]
-    assert plates == [("plate", 100.0), ("second", 200.0), ("third", 300.0)]  # the first one stood there
+    assert plates == [("plate", 100.0), ("second", 200.0), ("third", 300.0)]  # the first one was there
 
 
 @pytest.mark.slow
@@ -310,7 +310,7 @@ def test_a_campaign_that_is_described_while_the_lab_is_killed_is_begun_once(page
 def test_a_test_that_was_sent_when_the_lab_was_killed_is_stored_once(
     page: Page, served: Served, was_stored: bool
 ) -> None:
-    """The answer does not come; Enter is pressed again by the page, and what was typed on follows it."""
+    """The answer does not come; Enter is pressed again by the page, and later text follows it."""
     opened(page, served, "?table=density.csv")
     page.keyboard.type("A\n310")
     ready(page)

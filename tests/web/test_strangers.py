@@ -1,4 +1,4 @@
-"""What strangers send to the lab's socket: half requests, malformed messages, addresses of nothing."""
+"""Input of strangers to the lab's socket: half requests, malformed messages, addresses of nothing."""
 
 from __future__ import annotations
 

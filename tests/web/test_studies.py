@@ -1,4 +1,4 @@
-"""A study that is asked for in the lab is one of the command: its file, its queue, what it refuses."""
+"""A study that is requested in the lab is one of the command: its file, its queue, what it refuses."""
 
 from __future__ import annotations
 

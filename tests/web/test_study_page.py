@@ -1,4 +1,4 @@
-"""A study is asked for on its page, shown, taken away as files, and gives the table of the command."""
+"""A study is requested on its page, shown, taken away as files, and gives the table of the command."""
 
 from __future__ import annotations
 

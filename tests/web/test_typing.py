@@ -28,7 +28,7 @@ def begun(served: Served) -> str:
 
 
 def depths(served: Served) -> dict[str, list[str]]:
-    """What the store holds: the depths of each series in the order of their loads."""
+    """Contents of the store: the depths of each series in the order of their loads."""
     with Store.open(served.store) as store:
         (head,) = Journals(store).list()
         tests = replayed(Journals(store).entries(head.id)).of_file("penetration.csv")
@@ -149,7 +149,7 @@ def test_what_is_typed_while_another_scenario_is_drawn_finds_its_field(page: Pag
     has_text(page.get_by_label("Snow hardness H_V (N/mm³)", exact=True), "12.5")
     assert menu.input_value() != before
     page.get_by_role("button", name="Simulate").press("Enter")
-    page.get_by_text("Snow hardness H_V (N/mm³): 12.5").wait_for()  # it goes with the stress that stands beside it
+    page.get_by_text("Snow hardness H_V (N/mm³): 12.5").wait_for()  # it goes with the stress that is beside it
 
 
 def test_fields_are_open_while_the_lab_answers_and_only_then(page: Page, served: Served) -> None:
@@ -196,7 +196,7 @@ NOTE_WHAT_IS_LOST = """() => new MutationObserver(() => {
 }).observe(document, { subtree: true, attributes: true, characterData: true, childList: true })"""
 
 # A timer of Quasar's tells that a field was left, and in a busy browser keys go before timers: here until a press.
-# the hand pauses when it is told to, not when a machine has been slow
+# the hand pauses where the test has a pause, not when a machine has been slow
 PAUSES = """(() => {
   const soon = window.setTimeout;
   const pauses = [];

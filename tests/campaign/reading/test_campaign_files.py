@@ -1,4 +1,4 @@
-"""A campaign whose files are at hand is read as one in a folder, and nothing is looked for on the disk."""
+"""A campaign whose files are at hand is read as one in a folder, and nothing is searched on the disk."""
 
 from __future__ import annotations
 

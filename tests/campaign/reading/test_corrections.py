@@ -1,4 +1,4 @@
-"""Corrections meet the cell that they name, or are refused with what stands there."""
+"""Corrections meet the cell that they name, or are refused with the contents."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Tables with headings of their own: mapped by campaign.toml, proposed in one line, refused in another unit."""
+"""Tables with other headings: mapped by campaign.toml, proposed in one line, refused in another unit."""
 
 from __future__ import annotations
 
@@ -104,7 +104,7 @@ def test_a_title_above_the_headings_is_passed_over(
 def test_many_alike_are_counted(
     write_campaign: WriteCampaign, small_campaign: dict[str, str], capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Merged cells: a name in the first row alone."""
+    """Merged cells: a name only in the first row."""
     rows = [f"{'D1' if row == 2 else ''},Süd,{300 + row}" for row in range(2, 20)]
     table = "\n".join(["sample,site,snow_density_kg_per_m3", *rows])
     assert main(["check", str(write_campaign({**small_campaign, "density.csv": table}))]) == 1

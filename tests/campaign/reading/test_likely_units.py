@@ -1,4 +1,4 @@
-"""Campaigns in a wrong unit are warned of, those of the paper's sizes are not; a row pasted twice is told."""
+"""Campaigns in a wrong unit are warned of, those of the paper's sizes are not; a row pasted twice is reported."""
 
 from __future__ import annotations
 

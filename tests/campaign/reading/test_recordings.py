@@ -1,4 +1,4 @@
-"""snow_micro_pen.csv and the files that it names: every wrong cell is told with its row."""
+"""snow_micro_pen.csv and the files that it names: every wrong cell is reported with its row."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is wrong in a table is said with its file, row, column, experiment and value."""
+"""What is wrong in a table is reported with its file, row, column, experiment and value."""
 
 from __future__ import annotations
 

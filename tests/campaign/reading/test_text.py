@@ -39,7 +39,7 @@ def test_decode(data: bytes, text: str, foreign: str | None) -> None:
         b"a,b\n1,\x00\n",
         b"\xff\xfea",  # half a UTF-16 character
         b"\xef\xbb\xbfa\xff",  # promises UTF-8
-        b"\xe9\x81",  # 0x81 is no Windows-1252 character
+        b"\xe9\x81",  # 0x81 is not a Windows-1252 character
         "a,b\n1,2\n".encode("utf-16-le"),  # without byte order mark
         "a,b\n1,2\n".encode("utf-32"),
         bytes(range(1, 32)) * 10,

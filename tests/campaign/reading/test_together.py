@@ -1,4 +1,4 @@
-"""What only several cells or files together tell: mixed experiments, unknown tools, angles."""
+"""Faults that only several cells or files together show: mixed experiments, unknown tools, angles."""
 
 from __future__ import annotations
 

@@ -52,7 +52,7 @@ def campaign(
     mapped: Mapping[str, str] | None = None,
     **further: str,
 ) -> dict[str, str]:
-    """Tables with headings of their own, which state no unit but that of `load` and `arm`."""
+    """Tables with other headings, which state no unit but that of `load` and `arm`."""
     columns = COLUMNS | {load: "load_N", arm: "lever_arm_mm"} | dict(mapped or {})
     lines = [f'columns."{heading}" = "{column}"' for heading, column in columns.items() if heading != column]
     files = {
@@ -301,7 +301,7 @@ def test_columns_that_are_kept_as_text_are_not_converted(write_campaign: WriteCa
 
 
 def silent(folder: Path) -> Path:
-    """A campaign with headings that state no unit, in place of its own names."""
+    """A campaign with headings that state no unit, instead of the standard names."""
     names = {column: heading for heading, column in COLUMNS.items()} | {"drop_cone_depth_mm": "Kegel"}
     lines = []
     for table in folder.glob("*.csv"):

@@ -53,7 +53,7 @@ def store(request: pytest.FixtureRequest, empty_file: Path, tmp_path: Path) -> I
 
 @pytest.fixture
 def group(request: pytest.FixtureRequest, empty_file: Path, tmp_path: Path) -> Iterator[Store]:
-    """An empty store on the server; in a file where there is no server."""
+    """An empty store on the server; in a file without a server."""
     if why_there_is_none() is None:
         place = request.getfixturevalue("server").emptied()
     else:

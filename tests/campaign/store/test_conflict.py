@@ -1,4 +1,4 @@
-"""What contradicts and what does not, of entries that were written down by hand; and in which words it is told."""
+"""Entries written by hand that contradict each other or not, and the words of the conflict."""
 
 from __future__ import annotations
 
@@ -160,7 +160,7 @@ def test_the_next_free_name_is_taken_and_progress_is_told(
 ) -> None:
     """A series 2 (2) is there already, in one of both stores; corrections follow to the new name.
 
-    Entries are asked for in portions, here of two.
+    Entries are requested in portions, here of two.
     """
     monkeypatch.setattr(conflict_module, "_ENTRIES_PER_QUERY", 2)
     id_ = shared(ada, bo, group)

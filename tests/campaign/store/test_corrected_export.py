@@ -1,4 +1,4 @@
-"""Corrections of kept campaigns: beside the files, which stay, and read by every analysis of what is exported."""
+"""Corrections of kept campaigns: beside the files, which stay, and read by every analysis of the export."""
 
 from __future__ import annotations
 
@@ -79,7 +79,7 @@ def test_a_correction_is_exported_and_read_and_the_files_stay(store: Store, tmp_
         "Ada",
         "typing error",
     )
-    assert Journals(store).list() == ()  # it is no campaign that is being entered
+    assert Journals(store).list() == ()  # it is not a campaign that is being entered
     store.export(id_, tmp_path / "raw")
     assert not (tmp_path / "raw" / "corrections.csv").exists()
 
@@ -119,7 +119,7 @@ def test_what_was_undone_is_not_exported(store: Store, tmp_path: Path) -> None:
     undo = NewEntry(action="undo", file="penetration.csv", test="1", about=written.sequence)
     journals.correct(id_, undo, seen=written.sequence, standing={})
     test = replayed(journals.corrections(id_)).test("penetration.csv", "1")
-    assert test.undoable is None  # what the file says cannot be undone
+    assert test.undoable is None  # a value of the file cannot be undone
     assert [entry.action for entry in test.history] == ["add", "correct", "undo"]
     export_corrected(store, id_, tmp_path / "out")
     assert (tmp_path / "out" / "corrections.csv").read_bytes() == (place / "corrections.csv").read_bytes()

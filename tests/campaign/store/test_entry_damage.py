@@ -1,4 +1,4 @@
-"""A bit that flips in what was entered is noticed: verify names its place, and it is not read as if it were sound."""
+"""A flipped bit in an entry is noticed: verify names its place, and it is not read as if it were sound."""
 
 import sqlite3
 from dataclasses import replace

@@ -78,7 +78,7 @@ def test_readings_stand_in_the_order_of_their_loads_whichever_came_first(store: 
 
 
 def test_a_column_that_need_not_be_there_is_written_where_one_row_has_it(store: Store) -> None:
-    """The remark of the second reading alone; spot, which no reading has, is no column."""
+    """The remark of the second reading only; spot, which no reading has, is not a column."""
     journals = Journals(store)
     id_, last = campaign_with(journals, "1.5")
     first = reading("1", 1, "40", "2.25")
@@ -149,7 +149,7 @@ def test_two_who_write_about_one_test_do_not_overwrite_each_other(store: Store) 
     journals.append(id_, reading("1", 1, "40", "2.25"), seen=last)
     with raises(OvertakenError, "overtaken", who="Ada", subject="penetration.csv, 1"):
         journals.append(id_, reading("1", 1, "40", "9.99"), seen=last)
-    journals.append(id_, reading("2", 0, "20", "1"), seen=0)  # another test is nobody's business
+    journals.append(id_, reading("2", 0, "20", "1"), seen=0)  # another test has no part in it
     assert "9.99" not in campaign_files(replayed(journals.entries(id_)))["penetration.csv"]
 
 

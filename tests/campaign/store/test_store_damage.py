@@ -184,7 +184,7 @@ def flipped(raw: bytes, random_: random.Random) -> bytes:
 
 
 def read_damaged(folder: Path, tmp_path: Path, *, seed: int, number: int) -> int:
-    """Verify, list and export so many damaged stores; how many were told so. Any other error comes through."""
+    """Verify, list and export so many damaged stores; how many were reported. Any other error comes through."""
     sound, damaged, random_ = tmp_path / "sound", tmp_path / "damaged", random.Random(seed)
     with Store.open(sound) as store:
         id_ = store.add(folder).id

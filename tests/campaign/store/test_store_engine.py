@@ -181,7 +181,7 @@ def test_a_connection_that_may_not_write(id_: str, place: Path, folder: Path, tm
 def test_a_store_in_a_folder_that_allows_no_log(
     id_: str, place: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """What SQLite does where the file beside the store cannot be made, root or not."""
+    """SQLite's behaviour if the file beside the store cannot be made, root or not."""
     connect = sqlite3.connect
 
     def refuses(address: str, **options: object) -> sqlite3.Connection:

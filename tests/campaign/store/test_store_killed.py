@@ -1,7 +1,7 @@
 """A process killed at any moment of an import leaves the store as it was, or complete.
 
 A nursery process imports the program once and forks a child for each trial, so that a trial costs the import of the
-campaign alone. The child opens the store, adds the campaign, and writes down how far it got; it is killed with SIGKILL
+campaign only. The child opens the store, adds the campaign, and writes down how far it got; it is killed with SIGKILL
 after a random delay. The delays are drawn evenly over the whole of a trial, from before the store is opened to after it
 is closed.
 """
@@ -62,7 +62,7 @@ def rows(store: Store) -> list[int]:
 
 @dataclass
 class Nursery:
-    """Forks a child for each trial and tells how it ended."""
+    """Forks a child for each trial and reports how it ended."""
 
     process: subprocess.Popen[str]
     asking: IO[str]
@@ -130,7 +130,7 @@ def kill_many(nursery: Nursery, folder: Path, tmp_path: Path, n_kills: int) -> C
             shutil.copyfile(base, place)
 
     def whole_s(index: int) -> float:
-        """How long an import takes that nobody kills."""
+        """How long an import takes that is not killed."""
         durations = []
         for _ in range(3):
             start_anew(index)

@@ -1,4 +1,4 @@
-"""What the store cannot keep is refused with its name, and nothing of it is kept."""
+"""Contents that the store cannot keep are refused with their name, and nothing of them is kept."""
 
 import errno
 import os

@@ -299,7 +299,7 @@ def test_campaigns_of_one_name_are_kept_apart_and_told(ada: Laptop, bo: Laptop, 
 
 
 def test_corrections_of_a_stored_campaign(ada: Laptop, bo: Laptop, store: Store, tmp_path: Path) -> None:
-    """Each laptop writes down what the file says; that is one entry, not two."""
+    """Each laptop writes down what the file states; that is one entry, not two."""
     place = tmp_path / "kept"
     id_ = kept(ada.store, place, PLAIN.encode())
     assert counts(ada.sync(store)) == (1, 0, 0, 0)

@@ -57,7 +57,7 @@ N_SERIES, N_CAMPAIGNS, FILE_BYTES = 3, 3, 300_000
 
 @dataclass
 class Nursery:
-    """Forks a child for each trial and tells how it ended."""
+    """Forks a child for each trial and reports how it ended."""
 
     process: subprocess.Popen[str]
 
@@ -106,7 +106,7 @@ def entered_offline(place: Path, who: str, folder: Path, generator: np.random.Ge
 
 
 def state(store: Store) -> tuple[list[str], list[str], Counter[str]]:
-    """Campaigns, journals, and how often each test stands there."""
+    """Campaigns, journals, and how often each test is there."""
     journals = Journals(store)
     entries = [entry for head in journals.list() for entry in journals.entries(head.id)]
     return (

@@ -1,6 +1,6 @@
 """``python -m tests.identification.twins``: compute twins, and write the tables of docs/validation/identification.md.
 
-Twins of photo cells and marks take minutes, those of turns hours: all that are finished stand in docs/validation/twins,
+Twins of photo cells and marks take minutes, those of turns hours: all that are finished are in docs/validation/twins,
 and the same command goes on with those that are missing.
 """
 

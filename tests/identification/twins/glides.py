@@ -21,7 +21,7 @@ SD: Final = 0.004
 """s, of each time."""
 KEYS: Final = {"mu": "friction.mu_0", "drag_area": "drag.drag_area_m2", "speed": "start.speed_m_per_s"}
 CASES: Final = {"photo cells, two free": 2, "photo cells, three free": 3}
-"""How many of the keys are looked for."""
+"""How many of the keys are unknown."""
 
 
 def one_glide(case: str, seed: int) -> list[tuple[str, Row]]:
@@ -44,7 +44,7 @@ def one_glide(case: str, seed: int) -> list[tuple[str, Row]]:
 
 
 def mass() -> float:
-    """Of the sledge with both skis (kg)."""
+    """Mass of the sledge with both skis (kg)."""
     scenario = scenario_file(SCENARIO).scenario
     return scenario.sledge.mass + 2.0 * scenario.ski.mass
 

@@ -1,4 +1,4 @@
-"""One twin of marks: depth, width and radius that a carving or sliding ski leaves, and H_V and S_f from them alone."""
+"""One twin of marks: depth, width and radius that a carving or sliding ski leaves, and H_V and S_f only from them."""
 
 from __future__ import annotations
 
@@ -93,7 +93,7 @@ def marks_of(groove: TrueGroove, rng: np.random.Generator) -> MeasuredGrooves:
 
 
 def above_zero(value: float, sd: float, rng: np.random.Generator) -> np.ndarray:
-    """Normal; what is not above 0 nobody would write down, and is measured again."""
+    """Normal; what is not above 0 would not be written down, and is measured again."""
     drawn = value + sd * rng.standard_normal(PLACES)
     while (drawn <= 0.0).any():
         drawn = np.where(drawn <= 0.0, value + sd * rng.standard_normal(PLACES), drawn)

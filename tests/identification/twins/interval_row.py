@@ -1,4 +1,4 @@
-"""What all twins write of one parameter."""
+"""Row of one parameter, the same for all twins."""
 
 from __future__ import annotations
 

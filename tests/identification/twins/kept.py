@@ -1,4 +1,4 @@
-"""Finished twins in a CSV file, a row for each, written anew in one piece as each is finished."""
+"""Finished twins in a CSV file, a row for each, written again in one piece as each is finished."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ Row: TypeAlias = Mapping[str, str]
 
 @dataclass(slots=True)
 class KeptTwins:
-    """Rows by what was asked and the seed."""
+    """Rows by question and seed."""
 
     path: Path
     rows: dict[Key, dict[str, str]] = field(default_factory=dict)
 
     @classmethod
     def opened(cls, path: Path) -> KeptTwins:
-        """What is there already; nothing where there is no file."""
+        """What is there already; nothing without a file."""
         kept = cls(path)
         if path.is_file():
             with path.open(encoding="utf-8", newline="") as file:

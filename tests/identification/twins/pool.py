@@ -64,7 +64,7 @@ def _side_by_side(
                     done += 1
                     _told(case, done, len(missing), begun)
         except KeyboardInterrupt:
-            leash.close()  # a twin takes minutes; half of one is none
+            leash.close()  # a twin takes minutes; half of one does not count
             raise
 
 

@@ -31,7 +31,7 @@ def truth_of_shear(seed: int) -> dict[str, float]:
 
 
 def one_shear(case: str, seed: int) -> list[tuple[str, Row]]:
-    """What came out, beside the truth."""
+    """Result beside the truth."""
     values = truth_of_shear(seed)
     run = simulate(finer(load_scenario("carved-46m", changes={**START, **values})))
     found = identify("carved-46m", track_of(run, Truth(values, ""), seed), FREE, changes=START, workers=1)

@@ -17,7 +17,7 @@ from skisnow.track.track import Track
 SCENARIOS: Final = ("giant-slalom-67m", "carver-42m")
 SEEDS: Final = range(200)
 FREE: Final = ("friction.mu_0", "drag.drag_area_m2", "start.heading_deg")
-"""What is looked for, from the scenario's own values."""
+"""The unknowns, from the scenario's own values."""
 NOISE: Final = 0.02
 """Standard deviation (m) of each coordinate."""
 EVERY: Final = 10

@@ -45,10 +45,10 @@ def one_noiseless(case: str, seed: int) -> list[tuple[str, Row]]:
 
 
 def identified(scenario: str, track: Track, run: Run, truth: Truth, changes: dict[str, object]) -> Row:
-    """What came out, beside the truth."""
+    """Result beside the truth."""
     found = identify(scenario, track, FREE, changes=changes, workers=1)
     if found.outcome == "interrupted":
-        raise KeyboardInterrupt  # half a twin is none
+        raise KeyboardInterrupt  # half a twin does not count
     nearest, at_time = largest_deviations(found, run)
     row = {
         "error": truth.error,

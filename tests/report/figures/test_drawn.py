@@ -1,4 +1,4 @@
-"""What the figures draw, held against the results and exact laws."""
+"""Drawn values of the figures, compared with the results and exact laws."""
 
 from __future__ import annotations
 

@@ -62,7 +62,7 @@ def test_track_is_drawn_down_the_fall_line_with_the_left_ski_on_the_left(run: Ru
     for ski, line in enumerate((left, right)):
         assert np.array_equal(np.asarray(line.get_xydata()), run.skis.track[:, ski, :2])
     long, wide = np.ptp(run.skis.track[..., :2].reshape(-1, 2), axis=0) + 1.2  # 0.6 m around
-    # 158 mm of 180 for the plan, 38 mm below for the grooves, 38 mm for what stands around
+    # 158 mm of 180 for the plan, 38 mm below for the grooves, 38 mm for the surroundings
     assert figure.get_size_inches() * 25.4 == pytest.approx([180.0, 158.0 * wide / long + 76.0])
     marks = next(line for line in plan.lines if line.get_marker() == "o")
     assert len(np.asarray(marks.get_xdata())) == 5  # 0 to 4 s

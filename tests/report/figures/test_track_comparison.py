@@ -44,7 +44,7 @@ def test_curves_begin_at_the_start_and_show_the_largest() -> None:
     assert np.asarray(curves[2].get_ydata())[-1] == pytest.approx(0.01 * 299 / 3.0)
     assert along.get_xlim() == pytest.approx((0.0, found.measured.length))
     assert plan.get_xlabel() == "$x$ (m)"
-    assert not plan.texts  # nobody knows where the fall line is
+    assert not plan.texts  # the fall line is unknown
     slope = drawn(replace(found, axes="slope"))[0]
     assert "fall line" in slope.get_xlabel()
 

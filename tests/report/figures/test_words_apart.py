@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 
 def words_of(axes: Axes) -> list[Text]:
-    """What stands in and above a panel, and the numbers at its axes."""
+    """Texts in and above a panel, and the numbers at its axes."""
     low, high = axes.get_ylim()
     left, right = axes.get_xlim()
     found = [each for each in axes.get_yticklabels() if low <= each.get_position()[1] <= high]

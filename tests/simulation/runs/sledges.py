@@ -89,5 +89,5 @@ def load(given: Scenario) -> float:
 
 
 def arc_base(radius: float, edge_deg: float) -> Along:
-    """Base of a rigid ski with circular edges of that radius whose edge line lies in the snow: bent by tan ϑ/R_sc."""
+    """Base of a rigid ski with circular edges of that radius whose edge line is in the snow: bent by tan ϑ/R_sc."""
     return lambda s: math.tan(math.radians(edge_deg)) * (radius - np.sqrt(radius**2 - s**2))

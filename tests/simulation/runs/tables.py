@@ -75,7 +75,7 @@ def energies() -> str:
 
 
 def exact() -> str:
-    """Cases with an answer, and what is found."""
+    """Cases with an answer, and the results."""
     rows = [*flying(), *resting(), *straight(), *across(), *circling(), *symmetric()]
     return table(("case", "answer", "found", "test"), rows, words=4)
 
@@ -154,7 +154,7 @@ def circling() -> Iterable[Row]:
 
 
 def symmetric() -> Iterable[Row]:
-    """What must not matter."""
+    """Changes that must not matter."""
     run = carved()
     mirror = carved(**{"sledge.edge_angle_deg": -30.0, "start.heading_deg": 30.0})
     off = float(np.linalg.norm(mirror.place[-1] - run.place[-1] * [1.0, -1.0, 1.0]))

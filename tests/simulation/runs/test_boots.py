@@ -239,7 +239,7 @@ def test_a_control_may_push() -> None:
 
 @pytest.mark.parametrize("short_by", [2e-11, 9.9e-10, -9.9e-10])
 def test_a_control_that_is_due_within_rounding_of_an_output_ends(short_by: float) -> None:
-    """Rows a millisecond apart differ by rounding; 1e-9 s is no step, so such an output is reached without one."""
+    """Rows a millisecond apart differ by rounding; 1e-9 s is not a step, so such an output is reached without one."""
     looks = []
 
     def look(at: float, _: float) -> None:

@@ -49,7 +49,7 @@ def test_skidding(hardness: float, strength: float) -> None:
 
 @pytest.mark.slow
 def test_skidding_on_ice() -> None:
-    """H_V = 90 with a measured S_f: the account of energy tells whether the groove was kept."""
+    """H_V = 90 with a measured S_f: the account of energy shows whether the groove was kept."""
     changes = {"snow.H_V_N_per_mm3": 90.0, "snow.S_f_N_per_mm2": 0.3, "run.duration_s": 1.0}
     run = simulate(load_scenario("carved-46m", changes=changes))
     assert run.energy_balance_error is not None

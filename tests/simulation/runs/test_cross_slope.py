@@ -40,7 +40,7 @@ def across(*, strength: float, duration: float, heading_deg: float = 90.0, edge_
 
 
 def sufficient_strength() -> float:
-    """S_f (N/mm²) = m g sin α/(e₁ L + e₂ L), with the depths e at which both edges stand at the start."""
+    """S_f (N/mm²) = m g sin α/(e₁ L + e₂ L), with the depths e at which both edges are at the start."""
     run = across(strength=1.0, duration=2e-3)
     assert run.outcome == "finished"
     demand = total_mass(run.scenario) * GRAVITY * math.sin(math.radians(SLOPE_DEG))

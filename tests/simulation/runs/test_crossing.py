@@ -37,7 +37,7 @@ def sledge(angle: float = 0.0, snow: SnowField | None = None) -> Setup:
 
 
 def gone_over(setup: Setup) -> tuple[float, float]:
-    """Energy (J) lost to the snow on the way, and what is open in the balance."""
+    """Energy (J) lost to the snow on the way, and the rest of the balance."""
     record = Record(setup)
     for moment in np.arange(1, round(100 * SECONDS) + 1):
         assert record.advance(0.01 * float(moment)) is None
@@ -48,7 +48,7 @@ def gone_over(setup: Setup) -> tuple[float, float]:
 
 @pytest.fixture(scope="module")
 def first() -> tuple[float, Setup]:
-    """What the first sledge loses, and the snow with its track."""
+    """Losses of the first sledge, and the snow with its track."""
     setup = sledge()
     lost, still_open = gone_over(setup)
     assert abs(still_open) < 1e-3 * lost

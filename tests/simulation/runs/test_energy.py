@@ -18,7 +18,7 @@ CONTACTS = {"hypoplastic": {}, "elastic": {"snow.penetration": "elastic", "snow.
 def closes(run: Run, changes: object) -> None:
     assert run.energy_balance_error is not None
     assert run.energy_balance_error < SHARE, changes
-    # nothing is given back that was not stored; rounding and steps leave a thousandth
+    # nothing is returned that was not stored; rounding and steps leave a thousandth
     for name in LOST:
         assert run.energies[name].min() > -1e-3 * run.energy_exchanged, name
 

@@ -1,4 +1,4 @@
-"""What glide friction acts on: the load along the snow's normal, or what presses square on the base."""
+"""The load of glide friction: the load along the snow's normal, or that square on the base."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ FRICTION, EDGE = 0.05, math.radians(EDGE_DEG)
 
 
 def circle(acts_on: ActsOn) -> Run:
-    """Level, on rigid skis whose edges are the arc, slowed by friction alone, at 80 % of the grip.
+    """Level, on rigid skis whose edges are the arc, slowed by friction only, at 80 % of the grip.
 
     With much more grip both ends of a ski pull against each other, which loads the base beyond the balance.
     """

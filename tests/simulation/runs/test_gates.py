@@ -1,4 +1,4 @@
-"""Runs over a course: times from the run's own closed form, outcomes, and what is written."""
+"""Runs over a course: times from the run's own closed form, outcomes, and files."""
 
 from __future__ import annotations
 
@@ -63,7 +63,7 @@ def test_run_ends_a_metre_behind_the_last_gate(straight: Run) -> None:
 def test_outcome_is_that_of_the_first_gate_that_was_not_passed(
     straight: Run, y: float, side: str, outcome: str, said: str
 ) -> None:
-    """A gate of the other side would bend the course; here all poles stand in line, one where the feet go."""
+    """A gate of the other side would bend the course; here all poles are in line, one where the feet go."""
     from skisnow.simulation.simulated_run import _through_gates
 
     middle = Gate(name="2", turning=(8.0, y), side=side)  # type: ignore[arg-type]

@@ -44,7 +44,7 @@ def test_a_start_is_found(degrees: float, hardness: float) -> None:
 
 
 def test_the_widening_tail_brakes() -> None:
-    """Of a flat ski both edges push snow aside. The work is the shear's, 1.5 N in 52 m on this snow."""
+    """For a flat ski both edges push snow aside. The work is the shear's, 1.5 N in 52 m on this snow."""
     run = turned(0.0)
     assert run.energies["shear"][-1] / run.run_length == pytest.approx(1.52, abs=0.02)
     assert run.energy_balance_error == pytest.approx(0.0, abs=1e-4)

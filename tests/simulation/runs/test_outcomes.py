@@ -1,4 +1,4 @@
-"""How runs end: each outcome with what was computed so far, and never with numbers that are finite nonsense."""
+"""How runs end: each outcome with the results so far, and never with numbers that are finite nonsense."""
 
 from __future__ import annotations
 
@@ -148,7 +148,7 @@ def test_long_fixed_steps_do_not_diverge(changes: dict[str, object], solver: dic
 
 
 def test_diverged_numbers_end_as_not_finite(monkeypatch: pytest.MonkeyPatch) -> None:
-    """What was computed before is kept."""
+    """Results computed before are kept."""
     advance = Dynamics.advance
 
     def diverging(self: Dynamics, until: float) -> Ended:

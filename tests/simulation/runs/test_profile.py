@@ -76,4 +76,4 @@ def test_energy_closes_in_a_hollow(edge_deg: float, heading_deg: float) -> None:
     assert run.place[-1, 0] > 4.0
     assert run.energies["penetration"][-1] > 1.0
     assert run.energy_balance_error is not None
-    assert run.energy_balance_error < 2e-3  # as on a plane, where the tables say 0.01 to 0.5 %
+    assert run.energy_balance_error < 2e-3  # as on a plane, where the table states 0.01 to 0.5 %

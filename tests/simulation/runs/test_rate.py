@@ -78,7 +78,7 @@ def test_without_it_nothing_is_lost_to_it() -> None:
 
 @pytest.mark.parametrize(("changes", "within"), [(DAMPED, 1e-9), (DELAYED, 2e-5)], ids=["damped", "delayed"])
 def test_a_turn_to_the_other_side_is_the_mirror_image(changes: dict[str, float], within: float) -> None:
-    """Of a groove that the delayed depth curves rounding decides which of two knots, alike to it, is dropped."""
+    """In a groove that the delayed depth curves, rounding decides which of two knots, alike to it, is dropped."""
     ends = []
     for side in (1.0, -1.0):
         mirrored = {"start.heading_deg": -90.0 * side, "sledge.edge_angle_deg": 30.0 * side, "run.duration_s": 0.6}

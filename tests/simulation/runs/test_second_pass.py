@@ -72,9 +72,9 @@ def test_it_stands_deeper_in_the_groove_than_in_virgin_snow() -> None:
 
 
 def test_a_track_counts_once() -> None:
-    """All that lies in the snow at the end, piece by piece of every 24 mm, is no more than was taken from the motion.
+    """All energy in the snow at the end, piece by piece of every 24 mm, does not exceed what was taken from the motion.
 
-    On the way up pieces are archived; the way back takes them over and archives them anew.
+    On the way up pieces are archived; the way back takes them over and archives them again.
     Counted twice, the loss would double.
     """
     run, half = up_and_back(10.0), up_and_back(10.0, duration=1.7)

@@ -172,7 +172,7 @@ def test_rigid_edged_with_half_the_weight_each() -> None:
     [(0.0, 0.04), (0.0, 0.2), (0.0, 5.0), (40.0, 0.04), (40.0, 0.2), (40.0, 5.0), (45.0, 20.0), (60.0, 90.0)],
 )
 def test_flexible_as_at_rest(edge_deg: float, hardness: float) -> None:
-    """`rest` knows the same ski by other equations on a mesh of its own. The skis weigh next to nothing here."""
+    """`rest` knows the same ski by other equations on another mesh. The skis weigh next to nothing here."""
     ski = read_ski("giant-slalom")
     ski = replace(ski, mass_per_length=np.full_like(ski.station, 1e-4))
     fine = Solver(elements=160, line_spacing=6e-3)

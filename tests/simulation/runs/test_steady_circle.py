@@ -60,7 +60,7 @@ def radius(run: Run) -> float:
 
 
 def sufficient_strength() -> float:
-    """S_f (N/mm²) = m v²/R/(e₁ L + e₂ L), with the depths e at which both edges stand at the start."""
+    """S_f (N/mm²) = m v²/R/(e₁ L + e₂ L), with the depths e at which both edges are at the start."""
     run = circle(strength=1.0, duration=1e-3)
     demand = total_mass(run.scenario) * SPEED**2 / RADIUS
     return float(demand / (LENGTH * run.skis.edge_depth[0].mean(axis=1).sum())) / 1e6
@@ -109,7 +109,7 @@ def test_the_shear_displacement_is_a_parameter() -> None:
 
 
 def path_radius(run: Run) -> float:
-    """Of the circle through the path in the second half (m)."""
+    """Radius of the circle through the path in the second half (m)."""
     x, y = run.place[run.time > 0.5 * run.time[-1], :2].T
     (a, b, c), *_ = np.linalg.lstsq(np.column_stack([2.0 * x, 2.0 * y, np.ones(len(x))]), x**2 + y**2)
     return float(np.sqrt(c + a**2 + b**2))

@@ -1,4 +1,4 @@
-"""What must not matter: which side is left, where the start lies, where a level slope's axes point, the last bit."""
+"""Changes that must not matter: the left side, the start, where a level slope's axes point, the last bit."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def mirrored(changes: dict[str, float]) -> dict[str, float]:
 
 @pytest.mark.parametrize("changes", [CARVES, SKIDS], ids=["carves", "skids"])
 def test_mirror(changes: dict[str, float]) -> None:
-    """Left and right differ by rounding alone; 1.5 s bring it to far less than 1e-9 m."""
+    """Left and right differ only by rounding; 1.5 s bring it to far less than 1e-9 m."""
     given = {**changes, "start.y_m": 1.5, "run.duration_s": 1.5}
     one, other = simulated(**given, **FIXED), simulated(**mirrored(given), **FIXED)
     assert other.place == pytest.approx(one.place * [1.0, -1.0, 1.0], abs=1e-9)

@@ -91,7 +91,7 @@ def test_finished_points_are_kept_over_an_interruption(place: Path) -> None:
 
 
 def test_error_of_the_function_ends_the_batch_and_keeps_what_was_done(place: Path) -> None:
-    """A number is no list of pairs: `dict` raises for the last point."""
+    """A number is not a list of pairs: `dict` raises for the last point."""
     kept = KeptRows.opened(place, "f")
     with pytest.raises(TypeError):
         run_batch([*POINTS, 5], dict, kept=kept, workers=2)

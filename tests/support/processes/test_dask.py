@@ -1,4 +1,4 @@
-"""Workers of a Dask scheduler, in processes of their own: the bytes of one process, even if some of them are killed."""
+"""Workers of a Dask scheduler, in separate processes: the bytes of one process, even if some of them are killed."""
 
 from __future__ import annotations
 
@@ -239,7 +239,7 @@ account = "snow"
 
 
 class TestJobs:
-    """What a batch system is handed."""
+    """The job given to a batch system."""
 
     @pytest.fixture(autouse=True)
     def _jobqueue(self) -> None:

@@ -25,7 +25,7 @@ from tests.coded import raises
 
 
 class Client:
-    """Of a scheduler with two workers."""
+    """The client of a scheduler with two workers."""
 
     def __init__(self) -> None:
         self.status, self.threads, self.asked = "running", {"a": 3, "b": 4}, 0
@@ -46,7 +46,7 @@ class Client:
 
 
 class Clock:
-    """Of a process: seconds since it began."""
+    """Seconds since a process began."""
 
     def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
         self.now = 100.0
@@ -117,7 +117,7 @@ def test_it_is_looked_after_while_nothing_comes_and_not_while_rows_come(monkeypa
         for each in futures:
             each.set_exception(TimeoutError())
 
-    stop = threading.Timer(5.0, give_up)  # so that nobody waits for ever
+    stop = threading.Timer(5.0, give_up)  # so that no process waits for ever
     stop.start()
     with raises(SkisnowError, "pool_failed"):
         run_batch(points, dict, executor=client)
@@ -216,7 +216,7 @@ def test_who_does_not_answer_is_told_with_what_to_start() -> None:
 def test_what_a_scheduler_needs_is_asked_for_before_the_work_begins(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
-    """Dask for an address, the certificates that are named, and dask-jobqueue for a batch system alone."""
+    """Dask for an address, the certificates that are named, and dask-jobqueue for a batch system only."""
     asked: list[str] = []
     monkeypatch.setattr(dask_cluster, "_distributed", lambda: asked.append("distributed"))
     jobqueue = SimpleNamespace(SLURMCluster=SLURMCluster)
@@ -249,7 +249,7 @@ def test_a_scheduler_that_dask_does_not_reach_is_told(monkeypatch: pytest.Monkey
 
 
 def test_jobs_of_a_batch_system_are_ended_behind_the_client(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    """So many jobs as the file says, a client of their cluster, whose threads count."""
+    """So many jobs as the file states, a client of their cluster, whose threads count."""
     said: list[Any] = []
     cluster = SimpleNamespace(scale=lambda *, jobs: said.append(jobs), close=lambda: said.append("cluster closed"))
 

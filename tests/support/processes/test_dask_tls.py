@@ -69,7 +69,7 @@ def _signed(name: str, key: ec.EllipticCurvePublicKey, by: str, by_key: ec.Ellip
 
 
 def scheduler_file(place: Path, address: str, files: dict[str, Path], wait_s: float = 30.0) -> Path:
-    """What a person writes into scheduler.toml; the paths start at its folder."""
+    """The text of scheduler.toml; the paths start at its folder."""
     named = "\n".join(f'{name} = "{files[name].relative_to(place.parent)}"' for name in NAMES)
     place.write_text(f'address = "{address}"\nwait_s = {wait_s}\n[tls]\n{named}\n', encoding="utf-8")
     return place

@@ -26,7 +26,7 @@ ROWS = [dict(point) for point in POINTS]
 
 
 class Here(Executor):
-    """Computes at once, in the order in which it is asked; tells how many chunks there were."""
+    """Computes at once, in the order in which it is asked; records how many chunks there were."""
 
     num_workers = 3
 
@@ -190,7 +190,7 @@ def test_dask_that_is_not_installed_is_told_before_the_work(monkeypatch: pytest.
 @pytest.mark.parametrize("executor", [None, "threads", "processes", Here()])
 def test_what_is_on_this_computer_needs_no_scheduler(executor: Any, monkeypatch: pytest.MonkeyPatch) -> None:
     def refuse(_: object) -> None:
-        raise ParameterError("a scheduler was looked for")
+        raise ParameterError("a scheduler was searched")
 
     monkeypatch.setattr(dask_cluster, "require_scheduler", refuse)
     require_executor(executor)

@@ -84,7 +84,7 @@ def test_two_runs_at_once_are_refused(place: Path) -> None:
     for _ in range(2):
         with raises(OutputError, "in_use"):
             KeptRows.opened(place, "f")
-    assert first._database.execute("PRAGMA busy_timeout").fetchone() == (0,)  # nobody waits for the other
+    assert first._database.execute("PRAGMA busy_timeout").fetchone() == (0,)  # neither waits for the other
     first.add([(0, "{}")])
     first.close()
     assert rows_in(place) == {0: {}}
@@ -163,7 +163,7 @@ while True:
 
 
 def killed_again_and_again(place: Path, kills: int, seed: int) -> None:
-    """What the process said to be kept is there, and nothing half; each goes on where the one before was killed."""
+    """Rows reported as kept are there, and no halves; each goes on where the one before was killed."""
     rng, before = random.Random(seed), 0
     for _ in range(kills):
         with subprocess.Popen([sys.executable, "-c", KEEPER, str(place)], stdout=subprocess.PIPE) as keeper:

@@ -29,7 +29,7 @@ ROOT = Path(__file__).parents[2]
 
 @dataclass
 class Batch:
-    """A batch with its client, its cluster, and what was noted as kept."""
+    """A batch with its client, its cluster, and the rows noted as kept."""
 
     folder: Path
     points: int
@@ -42,7 +42,7 @@ class Batch:
         return [int(line) for line in place.read_text(encoding="utf-8").split()] if place.exists() else []
 
     def begin_cluster(self) -> None:
-        """A scheduler and two workers, in a folder of their own."""
+        """A scheduler and two workers, in a separate folder."""
         place = self.folder / f"cluster-{len(self.clusters)}"
         place.mkdir()
         self.clusters.append(Cluster(place))

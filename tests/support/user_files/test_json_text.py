@@ -1,4 +1,4 @@
-"""JSON beyond its limits, and what Python takes for JSON though it is none."""
+"""JSON beyond its limits, and what Python takes for JSON though it is not."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Nobody reads TOML or JSON past `skisnow._support.user_files`."""
+"""TOML and JSON are read only by `skisnow._support.user_files`."""
 
 from __future__ import annotations
 

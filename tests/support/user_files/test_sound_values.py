@@ -1,4 +1,4 @@
-"""What messages show of a text and a place, and limits at their edges."""
+"""Messages show parts of a text and a place, and limits at their edges."""
 
 from __future__ import annotations
 

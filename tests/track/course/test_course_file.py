@@ -153,7 +153,7 @@ def test_what_is_no_gpx_course_is_refused(tmp_path: Path, text: str, said: str |
 
 
 def test_16_mib_of_gpx_are_read(tmp_path: Path) -> None:
-    """A file of zeros, which is no GPX, but not too large before it has a byte more."""
+    """A file of zeros, which is not GPX, but not too large before it has a byte more."""
     path = tmp_path / "course.gpx"
     for size, code in ((2**24, "not_gpx"), (2**24 + 1, "too_large")):
         with path.open("wb") as stream:

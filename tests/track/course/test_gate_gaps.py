@@ -1,4 +1,4 @@
-"""Two runs through the same gates: gaps and what was lost from gate to gate, by hand."""
+"""Two runs through the same gates: gaps and losses from gate to gate, by hand."""
 
 from __future__ import annotations
 

@@ -138,7 +138,7 @@ def test_a_course_that_is_gone_up_is_not_passed() -> None:
 
 @pytest.mark.parametrize(("y", "side"), [(-1.0, "turning pole"), (4.0, "outer pole")])
 def test_over_a_pole_is_not_between_the_poles(y: float, side: str) -> None:
-    """A point of the track stands on the pole itself: nothing is rounded."""
+    """A point of the track is on the pole itself: nothing is rounded."""
     time, down = np.array([0.0, 1.0, 2.0]), np.array([(9.0, y), (10.0, y), (11.0, y)])
     found = passages(WIDE, MovingPoint(time, down), {}).passages[0]
     assert (found.outcome, found.clearance) == ("missed", 0.0)
@@ -153,7 +153,7 @@ def test_a_track_that_ends_leaves_gates_not_reached() -> None:
 
 
 def climbing(pause: float) -> MovingPoint:
-    """Beside gate 1 at y = -2 to x = 12, back up to x = 8, over to y = 1, and down again through all three."""
+    """Past gate 1 at y = -2 to x = 12, back up to x = 8, over to y = 1, and down again through all three."""
     corners = np.array([(-5.0, -2.0), (12.0, -2.0), (8.0, -2.0), (8.0, 1.0), (40.0, 0.5)])
     times = np.cumsum([0.0, 1.7, pause, 3.0, 3.2])
     return MovingPoint(times, corners, velocity=np.zeros((5, 2)))
@@ -195,7 +195,7 @@ def parts(*tracks: tuple[float, float]) -> dict[str, MovingPoint]:
 def test_feet_and_tips_on_both_sides_of_a_pole_straddle_it(
     places: list[tuple[float, float]], outcome: str, clearance: float
 ) -> None:
-    """The turning pole stands at y = -1, the outer one at y = 4. The time is that of the middle."""
+    """The turning pole is at y = -1, the outer one at y = 4. The time is that of the middle."""
     middle = along_x(y=sum(y for _, y in places) / len(places))
     found = passages(WIDE, middle, parts(*places)).passages[0]
     assert found.outcome == outcome
@@ -217,6 +217,6 @@ def test_a_vertical_gate_has_its_own_direction() -> None:
     time = np.linspace(0.0, 4.0, 81)
     track = MovingPoint(time, np.column_stack([5.0 + 6.0 * time, 2.0 - time]))
     found = passages(vertical, track, {}).passages[1]
-    # y = 2 - t is 0 after 2 s, at x = 17: before the gate, whose poles stand at 20 and 25
+    # y = 2 - t is 0 after 2 s, at x = 17: before the gate, whose poles are at 20 and 25
     assert found.outcome == "missed"
     assert found.time == pytest.approx(2.0, abs=1e-12)

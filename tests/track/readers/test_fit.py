@@ -50,7 +50,7 @@ def test_records_without_a_date_are_counted(tmp_path: Path) -> None:
 
 
 def test_accuracy_in_whole_metres(tmp_path: Path) -> None:
-    """Horizontal, half of the variance to the east and to the north; 0 and what is invalid say nothing."""
+    """Horizontal, half of the variance to the east and to the north; 0 and invalid values give nothing."""
     records = [RECORDS[0] | {"gps_accuracy": 3}, RECORDS[1] | {"gps_accuracy": 0}, RECORDS[2]]
     track = read(tmp_path, fit_file(records), "a.fit")
     each = 3.0 / np.sqrt(2.0)

@@ -1,4 +1,4 @@
-"""Tracks from CSV: what is in the cells, how spreadsheets write them, and what is refused."""
+"""Tracks from CSV: cells, how spreadsheets write them, and refusals."""
 
 from __future__ import annotations
 
@@ -211,7 +211,7 @@ def test_no_such_file_and_a_folder(tmp_path: Path) -> None:
 
 
 def test_a_real_day() -> None:
-    """What the page of the data says of it, and what a plain reader of CSV finds."""
+    """Numbers of the data's page, and those that a plain reader of CSV finds."""
     if not DAY.exists():
         pytest.skip("the shared day of skiing is not beside this repository")
     track = read_track(DAY)

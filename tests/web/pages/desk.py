@@ -1,4 +1,4 @@
-"""The lab's pages in this process, without a browser: what stands on them, and what their fields and buttons do.
+"""The lab's pages in this process, without a browser: their contents, and what their fields and buttons do.
 
 A page takes a twentieth of a second here, in Chromium a second or more. What the browser's own side does, such as
 where the focus goes, only Chromium shows.
@@ -49,9 +49,9 @@ class Sheet:
     client: Client
     html: str
     scripts: list[str] = field(default_factory=list)
-    """What the page has told the browser to do."""
+    """Commands of the page to the browser."""
     at_first: list[str] = field(default_factory=list)
-    """What it told while it was built."""
+    """Its commands while it was built."""
 
     def of(self, kind: type[Element] | None = None) -> Iterator[Any]:
         """Elements that are seen, in their order on the page."""
@@ -68,7 +68,7 @@ class Sheet:
         return rest[: next(at for at, line in enumerate(rest) if line.startswith(last))] if last else rest
 
     def status(self) -> str:
-        """The line that says what came of the last act; nothing where nothing is said."""
+        """The line that says what came of the last act; nothing where the act is silent."""
         return next((line for line in self.outline() if line.startswith("[status")), "")
 
     def outcome(self) -> str:
@@ -116,7 +116,7 @@ class Sheet:
         self.fire(found[number], "click", {})
 
     def fire(self, element: Element, event: str, args: object) -> None:
-        """What the browser sends of an element."""
+        """The browser's message about an element."""
 
         def fired() -> None:
             for each in list(element._event_listeners.values()):
@@ -140,7 +140,7 @@ class Sheet:
         return self.until(lambda: next((line for line in self.outline() if text in line), ""))
 
     def told(self, script: str) -> None:
-        """Wait until the browser is told to do this."""
+        """Wait until the browser has to do this."""
         self.until(lambda: any(script in each for each in self.scripts))
 
     def leave(self) -> None:
@@ -162,18 +162,18 @@ class Sheet:
         return [each for each in self.of() if each.tag == tag]
 
     def charts(self) -> dict[str, dict[str, Any]]:
-        """What charts show, by the title of their vertical axis."""
+        """Points of charts, by the title of their vertical axis."""
         return {each.props["panel"]["y"]: each.props["panel"] for each in self.of(LineChart)}
 
 
 @dataclass
 class Desk:
-    """A lab whose pages this process answers, without its queues: what is asked for waits."""
+    """A lab whose pages this process answers, without its queues: what is requested waits."""
 
     folder: Path
     lab: Lab = field(init=False)
     failures: list[Exception] = field(default_factory=list)
-    """What a handler raised that it should not have."""
+    """Unexpected errors of handlers."""
     errors: list[SkisnowError] = field(default_factory=list)
     """Errors of skisnow that were made since the lab was emptied."""
 
@@ -222,7 +222,7 @@ class Desk:
                 shutil.rmtree(each)
 
     def fails(self) -> Exception:
-        """Wait until a handler fails; gives what it raised, which then is no failure of the test."""
+        """Wait until a handler fails; gives what it raised, which then is not a failure of the test."""
         end = time.monotonic() + PATIENCE_S
         while not self.failures:
             assert time.monotonic() < end
@@ -244,11 +244,11 @@ class Desk:
         return asyncio.run_coroutine_threadsafe(work, self._loop).result(PATIENCE_S)
 
     def get(self, path: str, language: str = "en") -> httpx.Response:
-        """What an address answers."""
+        """The answer of an address."""
         return self.wait(self._browser.get(path, headers={"accept-language": language}))
 
     def post(self, path: str, language: str = "en", **form: Any) -> httpx.Response:
-        """What an address answers to a form of the lab's own; a redirection is not followed."""
+        """The answer of an address to a form of the lab; a redirection is not followed."""
         headers = {"accept-language": language, "origin": "http://127.0.0.1"}
         return self.wait(self._browser.post(path, headers=headers, follow_redirects=False, **form))
 
@@ -270,7 +270,7 @@ def _close_all() -> None:
 
 
 def _listen(sheet: Sheet) -> None:
-    """Write down what the page tells the browser, from here on."""
+    """Write down the page's commands to the browser, beginning now."""
     send = sheet.client.outbox.enqueue_message
     told = [data for _, kind, data in sheet.client.outbox.messages if kind == "run_javascript"]
     sheet.at_first += [each["code"] for each in told]
@@ -286,7 +286,7 @@ def _listen(sheet: Sheet) -> None:
 
 
 def in_this_process(monkeypatch: pytest.MonkeyPatch, *modules: str) -> list[tuple[Any, ...]]:
-    """What these modules of `skisnow.web` would do in another process is done here; gives limits, work, rest."""
+    """Do here the work of these modules of `skisnow.web` in another process; gives limits, work, rest."""
     heard: list[tuple[Any, ...]] = []
 
     def done(bounds: Any, work: Any, *what: Any) -> Any:
@@ -326,7 +326,7 @@ def _is_field(element: Element) -> bool:
 
 
 def _name(element: Element) -> str:
-    """What a screen reader calls it."""
+    """Its name for a screen reader."""
     return str(element.props.get("aria-label") or element.props.get("label") or getattr(element, "text", ""))
 
 
@@ -361,7 +361,7 @@ def _line(element: Any) -> str:
 
 
 def _field_line(element: Any) -> str:
-    """Its name and value, and what is particular about it; behind an exclamation mark what is wrong with it."""
+    """Its name and value, and its states; behind an exclamation mark its fault."""
     marks = {
         "numeric": element.props.get("inputmode") == "decimal",
         "optional": "data-optional" in element.props,

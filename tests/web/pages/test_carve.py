@@ -1,4 +1,4 @@
-"""*Carve*: what stands on it, and what its sliders and menus ask for."""
+"""*Carve*: its contents, and what its sliders and menus ask for."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ SHEAR = sheared({"a": ("A", 20)})
 
 @cache
 def answer(ski: str = "carver", angle: float = 45.0, load: float = 800.0, ratio: float = 10.0, snow: str = "") -> Any:
-    """What the library says; ``snow`` as JSON."""
+    """The library's answer; ``snow`` as JSON."""
     numbers = {"ski": ski, "edge_angle_deg": angle, "load_N": load, "unloading_ratio": ratio}
     return answer_dict(answered(carve_question(numbers | (json.loads(snow) if snow else FIRST_SNOW))))
 
@@ -92,7 +92,7 @@ def told(page: Sheet) -> str:
 
 
 def held(monkeypatch: pytest.MonkeyPatch) -> tuple[threading.Event, list[Any]]:
-    """Answers that come when the event is set, and what was asked."""
+    """Answers that come when the event is set, and the questions."""
     released, asked = threading.Event(), list[Any]()
     at_once = carve._Solver.answers
 

@@ -1,4 +1,4 @@
-"""Correcting an imported campaign: what stands on the page, what is written down beside its files, what is refused."""
+"""Correcting an imported campaign: contents of the page, what is written down beside its files, what is refused."""
 
 from __future__ import annotations
 
@@ -72,7 +72,7 @@ def press(page: Sheet, text: str, number: int) -> str:
 
 
 def asking_form(page: Sheet, name: str) -> Any:
-    """The form that a field stands in, which Enter sends."""
+    """The form that a field is in, which Enter sends."""
     above = page.field(name).parent_slot.parent
     while not any(each.type == "keydown.enter" for each in above._event_listeners.values()):
         above = above.parent_slot.parent
@@ -127,7 +127,7 @@ def correct(desk: Desk, id_: str, test: str, cells: dict[str, str]) -> JournalEn
 
 
 def test_a_test_stands_there_cell_by_cell(desk: Desk, id_: str, tmp_path: Path) -> None:
-    """What it has once stands once; the hardness is that of an analysis."""
+    """A value of the whole test is shown once; the hardness is that of an analysis."""
     page = opened(desk, id_)
     row = analyse(read_campaign(tmp_path / "drawer")).results["penetration"]["experiments"][0]
     page.shows(f"[value] H_V = {hardness_words(row)}")

@@ -13,7 +13,7 @@ SOFTWARE = ("--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftsha
 
 @contextmanager
 def drawing_in_software(other: Any) -> Iterator[Any]:
-    """A Chromium of its own beside one that runs: of Playwright there can be only one at a time."""
+    """A second Chromium beside one that runs: of Playwright there can be only one at a time."""
     browser = other.browser_type.launch(executable_path=CHROMIUM, args=list(SOFTWARE))
     try:
         yield browser

@@ -1,4 +1,4 @@
-"""What a server gives out: runs of the list alone, whatever is asked for."""
+"""A server gives out only runs of the list, whatever is requested."""
 
 from __future__ import annotations
 

@@ -189,7 +189,7 @@ def test_it_opens_playing_from_behind(browser: Any, address: str) -> None:
         assert inside.max() < 1.0
         assert on_picture["up"] == [0, 0, 1]
         boot = np.array(on_picture["edges"])[:, 1].mean()
-        assert on_picture["groove"][1] < boot  # what was cut before lies nearer to the eye
+        assert on_picture["groove"][1] < boot  # the earlier cut is nearer to the eye
     finally:
         seen.close()
 
@@ -486,7 +486,7 @@ def test_picture_and_film_are_files(fresh: Watched, tmp_path: Path) -> None:
 
 @pytest.mark.slow
 def test_a_measured_slope_is_drawn_as_it_falls(browser: Any, tmp_path: Path) -> None:
-    """A profile of 20 %: the run lies on it, and the horizon is level."""
+    """A profile of 20 %: the run is on it, and the horizon is level."""
     x = np.linspace(-30.0, 60.0, 91)
     run = circle_run()
     place = run.place - np.array([0.0, 0.0, 0.2]) * run.place[:, :1]

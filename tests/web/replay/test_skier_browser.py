@@ -69,7 +69,7 @@ def test_the_gap_is_told_when_both_have_passed_a_gate(seen: Watched, replay: Rep
 
 
 def test_both_begin_together(seen: Watched, replay: Replay) -> None:
-    """The ghost's clock begins 7 s later: it stands on the same place all the same."""
+    """The ghost's clock begins 7 s later: it is on the same place all the same."""
     script = f"""replay.seek({replay.time[3]});
         return [replay.stage.skis, replay.stage.ghostSkis].map(({{ group }}) => {{
           const part = group.getObjectByName("trunk");

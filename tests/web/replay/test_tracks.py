@@ -1,4 +1,4 @@
-"""A measured track is taken in, refused in words, and drawn beside a run."""
+"""A measured track is stored, rejected in words, and drawn beside a run."""
 
 from __future__ import annotations
 

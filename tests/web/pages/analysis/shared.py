@@ -1,4 +1,4 @@
-"""What the tests of this room share."""
+"""Helpers that the tests of this folder share."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ COUNTED = "5 penetration experiments, 3 used; 3 shear experiments, 3 used."
 
 @dataclass
 class Drawing:
-    """What the other process would do is done in this one; figures wait for the gate."""
+    """Do the work of the other process in this one; figures wait for the gate."""
 
     gate: asyncio.Event = field(default_factory=asyncio.Event)
     asked: list[Any] = field(default_factory=list)

@@ -204,7 +204,7 @@ def test_tables_are_those_of_the_page_that_have_rows() -> None:
 
 
 def test_only_errors_are_listed_in_a_refusal() -> None:
-    """A mark of quality beside them is no error."""
+    """A mark of quality beside them is not an error."""
     files = {name: text.encode() for name, text in WRONG.items()}
     found = analyse_files(FilesInMemory(files), Choice())
     assert isinstance(found, Refusal)

@@ -1,4 +1,4 @@
-"""What the tests of this room share."""
+"""Helpers that the tests of this folder share."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ def raising(error: Exception) -> Callable[..., object]:
 
 
 async def greeting(scope: Scope, receive: Receive, send: Send) -> None:
-    """Answers with the size of the body; with a policy and a status of its own where the path asks for them."""
+    """Answers with the size of the body; with another policy and status where the path asks for them."""
     if scope["type"] == "lifespan":
         await send({"type": "lifespan.startup.complete"})
         return

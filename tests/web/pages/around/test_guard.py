@@ -32,7 +32,7 @@ HOST = "127.0.0.1:8765"
 
 
 class Asked:
-    """What the guard sends to a request."""
+    """The guard's answer to a request."""
 
     def __init__(self, desk: Desk, *, token: str | None = None, body_bytes: int = 100, host: str = "127.0.0.1") -> None:
         self._desk = desk
@@ -173,7 +173,7 @@ def test_names_of_this_machine_are_known_where_others_may_come(monkeypatch: pyte
 
 @pytest.fixture
 def log(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
-    """A log file of its own."""
+    """A separate log file."""
     made = logging.getLogger("skisnow.test-of-what-is-guarded")
     monkeypatch.setattr(layout, "LOG", made)
     log_to(tmp_path / "new" / "lab.log")

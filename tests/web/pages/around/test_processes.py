@@ -1,4 +1,4 @@
-"""Another process for what was sent, and the server."""
+"""Another process for sent files, and the server."""
 
 from __future__ import annotations
 

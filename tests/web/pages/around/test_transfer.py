@@ -1,4 +1,4 @@
-"""What comes in and goes out as files: uploads, zips, exports."""
+"""Files in and out: uploads, zips, exports."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ def unpacked(content: bytes) -> dict[str, bytes]:
 
 @pytest.fixture
 def here(monkeypatch: pytest.MonkeyPatch) -> list[Any]:
-    """What was sent is read in this process; gives limits, work and what it is given."""
+    """Read sent files in this process; gives limits, work and its arguments."""
     return in_this_process(monkeypatch, "transfer")
 
 
@@ -165,7 +165,7 @@ def folder(tmp_path: Path) -> Path:
 
 
 def taken(folder: Path, files: dict[str, bytes], limits: Limits = LIMITS) -> dict[str, bytes]:
-    """What lies in the folder when these were taken one by one."""
+    """Contents of the folder when these were taken one by one."""
     unpacking = Unpacking(folder, limits)
     for name, content in files.items():
         unpacking.take(name, io.BytesIO(content))
@@ -218,7 +218,7 @@ def test_files_within_as_many_folders_as_allowed_are_taken(folder: Path) -> None
 
 
 def test_a_long_comment_of_a_zip_is_read_past(folder: Path) -> None:
-    """The list of files is looked for in what may follow it at most."""
+    """The list of files is searched in what may follow it at most."""
     content = io.BytesIO(packed({"a": b"1"}))
     with zipfile.ZipFile(content, "a") as archive:
         archive.comment = b"c" * 0xFFFF

@@ -1,4 +1,4 @@
-"""What the tests of this room share."""
+"""Helpers that the tests of this folder share."""
 
 from __future__ import annotations
 
@@ -46,6 +46,6 @@ def add_shear(desk: Desk, id_: str, name: str = "1") -> None:
 
 
 def handlers(sheet: Sheet, text: str) -> list[Any]:
-    """What the browser does at a press of a button."""
+    """The browser's act at a press of a button."""
     (button,) = (each for each in sheet.tagged("q-btn") if each.text == text)
     return [each.js_handler for each in button._event_listeners.values() if each.type == "click"]

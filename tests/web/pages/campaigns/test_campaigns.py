@@ -1,4 +1,4 @@
-"""The list of campaigns: what stands on it."""
+"""Contents of the list of campaigns."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The description of a campaign: what stands in its form, what is stored, and what is refused."""
+"""The description of a campaign: its form, stored values, and refusals."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def add_reading(desk: Desk, id_: str, tool: str) -> None:
 
 
 def stored_description(desk: Desk) -> dict[str, Any]:
-    """Of the only draft."""
+    """The description of the only draft."""
     (head,) = Journals(desk.lab.store).list()
     return tomllib.loads(EditSession(desk.lab, head.id).campaign.description)
 

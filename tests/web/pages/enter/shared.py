@@ -1,4 +1,4 @@
-"""What the tests of this room share."""
+"""Helpers that the tests of this folder share."""
 
 from __future__ import annotations
 
@@ -127,7 +127,7 @@ def leave(page: Sheet, name: str, text: str | None = None) -> None:
 
 
 def reading_row(page: Sheet, name: str) -> Any:
-    """What holds a field of a reading and the word beside it."""
+    """The element with the field of a reading and the word beside it."""
     return page.field(name).parent_slot.parent
 
 

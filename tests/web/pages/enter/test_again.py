@@ -160,7 +160,7 @@ def record(**further: object) -> dict[str, object]:
 
 
 def resent(page: Sheet, records: object) -> list[list[str]]:
-    """What the browser is answered."""
+    """The answer to the browser."""
     page.fire(page.client.layout, "resent", records)
     (told,) = (each for each in page.scripts if each.startswith("lab.resent("))
     page.scripts.remove(told)

@@ -1,4 +1,4 @@
-"""What stands beside the form, what the browser is answered, and a campaign as a page sees it."""
+"""Results beside the form, what the browser is answered, and a campaign as a page sees it."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ def curve(name: str, *, law: bool = True) -> SeriesCurve:
 
 
 def beside(page: Sheet, answer: Callable[[str], QuickResults]) -> LiveResults:
-    """What follows the readings, on a page of its own."""
+    """A separate page with the results of the readings."""
     view: Any = SimpleNamespace(file=PENETRATION, session=SimpleNamespace(quick_results=answer))
 
     def made() -> LiveResults:
@@ -169,7 +169,7 @@ def test_what_cannot_be_computed_is_said_and_the_next_one_is_shown(desk: Desk) -
 
 
 def answered(desk: Desk, act: Callable[[], bool | None], *said: object) -> tuple[list[str], list[PageRequest]]:
-    """What a page tells the browser after each of these, and what stands as asked after it."""
+    """The page's commands to the browser after each of these, and the open question after it."""
     page = desk.open("/")
     page.scripts.clear()
     after = []

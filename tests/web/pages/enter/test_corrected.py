@@ -386,7 +386,7 @@ def test_a_change_outlives_another_reading(desk: Desk) -> None:
     enter(page, "Depth under 60 N (mm)", "3")
     page.fill("Further load (N)", "80")
     page.fill("Its depth (mm)", "4")
-    page.press("Store it")  # draws the series anew
+    page.press("Store it")  # draws the series again
     assert page.field("Depth under 40.5 N (mm)").value == "2,25"
     assert len(changed_states(page)) == 1
     assert "40.5 N: 22.5 mm becomes 2.25 mm." in page.outline()

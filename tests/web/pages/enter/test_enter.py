@@ -273,7 +273,7 @@ def test_a_series_in_german_has_commas(desk: Desk) -> None:
     enter(page, fields[1].props["aria-label"], "2.15")
     assert fields[1].value == "2,15"
     assert depths(desk, id_) == [("20", "1.5"), ("40.5", "2.15")]
-    leave(page, fields[1].props["aria-label"])  # is no correction
+    leave(page, fields[1].props["aria-label"])  # is not a correction
     assert len(history(desk, id_)) == 2
     assert not any(each.props.get("label") == "Warum" for each in page.of(ui.input))
 
@@ -290,10 +290,10 @@ def test_what_is_no_depth_is_refused_at_its_field_and_said_once(desk: Desk) -> N
     assert "refused" in reading_row(page, name).classes
     assert f"lab.refusedLast({page.field(name).id})" in page.scripts
     enter(page, "Depth under 60 N (mm)", "3")
-    leave(page, name)  # it was said at Enter
+    leave(page, name)  # it was shown at Enter
     assert page.outcome() == "good"
     assert page.refusals() == []
-    enter(page, name, "1.5.2")  # at another Enter it is said again
+    enter(page, name, "1.5.2")  # at another Enter it is shown again
     assert page.refusals() == [fault]
     leave(page, name, "x")
     assert "“x”" in page.refusals()[0]
@@ -335,7 +335,7 @@ def test_a_text_that_was_lost_on_its_way_is_taken_from_what_is_sent_again(desk: 
 
 
 def test_a_reading_that_was_sent_before_is_stored_once(desk: Desk) -> None:
-    """The page was loaded anew meanwhile, and the first answer did not come."""
+    """The page was loaded again meanwhile, and the first answer did not come."""
     id_ = begun(desk)
     for _ in range(2):
         page = begun_series(desk, id_)

@@ -1,4 +1,4 @@
-"""Tests of one row: what stands on their page, what is stored, corrected and refused."""
+"""Tests of one row: contents of their page, what is stored, corrected and refused."""
 
 from __future__ import annotations
 

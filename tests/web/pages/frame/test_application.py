@@ -92,7 +92,7 @@ def scope_of(language: str = "en", scheme: str = "http") -> Scope:
 
 
 def answered(*messages: Message, scope: Scope | None = None, token: str = "snow in may") -> Response:
-    """What the page of the token answers to a body."""
+    """The answer of the token's page to a body."""
     waiting = list(messages)
 
     async def receive() -> Message:
@@ -239,7 +239,7 @@ class Wire(asyncio.Transport):
 
 
 class Timer:
-    """What was to happen later."""
+    """Calls that are due later."""
 
     def __init__(self, seconds: float) -> None:
         self.seconds = seconds
@@ -284,7 +284,7 @@ class Patience:
         return [each.seconds for each in self.timers if each.is_waiting]
 
     async def hears(self, data: bytes) -> list[float]:
-        """For how long it waits on what comes."""
+        """How long it waits for a message."""
         self.protocol.data_received(data)
         return self.waits
 

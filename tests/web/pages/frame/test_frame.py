@@ -193,7 +193,7 @@ def test_a_chart_tells_its_extent_and_its_names(desk: Desk, monkeypatch: pytest.
     monkeypatch.setattr("skisnow.web.line_chart._short", short)
     desk.do(lambda: chart.show(own))
     again = chart.props["panel"]["lines"]
-    assert shortened == [[0.0], [0.0]]  # what was there is not rounded again
+    assert shortened == [[0.0], [0.0]]  # earlier values are not rounded again
     assert [each["y"] for each in again] == [[7.1235], [None], [3.0, None, -1.25], [0.0]]
     assert (chart.props["panel"]["range"], chart.props["panel"]["from_zero"]) == (None, "")
 

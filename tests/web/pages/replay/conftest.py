@@ -18,7 +18,7 @@ from ..desk import in_this_process
 
 @pytest.fixture(scope="module")
 def run_files(tmp_path_factory: pytest.TempPathFactory) -> dict[str, bytes]:
-    """Of a turn, as the command leaves them."""
+    """Files of a turn as the command leaves them."""
     place, run = tmp_path_factory.mktemp("run") / "run.nc", circle_run(count=11)
     write_run_file(run, in_sections(scenario_values(run.scenario)), place)
     summary = json.dumps(summary_dict(run), allow_nan=False)
@@ -27,5 +27,5 @@ def run_files(tmp_path_factory: pytest.TempPathFactory) -> dict[str, bytes]:
 
 @pytest.fixture
 def here(monkeypatch: pytest.MonkeyPatch) -> list[Any]:
-    """What was sent is read in this process; gives limits, work and what it is given."""
+    """Read sent files in this process; gives limits, work and its arguments."""
     return in_this_process(monkeypatch, "replay_addresses")

@@ -28,7 +28,7 @@ def options(page: Sheet, key: str) -> list[tuple[str, str, bool]]:
 
 
 def labels(page: Sheet) -> list[tuple[str, str]]:
-    """What each label is for, and its words."""
+    """The field of each label, and its words."""
     made = page.tagged("label")
     return [(each.props["for"], next(iter(each.default_slot.children)).text) for each in made if "for" in each.props]
 

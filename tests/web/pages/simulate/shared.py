@@ -1,4 +1,4 @@
-"""What the tests of this room share."""
+"""Helpers that the tests of this folder share."""
 
 from __future__ import annotations
 
@@ -20,13 +20,13 @@ PENETRATION = pressed({"1": ("A", SOFT), "2": ("A", SOFT), "3": ("B", HARD)})
 
 
 def jobs(desk: Desk) -> list[dict[str, Any]]:
-    """What the queue holds, the newest first."""
+    """Contents of the queue, the newest first."""
     found = [json.loads(place.read_text(encoding="utf-8")) for place in desk.lab.runs.glob("*/job.json")]
     return sorted(found, key=lambda job: str(job["asked_at"]), reverse=True)
 
 
 def asked(desk: Desk, page: Sheet) -> dict[str, Any]:
-    """Press the button; what stands in the queue then."""
+    """Press the button; the queue after that."""
     before = len(jobs(desk))
     page.press("Simulate")
     page.until(lambda: len(jobs(desk)) > before)

@@ -78,7 +78,7 @@ EXPERT_OF_A_SLEDGE = {
 
 
 def names_by_heading(page: Sheet) -> dict[str, list[str]]:
-    """Of the fields below each small heading."""
+    """Labels of the fields below each small heading."""
     found: dict[str, list[str]] = {}
     for line in page.outline():
         if line.startswith("h3 "):
@@ -234,7 +234,7 @@ def test_what_cannot_be_is_refused_at_the_button_and_at_its_field(desk: Desk, na
 
 
 def test_what_only_the_whole_scenario_tells_is_refused_at_its_field(desk: Desk) -> None:
-    """A menu, whose sentence below it says so until it is chosen anew; the other field that is named has no fault."""
+    """A menu, whose sentence below it says so until it is chosen again; the other field that is named has no fault."""
     page = desk.open("/simulate")
     page.fill("Law of shear", "by-density")
     assert refused(desk, page) == "missing"

@@ -9,5 +9,5 @@ from ..desk import in_this_process
 
 @pytest.fixture(autouse=True)
 def confined_words(monkeypatch: pytest.MonkeyPatch) -> list[tuple[object, ...]]:
-    """What would be read in a process of its own is read here; gives limits, work and what it is given."""
+    """Read files here instead of in a separate process; gives limits, work and its arguments."""
     return in_this_process(monkeypatch, "pages.skis", "ski_uploads", "lab_skis")

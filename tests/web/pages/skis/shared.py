@@ -1,4 +1,4 @@
-"""What the tests of this room share."""
+"""Helpers that the tests of this folder share."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ def opened(desk: Desk, path: str = "/skis", name: str = "carver") -> Sheet:
 
 
 def cells_of(ski: Ski) -> list[str]:
-    """What the editor's table shows of a ski, line by line."""
+    """The editor's table of a ski, line by line."""
     lines = ["Position (m)", *CALLED]
     for station in edit_stations(ski):
         lines.append(f"{station:.3f}".replace("-", "−"))

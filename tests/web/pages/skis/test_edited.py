@@ -66,7 +66,7 @@ def test_a_factor_makes_an_edited_ski(desk: Desk, confined_words: list[tuple[obj
     page.shows("edited in the lab (Mass × 2) from: Atomic")
     page.fill("Mass ×", "1")
     page.shows("100 to 460 (carver, carver)")
-    assert confined_words == []  # what was read before is not read again apart
+    assert confined_words == []  # earlier texts are not read again
 
 
 def test_values_at_positions_are_drawn_and_taken_back(desk: Desk) -> None:
@@ -146,7 +146,7 @@ def test_what_a_reader_warns_of_is_shown(desk: Desk) -> None:
 
 
 def skis_of(page: Sheet) -> Any:
-    """What draws a page."""
+    """The function that draws a page."""
     return next(each.__self__ for each in page.field("Ski")._change_handlers if hasattr(each, "__self__"))
 
 
@@ -243,7 +243,7 @@ def test_a_name_that_cannot_be_is_refused_with_the_reason(desk: Desk, name: str,
 
 
 def downloads(page: Sheet) -> dict[str, str]:
-    """What the page gave the browser, by the name of the file."""
+    """Files for the browser, by name."""
     return {each["filename"]: each["src"].decode() for each in page_downloads(page)}
 
 

@@ -1,4 +1,4 @@
-"""*Skis*: what stands on the page, and two skis compared."""
+"""*Skis*: contents of the page, and two skis compared."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the tests of this room share."""
+"""Helpers that the tests of this folder share."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ TURN = {"ski": "carver", "load_N": 800.0, "H_V_N_per_mm3": 0.2, "S_f_N_per_mm2":
 
 
 def jobs(desk: Desk) -> list[dict[str, Any]]:
-    """What the queue holds, the newest first."""
+    """Contents of the queue, the newest first."""
     found = [json.loads(place.read_text(encoding="utf-8")) for place in desk.lab.runs.glob("studies/*/job.json")]
     return sorted(found, key=lambda job: str(job["asked_at"]), reverse=True)
 
@@ -44,7 +44,7 @@ def refused(desk: Desk, page: Sheet) -> str:
 
 
 def estimate(page: Sheet) -> str:
-    """What stands behind the button; nothing where nothing does."""
+    """The text behind the button; empty without one."""
     lines = page.outline()
     line = lines[lines.index(BUTTON) + 1]
     return line.removeprefix("[quiet] ") if line.startswith("[quiet] ") else ""

@@ -1,4 +1,4 @@
-"""*Study*: the queue's cards, the table and map of what was found, its files."""
+"""*Study*: the queue's cards, table and map of the results, files."""
 
 from __future__ import annotations
 
@@ -135,7 +135,7 @@ def test_a_table_of_turns_over_one_input(desk: Desk) -> None:
     rows = [
         {"edge_angle_deg": 70.0, "turn_radius_boot_m": 5.0474, "side_force_N": 2197.98, "outcome": "slips"},
         {"edge_angle_deg": 10.0, "turn_radius_boot_m": 13.0018, "side_force_N": 141.06, "outcome": "equilibrium"},
-        {"edge_angle_deg": 40.0, "outcome": "error", "reason": "the ski is none"},
+        {"edge_angle_deg": 40.0, "outcome": "error", "reason": "it is not a ski"},
         {"edge_angle_deg": 50.0, "outcome": "not_converged", "reason": "so"},
     ]
     name = finished(desk, what, rows)

@@ -1,4 +1,4 @@
-"""*Study*: what is asked about, and what is refused."""
+"""*Study*: its questions, and refusals."""
 
 from __future__ import annotations
 
