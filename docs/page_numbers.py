@@ -122,7 +122,7 @@ def tutorials_campaign(folder: Path) -> dict[str, str]:
     change = sorted(row["H_V_change_percent"] for row in seating)
     (on_angle,) = [row for row in results["regressions"] if row["p"] is not None and row["p"] < 0.05]
     return {
-        "flags": str(sum(len(row["flags"]) for kind in ("penetration", "shear") for row in results[kind]["experiments"])),
+        "flags": str(sum(len(row["flags"]) for kind in (penetration, results["shear"]) for row in kind["experiments"])),
         "experiments": str(len(penetration["experiments"])),
         "shear experiments": str(len(results["shear"]["experiments"])),
         **{f"mean {name}": significant(snow.snow_hardness / 1e9, 3) for name, snow in sites.items()},

@@ -123,6 +123,9 @@ def test_a_kept_campaign_is_analysed_as_its_export_with_what_was_corrected(lab: 
     assert found.results["provenance"]["files"] == results["provenance"]["files"]
     assert found.analysis.campaign.unread_files == ("photo.jpg",)
     assert CorrectionSession(lab, id_).quick_results("A").experiments["penetration.csv", "2"] == experiments(results)[1]
+    compared = [row for row in results["group_comparisons"] if row["quantity"] == "H_V"]
+    assert len(CorrectionSession(lab, id_).quick_verdicts("penetration.csv")) == len(compared)
+    assert CorrectionSession(lab, id_).quick_verdicts("density.csv") == []
     unchanged = analyse_files(before, Choice())
     assert isinstance(unchanged, Numbers)
     assert experiments(unchanged.results)[1] != experiments(results)[1]

@@ -112,7 +112,11 @@ class EditSession:
     def quick_verdicts(self, file: str) -> list[Message]:
         """Comparisons of the sites by H_V or S_f over the whole campaign; empty for other tables."""
         quantity = {PENETRATION.file: "H_V", SHEAR.file: "S_f"}.get(file)
-        return quick_verdicts(campaign_in_memory(self.campaign), quantity) if quantity else []
+        return quick_verdicts(self.whole_campaign(), quantity) if quantity else []
+
+    def whole_campaign(self) -> Campaign:
+        """The campaign as an analysis of the exported folder would read it."""
+        return campaign_in_memory(self.campaign)
 
 
 def quick_results(campaign: Campaign, site: str) -> QuickResults:
@@ -229,4 +233,8 @@ class CorrectionSession(EditSession):
 
     def quick_results(self, site: str) -> QuickResults:
         """Quick results of a site, computed as an analysis of the exported folder would."""
-        return quick_results(campaign_of_files(corrected_files(self._files, self._entries)), site)
+        return quick_results(self.whole_campaign(), site)
+
+    def whole_campaign(self) -> Campaign:
+        """The campaign as an analysis of the exported folder would read it."""
+        return campaign_of_files(corrected_files(self._files, self._entries))

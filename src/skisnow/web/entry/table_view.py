@@ -26,7 +26,6 @@ from ..words import TABLES, displacement_words, hardness_words, in_words, label,
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
 
-    from ..._support.messages import Message
     from ...campaign.reading.table_forms import TableForm
     from ...campaign.store import ReplayedTest
     from ...report.charts import SeriesCurve
@@ -304,7 +303,7 @@ class LiveResults:
         with named(ui.element("section").classes(classes), "Results of the readings"):
             self._name = Words("").classes("quiet")
             self._value = Words("").classes("value").props("role=status")
-            self._verdicts = ui.element("ul").classes("marks")
+            self._verdicts = ui.element("ul").classes("verdicts")
             self._marks = ui.element("ul").classes("marks")
             self._chart: LineChart | None = None
             if is_pressed:
@@ -332,7 +331,6 @@ class LiveResults:
                 (name, site, unsaid), self._wanted = self._wanted, None
                 try:
                     results = await run.io_bound(self._view.session.quick_results, site)
-                    verdicts = await run.io_bound(self._view.session.quick_verdicts, self._view.file)
                 except (FieldDataError, StoreError) as error:
                     self._value.set_text(error_sentence(error))
                     continue
@@ -341,11 +339,18 @@ class LiveResults:
                 # another may have been wanted while this one was waited for
                 if self._wanted is None and results is not None:  # type: ignore[redundant-expr]
                     self._show(name, results, unsaid)
-                    self._show_verdicts(verdicts or [])
+                    await self._compare_sites()
         finally:
             self._working = False
 
-    def _show_verdicts(self, verdicts: list[Message]) -> None:
+    async def _compare_sites(self) -> None:
+        """Show the verdicts over the whole campaign; none while another of its tests has an error."""
+        try:
+            verdicts = await run.io_bound(self._view.session.quick_verdicts, self._view.file) or []
+        except (FieldDataError, StoreError):
+            verdicts = []
+        if self._verdicts.is_deleted:
+            return
         self._verdicts.clear()
         with self._verdicts:
             for verdict in verdicts:
