@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import functools
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from typing import TYPE_CHECKING, Final, TypeAlias
 
 import numpy as np
@@ -18,7 +18,7 @@ from ..ski.beam import (
     model_nodes,
     twist_shape,
 )
-from ..ski.variation import LINEAR, shape_value, varied_ski
+from ..ski.variation import LINEAR, is_linear, require_own_tables, shape_value, stiffness_growth, varied_ski
 
 if TYPE_CHECKING:
     from ..ski.ski import Ski
@@ -26,6 +26,9 @@ if TYPE_CHECKING:
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 
 _GAUSS_PLACES: Final = np.array([(1.0 - 1.0 / np.sqrt(3.0)) / 2.0, (1.0 + 1.0 / np.sqrt(3.0)) / 2.0])
+_FREE: Final = ("name", "source", "mass_kg", "EI_N_m2", "GJ_N_m2", *LINEAR)  # keys without effect on linear growths
+_MOST_KEPT: Final = 256
+_LINEAR_GROWTHS: Final[dict[tuple[object, ...], Shape]] = {}
 _STEP: Final = 1e-3  # of a parameter; in mm of a length
 
 
@@ -82,13 +85,33 @@ def shape_of(ski: Ski, clamp_length: float, elements: int, edge: FloatArray) -> 
     )
 
 
-@functools.lru_cache(maxsize=256)
 def shape_growth(ski: Ski, name: str, clamp_length: float, elements: int, edge: tuple[float, ...]) -> Shape:
     """Growth of the shape with a parameter of the ski, per its unit; meshes and tables keep their numbers of rows.
 
     Central differences of the ski alone, exact where it is linear in the parameter; else extrapolated (Richardson).
     """
+    key = name.removeprefix("ski.")
+    if not name.startswith("ski.") or not ski.keys or not is_linear(ski.keys, key):
+        return _growth_of(ski, name, clamp_length, elements, edge)
+    shape_value(ski, name)  # the name is checked
+    require_own_tables(ski)
+    # what a linear parameter does is the same for all skis of these lengths
+    same = tuple((k, str(v)) for k, v in ski.keys.items() if k not in _FREE)
+    widest = int(np.argmax(ski.width))
+    if (same, widest, key, clamp_length, elements, edge) not in _LINEAR_GROWTHS:
+        if len(_LINEAR_GROWTHS) >= _MOST_KEPT:
+            _LINEAR_GROWTHS.clear()
+        growth = _growth_of(ski, name, clamp_length, elements, edge)
+        _LINEAR_GROWTHS[same, widest, key, clamp_length, elements, edge] = growth
+    return _LINEAR_GROWTHS[same, widest, key, clamp_length, elements, edge]
+
+
+@functools.lru_cache(maxsize=256)
+def _growth_of(ski: Ski, name: str, clamp_length: float, elements: int, edge: tuple[float, ...]) -> Shape:
     value, places = shape_value(ski, name), np.array(edge)
+    stiffness = stiffness_growth(ski, name)
+    if stiffness is not None:
+        return _stiffer(shape_of(ski, clamp_length, elements, places), ski, *stiffness)
     # a length moves stations over rows of the tables, between which they are linear: a small step
     step = _STEP * abs(value) if value and not name.endswith("_mm") else _STEP
 
@@ -96,9 +119,17 @@ def shape_growth(ski: Ski, name: str, clamp_length: float, elements: int, edge: 
         ends = [shape_of(varied_ski(ski, name, side * h), clamp_length, elements, places) for side in (1.0, -1.0)]
         return ends[0].combined(ends[1], 0.5 / h, -0.5 / h)
 
-    if name.startswith("edit.") or name.removeprefix("ski.") in LINEAR:
+    if name.startswith("edit.") or is_linear(ski.keys or {}, name.removeprefix("ski.")):
         return central(1e-2 * abs(value) or _STEP)
     return central(step / 2.0).combined(central(step), 4.0 / 3.0, -1.0 / 3.0)
+
+
+def _stiffer(here: Shape, ski: Ski, attribute: str, growth: FloatArray) -> Shape:
+    """Growth of a shape by that of one stiffness at the ski's stations."""
+    at_gauss = here.node[:-1, None] - here.length[:, None] * GAUSS_POINTS
+    table = np.interp(at_gauss, ski.station[::-1], growth[::-1])
+    column = "bending" if attribute == "bending_stiffness" else "torsion"
+    return replace(here.combined(here, 0.0, 0.0), **{column: table})
 
 
 def bent_by(model: ClampedSki, u: FloatArray, growth: Shape) -> FloatArray:

@@ -65,7 +65,7 @@ class Evaluator:
         """
         place = z.tobytes()
         if place not in self._points:
-            if len(self._points) > 3:
+            if len(self._points) > 15:
                 self._points.pop(next(iter(self._points)))
             try:
                 ski = ski_of_keys(self.keys(z))

@@ -4,15 +4,19 @@ from __future__ import annotations
 
 import functools
 import re
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, Final, TypeAlias
 
 import numpy as np
+import numpy.typing as npt
 
 from .._support.errors import ParameterError
 from .._support.messages import Message
+from .._support.units import MM
 from ..parameters import nearest
+from .assembling import stiffness_table
 from .editing import EDITED_COLUMNS, SIDECUT, SkiEdit, edit_stations, edited_ski
-from .file_keys import LISTS, SKI_KEYS
+from .file_keys import LISTS, SKI_KEYS, STIFFNESSES
+from .layout import Layout
 from .ski_file import ski_of_keys
 
 if TYPE_CHECKING:
@@ -20,11 +24,14 @@ if TYPE_CHECKING:
 
     from .ski import Ski
 
+FloatArray: TypeAlias = npt.NDArray[np.float64]
+
 FACTORS: Final = tuple(f"edit.{column}" for column in (SIDECUT, *EDITED_COLUMNS))
 """Factors of whole curves, as in `SkiEdit`; the rest of the ski is held."""
 LINEAR: Final = ("tip_width_mm", "waist_width_mm", "tail_width_mm", "camber_mm", "base_bevel_deg", "edge_width_mm")
 """Keys in which the ski's tables are linear."""
 _WITHOUT: Final = ("mass_kg", "side_edge_deg", "edge_radius_mm")  # no part in a carve, or no derivative
+_STEP: Final = 1e-3  # of a row of a list
 _ROW: Final = re.compile(r"(\w+)\[(\d+)\]")
 
 
@@ -89,6 +96,40 @@ def changed_keys(keys: Mapping[str, Any], values: Mapping[str, float]) -> dict[s
     return out
 
 
+def is_linear(keys: Mapping[str, Any], key: str) -> bool:
+    """Whether the tables of a ski are linear in a key: not in the widths where the tip's end has its own."""
+    return key in LINEAR and not (key.endswith("width_mm") and "tip_end_width_mm" in keys)
+
+
+def stiffness_growth(ski: Ski, name: str) -> tuple[str, FloatArray] | None:
+    """Growth of EI or GJ (name in `Ski`) at the stations with a parameter; None of one that changes more than that."""
+    row = _ROW.fullmatch(name.removeprefix("ski."))
+    column = row[1] if row else name.removeprefix("edit.")
+    if column not in STIFFNESSES or not (row or name in FACTORS):
+        return None
+    if row is None:
+        return EDITED_COLUMNS[column], np.asarray(getattr(ski, EDITED_COLUMNS[column]))
+    require_own_tables(ski)
+    keys, place = ski.keys or {}, int(row[2]) - 1
+    listed = np.array(keys[column], float)
+    stations = keys.get("stiffness_station_mm")
+    where = None if stations is None else np.array(stations) * MM
+    layout = Layout(
+        tip=float(ski.station[0]),
+        tail=float(ski.station[-1]),
+        middle=ski.sidecut_middle,
+        running_length=ski.running_length,
+        sidecut_length=ski.sidecut_length,
+    )
+
+    def central(h: float) -> FloatArray:
+        ends = [stiffness_table(listed + side * h * np.eye(len(listed))[place], where, layout) for side in (1.0, -1.0)]
+        return np.asarray((ends[0].at(ski.station) - ends[1].at(ski.station)) / (2.0 * h))
+
+    h = _STEP * listed[place]
+    return EDITED_COLUMNS[column], (4.0 * central(h / 2.0) - central(h)) / 3.0
+
+
 def varied_ski(ski: Ski, name: str, change: float) -> Ski:
     """The ski with a parameter of `shape_parameters` changed, on stations that move with it; the others are held."""
     value = shape_value(ski, name) + change
@@ -96,12 +137,12 @@ def varied_ski(ski: Ski, name: str, change: float) -> Ski:
         column = name.removeprefix("edit.")
         edit = SkiEdit(edit_stations(ski), {column: value})
         return edited_ski(ski, edit, name=ski.name, source=ski.source)
-    _require_own_tables(ski)
+    require_own_tables(ski)
     return ski_of_keys(changed_keys(ski.keys or {}, {name.removeprefix("ski."): value}), like=ski)
 
 
 @functools.lru_cache(maxsize=64)
-def _require_own_tables(ski: Ski) -> None:
+def require_own_tables(ski: Ski) -> None:
     """Reject a ski whose tables were changed after it was read."""
     own = ski_of_keys(ski.keys or {}, like=ski)
     for table in ("width", "base_height", "bending_stiffness", "torsional_stiffness"):
