@@ -23,7 +23,7 @@ from .time_figures import (
     run_motion,
     slip_of_a_place,
 )
-from .track_figure import CUTOUT, run_track
+from .track_figure import CUTOUT, STEADY, run_track
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -38,30 +38,51 @@ def run_drawings(run: Run) -> Iterator[Drawing]:
     """All figures in order, drawn in the style in force when they are requested; none for a run without a step."""
     if len(run.time) < 2:
         return
-    yield Drawing(
+    yield _track(run)
+    if run.scenario.course is not None:
+        yield _course(run)
+    yield _motion(run)
+    if run.scenario.skier is None and run.boots_by is not None:
+        yield _boots(run)
+    if run.scenario.skier is not None:
+        yield _balance(run)
+    yield _along_ski(run)
+    yield _grip(run)
+    yield _energies(run)
+
+
+def _track(run: Run) -> Drawing:
+    return Drawing(
         "track",
         prose(
             "(a) The run from above, the same scale along both axes. (b, c) The grooves of both skis over {length} m "
-            "at half time: along the track of the loaded edge in metres, across it in millimetres.",
+            "at half time: along the track of the loaded edge in metres, across it in millimetres. Their edges are "
+            "medians over {lines} lines of snow.",
             length=significant(CUTOUT, 2),
+            lines=STEADY,
         ),
         f"Tracks of both skis from above, {significant(run.run_length)} m long, and their grooves.",
         run_track(run),
         wide=True,
     )
-    if run.scenario.course is not None:
-        yield Drawing(
-            "course",
-            prose(
-                "The line of the middle between the boots over the course, from above; colour: edge angle at the "
-                "boots, positive with the left edges down. A cross: the gate was not passed. Gates to "
-                "which no outer pole is known are drawn with a piece of their line."
-            ),
-            "Line over the gates of the course, coloured by edge angle.",
-            run_course(run),
-            wide=True,
-        )
-    yield Drawing(
+
+
+def _course(run: Run) -> Drawing:
+    return Drawing(
+        "course",
+        prose(
+            "The line of the middle between the boots over the course, from above; colour: edge angle at the "
+            "boots, positive with the left edges down. A cross: the gate was not passed. Gates to "
+            "which no outer pole is known are drawn with a piece of their line."
+        ),
+        "Line over the gates of the course, coloured by edge angle.",
+        run_course(run),
+        wide=True,
+    )
+
+
+def _motion(run: Run) -> Drawing:
+    return Drawing(
         "motion",
         prose(
             "(a) Speed, (b) heading of the skis and (c) radius of the path of the middle between the boots. The radius "
@@ -72,31 +93,38 @@ def run_drawings(run: Run) -> Iterator[Drawing]:
         run_motion(run),
         wide=True,
     )
-    if run.scenario.skier is None and run.boots_by is not None:
-        yield Drawing(
-            "boots",
-            prose(
-                "(a) Edge angle of each boot to the snow's surface. Force of each ski on its boot, in the boot's axes: "
-                "(b) off the base, (c) across it. (d) Moment of the ski on its boot about the boot's long axis, "
-                "positive where it turns the left edge up. Each axis leaves one peak in a hundred out."
-            ),
-            "Edge angles of both boots, and forces and edging moment of the skis on them, over time.",
-            run_boots(run),
-            wide=True,
-        )
-    if run.scenario.skier is not None:
-        yield Drawing(
-            "balance",
-            prose(
-                "(a) Lean of the line from the middle of the boots to the centre of mass, edge angle, and the lean "
-                "that would be in balance with speed and path radius of the centre of mass. Force of the snow on each "
-                "ski: (b) total, (c) normal, (d) side force. The axes of (b, c, d) leave one peak in a hundred out."
-            ),
-            "Lean, edge angle and forces of a skier over time.",
-            run_balance(run),
-            wide=True,
-        )
-    yield Drawing(
+
+
+def _boots(run: Run) -> Drawing:
+    return Drawing(
+        "boots",
+        prose(
+            "(a) Edge angle of each boot to the snow's surface. Force of each ski on its boot, in the boot's axes: "
+            "(b) off the base, (c) across it. (d) Moment of the ski on its boot about the boot's long axis, "
+            "positive where it turns the left edge up. Each axis leaves one peak in a hundred out."
+        ),
+        "Edge angles of both boots, and forces and edging moment of the skis on them, over time.",
+        run_boots(run),
+        wide=True,
+    )
+
+
+def _balance(run: Run) -> Drawing:
+    return Drawing(
+        "balance",
+        prose(
+            "(a) Lean of the line from the middle of the boots to the centre of mass, edge angle, and the lean "
+            "that would be in balance with speed and path radius of the centre of mass. Force of the snow on each "
+            "ski: (b) total, (c) normal, (d) side force. The axes of (b, c, d) leave one peak in a hundred out."
+        ),
+        "Lean, edge angle and forces of a skier over time.",
+        run_balance(run),
+        wide=True,
+    )
+
+
+def _along_ski(run: Run) -> Drawing:
+    return Drawing(
         "along_ski",
         prose(
             "(a, b) Depth of the edge below the undisturbed surface and (c, d) normal force of the snow per length, "
@@ -107,7 +135,10 @@ def run_drawings(run: Run) -> Iterator[Drawing]:
         run_along_ski(run),
         wide=True,
     )
-    yield Drawing(
+
+
+def _grip(run: Run) -> Drawing:
+    return Drawing(
         "grip",
         prose(
             "Grip utilisation of each ski: the sum of its side force over the sum of the shear capacity S_f e. At 1 "
@@ -121,7 +152,10 @@ def run_drawings(run: Run) -> Iterator[Drawing]:
         run_grip(run),
         wide=True,
     )
-    yield Drawing(
+
+
+def _energies(run: Run) -> Drawing:
+    return Drawing(
         "energies",
         prose(
             "(a) Where the energy is and went. Everything on top of each other must stay at the dashed line. (b) "
