@@ -83,13 +83,6 @@ def test_factors_and_values_at_stations_are_drawn_and_saved(page: Page, served: 
     assert len({words.split("carved radius")[1] for words in told.all_inner_texts()}) == 2
 
 
-def test_the_editor_on_a_phone(page: Page, served: Served) -> None:
-    page.set_viewport_size({"width": 390, "height": 844})
-    page.goto(f"{served.address}skis")
-    page.get_by_label("EI (N m²) at 0.000 m", exact=True).wait_for()
-    assert page.evaluate("document.documentElement.scrollWidth") <= 390
-
-
 def test_a_ski_is_saved_with_its_table_and_read_by_its_word(tmp_path: Path) -> None:
     skis = LabSkis(tmp_path)
     assert (skis.word("carver"), skis.saved()) == ("carver", [])

@@ -18,7 +18,7 @@ from starlette.requests import Request
 from skisnow._support.errors import FieldDataError, OutputError, ParameterError, StoreError
 from skisnow.web import layout
 from skisnow.web.analysis_cache import AnalysisCache
-from skisnow.web.guard import CONTENT_POLICY, COOKIE, Access, Guard
+from skisnow.web.guard import CONTENT_POLICY, COOKIE, Access, Guard, is_loopback
 from skisnow.web.layout import _error_answer, _notify, error_sentence, log_error, log_to, plain_page
 
 from .shared import greeting, raising
@@ -83,13 +83,26 @@ FOREIGN, TOO_MUCH, OTHER_HOST, NO_ADDRESS = 403, 413, 421, 400
         ("GET", {"host": "evil.example"}, OTHER_HOST),
         ("GET", {"host": "LOCALHOST:8765"}, 200),
         ("GET", {"host": "[::1]:8765"}, 200),
+        ("DELETE", {}, FOREIGN),
+        *(("POST", {"origin": f"http://{name}"}, FOREIGN) for name in ("127.0.0.1:9999", f"{HOST}.evil.example")),
+        ("POST", {"origin": "null"}, FOREIGN),
+        *(
+            ("POST", {"host": name, "origin": f"http://{name}"}, OTHER_HOST)  # a name that was made to point here
+            for name in ("evil.example:8765", "192.168.1.7:8765", "127.0.0.1.evil.example", "")
+        ),
         ("GET", {"host": "["}, NO_ADDRESS),
+        ("POST", {**OWN, "host": "[::1"}, NO_ADDRESS),
+        *(("POST", {"origin": origin}, NO_ADDRESS) for origin in ("http://[", "http://[x]")),
         ("GET", {"content_length": "100"}, 200),
         *(("GET", {"content_length": size}, TOO_MUCH) for size in ("101", "1e1", "-1", "x", "1" * 5000)),
     ],
 )
 def test_who_is_answered(desk: Desk, method: str, headers: dict[str, str], answer: int) -> None:
     assert Asked(desk).status("/", method, **headers)[0] == answer
+    if answer in (FOREIGN, OTHER_HOST, NO_ADDRESS):
+        assert Asked(desk).send("websocket", **headers)[0]["type"] != "websocket.accept"
+    if answer == NO_ADDRESS:
+        assert Asked(desk, token="snow").status("/", method, **headers)[0] == NO_ADDRESS
 
 
 def test_a_body_without_its_size_is_cut_off_beyond_the_limit(desk: Desk) -> None:
@@ -139,8 +152,23 @@ def test_the_token_is_asked_for_until_the_cookie_is_there(desk: Desk) -> None:
     start = lab.send("http", "/token", "POST", b"token=snow", **OWN)[0]
     assert start["status"] == 303
     assert dict(start["headers"])[b"set-cookie"].startswith(f"{COOKIE}={cookie};".encode())
+    assert lab.status("/token", "POST", b"token=snow", origin="http://evil.example")[0] == FOREIGN
     lab.guard.tries.wait_s = lambda address: 7.2 if address == "a" else 0.0  # type: ignore[method-assign]
     assert lab.send("http", "/token", "POST", b"token=snow", **OWN)[0]["status"] == 429
+
+
+def test_too_many_tries_are_told_when_to_try_again(desk: Desk, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("skisnow.web.guard._WAIT_S", 0.0)
+    lab = Asked(desk, token="snow")
+    assert [lab.status("/token", "POST", b"token=ice", **OWN)[0] for _ in range(10)] == [403] * 10
+    start = lab.send("http", "/token", "POST", b"token=snow", **OWN)[0]
+    headers = dict(start["headers"])
+    assert start["status"] == 429 and 1 <= int(headers[b"retry-after"]) <= 60 and b"set-cookie" not in headers
+
+
+def test_names_of_loopback() -> None:
+    assert [is_loopback(host) for host in ("127.0.0.1", "127.9.9.9", "::1", "localhost")] == [True] * 4
+    assert not any(is_loopback(host) for host in ("0.0.0.0", "::", "192.168.0.1", "example.org"))
 
 
 def test_what_lets_in() -> None:
