@@ -7,7 +7,7 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from .ending import ready
+from .ending import prepare_output
 from .options import MOST_RESAMPLES, add_language, number, seed_number, whole_number
 
 
@@ -58,7 +58,7 @@ def run(options: argparse.Namespace) -> int:
     with Progress() as progress, paused_collector():
         campaign = read_campaign(options.campaign, progress=progress)
         if options.out is not None:
-            ready(options.out)
+            prepare_output(options.out)
         analysis = analyse(
             campaign,
             geometry=options.geometry,

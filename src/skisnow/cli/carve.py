@@ -8,7 +8,7 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from .ending import fonts_listed
+from .ending import list_fonts
 from .options import add_language, number, whole_number
 from .progress import announced
 
@@ -96,7 +96,7 @@ def run(options: argparse.Namespace) -> int:
         from ..report.figures.figure_files import require_drawable
 
         require_drawable(options.figure)
-        fonts_listed()
+        list_fonts()
     answers = _answers(options)
     _warn(answers)
     result = answers_dict(answers)

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from .._support.units import DEGREE
-from .ending import ready
+from .ending import prepare_output
 from .options import add_fall_line_azimuth, add_language, number
 from .progress import announced
 
@@ -79,7 +79,7 @@ def run(options: argparse.Namespace) -> int:
             "start,heading"
         )
     if options.out is not None:
-        ready(options.out)
+        prepare_output(options.out)
     comparison = _compared(options)
     from ..comparison import comparison_dict
     from ..track.course.gates_table import gap_rows, read_gate_gaps

@@ -31,26 +31,26 @@ class Ended(KeyboardInterrupt):
 
 @dataclass(slots=True)
 class Ending:
-    """Whether this process was asked to end, also where the interrupt was caught on its way.
+    """Requests to end this process, kept also if the interrupt was caught.
 
     Attributes
     ----------
     asked
-        By the system.
+        True after a request of the system.
     pressed
-        By Ctrl-C while `finishing`.
+        True after Ctrl-C during `finishing`.
     """
 
     asked: bool = False
     pressed: bool = False
 
     def status(self) -> int:
-        """The exit status of an interrupted command: 143 where the system asked, else 130."""
+        """Exit status of an interrupted command: 143 after a request of the system, otherwise 130."""
         return 143 if self.asked else 130
 
     @contextmanager
     def finishing(self) -> Iterator[None]:
-        """Go on to the end of a block that takes seconds, such as the writing of a run; asked twice it is given up."""
+        """Finish a block that takes seconds, such as the writing of a run; a second request interrupts it."""
         if threading.current_thread() is not threading.main_thread():
             yield
             return
@@ -98,9 +98,9 @@ STATUS: Final = 70
 
 
 def report_failure(error: Exception) -> int:
-    """Write the trace down and say where; returns the exit status."""
+    """Write the traceback to a file and print its path; returns the exit status."""
     reference = secrets.token_hex(4)
-    place = _kept(f"error-{reference}.txt", _trace(error, reference))
+    place = _write_log(f"error-{reference}.txt", _trace(error, reference))
     where = f"The trace is in {place}; please send it with what you did." if place else "The trace:"
     what = f"{type(error).__name__}: {error}".splitlines()[0][:200]
     print(f"skisnow: an error that was not foreseen ({what}). Reference {reference}. {where}", file=sys.stderr)
@@ -120,8 +120,8 @@ def _trace(error: Exception, reference: str) -> str:
     return "\n".join((*head, "", *traceback.format_exception(error)))
 
 
-def _kept(name: str, text: str) -> Path | None:
-    """The file, in the user's folder for logs, else in that for temporary files; None where neither can be written."""
+def _write_log(name: str, text: str) -> Path | None:
+    """Path of the written file, in the user's log folder or the temporary folder; None if neither can be written."""
     from platformdirs import user_log_path
 
     for folder in (user_log_path("skisnow"), Path(tempfile.gettempdir())):
@@ -138,10 +138,8 @@ USUAL_S: Final = 10.0
 """Seconds for a machine with a thousand fonts or more (milliseconds each); a hundred take less than a second."""
 
 
-def fonts_listed() -> None:
-    """See that the list is there before the work begins, and say so where it is made: nothing is slow unannounced."""
-    from pathlib import Path
-
+def list_fonts() -> None:
+    """Let matplotlib list the fonts before the work begins, with a message, if it has no list yet."""
     import matplotlib
 
     if not list(Path(matplotlib.get_cachedir()).glob("fontlist-*.json")):
@@ -149,16 +147,16 @@ def fonts_listed() -> None:
             import matplotlib.font_manager
 
 
-def ready(folder: Path) -> None:
-    """See that a folder can be written and figures drawn, tidy up what killed processes left in it, and say so.
+def prepare_output(folder: Path) -> None:
+    """Require a writable folder, clean up after killed processes with a message, and list the fonts for figures.
 
     Raises
     ------
     OutputError
-        It cannot be made or written.
+        The folder cannot be made or written.
     """
     from .._support.staging import tidied
 
     for sentence in tidied(folder):
         print(sentence, file=sys.stderr)
-    fonts_listed()
+    list_fonts()

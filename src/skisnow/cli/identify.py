@@ -8,7 +8,7 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from .ending import Ending, ending_is_an_interrupt, ready
+from .ending import Ending, ending_is_an_interrupt, prepare_output
 from .options import MOST_RESAMPLES, MOST_WORKERS, add_language, add_scheduler, scheduler_of, seed_number, whole_number
 from .progress import Progress, announced
 
@@ -95,7 +95,7 @@ def _prepared(options: argparse.Namespace) -> ScenarioFile:
             require_emcee()
         scenario_input = scenario_file(options.scenario, changes=_changes(options))
     if options.out is not None:
-        ready(options.out)
+        prepare_output(options.out)
     for text in scenario_input.warnings:
         print(f"warning: {text}", file=sys.stderr)
     return scenario_input

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from .ending import Ended, ending_is_an_interrupt, ready
+from .ending import Ended, ending_is_an_interrupt, prepare_output
 from .options import MOST_WORKERS, add_changes, add_scheduler, number, scheduler_of, seed_number, whole_number
 from .progress import Progress, announced
 
@@ -132,7 +132,7 @@ def _raced(options: argparse.Namespace) -> _Raced:
         snow = scenario.contact.snow
         snows = drawn_for_race(snow, options.snows, spread=options.snow_spread, seed=options.seed)
         start = _start(options, scenario)
-    ready(options.out)
+    prepare_output(options.out)
     computing: dict[str, Any] = {"workers": options.workers, "executor": scheduler_of(options)}
     with Progress() as progress:
         fastest = quickest_line(

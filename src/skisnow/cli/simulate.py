@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from .._support.errors import ModelLimitWarning
-from .ending import Ending, ending_is_an_interrupt, ready
+from .ending import Ending, ending_is_an_interrupt, prepare_output
 from .options import add_changes, add_language
 from .progress import Progress, announced
 
@@ -89,7 +89,7 @@ def _prepare(options: argparse.Namespace, scenario_input: ScenarioFile) -> None:
 
         require_ending(options.boots_out)
     if options.out is not None:
-        ready(options.out)
+        prepare_output(options.out)
     for text in scenario_input.warnings:
         print(f"warning: {text}", file=sys.stderr)
 

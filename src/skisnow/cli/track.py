@@ -7,7 +7,7 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from .ending import ready
+from .ending import prepare_output
 from .options import add_language, number
 from .progress import Progress, announced
 
@@ -61,7 +61,7 @@ def run(options: argparse.Namespace) -> int:
     if options.discipline is not None and options.course is None:
         options.parser.error("--discipline needs --course: name the file of the gates")
     if options.out is not None:
-        ready(options.out)
+        prepare_output(options.out)
     course = None if options.course is None else _course(options)
     with announced(f"reading {options.file}"):
         from ..track.read import read_track

@@ -8,7 +8,7 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from .ending import ready
+from .ending import prepare_output
 from .options import MOST_WORKERS, add_language, number, seed_number, whole_number
 from .progress import Progress, announced
 
@@ -89,7 +89,7 @@ def run(options: argparse.Namespace) -> int:
     for text in scenario_input.warnings:
         print(f"warning: {text}", file=sys.stderr)
     if options.out is not None:
-        ready(options.out)
+        prepare_output(options.out)
     names = ("unloading_ratio", "runs", "seed", "workers")
     numbers = _given(changes, scenario_input.scenario.contact)
     chosen = numbers | {name: getattr(options, name) for name in names if getattr(options, name) is not None}

@@ -431,47 +431,48 @@ def _column(path: Path, rows: list[Row], head: list[str], place: int) -> npt.NDA
                 ),
                 code="wrong_number_of_cells",
             )
-        try:
-            values[i] = float(row[place])
-        except ValueError:
-            values[i] = math.nan
-        if not math.isfinite(values[i]):
-            raise ParameterError(
-                Message(
-                    "{path}, row {line}, column {head}: {value!r} is not a finite number; write one",
-                    path=path,
-                    line=line,
-                    head=head[place],
-                    value=row[place].strip(),
-                ),
-                code="not_a_number",
-            )
-        if abs(values[i]) > LARGEST:
-            raise ParameterError(
-                Message(
-                    "{path}, row {line}, column {head}: {value:g} is beyond ±{largest:g}. Correct the number.",
-                    path=path,
-                    line=line,
-                    head=head[place],
-                    value=values[i],
-                    largest=LARGEST,
-                ),
-                code="out_of_range",
-            )
-        if head[place].endswith(_EDGE) and abs(values[i]) > _ON_ITS_SIDE:
-            raise ParameterError(
-                Message(
-                    "{path}, row {line}, column {head}: {value:g} is beyond ±{on_its_side:g}, a ski on its "
-                    "side; put the row right or leave it out",
-                    path=path,
-                    line=line,
-                    head=head[place],
-                    value=values[i],
-                    on_its_side=_ON_ITS_SIDE,
-                ),
-                code="out_of_range",
-            )
+        values[i] = _cell(path, line, head[place], row[place])
     return values
+
+
+def _cell(path: Path, line: int, column: str, text: str) -> float:
+    """Number of a cell within the limits of its column."""
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    cell = {"path": path, "line": line, "head": column}
+    if not math.isfinite(value):
+        raise ParameterError(
+            Message(
+                "{path}, row {line}, column {head}: {value!r} is not a finite number; write one",
+                value=text.strip(),
+                **cell,
+            ),
+            code="not_a_number",
+        )
+    if abs(value) > LARGEST:
+        raise ParameterError(
+            Message(
+                "{path}, row {line}, column {head}: {value:g} is beyond ±{largest:g}. Correct the number.",
+                value=value,
+                largest=LARGEST,
+                **cell,
+            ),
+            code="out_of_range",
+        )
+    if column.endswith(_EDGE) and abs(value) > _ON_ITS_SIDE:
+        raise ParameterError(
+            Message(
+                "{path}, row {line}, column {head}: {value:g} is beyond ±{on_its_side:g}, a ski on its "
+                "side; put the row right or leave it out",
+                value=value,
+                on_its_side=_ON_ITS_SIDE,
+                **cell,
+            ),
+            code="out_of_range",
+        )
+    return value
 
 
 def _axes(table: Mapping[str, Any], missing: Mapping[str, float]) -> npt.NDArray[np.float64]:
