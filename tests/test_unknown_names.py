@@ -17,7 +17,7 @@ from skisnow import Course, Gate, Profile, SnowField, carve, check_campaign, loa
 from skisnow._support.errors import ParameterError, SkisnowError
 from skisnow.geometry import SkiPiece, in_form
 from skisnow.interop.opensim import BootMarkers, Markers, boots_of_markers
-from skisnow.racing import compared
+from skisnow.racing import compare_variants
 from skisnow.scenario import Boots, Solver, scenario_values
 from skisnow.scenario.keys import SCENARIO_KEYS
 from skisnow.scenario.reading import build_input, load_input
@@ -110,7 +110,7 @@ CHOICES: dict[str, tuple[Callable[[], object], str]] = {
     "over": (lambda: still(over="tim"), "time"),
     "up": (lambda: boots_of_markers(MARKERS, MARKED, MARKED, up="yy"), "y"),  # type: ignore[arg-type]
     "model": (lambda: skisnow.race(TURN, model="skierr"), "skier"),  # type: ignore[arg-type]
-    "compared": (lambda: compared(TURN, {"a": TURN}, None, [SNOW], model="poin"), "point"),  # type: ignore[arg-type]
+    "compared": (lambda: compare_variants(TURN, {"a": TURN}, None, [SNOW], model="poin"), "point"),  # type: ignore[arg-type]
     "executor": (lambda: run_batch([1], str, executor="thread"), "threads"),  # type: ignore[arg-type]
     "factors": (lambda: SkiEdit(edit_stations(SKI), {"sidecut": 1.1}), "sidecut_depth"),
     "values": (lambda: SkiEdit(edit_stations(SKI), values={"widht_mm": edit_stations(SKI)}), "width_mm"),

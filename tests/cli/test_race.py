@@ -91,7 +91,7 @@ def test_interrupted_it_says_where_the_races_are(tmp_path: Path, monkeypatch: py
     def stopped(*_: object, **__: object) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(Windows, "searched", stopped)
+    monkeypatch.setattr(Windows, "search_line", stopped)
     assert race(tmp_path, "--evaluations", "1") == 130
     assert not (tmp_path / "race.json").exists()
 

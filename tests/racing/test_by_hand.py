@@ -18,9 +18,9 @@ from skisnow._support.errors import ParameterError
 from skisnow._support.processes.batch import Pool
 from skisnow._support.processes.kept_rows import KeptRows
 from skisnow.racing import LineTurn, RacingLine, follower_line, quickest_line, surrogate_search
-from skisnow.racing.line import cut, ways
+from skisnow.racing.line import first_gates, ways
 from skisnow.racing.quickest import _begun, _require, _search, _window
-from skisnow.racing.racers import Racer, run_score, skied
+from skisnow.racing.racers import Racer, run_score, ski_line
 from skisnow.racing.score import score_of
 from skisnow.racing.search import Evaluations, optimiser_within
 from skisnow.racing.surrogate_search import BATCH, Daring, SurrogateSearch, _best_within
@@ -204,8 +204,8 @@ def test_a_wider_waist_is_widest_at_the_waist() -> None:
 
 
 def test_a_skier_is_scored_by_its_run() -> None:
-    short, line = SLALOM.with_(duration_s=0.02, method="fast"), cut(FOLLOWED, 2)
-    assert Racer(short, "skier").score(line) == run_score(skied(short, line))
+    short, line = SLALOM.with_(duration_s=0.02, method="fast"), first_gates(FOLLOWED, 2)
+    assert Racer(short, "skier").score(line) == run_score(ski_line(short, line))
     assert Racer(short, "skier").score(line).value > 1000.0
 
 
@@ -224,7 +224,7 @@ def test_what_is_just_allowed() -> None:
 
 
 def test_a_search_begins_from_a_line_of_some_of_the_gates() -> None:
-    start = cut(FOLLOWED, 4)
+    start = first_gates(FOLLOWED, 4)
     assert len(_begun(SLALOM, 3, start).turns) == 3
     assert len(_begun(SLALOM, 4, start).turns) == 4
     assert len(_begun(SLALOM, None, None).turns) == 20
@@ -235,7 +235,7 @@ def test_a_search_begins_from_a_line_of_some_of_the_gates() -> None:
 
 
 def test_a_search_begins_within_its_ranges() -> None:
-    course, start = cut(FOLLOWED, 2).course, FOLLOWED.start
+    course, start = first_gates(FOLLOWED, 2).course, FOLLOWED.start
 
     def begun(**numbers: float) -> RacingLine:
         turns = (LineTurn(aside=0.8), LineTurn(**({"aside": 0.8} | numbers)))

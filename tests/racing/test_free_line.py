@@ -14,10 +14,10 @@ from scipy.optimize import minimize
 
 from skisnow import load_scenario, race
 from skisnow.racing import PointRacer, follower_line
-from skisnow.racing.line import cut
+from skisnow.racing.line import first_gates
 
 SLALOM = load_scenario("slalom-20-gates")
-FOUR = cut(follower_line(SLALOM), 4)
+FOUR = first_gates(follower_line(SLALOM), 4)
 NODES = 6
 """Length of each way from gate to gate."""
 LOST = 0.01

@@ -12,7 +12,7 @@ import pytest
 from skisnow import load_scenario
 from skisnow._support.errors import ParameterError
 from skisnow.racing import LineTurn, RacingLine, follower_line, read_line, write_line
-from skisnow.racing.line import FollowedLine, cut, with_numbers
+from skisnow.racing.line import FollowedLine, first_gates, with_numbers
 from skisnow.skier.steering import LineThroughGates, Underway
 
 SLALOM = load_scenario("slalom-20-gates")
@@ -20,7 +20,7 @@ FOLLOWED = follower_line(SLALOM)
 
 
 def other(*turns: LineTurn) -> RacingLine:
-    return RacingLine(cut(FOLLOWED, len(turns)).course, FOLLOWED.start, turns)
+    return RacingLine(first_gates(FOLLOWED, len(turns)).course, FOLLOWED.start, turns)
 
 
 CURVED = other(
@@ -83,7 +83,7 @@ def test_numbers_from_a_gate_on() -> None:
 )
 def test_what_is_no_line(turns: tuple[LineTurn, ...], words: str) -> None:
     with pytest.raises(ParameterError, match=words):
-        RacingLine(cut(FOLLOWED, 2).course, (0.0, 0.0), turns)
+        RacingLine(first_gates(FOLLOWED, 2).course, (0.0, 0.0), turns)
 
 
 def test_a_line_comes_back_from_its_table(tmp_path: Path) -> None:

@@ -12,7 +12,7 @@ import pytest
 from skisnow import Course, Gate, Profile, load_scenario
 from skisnow._support.errors import ParameterError
 from skisnow.racing import LineTurn, PointRacer, RacingLine, follower_line
-from skisnow.racing.line import cut
+from skisnow.racing.line import first_gates
 
 RACER = PointRacer(slope_angle=math.radians(12.0), mass=80.0, friction=0.05, drag=0.35, speed=4.0)
 
@@ -135,7 +135,7 @@ def test_gates_are_passed_by_both_sides_of_the_racer() -> None:
 
 
 def test_a_line_tighter_than_the_ski_fails_by_how_much() -> None:
-    line = cut(follower_line(load_scenario("slalom-20-gates")), 4)
+    line = first_gates(follower_line(load_scenario("slalom-20-gates")), 4)
     assert replace(RACER, least_radius=4.0).score(line).time is not None
     found = [replace(RACER, least_radius=radius).score(line).value for radius in (5.0, 6.0)]
     assert 1000.0 < found[0] < found[1]

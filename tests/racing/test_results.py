@@ -23,10 +23,10 @@ from skisnow.racing import (
     quickest,
     write_line,
 )
-from skisnow.racing.line import cut
+from skisnow.racing.line import first_gates
 from skisnow.racing.quickest import _fingerprint
 from skisnow.racing.racers import Racer
-from skisnow.racing.worth import AS_IT_IS, compared
+from skisnow.racing.worth import AS_IT_IS, compare_variants
 from skisnow.track.course.gates_table import GateGap
 
 from .test_point import straight_course
@@ -34,7 +34,7 @@ from .test_search import EASY, SLALOM, raced
 
 FOLLOWED = follower_line(SLALOM)
 OTHER = RacingLine(
-    cut(FOLLOWED, 3).course,
+    first_gates(FOLLOWED, 3).course,
     FOLLOWED.start,
     (LineTurn(aside=0.5, along=0.1, turning=0.6), LineTurn(aside=1.2, along=-0.2), LineTurn(aside=0.4, turning=0.4)),
 )
@@ -127,7 +127,7 @@ def test_a_last_apex_before_its_gate_is_gone_on_from() -> None:
     """A metre behind the gate, straight on."""
     free = PointRacer(slope_angle=0.2, mass=80.0, friction=0.0, drag=0.0, speed=4.0)
     line = RacingLine(straight_course(), (0.0, 0.0), (*(LineTurn(aside=1.0),) * 2, LineTurn(aside=1.0, along=-0.4)))
-    result, end = free.raced(line)
+    result, end = free.race(line)
     assert result is not None
     assert result.passed == 3
     assert end == pytest.approx((31.0, 0.0))
@@ -184,7 +184,7 @@ def test_a_comparison_is_told_and_kept(tmp_path: Path) -> None:
 
     def worth(**named: Any) -> tuple[Worth, ...]:
         usual: dict[str, Any] = {"model": "point", "workers": 1, "checkpoint": kept, "progress": told.append}
-        return compared(base, {"same": base}, line, [base.contact.snow], **usual | named)
+        return compare_variants(base, {"same": base}, line, [base.contact.snow], **usual | named)
 
     (found,) = worth()
     assert told[-1] == "race 2 of 2"
@@ -193,9 +193,9 @@ def test_a_comparison_is_told_and_kept(tmp_path: Path) -> None:
     assert worth()[0].scores == found.scores
     assert len(told) - count <= 1
     with pytest.raises(ParameterError, match="of another"):
-        compared(base, {"same": base}, OTHER, [base.contact.snow], model="point", workers=1, checkpoint=kept)
+        compare_variants(base, {"same": base}, OTHER, [base.contact.snow], model="point", workers=1, checkpoint=kept)
     with pytest.raises(ParameterError, match="one snow"):
-        compared(base, {"same": base}, line, [])
+        compare_variants(base, {"same": base}, line, [])
 
 
 def test_a_checkpoint_is_that_of_its_search(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -206,7 +206,7 @@ def test_a_checkpoint_is_that_of_its_search(monkeypatch: pytest.MonkeyPatch) -> 
     others = [
         _fingerprint(Racer(SLALOM, "skier"), OTHER, settings),
         _fingerprint(Racer(EASY, "point"), OTHER, settings),
-        _fingerprint(racer, cut(FOLLOWED, 3), settings),
+        _fingerprint(racer, first_gates(FOLLOWED, 3), settings),
         _fingerprint(racer, OTHER, (*settings[:-1], 1)),
         _fingerprint(racer, OTHER, (1, *settings[1:])),
     ]

@@ -6,24 +6,24 @@ import pytest
 
 from skisnow import load_scenario, race, simulate, time_gates
 from skisnow.racing import LineTurn, RacingLine, follower_line
-from skisnow.racing.line import cut
-from skisnow.racing.racers import Racer, run_score, skied
+from skisnow.racing.line import first_gates
+from skisnow.racing.racers import Racer, run_score, ski_line
 
 SLALOM = load_scenario("slalom-20-gates").with_(method="fast")
-FOUR = cut(follower_line(SLALOM), 4)
+FOUR = first_gates(follower_line(SLALOM), 4)
 MARGIN = 0.3
 """Time (s) by which four gates are quicker than the path follower."""
 
 
 def test_on_the_followers_line_it_does_what_the_follower_does() -> None:
     short = SLALOM.with_(duration_s=0.4)
-    own, lines = simulate(short), skied(short, follower_line(short))
+    own, lines = simulate(short), ski_line(short, follower_line(short))
     assert lines.place[-1] == pytest.approx(own.place[-1], abs=1e-9)
     assert lines.boots_by == "moved by LineSkier"
 
 
 def test_a_run_that_ends_early_counts_by_what_is_missing() -> None:
-    found = run_score(skied(SLALOM.with_(duration_s=0.1), FOUR))
+    found = run_score(ski_line(SLALOM.with_(duration_s=0.1), FOUR))
     assert (found.time, found.passed) == (None, 0)
     assert 4000.0 < found.value < 4100.0
     assert "not reached" in found.words
@@ -31,7 +31,7 @@ def test_a_run_that_ends_early_counts_by_what_is_missing() -> None:
 
 @pytest.mark.slow
 def test_the_score_is_the_time_at_the_last_gate() -> None:
-    run = skied(SLALOM, FOUR)
+    run = ski_line(SLALOM, FOUR)
     times = time_gates(FOUR.course, run).times
     assert run_score(run).value == times[-1]
     assert Racer(SLALOM, "skier").score(FOUR).value == times[-1]

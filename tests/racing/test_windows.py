@@ -12,7 +12,7 @@ import pytest
 from skisnow._support.processes.batch import Pool
 from skisnow._support.processes.kept_rows import KeptRows
 from skisnow.racing import RacingLine, follower_line
-from skisnow.racing.line import cut
+from skisnow.racing.line import first_gates
 from skisnow.racing.racers import LinePoint, turns_in
 from skisnow.racing.score import NOT_PASSED
 from skisnow.racing.search import Evaluated, Evaluations
@@ -20,7 +20,7 @@ from skisnow.racing.windows import How, Search, Windows
 
 from .test_search import SLALOM
 
-BEGUN = cut(follower_line(SLALOM), 8)
+BEGUN = first_gates(follower_line(SLALOM), 8)
 SLOW = 1.0
 """What the asides of two turns that follow each other must have together (m), or the gate two behind is missed."""
 
@@ -58,7 +58,7 @@ class Searched:
         how = How(search, evaluations, None, 0.15, 0.0, 1, self.told.append)
         with Pool(self.race, 1, advice="") as pool:
             made = Evaluations(pool, KeptRows(), self.done)
-            return Windows(made, how, window, 2, ahead).searched(begun)
+            return Windows(made, how, window, 2, ahead).search_line(begun)
 
     @property
     def order(self) -> list[str]:

@@ -10,7 +10,7 @@ import pytest
 
 from skisnow import load_scenario, read_ski
 from skisnow._support.errors import ParameterError
-from skisnow.racing import LineTurn, PointRacer, RacingLine, compared, drawn_for_race, worth_changes
+from skisnow.racing import LineTurn, PointRacer, RacingLine, compare_variants, drawn_for_race, worth_changes
 from skisnow.racing.worth import wider
 
 from .test_point import WAY, glide, straight_course
@@ -24,7 +24,9 @@ def test_less_friction_on_a_straight_line_is_worth_what_the_glide_says() -> None
     slower = SLALOM.with_(mu_0=0.06)
     found = {
         each.name: each
-        for each in compared(SLALOM, {"same": SLALOM, "more friction": slower}, LINE, snows, model="point", workers=1)
+        for each in compare_variants(
+            SLALOM, {"same": SLALOM, "more friction": slower}, LINE, snows, model="point", workers=1
+        )
     }
     assert found["same"].differences.tolist() == [0.0, 0.0, 0.0, 0.0]
     exact = glide(PointRacer.of(slower), WAY)[1] - glide(PointRacer.of(SLALOM), WAY)[1]
@@ -37,12 +39,12 @@ def test_less_friction_on_a_straight_line_is_worth_what_the_glide_says() -> None
 
 def test_a_race_that_fails_is_left_out_of_the_differences() -> None:
     stuck = SLALOM.with_(mu_0=0.9)
-    (found,) = compared(SLALOM, {"stuck": stuck}, LINE, [SLALOM.contact.snow], model="point", workers=1)
+    (found,) = compare_variants(SLALOM, {"stuck": stuck}, LINE, [SLALOM.contact.snow], model="point", workers=1)
     assert found.on_own_snow is None
     assert (found.mean, found.deviation, len(found.differences)) == (None, None, 0)
     assert "not reached" in found.scores[0].words
     with pytest.raises(ParameterError, match="one variant"):
-        compared(SLALOM, {}, LINE, [SLALOM.contact.snow])
+        compare_variants(SLALOM, {}, LINE, [SLALOM.contact.snow])
 
 
 def test_drawn_snows_lie_about_the_scenarios_own() -> None:
@@ -79,7 +81,7 @@ def test_what_a_variant_changes_of_the_snow_it_changes_of_each_snow() -> None:
 def test_a_snow_whose_strength_is_not_known_is_raced_on_by_nobody() -> None:
     snow = replace(SLALOM.contact.snow, failure_shear_stress=None, failure_shear_stress_interval=None)
     with pytest.raises(ParameterError, match="S_f"):
-        compared(SLALOM, {"same": SLALOM}, LINE, [snow], model="point", workers=1)
+        compare_variants(SLALOM, {"same": SLALOM}, LINE, [snow], model="point", workers=1)
 
 
 def test_a_millimetre_more_waist_makes_the_sidecut_radius_larger() -> None:

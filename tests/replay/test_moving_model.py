@@ -11,7 +11,7 @@ import pytest
 
 from skisnow._support.units import DEGREE
 from skisnow.replay import Replay, moving_replay_model, replay_of_run, ski_edges, write_moving_replay_model
-from skisnow.replay.binary import at_moments
+from skisnow.replay.binary import select_moments
 from skisnow.scenario import Profile, load_scenario
 from skisnow.simulation.run import Run
 from skisnow.simulation.simulated_run import simulate
@@ -280,7 +280,7 @@ def test_one_moment_late_times_and_nearly_equal_ones() -> None:
     (animation,) = model.words["animations"]
     assert model.array(animation["samplers"][0]["input"])[:, 0].tolist() == pytest.approx([0.0, 1.0], abs=0.0)
     assert edges_in(model, 1.0, 10.0 * DEGREE) == pytest.approx(ski_edges(late, 2), abs=5e-6)
-    one = at_moments(moved, np.array([1]))
+    one = select_moments(moved, np.array([1]))
     assert edges_in(GlbFile(moving_replay_model(one)), 0.0, 10.0 * DEGREE) == pytest.approx(
         ski_edges(late, 1), abs=5e-6
     )

@@ -10,7 +10,7 @@ from threading import Thread
 import pytest
 
 from skisnow._support.errors import OutputError
-from skisnow._support.staging import staged, tidied
+from skisnow._support.staging import prepare_folder, staged
 from tests.coded import raises
 
 OLD = {"summary": "old", "track": "old", "figures/a": "old", "figures/b": "old"}
@@ -44,7 +44,7 @@ def test_new_files_take_the_place_of_old_ones(tmp_path: Path) -> None:
     write(tmp_path, OLD | OWN)
     replace_old_by_new(tmp_path)
     assert seen(tmp_path) == NEW | OWN
-    assert tidied(tmp_path) == []
+    assert prepare_folder(tmp_path) == []
 
 
 def test_an_error_before_the_end_leaves_the_old_ones(tmp_path: Path) -> None:
@@ -95,7 +95,7 @@ def test_a_kill_at_any_step_leaves_no_parts_of_two(tmp_path: Path) -> None:
         assert len(set(found.values())) <= 2, found  # the user's own, and those of one writing
         assert found["notes"] == "the user's"
         assert "summary" not in found or found in (OLD | OWN, NEW | OWN)
-        said = tidied(folder)
+        said = prepare_folder(folder)
         assert len(said) == was_killed
         assert list(folder.glob(".*")) == []
         assert seen(folder) in (OLD | OWN, NEW | OWN)
@@ -111,7 +111,7 @@ def test_folders_that_an_earlier_version_left_are_removed(tmp_path: Path) -> Non
     for name in (".report-ab12_xyz", ".run-00000000"):
         (tmp_path / name / "figures").mkdir(parents=True)
     (tmp_path / ".report-of-mine").mkdir()
-    assert sorted(tidied(tmp_path)) == [
+    assert sorted(prepare_folder(tmp_path)) == [
         f"{tmp_path / '.report-ab12_xyz'} was left by a process that was killed; it is removed",
         f"{tmp_path / '.run-00000000'} was left by a process that was killed; it is removed",
     ]
@@ -121,7 +121,7 @@ def test_folders_that_an_earlier_version_left_are_removed(tmp_path: Path) -> Non
 def test_what_another_process_is_writing_stays(tmp_path: Path) -> None:
     with staged(tmp_path, last="summary") as stage:
         write(stage.path, NEW)
-        assert tidied(tmp_path) == []
+        assert prepare_folder(tmp_path) == []
     assert seen(tmp_path) == NEW
 
 
@@ -136,7 +136,7 @@ def test_nothing_stays_open(tmp_path: Path) -> None:
     for _ in range(3):
         replace_old_by_new(tmp_path)
         (tmp_path / ".run-00000000").mkdir()
-        assert len(tidied(tmp_path)) == 1
+        assert len(prepare_folder(tmp_path)) == 1
     assert open_files() == before
 
 
@@ -149,7 +149,7 @@ def test_what_cannot_be_taken_away_is_left_for_the_next_time(tmp_path: Path, mon
         replace_old_by_new(tmp_path)
     assert seen(tmp_path) == NEW
     assert len(list(tmp_path.glob(".skisnow-*"))) == 1
-    assert len(tidied(tmp_path)) == 1
+    assert len(prepare_folder(tmp_path)) == 1
     assert list(tmp_path.glob(".*")) == []
 
 
@@ -186,6 +186,6 @@ def test_an_interrupt_while_files_are_moved_waits_for_the_last(tmp_path: Path, m
 def test_a_place_that_is_none(tmp_path: Path) -> None:
     (tmp_path / "file").touch()
     with raises(OutputError, "cannot_write"):
-        tidied(tmp_path / "file")
+        prepare_folder(tmp_path / "file")
     with raises(OutputError, "cannot_write"), staged(tmp_path / "absent", last="x"):
         pass

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 import skisnow.web
-from skisnow._support.language.catalogue import LEAST_LETTERS
+from skisnow._support.language.catalogues import LEAST_LETTERS
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from skisnow.campaign.store import Journals, Store, replayed
+from skisnow.campaign.store import Journals, Store, replay_journal
 from skisnow.campaign.store.replayed import Description, description_text
 from skisnow.carving.answer import answered
 from skisnow.carving.answer_dict import answer_dict
@@ -179,7 +179,7 @@ def test_a_day(page: Page, served: Served, tmp_path: Path, capsys: pytest.Captur
     describe(page, served)
     with Store.open(served.store) as store:
         (head,) = Journals(store).list()
-        found = tomllib.loads(replayed(Journals(store).entries(head.id)).description)
+        found = tomllib.loads(replay_journal(Journals(store).entries(head.id)).description)
     listed = {key: list(value) if isinstance(value, tuple) else value for key, value in VALUES.items()}
     assert found == {**listed, "tool": [TOOL], "plate": [PLATE]}
     enter_series(page, "1")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Literal
 
-from skisnow.campaign.store import Journals, Store, replayed
+from skisnow.campaign.store import Journals, Store, replay_journal
 
 from .conftest import Served, fill, has_text, ready
 from .test_day import create, enter_series, next_series
@@ -176,5 +176,5 @@ def test_the_keyboard_alone_on_a_phone(page: Page, served: Served) -> None:
     page.get_by_text("1 penetration experiment, 1 used; 1 shear experiment, 1 used.").wait_for()
     with Store.open(served.store) as store:
         (found,) = Journals(store).list()
-        rows = replayed(Journals(store).entries(found.id)).test("penetration.csv", "1").rows
+        rows = replay_journal(Journals(store).entries(found.id)).test("penetration.csv", "1").rows
     assert [row.cells["depth_mm"] for row in rows] == ["1.5", "2.15", "2.6"]

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pytest
 
-from skisnow.campaign.store import Journals, Store, replayed
+from skisnow.campaign.store import Journals, Store, replay_journal
 
 from .conftest import Served, fill
 from .test_day import create
@@ -41,7 +41,7 @@ def in_the_store(place: Path, test: str) -> dict[str, str]:
     with Store.open(place) as store:
         assert store.verify() == ()
         (head,) = Journals(store).list()
-        rows = replayed(Journals(store).entries(head.id)).test("penetration.csv", test).rows
+        rows = replay_journal(Journals(store).entries(head.id)).test("penetration.csv", test).rows
     return {row.cells["load_N"]: row.cells["depth_mm"] for row in rows}
 
 
@@ -82,7 +82,7 @@ def test_nothing_that_was_shown_as_stored_is_lost(trials: int, page: Page, serve
         page.wait_for_function(f"Object.keys(({UNANSWERED})()).length === 0")
     with Store.open(served.store) as store:
         (head,) = Journals(store).list()
-        tests = replayed(Journals(store).entries(head.id)).of_file("penetration.csv")
+        tests = replay_journal(Journals(store).entries(head.id)).of_file("penetration.csv")
     assert sum(len(test.rows) for test in tests) == sum(kept for _, kept in counts)
     if trials == 50:  # the moments of death were spread over the entering
         assert len({shown for shown, _ in counts}) >= 3

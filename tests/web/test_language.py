@@ -14,7 +14,7 @@ if "nicegui" in MISSING:
 
 from skisnow._support.errors import FieldDataError, ParameterError
 from skisnow._support.language import Catalogue, catalogue, languages
-from skisnow._support.language.catalogue import DECIMAL, FOLDER, read_catalogue
+from skisnow._support.language.catalogues import DECIMAL, FOLDER, read_catalogue
 from skisnow.campaign import QUALITY_FLAGS, Problem, campaign_of_files
 from skisnow.campaign.problems import lines_of
 from skisnow.campaign.store import Journals, Store
@@ -88,7 +88,7 @@ def test_what_is_wrong_in_files_is_said_with_their_own_names() -> None:
 
 def test_a_further_language_is_one_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "it.po").write_text('msgid "English"\nmsgstr "Italiano"\n', encoding="utf-8")
-    monkeypatch.setattr("skisnow._support.language.catalogue.FOLDER", tmp_path)
+    monkeypatch.setattr("skisnow._support.language.catalogues.FOLDER", tmp_path)
     for each in (languages, catalogue):
         each.cache_clear()
     assert languages() == {"en": "English", "it": "Italiano"}

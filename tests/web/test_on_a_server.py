@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from skisnow.campaign.store import Journals, Store, campaign_files, replayed
+from skisnow.campaign.store import Journals, Store, campaign_files, replay_journal
 from skisnow.campaign.store.replayed import Description, description_text
 
 from ..campaign.store.postgresql_server import Server, run, started, why_there_is_none
@@ -100,7 +100,7 @@ def test_what_was_entered_in_a_lab_on_a_server_outlives_the_lab(
         lab.kill()
     assert not (tmp_path / "none.sqlite3").exists()
     with Store.open(address) as other:
-        table = campaign_files(replayed(Journals(other).entries(id_)))["penetration.csv"]
+        table = campaign_files(replay_journal(Journals(other).entries(id_)))["penetration.csv"]
     depths = [float(row["depth_mm"]) for row in csv.DictReader(io.StringIO(table))]
     assert depths == [float(depth.replace(",", ".")) for depth in SERIES["1"][1]]
 

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from skisnow.campaign.store import Journals, Store, replayed
+from skisnow.campaign.store import Journals, Store, replay_journal
 
 from .conftest import Served, fill, has_text, ready
 from .test_day import create, enter_series
@@ -52,7 +52,7 @@ def test_readings_stay_under_their_loads_when_the_discs_change(page: Page, serve
     page.get_by_role("button", name="Store it").press("Enter")
     page.get_by_text("Stored: 2.2 mm under 50 N.").wait_for()
     with Store.open(served.store) as store:
-        rows = replayed(Journals(store).entries(id_)).test("penetration.csv", "2").rows
+        rows = replay_journal(Journals(store).entries(id_)).test("penetration.csv", "2").rows
     found = [(row.cells["load_N"], row.cells["depth_mm"]) for row in rows]
     assert found == [("20", "1.4"), ("30", "1.7"), ("40", "2.0"), ("50", "2.2"), ("60", "2.5"), ("80", "2.9")]
 

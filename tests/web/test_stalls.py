@@ -15,7 +15,7 @@ from urllib.parse import urlsplit
 
 import pytest
 
-from skisnow.campaign.store import Journals, Store, replayed
+from skisnow.campaign.store import Journals, Store, replay_journal
 
 from .conftest import Served, fill, has_text, ready
 from .test_typing import begun, depths
@@ -52,14 +52,14 @@ def of_seconds(*normal: float) -> pytest.MarkDecorator:
 def rows(served: Served, file: str, *columns: str) -> list[list[str]]:
     with Store.open(served.store) as store:
         (head,) = Journals(store).list()
-        tests = replayed(Journals(store).entries(head.id)).of_file(file)
+        tests = replay_journal(Journals(store).entries(head.id)).of_file(file)
     return [[row.cells[column] for column in columns] for test in tests for row in test.rows]
 
 
 def the_description(served: Served) -> dict[str, Any]:
     with Store.open(served.store) as store:
         (head,) = Journals(store).list()
-        return tomllib.loads(replayed(Journals(store).entries(head.id)).description)
+        return tomllib.loads(replay_journal(Journals(store).entries(head.id)).description)
 
 
 def opened(page: Page, served: Served, table: str = "") -> None:
@@ -300,7 +300,7 @@ def test_a_campaign_that_is_described_while_the_lab_is_killed_is_begun_once(page
     page.get_by_role("heading", name="New series").wait_for()
     with Store.open(served.store) as store:
         (head,) = Journals(store).list()
-        assert replayed(Journals(store).entries(head.id)).description.startswith('name = "one!"')
+        assert replay_journal(Journals(store).entries(head.id)).description.startswith('name = "one!"')
     page.goto(f"{served.address}describe")
     ready(page)
     has_text(page.get_by_label("Name of the campaign", exact=True), "")

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from skisnow.campaign.store import Journals, Store, replayed
+from skisnow.campaign.store import Journals, Store, replay_journal
 from skisnow.campaign.store.replayed import Description, description_text
 
 from .conftest import Served, has_text, ready
@@ -31,7 +31,7 @@ def depths(served: Served) -> dict[str, list[str]]:
     """Contents of the store: the depths of each series in the order of their loads."""
     with Store.open(served.store) as store:
         (head,) = Journals(store).list()
-        tests = replayed(Journals(store).entries(head.id)).of_file("penetration.csv")
+        tests = replay_journal(Journals(store).entries(head.id)).of_file("penetration.csv")
     return {test.name: [row.cells["depth_mm"] for row in test.rows] for test in tests}
 
 
@@ -43,7 +43,7 @@ def test_a_whole_series_and_the_next_without_a_pause(page: Page, served: Served)
     assert depths(served) == {"1": ["1.5", "2.15", "2.6"], "2": ["1.9", "2.7", "3.3"]}
     with Store.open(served.store) as store:
         (head,) = Journals(store).list()
-        rows = replayed(Journals(store).entries(head.id)).test("penetration.csv", "2").rows
+        rows = replay_journal(Journals(store).entries(head.id)).test("penetration.csv", "2").rows
     assert [row.cells["edge_angle_deg"] for row in rows] == ["45"] * 3
 
 
@@ -65,7 +65,7 @@ def test_shear_tests_without_a_pause(page: Page, served: Served) -> None:
     page.get_by_text("Stored: test 3.").wait_for()
     with Store.open(served.store) as store:
         (head,) = Journals(store).list()
-        tests = replayed(Journals(store).entries(head.id)).of_file("shear.csv")
+        tests = replay_journal(Journals(store).entries(head.id)).of_file("shear.csv")
     found = [[test.rows[0].cells[column] for column in ("depth_mm", "lever_arm_mm", "moment_Nm")] for test in tests]
     assert found == [["6", "250", "30"], ["8", "250", "36"], ["7", "250", "33"]]
 

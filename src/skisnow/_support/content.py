@@ -13,31 +13,31 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
 
-def pieces_of(thing: object) -> Iterator[bytes]:
+def content_bytes(thing: object) -> Iterator[bytes]:
     """Contents of an object, down to numbers and texts: the same for the same content.
 
-    >>> b" ".join(pieces_of((1, "a")))
+    >>> b" ".join(content_bytes((1, "a")))
     b"1 'a'"
     """
     if is_dataclass(thing) and not isinstance(thing, type):
         yield type(thing).__qualname__.encode()
         for field in fields(thing):
             if field.init:
-                yield from pieces_of(getattr(thing, field.name))
+                yield from content_bytes(getattr(thing, field.name))
     elif isinstance(thing, tuple | list):
         for part in thing:
-            yield from pieces_of(part)
+            yield from content_bytes(part)
     else:
         array = getattr(thing, "tobytes", None)
         yield repr(thing).encode() if array is None else array()
 
 
-def numbered(names: Sequence[str]) -> tuple[list[str], npt.NDArray[np.int64]]:
+def index_names(names: Sequence[str]) -> tuple[list[str], npt.NDArray[np.int64]]:
     """The distinct names in alphabetical order, and the number of each given name among them.
 
     An array of texts would be as wide as the longest of them for every entry.
 
-    >>> numbered(["b", "a", "b"])
+    >>> index_names(["b", "a", "b"])
     (['a', 'b'], array([1, 0, 1]))
     """
     distinct = sorted(set(names))

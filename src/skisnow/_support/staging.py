@@ -2,7 +2,7 @@
 
 All is written into a hidden folder inside the place. When it is complete a plan is put beside it; only then are the old
 files taken away and the new ones moved. What a killed process left is finished, where there is a plan, or else thrown
-away, at the next start (`tidied`). A process holds a lock on its hidden folder, so that no one tidies it meanwhile.
+away, at the next start (`prepare_folder`). A process locks its hidden folder meanwhile.
 """
 
 from __future__ import annotations
@@ -89,7 +89,7 @@ def staged(folder: Path, *, last: str) -> Iterator[Stage]:
             os.close(lock)
 
 
-def tidied(folder: Path) -> list[str]:
+def prepare_folder(folder: Path) -> list[str]:
     """Make a folder where it is missing, see that it can be written, and tidy up what killed processes left in it.
 
     Returns

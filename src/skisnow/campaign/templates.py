@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 from .._support.errors import OutputError
 from .._support.messages import Message
-from .._support.staging import staged, tidied, write_file
+from .._support.staging import prepare_folder, staged, write_file
 from ..snow.published import moessner_2013
 from .reading.campaign import CAMPAIGN_FILES
 from .reading.campaign_file import CAMPAIGN_FILE, CAMPAIGN_KEYS
@@ -51,7 +51,7 @@ class Template:
         """Columns of numbers by name."""
         return {quantity.name: quantity for quantity in self.form.numbers}
 
-    def explained(self) -> Iterator[tuple[str, str]]:
+    def explanations(self) -> Iterator[tuple[str, str]]:
         """Pairs of column and explanation."""
         for name in self.example:
             quantity = self.numbers.get(name)
@@ -115,7 +115,7 @@ def campaign_toml(name: str) -> str:
     """The text of campaign.toml."""
     keys = "".join(_line(*entry) for entry in keys_with_values(name))
     tables = "".join(
-        f"# {template.form.file}\n" + "".join(f"#   {column}: {words}\n" for column, words in template.explained())
+        f"# {template.form.file}\n" + "".join(f"#   {column}: {words}\n" for column, words in template.explanations())
         for template in TEMPLATES
     )
     return f"""\
@@ -168,7 +168,12 @@ def workbook_bytes(name: str) -> bytes:
     _fill(book.create_sheet(PLATES), ("name", "length_mm"), [(PLATE, PLATE_LENGTH_MM)])
     for template in TEMPLATES:
         sheet = book.create_sheet(template.form.file.removesuffix(".csv"))
-        _fill(sheet, tuple(template.example), [tuple(template.example.values())], notes=dict(template.explained()))
+        _fill(
+            sheet,
+            tuple(template.example),
+            [tuple(template.example.values())],
+            notes=dict(template.explanations()),
+        )
     _fill(book.create_sheet(COLUMNS), ("heading", "column", "table"), [])
     stream = io.BytesIO()
     book.save(stream)
@@ -240,7 +245,7 @@ def write_new_campaign(folder: str | Path, *, xlsx: bool = False) -> tuple[Path,
         )
     name = folder.resolve().name.replace("\\", "").replace('"', "") or "campaign"
     contents = _workbook(name) if xlsx else _files(name, tables=not there)
-    tidied(folder)
+    prepare_folder(folder)
     with staged(folder, last=next(iter(contents))) as stage:
         for file, content in contents.items():
             write_file(stage.path / file, content)

@@ -155,8 +155,8 @@ def prepare_output(folder: Path) -> None:
     OutputError
         The folder cannot be made or written.
     """
-    from .._support.staging import tidied
+    from .._support.staging import prepare_folder
 
-    for sentence in tidied(folder):
+    for sentence in prepare_folder(folder):
         print(sentence, file=sys.stderr)
     list_fonts()

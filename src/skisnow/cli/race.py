@@ -123,7 +123,7 @@ class _Raced:
 
 def _raced(options: argparse.Namespace) -> _Raced:
     with announced("loading"):
-        from ..racing import compared, drawn_for_race, quickest_line
+        from ..racing import compare_variants, drawn_for_race, quickest_line
         from ..racing.search import require_cmaes
 
         if options.evaluations > 1:
@@ -145,7 +145,7 @@ def _raced(options: argparse.Namespace) -> _Raced:
         worth: tuple[Worth, ...] = ()
         if variants:
             fast = {name: variant.with_(method="fast") for name, variant in variants.items()}
-            worth = compared(
+            worth = compare_variants(
                 fastest.scenario, fast, fastest.line, snows,
                 model=options.model, checkpoint=options.out / KEPT_WORTH, progress=progress, **computing,
             )  # fmt: skip
@@ -180,17 +180,17 @@ def _checked(
     fastest: QuickestLine, scenario: Scenario, progress: Progress
 ) -> tuple[list[tuple[str, Score]], Run | None]:
     """Both lines raced as the scenario says it, where the search raced by a quicker method; the run on the quickest."""
-    from ..racing.racers import run_score, skied
+    from ..racing.racers import run_score, ski_line
 
     if fastest.model == "point":
         return [], None
     progress("racing again: the quickest line")
-    run = skied(scenario, fastest.line)
+    run = ski_line(scenario, fastest.line)
     checked = [("quickest line, computed as the scenario says", run_score(run))]
     if scenario.solver.method == "fast":
         return [], run
     progress("racing again: where it began")
-    return [*checked, ("where it began", run_score(skied(scenario, fastest.start)))], run
+    return [*checked, ("where it began", run_score(ski_line(scenario, fastest.start)))], run
 
 
 def _tell(options: argparse.Namespace, raced: _Raced) -> None:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 import numpy.typing as npt
 
-from .._support.content import numbered
+from .._support.content import index_names
 from .._support.errors import FitError
 from .._support.units import CONFIDENCE, N_PER_MM2, N_PER_MM3
 from ..snow.published import domine_2011, federolf_2006, moessner_2013
@@ -76,7 +76,7 @@ def own_mean(values: FloatArray, sites: Sequence[str], *, geometric: bool) -> Ow
     if values.size == 0 or (geometric and np.any(values <= 0)):
         return OwnValue(*[float("nan")] * 5)
     data = np.log(values) if geometric else values
-    mean, half = float(data.mean()), _half_width(data, numbered(sites)[1])
+    mean, half = float(data.mean()), _half_width(data, index_names(sites)[1])
     if geometric:
         mean = float(np.exp(mean))
     else:

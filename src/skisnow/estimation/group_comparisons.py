@@ -23,7 +23,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy.special import stdtr
 
-from .._support.content import numbered
+from .._support.content import index_names
 from .._support.units import CONFIDENCE
 from ..statistics.combined_uncertainty import expanded_factor, welch_satterthwaite
 from ..statistics.two_groups import compact_letters, holm_corrected, tests_per_group
@@ -184,8 +184,8 @@ class _EffectsFit:
     """Least squares of the effects, on the cells of group and site: each cell has one row of the design."""
 
     def __init__(self, logs: FloatArray, error2: FloatArray, groups: list[str], sites: list[str] | None) -> None:
-        self.names, self._group = numbered(groups)
-        blocks, block = numbered(sites) if sites is not None else ([], np.zeros(len(groups), dtype=np.int64))
+        self.names, self._group = index_names(groups)
+        blocks, block = index_names(sites) if sites is not None else ([], np.zeros(len(groups), dtype=np.int64))
         n_groups, n_blocks = len(self.names), len(blocks)
         cells, cell = np.unique(self._group * max(n_blocks, 1) + block, return_inverse=True)
         self.n = np.bincount(self._group, minlength=n_groups)

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Final, Literal, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from .._support.content import numbered
+from .._support.content import index_names
 from .._support.display import ShownFields
 from .._support.errors import FitError
 from ..statistics.clusters import cluster_intervals
@@ -107,7 +107,7 @@ def regressions(observations: Mapping[Source, Observations]) -> tuple[Regression
         x, y = data.columns[plan.predictor], data.columns[plan.response]
         known = np.isfinite(x) & np.isfinite(y)
         x, y = x[known], y[known]
-        names, site_of = numbered([data.site[index] for index in np.flatnonzero(known).tolist()])
+        names, site_of = index_names([data.site[index] for index in np.flatnonzero(known).tolist()])
         for index, name in enumerate(names if plan.by_site else []):
             mine = site_of == index
             n_values = len(np.unique(x[mine]))

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 import numpy.typing as npt
 
-from .._support.content import numbered
+from .._support.content import index_names
 from .._support.display import ShownFields
 from .._support.units import N_PER_MM3
 from ..campaign.screening import flag_problems, screen_penetration, screen_shear
@@ -89,7 +89,7 @@ def hardness_outliers(hardness: FloatArray, used: BoolArray, site: Sequence[str]
     """Used series with |ln H_V - the site's median| > 3.5 × 1.4826 × MAD, at sites with five or more used series."""
     outlier = np.zeros(len(hardness), dtype=bool)
     logs = np.log(hardness, out=np.zeros_like(hardness), where=used)
-    names, site_of = numbered(site)
+    names, site_of = index_names(site)
     order = np.argsort(site_of, kind="stable")
     bounds = np.searchsorted(site_of[order], np.arange(len(names) + 1))
     for start, stop in pairwise(bounds.tolist()):

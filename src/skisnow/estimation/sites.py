@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
-from .._support.content import numbered
+from .._support.content import index_names
 from .._support.units import MM, N_PER_MM2, N_PER_MM3
 from ..snow import SnowProperties
 from ..snow.mean_snow import (
@@ -61,7 +61,7 @@ def site_means(
 
     ``pairs`` are the comparisons of the sites, for their letters.
     """
-    names, site_of = numbered(site)
+    names, site_of = index_names(site)
     means = [own_mean(values[site_of == index], [name] * int(np.sum(site_of == index)), geometric=geometric)
              for index, name in enumerate(names)]  # fmt: skip
     by_size = [names[index] for index in np.argsort([-mean.value for mean in means]).tolist()]

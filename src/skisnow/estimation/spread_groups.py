@@ -19,7 +19,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy.special import chdtrc, expit, gammaln
 
-from .._support.content import numbered
+from .._support.content import index_names
 from .._support.messages import Message
 from .campaign_model import DEFAULT_PRIORS, CampaignModel, fit_campaign
 
@@ -89,7 +89,7 @@ def fit_in_groups(
     model = fit_campaign(readings, hardness, uncertainty, counts=counts, priors=priors)
     clear = []
     for grouping, label in labels.items():
-        names, index = numbered(label)
+        names, index = index_names(label)
         tests = spread_tests(model, index) if len(names) > 1 else ()
         clear += [(test.p, grouping, names, index) for test in tests if test.is_clear]
     if clear:

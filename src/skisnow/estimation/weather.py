@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Final, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from .._support.content import numbered
+from .._support.content import index_names
 from .._support.display import Facts, Shown
 from .._support.units import HOUR, PERCENT, ZERO_CELSIUS
 
@@ -52,7 +52,7 @@ class WeatherAtTests(Shown):
 
     def site_means(self) -> Iterator[tuple[str, int, dict[str, float]]]:
         """Each site with the number of its experiments whose weather is known, and their means."""
-        names, site_of = numbered(self.site)
+        names, site_of = index_names(self.site)
         for index, name in enumerate(names):
             mine = {key: values[site_of == index] for key, values in self.quantities.items()}
             known = {key: values[np.isfinite(values)] for key, values in mine.items()}

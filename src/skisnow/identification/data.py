@@ -14,7 +14,7 @@ from typing import Any, Final, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from .._support.content import pieces_of
+from .._support.content import content_bytes
 from .._support.errors import ParameterError
 from .._support.messages import Message
 from .._support.spreadsheet_text import encoding_of, most_frequent_separator, named_separator
@@ -118,7 +118,7 @@ def fingerprint(scenario_input: ScenarioInput, tracks: Sequence[TrackPoints]) ->
     layers = json.dumps([sorted(layer.values.items()) for layer in scenario_input.layers], default=str)
     digest = hashlib.sha256(f"{version('skisnow')} {layers}".encode())
     if scenario_input.base is not None:
-        for piece in pieces_of(scenario_input.base):
+        for piece in content_bytes(scenario_input.base):
             digest.update(piece)
     for path in input_files(scenario_input):
         if path != scenario_input.file:

@@ -6,7 +6,7 @@ from .line import LineTurn, RacingLine, follower_line, read_line, write_line
 from .point import PointRacer
 from .quickest import QuickestLine, quickest_line
 from .score import Score
-from .worth import Worth, compared, drawn_for_race, worth_changes
+from .worth import Worth, compare_variants, drawn_for_race, worth_changes
 
 __all__ = [
     "LineTurn",
@@ -15,7 +15,7 @@ __all__ = [
     "RacingLine",
     "Score",
     "Worth",
-    "compared",
+    "compare_variants",
     "drawn_for_race",
     "follower_line",
     "quickest_line",

@@ -244,7 +244,7 @@ def with_numbers(line: RacingLine, numbers: Sequence[float], first: int) -> Raci
     return RacingLine(line.course, line.start, turns)
 
 
-def cut(line: RacingLine, gates: int) -> RacingLine:
+def first_gates(line: RacingLine, gates: int) -> RacingLine:
     """Its first gates."""
     return RacingLine(replace(line.course, gates=line.course.gates[:gates]), line.start, line.turns[:gates])
 

@@ -132,7 +132,7 @@ class PointRacer:
             time + step / 6.0 * (first + 2.0 * second + 2.0 * third + fourth),
         )
 
-    def raced(self, line: RacingLine) -> tuple[CourseResult | None, tuple[float, float]]:
+    def race(self, line: RacingLine) -> tuple[CourseResult | None, tuple[float, float]]:
         """Outcome at each gate, and the end of the run (m)."""
         last = max(line.breaks[-1], line.course.gates[-1].turning[0])
         x, square, time = self.motion(line, [*line.breaks, last + BEHIND])
@@ -147,7 +147,7 @@ class PointRacer:
 
     def score(self, line: RacingLine) -> Score:
         """How good a line is; too tight a one fails."""
-        result, end = self.raced(line)
+        result, end = self.race(line)
         own_score = score_of(result, end, finished=True, words="finished")
         tight = self.least_radius * line.greatest_curvature() - 1.0
         own_score = replace(own_score, margins=(*own_score.margins, -tight))

@@ -9,7 +9,7 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import get_args
 
-from .._support.content import pieces_of
+from .._support.content import content_bytes
 from .._support.display import Facts, Shown, amount
 from .._support.errors import ParameterError, require_choice
 from .._support.messages import Message
@@ -17,7 +17,7 @@ from .._support.processes.batch import Pool, workers_in_force
 from .._support.processes.executors import ExecutorLike, require_executor
 from .._support.processes.kept_rows import KeptRows
 from ..scenario import Scenario
-from .line import RacingLine, course_of, cut, follower_line
+from .line import RacingLine, course_of, first_gates, follower_line
 from .racers import Racer, RacerModel, ScoredLine, score_in, turns_in
 from .score import NOT_PASSED, Score
 from .search import Evaluated, Evaluations, require_cmaes
@@ -188,7 +188,7 @@ def quickest_line(
         with Pool(ScoredLine(racer), workers_in_force(workers), advice=advice, executor=executor) as pool:
             made = Evaluations(pool, rows, [])
             how = How(search, evaluations, population, spread, settled, seed, tell)
-            searched = Windows(made, how, window, step, ahead).searched(begun)
+            searched = Windows(made, how, window, step, ahead).search_line(begun)
     finally:
         rows.close()
     return QuickestLine(
@@ -230,7 +230,7 @@ def _begun(scenario: Scenario, gates: int | None, start: RacingLine | None) -> R
             Message("gates is {count}; it must be from 2 to {n_turns}", count=count, n_turns=len(line.turns)),
             code="out_of_range",
         )
-    return cut(line, count)
+    return first_gates(line, count)
 
 
 def _window(gates: int, window: int | None, step: int, ahead: int) -> tuple[int, int]:
@@ -288,7 +288,7 @@ def _require(*, evaluations: int, population: int | None, spread: float, settled
 def _fingerprint(racer: Racer, begun: RacingLine, settings: Sequence[object]) -> str:
     search = version("cmaes") if settings[0] != 1 else None
     digest = hashlib.sha256(f"with gates {version('skisnow')} {search} {tuple(settings)} {begun.apexes}".encode())
-    for piece in pieces_of((racer, begun.turns)):
+    for piece in content_bytes((racer, begun.turns)):
         digest.update(piece)
     return digest.hexdigest()
 

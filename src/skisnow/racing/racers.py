@@ -43,7 +43,7 @@ class LineSkier:
         return self.skier(moment)
 
 
-def skied(scenario: Scenario, line: RacingLine, *, progress: Progress | None = None) -> Run:
+def ski_line(scenario: Scenario, line: RacingLine, *, progress: Progress | None = None) -> Run:
     """The run of a scenario's skier on a line, through the line's gates.
 
     Parameters
@@ -94,9 +94,10 @@ class Racer:
 
     def score(self, line: RacingLine) -> Score:
         """How good a line is."""
-        raced = (
-            PointRacer.of(self.scenario).score(line) if self.model == "point" else run_score(skied(self.scenario, line))
-        )
+        if self.model == "point":
+            raced = PointRacer.of(self.scenario).score(line)
+        else:
+            raced = run_score(ski_line(self.scenario, line))
         return with_room(raced, self.room)
 
 

@@ -9,7 +9,7 @@ from typing import Final, Literal, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from .line import RacingLine, cut, with_numbers
+from .line import RacingLine, first_gates, with_numbers
 from .racers import LinePoint, turns_in
 from .score import NOT_PASSED
 from .search import Batches, Evaluated, Evaluations, least_of
@@ -59,7 +59,7 @@ class Windows:
     step: int
     ahead: int
 
-    def searched(self, begun: RacingLine) -> Evaluated:
+    def search_line(self, begun: RacingLine) -> Evaluated:
         """The best line through all gates, the first evaluation at where it begins."""
         count = len(begun.turns)
         if self.window == count:
@@ -110,7 +110,7 @@ class Windows:
         )  # fmt: skip
 
     def _batches(self, line: RacingLine, first: int, last: int, end: int) -> Batches:
-        part, how = cut(line, end), self.how
+        part, how = first_gates(line, end), self.how
 
         def point_of(place: FloatArray) -> LinePoint:
             numbers = (_LOW + place.reshape(-1, len(_LOW)) * _WIDTH).ravel().tolist()

@@ -13,7 +13,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy.stats import qmc
 
-from .._support.content import pieces_of
+from .._support.content import content_bytes
 from .._support.display import Facts, Shown, amount
 from .._support.errors import ParameterError, require_choice
 from .._support.messages import Message
@@ -99,7 +99,7 @@ class Worth(Shown):
         return Facts(f"{self.name}: {amount(self.on_own_snow, 's')}", rows)
 
 
-def compared(
+def compare_variants(
     scenario: Scenario,
     others: Mapping[str, Scenario],
     line: RacingLine,
@@ -254,6 +254,6 @@ def _about(value: float, spread: float) -> tuple[float, float]:
 
 def _fingerprint(points: Sequence[Scenario], line: RacingLine, model: RacerModel) -> str:
     digest = hashlib.sha256(f"with gates {version('skisnow')} {model} {line.apexes}".encode())
-    for piece in pieces_of((tuple(points), line.turns)):
+    for piece in content_bytes((tuple(points), line.turns)):
         digest.update(piece)
     return digest.hexdigest()

@@ -106,7 +106,7 @@ def replay_bytes(replay: Replay) -> bytes:
     groove.
     """
     arrays, described, at = [], {}, 0
-    for name, values in _arrays(thinned(replay)).items():
+    for name, values in _arrays(thin_replay(replay)).items():
         content, description = _pack(ARRAY_TYPES[name], values)
         described[name] = description | {"start": at}
         arrays.append(content)
@@ -150,17 +150,17 @@ def replay_of_bytes(content: bytes) -> Replay:
         ) from error
 
 
-def thinned(replay: Replay) -> Replay:
+def thin_replay(replay: Replay) -> Replay:
     """Replay with at most `MOST_FRAMES_PER_SECOND` moments per second, including the first and the last."""
     number = len(replay.time)
     duration = float(replay.time[-1] - replay.time[0])
     step = max(1, round((number - 1) / max(duration * MOST_FRAMES_PER_SECOND, 1.0))) if number > 1 else 1
     if step == 1:
         return replay
-    return at_moments(replay, np.unique(np.append(np.arange(0, number, step), number - 1)))
+    return select_moments(replay, np.unique(np.append(np.arange(0, number, step), number - 1)))
 
 
-def at_moments(replay: Replay, moments: npt.NDArray[np.int64]) -> Replay:
+def select_moments(replay: Replay, moments: npt.NDArray[np.int64]) -> Replay:
     """Replay with only the moments of these indices, and the whole groove."""
     skis = replay.skis
     along: dict[str, Any] = {name: getattr(skis, name)[moments] for name in _OVER_TIME}

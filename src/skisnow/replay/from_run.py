@@ -106,7 +106,7 @@ def replay_of_run(
     """
     setting = _setting(run)
     boots = None if run.boots_by is None or run.boots is None else moving_boots(run.boots.place, run.boots.axes)
-    replay = assembled(_arrays(run), setting, title=title, track=track, boots=boots)
+    replay = assemble_replay(_arrays(run), setting, title=title, track=track, boots=boots)
     return replay if gates is None else replace(replay, gates=_gates(gates, setting.slope), gate_times=None)
 
 
@@ -167,7 +167,7 @@ def skis_words(ski: str, edge_angle: float | None) -> str:
     return f"{ski}, edged by the skier" if edge_angle is None else f"{ski}, edge angle {edge_angle:.3g}°"
 
 
-def assembled(
+def assemble_replay(
     arrays: Mapping[str, FloatArray],
     setting: Setting,
     *,

@@ -12,7 +12,7 @@ import numpy.typing as npt
 from scipy.spatial.transform import Rotation
 
 from .._support.staging import write_file
-from .binary import at_moments, thinned
+from .binary import select_moments, thin_replay
 from .meshes import (
     CORNERS,
     Glb,
@@ -89,7 +89,7 @@ def moving_replay_model(replay: Replay, *, exaggeration: float = 1.0) -> bytes:
     because glTF 2.0 cannot animate them: they show the mean normal force. Each part of the groove has scale 0 until its
     time, the way to hide a node in section 3.5.3 of the specification. A camera moves with the sledge.
     """
-    shown = _with_rising_times(thinned(replay))
+    shown = _with_rising_times(thin_replay(replay))
     model = Glb()
     clock = model.array(shown.time, bounds=True)
     course = model.array(shown.place)
@@ -121,7 +121,7 @@ def _with_rising_times(replay: Replay) -> Replay:
     time = (replay.time - replay.time[0]).astype(np.float32).astype(float)
     groove = replace(replay.groove, time=replay.groove.time - replay.time[0])
     moments = np.flatnonzero(np.append(np.diff(time) > 0.0, True))  # the last one of equal times
-    return at_moments(replace(replay, time=time, groove=groove), moments)
+    return select_moments(replace(replay, time=time, groove=groove), moments)
 
 
 def _xyzw(replay: Replay) -> FloatArray:

@@ -21,7 +21,7 @@ from ..scenario.scenario import course_on_slope
 from ..ski import read_ski, ski_named
 from ..skier.segments import height_of
 from ..track.course import read_course
-from .from_run import Setting, assembled, facts_of, moving_boots, skis_words
+from .from_run import Setting, assemble_replay, facts_of, moving_boots, skis_words
 
 if TYPE_CHECKING:
     from ..ski import Ski
@@ -83,7 +83,7 @@ def replay_of_file(
                 code="out_of_range",
             )
         setting = _setting(path, values, outcome, spacing, ski)
-        return assembled(arrays, setting, title=title or path.resolve().parent.name, track=track, boots=boots)
+        return assemble_replay(arrays, setting, title=title or path.resolve().parent.name, track=track, boots=boots)
     except SkisnowError as error:
         if str(path.parent) in str(error) and not isinstance(error, GivenError):
             raise

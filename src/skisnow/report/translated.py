@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Final
 from markupsafe import escape
 
 from .._support.language import ENGLISH, catalogue
-from .._support.language.catalogue import FIRST, LAST
+from .._support.language.catalogues import FIRST, LAST
 from .symbols import SYMBOL, html
 
 if TYPE_CHECKING:

@@ -44,10 +44,10 @@ def study_state(study: Study) -> StudyState:
     """
     if not study.out.exists():
         return StudyState.NEW
-    return standing(study.out, study.subject.keys, study.fingerprint(), len(study.points))[0]
+    return table_state(study.out, study.subject.keys, study.fingerprint(), len(study.points))[0]
 
 
-def standing(
+def table_state(
     out: Path, keys: Mapping[str, Quantity], fingerprint: str, points: int
 ) -> tuple[StudyState, StudyTable | None]:
     """State of the file at the path of a table, and the table where it is one.
@@ -122,7 +122,7 @@ def run_study(
     writer_of(study.out)
     fingerprint = study.fingerprint()
     before = _stamp(study.out)
-    state, table = standing(study.out, study.subject.keys, fingerprint, len(study.points))
+    state, table = table_state(study.out, study.subject.keys, fingerprint, len(study.points))
     if state is StudyState.FINISHED and table is not None:
         if study.partial.exists():  # a kill between writing the one and removing the other
             kept_rows(study, study.partial, fingerprint).remove()

@@ -18,7 +18,7 @@ from .._support.processes.executors import ExecutorLike, require_executor
 from .._support.processes.kept_rows import KeptRows, NumberedText
 from .._support.user_files import own_json
 from ..parameters import Quantity
-from .run import StudyRows, StudyState, kept_rows, standing, written
+from .run import StudyRows, StudyState, kept_rows, table_state, written
 from .study import Study, place_for_previous, read_study
 from .table import StudyTable
 from .writing import writer_of
@@ -168,7 +168,7 @@ def merge_shards(out: str | Path, parts: Sequence[str | Path]) -> StudyTable:
 
 def _merged(out: Path, parts: _Parts) -> StudyTable:
     parts.require_whole()
-    state, table = standing(out, parts.keys, parts.fingerprint, parts.count)
+    state, table = table_state(out, parts.keys, parts.fingerprint, parts.count)
     if state is StudyState.FINISHED and table is not None:
         return table
     before = place_for_previous(out) if state is StudyState.ANOTHER else None

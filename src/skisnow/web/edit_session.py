@@ -12,7 +12,7 @@ from ..campaign.reading import READ_FILES, FilesInMemory, unfolded
 from ..campaign.reading.campaign_file import CAMPAIGN_FILE, read_campaign_file
 from ..campaign.reading.table_forms import CORRECTIONS, PENETRATION, SHEAR
 from ..campaign.reading.text import UnreadableTextError, decode
-from ..campaign.store import Journals, campaign_in_memory, corrected_files, replayed, stored_tables
+from ..campaign.store import Journals, campaign_in_memory, corrected_files, replay_journal, stored_tables
 from ..campaign.store.journal_entry import JournalEntry
 from ..campaign.store.replayed import Reading, ReplayedTest
 from ..campaign.store.stored_tables import cell_key
@@ -86,7 +86,7 @@ class EditSession:
         new = self._written_since()
         if new or self._campaign is None:
             self._last = max((entry.sequence for entry in new), default=self._last)  # a sync can add older ones later
-            self._campaign = replayed(new, before=self._campaign)
+            self._campaign = replay_journal(new, before=self._campaign)
 
     def _written_since(self) -> tuple[JournalEntry, ...]:
         return self._journals.entries(self.id, after=self._last)

@@ -9,7 +9,7 @@ from weakref import WeakKeyDictionary
 from nicegui import Client, ui
 
 from .._support.language import ENGLISH, catalogue, languages
-from .._support.language.catalogue import DECIMAL
+from .._support.language.catalogues import DECIMAL
 from .._support.messages import Message
 
 if TYPE_CHECKING:

@@ -16,7 +16,7 @@ from starlette.responses import Response
 from .._support.errors import ParameterError, StoreError
 from .._support.messages import Message
 from ..campaign.reading import READ_FILES, FilesInMemory
-from ..campaign.store import Journals, campaign_files, corrected_files, export_corrected, export_entered, replayed
+from ..campaign.store import Journals, campaign_files, corrected_files, export_corrected, export_entered, replay_journal
 from .file_imports import ENDINGS, FileImports
 from .layout import error_sentence, plain_page
 from .page_addresses import required_id
@@ -90,7 +90,7 @@ def _zip(write: Writing) -> bytes:
 
 def entry_files(lab: Lab, id_: str) -> FilesInMemory:
     """Files of an entered campaign in its current state."""
-    files = campaign_files(replayed(Journals(lab.store).entries(required_id(id_))))
+    files = campaign_files(replay_journal(Journals(lab.store).entries(required_id(id_))))
     return FilesInMemory({name: text.encode("utf-8") for name, text in files.items()})
 
 

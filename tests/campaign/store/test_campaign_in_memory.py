@@ -10,7 +10,14 @@ import pytest
 
 from skisnow._support.errors import FieldDataError
 from skisnow.campaign import campaign_of_files
-from skisnow.campaign.store import Journals, NewEntry, ReplayedCampaign, campaign_files, campaign_in_memory, replayed
+from skisnow.campaign.store import (
+    Journals,
+    NewEntry,
+    ReplayedCampaign,
+    campaign_files,
+    campaign_in_memory,
+    replay_journal,
+)
 
 from .test_journal import TOML, reading
 
@@ -44,7 +51,7 @@ class Entered:
 
     @property
     def campaign(self) -> ReplayedCampaign:
-        return replayed(self._journals.entries(self._id))
+        return replay_journal(self._journals.entries(self._id))
 
 
 @pytest.fixture

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from skisnow._support.language.catalogue import catalogue
+from skisnow._support.language.catalogues import catalogue
 from skisnow.campaign.store.stored_tables import (
     ABOVE,
     ANY_NUMBER,

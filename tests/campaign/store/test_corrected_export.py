@@ -8,7 +8,15 @@ from tests.coded import raises
 
 from skisnow._support.errors import StoreError
 from skisnow.campaign import read_campaign
-from skisnow.campaign.store import Journals, NewEntry, OvertakenError, Store, export_corrected, replayed, stored_tables
+from skisnow.campaign.store import (
+    Journals,
+    NewEntry,
+    OvertakenError,
+    Store,
+    export_corrected,
+    replay_journal,
+    stored_tables,
+)
 from skisnow.campaign.store.journal_entry import uid_of_file
 
 TOML = """name = "Kept"
@@ -114,11 +122,11 @@ def test_what_was_undone_is_not_exported(store: Store, tmp_path: Path) -> None:
     id_ = kept(store, place, PLAIN.encode(), EARLIER.replace("14", "1.4"))
     journals = Journals(store)
     written = journals.correct(id_, correction("1", {"3/depth_mm": "9"}), seen=0, standing=standing(place, "1"))
-    test = replayed(journals.corrections(id_)).test("penetration.csv", "1")
+    test = replay_journal(journals.corrections(id_)).test("penetration.csv", "1")
     assert test.undoable == written
     undo = NewEntry(action="undo", file="penetration.csv", test="1", about=written.sequence)
     journals.correct(id_, undo, seen=written.sequence, standing={})
-    test = replayed(journals.corrections(id_)).test("penetration.csv", "1")
+    test = replay_journal(journals.corrections(id_)).test("penetration.csv", "1")
     assert test.undoable is None  # a value of the file cannot be undone
     assert [entry.action for entry in test.history] == ["add", "correct", "undo"]
     export_corrected(store, id_, tmp_path / "out")

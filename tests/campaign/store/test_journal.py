@@ -12,7 +12,15 @@ from tests.coded import raises
 
 from skisnow._support.errors import StoreError
 from skisnow.campaign import read_campaign
-from skisnow.campaign.store import Journals, NewEntry, OvertakenError, Store, campaign_files, replayed, write_campaign
+from skisnow.campaign.store import (
+    Journals,
+    NewEntry,
+    OvertakenError,
+    Store,
+    campaign_files,
+    replay_journal,
+    write_campaign,
+)
 from skisnow.campaign.store.engine import writing
 from skisnow.campaign.store.schema import journal_entry
 
@@ -54,7 +62,7 @@ def campaign_with(journals: Journals, *depths: str) -> tuple[str, int]:
 def test_what_was_entered_is_read_as_a_campaign(store: Store, tmp_path: Path) -> None:
     journals = Journals(store)
     id_, _ = campaign_with(journals, "1.5", "2.25", "3")
-    write_campaign(replayed(journals.entries(id_)), tmp_path)
+    write_campaign(replay_journal(journals.entries(id_)), tmp_path)
     campaign = read_campaign(tmp_path)
     assert campaign.penetration is not None
     series = campaign.penetration.series(0)
@@ -69,7 +77,7 @@ def test_readings_stand_in_the_order_of_their_loads_whichever_came_first(store: 
     id_, last = campaign_with(journals, "1.5", "2.25")
     last = journals.append(id_, reading("1", 2, "30.5", "1.9"), seen=last).sequence
     journals.append(id_, reading("1", 3, "5", "0.7"), seen=last)
-    test = replayed(journals.entries(id_)).test("penetration.csv", "1")
+    test = replay_journal(journals.entries(id_)).test("penetration.csv", "1")
     assert [row.cells["load_N"] for row in test.rows] == ["5", "20", "30.5", "40"]
     under = test.row_under("30.50")
     assert under is not None and under.cells["depth_mm"] == "1.9"
@@ -83,7 +91,7 @@ def test_a_column_that_need_not_be_there_is_written_where_one_row_has_it(store: 
     id_, last = campaign_with(journals, "1.5")
     first = reading("1", 1, "40", "2.25")
     journals.append(id_, replace(first, cells={**first.cells, "remark": "wind"}), seen=last)
-    header, *rows = campaign_files(replayed(journals.entries(id_)))["penetration.csv"].splitlines()
+    header, *rows = campaign_files(replay_journal(journals.entries(id_)))["penetration.csv"].splitlines()
     names = header.split(",")
     assert "spot" not in names
     assert [dict(zip(names, row.split(","), strict=True))["remark"] for row in rows] == ["", "wind"]
@@ -92,13 +100,13 @@ def test_a_column_that_need_not_be_there_is_written_where_one_row_has_it(store: 
 def test_a_correction_keeps_the_first_reading_and_what_came_between(store: Store, tmp_path: Path) -> None:
     journals = Journals(store)
     id_, last = campaign_with(journals, "1.5", "22.5", "3")
-    subject = replayed(journals.entries(id_)).test("penetration.csv", "1").rows[1].entered.sequence
+    subject = replay_journal(journals.entries(id_)).test("penetration.csv", "1").rows[1].entered.sequence
     for new in ("2.52", "2.25"):
         entry = NewEntry(
             action="correct", file="penetration.csv", test="1", about=subject, cells={"depth_mm": new}, why="slip"
         )
         last = journals.append(id_, entry, seen=last).sequence
-    now = replayed(journals.entries(id_))
+    now = replay_journal(journals.entries(id_))
     files = campaign_files(now)
     assert "22.5" in files["penetration.csv"] and "2.25" not in files["penetration.csv"]
     lines = files["corrections.csv"].splitlines()
@@ -114,7 +122,7 @@ def test_a_cancelled_series_stays_with_its_reason(store: Store, tmp_path: Path) 
     journals = Journals(store)
     id_, last = campaign_with(journals, "1.5", "2.25", "3")
     journals.append(id_, NewEntry(action="cancel", file="penetration.csv", test="1", why="plate slipped"), seen=last)
-    write_campaign(replayed(journals.entries(id_)), tmp_path)
+    write_campaign(replay_journal(journals.entries(id_)), tmp_path)
     campaign = read_campaign(tmp_path)
     assert campaign.penetration is not None
     assert campaign.penetration.cancelled == ("plate slipped",)
@@ -124,11 +132,11 @@ def test_a_cancelled_series_stays_with_its_reason(store: Store, tmp_path: Path) 
 def test_undoing_takes_the_last_entry_back_and_keeps_it_in_the_history(store: Store) -> None:
     journals = Journals(store)
     id_, last = campaign_with(journals, "1.5", "2.25")
-    test = replayed(journals.entries(id_)).test("penetration.csv", "1")
+    test = replay_journal(journals.entries(id_)).test("penetration.csv", "1")
     assert test.undoable is not None and test.undoable.cells["depth_mm"] == "2.25"
     undo = NewEntry(action="undo", file="penetration.csv", test="1", about=test.undoable.sequence)
     journals.append(id_, undo, seen=last)
-    test = replayed(journals.entries(id_)).test("penetration.csv", "1")
+    test = replay_journal(journals.entries(id_)).test("penetration.csv", "1")
     assert [row.cells["depth_mm"] for row in test.rows] == ["1.5"]
     assert [entry.action for entry in test.history] == ["add", "add", "undo"]
     assert test.undoable is not None and test.undoable.cells["depth_mm"] == "1.5"
@@ -139,7 +147,7 @@ def test_a_load_filled_in_late_stands_in_its_place(store: Store) -> None:
     id_ = journals.begin(TOML)
     first = journals.append(id_, reading("1", 2, "60", "3"), seen=0)
     journals.append(id_, reading("1", 0, "20", "1.5"), seen=first.sequence)
-    rows = replayed(journals.entries(id_)).test("penetration.csv", "1").rows
+    rows = replay_journal(journals.entries(id_)).test("penetration.csv", "1").rows
     assert [row.cells["load_N"] for row in rows] == ["20", "60"]
 
 
@@ -150,7 +158,7 @@ def test_two_who_write_about_one_test_do_not_overwrite_each_other(store: Store) 
     with raises(OvertakenError, "overtaken", who="Ada", subject="penetration.csv, 1"):
         journals.append(id_, reading("1", 1, "40", "9.99"), seen=last)
     journals.append(id_, reading("2", 0, "20", "1"), seen=0)  # another test has no part in it
-    assert "9.99" not in campaign_files(replayed(journals.entries(id_)))["penetration.csv"]
+    assert "9.99" not in campaign_files(replay_journal(journals.entries(id_)))["penetration.csv"]
 
 
 def test_a_name_that_another_gave_meanwhile_is_refused(store: Store) -> None:
@@ -195,14 +203,14 @@ def test_what_comes_later_can_be_put_on_top(store: Store) -> None:
     """Bit by bit, as a page sees a journal grow, is the same as all at once; what was there before stays as it was."""
     journals = Journals(store)
     id_, last = campaign_with(journals, "1.5", "2.25")
-    early = replayed(journals.entries(id_))
+    early = replay_journal(journals.entries(id_))
     entries = journals.entries(id_)
     undo = NewEntry(action="undo", file="penetration.csv", test="1", about=last)
     last = journals.append(id_, undo, seen=last).sequence
     journals.append(id_, reading("1", 1, "40", "2.3"), seen=last)
     journals.append(id_, reading("2", 0, "20", "1"), seen=0)
     later = journals.entries(id_, after=entries[-1].sequence)
-    assert replayed(later, before=early) == replayed(journals.entries(id_))
+    assert replay_journal(later, before=early) == replay_journal(journals.entries(id_))
     assert [row.cells["depth_mm"] for row in early.test("penetration.csv", "1").rows] == ["1.5", "2.25"]
     assert len(early.tests) == 1
 
@@ -228,7 +236,7 @@ def test_names_like_formulas_are_exported_as_texts_and_read_as_they_were(store: 
     for position, (load, depth) in enumerate((("20", "1.5"), ("40", "2.1"), ("60", "2.6"))):
         row = reading(name, position, load, depth)
         journals.append(id_, replace(row, cells={**row.cells, "site": site}), seen=position and 10**6)
-    write_campaign(replayed(journals.entries(id_)), tmp_path)
+    write_campaign(replay_journal(journals.entries(id_)), tmp_path)
     text = (tmp_path / "penetration.csv").read_text(encoding="utf-8")
     assert "'=1+1" in text
     assert "''@SUM(A1)" in text

@@ -15,7 +15,7 @@ from sqlalchemy import text
 from tests.coded import raises
 
 from skisnow._support.errors import StoreError
-from skisnow.campaign.store import Journals, Store, replayed, store_place
+from skisnow.campaign.store import Journals, Store, replay_journal, store_place
 from skisnow.campaign.store.engine import database_errors, writing
 from skisnow.campaign.store.engine import reading as reading_of
 from skisnow.campaign.store.migrations import alembic_config, downgrade, upgrade
@@ -163,7 +163,7 @@ def test_a_connection_that_breaks_is_told_and_the_next_one_works(server: Server,
             server.execute("SELECT pg_terminate_backend(pid) FROM pg_stat_activity WHERE datname = 'emptied'")
             connection.execute(text("SELECT 1"))
         Journals(store).append(id_, reading("1", 1, "40", "2"), seen=last)
-        assert len(replayed(Journals(store).entries(id_)).test("penetration.csv", "1").rows) == 2
+        assert len(replay_journal(Journals(store).entries(id_)).test("penetration.csv", "1").rows) == 2
 
 
 # Addresses, passwords, refusals

@@ -22,7 +22,7 @@ from skisnow.campaign.store import (
     SyncResult,
     campaign_files,
     corrected_files,
-    replayed,
+    replay_journal,
     sync,
     write_campaign,
 )
@@ -56,17 +56,17 @@ class Laptop:
 
     def change(self, id_: str, test: str, **values: object) -> None:
         """An entry about the first reading of a series."""
-        now = replayed(self.journals.entries(id_)).test("penetration.csv", test)
+        now = replay_journal(self.journals.entries(id_)).test("penetration.csv", test)
         values = {"action": "correct", "about": now.rows[0].entered.sequence, **values}
         entry = NewEntry(file="penetration.csv", test=test, who=self.who, **values)  # type: ignore[arg-type]
         self.journals.append(id_, entry, seen=now.last)
 
     def depths(self, id_: str, test: str) -> list[str]:
-        rows = replayed(self.journals.entries(id_)).test("penetration.csv", test).rows
+        rows = replay_journal(self.journals.entries(id_)).test("penetration.csv", test).rows
         return [row.cells["depth_mm"] for row in rows]
 
     def files(self, id_: str) -> dict[str, str]:
-        return campaign_files(replayed(self.journals.entries(id_)))
+        return campaign_files(replay_journal(self.journals.entries(id_)))
 
     def sync(self, group: Store, keep: dict[str, Side] | None = None) -> SyncResult:
         done = sync(self.store, group, keep=keep, who=self.who)
@@ -107,7 +107,7 @@ def both_sync(ada: Laptop, bo: Laptop, group: Store) -> None:
 def assert_alike(id_: str, *stores: Store) -> None:
     entries = [Journals(store).entries(id_) for store in stores]
     assert len({tuple(entry.uid for entry in each) for each in entries}) == 1
-    assert len({json.dumps(campaign_files(replayed(each))) for each in entries}) == 1
+    assert len({json.dumps(campaign_files(replay_journal(each))) for each in entries}) == 1
     assert [store.verify() for store in stores] == [()] * len(stores)
 
 
@@ -136,7 +136,7 @@ def test_a_synchronised_campaign_is_read_as_any(ada: Laptop, bo: Laptop, group: 
     id_ = shared(ada, bo, group)
     bo.enter(id_, "2", "1", "2", "3")
     both_sync(ada, bo, group)
-    write_campaign(replayed(ada.journals.entries(id_)), tmp_path)
+    write_campaign(replay_journal(ada.journals.entries(id_)), tmp_path)
     tests = read_campaign(tmp_path).penetration
     assert tests is not None
     assert tests.experiment == ("1", "2")
@@ -148,7 +148,7 @@ def test_changes_of_different_cells_go_together(ada: Laptop, bo: Laptop, group: 
     bo.change(id_, "1", cells={"edge_angle_deg": "35"})
     both_sync(ada, bo, group)
     assert_alike(id_, ada.store, bo.store, group)
-    (row, _) = replayed(bo.journals.entries(id_)).test("penetration.csv", "1").rows
+    (row, _) = replay_journal(bo.journals.entries(id_)).test("penetration.csv", "1").rows
     assert (row.cells["depth_mm"], row.cells["edge_angle_deg"]) == ("1.75", "35")
 
 
@@ -187,7 +187,7 @@ def test_a_reading_corrected_differently(ada: Laptop, bo: Laptop, group: Store, 
     both_sync(ada, bo, group)
     assert_alike(id_, ada.store, bo.store, group)
     assert ada.depths(id_, "1") == [depth, "2.25"]
-    history = replayed(ada.journals.entries(id_)).test("penetration.csv", "1").history
+    history = replay_journal(ada.journals.entries(id_)).test("penetration.csv", "1").history
     assert {entry.who for entry in history if entry.action == "correct"} == {"Ada", "Bo"}
     (undo,) = [entry for entry in history if entry.action == "undo"]
     assert (undo.who, bool(undo.why)) == ("Bo", True)
@@ -215,11 +215,11 @@ def test_cancelled_here_and_changed_there(ada: Laptop, bo: Laptop, group: Store,
     ada.sync(group)
     (conflict,) = bo.sync(group).conflicts
     assert conflict.here[0].endswith("the plate slipped")
-    assert not replayed(ada.journals.entries(id_)).test("penetration.csv", "1").cancelled
+    assert not replay_journal(ada.journals.entries(id_)).test("penetration.csv", "1").cancelled
     bo.sync(group, {"all": side})
     both_sync(ada, bo, group)
     assert_alike(id_, ada.store, bo.store, group)
-    test = replayed(ada.journals.entries(id_)).test("penetration.csv", "1")
+    test = replay_journal(ada.journals.entries(id_)).test("penetration.csv", "1")
     assert test.cancelled == ("" if side == "there" else "the plate slipped")
     assert test.rows[0].cells["depth_mm"] == ("1.5" if side == "here" else "1.75")
 
@@ -245,7 +245,7 @@ def test_a_number_given_twice(ada: Laptop, bo: Laptop, group: Store, side: Side,
     bo.sync(group, {"all": side})
     both_sync(ada, bo, group)
     assert_alike(id_, ada.store, bo.store, group)
-    found = [test for test in replayed(ada.journals.entries(id_)).of_file("penetration.csv") if test.name != "1"]
+    found = [test for test in replay_journal(ada.journals.entries(id_)).of_file("penetration.csv") if test.name != "1"]
     assert {test.name: test.rows[0].cells["depth_mm"] for test in found} == tests
     assert [len(test.rows) for test in found] == [2] * len(found)
     for test in found:
@@ -258,7 +258,7 @@ def test_a_number_given_twice(ada: Laptop, bo: Laptop, group: Store, side: Side,
 def test_a_series_that_both_went_on_with(ada: Laptop, bo: Laptop, group: Store) -> None:
     id_ = shared(ada, bo, group)
     for laptop, depth in ((ada, "3"), (bo, "4")):
-        last = replayed(laptop.journals.entries(id_)).test("penetration.csv", "1").last
+        last = replay_journal(laptop.journals.entries(id_)).test("penetration.csv", "1").last
         laptop.journals.append(id_, replace(reading("1", 2, "60", depth), who=laptop.who), seen=last)
     ada.sync(group)
     (conflict,) = bo.sync(group).conflicts
@@ -274,7 +274,7 @@ def test_a_series_that_both_went_on_with(ada: Laptop, bo: Laptop, group: Store) 
 def test_a_campaign_described_differently(ada: Laptop, bo: Laptop, group: Store, side: Side, place: str) -> None:
     id_ = shared(ada, bo, group)
     for laptop in (ada, bo):
-        described = replayed(laptop.journals.entries(id_)).described
+        described = replay_journal(laptop.journals.entries(id_)).described
         text = f'place = "{laptop.who}\'s"\n{TOML}'
         entry = NewEntry(action="describe", file="campaign.toml", cells={"campaign.toml": text}, who=laptop.who)
         laptop.journals.append(id_, entry, seen=described)

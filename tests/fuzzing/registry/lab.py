@@ -12,8 +12,8 @@ from random import Random
 from tempfile import TemporaryDirectory
 
 from skisnow._support.errors import SkisnowError
-from skisnow._support.staging import tidied
-from skisnow.campaign.store import Journals, Store, export_corrected, replayed, sync, write_campaign
+from skisnow._support.staging import prepare_folder
+from skisnow.campaign.store import Journals, Store, export_corrected, replay_journal, sync, write_campaign
 from skisnow.web.lab_skis import read_ski_files
 from skisnow.web.lab_tracks import Placing, TrackFolders
 from skisnow.web.replay_addresses import RunFolders, _ski_of_job
@@ -80,7 +80,7 @@ def _every_use(folder: Path) -> object:
             for head in Journals(store).list():
                 with suppress(SkisnowError):
                     (folder / "entered").mkdir(exist_ok=True)
-                    write_campaign(replayed(Journals(store).entries(head.id)), folder / "entered")
+                    write_campaign(replay_journal(Journals(store).entries(head.id)), folder / "entered")
         return store.verify()
 
 
@@ -148,7 +148,7 @@ _PLAN = {f"run/{_HIDDEN}/plan": b"summary.json\ntrack.csv\nfigures/a.svg", f"run
 READERS = (
     Reader(
         name="plan of a killed process", target=f"run/{_HIDDEN}/plan", files=lambda: _PLAN, mutations=TEXT,
-        read=lambda folder: tidied(folder / "run"), covers=("_support.staging:_carry_out",),
+        read=lambda folder: prepare_folder(folder / "run"), covers=("_support.staging:_carry_out",),
     ),
     Reader(
         name="store.sqlite3", target="store.sqlite3", files=_store, read=_every_use, mutations=SQLITE,

@@ -27,7 +27,7 @@ from skisnow.report.run.time_figures import (
     stacked_energies,
 )
 from skisnow.report.run.track_figure import beside_track, groove_corners, run_track
-from skisnow.report.turn.figures import TimedTrack, band_of, loaded_ski, offsets, runs_compared, track_band
+from skisnow.report.turn.figures import TimedTrack, band_of, draw_runs, loaded_ski, offsets, track_band
 from skisnow.simulation.run import LOST, STORED, Run
 
 from ..runs import RADIUS, SPEED, STANCE, circle_run
@@ -197,7 +197,7 @@ def test_distance_between_circles_of_one_centre() -> None:
 def test_compared_runs_are_held_against_the_first(run: Run) -> None:
     wider = circle_run(radius=1.1 * RADIUS, deep=0.01)
     with journal_style():
-        figure = runs_compared({"first": run, "wide": wider}, at=2.0)
+        figure = draw_runs({"first": run, "wide": wider}, at=2.0)
     plan, distance, depth = axes_of(figure)
     assert len([line for line in plan.lines if len(np.asarray(line.get_xdata())) > 1]) == 2
     (curve,) = distance.lines

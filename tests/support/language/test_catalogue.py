@@ -8,8 +8,8 @@ import pytest
 
 from skisnow._support.errors import ParameterError
 from skisnow._support.language import ENGLISH, Catalogue, catalogue, codes, languages, require_language
-from skisnow._support.language import known as known_languages
-from skisnow._support.language.catalogue import FIRST, LAST, read_catalogue
+from skisnow._support.language import catalogues as known_languages
+from skisnow._support.language.catalogues import FIRST, LAST, read_catalogue
 
 WORDS = {
     "snow": "Schnee",

@@ -14,7 +14,7 @@ import pytest
 from skisnow._support.errors import ParameterError, SkisnowError
 from skisnow._support.messages import Message
 from skisnow._support.processes.batch import Pool, workers_in_force
-from skisnow._support.processes.chunk import computed
+from skisnow._support.processes.chunk import compute_rows
 from skisnow._support.processes.crews import LARGEST_FOR_A_PIPE, ProcessCrew, _in_worker
 from skisnow._support.processes.kept_rows import NumberedText
 from tests.coded import raises
@@ -104,7 +104,7 @@ def test_a_chunk_tells_how_long_a_point_takes(
         return {}
 
     monkeypatch.setattr("skisnow._support.processes.chunk.time.perf_counter", lambda: clock[0])
-    assert computed(lasting, list(enumerate(points))).seconds_per_point == each
+    assert compute_rows(lasting, list(enumerate(points))).seconds_per_point == each
 
 
 @pytest.mark.parametrize(

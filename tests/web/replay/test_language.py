@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from skisnow._support.errors import ParameterError
-from skisnow._support.language.catalogue import FOLDER, read_catalogue
+from skisnow._support.language.catalogues import FOLDER, read_catalogue
 from skisnow.replay import replay_of_run, write_replay
 from skisnow.replay.page import page_words
 

@@ -3,6 +3,6 @@
 from __future__ import annotations
 
 from ..messages import ENGLISH
-from .catalogue import Catalogue, catalogue, codes, languages, require_language
+from .catalogues import Catalogue, catalogue, codes, languages, require_language
 
 __all__ = ["ENGLISH", "Catalogue", "catalogue", "codes", "languages", "require_language"]

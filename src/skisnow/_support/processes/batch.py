@@ -12,7 +12,7 @@ from typing import Any, Final, Self, TypeAlias
 from ..errors import ParameterError, SkisnowError
 from ..messages import Message
 from .chunk import Done, Numbered, PointFunction
-from .crews import LOST, Crew, ProcessCrew, lost
+from .crews import LOST, Crew, ProcessCrew, lost_workers_message
 from .executors import ExecutorLike, crew_of
 from .kept_rows import KeptRows, NumberedText, Row, row_text
 
@@ -215,7 +215,9 @@ class Pool:
                     size = max(1, min(crew.largest, int(crew.chunk_s / max(done.seconds_per_point, 1e-9))))
                     yield done.rows
         except Exception as error:
-            message = lost() if isinstance(error, SkisnowError) and error.code == LOST else crew.told(error)
+            message = (
+                lost_workers_message() if isinstance(error, SkisnowError) and error.code == LOST else crew.told(error)
+            )
             if message is None:
                 raise
             raise SkisnowError(

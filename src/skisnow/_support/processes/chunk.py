@@ -65,7 +65,7 @@ def own_identity() -> Identity:
     return Identity(version("skisnow"), core.SOURCE_HASH)
 
 
-def computed(function: PointFunction, points: Sequence[Numbered]) -> Done:
+def compute_rows(function: PointFunction, points: Sequence[Numbered]) -> Done:
     """The rows of some points."""
     start = time.perf_counter()
     rows = [(number, row_text(function(point))) for number, point in points]
@@ -101,7 +101,7 @@ def computed_elsewhere(packed: bytes, identity: Identity, folder: str, points: S
             ),
             code="different_versions",
         )
-    return computed(_unpacked(packed, folder), points)
+    return compute_rows(_unpacked(packed, folder), points)
 
 
 @lru_cache(maxsize=4)

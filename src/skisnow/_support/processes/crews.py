@@ -24,7 +24,7 @@ from typing import Final
 
 from ..errors import SkisnowError
 from ..messages import Message
-from .chunk import Done, Numbered, PointFunction, computed, computed_elsewhere, own_identity
+from .chunk import Done, Numbered, PointFunction, compute_rows, computed_elsewhere, own_identity
 
 LOST: Final = "scheduler_lost"
 """Code of the error."""
@@ -36,7 +36,7 @@ CHUNK_S: Final = 0.25
 """Work (s) that is handed over at once, and that a kill loses (handing over costs 1 ms here)."""
 
 
-def lost() -> Message:
+def lost_workers_message() -> Message:
     """Explanation of a lost scheduler."""
     return Message("The scheduler was lost, or gave the work up.")
 
@@ -61,7 +61,7 @@ class Crew(ABC):
         """Explanation of an error that the function did not raise; None: it is passed on."""
         if isinstance(error, BrokenExecutor):
             return Message("A worker process ended unexpectedly, perhaps for lack of memory.")
-        return lost() if isinstance(error, CancelledError) else None
+        return lost_workers_message() if isinstance(error, CancelledError) else None
 
     def require_alive(self) -> None:  # noqa: B027 - most have nothing to look after
         """Called now and then while chunks are waited for; raises where none will come."""
@@ -128,7 +128,7 @@ class ThreadCrew(Crew):
 
     def submit(self, points: list[Numbered]) -> Future[Done]:
         """Hand out a chunk."""
-        return self._executor.submit(computed, self._function, points)
+        return self._executor.submit(compute_rows, self._function, points)
 
     def end(self, *, at_once: bool) -> None:  # noqa: ARG002 - a thread cannot be stopped
         """Wait for the chunks that are being computed."""
@@ -189,7 +189,7 @@ def _begin(function: PointFunction, alive: Connection) -> None:
 def _in_worker(points: list[Numbered]) -> Done:
     if _Worker.function is None:
         raise SkisnowError(Message("A worker was not started by a Pool."), code="no_pool")
-    return computed(_Worker.function, points)
+    return compute_rows(_Worker.function, points)
 
 
 @contextmanager

@@ -16,7 +16,7 @@ from ..errors import ParameterError, SkisnowError, nearest
 from ..messages import Message, template
 from ..user_files import read_toml
 from .chunk import PointFunction
-from .crews import LOST, Crew, GivenCrew, lost
+from .crews import LOST, Crew, GivenCrew, lost_workers_message
 
 BATCH_SYSTEMS: Final = {
     "slurm": "SLURMCluster",
@@ -341,7 +341,7 @@ class _DaskCrew(GivenCrew):
         if self._client.status == "running":
             self._last_seen = time.monotonic()
         elif time.monotonic() - self._last_seen > AWAY_S or self._client.status == "closed":
-            raise SkisnowError(lost(), code=LOST)
+            raise SkisnowError(lost_workers_message(), code=LOST)
 
     def told(self, error: Exception) -> Message | None:
         """Explanation of an error of Dask."""

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Final
 
 from ..._support.errors import OutputError
 from ..._support.messages import Message
-from ..._support.staging import staged, tidied, write_file
+from ..._support.staging import prepare_folder, staged, write_file
 from ..._support.user_files import own_json
 from ..problems import error
 from ..reading.campaign_file import CAMPAIGN_FILE
@@ -104,7 +104,7 @@ def write_import(files: Mapping[str, bytes], folder: str | Path) -> None:
             Message("{folder} is not an empty folder; nothing was written. Choose another one.", folder=folder),
             code="not_empty",
         )
-    tidied(folder)
+    prepare_folder(folder)
     with staged(folder, last=CAMPAIGN_FILE) as stage:
         for path, content in files.items():
             (stage.path / path).parent.mkdir(parents=True, exist_ok=True)

@@ -19,7 +19,7 @@ from .replayed import (
     ReplayedTest,
     campaign_files,
     campaign_in_memory,
-    replayed,
+    replay_journal,
     write_campaign,
 )
 from .server import ServerAddress, StorePlace, store_place
@@ -58,7 +58,7 @@ __all__ = [
     "export_corrected",
     "export_entered",
     "find_campaign",
-    "replayed",
+    "replay_journal",
     "store_place",
     "stored_tables",
     "sync",

@@ -11,7 +11,7 @@ from sqlalchemy import Connection, select
 
 from ..._support.messages import Message
 from .journal_entry import DESCRIPTION, parse_entry
-from .rows import damaged
+from .rows import damage_error
 from .schema import campaign, journal, journal_entry
 from .stored_tables import cell_of
 
@@ -250,7 +250,7 @@ def entry_index(connection: Connection, journal_id: str) -> EntryIndex:
     query = select(columns.uid, columns.sequence, columns.file, columns.test).where(columns.journal_id == journal_id)
     for uid, sequence, file, test in connection.execute(query):
         if not isinstance(uid, str):
-            raise damaged(
+            raise damage_error(
                 Message("The entry {number} of the campaign in entry {id}", number=str(sequence), id=journal_id)
             )
         index.subject[uid], index.sequence[uid], index.uid[sequence] = (file, test), sequence, uid

@@ -15,7 +15,15 @@ from ..reading.text import UnreadableTextError, inspect_csv
 from .engine import database_errors, file_errors, reading
 from .folder import StoredFile, new_folder, no_progress
 from .journal import JournalHead, Journals
-from .replayed import COLUMNS, campaign_files, correction_cells, correction_of_cell, csv_text, replayed, write_campaign
+from .replayed import (
+    COLUMNS,
+    campaign_files,
+    correction_cells,
+    correction_of_cell,
+    csv_text,
+    replay_journal,
+    write_campaign,
+)
 from .rows import ID_DIGITS, NamedId, StoredCampaign, ambiguous_id_error, campaign_ids, required_digits
 from .stored_tables import cell_of
 
@@ -129,7 +137,7 @@ def _records(data: bytes) -> list[list[str]]:
 
 def _corrections(entries: Iterable[JournalEntry]) -> Iterator[AppliedCorrection]:
     """Corrections, test by test, in the order of the first correction of each test."""
-    for test in sorted(replayed(entries).tests.values(), key=_first_manual_entry):
+    for test in sorted(replay_journal(entries).tests.values(), key=_first_manual_entry):
         if test.rows:
             yield from _corrections_of_test(test)
 
@@ -179,7 +187,7 @@ def find_campaign(store: Store, id: str) -> FoundCampaign:  # noqa: A002 (as in 
 
 def entered_files(store: Store, id: str) -> tuple[StoredFile, ...]:  # noqa: A002
     """Files that `export_entered` writes, sorted by path; errors as there."""
-    texts = campaign_files(replayed(Journals(store).entries(id)))
+    texts = campaign_files(replay_journal(Journals(store).entries(id)))
     contents = {path: text.encode() for path, text in sorted(texts.items())}
     return tuple(StoredFile(path, len(data), sha256(data).hexdigest()) for path, data in contents.items())
 
@@ -192,6 +200,6 @@ def export_entered(store: Store, id: str, folder: Path) -> None:  # noqa: A002
     StoreError
         There is no such campaign, an entry is damaged, or the folder exists and is not empty.
     """
-    campaign = replayed(Journals(store).entries(id))
+    campaign = replay_journal(Journals(store).entries(id))
     with file_errors(folder, "could not be written"), new_folder(folder) as filling:
         write_campaign(campaign, filling)

@@ -22,7 +22,7 @@ from ..._support.messages import Message
 from ..._support.user_files import toml_values
 from .engine import apart, database_errors, reading, writing
 from .journal_entry import DESCRIPTION, JournalEntry, NewEntry, now, parse_entry, uid_of_file, write_entry
-from .rows import damaged, require_integer, text_of
+from .rows import damage_error, require_integer, text_of
 from .schema import campaign, journal, journal_entry
 
 if TYPE_CHECKING:
@@ -196,7 +196,7 @@ def _journal_head(name: str, id_: object, begun_at: object, n_entries: object, l
     try:
         return JournalHead(text_of(id_), name, text_of(begun_at), require_integer(n_entries), text_of(last_at))
     except TypeError as error:
-        raise damaged(Message("The campaign in entry {id}", id=id_)) from error
+        raise damage_error(Message("The campaign in entry {id}", id=id_)) from error
 
 
 def _require(connection: Connection, id_: str) -> None:

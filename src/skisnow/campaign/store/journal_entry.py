@@ -16,7 +16,7 @@ from sqlalchemy import Connection, RowMapping, func, insert, select
 from ..._support.errors import StoreError
 from ..._support.messages import Message
 from ..._support.user_files import json_value
-from .rows import TIME, damaged, require_integer, text_of
+from .rows import TIME, damage_error, require_integer, text_of
 from .schema import journal_entry
 
 if TYPE_CHECKING:
@@ -119,7 +119,7 @@ def readable_entry(row: RowMapping) -> JournalEntry:
 
 
 def _damaged(row: RowMapping) -> StoreError:
-    return damaged(
+    return damage_error(
         Message(
             "The entry {number} of the campaign in entry {id}", number=str(row["sequence"]), id=str(row["journal_id"])
         )

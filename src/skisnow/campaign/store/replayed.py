@@ -109,7 +109,7 @@ class ReplayedCampaign:
         return self.tests.get((file, name)) or ReplayedTest(file, name)
 
 
-def replayed(entries: Iterable[JournalEntry], *, before: ReplayedCampaign | None = None) -> ReplayedCampaign:
+def replay_journal(entries: Iterable[JournalEntry], *, before: ReplayedCampaign | None = None) -> ReplayedCampaign:
     """Replay a journal's entries, oldest first. Undone entries have no effect, but stay in the history.
 
     Parameters

@@ -156,7 +156,7 @@ def stored_hashes(connection: Connection) -> set[str]:
     return set(connection.execute(select(campaign.c.sha256)).scalars())
 
 
-def damaged(what: str) -> StoreError:
+def damage_error(what: str) -> StoreError:
     """Error for damaged rows."""
     return StoreError(
         Message(
@@ -176,7 +176,7 @@ def require_whole(stored: StoredCampaign) -> None:
         A name, a size, a hash or a file differs.
     """
     if manifest_sha256(stored.files) != stored.sha256:
-        raise damaged(Message("The list of files of the campaign {id}", id=stored.id))
+        raise damage_error(Message("The list of files of the campaign {id}", id=stored.id))
 
 
 def stored_campaign(connection: Connection, row: Row[tuple[object, ...]]) -> StoredCampaign:
@@ -190,7 +190,7 @@ def stored_campaign(connection: Connection, row: Row[tuple[object, ...]]) -> Sto
     try:
         return _stored_campaign(connection, row)
     except (TypeError, ValueError) as error:
-        raise damaged(Message("The campaign {id}", id=row.id)) from error
+        raise damage_error(Message("The campaign {id}", id=row.id)) from error
 
 
 def _stored_campaign(connection: Connection, row: Row[tuple[object, ...]]) -> StoredCampaign:
@@ -239,7 +239,7 @@ def stored_chunks(connection: Connection, sha256: str) -> Iterator[bytes]:
         for piece in connection.execute(pieces, execution_options={"yield_per": 1}).scalars():
             yield require_bytes(piece)
     except TypeError as error:
-        raise damaged(Message("The content {sha256}", sha256=sha256)) from error
+        raise damage_error(Message("The content {sha256}", sha256=sha256)) from error
 
 
 def is_sound(connection: Connection, sha256: str, size: int) -> bool:

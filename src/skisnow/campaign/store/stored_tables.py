@@ -21,7 +21,7 @@ from ..reading.headings import Headings, UnitConversion
 from ..reading.table_forms import BRANCH, BRANCHES, CORRECTIONS, TABLES
 from ..reading.tables import decimal_mark_of, read_table
 from ..reading.text import UnreadableTextError, decode, inspect_csv
-from .rows import damaged
+from .rows import damage_error
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -88,7 +88,7 @@ def cell_of(key: str) -> tuple[int, str]:
     text, _, column = key.partition("/")
     line = natural_number(text)
     if line is None or not column:
-        raise damaged(Message("A correction of the cell {cell!r}", cell=key[:80]))
+        raise damage_error(Message("A correction of the cell {cell!r}", cell=key[:80]))
     return line, column
 
 

@@ -11,7 +11,7 @@ from ..._support.errors import StoreError
 from ..._support.messages import Message
 from .conflict import entries_by_uid, entry_index, find_divergences
 from .journal_entry import DESCRIPTION, NewEntry, insert_entries, next_sequence, number_of_uid, write_entry
-from .rows import ID_DIGITS, copy_content, damaged, require_whole, store_campaign, stored_chunks
+from .rows import ID_DIGITS, copy_content, damage_error, require_whole, store_campaign, stored_chunks
 from .schema import journal, journal_entry
 from .stored_tables import FORMS
 
@@ -36,7 +36,7 @@ def take_campaign(source: Connection, to: Connection, stored: StoredCampaign) ->
     require_whole(stored)
     for file in stored.files:
         if not copy_content(to, file, stored_chunks(source, file.sha256)):
-            raise damaged(Message("{path} of the campaign {id}", path=file.path, id=stored.sha256[:ID_DIGITS]))
+            raise damage_error(Message("{path} of the campaign {id}", path=file.path, id=stored.sha256[:ID_DIGITS]))
     counts = (stored.n_errors, stored.n_warnings)
     store_campaign(to, stored.files, stored.sha256, stored.name, counts, added_at=stored.added_at)
 
@@ -79,7 +79,7 @@ def take_entries(source: Connection, to: Connection, journal_id: str, uids: Iter
         number = max(next_, number_of_uid(entry.uid))
         about = None if entry.about is None else numbers.get(of_source.get(entry.about, ""))
         if entry.about is not None and about is None:
-            raise damaged(
+            raise damage_error(
                 Message("The subject of entry {number} of the campaign {id}", number=entry.sequence, id=journal_id)
             )
         once = None if entry.once in sent else entry.once

@@ -14,7 +14,7 @@ from ..._support.environment import paused_collector
 from ..._support.errors import ParameterError
 from ..._support.language import ENGLISH, require_language
 from ..._support.messages import Message
-from ..._support.staging import staged, tidied, write_file
+from ..._support.staging import prepare_folder, staged, write_file
 from ...estimation import Analysis
 from ...estimation.results import results_json
 from ..citation import bibtex, cited_text
@@ -128,7 +128,7 @@ def write_report(
     require_language(language)
     report = progress or silent
     out = Path(out)
-    for message in tidied(out):
+    for message in prepare_folder(out):
         report(message)
     with paused_collector(), staged(out, last=RESULTS) as stage:
         stage.stale += _write(ReportData(analysis), stage.path, language, report)

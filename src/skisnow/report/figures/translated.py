@@ -9,7 +9,7 @@ from matplotlib.text import Text
 from matplotlib.ticker import Formatter
 
 from ..._support.language import ENGLISH, catalogue
-from ..._support.language.catalogue import FIRST, LAST
+from ..._support.language.catalogues import FIRST, LAST
 from .style import legend_below
 
 if TYPE_CHECKING:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Final
 from ..._support.errors import OutputError
 from ..._support.language import ENGLISH, codes, require_language
 from ..._support.messages import Message
-from ..._support.staging import staged, tidied, write_file
+from ..._support.staging import prepare_folder, staged, write_file
 from ..._support.user_files import GivenError, plain_text
 from ...scenario.plausibility import implausible_values
 from ...simulation.run_gates import run_gates
@@ -71,7 +71,7 @@ def write_run(
     """
     require_language(language)
     folder, report = Path(folder), progress or silent
-    for sentence in tidied(folder):
+    for sentence in prepare_folder(folder):
         report(sentence)
     contents = summary_dict(run, warnings=implausible_values(run.scenario)) if summary is None else summary
     with staged(folder, last=SUMMARY) as stage:

@@ -146,7 +146,7 @@ _SYMBOL: Final = re.compile(r"(?<!\w)([A-Za-z])_([A-Za-z0-9])(?!\w)")
 LINE_STYLES: Final = ("-", (0, (5, 1.5)), (0, (1, 1)), "-.", (0, (7, 2, 1, 2, 1, 2)))
 
 
-def runs_compared(runs: Mapping[str, Run], *, at: float | None = None) -> Figure:
+def draw_runs(runs: Mapping[str, Run], *, at: float | None = None) -> Figure:
     """Draw runs by name; the first one is the reference.
 
     Parameters

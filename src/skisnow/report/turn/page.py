@@ -26,7 +26,7 @@ from ..run.time_figures import run_along_ski, run_grip
 from ..sheet import Header, Section, sheet
 from ..symbols import figure_text, html, prose
 from ..table import Column, Table
-from .figures import FEWEST, runs_compared, track_band
+from .figures import FEWEST, draw_runs, track_band
 from .numbers import (
     BandShares,
     afterbody_depth_ratio,
@@ -109,7 +109,7 @@ def _drawings(chain: TurnChain) -> Iterator[Drawing]:
             "loaded ski. Squares: ends."
         ),
         "Tracks from above, distances and depth along the ski, one line for each contact.",
-        runs_compared(chain.runs),
+        draw_runs(chain.runs),
         wide=True,
     )
     yield Drawing(

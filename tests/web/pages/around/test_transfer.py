@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from skisnow._support.errors import ParameterError
-from skisnow.campaign.store import Journals, NewEntry, Store, campaign_files, replayed
+from skisnow.campaign.store import Journals, NewEntry, Store, campaign_files, replay_journal
 from skisnow.web import transfer
 from skisnow.web.settings import Limits
 from skisnow.web.uploads import UNDESCRIBED, Unpacking, add_uploaded, campaign_folder, files_below, shown, write_zip
@@ -104,7 +104,7 @@ def test_a_campaign_that_is_being_entered_is_given_out_as_it_stands(desk: Desk) 
     journals.append(id_, entry, seen=journals.entries(id_)[-1].sequence)
     exported = desk.get(f"/export/entry/{id_}.zip")
     assert exported.headers["content-disposition"] == f'attachment; filename="campaign-{id_}.zip"'
-    files = {name: text.encode() for name, text in campaign_files(replayed(journals.entries(id_))).items()}
+    files = {name: text.encode() for name, text in campaign_files(replay_journal(journals.entries(id_))).items()}
     found = {name.removeprefix("campaign/"): content for name, content in unpacked(exported.content).items()}
     assert {name: found[name] for name in files} == files
     assert transfer.entry_files(desk.lab, id_).contents == files
