@@ -26,7 +26,15 @@
   let toPutRight = null; // the field of the last reading, which was refused
   const telling = new Map(); // readings that the lab has not answered yet, by their numbers
 
+  // loads as the mass of the discs in kg, remembered by the browser
+  const IN_KG = "skisnow-loads-in-kg";
+  if (localStorage.getItem(IN_KG)) document.documentElement.classList.add("in-kg");
   document.addEventListener("click", (event) => {
+    if (event.target.closest?.(".switch-kg")) {
+      const isKg = document.documentElement.classList.toggle("in-kg");
+      if (isKg) localStorage.setItem(IN_KG, "1");
+      else localStorage.removeItem(IN_KG);
+    }
     const menu = event.target.closest?.(".lab-head .menu");
     if (menu) menu.setAttribute("aria-expanded", String(menu.closest(".lab-head").classList.toggle("open")));
   });

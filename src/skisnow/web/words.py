@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 from .._support.errors import ParameterError, SkisnowError
 from .._support.messages import Message, count_message
+from .._support.units import KILOGRAM_FORCE
 from ..report.formatting import interval, significant
 from .language import said
 
@@ -58,6 +59,15 @@ def label(column: str, *, unit: str = "") -> str:
     """
     words = LABELS.get(column, column)
     return re.sub(r" \([^)]*\)$", f" ({unit})", words) if unit else words
+
+
+def load_words(load: str) -> tuple[str, str]:
+    """A load (N) with its unit, and as the mass of the discs in kg.
+
+    >>> load_words("98.0665")
+    ('98.0665 N', '10 kg')
+    """
+    return f"{load} N", f"{float(load) / KILOGRAM_FORCE:.4g} kg"
 
 
 def in_words(message: str) -> str:

@@ -13,9 +13,10 @@ from ..._support.messages import Message
 from ...campaign.reading.table_forms import BRANCH
 from ...campaign.store import NewEntry
 from ...campaign.store.stored_tables import FORMS, CellError, checked_cell
+from ..elements import Words
 from ..language import number_said, said, said_template
 from ..page_requests import LONGEST
-from ..words import in_words, label
+from ..words import in_words, label, load_words
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping
@@ -46,6 +47,12 @@ class Step(NamedTuple):
     def field_name(self) -> str:
         """Name of the field of the step's depth."""
         return f"Depth back under {self.load} N (mm)" if self.branch else f"Depth under {self.load} N (mm)"
+
+
+def add_load(load: str) -> None:
+    """Label of a load in N; lab.js shows it in kg if the user says so."""
+    in_newtons, in_kilograms = load_words(load)
+    Words(in_newtons).classes("load").props["data-kg"] = number_said(in_kilograms)
 
 
 @dataclass(frozen=True, slots=True, eq=False)

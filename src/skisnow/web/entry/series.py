@@ -7,15 +7,16 @@ from typing import TYPE_CHECKING, Final
 
 from nicegui import ui
 
+from ..._support.messages import Message
 from ...campaign.reading.table_forms import BRANCH, UNLOADING
-from ..elements import Words, choice, field, named
+from ..elements import Words, button, choice, field, named
 from ..language import number_said
 from ..layout import heading, sentence
 from ..page_addresses import entering
 from ..page_requests import answering, asking_button, current_request, form
 from ..words import label
 from .changes import changes, focus_button
-from .readings import HEAD, Field, ReadingField, Step, checked_fields, faults, refuse, stored_depth
+from .readings import HEAD, Field, ReadingField, Step, add_load, checked_fields, faults, refuse, stored_depth
 from .series_corrections import AfterWaiting, SeriesCorrections
 
 if TYPE_CHECKING:
@@ -134,6 +135,7 @@ class SeriesForm:
             self._ask = ui.element("div")
             self._corrections.begin(test.name, self._ask)
             self._then = asking_button("Next series", self._next, "main then")
+            button(Message("Loads in N or kg"), None, "small switch-kg")
             self._unloading_fields(test, [Step(load, UNLOADING) for load in loads[-2::-1]], unstored)
             self._waiting = AfterWaiting(self._view, test.name, lambda: self.show(test.name, self._head))
             self._waiting.draw(loads, waiting, self._ask)
@@ -217,7 +219,7 @@ class SeriesForm:
         with ui.element("div").classes("reading") as holder:
             holder.props["data-load"] = step.load
             holder.props["data-branch"] = step.branch
-            Words(f"{step.load} N").classes("load")
+            add_load(step.load)
             stored = number_said(stored_depth(row))
             typed = stored if unstored is None or test.cancelled else unstored
             depth = field(label("depth_mm"), typed, numeric=True)

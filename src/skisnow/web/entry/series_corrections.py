@@ -11,7 +11,7 @@ from ..language import number_said, said, said_template
 from ..page_requests import asking_button, form
 from ..words import label
 from .changes import ASKED, LEFT_AS_IT_WAS, UNANSWERED, USUAL_REASON, WAITED, ask_reason
-from .readings import CHANGED, checked_fields, faults, is_other, refuse, show_state, stored_depth
+from .readings import CHANGED, add_load, checked_fields, faults, is_other, refuse, show_state, stored_depth
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping
@@ -167,7 +167,7 @@ class AfterWaiting:
 
     def _field(self, load: str, stored: str, text: str, *, closed: bool) -> ui.input:
         with ui.element("div").classes("reading") as made:
-            Words(f"{load} N").classes("load")
+            add_load(load)
             depth = field(label(AFTER), text, numeric=True, optional=True)
             named(depth, f"Depth after waiting under {load} N (mm)")
             depth.props("readonly" if closed else "")
