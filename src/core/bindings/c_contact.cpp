@@ -178,9 +178,9 @@ std::vector<double> taken(const double*& from, int nodes, const char* name) {
   return out;
 }
 
-void take_rotation(const double* from, int k, Pose& out) {
-  std::copy_n(from + 9 * k, 9, &out.rotation[0][0]);
-  const auto& m = out.rotation;
+void require_rotation(const double* from, int k) {
+  double m[3][3];
+  std::copy_n(from + 9 * k, 9, &m[0][0]);
   double off = 0.0;
   for (int a = 0; a < 3; a++)
     for (int b = 0; b < 3; b++)
@@ -196,23 +196,14 @@ Situation situation(const SnowContact& contact, const double* position, const do
   const auto count = std::size_t(contact.runners());
   require_finite(position, 3 * count, "position"), require_finite(rotation, 9 * count, "rotation");
   require_least(dt, 0.0, "dt");
-  Situation out;
-  out.dt = dt;
+  if (velocity != nullptr) require_finite(velocity, 6 * count, "velocity");
+  std::vector<std::vector<double>> bends, moves;
   for (int k = 0; k < contact.runners(); k++) {
-    Pose pose;
-    Motion motion;
-    std::copy_n(position + 3 * k, 3, pose.position.begin());
-    take_rotation(rotation, k, pose);
-    if (velocity != nullptr) {
-      require_finite(velocity + 6 * k, 6, "velocity");
-      std::copy_n(velocity + 6 * k, 3, motion.velocity.begin());
-      std::copy_n(velocity + 6 * k + 3, 3, motion.turning.begin());
-    }
-    pose.beam = taken(beams, contact.runner(k).nodes(), "beams");
-    motion.beam = taken(rates, contact.runner(k).nodes(), "rates");
-    out.poses.push_back(std::move(pose)), out.motions.push_back(std::move(motion));
+    require_rotation(rotation, k);
+    bends.push_back(taken(beams, contact.runner(k).nodes(), "beams"));
+    moves.push_back(taken(rates, contact.runner(k).nodes(), "rates"));
   }
-  return out;
+  return situation_of(position, rotation, velocity, dt, std::move(bends), std::move(moves));
 }
 
 }  // namespace

@@ -33,31 +33,17 @@ Runner runner(const Array& position, const Array& half_width, const Array& base_
 
 using Beams = std::optional<std::vector<Array>>;
 
-std::vector<double> beam_of(const Beams& beams, int k) {
-  if (!beams) return {};
-  const Array& rows = (*beams)[std::size_t(k)];
-  return {rows.data(), rows.data() + rows.size()};
+std::vector<std::vector<double>> beams_of(const Beams& beams, int runners) {
+  std::vector<std::vector<double>> out(static_cast<std::size_t>(runners));
+  for (std::size_t k = 0; k < out.size() && beams; k++)
+    out[k].assign((*beams)[k].data(), (*beams)[k].data() + (*beams)[k].size());
+  return out;
 }
 
 Situation situation(int runners, const Array& position, const Array& rotation, const Array* velocity, double dt,
                     const Beams& beams, const Beams& rates) {
-  Situation out;
-  out.dt = dt;
-  for (int k = 0; k < runners; k++) {
-    Pose pose;
-    std::copy_n(position.data() + 3 * k, 3, pose.position.begin());
-    std::copy_n(rotation.data() + 9 * k, 9, &pose.rotation[0][0]);
-    pose.beam = beam_of(beams, k);
-    out.poses.push_back(std::move(pose));
-    Motion motion;
-    if (velocity != nullptr) {
-      std::copy_n(velocity->data() + 6 * k, 3, motion.velocity.begin());
-      std::copy_n(velocity->data() + 6 * k + 3, 3, motion.turning.begin());
-    }
-    motion.beam = beam_of(rates, k);
-    out.motions.push_back(std::move(motion));
-  }
-  return out;
+  return situation_of(position.data(), rotation.data(), velocity == nullptr ? nullptr : velocity->data(), dt,
+                      beams_of(beams, runners), beams_of(rates, runners));
 }
 
 struct PythonLaws {

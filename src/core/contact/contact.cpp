@@ -85,6 +85,23 @@ constexpr double MOTION_STEP = 1e-4;   // m/s, rad/s
 
 }  // namespace
 
+Situation situation_of(const double* position, const double* rotation, const double* velocity, double dt,
+                       std::vector<std::vector<double>> beams, std::vector<std::vector<double>> rates) {
+  Situation out{std::vector<Pose>(beams.size()), std::vector<Motion>(beams.size()), dt};
+  for (std::size_t k = 0; k < beams.size(); k++) {
+    Pose& pose = out.poses[k];
+    Motion& motion = out.motions[k];
+    std::copy_n(position + 3 * k, 3, pose.position.begin());
+    std::copy_n(rotation + 9 * k, 9, &pose.rotation[0][0]);
+    if (velocity != nullptr) {
+      std::copy_n(velocity + 6 * k, 3, motion.velocity.begin());
+      std::copy_n(velocity + 6 * k + 3, 3, motion.turning.begin());
+    }
+    pose.beam = std::move(beams[k]), motion.beam = std::move(rates[k]);
+  }
+  return out;
+}
+
 SnowContact::SnowContact(std::shared_ptr<Snow> snow, std::vector<Runner> runners, double spacing,
                          const Kernels& kernels)
     : snow_(std::move(snow)), runners_(std::move(runners)), kernels_(&kernels) {

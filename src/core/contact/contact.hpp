@@ -20,6 +20,10 @@ struct Situation {
   double dt = 0.0;  // since the last accepted pose (s)
 };
 
+// One from arrays, runner by runner: position (3), rotation (3, 3), velocity (6) or null, beams and their rates.
+Situation situation_of(const double* position, const double* rotation, const double* velocity, double dt,
+                       std::vector<std::vector<double>> beams, std::vector<std::vector<double>> rates);
+
 // Force and moment of the snow on one runner about its boot, in the slope's axes; loads on its beam (nodes, 3).
 struct Reaction {
   double force[3] = {}, moment[3] = {};
