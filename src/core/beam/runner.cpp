@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <utility>
 
 namespace skisnow {
@@ -36,8 +37,8 @@ constexpr double TABLE_STEP = 1e-3;  // (m) of the table, at most; between its r
 
 // A column over falling positions, straight between them, at a place within.
 double between_rows(const std::vector<double>& position, const std::vector<double>& column, double place) {
-  std::size_t j = 0;
-  while (j + 2 < position.size() && position[j + 1] >= place) j++;
+  const auto behind = std::upper_bound(position.begin() + 1, position.end() - 1, place, std::greater<>());
+  const auto j = std::size_t(behind - position.begin() - 1);
   const double share = (position[j] - place) / (position[j] - position[j + 1]);
   return column[j] + share * (column[j + 1] - column[j]);
 }
