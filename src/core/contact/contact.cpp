@@ -112,7 +112,7 @@ SnowContact::SnowContact(std::shared_ptr<Snow> snow, std::vector<Runner> runners
   trial_ = state_.lines;
   std::size_t slots = 0;
   for (const GrooveLines& each : state_.lines) slots = std::max(slots, std::size_t(each.capacity()));
-  scratch_.resize(slots), slips_.resize(slots);
+  scratch_.resize(slots), slips_.resize(slots), is_needed_.resize(slots);
   before_.resize(runners_.size());
   for (const GrooveLines& each : state_.lines) sections_.emplace_back(each.capacity());
   if (snow_->rate.acts()) rated_.resize(runners_.size());

@@ -129,6 +129,7 @@ class SnowContact {
   double dt_ = 0.0;                   // from the last accepted pose to the pose that is looked at (s)
   std::vector<std::int64_t> needed_;  // lines, the foremost first
   Column scratch_;                    // by slot
+  Column is_needed_;                  // by slot: 1 for these
   Column slips_;                      // by slot: 1 where the edge slips and nothing else is marched
   std::optional<std::int64_t> rearmost_slip_;
   struct Before {  // of one runner, what `begin` has changed
@@ -166,7 +167,7 @@ class SnowContact {
   void find_needed(const GrooveLines& lines, double way, const Runner& runner, const Pose& to);
   void march_where_needed(int k, const Situation& to);
   void remember(int k, GrooveLines& lines, bool is_eased) const;
-  void remember_line(const Base& s, std::int64_t line, GrooveLines& lines) const;
+  void press_base(const Base& s, std::int64_t line, GrooveLines& lines) const;
 };
 
 // A state of a contact sealed, and a contact taken to one. All throw std::invalid_argument, and change nothing.

@@ -184,7 +184,7 @@ struct EdgeForces {
   Vector<V> force{}, moment{};  // about the boot, in the ski's axes
   V turning{};                  // moment about the ski's middle, by which the beam twists
 
-  EdgeForces(const Cut<V>& c, const Acting<V>& by, MaskOf<V> wet) {
+  SKISNOW_INLINE EdgeForces(const Cut<V>& c, const Acting<V>& by, MaskOf<V> wet) {
     shear[0] = shear[1] = V{};
     const MaskOf<V> is_between = wet & c.is_between();
     if (!any(is_between)) {  // both edges would give the same bits

@@ -5,7 +5,7 @@
 #include "contact/contact.hpp"
 
 #define SKISNOW_LANES alone
-#include "contact/mark_kernels.hpp"
+#include "contact/section_kernels.hpp"
 
 namespace skisnow {
 
@@ -169,19 +169,17 @@ void Touch::press_base() const {
 
 }  // namespace
 
-// The ground takes the base that touches it; then the marks follow the base.
-void SnowContact::remember(int k, GrooveLines& lines, bool is_eased) const {
-  const Sections& s = sections(k);
-  for (std::int64_t n = lines.first; n < lines.end; n++)
-    if (s.touches(s.index(n))) Touch{s.base, s.index(n), *snow_, lines, lines.slot(n)}.press_base();
-  kernels_->mark(*snow_, s.base, is_eased ? &s.edge : nullptr, lines);
+// The ground of a line takes the base that touches it.
+void SnowContact::press_base(const Base& s, std::int64_t line, GrooveLines& lines) const {
+  const int i = s.index(line);
+  if (s.touches(i)) Touch{s, i, *snow_, lines, lines.slot(line)}.press_base();
 }
 
-// The same of one line, where no edge was eased.
-void SnowContact::remember_line(const Base& s, std::int64_t line, GrooveLines& lines) const {
-  const int i = s.index(line), slot = lines.slot(line);
-  if (s.touches(i)) Touch{s, i, *snow_, lines, slot}.press_base();
-  alone::mark_lanes<double>(*snow_, s, i, {0.0, 0.0}, lines, slot);
+// All grounds take the base; then the marks follow it.
+void SnowContact::remember(int k, GrooveLines& lines, bool is_eased) const {
+  const Sections& s = sections(k);
+  for (std::int64_t n = lines.first; n < lines.end; n++) press_base(s.base, n, lines);
+  kernels_->mark(*snow_, s.base, nullptr, is_eased ? &s.edge : nullptr, lines);
 }
 
 // Into how many parts the way from the accepted pose is divided; one where the runner was put there in no time.
@@ -232,7 +230,7 @@ void SnowContact::find_needed(const GrooveLines& lines, double way, const Runner
   const auto over = std::int64_t(std::ceil(way / lines.spacing()));
   const double reach = runner.tip + lines.spacing();  // lines that the tip does not reach stay as they are
   needed_.clear();
-  std::fill(slips_.begin(), slips_.end(), 0.0);
+  for (Column* each : {&slips_, &is_needed_}) std::fill(each->begin(), each->end(), 0.0);
   rearmost_slip_.reset();
   bool ahead = true;
   std::int64_t deepest = lines.end + over + 1;
@@ -243,7 +241,8 @@ void SnowContact::find_needed(const GrooveLines& lines, double way, const Runner
       deepest = n - over;
     ahead = ahead && !marked(n);
     if (ahead || (n >= deepest - 1 && n <= deepest + over)) {
-      if (lines.station(n, to) <= reach) needed_.push_back(n);
+      if (lines.station(n, to) > reach) continue;
+      needed_.push_back(n), is_needed_[std::size_t(slot)] = 1.0;
     } else if (v[MARKED][slot] > 0.5 && (slips(slot, 0) || slips(slot, 1))) {
       slips_[std::size_t(slot)] = 1.0, rearmost_slip_ = n;
     }
@@ -271,7 +270,8 @@ void SnowContact::march_where_needed(int k, const Situation& to) {
   for (int part = 1; part < parts; part++) {
     interpolate(from, end, double(part) / parts, on_way_);
     kernels_->find_sections(runner(k), on_way_, lines, first, s.base);
-    for (const std::int64_t n : needed_) remember_line(s.base, n, lines);
+    for (const std::int64_t n : needed_) press_base(s.base, n, lines);
+    kernels_->mark(*snow_, s.base, is_needed_.data(), nullptr, lines);
     if (rearmost_slip_) kernels_->drag_anchors(*snow_, s.base, slips_.data(), lines);
   }
 }

@@ -41,34 +41,29 @@ SKISNOW_INLINE void keep_stuck(const Snow& snow, const Base& s, int i, GrooveLin
   put(lines, STUCK_ARM, j, touches, c.reach);
 }
 
-// Keep all of these for the lines in some lanes; `eased`: of both edges.
+// Keep all of these for the lines that `of` (by slot) has 1 for, or null for all of them; `eased` null: no edge was.
 template <class V>
-SKISNOW_INLINE void mark_lanes(const Snow& snow, const Base& s, int i, const V (&eased)[2], GrooveLines& lines, int j) {
+void mark(const Snow& snow, const Base& s, const double* of, const EdgeHold* eased, GrooveLines& lines) {
   const V none{}, one = all<V>(1.0);
-  const MaskOf<V> on_ski = load<V>(s[SHARE] + i) > 0.0, touches = on_ski & (load<V>(s[DEEPEST] + i) > 0.0);
-  if (any(on_ski)) {
-    V slipped{};
-    for (int k = 0; k < 2; k++) {
-      const V edge = load<V>(s[GRIP_PLACE] + i) + load<V>(s[of_edge(LEFT_X, k)] + i);
-      const V depth = load<V>(s[of_edge(LEFT_DEPTH, k)] + i);
-      const MaskOf<V> in_snow = on_ski & (depth > 0.0);
-      if (any(in_snow)) slipped = maximum(slipped, keep_anchor(snow, lines, j, k, in_snow, edge, depth, eased[k]));
-      put(lines, of_edge(LEFT_MARK, k), j, on_ski, edge), put(lines, of_edge(LEFT_MARK_DEPTH, k), j, on_ski, depth);
-    }
-    store(lines.values[SLIPPED] + j, load<V>(lines.values[SLIPPED] + j) + slipped);
-    if (any(touches)) keep_stuck<V>(snow, s, i, lines, j, touches);
-  }
-  store(lines.values[STUCK] + j, select(touches, one, none));
-  store(lines.values[MARKED] + j, select(on_ski, one, none));
-}
-
-// The same of all lines; `eased` null: no edge was.
-template <class V>
-void mark(const Snow& snow, const Base& s, const EdgeHold* eased, GrooveLines& lines) {
   for_lanes<V>(s, lines, [&](int i, int j) {
-    V by[2] = {};
-    for (int k = 0; k < 2 && eased != nullptr; k++) by[k] = load<V>((*eased)[of_edge(LEFT_EASED, k)] + i);
-    mark_lanes<V>(snow, s, i, by, lines, j);
+    const MaskOf<V> chosen = of == nullptr ? all_lanes<V>(true) : load<V>(of + j) > 0.5;
+    if (!any(chosen)) return;
+    const MaskOf<V> on_ski = chosen & (load<V>(s[SHARE] + i) > 0.0), touches = on_ski & (load<V>(s[DEEPEST] + i) > 0.0);
+    if (any(on_ski)) {
+      V slipped{};
+      for (int k = 0; k < 2; k++) {
+        const V edge = load<V>(s[GRIP_PLACE] + i) + load<V>(s[of_edge(LEFT_X, k)] + i);
+        const V depth = load<V>(s[of_edge(LEFT_DEPTH, k)] + i);
+        const V eased_by = eased == nullptr ? none : load<V>((*eased)[of_edge(LEFT_EASED, k)] + i);
+        const MaskOf<V> in_snow = on_ski & (depth > 0.0);
+        if (any(in_snow)) slipped = maximum(slipped, keep_anchor(snow, lines, j, k, in_snow, edge, depth, eased_by));
+        put(lines, of_edge(LEFT_MARK, k), j, on_ski, edge), put(lines, of_edge(LEFT_MARK_DEPTH, k), j, on_ski, depth);
+      }
+      store(lines.values[SLIPPED] + j, load<V>(lines.values[SLIPPED] + j) + slipped);
+      if (any(touches)) keep_stuck<V>(snow, s, i, lines, j, touches);
+    }
+    put(lines, STUCK, j, chosen, select(touches, one, none));
+    put(lines, MARKED, j, chosen, select(on_ski, one, none));
   });
 }
 

@@ -179,8 +179,8 @@ struct Kernels {
   bool (*find_unknown)(const GrooveLines&, const Pose&, double room, double* is_unknown);
   void (*square_depths)(const GrooveLines&, double* out);
   void (*drag_anchors)(const Snow&, const Base&, const double* slips, GrooveLines&);
-  // marks of a base on its lines, see mark_kernels.hpp; `eased` may be null
-  void (*mark)(const Snow&, const Base&, const EdgeHold* eased, GrooveLines&);
+  // marks of a base on its lines, see mark_kernels.hpp; `of`, by slot, and `eased` may be null
+  void (*mark)(const Snow&, const Base&, const double* of, const EdgeHold* eased, GrooveLines&);
   BandKernels band;
 };
 
