@@ -2,7 +2,8 @@
 
 ``python -m benchmarks turns`` runs those of simulated turns alone and prints them as Markdown, ``identify`` those of
 identifications, ``web`` those of the web lab in a browser, ``contact`` those of the contact in the compiled core.
-``scenarios`` runs random scenarios and counts how they end, ``frontier`` sets error against cost of a turn.
+``scenarios`` runs random scenarios and counts how they end, ``frontier`` sets error against cost of a turn, ``former``
+builds a former commit and compares the processor time of turns with it.
 """
 
 from __future__ import annotations
@@ -15,14 +16,14 @@ import sys
 from pathlib import Path
 
 TURNS, IDENTIFY, WEB, CONTACT = "turns", "identify", "web", "contact"
-SCENARIOS, FRONTIER = "scenarios", "frontier"
+SCENARIOS, FRONTIER, FORMER = "scenarios", "frontier", "former"
 PARTS = (TURNS, IDENTIFY, WEB, CONTACT)
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(prog="python -m benchmarks")
     parser.add_argument(
-        "part", nargs="?", choices=[*PARTS, SCENARIOS, FRONTIER], help="these alone; left out: everything"
+        "part", nargs="?", choices=[*PARTS, SCENARIOS, FRONTIER, FORMER], help="these alone; left out: everything"
     )
     parser.add_argument("--rows", type=int, default=1_000_000, help="readings of the large campaign")
     parser.add_argument("--duration", type=float, default=5.0, help="simulated seconds of a turn")
@@ -53,6 +54,10 @@ def main() -> None:
         from .turns import frontier
 
         frontier.print_table(options.out or Path("frontier.csv"), repeats=options.repeats)
+    elif options.part == FORMER:
+        from .turns import former
+
+        former.print_table(options.out or Path("former"), options.repeats)
     else:
         _everything_else(options.rows)
         print(flush=True)

@@ -18,7 +18,7 @@ from skisnow.scenario.reading import load_scenario
 from skisnow.simulation.run import Run
 from skisnow.simulation.simulated_run import simulate
 
-from .cases import FINE, FIRM, HARD_SNOW, SCENARIO, SKID, SOFT
+from .cases import FINE, FIRM, HARD_SNOW, SCENARIO, SKID, SOFT, finer_parts
 from .speed import end_distance, told
 
 SNOWS: Final[Mapping[str, Mapping[str, object]]] = {
@@ -100,7 +100,8 @@ def _point(snow: str, method: str, key: str, value: float, repeats: int, referen
     of_snow = dict(SNOWS[snow]) | (varied if key == SHEAR_DISPLACEMENT else {})
     name = repr(sorted(of_snow.items()))
     if name not in references:
-        references[name] = _run({**of_snow, **FINE})[0]
+        with finer_parts():
+            references[name] = _run({**of_snow, **FINE})[0]
     found = [_run({**of_snow, **METHODS[method], **varied}) for _ in range(repeats)]
     run = found[0][0]
     cost = min(seconds for _, seconds in found)

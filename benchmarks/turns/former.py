@@ -1,0 +1,92 @@
+"""Processor time of turns beside that of a former commit, which is built into a separate environment."""
+
+from __future__ import annotations
+
+import json
+import os
+import statistics
+import subprocess
+import sys
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import Final
+
+from .cases import FIRM, HARD_SNOW, SCENARIO, SKID, SOFT
+
+ROOT: Final = Path(__file__).resolve().parents[2]
+COMMIT: Final = "58cc12bf"
+"""Commit to which the goals for speed relate."""
+CASES: Final[Mapping[str, tuple[str, Mapping[str, object]]]] = {
+    "fast": (SCENARIO, {"solver.method": "fast"}),
+    "default": (SCENARIO, {}),
+    "default, H_V = 0.04 N/mm³": (SCENARIO, SOFT),
+    "default, H_V = 1 N/mm³": (SCENARIO, FIRM),
+    "default, ice": (SCENARIO, HARD_SNOW),
+    "default, skid": (SCENARIO, SKID),
+    "slalom, fast": ("slalom-20-gates", {"solver.method": "fast"}),
+}
+_RUN: Final = """
+import json, sys, time
+try:
+    from skisnow.scenario import load_scenario as load
+    from skisnow.simulation.simulated_run import simulate
+except ImportError:  # names of earlier commits
+    from skisnow.scenario import read_scenario as load
+    from skisnow.simulate.simulated_run import simulate
+from skisnow.dynamics.motion import Dynamics
+advance, in_core = Dynamics.advance, 0.0
+def timed(*args):
+    global in_core
+    begin = time.process_time()
+    try:
+        return advance(*args)
+    finally:
+        in_core += time.process_time() - begin
+Dynamics.advance = timed
+scenario = load(sys.argv[1], changes=json.loads(sys.argv[2]))
+begin = time.process_time()
+run = simulate(scenario)
+print(json.dumps([in_core, time.process_time() - begin, run.steps, run.rejected_steps, *run.place[-1].tolist()]))
+"""
+"""Prints seconds in the core and in all, steps, rejected steps, and the end of the boots' path (m)."""
+
+
+def build(commit: str, folder: Path) -> Path:
+    """Install a commit of this repository in a folder, unless it is there; returns the path to import it from."""
+    installed, source = folder / "installed", folder / "source"
+    if not (installed / "skisnow").is_dir():
+        source.mkdir(parents=True, exist_ok=True)
+        archive = subprocess.run(["git", "archive", commit], cwd=ROOT, check=True, capture_output=True)
+        subprocess.run(["tar", "-x"], cwd=source, check=True, input=archive.stdout)
+        options = ("--no-deps", "--no-build-isolation", "--target", str(installed), str(source))
+        subprocess.run([sys.executable, "-m", "pip", "install", *options], check=True, stdout=sys.stderr)
+    return installed
+
+
+def print_table(folder: Path, repeats: int) -> None:
+    """Run every case in turn with both builds and print a Markdown table."""
+    places = (build(COMMIT, folder / COMMIT), ROOT / "src")
+    print(f"| run | {COMMIT}, core (ms) | now, core (ms) | ratio | ratio of the whole run | steps | rejected |")
+    print("| --- | ---: | ---: | ---: | ---: | ---: | ---: |")
+    for name in CASES:
+        print(f"| {name} | {' | '.join(_cells(name, places, repeats))} |", flush=True)
+
+
+def _cells(name: str, places: Sequence[Path], repeats: int) -> Iterator[str]:
+    """Medians of the runs of both builds, taken in turn A B A B …"""
+    rows = [[_numbers(name, place) for place in places] for _ in range(repeats)]
+    former, now = (
+        [statistics.median(column) for column in zip(*runs, strict=True)] for runs in zip(*rows, strict=True)
+    )
+    yield from (f"{1e3 * former[0]:.0f}", f"{1e3 * now[0]:.0f}")
+    yield from (f"{former[part] / now[part]:.2f}" for part in range(2))
+    yield from (f"{now[2]:,.0f}", f"{now[3]:,.0f}")
+
+
+def _numbers(name: str, place: Path) -> list[float]:
+    scenario, changes = CASES[name]
+    words = [sys.executable, "-W", "ignore", "-c", _RUN, scenario, json.dumps(dict(changes))]
+    environment = os.environ | {"PYTHONPATH": str(place)}
+    done = subprocess.run(words, check=True, capture_output=True, text=True, env=environment, cwd=place)
+    numbers: list[float] = json.loads(done.stdout)
+    return numbers
