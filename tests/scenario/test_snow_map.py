@@ -45,6 +45,17 @@ def test_grid_holds_its_values(tmp_path: Path) -> None:
     assert repr(found).startswith("<SnowMap S_f 0.2 to 0.4 N/mm²")
 
 
+def test_friction_over_the_place_leaves_the_snow_as_it_is(tmp_path: Path) -> None:
+    path = written(tmp_path, "x_m,mu_share\n0,0.5\n10,2\n20,2\n")
+    given, plain = load_scenario("carved-46m", changes={"snow.map_file": str(path)}), load_scenario("carved-46m")
+    assert given.contact.snow_map is not None
+    assert given.contact.snow_map.friction_share is not None
+    values = given.contact.snow_map.friction_share.values_at(np.array([0.0, 10.0, 15.0]), 3.0)
+    np.testing.assert_allclose(values, [0.5, 2.0, 2.0], atol=1e-12)
+    assert given.contact.snow == plain.contact.snow
+    assert repr(given.contact.snow_map).startswith("<SnowMap mu_share 0.5 to 2")
+
+
 def test_means_stand_for_the_snow(tmp_path: Path) -> None:
     path = written(tmp_path, "x_m,H_V_N_per_mm3,S_f_N_per_mm2\n0,0.1,0.3\n10,0.4,0.5\n")
     given = scenario_file("carved-46m", changes={"snow.map_file": str(path)})

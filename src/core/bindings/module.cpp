@@ -228,6 +228,7 @@ void bind_snow(nb::module_& m) {
       .def_rw("surface", &Snow::surface)
       .def_rw("hardness", &Snow::hardness)
       .def_rw("strength", &Snow::strength)
+      .def_rw("friction_share", &Snow::friction_share)
       .def_rw("strength_share", &Snow::strength_share)
       .def_rw("unloading_ratio", &Snow::unloading_ratio)
       .def_rw("shear_displacement", &Snow::shear_displacement)

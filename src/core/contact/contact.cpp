@@ -42,6 +42,14 @@ void strengthen(const ShearLaw& law, Sections& s) {
   }
 }
 
+// μ of the law at the place of each line.
+void share_friction(const GrooveLines& lines, Sections& s) {
+  for (int i = 0; i < s.count(); i++) {
+    const double share = s.touches(i) ? lines.values[FRICTION][lines.slot(s.line(i))] : 0.0;
+    s.sliding[MU][i] *= share, s.sliding[MU_GROWTH][i] *= share;
+  }
+}
+
 // [ease] Strength and thrust are known: the displacement of each edge, and by how much they have eased it.
 void ease(const Snow& snow, const GrooveLines& lines, Sections& s) {
   for (int i = 0; i < s.count(); i++)
@@ -135,6 +143,7 @@ const Wrench& SnowContact::evaluate(int k, const GrooveLines& lines, const Pose&
   kernels_->slide(motion, pose, dt_, *snow_, lines, s.base, s.pressure, s.sliding);
   if (snow_->shear.by_angle()) strengthen(snow_->shear, s);
   if (laws) laws(k, s);
+  if (!snow_->friction_share.is_constant()) share_friction(lines, s);
   if (strength_varies()) ease(*snow_, lines, s);
   Wrench& wrench = wrenches_[std::size_t(k)];
   kernels_->push(*snow_, s.base, s.pressure, s.edge, s.sliding, s.forces, wrench);

@@ -80,9 +80,9 @@ void SnowContact::count_energy(int k, GrooveLines& lines) {
   }
 }
 
-// Where hardness or strength vary in place, each line has those of where its edge is now.
+// Where hardness, strength or friction vary in place, each line has those of where its edge is now.
 void SnowContact::follow_snow(int k, GrooveLines& lines) const {
-  if (snow_->hardness.is_constant() && snow_->strength.is_constant()) return;
+  if (snow_->hardness.is_constant() && snow_->strength.is_constant() && snow_->friction_share.is_constant()) return;
   const Sections& s = sections(k);
   for (std::int64_t n = lines.first; n < lines.end; n++) {
     const int i = s.index(n), slot = lines.slot(n);

@@ -42,6 +42,7 @@ void put_snow(const Snow& snow, Fields& out) {
   out.put("snow.surface", snow.surface.numbers());
   out.put("snow.hardness", snow.hardness.numbers());
   out.put("snow.strength", snow.strength.numbers());
+  out.put("snow.friction_share", snow.friction_share.numbers());
   out.put("snow.strength_share", snow.strength_share);
   out.put("snow.unloading_ratio", snow.unloading_ratio);
   out.put("snow.shear_displacement", snow.shear_displacement);
@@ -64,6 +65,7 @@ std::shared_ptr<Snow> snow_of(const Fields& data) {
   out->surface = Grid::of(data.at("snow.surface"));
   out->hardness = Grid::of(data.at("snow.hardness"));
   out->strength = Grid::of(data.at("snow.strength"));
+  out->friction_share = Grid::of(data.at("snow.friction_share"));
   out->strength_share = data.number("snow.strength_share");
   out->unloading_ratio = data.number("snow.unloading_ratio");
   out->shear_displacement = data.number("snow.shear_displacement");

@@ -159,6 +159,7 @@ void GrooveLines::take_snow(int slot, const Vector3& at, const Snow& snow) {
   values[HARDNESS][slot] = hardness;
   values[EXCESS][slot] = (snow.unloading_ratio - 1.0) * hardness;
   values[STRENGTH][slot] = snow.strength.at(at[0], at[1]).value;
+  values[FRICTION][slot] = snow.friction_share.at(at[0], at[1]).value;
 }
 
 void GrooveLines::follow_snow(int slot, double place, const Snow& snow) {

@@ -21,7 +21,8 @@ enum LineField {
   ORIGIN_X, ORIGIN_Y, ORIGIN_Z,  // on the surface (m)
   AHEAD_X, AHEAD_Y, AHEAD_Z,     // unit vectors: along the ski when it was laid,
   NORMAL_X, NORMAL_Y, NORMAL_Z,  // and out of the snow
-  HARDNESS, EXCESS, STRENGTH,    // H_V and k_u - H_V (N/m³), S_f (Pa) at the line
+  HARDNESS, EXCESS, STRENGTH,    // H_V and k_u - H_V (N/m³), S_f (Pa) at the line,
+  FRICTION,                      // and μ there over that of the law
   MARKED,                        // whether the ski was over it at the last accepted pose (0 or 1)
   // each edge then: where across it was, how deep, and where it holds if it was in the snow (m)
   LEFT_MARK, RIGHT_MARK, LEFT_MARK_DEPTH, RIGHT_MARK_DEPTH, LEFT_ANCHOR, RIGHT_ANCHOR,

@@ -42,6 +42,7 @@ struct RateLaw {
 struct Snow {
   Grid surface;                         // height (m)
   Grid hardness, strength;              // H_V (N/m³), S_f (Pa)
+  Grid friction_share = Grid(1.0);      // μ over the place over that of the law
   double strength_share = 1.0;          // of S_f everywhere, which may change during a run
   double unloading_ratio = 1.0;         // k_u/H_V
   double shear_displacement = 0.02e-3;  // displacement of the edge across, to full strength (m)

@@ -60,6 +60,7 @@ class Snow:
     surface: Grid
     hardness: Grid
     strength: Grid
+    friction_share: Grid
     strength_share: float
     unloading_ratio: float
     shear_displacement: float

@@ -53,6 +53,8 @@ class SnowField(Shown):
         A law for the strength over depth and edge angle, with the thrust that comes with it; ``None``: S_f.
     strength_share
         Factor of the strength, by S_f or by a law: a number > 0 or a `Grid` over the place.
+    friction_share
+        Factor of μ: a number > 0 or a `Grid` over the place.
     friction_acts_on
         Load that μ acts on: the pressure along the snow's normal, or what presses square on the base, side force
         included.
@@ -100,6 +102,7 @@ class SnowField(Shown):
     friction_direction: Direction = "vector"
     shear: ShearLaw | None = None
     strength_share: float | Grid = 1.0
+    friction_share: float | Grid = 1.0
     residual_ratio: float = RESIDUAL_RATIO
     slip_weakening: float = SLIP_WEAKENING
     shear_bearing: Bearing = "whole-edge"
@@ -186,6 +189,7 @@ class SnowField(Shown):
 
     def _require_one_place(self) -> None:
         _require("strength_share", _minimum(self.strength_share), above=0.0)
+        _require("friction_share", _minimum(self.friction_share), above=0.0)
         shared = isinstance(self.strength_share, Grid) or self.strength_share != 1.0
         if shared and isinstance(self.failure_shear_stress, Grid) and self.shear is None:
             raise ParameterError(
@@ -224,6 +228,7 @@ class SnowField(Shown):
     def _compiled(self) -> core.Snow:
         snow = core.Snow()
         snow.hardness, snow.strength = _grid(self.snow_hardness), _grid(self._strength())
+        snow.friction_share = _grid(self.friction_share)
         snow.surface = _grid(0.0 if isinstance(self.surface, Plane) else self.surface, goes_on=True)
         snow.unloading_ratio, snow.shear_displacement = self.unloading_ratio, self.shear_displacement
         snow.compaction_resistance, snow.friction = self.compaction_resistance, self._friction()

@@ -38,7 +38,7 @@ class Contact:
     snow
         With H_V and S_f; where these vary over the place, with their means.
     snow_map
-        H_V and S_f where they vary over the place; None: they do not.
+        H_V, S_f and friction where they vary over the place; None: they do not.
     unloading_ratio
         k_u/H_V ≥ 1; 1: elastic.
     compaction_resistance
@@ -228,8 +228,8 @@ class Contact:
         SnowMap | None,
         Word(
             "snow.map_file",
-            "CSV file of H_V, S_f or both over the place, instead of these: x_m, y_m or not, H_V_N_per_mm3, "
-            "S_f_N_per_mm2",
+            "CSV file of H_V, S_f and friction over the place: x_m, y_m or not, H_V_N_per_mm3 and S_f_N_per_mm2 "
+            "instead of these, mu_share times μ",
             word_of=_map_source,
             names_file=True,
             label="file of the snow over the place",

@@ -44,6 +44,7 @@ LIMITS: Final[Mapping[str, Limits]] = {
     "z_m": _HEIGHT,
     "H_V_N_per_mm3": _SNOW,
     "S_f_N_per_mm2": _SNOW,
+    "mu_share": _SNOW,
 }
 """By column; 9000 m is above the highest mountain, and heights may count from a place of the slope."""
 

@@ -260,6 +260,8 @@ def _quantities(
             yield DISPLACEMENT
     elif isinstance(snow, SnowMap):
         yield from (key for key, mean in ((H_V, snow.mean_hardness), (S_F, snow.mean_stress)) if mean is not None)
+        if snow.friction_share is not None:
+            yield "snow.map_file"  # of no other key
     else:
         yield ALTERNATIVES.get(name, name)
         if name == "snow.penetration" and value == "elastic" and layer.values.get(UNLOADING) != 1.0:

@@ -1,4 +1,4 @@
-"""Snow that varies over the place (H_V, S_f or both): over a grid or along the slope, from a CSV or raster file."""
+"""Snow that varies over the place (H_V, S_f, friction): over a grid or along the slope, from a CSV or raster file."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ _PATCHES_AT_ONCE: Final = 16_384
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class SnowMap(Shown):
-    """H_V and S_f over the place, in the scenario's coordinates; beyond its border the last value goes on.
+    """H_V, S_f and friction over the place, in the scenario's coordinates; beyond its border the last value goes on.
 
     Attributes
     ----------
@@ -38,13 +38,15 @@ class SnowMap(Shown):
         H_V (N/m³), everywhere > 0; None: that of the scenario's snow.
     failure_shear_stress
         S_f (N/m²), everywhere > 0; None: that of the scenario's snow.
+    friction_share
+        μ over that of the scenario, everywhere > 0; None: 1.
     source
         Where it comes from, in words.
 
     Raises
     ------
     ParameterError
-        It holds neither, or a value that is not above 0, at its places or between them.
+        It holds none of them, or a value that is not above 0, at its places or between them.
 
     See Also
     --------
@@ -59,15 +61,16 @@ class SnowMap(Shown):
 
     hardness: Grid | None = None
     failure_shear_stress: Grid | None = None
+    friction_share: Grid | None = None
     source: str = "given as numbers"
 
     def __post_init__(self) -> None:
-        if self.hardness is None and self.failure_shear_stress is None:
+        grids = (("H_V", self.hardness), ("S_f", self.failure_shear_stress), ("mu_share", self.friction_share))
+        if all(grid is None for _, grid in grids):
             raise ParameterError(
-                Message("a snow map holds neither H_V nor S_f; give one of them, or both"),
-                code="missing",
+                Message("a snow map holds neither H_V nor S_f nor friction; give one of them, or more"), code="missing"
             )
-        for name, grid in (("H_V", self.hardness), ("S_f", self.failure_shear_stress)):
+        for name, grid in grids:
             if grid is not None:
                 _require_positive(name, grid)
 
@@ -88,6 +91,8 @@ class SnowMap(Shown):
             snow = replace(snow, snow_hardness=hardness, snow_hardness_interval=None)
         if stress is not None:
             snow = replace(snow, failure_shear_stress=stress, failure_shear_stress_interval=None)
+        if hardness is None and stress is None:
+            return snow
         names = " and ".join(name for name, value in (("H_V", hardness), ("S_f", stress)) if value is not None)
         return replace(snow, source=f"{snow.source}; {names}: means over the snow map {self.source}")
 
@@ -97,6 +102,7 @@ class SnowMap(Shown):
             for name, grid, size, unit in (
                 ("H_V", self.hardness, N_PER_MM3, "N/mm³"),
                 ("S_f", self.failure_shear_stress, N_PER_MM2, "N/mm²"),
+                ("mu_share", self.friction_share, 1.0, ""),
             )
             if grid is not None
         ]
@@ -153,27 +159,27 @@ def _corners_that_may_swing(grid: Grid) -> tuple[FloatArray, FloatArray]:
     return grid.x[i], grid.y[j]
 
 
-SIZES: Final = {"H_V_N_per_mm3": N_PER_MM3, "S_f_N_per_mm2": N_PER_MM2}
+SIZES: Final = {"H_V_N_per_mm3": N_PER_MM3, "S_f_N_per_mm2": N_PER_MM2, "mu_share": 1.0}
 PLACES_PER_STEP: Final = 16
 """Places of an uneven row's even table for each of its shortest distances."""
 MOST_PLACES: Final = 20_000
 CLOSEST: Final = 1e-6
 """Rows nearer to each other (m) are at the same place."""
 _ACTION: Final = Message(
-    "Write x_m and H_V_N_per_mm3, S_f_N_per_mm2 or both, one row for each place along the slope; with y_m one row for "
-    "each place of an even grid."
+    "Write x_m and one or more of H_V_N_per_mm3, S_f_N_per_mm2 and mu_share, one row for each place along the slope; "
+    "with y_m one row for each place of an even grid."
 )
 
 
 def read_snow_map(path: str | Path) -> SnowMap:
-    """Read H_V and S_f over the place.
+    """Read H_V, S_f and friction over the place.
 
     Parameters
     ----------
     path
-        CSV with ``x_m``, one or both of ``H_V_N_per_mm3`` and ``S_f_N_per_mm2``, and where the snow varies across the
-        slope ``y_m``. With ``y_m`` places are those of an even grid, in any order; without it x rises, evenly or not,
-        and values between are those of monotone cubics (PCHIP).
+        CSV with ``x_m``, one or more of ``H_V_N_per_mm3``, ``S_f_N_per_mm2`` and ``mu_share`` (μ over the scenario's),
+        and where the snow varies across the slope ``y_m``. With ``y_m`` places are those of an even grid, in any order;
+        without it x rises, evenly or not, and values between are those of monotone cubics (PCHIP).
 
     Raises
     ------
@@ -196,7 +202,10 @@ def read_snow_map(path: str | Path) -> SnowMap:
     grids = _grids(path, names) if "y_m" in rows[0].cells else _along(path, rows, names)
     try:
         return SnowMap(
-            hardness=grids.get("H_V_N_per_mm3"), failure_shear_stress=grids.get("S_f_N_per_mm2"), source=str(path)
+            hardness=grids.get("H_V_N_per_mm3"),
+            failure_shear_stress=grids.get("S_f_N_per_mm2"),
+            friction_share=grids.get("mu_share"),
+            source=str(path),
         )
     except ParameterError as error:
         raise error.at(path) from error

@@ -316,6 +316,7 @@ def _snow(scenario: Scenario, laws: Laws) -> SnowField:
         shear=laws.shear
         or (None if carries_side_force else scenario.shear.of(contact.snow.failure_shear_stress or 0.0)),
         strength_share=_strength_share(over_place),
+        friction_share=1.0 if over_place is None else over_place.friction_share or 1.0,
         residual_ratio=scenario.shear.residual_ratio,
         slip_weakening=scenario.shear.slip_weakening,
         shear_bearing=scenario.shear.bearing,

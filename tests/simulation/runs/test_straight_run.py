@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import numpy.typing as npt
 import pytest
 
-from skisnow import Run, Scenario
+from skisnow import Run, Scenario, SnowMap
+from skisnow.geometry.surfaces import Grid
 from skisnow.simulation.simulated_run import simulate
 
 from ...carving.synthetic import shovel
@@ -92,3 +94,18 @@ def test_elastic_snow_costs_nothing() -> None:
     expected = squared_speed(run.scenario, path[late] - path[late][0], 0.0, run.speed[late][0] ** 2)
     assert run.speed[late] ** 2 == pytest.approx(expected, rel=5e-5)
     assert abs(run.energies["penetration"][-1]) < 1e-3 * run.energies["friction"][-1]
+
+
+def test_friction_over_the_place_gives_its_own_slope_of_v_squared() -> None:
+    """On a level: v² falls by 2 μ g for each metre, with the μ of each piece. The map rises between 4 and 4.5 m."""
+    ski = rigid_ski(width=WIDTH, base_height=shovel(1.2, 0.03, 1.6), running_length=1.2)
+    given = scenario(ski=ski, compaction=False, friction=FRICTION, speed=SPEED, duration=1.3)
+    x = np.arange(-5.0, 20.0, 0.5)
+    share = Grid.along(x, np.where(x <= 4.0, 0.5, 2.0))
+    run = simulate(replace(given, contact=replace(given.contact, snow_map=SnowMap(friction_share=share))))
+    assert run.outcome == "finished"
+    place, squared = run.place[:, 0], run.speed**2
+    for first, last, expected in ((1.0, 3.2, 0.5), (5.5, 9.0, 2.0)):  # of the boot: the ski is 1.6 m long
+        inside = (place > first) & (place < last)
+        slope = np.polyfit(place[inside], squared[inside], 1)[0]
+        assert slope == pytest.approx(-2.0 * expected * FRICTION * GRAVITY, rel=2e-3)
