@@ -14,7 +14,8 @@ namespace {
 
 constexpr int MOST_PLACES = 11;
 constexpr int MOST_CORRECTIONS = 6;
-constexpr double FAR_ABOVE = -1e3;  // depth (m) that marks untouched snow
+constexpr double ALMOST = 1e-10, ROUNDING = 1e-15;  // (m) last corrections
+constexpr double FAR_ABOVE = -1e3;                  // depth (m) that marks untouched snow
 
 // Directions in which the forces on a section are differentiated; from GROOVE on: depth of the groove at each place.
 enum Along { CORNER, ANGLE, HALF, HARDNESS, EXCESS, BEVEL, BEVEL_WIDTH, LINE, REACH, BEVEL_END, ROUND_END, GROOVE };
@@ -98,13 +99,41 @@ struct CarvePoint::Passed {
     f.touches = deep || flat.edge_depth() > 0.0;
     if (f.touches) {
       const auto in_snow = section(s, f);
-      const auto sums = strip_across<Number>(in_snow, place, groove, Number::along(given.hardness, HARDNESS),
-                                             Number::along(given.excess, EXCESS));
-      f.force = sums.force, f.moment = sums.moment, f.edge = in_snow.edge_depth(), f.other = in_snow.other_depth();
+      add_strips(in_snow, groove, f);
+      f.edge = in_snow.edge_depth(), f.other = in_snow.other_depth();
     }
     for (std::size_t k = 0; k < place.size(); k++) {
       f.deepens[k] = depth[k] >= groove[k].value;
       if (f.deepens[k]) groove[k].value = depth[k];
+    }
+  }
+
+  // As `strip_across`: each piece is differentiated by its own eight numbers, then these by the section's.
+  void add_strips(const SectionIn<Number>& section, const std::vector<Number>& groove, Felt& f) const {
+    using Local = Slopes<8>;
+    const Number reach = section.reach();
+    for (std::size_t k = 0; k + 1 < place.size() && place[k] < reach; k++) {
+      const bool cut = !(place[k + 1] < reach);
+      const Number &start = place[k], &end = cut ? reach : place[k + 1], length = end - start;
+      const Number depth[2] = {section.base_depth(start), section.base_depth(end)};
+      if (!(depth[0].value > 0.0) && !(depth[1].value > 0.0)) continue;
+      const Number far =
+          cut ? groove[k] + length / (place[k + 1] - start) * (groove[k + 1] - groove[k]) : groove[k + 1];
+      const Number* own[] = {&start, &length, &depth[0], &depth[1], &groove[k], &far};
+      Local local[8];
+      for (int m = 0; m < 6; m++) local[m] = Local::along(own[m]->value, m);
+      local[6] = Local::along(given.hardness, 6), local[7] = Local::along(given.excess, 7);
+      StripIn<Local> sums;
+      sums.add(local[0], local[1], {local[2], local[3]}, {local[4] - local[2], local[5] - local[3]}, local[6],
+               local[7]);
+      const auto chain = [&](const Local& sum, Number& out) {
+        out.value += sum.value;
+        for (int m = 0; m < 6; m++)
+          for (int n = 0; n < DIRECTIONS; n++) out.by[n] += sum.by[m] * own[m]->by[n];
+        out.by[HARDNESS] += sum.by[6], out.by[EXCESS] += sum.by[7];
+      };
+      chain(sums.force, f.force);
+      chain(sums.moment, f.moment);
     }
   }
 
@@ -230,7 +259,7 @@ void CarvePoint::refine() {
   double before = std::numeric_limits<double>::infinity();
   const std::vector<double> place = place_.empty() ? places_across(ski_, conditions_) : place_;
   for (int k = 0; k < MOST_CORRECTIONS; k++) {
-    factor();
+    if (before > ALMOST) factor();  // the matrix hardly changes any more
     refine_residual(ski_, conditions_, place, state_, at_);
     if (!factors_.correct(ski_, at_, step)) break;
     last_correction_ = depth_change(ski_, conditions_, step);
@@ -238,6 +267,7 @@ void CarvePoint::refine() {
     before = last_correction_;
     for (std::size_t j = 0; j < state_.u.size(); j++) state_.u[j] += step.u[j];
     for (std::size_t a = 0; a < CARVE_BORDER; a++) state_.border[a] += step.border[a];
+    if (last_correction_ < ROUNDING) break;
   }
   factor();
 }

@@ -21,7 +21,8 @@ FloatArray: TypeAlias = npt.NDArray[np.float64]
 REACHED: Final = 1e-6
 """Relative deviation at which a target counts as reached."""
 _NO_SKI: Final = 1e3  # objective where there is no ski or no equilibrium
-_FTOL: Final = 1e-8  # of the objective, and of relative deviations in constraints
+_FTOL: Final = 3e-7  # of the objective: at a kink it does not fall smoothly
+_NEAREST_FTOL: Final = 1e-8  # of changes, and of relative deviations where all targets are reached
 _PERCENT: Final = 1e4  # squares of deviations count in %
 _MOST_ITERATIONS: Final = 60
 
@@ -117,7 +118,8 @@ class Search:
         home = self.evaluator.start
         nearest = minimize(
             lambda x: float((x - home) @ (x - home)), z, jac=lambda x: 2.0 * (x - home), method="SLSQP",
-            bounds=bounds[: self.count], constraints=self.constraints(exact=True), options=options,
+            bounds=bounds[: self.count], constraints=self.constraints(exact=True),
+            options=options | {"ftol": _NEAREST_FTOL},
         )  # fmt: skip
         near = np.clip(nearest.x, 0.0, 1.0)
         return near if self.broken(near) <= REACHED and self.worst_deviation(near) <= REACHED else z
