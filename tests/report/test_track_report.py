@@ -13,7 +13,7 @@ from skisnow.report.figures.style import journal_style
 from skisnow.report.track.exports import track_gpx, turn_rows
 from skisnow.report.track.figures import drawn_points, named_radii, switch_times, track_along, track_map
 from skisnow.report.track.report import write_track_report
-from skisnow.report.track.summary import track_text
+from skisnow.report.track.summary import track_text, track_verdict
 from skisnow.track.projection import GeodeticPoint
 from skisnow.track.read import read_track
 from skisnow.track.summary import TrackSummary, summary_dict, track_summary
@@ -143,3 +143,18 @@ def test_gpx_of_a_track_is_the_same_track(tmp_path: Path) -> None:
     assert np.abs(again.place - place).max() < 0.01
     assert again.start == start
     assert track_gpx(slalom()) is None
+
+
+@pytest.mark.parametrize(
+    ("rms", "known_to", "ending"),
+    [
+        (1.2, 0.0, "apart (root mean square, nearest place)."),
+        (1.2, 3.0, "not certain, as a place is known to 3 m only."),
+        (8.4, 3.0, "not certain, as a place is known to 3 m only."),  # twice √2 of 3 m are 8.49 m
+        (8.6, 3.0, "certain, as a place is known to 3 m."),
+    ],
+)
+def test_two_tracks_differ_for_certain_beyond_the_accuracy_of_both(rms: float, known_to: float, ending: str) -> None:
+    found = track_verdict({"nearest": {"rms_m": rms}, "known_to_m": known_to})
+    assert found.endswith(ending)
+    assert ("not certain" in found) == ("not certain" in ending)

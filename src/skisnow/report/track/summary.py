@@ -7,6 +7,7 @@ from datetime import datetime
 from textwrap import fill
 from typing import TYPE_CHECKING, Any, Final
 
+from ..._support.messages import Message
 from ..formatting import aligned_rows, counted, date_words, plain
 
 if TYPE_CHECKING:
@@ -169,6 +170,8 @@ def compare_summary(comparison: Mapping[str, Any]) -> str:
     ]
     if not comparison["in_one_frame"]:
         return "\n".join([*lines, *_NO_FRAME])
+    if comparison["nearest"]["rms_m"] is not None:
+        lines += [track_verdict(comparison), ""]
     for kind, title in TITLES.items():
         lines += [*_distances(title, comparison[kind], measured["length_m"], exact), ""]
     back = comparison["largest_from_simulated_m"]
@@ -182,6 +185,28 @@ def compare_summary(comparison: Mapping[str, Any]) -> str:
         lines.append(f"A place is known to {plain(exact, 1)} m: no further digits are printed.")
     lines += _fitted(comparison)
     return "\n".join(lines)
+
+
+def track_verdict(comparison: Mapping[str, Any]) -> Message:
+    """Sentence whether two tracks differ by more than the places are known: rms distance of nearest places.
+
+    Two places that are each known to u differ by √2 u if the tracks are the same; twice that counts as certain.
+    """
+    rms, exact = comparison["nearest"]["rms_m"], comparison["known_to_m"] or 0.0
+    apart = metres(rms, exact)
+    if not exact:
+        return Message("The tracks are {apart} apart (root mean square, nearest place).", apart=apart)
+    if rms > 2.0 * math.sqrt(2.0) * exact:
+        return Message(
+            "The tracks are {apart} apart (root mean square, nearest place): certain, as a place is known to {exact} "
+            "m.",
+            apart=apart, exact=plain(exact, 1),
+        )  # fmt: skip
+    return Message(
+        "The tracks are {apart} apart (root mean square, nearest place): not certain, as a place is known to {exact} m "
+        "only.",
+        apart=apart, exact=plain(exact, 1),
+    )  # fmt: skip
 
 
 def metres(value: float | None, exact: float, digits: int = 3) -> str:
