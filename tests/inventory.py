@@ -78,7 +78,7 @@ def laws_and_formats() -> Iterator[str]:
     for kind, package in (("friction", friction), ("penetration", penetration), ("shear", shear)):
         yield from (f"law {kind}: {law.__name__}" for law in package.LAWS)
     yield from (f"track format {name}" for name in get_args(TrackFormat))
-    for kind in ("ski_names", "published_names", "scenario_names", "course_names"):
+    for kind in ("ski_names", "snow_names", "scenario_names", "course_names"):
         yield from (f"{kind}: {name}" for name in getattr(skisnow, kind)())
 
 
