@@ -79,7 +79,7 @@ class Answers:
             line
             for kind, pairs in tables.items()
             if pairs
-            for line in ("", f"[{SECTION}.{kind}]", *(f"{_quoted(key)} = {_quoted(pairs[key])}" for key in pairs))
+            for line in ("", f"[{SECTION}.{kind}]", *(f"{toml_text(key)} = {toml_text(pairs[key])}" for key in pairs))
         ]
 
 
@@ -95,7 +95,8 @@ def _pair(kind: str, text: str) -> tuple[str, str]:
     return key.strip(), value.strip()
 
 
-def _quoted(text: str) -> str:
+def toml_text(text: str) -> str:
+    """A text in quotes as TOML writes it."""
     return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")
 
 

@@ -18,7 +18,7 @@ from ..._support.staging import prepare_folder, staged, write_file
 from ..._support.user_files import own_json
 from ..problems import error
 from ..reading.campaign_file import CAMPAIGN_FILE
-from .answers import SECTION
+from .answers import SECTION, toml_text
 from .notes import PLATE, TOOL, Note, length_mm, stated_plates, stated_tools
 from .questions import Question, ask, is_asked
 
@@ -58,28 +58,24 @@ def description(
     notes: Sequence[str],
 ) -> str:
     """Text of campaign.toml; the step of the gauge only if the notes agree."""
-    lines = [f"name = {_quoted(title)}", f"observers = {_list(observers)}"]
+    lines = [f"name = {toml_text(title)}", f"observers = {_list(observers)}"]
     lines += [f"gauge_resolution_mm = {step:g}" for step in gauges if len(gauges) == 1]
     for kind, described in (("tool", tools), ("plate", plates)):
         for entry in described:
             keys = (f"{key} = {value}" for key, value in entry.keys)
-            lines += ["", f"[[{kind}]]", f"name = {_quoted(entry.name)}", *keys]
+            lines += ["", f"[[{kind}]]", f"name = {toml_text(entry.name)}", *keys]
     lines += [
         "",
         f"[{SECTION}]",
-        f"template = {_quoted(title)}",
-        f"file = {_quoted(f'{ORIGINAL}/{PurePath(file).name}')}",
+        f"template = {toml_text(title)}",
+        f"file = {toml_text(f'{ORIGINAL}/{PurePath(file).name}')}",
     ]
     lines += [f'sha256 = "{sha256}"', f"notes = {_list(notes)}", *template.toml_lines()]
     return "\n".join((*lines, ""))
 
 
-def _quoted(text: str) -> str:
-    return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")
-
-
 def _list(texts: Sequence[str]) -> str:
-    return f"[{', '.join(map(_quoted, texts))}]"
+    return f"[{', '.join(map(toml_text, texts))}]"
 
 
 def campaign_files(tables: Mapping[str, str], described: str, name: str, data: bytes) -> dict[str, bytes]:
