@@ -67,7 +67,7 @@ def load_words(load: str) -> tuple[str, str]:
     >>> load_words("98.0665")
     ('98.0665 N', '10 kg')
     """
-    return f"{load} N", f"{float(load) / KILOGRAM_FORCE:.4g} kg"
+    return f"{load} N", f"{float(load) / KILOGRAM_FORCE:.3g} kg"
 
 
 def in_words(message: str) -> str:
