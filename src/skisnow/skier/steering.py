@@ -2,17 +2,13 @@
 
 from __future__ import annotations
 
+import bisect
 import math
 from dataclasses import dataclass
-from typing import Protocol, TypeAlias
-
-import numpy as np
-import numpy.typing as npt
+from typing import Protocol
 
 from ..scenario.skier import Skier
 from ..track.course import Course
-
-FloatArray: TypeAlias = npt.NDArray[np.float64]
 
 
 @dataclass(slots=True)
@@ -99,13 +95,13 @@ class LineThroughGates:
         for gate in course.gates:
             aside = skier.pole_clearance if gate.side == "left" else -skier.pole_clearance
             apexes.append((gate.turning[0], gate.turning[1] + aside))
-        self.apexes = np.array(apexes)
+        self.apexes = [(float(x), float(y)) for x, y in apexes]
+        self._places = [x for x, _ in self.apexes]
 
     def at(self, x: float) -> tuple[float, float, float]:
         """Place aside (m), slope and second derivative (1/m) of the line at a place down the slope (m)."""
-        place = self.apexes[:, 0]
-        i = int(np.clip(np.searchsorted(place, x) - 1, 0, len(place) - 2))
-        (x0, y0), (x1, y1) = self.apexes[i], self.apexes[i + 1]
+        i = min(max(bisect.bisect_left(self._places, x) - 1, 0), len(self._places) - 2)
+        (x0, y0), (x1, y1) = self.apexes[i : i + 2]
         rate, half = math.pi / (x1 - x0), 0.5 * (y1 - y0)
         phase = min(math.pi, max(0.0, rate * (x - x0)))
         bend = half * rate**2 * math.cos(phase) if x0 <= x <= x1 else 0.0
