@@ -40,7 +40,7 @@ from skisnow.scenario.keys import SCENARIO_KEYS
 PAGE = Path(__file__).resolve().parent / "validation/skier.md"
 SHARE = 0.2
 SHORT = 4.0
-FOR_GATES = ("skier.pole_clearance_m", "skier.sight_s", "skier.line_rate_per_s")
+FOR_GATES = ("skier.pole_clearance_m", "skier.line_rate_per_s")
 
 WATCHED = (
     ("slalom-20-gates", 4420.0, 203.0),

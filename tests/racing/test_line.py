@@ -12,8 +12,8 @@ import pytest
 from skisnow import load_scenario
 from skisnow._support.errors import ParameterError
 from skisnow.racing import LineTurn, RacingLine, follower_line, read_line, write_line
-from skisnow.racing.line import FollowedLine, first_gates, with_numbers
-from skisnow.skier.steering import LineThroughGates, Underway
+from skisnow.racing.line import first_gates, with_numbers
+from skisnow.skier.plan import half_waves
 
 SLALOM = load_scenario("slalom-20-gates")
 FOLLOWED = follower_line(SLALOM)
@@ -30,16 +30,9 @@ CURVED = other(
 )
 
 
-def test_half_waves_are_the_line_that_a_skier_follows_by_itself() -> None:
-    assert SLALOM.course is not None
-    assert SLALOM.skier is not None
-    own = LineThroughGates(SLALOM.course, SLALOM.skier, (SLALOM.start.x, SLALOM.start.y))
-    for x in np.arange(-1.0, 205.0, 0.37).tolist():
-        assert FOLLOWED.at(x) == pytest.approx(own.at(x), abs=1e-12)
-    at = Underway(3.0, 14.2, 0.9, -0.1, 6.0, -2.0)
-    assert FollowedLine(FOLLOWED, SLALOM.skier).acceleration(at, 1.0) == pytest.approx(
-        own.acceleration(at, 1.0), rel=1e-9
-    )
+def test_the_followers_line_is_half_waves_from_apex_to_apex() -> None:
+    for x in (0.5, 7.3, 14.2, 55.0):
+        assert FOLLOWED.at(x) == pytest.approx(half_waves(FOLLOWED.apexes, x), rel=1e-9)
 
 
 def test_it_goes_through_its_apexes_along_the_fall_line() -> None:

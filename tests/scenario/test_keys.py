@@ -73,12 +73,8 @@ def test_units_come_from_the_names() -> None:
         "stiffness_factor",
         "turns",
         "leg_gain",
-        "carving_share",
-        "lifted_share",
-        "bearing_share",
         "edge_gain",
-        "lean_more",
-        "reach",
+        "outer_share",
     }
 
 

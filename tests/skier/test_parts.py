@@ -7,13 +7,13 @@ import math
 import numpy as np
 import pytest
 
-from skisnow import Course, Gate, load_scenario
+from skisnow import load_scenario
 from skisnow._support.errors import ParameterError
 from skisnow.scenario import Skier, scenario_values
 from skisnow.skier import body_of, segments
+from skisnow.skier.carve import CarvesOverTime, Pursuit, Underway
 from skisnow.skier.edges import Edges
-from skisnow.skier.legs import leg_poses
-from skisnow.skier.steering import LineThroughGates, TurnsOverTime, Underway
+from skisnow.skier.plan import TurnsOverTime, half_waves
 
 STEEP = 9.81
 
@@ -23,19 +23,21 @@ def test_plan() -> None:
     plan = TurnsOverTime(Skier(first_turn=1.0))
     assert [plan.sense(time) for time in (0.9, 1.1, 1.9, 2.1, 3.9, 4.1, 9.9, 10.1)] == [0, 1, 1, -1, -1, 1, 1, 0]
     assert TurnsOverTime(Skier(first_turn=1.0, first_to_left=False)).sense(1.5) == -1.0
-    assert plan.acceleration(Underway(1.5, 0.0, 0.0, 0.0, 7.0, 0.0), 4.0) == 4.0
+    assert CarvesOverTime(plan).acceleration(Underway(1.5, 0.0, 0.0, 0.0, 7.0, 0.0), 4.0) == 4.0
 
 
-def line() -> LineThroughGates:
-    gates = tuple(Gate(name=str(i), turning=(10.0 * i, y), side=side) for i, (y, side) in enumerate(POLES, 1))  # type: ignore[arg-type]
-    return LineThroughGates(Course(gates=gates), Skier(steers="gates", pole_clearance=1.0, sight=0.2), (0.0, 0.0))
+APEXES = [(0.0, 0.0), (10.0, 3.0), (20.0, -3.0), (30.0, 3.0)]
 
 
-POLES = ((2.0, "left"), (-2.0, "right"), (2.0, "left"))
+class Waves:
+    """A line from apex to apex."""
+
+    def at(self, x: float) -> tuple[float, float, float]:
+        return half_waves(APEXES, x)
 
 
-def test_the_line_goes_by_each_pole_at_its_clearance() -> None:
-    found = line()
+def test_half_waves_go_from_apex_to_apex() -> None:
+    found = Waves()
     assert [found.at(x)[0] for x in (0.0, 10.0, 20.0, 30.0, 50.0)] == pytest.approx([0.0, 3.0, -3.0, 3.0, 3.0])
     step = 1e-4
     for x in (4.0, 13.0, 27.0):  # slope and second derivative are those of the line
@@ -45,8 +47,8 @@ def test_the_line_goes_by_each_pole_at_its_clearance() -> None:
 
 
 def test_who_is_on_the_line_turns_as_it_does_and_who_is_beside_it_goes_back() -> None:
-    found = line()
-    aside, slope, bend = found.at(10.0)  # at the apex, where it looks to
+    found = Pursuit(Waves(), rate=2.0, sight=0.2)
+    aside, slope, bend = found.line.at(10.0)  # at the apex, where it looks to
     on = Underway(0.0, 10.0 - 0.2 * 6.0, aside, math.atan(slope), 6.0, 0.0)
     assert found.acceleration(on, 1.0) == pytest.approx(36.0 * bend, abs=0.2)
     on.y += 0.5
@@ -82,40 +84,10 @@ def test_a_carve_in_balance_leans_as_it_must() -> None:
     assert found.carving_acceleration(speed) == pytest.approx(STEEP * math.tan(lean))
 
 
-def test_what_the_snow_holds_bounds_what_a_carve_gets() -> None:
-    """A wedge in balance, tan ϑ = grip, holds 4 S_f² L/(H_V N) times the load of both skis; slope counts."""
-    turn, load = load_scenario("skier-12deg"), 736.0
-    found = Edges.of(turn, STEEP, Skier(edge_beyond_lean=0.0))
-    snow = turn.contact.snow
-    most = 4.0 * (snow.failure_shear_stress or 0.0) ** 2 * turn.ski.running_length / (snow.snow_hardness * load)
-    assert 0.3 < most < 0.6
-    assert found.holding(load) == pytest.approx(most)
-    for side in (1.0, -1.0):
-        inside, outside = 0.99 * side * most * STEEP, 4.0 * side * most * STEEP
-        assert found.held(inside, 0.0, load) == inside
-        assert found.held(inside - 1.0, 1.0, load) == inside - 1.0
-        assert found.held(outside, 0.0, load) == pytest.approx(2.0 * side * most * STEEP)  # as √tan ϑ
-        assert found.held(outside - 1.0, 1.0, load) == pytest.approx(2.0 * side * most * STEEP - 1.0)
-
-
 def test_a_race_piste_holds_whatever_is_asked() -> None:
     found = edges()
     assert found.held(11.0, 2.0, 736.0) == 11.0
     assert found.holding(736.0) > 4.0
-
-
-def test_legs_keep_the_centre_of_mass_level_and_their_rates_are_those_of_their_poses() -> None:
-    height, step = 0.6, 1e-6
-    for aside in (0.0, 0.3, -0.5):
-        poses = leg_poses((aside, 0.7), (0.4, -1.1), height, 0.44, 0.03, 0.05)
-        lean = math.atan2(aside, height)
-        snow_up = np.array([0.0, -math.sin(lean), math.cos(lean)])  # in the body
-        flat = leg_poses((aside, 0.0), (0.0, 0.0), height, 0.44, 0.03, 0.05)
-        for pose in flat:
-            assert float((np.array([0.0, 0.0, height]) - pose.place) @ snow_up) == pytest.approx(height)
-        later = leg_poses((aside + 0.7 * step, 0.7), (0.4 - 1.1 * step, -1.1), height, 0.44, 0.03, 0.05)
-        for pose, other in zip(poses, later, strict=True):
-            assert (other.place - pose.place) / step == pytest.approx(pose.velocity, abs=1e-4)
 
 
 def test_a_body_scales() -> None:

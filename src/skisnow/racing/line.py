@@ -18,7 +18,7 @@ from .._support.messages import Message
 from .._support.spreadsheet_text import csv_rows
 from .._support.staging import write_file
 from ..scenario import Scenario, Skier
-from ..skier.steering import Underway, pursued
+from ..skier import BalancedSkier
 from ..track.course import Course
 
 LEAST_TURNING: Final = 0.2
@@ -187,19 +187,6 @@ def ways(course: Course, start: tuple[float, float]) -> list[float]:
     return [min(pair) for pair in zip(before, [*before[1:], math.inf], strict=True)]
 
 
-@dataclass(frozen=True, slots=True)
-class FollowedLine:
-    """Steering of a balanced skier: a line, pursued as its numbers say."""
-
-    line: RacingLine
-    skier: Skier
-
-    def acceleration(self, at: Underway, carving: float) -> float:
-        """That of the line, a time ahead, and what leads back to it."""
-        del carving
-        return pursued(self.line, at, sight=self.skier.sight, rate=self.skier.line_rate)
-
-
 def course_of(scenario: Scenario) -> Course:
     """Its course.
 
@@ -232,8 +219,10 @@ def skier_of(scenario: Scenario) -> Skier:
 
 def follower_line(scenario: Scenario) -> RacingLine:
     """The line that a scenario's skier follows by itself: half waves past the poles at its clearance."""
-    course, aside = course_of(scenario), skier_of(scenario).pole_clearance
-    return RacingLine(course, (scenario.start.x, scenario.start.y), (LineTurn(aside=aside),) * len(course.gates))
+    course, start = course_of(scenario), (scenario.start.x, scenario.start.y)
+    apexes = BalancedSkier(scenario).apexes(course)[1:]
+    asides = [abs(y - gate.turning[1]) for (_, y), gate in zip(apexes, course.gates, strict=True)]
+    return RacingLine(course, start, tuple(LineTurn(aside=aside) for aside in asides))
 
 
 def with_numbers(line: RacingLine, numbers: Sequence[float], first: int) -> RacingLine:

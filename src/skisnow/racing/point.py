@@ -14,7 +14,7 @@ import numpy.typing as npt
 from .._support.errors import ParameterError
 from .._support.messages import Message
 from ..scenario import Plane, Scenario
-from ..skier.steering import Line
+from ..skier.plan import Line
 from ..track.course import CourseResult, MovingPoint, passages
 from .line import RacingLine, skier_of
 from .score import NOT_PASSED, Score, score_of

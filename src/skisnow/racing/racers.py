@@ -11,7 +11,7 @@ from ..simulation.run_gates import run_gates
 from ..simulation.simulated_run import Progress, simulate
 from ..skier import BalancedSkier
 from ..skier.seen import Moment
-from .line import FollowedLine, LineTurn, RacingLine, skier_of
+from .line import LineTurn, RacingLine
 from .point import PointRacer
 from .score import Score, score_of, with_room
 
@@ -31,7 +31,7 @@ class LineSkier:
 
     def __init__(self, scenario: Scenario, line: RacingLine) -> None:
         self.skier = BalancedSkier(scenario)
-        self.skier.steering = FollowedLine(line, skier_of(scenario))
+        self.skier.controller = self.skier.follow(line, line.apexes)
 
     @property
     def period(self) -> float:

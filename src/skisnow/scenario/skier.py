@@ -19,22 +19,25 @@ class Skier:
     ----------
     steers
         By a plan of turns over time, or through the gates of the scenario's course.
-    first_turn, turn_time, turns, first_to_left
+    first_turn, turn_time, turns, turn_angle, first_to_left
         The plan: when the first half turn begins (s), how long a whole turn takes (s), how many there are, the first
-        one counted as a half, and to which side it goes.
-    pole_clearance, sight, line_rate
-        Through gates: how far beside the turning poles the boots' middle is to pass (m), the time ahead (s) at which
-        the line is looked at, and the rate (1/s) at which the skier goes back to it.
-    longest_leg
-        Greatest distance from the middle of the feet to the centre of mass (m).
-    greatest_edge
-        Greatest edge angle (rad).
-    greatest_lean
-        That it plans (rad).
-    leg_gain, leg_yielding, carving_share, edge_beyond_lean, blunt_edge, edge_gain, edge_change, edge_filter,
-    share_filter, load_filter, lean_more, reach, lag, correction, trusted_edge, touch, lifted_share, bearing_share,
-    foresight, foresight_step, slowest, greatest_pressed, control_period
-        Parameters of the control, explained in docs/methods/skier.md.
+        one counted as a half, the course at the edge change (rad), and to which side the first one goes.
+    pole_clearance, line_rate
+        Through gates: how far beside the turning poles the boots' middle is to pass (m), and the rate (1/s) at which
+        carved turns go back to the line.
+    brakes_to
+        To which skidded turns brake (m/s); 0: turns are carved, as far as the snow holds.
+    assumed_hardness, assumed_strength
+        H_V (N/m³) and S_f (N/m²) that the control assumes; 0: those of the scenario.
+    longest_leg, greatest_edge, greatest_hip, hip_torque, greatest_shift, greatest_shift_speed
+        Limits of the body: leg (m), edge angle, yaw of the body against the skis (rad), torque of the hips (N m), shift
+        of the centre of mass along the skis (m) and its rate (m/s).
+    greatest_lean, greatest_slip, least_slip, braking, outer_share, edge_rate, leg_gain, leg_yielding, edge_gain
+        Of the control: lean and slip that it plans (rad), deceleration over the speed that is too much (1/s), share of
+        the load on the outer ski, corner frequency of the edge angle (1/s), gain of legs and edges on the error of the
+        capture point, and rate at which legs give way (1/s).
+    control_period
+        Time between two decisions (s).
 
     See Also
     --------
@@ -91,6 +94,18 @@ class Skier:
             condition=Condition("skier.steers", "turns"),
         ),
     ] = 4.5
+    turn_angle: Annotated[
+        float,
+        Quantity(
+            "skier.turn_angle_deg",
+            "course at the edge change, from the fall line",
+            label="course at the edge change",
+            lowest=1.0,
+            highest=80.0,
+            origin="choice: that of gates 13 m apart and 3 m across",
+            condition=Condition("skier.steers", "turns"),
+        ),
+    ] = 30.0 * DEGREE
     first_to_left: Annotated[
         bool,
         Quantity(
@@ -111,24 +126,45 @@ class Skier:
             origin="choice: half the stance, and what the line is missed by",
             condition=Condition("skier.steers", "gates"),
         ),
-    ] = 0.8
-    sight: Annotated[
+    ] = 0.85
+    brakes_to: Annotated[
         float,
         Quantity(
-            "skier.sight_s",
-            "through gates: time ahead at which the line is looked at and steered to",
-            label="time ahead",
-            lowest=0.05,
-            highest=5.0,
-            origin="found by trial",
-            condition=Condition("skier.steers", "gates"),
+            "skier.brakes_to_m_per_s",
+            "speed to which skidded turns brake; 0: turns are carved, as far as the snow holds",
+            label="brakes to",
+            lowest=0.0,
+            highest=40.0,
+            origin="choice: carved turns",
         ),
-    ] = 0.3
+    ] = 0.0
+    assumed_hardness: Annotated[
+        float,
+        Quantity(
+            "skier.assumed_H_V_N_per_mm3",
+            "H_V that the control assumes; 0: that of the scenario",
+            label="assumed H_V",
+            lowest=0.0,
+            highest=100.0,
+            origin="choice: the nominal snow",
+        ),
+    ] = 0.0
+    assumed_strength: Annotated[
+        float,
+        Quantity(
+            "skier.assumed_S_f_N_per_mm2",
+            "S_f that the control assumes; 0: that of the scenario",
+            label="assumed S_f",
+            lowest=0.0,
+            highest=100.0,
+            origin="choice: the nominal snow",
+        ),
+    ] = 0.0
     line_rate: Annotated[
         float,
         Quantity(
             "skier.line_rate_per_s",
-            "through gates: rate at which it goes back to the line",
+            "rate at which carved turns go back to the line through gates",
             label="rate back to the line",
             lowest=0.0,
             highest=100.0,
@@ -158,6 +194,51 @@ class Skier:
             origin="measured of slalom racers at gates 10 m apart, 65.7 ± 1.7° (Reid 2020)",
         ),
     ] = 66.0 * DEGREE
+
+    greatest_hip: Annotated[
+        float,
+        Quantity(
+            "skier.greatest_hip_deg",
+            "greatest yaw of the body against the skis, hips and trunk together",
+            label="greatest hip angle",
+            lowest=10.0,
+            highest=90.0,
+            origin="rotation of hips (35 to 45°) and trunk (30 to 40°) of adults together, less a margin",
+        ),
+    ] = 60.0 * DEGREE
+    hip_torque: Annotated[
+        float,
+        Quantity(
+            "skier.hip_torque_N_m",
+            "greatest torque of both legs about the body's long axis",
+            label="greatest hip torque",
+            lowest=1.0,
+            highest=500.0,
+            origin="isometric rotation strength of the hips of men, some 60 to 90 N m a leg",
+        ),
+    ] = 150.0
+    greatest_shift: Annotated[
+        float,
+        Quantity(
+            "skier.shift_m",
+            "greatest shift of the centre of mass along the skis",
+            label="greatest shift fore and aft",
+            lowest=0.0,
+            highest=0.5,
+            origin="half a foot and what boot and ski hold besides",
+        ),
+    ] = 0.15
+    greatest_shift_speed: Annotated[
+        float,
+        Quantity(
+            "skier.shift_speed_m_per_s",
+            "greatest speed of this shift",
+            label="greatest speed fore and aft",
+            lowest=0.0,
+            highest=10.0,
+            origin="found by trial: with 2.5 the loads peak at seven weights",
+        ),
+    ] = 1.5
     greatest_lean: Annotated[
         float,
         Quantity(
@@ -166,9 +247,64 @@ class Skier:
             label="greatest planned lean",
             lowest=1.0,
             highest=80.0,
-            origin="found by trial: little below the leg's reach, arccos(0.6/1.05) = 55°",
+            origin="found by trial: below the leg's reach, arccos(0.6/1.05) = 55°",
         ),
-    ] = 48.0 * DEGREE
+    ] = 50.0 * DEGREE
+    greatest_slip: Annotated[
+        float,
+        Quantity(
+            "skier.greatest_slip_deg",
+            "greatest planned angle between skis and path",
+            label="greatest planned slip",
+            lowest=1.0,
+            highest=60.0,
+            origin="found by trial on 10 to 19°",
+        ),
+    ] = 26.0 * DEGREE
+    least_slip: Annotated[
+        float,
+        Quantity(
+            "skier.least_slip_deg",
+            "planned angle between skis and path in a turn that need not brake",
+            label="least planned slip",
+            lowest=1.0,
+            highest=60.0,
+            origin="found by trial: skis grip below 3°",
+        ),
+    ] = 13.0 * DEGREE
+    braking: Annotated[
+        float,
+        Quantity(
+            "skier.braking_per_s",
+            "deceleration over the speed that is too much",
+            label="braking",
+            lowest=0.0,
+            highest=10.0,
+            origin="found by trial",
+        ),
+    ] = 0.8
+    outer_share: Annotated[
+        float,
+        Quantity(
+            "skier.outer_share",
+            "share of the load that the outer ski is to bear in a turn",
+            label="share of the outer ski",
+            lowest=0.5,
+            highest=0.9,
+            origin="choice: within 55 to 80 %",
+        ),
+    ] = 0.65
+    edge_rate: Annotated[
+        float,
+        Quantity(
+            "skier.edge_rate_per_s",
+            "corner frequency of the edge angle",
+            label="speed of the edge angle",
+            lowest=0.1,
+            highest=1000.0,
+            origin="found by trial: 5.6 Hz",
+        ),
+    ] = 35.0
     leg_gain: Annotated[
         float,
         Quantity(
@@ -184,235 +320,24 @@ class Skier:
         float,
         Quantity(
             "skier.leg_yielding_per_s",
-            "speed aside at which legs give way, over how far the centre of pressure is from the requested place",
+            "speed aside at which legs give way, over how far the centre of pressure is from where it is asked for",
             label="yielding of the legs",
             lowest=0.0,
             highest=100.0,
-            origin="found by trial: below 0.6 the loads swing at 5 to 8 Hz, above 2 by the steps of the control",
+            origin="found by trial: at 5 ms a straight run magnifies the last bits with 1 more than with 0.7",
         ),
-    ] = 1.0
-    carving_share: Annotated[
-        float,
-        Quantity(
-            "skier.carving_share",
-            "share of the straightest carve's acceleration at which edges change from a skid to a carve",
-            label="carving from",
-            lowest=0.0,
-            highest=1.0,
-            below=True,
-            origin="found by trial: at 0 lines through gates are cut, at 0.6 loads swing more",
-        ),
-    ] = 0.3
-    edge_beyond_lean: Annotated[
-        float,
-        Quantity(
-            "skier.edge_beyond_lean_deg",
-            "edge angle beyond the lean of balance in a carve",
-            label="edge beyond the lean",
-            lowest=0.0,
-            highest=45.0,
-            origin="choice: so that the ski holds, with the lean not known better",
-        ),
-    ] = 3.0 * DEGREE
-    blunt_edge: Annotated[
-        float,
-        Quantity(
-            "skier.blunt_edge_deg",
-            "edge angle over which the lift of the boot by the edge is rounded where it goes through flat",
-            label="rounding of the edge change",
-            lowest=0.1,
-            highest=30.0,
-            origin="choice: an edge change of no jump in the speed of the legs",
-        ),
-    ] = 3.0 * DEGREE
+    ] = 0.7
     edge_gain: Annotated[
         float,
         Quantity(
             "skier.edge_gain",
-            "gain of the turn, by the edges, on the same error",
+            "gain of the edges on the same error",
             label="gain of the edges",
             lowest=0.0,
             highest=100.0,
-            origin="found by trial",
+            origin="choice: what balances it",
         ),
-    ] = 2.0
-    edge_change: Annotated[
-        float,
-        Quantity(
-            "skier.edge_change_per_s",
-            "2π times the corner frequency with which the planned turn goes from side to side",
-            label="speed of the edge change",
-            lowest=0.1,
-            highest=1000.0,
-            origin="found by trial: 1.6 Hz",
-        ),
-    ] = 10.0
-    edge_filter: Annotated[
-        float,
-        Quantity(
-            "skier.edge_filter_per_s",
-            "2π times the corner frequency of the edge angle",
-            label="speed of the edge angle",
-            lowest=0.1,
-            highest=1000.0,
-            origin="found by trial: 3 Hz",
-        ),
-    ] = 19.0
-    share_filter: Annotated[
-        float,
-        Quantity(
-            "skier.share_filter_per_s",
-            "the same of what balance asks of the edges",
-            label="speed of the balance by edges",
-            lowest=0.1,
-            highest=1000.0,
-            origin="found by trial: 3 Hz",
-        ),
-    ] = 19.0
-    load_filter: Annotated[
-        float,
-        Quantity(
-            "skier.load_filter_per_s",
-            "the same of the estimates from the loads",
-            label="speed of what the loads teach",
-            lowest=0.1,
-            highest=1000.0,
-            origin="found by trial: 4 Hz",
-        ),
-    ] = 25.0
-    lean_more: Annotated[
-        float,
-        Quantity(
-            "skier.lean_more",
-            "capture point wanted, over that of balance",
-            label="lean beyond balance",
-            lowest=0.0,
-            highest=3.0,
-            origin="found by trial",
-        ),
-    ] = 1.1
-    reach: Annotated[
-        float,
-        Quantity(
-            "skier.reach",
-            "share of half the stance within which the centre of pressure is requested",
-            label="reach",
-            lowest=0.0,
-            highest=1.0,
-            origin="found by trial",
-        ),
-    ] = 0.8
-    lag: Annotated[
-        float,
-        Quantity(
-            "skier.lag_m",
-            "way after which the path has the edge's curvature",
-            label="lag",
-            lowest=0.0,
-            highest=10.0,
-            origin="found by trial",
-        ),
-    ] = 0.6
-    correction: Annotated[
-        float,
-        Quantity(
-            "skier.correction_m",
-            "by how much the loads may correct the planned place of the centre of mass, aside",
-            label="correction by loads",
-            lowest=0.0,
-            highest=1.0,
-            origin="found by trial",
-        ),
-    ] = 0.12
-    trusted_edge: Annotated[
-        float,
-        Quantity(
-            "skier.trusted_edge_deg",
-            "edge angle above which loads count fully, with its square below: flatter skis follow the feet",
-            label="edge of trusted loads",
-            lowest=0.1,
-            highest=80.0,
-            origin="choice: twice what holds the weight aside on the race piste of the catalogue",
-        ),
-    ] = 10.0 * DEGREE
-    touch: Annotated[
-        float,
-        Quantity(
-            "skier.touch_per_s",
-            "how fast a lifted ski is put down",
-            label="touch",
-            lowest=0.0,
-            highest=1000.0,
-            origin="found by trial",
-        ),
-    ] = 20.0
-
-    lifted_share: Annotated[
-        float,
-        Quantity(
-            "skier.lifted_share",
-            "share of the load below which a ski counts as lifted",
-            label="a ski is lifted below",
-            lowest=0.0,
-            highest=0.5,
-            origin="choice: well below what a ski in the air weighs, 3 % of the skier",
-        ),
-    ] = 0.02
-    bearing_share: Annotated[
-        float,
-        Quantity(
-            "skier.bearing_share",
-            "share of the weight below which the load of both skis tells nothing",
-            label="skis bear from",
-            lowest=0.0,
-            highest=1.0,
-            origin="choice: a fifth, where a leap has all but begun",
-        ),
-    ] = 0.2
-    foresight: Annotated[
-        float,
-        Quantity(
-            "skier.foresight_s",
-            "time ahead over which it thinks its plan through",
-            label="foresight",
-            lowest=0.1,
-            highest=10.0,
-            origin="derived: what is later than 5.5 times the pendulum's time of 0.28 s weighs less than 0.4 %",
-        ),
-    ] = 1.6
-    foresight_step: Annotated[
-        float,
-        Quantity(
-            "skier.foresight_step_s",
-            "time between the moments of its plan that it looks at",
-            label="step of the foresight",
-            lowest=0.001,
-            highest=0.1,
-            origin="choice: two steps of the control",
-        ),
-    ] = 0.02
-    slowest: Annotated[
-        float,
-        Quantity(
-            "skier.slowest_m_per_s",
-            "speed with which lag and turns are computed at least",
-            label="slowest speed in the control",
-            lowest=0.1,
-            highest=20.0,
-            origin="choice: below the start speeds of the catalogue",
-        ),
-    ] = 2.0
-    greatest_pressed: Annotated[
-        float,
-        Quantity(
-            "skier.greatest_pressed_m_per_s2",
-            "greatest acceleration by the slope's own bend that it counts with",
-            label="pressing by the slope",
-            lowest=0.0,
-            highest=9.0,
-            origin="choice: a fifth of gravity; planes have none",
-        ),
-    ] = 2.0
+    ] = 1.0
     control_period: Annotated[
         float,
         Quantity(
@@ -421,9 +346,9 @@ class Skier:
             label="period of the control",
             lowest=1.0,
             highest=50.0,
-            origin="choice: 1/30 of an edge change",
+            origin="choice: with 10 legs that give way make the loads swing",
         ),
-    ] = 0.01
+    ] = 5e-3
 
     __repr__ = declared_text
 

@@ -11,13 +11,14 @@ from typing import Final, TypeAlias
 
 import numpy as np
 
-from .._support.errors import ModelLimitWarning, SolverError
+from .._support.errors import ModelLimitWarning, ParameterError, SolverError
 from .._support.messages import Message
 from .._support.units import MM
 from ..contact import Laws
 from ..scenario import Scenario
 from ..scenario.plausibility import model_limits
 from ..scenario.terrain import down_and_left
+from ..skier import BalancedSkier, Controller
 from .moving_boots import SAME_TIME, BootControl
 from .run import OPEN_SHARE, Groove, Outcome, Run, Strength
 from .run_gates import GatesAhead, run_gates
@@ -80,6 +81,7 @@ def simulate(
     strength_along: Strength | None = None,
     laws: Laws | None = None,
     boots: BootControl | None = None,
+    controller: Controller | None = None,
 ) -> Run:
     """Simulate a scenario from static equilibrium.
 
@@ -99,6 +101,9 @@ def simulate(
         Moves the boots against the sledge, instead of the scenario's boots.file: called with a `BootMoment` every
         10 ms, or after its attribute ``period`` (s), it gives the `BootPose` of the left and the right boot at the end
         of that time. Its method ``push``, if it has one, gives a force and its place on the sledge.
+    controller
+        Decides for the scenario's skier in place of the built-in control: its method ``command`` takes what the skier
+        sees, its posture and the period (s), and gives a `skisnow.skier.Command`.
 
     Returns
     -------
@@ -128,6 +133,8 @@ def simulate(
     """
     for code, text in model_limits(scenario.ski).items():
         warnings.warn(ModelLimitWarning(text, code=code), stacklevel=2)
+    if controller is not None:
+        boots = _led(scenario, controller, boots)
     setup = set_up(scenario, laws=laws, boots=boots, strength_along=strength_along)
     record = Record(setup)
     if setup.height < -SINKING_DEPTH or (not setup.static_residual <= AT_REST and setup.sinks):
@@ -159,6 +166,15 @@ def _warn_of_unseen_tracks(setup: Setup) -> None:
             force=force,
         )
         warnings.warn(ModelLimitWarning(text, code="tracks_between_lines"), stacklevel=3)
+
+
+def _led(scenario: Scenario, controller: Controller, boots: BootControl | None) -> BalancedSkier:
+    """The scenario's skier with a controller."""
+    if boots is not None:
+        raise ParameterError(
+            Message("boots and controller both move the boots; give one of them"), code="contradiction"
+        )
+    return BalancedSkier(scenario, controller)
 
 
 def _warn_of_zero_friction(run: Run) -> None:

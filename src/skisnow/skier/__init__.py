@@ -1,7 +1,9 @@
-"""A skier on two legs: a control that steers by the edge angle, keeps balance by legs and edges, and its body."""
+"""A skier on two legs that pivot: what it sees and plans, its control, and its body with limits."""
 
 from .anthropometry import Body, body_of
 from .balance import BalancedSkier, BalanceRecord
+from .control import Controller
+from .posture import Command, Posture
 from .seen import Seen
 
-__all__ = ["BalanceRecord", "BalancedSkier", "Body", "Seen", "body_of"]
+__all__ = ["BalanceRecord", "BalancedSkier", "Body", "Command", "Controller", "Posture", "Seen", "body_of"]

@@ -4,9 +4,16 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Final
 
 from ..scenario import Scenario
 from ..scenario.skier import Skier
+from .force_map import ForceMap
+
+CARVING_SHARE: Final = 0.3
+"""Share of the straightest carve's acceleration from which edges go over from a skid to a carve (found by trial)."""
+BEYOND_LEAN: Final = math.radians(3.0)
+"""Edge angle beyond the lean in a carve (rad): so that the ski holds, with the lean not known better."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,27 +30,18 @@ class Edges:
         2 S_f² L/H_V (N): a wedge of angle ϑ under the load N holds √(2 S_f² L tan ϑ/(H_V N)) times that load aside.
     greatest
         Edge angle (rad).
-    carving_share
-        Share of the straightest carve's acceleration above which the edges change to those of a carve.
-    beyond_lean
-        Edge angle beyond the lean in a carve (rad).
     """
 
     radius: float
     gravity: float
     softness: float
     greatest: float
-    carving_share: float
-    beyond_lean: float
 
     @classmethod
     def of(cls, scenario: Scenario, gravity: float, skier: Skier) -> Edges:
-        """Those of a scenario's ski on its snow, as a skier sets them."""
-        snow, ski = scenario.contact.snow, scenario.ski
-        strength = snow.failure_shear_stress or 0.0
-        softness = 2.0 * strength**2 * ski.running_length / snow.snow_hardness
-        radius = ski.sidecut_radius_of_edge_line
-        return cls(radius, gravity, softness, skier.greatest_edge, skier.carving_share, skier.edge_beyond_lean)
+        """Those of a scenario's ski on the snow that its skier assumes."""
+        snow, radius = ForceMap.of(scenario), scenario.ski.sidecut_radius_of_edge_line
+        return cls(radius, gravity, 2.0 * snow.strength**2 * snow.length / snow.hardness, skier.greatest_edge)
 
     def carving_acceleration(self, speed: float) -> float:
         """Acceleration (m/s²) of a balanced carve at a speed (m/s), its lean as edge angle: sin ϑ = v²/(R_sc g)."""
@@ -67,7 +65,7 @@ class Edges:
 
     def _hold(self, grip: float, load: float) -> float:
         """How many times the load (N) a wedge holds that is edged for balance at so many times the load aside."""
-        edge = min(math.atan(grip) + self.beyond_lean, self.greatest)
+        edge = min(math.atan(grip) + BEYOND_LEAN, self.greatest)
         return math.sqrt(2.0 * self.softness * math.tan(edge) / load)
 
     def held(self, acceleration: float, slope: float, load: float) -> float:
@@ -88,10 +86,10 @@ class Edges:
 
     def angle(self, acceleration: float, grip: float, speed: float, load: float) -> float:
         """Edge angle (rad) for an acceleration to the left (m/s²), which takes so many times the load (N) aside."""
-        carving = min(math.atan(abs(grip)) + self.beyond_lean, self.greatest)
+        carving = min(math.atan(abs(grip)) + BEYOND_LEAN, self.greatest)
         skidding = min(self.skidding(grip, load), carving)
         share = abs(acceleration) * self.radius / speed**2
-        x = min(1.0, max(0.0, (share - self.carving_share) / (1.0 - self.carving_share)))
+        x = min(1.0, max(0.0, (share - CARVING_SHARE) / (1.0 - CARVING_SHARE)))
         carved = self._carved(share, carving)
         return math.copysign(skidding + (carved - skidding) * x * x * (3.0 - 2.0 * x), grip)
 

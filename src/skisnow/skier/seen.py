@@ -1,10 +1,10 @@
-"""State that a skier measures: lean, loads, speed, from the moments of a run."""
+"""State that a skier measures: lean, loads, speed, slip, from the moments of a run."""
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Protocol, TypeAlias
+from typing import Final, Protocol, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
@@ -12,6 +12,13 @@ import numpy.typing as npt
 from ..scenario.terrain import down_and_left
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
+
+BEARING: Final = 0.2
+"""Share of the weight below which the loads tell nothing (modelling assumption: a leap has all but begun)."""
+LIFTED: Final = 0.02
+"""Share of the load below which a ski counts as lifted (modelling assumption)."""
+FARTHEST: Final = 0.4
+"""Greatest distance of a centre of pressure aside that is believed (m) (modelling assumption)."""
 
 
 class Moment(Protocol):
@@ -35,32 +42,61 @@ class Moment(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class Seen:
-    """What is measured, in axes along the skis, to their left and out of the snow.
+    """What is measured, in axes along the mean ski, to its left and out of the snow; angles are positive to the left.
 
     Attributes
     ----------
-    aside, aside_rate, height
-        Offset of the centre of mass from the middle of the feet: to the left (m), its rate (m/s), above it (m).
+    time
+        (s).
+    aside, aside_rate, ahead, ahead_rate, height
+        Offset of the centre of mass from the middle of the feet: to the left and ahead (m), their rates (m/s), above.
     pressure
         How far the centre of pressure is to the left of that middle (m); 0 where nothing bears.
     left, right
         Loads of the skis (N).
-    place, speed, heading, course
-        State of the middle of the feet: x, y (m), (m/s), the skis' and the path's heading from the fall line (rad).
+    across, along
+        Force of the snow to the left and ahead (N).
+    moment
+        Of the snow about the normal, on both boots (N m).
+    place, speed, course
+        Of the centre of mass: x, y (m), (m/s), heading of its path from the fall line (rad).
+    feet, feet_speed, feet_course
+        The same of the middle of the feet.
+    heading, turn_rate, slip
+        Of the skis: from the fall line (rad), its rate (rad/s), heading less the course of the feet (rad).
+    body_heading, body_rate, yaw_inertia
+        Of the body: from the fall line (rad), its rate (rad/s), moment of inertia (kg m²).
+    edge
+        Edge angles of the left and the right ski against the snow (rad).
     bears, lifted
         Whether the loads tell anything, and whether one ski is off the snow.
     """
 
+    time: float
     aside: float
     aside_rate: float
+    ahead: float
+    ahead_rate: float
     height: float
     pressure: float
     left: float
     right: float
+    across: float
+    along: float
+    moment: float
     place: tuple[float, float]
     speed: float
-    heading: float
     course: float
+    feet: tuple[float, float]
+    feet_speed: float
+    feet_course: float
+    heading: float
+    turn_rate: float
+    slip: float
+    body_heading: float
+    body_rate: float
+    yaw_inertia: float
+    edge: tuple[float, float]
     bears: bool
     lifted: bool
 
@@ -69,54 +105,78 @@ class Seen:
         """Of both skis (N)."""
         return self.left + self.right
 
-    @property
-    def lean(self) -> float:
-        """Angle of the line from the middle of the feet to the centre of mass, positive left (rad)."""
-        return math.atan2(self.aside, self.height)
 
-
-def seen_at(moment: Moment, centre_height: float, normal: FloatArray, least_load: float, lifted_share: float) -> Seen:
+def seen_at(
+    moment: Moment, centre_of_mass: tuple[float, float], normal: FloatArray, weight: float, yaw_inertia: float
+) -> Seen:
     """State that the skier measures at a moment.
 
     Parameters
     ----------
     moment
         Moment of the run.
-    centre_height
-        Height of the centre of mass in the body (m).
+    centre_of_mass
+        In the body: ahead and up (m).
     normal
         Normal of the snow, (3,).
-    least_load
-        Below which the loads tell nothing (N).
-    lifted_share
-        Share of the load below which a ski is lifted.
+    weight
+        Of the skier (N).
+    yaw_inertia
+        Of the body (kg m²).
     """
-    rotation, boots = moment.rotation, moment.boots
+    rotation, boots, spin = moment.rotation, moment.boots, moment.velocity[3:]
     up = normal @ rotation
     ahead = boots[:, 1].mean(axis=0)
     ahead = ahead - (ahead @ up) * up
     ahead /= np.linalg.norm(ahead)
     left = np.cross(up, ahead)
     force, turning = (np.einsum("kca,kc->ka", boots[:, 1:4], part) for part in np.split(moment.wrench, 2, axis=1))
-    middle, drift = boots[:, 0].mean(axis=0), boots[:, 4].mean(axis=0)
-    centre, spin = np.array([0.0, 0.0, centre_height]) - middle, moment.velocity[3:]
-    loads = force @ up
+    middle = boots[:, 0].mean(axis=0)
+    centre = np.array([centre_of_mass[0], 0.0, centre_of_mass[1]])
+    leg = centre - middle
+    leg_rate = np.cross(spin, leg) - boots[:, 4].mean(axis=0)
+    loads, total = force @ up, force.sum(axis=0)
     load = float(loads.sum())
-    roll = float((np.cross(boots[:, 0] - middle, force) + turning).sum(axis=0) @ ahead)
-    way = rotation @ (moment.velocity[:3] + np.cross(spin, middle) + drift)
-    place, facing = moment.position + rotation @ middle, rotation @ ahead
-    down, aside = down_and_left(normal)
+    twist = (np.cross(boots[:, 0] - middle, force) + turning).sum(axis=0)
+    bears = load > BEARING * weight
+    down, aside = (each @ rotation for each in down_and_left(normal))
+    way = moment.velocity[:3] + np.cross(spin, centre)
+    step = way - leg_rate  # of the feet
+    course = math.atan2(step @ aside, step @ down)
+    heading = math.atan2(ahead @ aside, ahead @ down)
+    place, foot = moment.position + rotation @ centre, moment.position + rotation @ middle
+    lean = math.atan2(leg @ left, leg @ up)
+    hip = math.atan2(math.cos(lean) * left[0] - math.sin(lean) * up[0], ahead[0])
     return Seen(
-        aside=float(centre @ left),
-        aside_rate=float((np.cross(spin, centre) - drift) @ left),
-        height=float(centre @ up),
-        pressure=roll / load if load > least_load else 0.0,
+        time=moment.time,
+        aside=float(leg @ left),
+        aside_rate=float(leg_rate @ left),
+        ahead=float(leg @ ahead),
+        ahead_rate=float(leg_rate @ ahead),
+        height=float(leg @ up),
+        pressure=max(-FARTHEST, min(FARTHEST, float(twist @ ahead) / load)) if bears else 0.0,
         left=float(loads[0]),
         right=float(loads[1]),
+        across=float(total @ left),
+        along=float(total @ ahead),
+        moment=float(twist @ up),
         place=(float(place[0]), float(place[1])),
         speed=math.hypot(way @ down, way @ aside),
-        heading=math.atan2(facing @ aside, facing @ down),
         course=math.atan2(way @ aside, way @ down),
-        bears=load > least_load,
-        lifted=load > least_load and bool(loads.min() < lifted_share * load),
+        feet=(float(foot[0]), float(foot[1])),
+        feet_speed=math.hypot(step @ down, step @ aside),
+        feet_course=course,
+        heading=heading,
+        turn_rate=float((spin + boots[:, 5].mean(axis=0)) @ up),
+        slip=math.remainder(heading - course, 2.0 * math.pi),
+        body_heading=heading + hip,
+        body_rate=float(spin @ up),
+        yaw_inertia=yaw_inertia,
+        edge=(_edge(boots[0], up), _edge(boots[1], up)),
+        bears=bears,
+        lifted=bears and bool(loads.min() < LIFTED * load),
     )
+
+
+def _edge(boot: FloatArray, up: FloatArray) -> float:
+    return math.atan2(-float(boot[2] @ up), float(boot[3] @ up))

@@ -1,0 +1,231 @@
+"""Control of carved turns: skis that follow their path, edged like the lean; a skid where the snow holds no more."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import Final, Protocol
+
+from ..scenario.skier import Skier
+from .control import Balance
+from .edges import Edges
+from .plan import Gravity, Line, TurnsOverTime
+from .posture import Command, Posture
+from .seen import Seen
+from .yaw import Body
+
+EDGE_CHANGE: Final = 10.0
+"""Corner frequency with which the planned turn goes from side to side (1/s) (found by trial)."""
+EDGE_RATE: Final = 19.0
+"""Corner frequency of the edge angle, and of what balance asks of it (1/s) (found by trial)."""
+LOAD_RATE: Final = 25.0
+"""Corner frequency of what is learnt from the loads (1/s) (found by trial)."""
+LEAN_MORE: Final = 1.1
+"""Capture point wanted, over that of balance (found by trial)."""
+REACH: Final = 0.8
+"""Share of half the stance within which the centre of pressure is asked for (found by trial)."""
+LAG: Final = 0.6
+"""Way after which the path has the edge's curvature (m) (found by trial)."""
+CORRECTION: Final = 0.12
+"""By how much the loads may correct the planned place of the centre of mass (m) (found by trial)."""
+TRUSTED_EDGE: Final = math.radians(10.0)
+"""Edge angle from which on loads are believed in full, with its square below: flatter skis follow the feet (rad)."""
+BY_EDGES: Final = 2.0
+"""Gain of the edges over that of a skid (found by trial)."""
+FORESIGHT, FORESIGHT_STEP = 1.6, 0.02
+"""Time ahead over which the plan is thought through, and its step (s): 5.5 times the pendulum's."""
+SIGHT: Final = 0.3
+"""Time ahead at which a line is looked at (s) (found by trial)."""
+SLOWEST: Final = 2.0
+"""Speed with which lag and turns are computed at least (m/s) (modelling assumption)."""
+
+
+@dataclass(slots=True)
+class Underway:
+    """Where a skier is, or will be.
+
+    Attributes
+    ----------
+    time, x, y
+        (s), (m).
+    heading, speed, acceleration
+        Of its path: from the fall line (rad), (m/s), to the left (m/s²).
+    """
+
+    time: float
+    x: float
+    y: float
+    heading: float
+    speed: float
+    acceleration: float
+
+
+class Steering(Protocol):
+    """Says how to turn."""
+
+    def acceleration(self, at: Underway, carving: float) -> float:
+        """To the left (m/s²), where a carve in balance has so much of it."""
+
+
+@dataclass(frozen=True, slots=True)
+class CarvesOverTime:
+    """The turns of a plan over time, each as a carve in balance."""
+
+    plan: TurnsOverTime
+
+    def acceleration(self, at: Underway, carving: float) -> float:
+        """That of a carve in balance, to one side or the other."""
+        return self.plan.sense(at.time) * carving
+
+
+@dataclass(frozen=True, slots=True)
+class Pursuit:
+    """A line that is looked at a time ahead (s), and what leads back to it at a rate (1/s)."""
+
+    line: Line
+    rate: float
+    sight: float = SIGHT
+
+    def acceleration(self, at: Underway, carving: float) -> float:
+        """That of the line, a time ahead, and what leads back to it."""
+        del carving
+        speed = at.speed
+        turned = 0.5 * at.acceleration * self.sight / max(speed, 1.0)
+        x = at.x + self.sight * speed * math.cos(at.heading + turned)
+        y = at.y + self.sight * speed * math.sin(at.heading + turned)
+        aside, slope, bend = self.line.at(x)
+        along = math.atan(slope)
+        off, turn = (y - aside) * math.cos(along), at.heading + 2.0 * turned - along
+        back = -(self.rate**2) * off - 2.0 * self.rate * speed * math.sin(turn)
+        return speed**2 * bend * math.cos(along) ** 3 + back
+
+
+@dataclass(slots=True)
+class CarveControl:
+    """Carved turns: the lean follows from the plan, the edge from the lean.
+
+    References
+    ----------
+    The page docs/methods/skier.md.
+    """
+
+    skier: Skier
+    steering: Steering
+    edges: Edges
+    body: Body
+    roll: float
+    stance: float
+    gravity: Gravity
+    balance: Balance = field(default_factory=lambda: Balance(0.0, 0.0, 0.0, 0.0, 1.0))
+    _turn: list[float] = field(default_factory=lambda: [0.0, 0.0])  # over that of a carve in balance, with its rate
+    _growth: float = 0.0  # planned acceleration of the centre of mass aside
+    _asked: float = 0.0  # acceleration that balance asks for
+    _acceleration: float = 0.0  # of the feet to the left
+    _correction: float = 0.0
+    _slip: float = 0.0  # angle between skis and path, since the snow did not hold what was wanted (rad)
+    _holds: float = field(init=False)  # share of the load aside, edged for balance
+    _held: float = 1.0  # share of what the edges would take aside that the snow holds
+
+    def __post_init__(self) -> None:
+        self._holds = self.edges.holding(self._weight)
+
+    @property
+    def _weight(self) -> float:
+        return self.body.mass * 9.81
+
+    def command(self, seen: Seen, posture: Posture, dt: float) -> Command:
+        """What the body shall do until the next call."""
+        now, height = seen.time + dt, self.body.height
+        aside, rate = float(posture.numbers[1]), posture.aside_rate
+        roll = self.roll * height**2 / (height**2 + aside**2)
+        omega = math.sqrt(self.gravity.normal * height * self.body.mass / (roll + self.body.mass * height**2))
+        wanted, planned = self._foreseen(now, seen, omega)
+        self._learn(seen, planned, posture.edge, omega, dt)
+        wanted += self._correction / (1.0 + self.skier.leg_gain)  # it fades as errors do
+        balanced, wanted = planned + self._correction, max(1.0, LEAN_MORE * self._held) * wanted
+        if seen.lifted or not seen.bears:
+            aside, rate = seen.aside, seen.aside_rate
+        error = aside + rate / omega - wanted
+        reach = REACH * self.stance / 2.0
+        pressure = max(-reach, min(reach, (1.0 + self.skier.leg_gain) * error))
+        self.balance = Balance(balanced, wanted, error, pressure, omega)
+        edge = self._edge(now, seen, error, dt)
+        self._growth = omega**2 * (aside - pressure - balanced)
+        return Command((edge, edge), aside=self._growth, pressure=pressure, edge_rate=EDGE_RATE)
+
+    @property
+    def _steepest(self) -> float:
+        """Acceleration (m/s²) in balance at the greatest lean."""
+        return self.gravity.normal * math.tan(self.skier.greatest_lean)
+
+    def _most(self, speed: float) -> float:
+        """Acceleration of a carve in balance (m/s²)."""
+        return min(self.edges.carving_acceleration(speed), self._steepest)
+
+    def _planned(self, at: Underway, most: float) -> float:
+        """Acceleration that is planned, over that of a carve in balance; at most that with the greatest edge angle."""
+        limit = min(at.speed**2 / (self.edges.radius * math.cos(self.edges.greatest)), self._steepest)
+        return max(-limit, min(limit, self.steering.acceleration(at, most))) / max(most, 1e-3)
+
+    def _foreseen(self, now: float, seen: Seen, omega: float) -> tuple[float, float]:
+        """Where the capture point should be, and where the centre of mass would be in balance now (m)."""
+        step, speed = FORESIGHT_STEP, max(seen.feet_speed, SLOWEST)
+        lag, fading = self._lag(seen.feet_speed), self.skier.leg_gain * omega
+        most, (turn, rate), acceleration = self._most(seen.feet_speed), self._turn, self._acceleration
+        at = Underway(now, *seen.feet, seen.feet_course, seen.feet_speed, acceleration)
+        total = weights = first = 0.0
+        for i in range(round(FORESIGHT / step)):
+            later = (i + 0.5) * step
+            at.time = now + later
+            rate += step * (EDGE_CHANGE**2 * (self._planned(at, most) - turn) - 2.0 * EDGE_CHANGE * rate)
+            turn += step * rate
+            wished = most * turn + self._asked * math.exp(-fading * later)
+            slope = self.gravity.down * math.sin(at.heading)
+            acceleration += (self.edges.held(wished, slope, self._weight) - acceleration) * step / (lag + step)
+            balanced = self.body.height * (acceleration + slope) / self.gravity.normal
+            first = balanced if i == 0 else first
+            weight = math.exp(-omega * later)
+            total, weights = total + weight * balanced, weights + weight
+            at.x += step * at.speed * math.cos(at.heading)
+            at.y += step * at.speed * math.sin(at.heading)
+            at.acceleration = acceleration
+            at.heading += acceleration / speed * step
+        return total / weights, first
+
+    def _learn(self, seen: Seen, planned: float, edge: float, omega: float, dt: float) -> None:
+        """How far balance is from the plan, by the loads while both skis bear and are edged."""
+        if not seen.bears or seen.lifted:
+            self._correction *= 1.0 - _share_of(dt, LOAD_RATE)
+            return
+        found = seen.aside - seen.pressure - self._growth / omega**2 - planned
+        known = min(1.0, (edge / TRUSTED_EDGE) ** 2) * found  # skis that hardly hold follow the feet
+        self._correction += _share_of(dt, LOAD_RATE) * (max(-CORRECTION, min(CORRECTION, known)) - self._correction)
+
+    def _edge(self, now: float, seen: Seen, error: float, dt: float) -> float:
+        """Edge angle (rad), by a filter of the planned turn."""
+        (turn, rate), speed = self._turn, seen.feet_speed
+        most, gravity = self._most(speed), self.gravity.normal
+        planned = self._planned(Underway(now, *seen.feet, seen.feet_course, speed, self._acceleration), most)
+        rate += dt * (EDGE_CHANGE**2 * (planned - turn) - 2.0 * EDGE_CHANGE * rate)
+        self._turn = [turn + rate * dt, rate]
+        asked = BY_EDGES * self.skier.edge_gain * gravity * error / self.body.height
+        self._asked += _share_of(dt, EDGE_RATE) * (max(-most, min(most, asked)) - self._asked)
+        ahead = most * self._turn[0] + self._asked
+        lag = LAG / max(speed, SLOWEST)
+        slope = self.gravity.down * math.sin(seen.feet_course)
+        held = self.edges.held(ahead, slope, self._weight)
+        self._held = (held + slope) / (ahead + slope) if held != ahead else 1.0
+        self._acceleration += (held - self._acceleration) * dt / (lag + dt)
+        grip = (ahead + slope) / gravity
+        slip = abs(seen.slip)
+        self._slip = slip if self.edges.slips(grip, self._weight) else min(self._slip, slip)
+        return self.edges.angle(ahead, grip, max(speed, SLOWEST), self._weight)
+
+    def _lag(self, speed: float) -> float:
+        """Until the path has the curvature that is wanted (s): skis that slip aside have to come round first."""
+        return LAG / max(speed, SLOWEST) + self._slip * speed / (self.gravity.normal * self._holds)
+
+
+def _share_of(dt: float, rate: float) -> float:
+    """Share of a step towards its input by a filter of first order with that corner frequency (rad/s)."""
+    return dt / (dt + 1.0 / rate)

@@ -1,0 +1,232 @@
+"""Control of a skier from theory: capture point, edge from the force map, learnt grip, yaw by a regulator."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import Final, Protocol, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from ..scenario.skier import Skier
+from .force_map import ForceMap
+from .plan import AHEAD, Gravity, Plan, Planned
+from .posture import Command, Posture
+from .seen import Seen
+from .yaw import FACING, Body, heading_ahead, yaw_gain, yaw_state
+
+FloatArray: TypeAlias = npt.NDArray[np.float64]
+
+FORCE_TIME: Final = 0.02
+"""Time (s) over which measured forces are smoothed (found by trial: from 0.01 to 0.04 the loads stay smooth)."""
+BLADE_TIME: Final = 0.03
+"""Time (s) over which it is known whether a ski is a blade or a slider (modelling assumption)."""
+BLADE, SLIDER = math.radians(1.0), math.radians(3.5)
+"""Slip (rad) below which a ski follows its edge, and above which it slides (measured: between 1 and 3°)."""
+LEARNS_FROM: Final = math.radians(5.0)
+"""Slip (rad) above which a ski shows its grip (modelling assumption)."""
+GRIP_TIME: Final = 0.05
+"""Time (s) over which the grip is learnt (found by trial: with 0.3 fewer disturbed starts succeed)."""
+FIRST_GRIP: Final = 0.9
+"""Measured over computed force in a skid (0.8 to 0.95 at slips of 3 to 20°)."""
+GAIN_TIME: Final = 0.02
+"""Time (s) between two solutions for the yaw (modelling assumption)."""
+EDGE_AHEAD: Final = 0.06
+"""Time (s) by which the edge leads, since its filter lags (derived: two over the filter's rate)."""
+REACH: Final = 0.85
+"""Share of half the stance within which the centre of pressure is asked for (modelling assumption)."""
+BY_EDGE: Final = 0.03
+"""Shift of the pressure by the loaded edges to the inside, half a ski's width (m)."""
+SLIDING: Final = math.radians(12.0)
+"""Edge angle below which it stays under twice the slip, so that a ski does not grip by accident (rule of thumb)."""
+BOUND: Final = 12.75
+"""Greatest acceleration that the edges are set for, 1.3 g (m/s²) (modelling assumption)."""
+ROLLING: Final = 0.05
+"""Share of the load that friction takes along the skis (modelling assumption)."""
+AIR: Final = 0.004
+"""Deceleration by the air over the square of the speed (1/m) (modelling assumption)."""
+
+
+class Controller(Protocol):
+    """Moves a skier: `skisnow.simulate` takes one.
+
+    Called every ``skier.control_period_ms`` with what is seen, the posture and the period (s).
+    """
+
+    def command(self, seen: Seen, posture: Posture, dt: float) -> Command:
+        """What the body shall do until the next call."""
+
+
+@dataclass(slots=True)
+class Smoothed:
+    """A filter of first order."""
+
+    time: float
+    value: float = 0.0
+
+    def step(self, value: float, dt: float) -> float:
+        """Value after a step (s)."""
+        self.value += (1.0 - math.exp(-dt / self.time)) * (value - self.value)
+        return self.value
+
+
+@dataclass(slots=True)
+class Balance:
+    """Where balance is, at one moment.
+
+    Attributes
+    ----------
+    balanced
+        Where the centre of mass would be in balance by the measured force, to the left of the feet (m).
+    wanted, error
+        Place that the capture point is to have, and how far it is to the left of it (m).
+    pressure
+        Centre of pressure that follows (m).
+    rate
+        Of the pendulum (1/s).
+    """
+
+    balanced: float
+    wanted: float
+    error: float
+    pressure: float
+    rate: float
+
+
+@dataclass(slots=True)
+class SkidControl:
+    """Skidded turns: the slip brakes, the edge gives the force, the centre of pressure keeps balance.
+
+    References
+    ----------
+    The page docs/methods/skier.md.
+    """
+
+    skier: Skier
+    plan: Plan
+    snow: ForceMap
+    body: Body
+    roll: float
+    stance: float
+    gravity: Gravity
+    grip: float = FIRST_GRIP
+    balance: Balance = field(default_factory=lambda: Balance(0.0, 0.0, 0.0, 0.0, 1.0))
+    slip: float = 0.0
+    _blade: Smoothed = field(default_factory=lambda: Smoothed(BLADE_TIME, 0.5))
+    _balanced: Smoothed = field(default_factory=lambda: Smoothed(FORCE_TIME))
+    _loads: tuple[Smoothed, Smoothed] = field(init=False)
+    _gain: FloatArray = field(default_factory=lambda: np.zeros((2, 7)))
+    _since: float = math.inf
+
+    def __post_init__(self) -> None:
+        half = 0.5 * self.body.mass * self.gravity.normal
+        self._loads = (Smoothed(FORCE_TIME, half), Smoothed(FORCE_TIME, half))
+
+    def command(self, seen: Seen, posture: Posture, dt: float) -> Command:
+        """What the body shall do until the next call."""
+        self._learn(seen, posture)
+        planned = self._planned(seen)
+        slips = self._slips(seen, planned)
+        self.slip = float(slips[0])
+        self.balance = self._balance(seen, posture, planned, dt)
+        edge = self._edge(seen, posture, planned, dt)
+        torque, shift = self._yaw(seen, posture, planned, slips, dt)
+        return Command(
+            edge=(edge, edge),
+            hip_torque=torque,
+            ahead=shift,
+            aside=self.balance.rate**2 * (seen_aside(seen, posture) - self.balance.balanced - self.balance.pressure),
+            pressure=self.balance.pressure,
+        )
+
+    def _planned(self, seen: Seen) -> Planned:
+        """The plan, within the greatest lean."""
+        found = self.plan.ahead(seen, self.gravity)
+        most = self.gravity.normal * math.tan(self.skier.greatest_lean)
+        return Planned(np.clip(found.force, -most, most), found.course, found.heading)
+
+    def _slips(self, seen: Seen, planned: Planned) -> FloatArray:
+        """Angle of the skis against the path (rad) that brakes as much as is needed, over the plan."""
+        skier, force = self.skier, np.abs(planned.force)
+        slope = 0.95 * self.gravity.down - ROLLING * self.gravity.normal - AIR * seen.speed**2
+        brake = max(0.0, skier.braking * (seen.speed - skier.brakes_to) + slope)
+        most = max(3.0, float(force.max()))
+        more = max(0.0, (brake - 0.6 * most * skier.least_slip) / (0.5 * most))
+        slip = np.minimum(skier.greatest_slip, skier.least_slip + more * np.minimum(1.0, force / most))
+        slip = np.minimum(slip, skier.least_slip + math.radians(4.0) * force)
+        share = np.clip((force - 0.3) / 1.2, 0.0, 1.0)
+        return np.asarray(slip * np.sign(planned.force) * share**2 * (3.0 - 2.0 * share))
+
+    def _balance(self, seen: Seen, posture: Posture, planned: Planned, dt: float) -> Balance:
+        """Capture point, and the centre of pressure that leads it to where the plan has it."""
+        gravity, height = self.gravity.normal, self.body.height
+        slides = min(1.0, max(0.0, (abs(seen.slip) - BLADE) / (SLIDER - BLADE)))
+        blade = self._blade.step(1.0 - (1.0 if abs(posture.edge) < BLADE else slides), dt)
+        aside = float(posture.numbers[1])
+        leant = height**2 / (height**2 + aside**2)
+        rate = 1.0 / math.sqrt(self.roll * leant / (self.body.mass * gravity * height) + blade * height / gravity)
+        if seen.bears:
+            now = seen.height * (seen.across / seen.load - blade * posture.acceleration / gravity)
+            self._balanced.step(now, dt)
+        weights = np.exp(-rate * AHEAD)
+        foreseen = float(weights @ planned.force / weights.sum()) / math.cos(self.slip)
+        share = math.tanh(float(np.interp(EDGE_AHEAD, AHEAD, planned.force)) / (0.15 * gravity))
+        outer = share * (BY_EDGE - (self.skier.outer_share - 0.5) * self.stance)
+        wanted = seen.height * foreseen / gravity + outer
+        moving = seen.aside_rate if seen.lifted or not seen.bears else posture.aside_rate
+        error = seen_aside(seen, posture) + moving / rate - wanted
+        reach = REACH * self.stance / 2.0
+        pressure = max(-reach, min(reach, outer + (1.0 + self.skier.leg_gain) * error))
+        return Balance(self._balanced.value, wanted, error, pressure, rate)
+
+    def _edge(self, seen: Seen, posture: Posture, planned: Planned, dt: float) -> float:
+        """Edge angle (rad) that gives the planned force, and what balance asks besides."""
+        mass, gravity = self.body.mass, self.gravity.normal
+        planned_force = float(np.interp(EDGE_AHEAD, AHEAD, planned.force)) / math.cos(self.slip)
+        asked = planned_force + self.skier.edge_gain * gravity * self.balance.error / max(seen.height, 0.1)
+        asked = max(-BOUND, min(BOUND, asked))
+        loads = (seen.left, seen.right) if seen.bears else (0.5 * mass * gravity,) * 2
+        loads = (max(60.0, loads[0]), max(60.0, loads[1]))
+        more = max(1.0, 0.5 * mass * gravity / sum(loads))
+        smooth = tuple(each.step(more * load, dt) for each, load in zip(self._loads, loads, strict=True))
+        angle = self.snow.edge(mass * abs(asked), smooth, self.grip)
+        if abs(posture.edge) < SLIDING:
+            angle = min(angle, max(math.radians(0.2), 2.0 * seen.slip * math.copysign(1.0, asked)))
+        return math.copysign(angle, asked)
+
+    def _learn(self, seen: Seen, posture: Posture) -> None:
+        """The grip, while the skis slide in the sense of their edges."""
+        edge, dt = posture.edge, self.skier.control_period
+        if not seen.bears or abs(seen.slip) < LEARNS_FROM or abs(edge) < BLADE or edge * seen.slip <= 0.0:
+            return
+        mean = 0.5 * (seen.edge[0] + seen.edge[1])
+        expected = self.snow.force(mean, seen.left) + self.snow.force(mean, seen.right)
+        found = max(0.3, min(2.5, abs(seen.across) / max(expected, 50.0)))
+        self.grip += min(1.0, dt / GRIP_TIME) * (found - self.grip)
+
+    def _yaw(self, seen: Seen, posture: Posture, planned: Planned, slips: FloatArray, dt: float) -> tuple[float, float]:
+        """Torque of the hips (N m) and acceleration of the shift (m/s²)."""
+        self._since += dt
+        if self._since > GAIN_TIME - 1e-9:
+            self._since = 0.0
+            normal = self.gravity.normal
+            heading = heading_ahead(planned, slips, normal, self.body.height, seen.speed)
+            self._gain = yaw_gain(planned, heading, slips, self.body, normal, seen.speed)
+        torque, shift = -self._gain @ yaw_state(seen, float(posture.numbers[0]), float(posture.rates[0]))
+        torque, hip = float(torque), seen.body_heading - seen.heading
+        most = self.skier.hip_torque
+        torque = max(-most, min(most, torque))
+        over = hip - max(-self.skier.greatest_hip, min(self.skier.greatest_hip, hip))
+        if over != 0.0:
+            torque += 300.0 * over + 25.0 * (seen.body_rate - seen.turn_rate)
+        if self._blade.value > 0.5 and abs(posture.edge) > math.radians(3.0):  # a blade carries the body along
+            facing = (1.0 - FACING) * seen.heading
+            turn = seen.body_rate - FACING * seen.turn_rate
+            torque = self.body.yaw * (60.0 * (hip + facing) + 12.0 * turn)
+        return torque, float(shift)
+
+
+def seen_aside(seen: Seen, posture: Posture) -> float:
+    """Centre of mass to the left of the feet (m): as planned, as seen while a ski is lifted."""
+    return seen.aside if seen.lifted or not seen.bears else float(posture.numbers[1])

@@ -1,0 +1,245 @@
+"""What a skier plans for the next 1.2 s: a line through gates, turns over time, or a side-slip."""
+
+from __future__ import annotations
+
+import bisect
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Final, Protocol, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from ..scenario.skier import Skier
+from ..track.course import Course
+from .seen import Seen
+
+FloatArray: TypeAlias = npt.NDArray[np.float64]
+
+STEP: Final = 0.04
+"""Time (s) between the moments of a plan (modelling assumption)."""
+AHEAD: Final = STEP * (np.arange(30) + 0.5)
+"""Moments of a plan, counted from now (s)."""
+SLOWEST: Final = 1.5
+"""Speed (m/s) with which a plan is computed at least (modelling assumption)."""
+STEEPEST_COURSE: Final = 1.2
+"""Greatest course (rad) at which a line down the slope is joined (modelling assumption)."""
+TABLE_STEP: Final = 0.05
+"""Step (m) of the table of a line (modelling assumption)."""
+JOINS: Final = 0.32
+"""Share of the way between two apexes that is left at least to join the line (found by trial)."""
+BACK: Final = 2.0
+"""Rate (1/s) at which turns over time go back to their course (modelling assumption)."""
+
+
+@dataclass(frozen=True, slots=True)
+class Gravity:
+    """Acceleration by gravity along the snow's normal and down the slope (m/s²)."""
+
+    normal: float
+    down: float
+
+
+@dataclass(frozen=True, slots=True)
+class Planned:
+    """Force to the left over mass (m/s²) and course (rad) at the moments `AHEAD`.
+
+    `heading` is that of the skis (rad) where the plan says it; otherwise it follows from the slip.
+    """
+
+    force: FloatArray
+    course: FloatArray
+    heading: float | None = None
+
+
+class Plan(Protocol):
+    """Says how to turn."""
+
+    def ahead(self, seen: Seen, gravity: Gravity) -> Planned:
+        """What is planned from a state on."""
+
+
+class Line(Protocol):
+    """Lies over a course."""
+
+    def at(self, x: float) -> tuple[float, float, float]:
+        """Place aside (m), slope and second derivative (1/m) at a place down the slope (m)."""
+
+
+@dataclass(frozen=True, slots=True)
+class TurnsOverTime:
+    """Turns to the left and to the right by turns, the first half a turn long, then straight on.
+
+    Examples
+    --------
+    >>> plan = TurnsOverTime(Skier(first_turn=1.0, turn_time=2.0, turns=1.5, turn_angle=0.5))
+    >>> [round(plan.course(time)[0], 3) for time in (0.5, 1.5, 2.0, 3.0, 4.0, 9.0)]
+    [0.0, 0.25, 0.5, 0.0, -0.5, -0.5]
+    """
+
+    skier: Skier
+
+    def sense(self, time: float) -> float:
+        """1 for a turn to the left, -1 to the right, 0 for none, at a time (s)."""
+        done = (time - self.skier.first_turn) / self.skier.turn_time
+        if not 0.0 <= done < self.skier.turns:
+            return 0.0
+        side = 1.0 if math.floor(done + 0.5) % 2 == 0 else -1.0
+        return side if self.skier.first_to_left else -side
+
+    def course(self, time: float) -> tuple[float, float]:
+        """Course (rad) and its rate (rad/s) at a time (s)."""
+        skier = self.skier
+        done = min((time - skier.first_turn) / skier.turn_time, skier.turns)
+        most = skier.turn_angle if skier.first_to_left else -skier.turn_angle
+        if done <= 0.0:
+            return 0.0, 0.0
+        rate = math.pi / skier.turn_time * (done < skier.turns)
+        if done < 0.5:
+            return 0.5 * most * (1.0 - math.cos(2.0 * math.pi * done)), most * rate * math.sin(2.0 * math.pi * done)
+        phase = math.pi * (done - 0.5)
+        return most * math.cos(phase), -most * rate * math.sin(phase)
+
+    def ahead(self, seen: Seen, gravity: Gravity) -> Planned:
+        """The turns, and what leads back to their course."""
+        course, rate = np.array([self.course(seen.time + later) for later in AHEAD]).T
+        back = (seen.course - self.course(seen.time)[0]) * np.exp(-BACK * AHEAD)
+        speed = max(seen.speed, SLOWEST)
+        course = course + back
+        return Planned(speed * (rate - BACK * back) + gravity.down * np.sin(course), course)
+
+
+def half_waves(apexes: Sequence[tuple[float, float]], x: float) -> tuple[float, float, float]:
+    """Place aside, slope and second derivative of half waves from apex to apex, at a place down the slope (m)."""
+    i = min(max(bisect.bisect_left(apexes, x, key=lambda apex: apex[0]) - 1, 0), len(apexes) - 2)
+    (x0, y0), (x1, y1) = apexes[i], apexes[i + 1]
+    rate, half = math.pi / (x1 - x0), 0.5 * (y1 - y0)
+    phase = min(math.pi, max(0.0, rate * (x - x0)))
+    bend = half * rate**2 * math.cos(phase) if x0 <= x <= x1 else 0.0
+    return y0 + half * (1.0 - math.cos(phase)), half * rate * math.sin(phase), bend
+
+
+class RecedingLine:
+    """A path from where the skier is to the next apex of a line that is far enough, and on along the line.
+
+    Parameters
+    ----------
+    line
+        Up to its last apex; behind it the turns go on.
+    apexes
+        x, y (m) of its start and apexes, x rising.
+
+    Notes
+    -----
+    The path to the apex is a polynomial of fifth order with place, course and planned curvature of now, and those of
+    the line at the apex: the planned curvature is continuous, and nothing has to lead back to the line.
+    """
+
+    def __init__(self, line: Line, apexes: Sequence[tuple[float, float]]) -> None:
+        self.apexes = with_run_out(apexes)
+        end = apexes[-1][0]
+        last = self.apexes[-1][0]
+        self._first, self._quintic = apexes[0][0], (0.0, 1.0, np.zeros(6))
+        x = np.arange(apexes[0][0], last + 15.0, TABLE_STEP)
+        beyond = self.apexes[len(apexes) - 1 :]
+        rows = np.array([line.at(float(each)) if each < end else half_waves(beyond, float(each)) for each in x])
+        self._course = np.arctan(rows[:, 1])
+        self._bend = rows[:, 2]
+        self._curvature = rows[:, 2] * np.cos(self._course) ** 3
+        self._aside = rows[:, 0]
+
+    def at(self, x: float) -> tuple[float, float]:
+        """Course (rad) and curvature (1/m) of the line at a place down the slope (m)."""
+        place = min(max((x - self._first) / TABLE_STEP, 0.0), len(self._course) - 2.0)
+        i = int(place)
+        share = place - i
+        return (
+            float(self._course[i] + share * (self._course[i + 1] - self._course[i])),
+            float(self._curvature[i] + share * (self._curvature[i + 1] - self._curvature[i])),
+        )
+
+    def ahead(self, seen: Seen, gravity: Gravity) -> Planned:
+        """Along the path and the line at the present speed."""
+        x, y = seen.place
+        until = self._join(x, y, max(-STEEPEST_COURSE, min(STEEPEST_COURSE, seen.course)))
+        _, way, c = self._quintic
+        speed = max(seen.speed, SLOWEST)
+        place = x + 0.5 * STEP * speed * math.cos(seen.course)
+        force, course = np.empty(len(AHEAD)), np.empty(len(AHEAD))
+        for k in range(len(AHEAD)):
+            if place < until:
+                u = (place - x) / way
+                slope = (c[1] + u * (2 * c[2] + u * (3 * c[3] + u * (4 * c[4] + 5 * u * c[5])))) / way
+                bend = (2 * c[2] + u * (6 * c[3] + u * (12 * c[4] + 20 * u * c[5]))) / way**2
+                along, curvature = math.atan(slope), bend / (1.0 + slope**2) ** 1.5
+            else:
+                along, curvature = self.at(place)
+            force[k] = speed**2 * curvature + gravity.down * math.sin(along)
+            course[k] = along
+            place += STEP * speed * math.cos(along)
+        return Planned(force, course)
+
+    def _join(self, x: float, y: float, course: float) -> float:
+        """Lay the path to the apex that is joined; gives its x (m)."""
+        first, way, before = self._quintic
+        u = (x - first) / way
+        bend = (2 * before[2] + 6 * before[3] * u + 12 * before[4] * u**2 + 20 * before[5] * u**3) / way**2
+        place, aside = self._next_apex(x)
+        i = min(max(round((place - self._first) / TABLE_STEP), 0), len(self._bend) - 1)
+        way = place - x
+        a0, a1, a2 = y, math.tan(course) * way, 0.5 * bend * way**2
+        d0 = aside - a0 - a1 - a2
+        d1 = -a1 - 2.0 * a2
+        d2 = self._bend_at(i) * way**2 - 2.0 * a2
+        rest = (10 * d0 - 4 * d1 + 0.5 * d2, -15 * d0 + 7 * d1 - d2, 6 * d0 - 3 * d1 + 0.5 * d2)
+        self._quintic = (x, way, np.array([a0, a1, a2, *rest]))
+        return place
+
+    def _bend_at(self, i: int) -> float:
+        """Second derivative (1/m) at a row of the table, of the turn behind it."""
+        return float(self._bend[min(i + 1, len(self._bend) - 1)])
+
+    def _next_apex(self, x: float) -> tuple[float, float]:
+        ways = np.diff([place for place, _ in self.apexes])
+        for i in range(1, len(self.apexes)):
+            place, aside = self.apexes[i]
+            if place - x > JOINS * float(ways[i - 1 : i + 1].max()):
+                return place, aside
+        place, aside = self.apexes[-1]
+        return max(place, x) + float(ways[-1]), aside
+
+
+def with_run_out(apexes: Sequence[tuple[float, float]], *, turns: int = 3) -> list[tuple[float, float]]:
+    """Apexes with some more behind the last one, from side to side as the last two: the last turn is like the rest."""
+    found = list(apexes)
+    (x0, y0), (x1, y1) = found[-2], found[-1]
+    for number in range(1, turns + 1):
+        found.append((x1 + number * (x1 - x0), y0 if number % 2 else y1))
+    return found
+
+
+def apexes_of(course: Course, skier: Skier, start: tuple[float, float], gravity: float) -> list[tuple[float, float]]:
+    """Start and apexes of a line past the turning poles; at a wanted speed it leaves room for the lean."""
+    gates = [start, *(gate.turning for gate in course.gates)]
+    found = [start]
+    for i, gate in enumerate(course.gates, 1):
+        others = [gates[k] for k in (i - 1, i + 1) if (k > 0 or len(gates) < 3) and k < len(gates)]
+        way = min(abs(gate.turning[0] - other[0]) for other in others)
+        half = 0.5 * max(abs(gate.turning[1] - other[1]) for other in others)
+        aside = clearance(skier, half, way, gravity)
+        found.append((gate.turning[0], gate.turning[1] + (aside if gate.side == "left" else -aside)))
+    return found
+
+
+def clearance(skier: Skier, half: float, way: float, gravity: float) -> float:
+    """Distance (m) of the line of the centre of mass from a pole that its feet pass at the skier's clearance.
+
+    The turn is half a wave of so much aside and way (m), under gravity along the normal (m/s²). Without a wanted speed
+    it is the clearance.
+    """
+    aside = skier.pole_clearance
+    for _ in range(6):
+        lean = min(1.0, skier.brakes_to**2 * (half + aside) * (math.pi / way) ** 2 / gravity)
+        aside = max(0.05, skier.pole_clearance - 0.6 * lean)
+    return aside

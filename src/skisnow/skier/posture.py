@@ -1,0 +1,219 @@
+"""Posture of a skier over its skis, the limits of its joints, and the boot poses that follow from it."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import Final, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from ..dynamics import BootPose
+from ..geometry.boot_axes import axes_of
+from ..scenario.skier import Skier
+from .seen import Seen
+
+FloatArray: TypeAlias = npt.NDArray[np.float64]
+
+AHEAD, ASIDE, HIP, LEFT_EDGE, RIGHT_EDGE, LEFT_TOE, RIGHT_TOE, STANCE = range(8)
+"""Places in the numbers of a posture."""
+BLUNT: Final = math.sin(math.radians(3.0))
+"""Sine of the edge angle below which a ski counts as flat for its lift (modelling assumption)."""
+DIFFERENCE: Final = 1e-4
+"""Time (s) before and after a moment over which the rates of poses are differences."""
+MOMENT_TIME: Final = 0.01
+"""Time (s) over which the snow's moment on the boots is smoothed (modelling assumption)."""
+GREATEST_TURN: Final = 120.0
+"""Greatest acceleration of the hip angle (rad/s²): keeps a shock of the snow out of the body (modelling assumption)."""
+FASTEST_EDGE: Final = 7.0
+"""Greatest rate of the edge angle, 400 °/s (rad/s) (modelling assumption)."""
+TOUCH: Final = 20.0
+"""Rate (1/s) at which a lifted ski is put down (modelling assumption)."""
+OPENING: Final = 6.0
+"""Corner frequency (1/s) of toe-in and stance (modelling assumption)."""
+YIELDING_INERTIA: Final = 1.5
+"""Inertia (kg m²) with which the skis give way to the snow about the hips (found by trial)."""
+FASTEST_SHIFT: Final = 25.0
+"""Greatest acceleration of the centre of mass along the skis (m/s²) (found by trial: with 60 the loads peak)."""
+
+
+@dataclass(frozen=True, slots=True)
+class Command:
+    """What a control asks of the body for the next period; angles in rad, positive to the left.
+
+    Attributes
+    ----------
+    edge
+        Edge angles of the left and the right ski that the body moves to.
+    hip_torque
+        That turns the skis against the body (N m); None: the hips are held.
+    ahead
+        Acceleration of the centre of mass along the skis (m/s²).
+    aside
+        Acceleration of the centre of mass to the left of the feet (m/s²).
+    pressure
+        Place of the centre of pressure to the left of the feet's middle that legs give way to (m).
+    toe
+        Angle of the left and the right ski from their mean heading.
+    stance
+        Distance of the boots (m); None: that of the sledge.
+    edge_rate
+        Corner frequency of the edge angle (1/s); None: the skier's.
+    """
+
+    edge: tuple[float, float]
+    hip_torque: float | None = None
+    ahead: float = 0.0
+    aside: float = 0.0
+    pressure: float = 0.0
+    toe: tuple[float, float] = (0.0, 0.0)
+    stance: float | None = None
+    edge_rate: float | None = None
+
+
+@dataclass(slots=True)
+class Posture:
+    """Where the boots are against the body.
+
+    Parameters
+    ----------
+    skier
+        Its limits.
+    centre
+        Centre of mass in the body: ahead of the boots and above them at the start (m).
+    stance, half_width
+        Between the boots, and of a ski (m).
+
+    Attributes
+    ----------
+    numbers, rates
+        Centre of mass ahead of and to the left of the feet, yaw of the body against the skis, edge angles, toes and
+        stance, and their rates.
+    acceleration
+        Of the centre of mass to the left of the feet in the last period (m/s²).
+    """
+
+    skier: Skier
+    centre: tuple[float, float]
+    stance: float
+    half_width: float
+    numbers: FloatArray = field(init=False)
+    rates: FloatArray = field(default_factory=lambda: np.zeros(8))
+    acceleration: float = 0.0
+    _moment: float = 0.0  # of the snow on the boots, smoothed (N m)
+    _gives: float = 0.0  # rate to the left by legs that give way (m/s)
+
+    def __post_init__(self) -> None:
+        self.numbers = np.zeros(8)
+        self.numbers[STANCE] = self.stance
+
+    @property
+    def aside_rate(self) -> float:
+        """Planned rate of the centre of mass to the left, without what the legs give way (m/s)."""
+        return float(self.rates[ASIDE]) - self._gives
+
+    @property
+    def edge(self) -> float:
+        """Edge angle of the left ski (rad)."""
+        return float(self.numbers[LEFT_EDGE])
+
+    def poses(self) -> list[BootPose]:
+        """Poses of the left and the right boot, with their rates."""
+        before, now, later = (
+            pose_of(self.numbers + shift * self.rates, self.centre, self.half_width)
+            for shift in (-DIFFERENCE, 0.0, DIFFERENCE)
+        )
+        found = []
+        for (last, from_), (place, axes), (next_, to) in zip(before, now, later, strict=True):
+            turn = 0.5 * axes.T @ (to - from_) / DIFFERENCE
+            spin = 0.5 * np.array([turn[1, 2] - turn[2, 1], turn[2, 0] - turn[0, 2], turn[0, 1] - turn[1, 0]])
+            found.append(BootPose(place, axes, 0.5 * (next_ - last) / DIFFERENCE, spin))
+        return found
+
+    def step(self, command: Command, seen: Seen, dt: float) -> None:
+        """Move by a period (s), as far as joints and legs allow."""
+        self._step_aside(command, seen, dt)
+        self._step_ahead(command.ahead, dt)
+        if command.hip_torque is not None:
+            self._step_hips(command.hip_torque, seen, dt)
+        corner = command.edge_rate or self.skier.edge_rate
+        for place, wanted in zip((LEFT_EDGE, RIGHT_EDGE), command.edge, strict=True):
+            limit = self.skier.greatest_edge
+            self._follow(place, max(-limit, min(limit, wanted)), corner, dt, fastest=FASTEST_EDGE)
+        for place, wanted in zip((LEFT_TOE, RIGHT_TOE), command.toe, strict=True):
+            self._follow(place, wanted, OPENING, dt)
+        self._follow(STANCE, command.stance or self.stance, OPENING, dt)
+
+    def _follow(self, place: int, wanted: float, corner: float, dt: float, *, fastest: float = math.inf) -> None:
+        """Critically damped."""
+        value, rate = self.numbers[place], self.rates[place]
+        later = rate + dt * (corner**2 * (wanted - value) - 2.0 * corner * rate)
+        later = max(-fastest, min(fastest, later))
+        self.numbers[place] = value + 0.5 * (rate + later) * dt
+        self.rates[place] = later
+
+    def _step_aside(self, command: Command, seen: Seen, dt: float) -> None:
+        """As balance asks, and as far as legs give way to the load that is off; a lifted ski is put down."""
+        place, rate = float(self.numbers[ASIDE]), float(self.rates[ASIDE])
+        free = seen.lifted or not seen.bears
+        back = min(1.0, TOUCH * dt) if free else 0.0
+        later = (1.0 - back) * self.aside_rate + back * seen.aside_rate + command.aside * dt
+        gives = TOUCH * (seen.aside - place) if free else self.skier.leg_yielding * (seen.pressure - command.pressure)
+        most = math.sqrt(self.skier.longest_leg**2 - self.centre[1] ** 2)
+        self.acceleration = (later + gives - rate) / dt
+        self.numbers[ASIDE] = max(-most, min(most, place + 0.5 * (rate + later + gives) * dt))
+        self.rates[ASIDE], self._gives = later + gives, gives
+
+    def _step_ahead(self, asked: float, dt: float) -> None:
+        """Within the range and the rate of the skier's fore and aft."""
+        place, rate = float(self.numbers[AHEAD]), float(self.rates[AHEAD])
+        fastest, farthest = self.skier.greatest_shift_speed, self.skier.greatest_shift
+        ahead, behind = (min(fastest, _stops_within(farthest - side * place)) for side in (1.0, -1.0))
+        later = rate + dt * max(-FASTEST_SHIFT, min(FASTEST_SHIFT, asked))
+        later = max(-behind, min(ahead, later))
+        self.numbers[AHEAD] = place + 0.5 * (rate + later) * dt
+        self.rates[AHEAD] = later
+
+    def _step_hips(self, torque: float, seen: Seen, dt: float) -> None:
+        """By the torque and the snow's moment on the boots, each turning its own inertia."""
+        most = self.skier.hip_torque
+        torque = max(-most, min(most, torque))
+        self._moment += (1.0 - math.exp(-dt / MOMENT_TIME)) * (seen.moment - self._moment)
+        wanted = (seen.body_rate + dt * self._moment / seen.yaw_inertia) - (
+            seen.turn_rate + dt * (torque + self._moment) / YIELDING_INERTIA
+        )
+        rate = float(self.rates[HIP])
+        later = rate + max(-GREATEST_TURN * dt, min(GREATEST_TURN * dt, wanted - rate))
+        self.numbers[HIP] += 0.5 * (rate + later) * dt
+        self.rates[HIP] = later
+
+
+def _stops_within(way: float) -> float:
+    """Speed (m/s) from which the shift stops on a way (m)."""
+    return math.sqrt(max(0.0, 2.0 * FASTEST_SHIFT * way))
+
+
+def pose_of(numbers: FloatArray, centre: tuple[float, float], half_width: float) -> list[tuple[FloatArray, FloatArray]]:
+    """Place and axes of the left and the right boot in the body that has these numbers."""
+    height = centre[1]
+    lean, yaw = math.atan2(numbers[ASIDE], height), numbers[HIP]
+    body = _about_ahead(-lean) @ _about_up(yaw)
+    middle = np.array([numbers[AHEAD], numbers[ASIDE], height])
+    origin = np.array([centre[0], 0.0, centre[1]])
+    found = []
+    for side, edge, toe in ((0.5, LEFT_EDGE, LEFT_TOE), (-0.5, RIGHT_EDGE, RIGHT_TOE)):
+        up = half_width * (math.hypot(math.sin(numbers[edge]), BLUNT) - BLUNT)
+        foot = np.array([0.0, side * numbers[STANCE], up])
+        found.append((origin + body.T @ (foot - middle), axes_of(numbers[edge], 0.0, numbers[toe]) @ body))
+    return found
+
+
+def _about_ahead(angle: float) -> FloatArray:
+    cos, sin = math.cos(angle), math.sin(angle)
+    return np.array([[1.0, 0.0, 0.0], [0.0, cos, -sin], [0.0, sin, cos]])
+
+
+def _about_up(angle: float) -> FloatArray:
+    cos, sin = math.cos(angle), math.sin(angle)
+    return np.array([[cos, -sin, 0.0], [sin, cos, 0.0], [0.0, 0.0, 1.0]])

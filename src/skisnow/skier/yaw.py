@@ -1,0 +1,117 @@
+"""Yaw of skis and body: a time-varying linear-quadratic regulator over hip torque and the shift of the load."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Final, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from .plan import STEP, Planned
+from .seen import Seen
+
+FloatArray: TypeAlias = npt.NDArray[np.float64]
+
+SHEAR_SHIFT: Final = 0.46
+"""Shift of the force across the skis over that of the load along them, measured over the snow of the race piste."""
+SKI_INERTIA: Final = 1.3
+"""Yaw inertia of both skis with boots about the hips (kg m²) (modelling assumption)."""
+FRICTION_ARM: Final = 2.4
+"""Yaw moment of the friction on the loaded outer ski (N m) (modelling assumption)."""
+LEANT: Final = 40.0
+"""Yaw moment on the body over its lean aside (N m/m) (modelling assumption)."""
+GREATEST_MOMENT: Final = 30.0
+"""Of what else turns the body (N m) (modelling assumption)."""
+SLIP, HIPS, BODY_RATE, TORQUE, SHIFT, SHIFT_ACCELERATION, BODY = 0.06, 0.4, 6.0, 100.0, 0.12, 25.0, 0.8
+"""Errors that cost alike: slip, hip angle (rad), body rate (rad/s), hip torque (N m), shift (m), its acceleration
+(m/s²) and body heading (rad) (found by trial; half and one and a half times each passes the same gates)."""
+FACING: Final = 0.8
+"""Share of the path's course to which the body turns (found by trial: from 0.4 to 1.2 it passes)."""
+
+
+@dataclass(frozen=True, slots=True)
+class Body:
+    """Of a skier: mass (kg), pitch and yaw inertia (kg m²), height of its centre of mass over the snow (m)."""
+
+    mass: float
+    pitch: float
+    yaw: float
+    height: float
+
+
+def heading_ahead(planned: Planned, slip: FloatArray, gravity: float, height: float, speed: float) -> FloatArray:
+    """Heading of the skis (rad) with a slip (rad) against the path of the feet, which swing out under the body."""
+    if planned.heading is not None:
+        return np.full(len(planned.force), planned.heading)
+    swing = np.gradient(height * planned.force / gravity, STEP)
+    return np.asarray(planned.course + slip - swing / max(speed, 2.0))
+
+
+def yaw_gain(
+    planned: Planned, heading: FloatArray, slip: FloatArray, body: Body, gravity: float, speed: float
+) -> FloatArray:
+    """Gain (2, 7): torque of the hips (N m) and acceleration of the shift (m/s²) are minus its product with the state.
+
+    The state is that of `yaw_state`. Riccati's equation is solved backwards over the plan.
+    """
+    side = np.gradient(heading, STEP)
+    aside = body.height * planned.force / gravity
+    leant = (aside / np.hypot(aside, body.height)) ** 2
+    turns = -np.gradient(body.pitch * side * leant, STEP) - FRICTION_ARM * np.tanh(planned.force / 2.0) - LEANT * aside
+    turns = np.clip(turns, -GREATEST_MOMENT, GREATEST_MOMENT)
+    force = body.mass * planned.force
+    damping = 0.5 * np.minimum(40.0, 0.245 * np.abs(force) / (max(speed, 2.0) * np.maximum(np.abs(slip), 0.15)))
+    eager = np.minimum(1.0, np.abs(planned.force) / 1.962) + 0.1
+    cost, gain = np.zeros((7, 7)), np.zeros((2, 7))
+    for k in range(len(force) - 1, -1, -1):
+        here = _cost(eager[k] / SLIP**2, heading[k], FACING * planned.course[k])
+        if k == len(force) - 1:
+            cost = 5.0 * here
+        a, b = _dynamics(force[k], turns[k], damping[k], body.yaw)
+        weighed = b.T @ cost
+        inputs = weighed @ b
+        inputs[0, 0] += 1.0 / TORQUE**2
+        inputs[1, 1] += 1.0 / SHIFT_ACCELERATION**2
+        towards = weighed @ a
+        determinant = inputs[0, 0] * inputs[1, 1] - inputs[0, 1] * inputs[1, 0]
+        inverse = np.array([[inputs[1, 1], -inputs[0, 1]], [-inputs[1, 0], inputs[0, 0]]]) / determinant
+        gain = inverse @ towards
+        cost = here + a.T @ cost @ a - towards.T @ gain
+        cost = 0.5 * (cost + cost.T)
+    return gain
+
+
+def yaw_state(seen: Seen, ahead: float, ahead_rate: float) -> FloatArray:
+    """Heading of skis and body and their rates by turns, the shift and its rate, and 1."""
+    skis, body = (math.remainder(each, 2.0 * math.pi) for each in (seen.heading, seen.body_heading))
+    return np.array([skis, seen.turn_rate, body, seen.body_rate, ahead, ahead_rate, 1.0])
+
+
+def _dynamics(force: float, turns: float, damping: float, inertia: float) -> tuple[FloatArray, FloatArray]:
+    """Over one step: what the state becomes, and what the inputs add."""
+    a, b = np.eye(7), np.zeros((7, 2))
+    a[0, 1] = a[2, 3] = a[4, 5] = STEP
+    a[1, 4] = STEP * SHEAR_SHIFT * force / SKI_INERTIA
+    a[1, 1] -= min(1.0, STEP * damping / SKI_INERTIA)
+    a[3, 4], a[3, 6] = -STEP * force / inertia, STEP * turns / inertia
+    b[1, 0], b[3, 0], b[5, 1] = STEP / SKI_INERTIA, -STEP / inertia, STEP
+    for place in (0, 2, 4):
+        unit = np.zeros(7)
+        unit[place + 1] = 1.0
+        a[place] += 0.5 * STEP * (a[place + 1] - unit)
+        b[place] += 0.5 * STEP * b[place + 1]
+    return a, b
+
+
+def _cost(slip: float, heading: float, facing: float) -> FloatArray:
+    """Of a state, with the weight of the slip, for headings of skis and body (rad)."""
+    hips, body = 1.0 / HIPS**2, 1.0 / BODY**2
+    q = np.zeros((7, 7))
+    q[0, 0], q[2, 2], q[0, 2], q[2, 0] = slip + hips, hips + body, -hips, -hips
+    q[0, 6] = q[6, 0] = -slip * heading
+    q[2, 6] = q[6, 2] = -body * facing
+    q[6, 6] = slip * heading**2 + body * facing**2
+    q[3, 3], q[4, 4] = 1.0 / BODY_RATE**2, 1.0 / SHIFT**2
+    return q
