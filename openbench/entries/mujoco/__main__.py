@@ -64,7 +64,8 @@ def turn(case: Case) -> Values:
 
 def _run(case: Case, ratio: float) -> list[tuple[float, float, float, float]]:
     body, motion = case["body"], case["motion"]
-    runner = Runner(*(np.array(body[key]) * f for key, f in (("station_m", 1), ("width_m", 0.5), ("base_height_m", 1))))
+    station, width, height = (np.array(body[key], dtype=float) for key in ("station_m", "width_m", "base_height_m"))
+    runner = Runner(station, width / 2.0, height)
     contact = SnowContact(snow_of(case["snow"], ratio), [runner, runner])
     sledge = model("<freejoint/>", body["mass_kg"], body["inertia_kg_m2"], gravity_of(motion))
     data, heading = ENGINE.MjData(sledge), math.radians(motion["start_heading_deg"])

@@ -55,6 +55,7 @@ NO_READERS: Final[Mapping[str, str]] = {
     "web.pages.replay:_in_words": "summary.json, by read_record as web.runs:Runs._over",
     "cli.compare:_slope_angle_of_run": "summary.json of a run, by read_json as other records",
     "web.replay_addresses:add_addresses.first": "package data",
+    "web.replay_addresses:RunFolders.title": "job of a run, by read_record as web.runs:Runs._over",
     "web.server:Certificate.__post_init__": "a certificate, parsed by OpenSSL",
     "_support.environment:load_certificate": "a certificate, parsed by OpenSSL",
     "_support.processes.dask_cluster:_require_certificates": "certificates, parsed by OpenSSL",
