@@ -36,7 +36,7 @@ from .test_run_report import summary_of
 
 VERSION = f"skisnow {version('skisnow')}"
 TITLE = "Measurement of mechanical properties of snow for simulation of skiing"
-SAME = frozenset({"Code", "Journal of Glaciology", "Moment", f", {VERSION}", TITLE})
+SAME = frozenset({"BibTeX", "Code", "Journal of Glaciology", "Moment", f", {VERSION}", TITLE})
 """What is the same in both languages: words, and the title of a paper."""
 CODES = re.compile(
     r"[\w.]*_\w+|[\w-]+\.(?:csv|toml)|[0-9a-f]{64}|[ab]@\d+deg|H_.; .* linear|; .* linear|linear|[Rr]mse"
@@ -136,7 +136,7 @@ def test_no_text_of_a_german_run_is_left_in_english() -> None:
             pictures.append(Picture(drawn.name, drawn.whole_caption, drawn.alt, drawn.wide, "", b""))
     english, german = (texts(run_page(run, summary_of(run), pictures, language=code)) for code in ("en", "de"))
     choices = {word for key in SCENARIO_KEYS.values() for word in key.choices}
-    same = {"Start", "Start (J)", "false", "giant-slalom", "true", VERSION, *choices, *SCENARIO_KEYS}
+    same = {"Start", "BibTeX", "Start (J)", "false", "giant-slalom", "true", VERSION, *choices, *SCENARIO_KEYS}
     words = {each for each in english if re.search("[A-Za-z]{4}", each)} - same
     assert len(words) > 150
     assert words.intersection(german) == set()

@@ -27,7 +27,9 @@ from . import test_identify_report, test_turn_report
 from .test_translated import ENGLISH, VERSION, texts, written
 
 chain, found = test_turn_report.chain, test_identify_report.found  # fixtures
-KEYS = frozenset({*SCENARIO_KEYS, "giant-slalom", "false", "true", "Start", "Start (J)", VERSION, f", {VERSION}"})
+KEYS = frozenset(
+    {*SCENARIO_KEYS, "giant-slalom", "false", "true", "BibTeX", "Start", "Start (J)", VERSION, f", {VERSION}"}
+)
 NAMES = ("run A", "run B")
 GAPS = tuple(
     GateGap(gate=gate, outcome="passed", other_outcome=other, time=own, other_time=its, gap=gap, lost=lost)

@@ -80,6 +80,7 @@ def objects(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
         skisnow.Boots(np.arange(4.0), np.zeros((4, 2, 3)), np.tile(np.eye(3), (4, 2, 1, 1))),
         skisnow.race(skisnow.load_scenario("slalom-20-gates"), model="point", evaluations=1, workers=1),
         skisnow.Store(folder / "store", None),  # type: ignore[arg-type]
+        skisnow.Design(scenario.ski, scenario.ski, {}, {}, {"sidecut_mm": -5.8}, (), True, (), (), 40),
     )  # fmt: skip
     return {type(each).__name__: each for each in made}
 

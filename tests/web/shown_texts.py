@@ -54,6 +54,7 @@ NO_WORDS: Final = frozenset(
         "main then",
         "quiet progress",
         "quiet range",
+        "small switch-kg",
     }
 )
 MADE_OF_KINDS: Final = {

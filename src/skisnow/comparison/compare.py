@@ -254,8 +254,8 @@ def _warnings(simulated: Track, measured: Track, dimensions: int) -> list[str]:
     for track in (simulated, measured):
         without = int((~compared_points(track, dimensions=dimensions)).sum())
         if without:
-            flags = ", ".join(f"{count} {code}" for code, count in track.flagged.items()) or "without a place"
-            warnings.append(f"{track.name}: {without} of {len(track)} points are excluded; flagged are {flags}")
+            flags = ", ".join(f"{count} {code}" for code, count in track.flagged.items()) or "no place"
+            warnings.append(f"{track.name}: {without} of {len(track)} points are not compared ({flags})")
         inexact = inexact_sentence(track.name, track.solution)
         if inexact:
             warnings.append(inexact)

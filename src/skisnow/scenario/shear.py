@@ -135,7 +135,7 @@ class Shear:
         Bearing,
         Quantity(
             "shear.bearing",
-            "height that holds an edge against a motion inwards: the whole edge's, or that of the base that bears",
+            "an edge that moves inwards holds with its whole height, or with that of the base that bears",
             label="height that holds",
             origin="choice: the paper's depth of the edge; no measurement decides",
         ),

@@ -209,7 +209,7 @@ class Skier:
     hip_torque: Annotated[
         float,
         Quantity(
-            "skier.hip_torque_N_m",
+            "skier.hip_torque_Nm",
             "greatest torque of both legs about the body's long axis",
             label="greatest hip torque",
             lowest=1.0,

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Final, Self
 from ..._support.errors import ParameterError
 from ..._support.messages import Message
 from ..._support.user_files import read_toml, toml_values
-from ..reading.campaign_file import CAMPAIGN_FILE
+from ..reading.campaign_file import CAMPAIGN_FILE, IMPORT_ANSWERS
 from ..reading.headings import plain_heading
 
 if TYPE_CHECKING:
@@ -20,8 +20,6 @@ if TYPE_CHECKING:
 SECTION: Final = "import"
 NONE: Final = "-"
 """Answer for a table or column that is not imported."""
-KINDS: Final = ("table", "column", "unit", "site", "tool", "plate", "cells", "ignore")
-"""Options with answers, and keys of ``[import]``."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,7 +54,7 @@ class Answers:
     @classmethod
     def of_options(cls, options: Mapping[str, Iterable[str]]) -> Self:
         """Answers from texts such as ``Last=load_N``; tools and plates may have no name, ``ignore`` has no value."""
-        return cls(**{kind: dict(_pair(kind, text) for text in options.get(kind) or ()) for kind in KINDS})
+        return cls(**{kind: dict(_pair(kind, text) for text in options.get(kind) or ()) for kind in IMPORT_ANSWERS})
 
     def with_(self, kind: str, key: str, value: str) -> Self:
         """The same with one more answer."""
@@ -124,7 +122,7 @@ def parse_template(text: str, name: str) -> Answers:
 
 def _template(values: Mapping[str, Any], name: str) -> Answers:
     section = values.get(SECTION)
-    answers = {kind: section.get(kind, {}) for kind in KINDS} if isinstance(section, Mapping) else {}
+    answers = {kind: section.get(kind, {}) for kind in IMPORT_ANSWERS} if isinstance(section, Mapping) else {}
     texts = all(
         isinstance(pairs, Mapping) and all(isinstance(value, str) for value in pairs.values())
         for pairs in answers.values()

@@ -113,6 +113,9 @@ class CampaignFile:
 CAMPAIGN_KEYS: Final = {key.name: key for key in own_quantities(CampaignFile)}
 """Keys with one value or a list of numbers."""
 (PLATE_LENGTH,) = own_quantities(Plate)
+IMPORT_ANSWERS: Final = ("table", "column", "unit", "site", "tool", "plate", "cells", "ignore")
+"""Tables of ``[import]``: answers of an import by option."""
+IMPORT_KEYS: Final = ("template", "file", "sha256", "notes", *IMPORT_ANSWERS)
 _SECTIONS: Final = ("tool", "plate", "screening", COLUMNS_KEY, UNITS_KEY, "snow_micro_pen", "weather", "import")
 TOP_KEYS: Final = ("name", "place", "observers", *list(CAMPAIGN_KEYS)[2:], *_SECTIONS)
 
@@ -136,6 +139,7 @@ def read_campaign_file(text: str, problems: list[Problem]) -> CampaignFile | Non
         return None
     top = TomlValues(CAMPAIGN_FILE, parsed, "", problems)
     top.refuse_misspelt(TOP_KEYS)
+    top.table("import").refuse_misspelt(IMPORT_KEYS)
     tools, tool_names, flat_tools = _tools(top)
     plates, plate_names = _plates(top)
     return CampaignFile(

@@ -49,7 +49,8 @@ def curve(name: str, *, law: bool = True) -> SeriesCurve:
 
 def beside(page: Sheet, answer: Callable[[str], QuickResults]) -> LiveResults:
     """A separate page with the results of the readings."""
-    view: Any = SimpleNamespace(file=PENETRATION, session=SimpleNamespace(quick_results=answer))
+    session = SimpleNamespace(quick_results=answer, quick_verdicts=lambda _file: [])
+    view: Any = SimpleNamespace(file=PENETRATION, session=session)
 
     def made() -> LiveResults:
         with page.content:
