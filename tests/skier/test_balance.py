@@ -261,12 +261,12 @@ def swing(legs: float, **changes: object) -> float:
 def test_loads_do_not_chatter_from_ski_to_ski() -> None:
     """Legs that do not give way let the load go to and fro some six times a second.
 
-    Legs that give way take at least three quarters of that. Friction across the skis is left out of this comparison: it
-    changes its side when a ski changes the direction in which it skids, and adds 5 N whatever the legs do.
+    Legs that give way with 1/s take at least four fifths of that. Friction across the skis is left out of this
+    comparison: it changes its side when a ski changes the direction in which it skids, and adds 5 N in each case.
     """
     assert swing(Skier().leg_yielding) < 20.0
     along = {"friction.direction": "along-ski"}
-    assert swing(Skier().leg_yielding, **along) < 0.25 * swing(0.0, **along)
+    assert swing(1.0, **along) < 0.2 * swing(0.0, **along)
 
 
 def test_left_and_right_mirror() -> None:

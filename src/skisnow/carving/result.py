@@ -101,7 +101,7 @@ class Equilibrium(Shown):
     iterations
         Of Newton's method.
     request
-        What it was computed from, for `sensitivity`; None where that has no derivatives.
+        Ski, snow and load of the question, for `sensitivity`; None if the answer has no derivatives.
 
     See Also
     --------

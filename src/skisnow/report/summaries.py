@@ -104,7 +104,7 @@ def _ski_number(key: str) -> Callable[[Json], float | None]:
 
 
 _SAME: Final = 1e-6  # %, of rounding
-_NOTHING: Final = 1e-6  # of a force or moment that is out of balance by rounding
+_NOTHING: Final = 1e-6  # limit below which an imbalance of force or moment is rounding
 _ROWS: Final[tuple[tuple[str, Callable[[Json], str | float | None]], ...]] = (
     ("outcome", lambda answer: answer["outcome"].replace("_", " ")),
     ("grip holds", lambda answer: "-" if answer["holds"] is None else _yes_or_no(answer["holds"])),

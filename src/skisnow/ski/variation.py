@@ -31,7 +31,7 @@ FACTORS: Final = tuple(f"edit.{column}" for column in (SIDECUT, *EDITED_COLUMNS)
 LINEAR: Final = ("tip_width_mm", "waist_width_mm", "tail_width_mm", "camber_mm", "base_bevel_deg", "edge_width_mm")
 """Keys in which the ski's tables are linear."""
 _WITHOUT: Final = ("mass_kg", "side_edge_deg", "edge_radius_mm")  # no part in a carve, or no derivative
-_STEP: Final = 1e-3  # of a row of a list
+_STEP: Final = 1e-3  # relative change of one row of a list
 _ROW: Final = re.compile(r"(\w+)\[(\d+)\]")
 
 
