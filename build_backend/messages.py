@@ -6,9 +6,11 @@
 
 from __future__ import annotations
 
+import ast
 import re
 import sys
 import tempfile
+from collections.abc import Iterator
 from datetime import UTC, datetime
 from pathlib import Path
 from string import Formatter
@@ -16,8 +18,27 @@ from typing import Any
 
 SOURCES = Path(__file__).resolve().parents[1] / "src" / "skisnow"
 FOLDER = SOURCES / "_support" / "translations"
-KEYWORDS: dict[str, tuple[str, dict[str, Any]]] = {
-    "**.py": ("python", {"Message": None, "count_message": (1, 2), "template": None}),
+
+
+def python_calls(
+    source: Any,
+    keywords: Any,
+    _tags: Any,
+    options: Any,  # noqa: ARG001 -- as Babel calls it
+) -> Iterator[tuple[int, str, list[str | None], list[str]]]:
+    """Literals among the first two arguments of each call of a keyword, also of a nested one."""
+    for node in ast.walk(ast.parse(source.read())):
+        name = node.func.id if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) else ""
+        if isinstance(node, ast.Call) and name in keywords:
+            literals = [ast.literal_eval(arg) if isinstance(arg, ast.Constant) else None for arg in node.args[:2]]
+            yield node.lineno, name, literals, []
+
+
+ERRORS = ("Parameter", "Fit", "Solver", "Store", "Overtaken", "Output", "Skisnow")
+WARNINGS = ("Range", "ModelLimit", "Fit")
+CLASSES = {**{f"{name}Error": None for name in ERRORS}, **{f"{name}Warning": None for name in WARNINGS}}
+KEYWORDS: dict[str, tuple[Any, dict[str, Any]]] = {
+    "**.py": (python_calls, {"Message": None, "count_message": (1, 2), "template": None, **CLASSES}),
     "**.html": ("jinja2.ext:babel_extract", {"gettext": None, "ngettext": (1, 2)}),  # {% trans %} is one of them
     "**.js": ("javascript", {"said": None}),
 }

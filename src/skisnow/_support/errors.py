@@ -19,14 +19,22 @@ if TYPE_CHECKING:
 class _Coded(Exception):  # noqa: N818 -- of errors and warnings
     """A message with a code.
 
-    Attributes
+    Parameters
     ----------
+    message
+        Template of a `Message`, a literal as there, or a message.
     code
         Identifier that does not change with the wording, such as ``contradiction``; empty without one.
+    fields
+        Values of the template. Text with braces and no fields is not a template.
+
+    >>> print(ParameterError("{name} is {value:g}; it must be above 0", code="out_of_range", name="load", value=-1.0))
+    load is -1; it must be above 0
     """
 
-    def __init__(self, message: str = "", *, code: str = "") -> None:
-        super().__init__(message)
+    def __init__(self, message: str = "", /, *, code: str = "", **fields: Any) -> None:
+        is_template = not isinstance(message, Message) and (fields or not {*"{}"} & {*message})
+        super().__init__(Message(message, **fields) if is_template else message)
         self.code = code
 
     @property

@@ -6,7 +6,6 @@ import math
 from typing import Final
 
 from .._support.errors import ParameterError, require_choice
-from .._support.messages import Message
 from ..ski.ski import Ski
 from ..snow.properties import SnowProperties
 
@@ -20,17 +19,13 @@ def require_kinds(ski: object, snow: object) -> None:
     """Reject arguments of another type than a ski and snow."""
     if not isinstance(ski, Ski):
         raise ParameterError(
-            Message("ski is {ski!r}; it must be a Ski: read_ski gives one, from a name or a file", ski=ski),
-            code="wrong_kind",
+            "ski is {ski!r}; it must be a Ski: read_ski gives one, from a name or a file", code="wrong_kind", ski=ski
         )
     if not isinstance(snow, SnowProperties):
         raise ParameterError(
-            Message(
-                "snow is {snow!r}; it must be SnowProperties: from published_snow, from "
-                "snow_from_results, or from numbers",
-                snow=snow,
-            ),
+            "snow is {snow!r}; it must be SnowProperties: from published_snow, from snow_from_results, or from numbers",
             code="wrong_kind",
+            snow=snow,
         )
 
 
@@ -38,27 +33,21 @@ def require_ranges(edge_angle: float, load: float, unloading_ratio: float, momen
     """Refuse a number outside its range."""
     if not 0.0 <= edge_angle <= GREATEST_EDGE_ANGLE:
         raise ParameterError(
-            Message(
-                "edge_angle is {edge_angle} rad; it must be from 0 to {greatest_edge_angle:.3f} rad (85 degrees)",
-                edge_angle=edge_angle,
-                greatest_edge_angle=GREATEST_EDGE_ANGLE,
-            ),
+            "edge_angle is {edge_angle} rad; it must be from 0 to {greatest_edge_angle:.3f} rad (85 degrees)",
             code="out_of_range",
+            edge_angle=edge_angle,
+            greatest_edge_angle=GREATEST_EDGE_ANGLE,
         )
     if not (math.isfinite(load) and load > 0.0):
-        raise ParameterError(
-            Message("load is {load} N; it must be a finite force above 0", load=load), code="out_of_range"
-        )
+        raise ParameterError("load is {load} N; it must be a finite force above 0", code="out_of_range", load=load)
     if not unloading_ratio >= 1.0:
         raise ParameterError(
-            Message(
-                "unloading_ratio is {unloading_ratio}; k_u/H_V must be 1 (elastic) or more",
-                unloading_ratio=unloading_ratio,
-            ),
+            "unloading_ratio is {unloading_ratio}; k_u/H_V must be 1 (elastic) or more",
             code="out_of_range",
+            unloading_ratio=unloading_ratio,
         )
     if not math.isfinite(moment):
-        raise ParameterError(Message("moment is {moment} N m; it must be finite", moment=moment), code="not_a_number")
+        raise ParameterError("moment is {moment} N m; it must be finite", code="not_a_number", moment=moment)
 
 
 def require_within(ski: Ski, load: float, moment: float) -> None:
@@ -66,17 +55,14 @@ def require_within(ski: Ski, load: float, moment: float) -> None:
     ahead = moment / load
     if not ski.station[-1] < ahead < ski.station[0]:
         raise ParameterError(
-            Message(
-                "a moment of {moment} N m under a load of {load} N puts the resultant {ahead:.2f} m "
-                "ahead of the boot: off the ski, which reaches from {tail:.2f} to {tip:.2f} m: "
-                "no snow can balance that",
-                moment=moment,
-                load=load,
-                ahead=ahead,
-                tail=ski.station[-1],
-                tip=ski.station[0],
-            ),
+            "a moment of {moment} N m under a load of {load} N puts the resultant {ahead:.2f} m ahead of the boot: "
+            "off the ski, which reaches from {tail:.2f} to {tip:.2f} m: no snow can balance that",
             code="out_of_range",
+            moment=moment,
+            load=load,
+            ahead=ahead,
+            tail=ski.station[-1],
+            tip=ski.station[0],
         )
 
 
@@ -91,11 +77,9 @@ def require_strength(snow: SnowProperties) -> None:
     """Refuse snow without S_f, where no law says what holds the edge."""
     if snow.failure_shear_stress is None:
         raise ParameterError(
-            Message(
-                "the snow ({source}) has no failure shear stress S_f; a carved turn needs it: give one, or a shear law",
-                source=snow.source,
-            ),
+            "the snow ({source}) has no failure shear stress S_f; a carved turn needs it: give one, or a shear law",
             code="no_data",
+            source=snow.source,
         )
 
 
@@ -104,11 +88,9 @@ def unloading_ratio_of(snow: SnowProperties, given: float | None) -> float:
     ratio = snow.unloading_ratio if given is None else given
     if ratio is None:
         raise ParameterError(
-            Message(
-                "unloading_ratio is missing, and the snow ({source}) has none: k_u/H_V has no default. "
-                "Give it here, or to the snow: 1 is elastic snow, math.inf rigid-plastic snow",
-                source=snow.source,
-            ),
+            "unloading_ratio is missing, and the snow ({source}) has none: k_u/H_V has no default. Give it here, or "
+            "to the snow: 1 is elastic snow, math.inf rigid-plastic snow",
             code="missing",
+            source=snow.source,
         )
     return ratio

@@ -15,7 +15,6 @@ import numpy as np
 import numpy.typing as npt
 
 from .._support.errors import ParameterError
-from .._support.messages import Message
 from ..ski.beam import CLAMP_LENGTH, ClampedSki, clamped
 from ..ski.ski import Ski
 from ..snow.properties import SnowProperties
@@ -256,12 +255,9 @@ def _unloading_ratio(snow: SnowProperties, given: float | None, penetration: obj
         return unloading_ratio_of(snow, given)
     if given is not None:
         raise ParameterError(
-            Message(
-                "unloading_ratio is {given} beside a penetration law, which says itself how the snow "
-                "unloads: leave it out",
-                given=given,
-            ),
+            "unloading_ratio is {given} beside a penetration law, which says itself how the snow unloads: leave it out",
             code="contradiction",
+            given=given,
         )
     return 1.0
 

@@ -92,7 +92,7 @@ class SnowLaws:
         for each in self.asked:
             if each.refused:
                 raise ParameterError(
-                    Message("{problem}, and no equilibrium was found", problem=each.refused), code="no_equilibrium"
+                    "{problem}, and no equilibrium was found", code="no_equilibrium", problem=each.refused
                 )
 
 
@@ -117,20 +117,16 @@ def snow_laws(shear: object, penetration: object, edge_angle: float) -> SnowLaws
         raise ParameterError(_no_point_law(penetration), code="wrong_kind")
     if shear is not None and not isinstance(shear, ShearLaw):
         raise ParameterError(
-            Message(
-                "shear is {shear!r}; it must be a shear law, such as ConstantShear(0.2e6) of "
-                "skisnow.forces.shear, or one of yours derived from ShearLaw",
-                shear=shear,
-            ),
+            "shear is {shear!r}; it must be a shear law, such as ConstantShear(0.2e6) of skisnow.forces.shear, or "
+            "one of yours derived from ShearLaw",
             code="wrong_kind",
+            shear=shear,
         )
     if shear is not None and penetration is not None and penetration.along_base_normal:
         raise ParameterError(
-            Message(
-                "{kind} acts along the base's normal and so holds the edge across by itself; leave the shear law out",
-                kind=type(penetration).__name__,
-            ),
+            "{kind} acts along the base's normal and so holds the edge across by itself; leave the shear law out",
             code="contradiction",
+            kind=type(penetration).__name__,
         )
     pressure = None if penetration is None else PressureLaw(penetration)
     strength = None
@@ -166,28 +162,23 @@ def _require_strength_alone(law: ShearLaw, edge_angle: float) -> None:
     degrees = math.degrees(edge_angle)
     if not (np.isfinite(stress).all() and np.all(stress > 0.0)):
         raise ParameterError(
-            Message(
-                "shear is {law!r}, which gives no finite strength above 0 at {degrees:.3g} degrees",
-                law=law,
-                degrees=degrees,
-            ),
+            "shear is {law!r}, which gives no finite strength above 0 at {degrees:.3g} degrees",
             code="invalid_law",
+            law=law,
+            degrees=degrees,
         )
     share = float(np.max(np.abs(thrust / stress))) * math.tan(edge_angle)
     if share > 0.0:
         raise ParameterError(
-            Message(
-                "shear is {law!r}, which comes with a thrust. Drawn as its strength is, it would bear "
-                "{share:.3g} of the load by itself in a balanced turn at {degrees:.3g} degrees (of 1 on "
-                "none is left for the base), and a steady carve does not balance a thrust. Give the "
-                "strength alone: ConstantShear({stress:.6g}), or a law of yours without thrust_force. A "
-                "simulated turn takes this one",
-                law=law,
-                share=share,
-                degrees=degrees,
-                stress=float(stress[0]),
-            ),
+            "shear is {law!r}, which comes with a thrust. Drawn as its strength is, it would bear {share:.3g} of the "
+            "load by itself in a balanced turn at {degrees:.3g} degrees (of 1 on none is left for the base), and a "
+            "steady carve does not balance a thrust. Give the strength alone: ConstantShear({stress:.6g}), or a law "
+            "of yours without thrust_force. A simulated turn takes this one",
             code="contradiction",
+            law=law,
+            share=share,
+            degrees=degrees,
+            stress=float(stress[0]),
         )
 
 
@@ -220,18 +211,17 @@ def equivalent_snow(law: PointLaw, ski: Ski, edge_angle: float, load: float) -> 
     hardness, deepest = float(force[at] / volume[at]), np.array([_DEPTHS[at]])
     if not (math.isfinite(hardness) and hardness > 0.0):
         raise ParameterError(
-            Message("penetration is {law!r}, which gives no finite pressure above 0 under this ski and load", law=law),
+            "penetration is {law!r}, which gives no finite pressure above 0 under this ski and load",
             code="invalid_law",
+            law=law,
         )
     spring = float(deepest[0] - np.asarray(law.residual_depth(deepest), float)[0])
     if not spring > 0.0:
         raise ParameterError(
-            Message(
-                "penetration is {law!r}, which lets go at once when the depth shrinks: residual_depth "
-                "must stay below the deepest depth, as with a finite unloading_ratio",
-                law=law,
-            ),
+            "penetration is {law!r}, which lets go at once when the depth shrinks: residual_depth must stay below "
+            "the deepest depth, as with a finite unloading_ratio",
             code="out_of_range",
+            law=law,
         )
     stress = float(law.stress_and_energy(deepest, deepest, np.array([edge_angle]))[0, 0])
     ratio = min(max(stress / spring / hardness, 1.0), STEEPEST_RATIO)

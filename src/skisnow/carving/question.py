@@ -42,8 +42,10 @@ def require_known(names: Iterable[str]) -> None:
     for name in names:
         if name not in CARVE_KEYS:
             raise ParameterError(
-                Message("{name} is no input of a carved turn. {allowed}", name=name, allowed=nearest(name, CARVE_KEYS)),
+                "{name} is no input of a carved turn. {allowed}",
                 code="unknown_name",
+                name=name,
+                allowed=nearest(name, CARVE_KEYS),
             )
 
 
@@ -75,29 +77,22 @@ def _require_one_snow(names: set[str], rests: bool) -> None:
     ways = [name for name in ("H_V_N_per_mm3", "results", "published") if name in names]
     choices = Message("Give H_V_N_per_mm3 and S_f_N_per_mm2, or results, or published")
     if not ways:
-        raise ParameterError(
-            Message("no snow is given: H_V has no default. {choices}", choices=choices), code="missing"
-        )
+        raise ParameterError("no snow is given: H_V has no default. {choices}", code="missing", choices=choices)
     if len(ways) > 1:
         raise ParameterError(
-            Message(
-                "the snow is given in two ways, {first} and {second}. {choices}",
-                first=ways[0],
-                second=ways[1],
-                choices=choices,
-            ),
+            "the snow is given in two ways, {first} and {second}. {choices}",
             code="contradiction",
+            first=ways[0],
+            second=ways[1],
+            choices=choices,
         )
     if ways == ["H_V_N_per_mm3"] and "S_f_N_per_mm2" not in names and not rests:
         raise ParameterError(
-            Message(
-                "S_f_N_per_mm2 is missing: a carved turn needs the failure shear stress S_f, which has "
-                "no default. Give it, or ask for the ski at rest"
-            ),
+            "S_f_N_per_mm2 is missing: a carved turn needs the failure shear stress S_f, which has no default. Give "
+            "it, or ask for the ski at rest",
             code="missing",
         )
     if "site" in names and ways != ["results"]:
         raise ParameterError(
-            Message("site goes with results: it names one site of an analysed campaign. Leave it out"),
-            code="contradiction",
+            "site goes with results: it names one site of an analysed campaign. Leave it out", code="contradiction"
         )

@@ -12,7 +12,6 @@ import numpy.typing as npt
 
 from .._support.display import Facts, Shown, amount
 from .._support.errors import ParameterError
-from .._support.messages import Message
 from .._support.units import MM
 from ..ski.beam import ClampedSki
 from ..snow.properties import SnowProperties
@@ -146,10 +145,8 @@ class Equilibrium(Shown):
         """
         if self.request is None:
             raise ParameterError(
-                Message(
-                    "the carve has no derivatives. They exist for an equilibrium with the groove along the edge, the "
-                    "snow's own H_V and S_f, and a rigid footprint."
-                ),
+                "the carve has no derivatives. They exist for an equilibrium with the groove along the edge, the "
+                "snow's own H_V and S_f, and a rigid footprint.",
                 code="no_derivatives",
             )
         return CarveDerivatives(self.request)

@@ -14,7 +14,6 @@ import numpy as np
 import numpy.typing as npt
 
 from .._support.errors import ParameterError
-from .._support.messages import Message
 from .._support.units import DEGREE, N_PER_MM2, N_PER_MM3
 from ..parameters import nearest
 from ..ski.variation import LINEAR, shape_parameters, shape_value
@@ -158,12 +157,10 @@ class CarveDerivatives:
             return values[parameter]
         if parameter.partition(".")[0] not in ("ski", "edit"):
             raise ParameterError(
-                Message(
-                    "{name} is no parameter of a carve. {allowed}",
-                    name=parameter,
-                    allowed=nearest(parameter, self.parameters),
-                ),
+                "{name} is no parameter of a carve. {allowed}",
                 code="unknown_name",
+                name=parameter,
+                allowed=nearest(parameter, self.parameters),
             )
         return shape_value(self.request.model.ski, parameter)
 
@@ -177,9 +174,7 @@ class CarveDerivatives:
         """
         found = self._gradient(output)
         if found is None:
-            raise ParameterError(
-                Message("the carve has no {output}, so it has no derivative.", output=output), code="no_value"
-            )
+            raise ParameterError("the carve has no {output}, so it has no derivative.", code="no_value", output=output)
         out = []
         for name in parameters:
             value, growth = self.value(name), self._derivative(name, *found)
@@ -218,9 +213,7 @@ class CarveDerivatives:
         found = self._gradient(output)
         model = self.request.model
         if found is None:
-            raise ParameterError(
-                Message("the carve has no {output}, so it has no derivative.", output=output), code="no_value"
-            )
+            raise ParameterError("the carve has no {output}, so it has no derivative.", code="no_value", output=output)
         _, (columns, _, adjoint) = found
         length = model.node[:-1] - model.node[1:]
         bending, torsion = beam_gradient(model, self.at.solution.u, adjoint)
@@ -237,10 +230,10 @@ class CarveDerivatives:
     def _gradient(self, output: str) -> tuple[OutputGrowth, tuple[FloatArray, FloatArray, FloatArray]] | None:
         if output not in OUTPUTS:
             raise ParameterError(
-                Message(
-                    "{name} is no output with derivatives. {allowed}", name=output, allowed=nearest(output, OUTPUTS)
-                ),
+                "{name} is no output with derivatives. {allowed}",
                 code="unknown_name",
+                name=output,
+                allowed=nearest(output, OUTPUTS),
             )
         if output not in self._gradients:
             growth = output_growth(output, self.at)

@@ -11,7 +11,6 @@ import numpy.typing as npt
 
 from .._support.display import ShownFields
 from .._support.errors import ParameterError
-from .._support.messages import Message
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 
@@ -56,21 +55,17 @@ class Grid(ShownFields):
             array.flags.writeable = False
             object.__setattr__(self, name, array)
             if not np.all(np.isfinite(array)):
-                raise ParameterError(
-                    Message("Grid: {name} holds a number that is not finite", name=name), code="not_a_number"
-                )
+                raise ParameterError("Grid: {name} holds a number that is not finite", code="not_a_number", name=name)
         for name, places in (("x", self.x), ("y", self.y)):
             _require_even(name, places)
         if self.values.shape != (len(self.x), len(self.y)):
             raise ParameterError(
-                Message(
-                    "Grid: values have shape {shape}; for {n_x} places in x and {n_y} in y it must be {needed}",
-                    shape=str(self.values.shape),
-                    n_x=len(self.x),
-                    n_y=len(self.y),
-                    needed=str((len(self.x), len(self.y))),
-                ),
+                "Grid: values have shape {shape}; for {n_x} places in x and {n_y} in y it must be {needed}",
                 code="wrong_shape",
+                shape=str(self.values.shape),
+                n_x=len(self.x),
+                n_y=len(self.y),
+                needed=str((len(self.x), len(self.y))),
             )
 
     @property
@@ -118,23 +113,19 @@ class Grid(ShownFields):
 def _require_even(name: str, places: FloatArray) -> None:
     if places.ndim != 1 or not len(places):
         raise ParameterError(
-            Message(
-                "Grid: {name} must be a row of one place or more, its shape is {shape}",
-                name=name,
-                shape=str(places.shape),
-            ),
+            "Grid: {name} must be a row of one place or more, its shape is {shape}",
             code="wrong_shape",
+            name=name,
+            shape=str(places.shape),
         )
     step = np.diff(places)
     if len(step) and (step.min() <= 0.0 or np.ptp(step) > EVEN * len(step) * np.abs(places).max()):
         raise ParameterError(
-            Message(
-                "Grid: places in {name} must rise evenly; their steps go from {min:g} to {max:g} m",
-                name=name,
-                min=step.min(),
-                max=step.max(),
-            ),
+            "Grid: places in {name} must rise evenly; their steps go from {min:g} to {max:g} m",
             code="not_rising",
+            name=name,
+            min=step.min(),
+            max=step.max(),
         )
 
 

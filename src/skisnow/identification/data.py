@@ -16,7 +16,6 @@ import numpy.typing as npt
 
 from .._support.content import content_bytes
 from .._support.errors import ParameterError
-from .._support.messages import Message
 from .._support.spreadsheet_text import encoding_of, most_frequent_separator, named_separator
 from .._support.units import DEGREE
 from .._support.user_files import is_file
@@ -62,9 +61,7 @@ def read_data(path: str | Path) -> Data:
     """
     path = Path(path)
     if not is_file(path):
-        raise ParameterError(
-            Message("{path} cannot be read: there is no such file. Check the path", path=path), code="no_file"
-        )
+        raise ParameterError("{path} cannot be read: there is no such file. Check the path", code="no_file", path=path)
     if path.suffix.lower() in (".csv", ".txt", ".tsv"):
         head = _head(path)
         if set(CELL_COLUMNS) <= head or ("station_m" in head and not _is_track(head)):
@@ -72,13 +69,11 @@ def read_data(path: str | Path) -> Data:
         if head & set(GROOVE_COLUMNS) and not _is_track(head):
             if of_campaign := sorted(head & _OF_CAMPAIGN):
                 raise ParameterError(
-                    Message(
-                        "{path} has a column {column}: it is a table of a campaign, no measured grooves. "
-                        "Give its folder to `skisnow analyse`, and results.json as snow.results",
-                        path=path,
-                        column=of_campaign[0],
-                    ),
+                    "{path} has a column {column}: it is a table of a campaign, no measured grooves. Give its folder "
+                    "to `skisnow analyse`, and results.json as snow.results",
                     code="table_of_campaign",
+                    path=path,
+                    column=of_campaign[0],
                 )
             return parse_grooves(read_table(path))
     from ..track.read import read_track
@@ -175,7 +170,7 @@ def collect_data(
         A file cannot be used; a track is from another place; the scenario names an unknown run.
     """
     if not data:
-        raise ParameterError(Message("there are no data: name one or several files"), code="no_data")
+        raise ParameterError("there are no data: name one or several files", code="no_data")
     _require_different([datum for datum in data if isinstance(datum, str | Path)])
     measurements = [read_data(datum) if isinstance(datum, str | Path) else datum for datum in data]
     names: set[str] = set()
@@ -244,8 +239,10 @@ def _require_different(paths: Sequence[str | Path]) -> None:
         content = hashlib.sha256(Path(path).read_bytes()).digest()
         if content in seen:
             raise ParameterError(
-                Message("{path} has the same content as {other}. Name each file once", path=path, other=seen[content]),
+                "{path} has the same content as {other}. Name each file once",
                 code="same_file",
+                path=path,
+                other=seen[content],
             )
         seen[content] = path
 
@@ -253,22 +250,25 @@ def _require_different(paths: Sequence[str | Path]) -> None:
 def _run_starts(table: object, runs: Sequence[str]) -> dict[str, dict[str, float]]:
     if not isinstance(table, dict):
         raise ParameterError(
-            Message('identify.runs is {value!r}; write [identify.runs."NAME"] with keys below it', value=table),
+            'identify.runs is {value!r}; write [identify.runs."NAME"] with keys below it',
             code="wrong_kind",
+            value=table,
         )
     starts = {}
     for run, entries in table.items():
         if run not in runs:
             raise ParameterError(
-                Message(
-                    '[identify.runs."{run}"]: there is no such run. {allowed}', run=run, allowed=nearest(run, runs)
-                ),
+                '[identify.runs."{run}"]: there is no such run. {allowed}',
                 code="unknown_name",
+                run=run,
+                allowed=nearest(run, runs),
             )
         if not isinstance(entries, dict):
             raise ParameterError(
-                Message('identify.runs."{run}" is {value!r}; it must be a table of keys', run=run, value=entries),
+                'identify.runs."{run}" is {value!r}; it must be a table of keys',
                 code="wrong_kind",
+                run=run,
+                value=entries,
             )
         starts[run] = dict(_run_entry(run, word, value) for word, value in entries.items())
     return starts
@@ -279,16 +279,19 @@ def _run_entry(run: str, word: str, value: object) -> tuple[str, float]:
         key = free_key(word)
     except ParameterError as error:
         raise ParameterError(
-            Message('[identify.runs."{run}"]: {problem}', run=run, problem=str(error).removeprefix("--free: ")),
+            '[identify.runs."{run}"]: {problem}',
             code="identify_runs",
+            run=run,
+            problem=str(error).removeprefix("--free: "),
         ) from None
     number = SCENARIO_KEYS[key].in_range(value)
     if not isinstance(number, float):
         raise ParameterError(
-            Message(
-                '[identify.runs."{run}"]: {word} is {value!r}; it must be a number', run=run, word=word, value=value
-            ),
+            '[identify.runs."{run}"]: {word} is {value!r}; it must be a number',
             code="not_a_number",
+            run=run,
+            word=word,
+            value=value,
         )
     return key, number
 
@@ -307,14 +310,12 @@ def _require_not_free(own: Mapping[str, Mapping[str, float]], keys: Sequence[str
         for key in values:
             if key in keys and not key.startswith(START):
                 raise ParameterError(
-                    Message(
-                        '[identify.runs."{run}"] gives {key}, but one value of {key} is free for all runs. Free '
-                        "{key}@{each} instead, or remove it from the table",
-                        run=run,
-                        key=key,
-                        each=EACH,
-                    ),
+                    '[identify.runs."{run}"] gives {key}, but one value of {key} is free for all runs. Free '
+                    "{key}@{each} instead, or remove it from the table",
                     code="value_of_free_key",
+                    run=run,
+                    key=key,
+                    each=EACH,
                 )
 
 
@@ -349,14 +350,11 @@ def move_to_scenario_frame(track: Track, scenario: ScenarioFile, site: object) -
         return track, []
     if site is None:
         raise ParameterError(
-            Message(
-                "{name} is in east, north and up, but the place of the slope is not given. Write "
-                "[identify.site] with fall_line_azimuth_deg (the compass direction in which it falls), "
-                "and latitude_deg and longitude_deg of its x = y = 0; without these two the track's "
-                "first point is used as the scenario's start",
-                name=track.name,
-            ),
+            "{name} is in east, north and up, but the place of the slope is not given. Write [identify.site] with "
+            "fall_line_azimuth_deg (the compass direction in which it falls), and latitude_deg and longitude_deg of "
+            "its x = y = 0; without these two the track's first point is used as the scenario's start",
             code="site_missing",
+            name=track.name,
         )
     parsed = _site(site)
     azimuth = parsed.fall_line_azimuth_deg * DEGREE
@@ -394,13 +392,11 @@ def _place_of(point: GeodeticPoint, track: Track) -> FloatArray:
     distance = math.hypot(at[0], at[1])
     if distance > FARTHEST:
         raise ParameterError(
-            Message(
-                "{name} is {distance:.4g} km from the site of [identify.site]. It is from another place, "
-                "or latitude and longitude are swapped",
-                name=track.name,
-                distance=distance / 1000.0,
-            ),
+            "{name} is {distance:.4g} km from the site of [identify.site]. It is from another place, or latitude and "
+            "longitude are swapped",
             code="far_from_site",
+            name=track.name,
+            distance=distance / 1000.0,
         )
     return at
 
@@ -408,12 +404,11 @@ def _place_of(point: GeodeticPoint, track: Track) -> FloatArray:
 def _site(site: object) -> Site:
     if not isinstance(site, Mapping):
         raise ParameterError(
-            Message("identify.site is {value!r}; it must be a table with {keys}", value=site, keys=list(SITE)),
-            code="wrong_kind",
+            "identify.site is {value!r}; it must be a table with {keys}", code="wrong_kind", value=site, keys=list(SITE)
         )
     parsed = made(Site, checked_table(Site, site, "[identify.site]"))
     if (parsed.latitude_deg is None) != (parsed.longitude_deg is None):
         raise ParameterError(
-            Message("[identify.site]: latitude_deg and longitude_deg go together; one is missing"), code="half_place"
+            "[identify.site]: latitude_deg and longitude_deg go together; one is missing", code="half_place"
         )
     return parsed

@@ -72,18 +72,16 @@ class TableFile:
         missing = [name for name in columns if name not in self.columns]
         if missing:
             raise ParameterError(
-                Message(
-                    "{name}, row {header_row}: there is no column {missing} among {columns}; needed are {needed}",
-                    name=self.name,
-                    header_row=self.header_row,
-                    missing=missing[0],
-                    columns=list(self.columns),
-                    needed=list(columns),
-                ),
+                "{name}, row {header_row}: there is no column {missing} among {columns}; needed are {needed}",
                 code="missing_column",
+                name=self.name,
+                header_row=self.header_row,
+                missing=missing[0],
+                columns=list(self.columns),
+                needed=list(columns),
             )
         if not self.rows:
-            raise ParameterError(Message("{name} has no rows below its header", name=self.name), code="no_rows")
+            raise ParameterError("{name} has no rows below its header", code="no_rows", name=self.name)
 
     def require_no_slip(self, expected: tuple[str, ...]) -> None:
         """Reject a column whose name is similar to that of a missing one: it would not be read."""
@@ -92,15 +90,13 @@ class TableFile:
             similar = difflib.get_close_matches(name.lower(), absent, n=1, cutoff=0.75) if name not in expected else []
             if similar:
                 raise ParameterError(
-                    Message(
-                        "{name}, row {header_row}: unknown column {column}. Did you mean {similar}? Rename it, "
-                        "or give it a different name if it is not to be read",
-                        name=self.name,
-                        header_row=self.header_row,
-                        column=name,
-                        similar=similar[0],
-                    ),
+                    "{name}, row {header_row}: unknown column {column}. Did you mean {similar}? Rename it, or give "
+                    "it a different name if it is not to be read",
                     code="misspelled_column",
+                    name=self.name,
+                    header_row=self.header_row,
+                    column=name,
+                    similar=similar[0],
                 )
 
     def texts(self, column: str) -> list[str]:
@@ -111,10 +107,11 @@ class TableFile:
             text = cells[place] if place < len(cells) else ""
             if not text:
                 raise ParameterError(
-                    Message(
-                        "{name}, row {row}, column {column}: the cell is empty", name=self.name, row=row, column=column
-                    ),
+                    "{name}, row {row}, column {column}: the cell is empty",
                     code="empty_cell",
+                    name=self.name,
+                    row=row,
+                    column=column,
                 )
             texts.append(text)
         return texts
@@ -132,14 +129,12 @@ class TableFile:
             value = number(text, self.mark)
             if not math.isfinite(value):
                 sentence = _NOT_A_NUMBER[self.mark == ","]
-                raise ParameterError(
-                    Message(sentence, name=self.name, row=row, column=column, value=text), code="not_a_number"
-                )
+                raise ParameterError(sentence, code="not_a_number", name=self.name, row=row, column=column, value=text)
             try:
                 quantity.in_range(value)
             except ParameterError as error:
                 raise ParameterError(
-                    Message("{name}, row {row}: {error}", name=self.name, row=row, error=error), code=error.code
+                    "{name}, row {row}: {error}", code=error.code, name=self.name, row=row, error=error
                 ) from None
             values.append(value)
         return np.array(values)
@@ -198,42 +193,35 @@ class PhotoCellRun(ShownFields):
     def __post_init__(self) -> None:
         if len(self.station) < 1 or self.station.shape != self.time.shape:
             raise ParameterError(
-                Message(
-                    "run {name}: {n_cells} cells and {n_times} times",
-                    name=self.name,
-                    n_cells=len(self.station),
-                    n_times=len(self.time),
-                ),
+                "run {name}: {n_cells} cells and {n_times} times",
                 code="unequal_lengths",
+                name=self.name,
+                n_cells=len(self.station),
+                n_times=len(self.time),
             )
         if self.station[0] < 0.0:
             raise ParameterError(
-                Message(
-                    "run {name}: station {station:g} m is before the start. Give distances from the "
-                    "scenario's start down",
-                    name=self.name,
-                    station=self.station[0],
-                ),
+                "run {name}: station {station:g} m is before the start. Give distances from the scenario's start down",
                 code="before_start",
+                name=self.name,
+                station=self.station[0],
             )
         for what, values, unit in (("station", self.station, "m"), ("time", self.time, "s")):
             wrong = np.flatnonzero(np.diff(values) <= 0.0)
             if wrong.size:
                 first, second = values[wrong[0]], values[wrong[0] + 1]
                 raise ParameterError(
-                    Message(
-                        "run {name}: {what} {second:g} {unit} follows {first:g} {unit}; both must rise from cell "
-                        "to cell. Sort the rows of the run, and look for a clock that was set back",
-                        name=self.name,
-                        what=_MEASURED[what],
-                        second=second,
-                        unit=unit,
-                        first=first,
-                    ),
+                    "run {name}: {what} {second:g} {unit} follows {first:g} {unit}; both must rise from cell to "
+                    "cell. Sort the rows of the run, and look for a clock that was set back",
                     code=f"{what}_not_rising",
+                    name=self.name,
+                    what=_MEASURED[what],
+                    second=second,
+                    unit=unit,
+                    first=first,
                 )
         if self.time_sd is not None and not np.all(self.time_sd > 0.0):
-            raise ParameterError(Message("run {name}: time_sd_s must be above 0", name=self.name), code="out_of_range")
+            raise ParameterError("run {name}: time_sd_s must be above 0", code="out_of_range", name=self.name)
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
@@ -270,7 +258,7 @@ def parse_photo_cells(table: TableFile) -> PhotoCells:
         try:
             runs.append(PhotoCellRun(name, station[rows], time[rows], _sd_of_run(name, spread, rows)))
         except ParameterError as error:
-            raise ParameterError(Message("{name}: {error}", name=table.name, error=error), code=error.code) from error
+            raise ParameterError("{name}: {error}", code=error.code, name=table.name, error=error) from error
     return PhotoCells(table.name, tuple(runs))
 
 
@@ -279,8 +267,9 @@ def _sd_of_run(name: str, sd: FloatArray | None, rows: npt.NDArray[np.bool_]) ->
         return None
     if np.isnan(sd[rows]).any():
         raise ParameterError(
-            Message("run {name}: time_sd_s is given in some rows only. Give it in all rows, or in none", name=name),
+            "run {name}: time_sd_s is given in some rows only. Give it in all rows, or in none",
             code="partial_accuracy",
+            name=name,
         )
     return sd[rows]
 
@@ -337,24 +326,20 @@ class MeasuredGrooves(ShownFields):
             for place in np.flatnonzero(np.isfinite(values)):
                 if values[place] <= 0.0:
                     raise ParameterError(
-                        Message(
-                            "{name}: {what} of place {place} is {value:g} m; above 0 is allowed",
-                            name=self.name,
-                            what=_MEASURED[what],
-                            place=place + 1,
-                            value=values[place],
-                        ),
+                        "{name}: {what} of place {place} is {value:g} m; above 0 is allowed",
                         code="out_of_range",
+                        name=self.name,
+                        what=_MEASURED[what],
+                        place=place + 1,
+                        value=values[place],
                     )
                 if not spread[place] > 0.0:
                     raise ParameterError(
-                        Message(
-                            "{name}: the standard deviation of {what} of place {place} must be above 0",
-                            name=self.name,
-                            what=_MEASURED[what],
-                            place=place + 1,
-                        ),
+                        "{name}: the standard deviation of {what} of place {place} must be above 0",
                         code="out_of_range",
+                        name=self.name,
+                        what=_MEASURED[what],
+                        place=place + 1,
                     )
 
     def __len__(self) -> int:
@@ -393,8 +378,7 @@ def parse_grooves(table: TableFile) -> MeasuredGrooves:
     (depth, depth_sd), (width, width_sd), (radius, radius_sd) = (columns[name] for name in GROOVE_COLUMNS)
     if not any(np.isfinite(values).any() for values in (depth, width, radius)):
         raise ParameterError(
-            Message("{name} has no column of {columns}", name=table.name, columns=list(GROOVE_COLUMNS)),
-            code="no_columns",
+            "{name} has no column of {columns}", code="no_columns", name=table.name, columns=list(GROOVE_COLUMNS)
         )
     return MeasuredGrooves(table.name, depth, width, np.abs(radius), depth_sd, width_sd, radius_sd, stated)
 
@@ -408,15 +392,13 @@ def _column(table: TableFile, quantity: Quantity) -> FloatArray:
 def _scatter(file: str, name: str, values: FloatArray) -> float:
     if len(values) < FEWEST_FOR_SCATTER:
         raise ParameterError(
-            Message(
-                "{file}: {name} has no standard deviation ({column}), and {count} places are too few "
-                "for their scatter to say it; give it, or {fewest} places",
-                file=file,
-                name=name,
-                column=name.replace("_mm", "_sd_mm").replace("s_m", "s_sd_m"),
-                count=len(values),
-                fewest=FEWEST_FOR_SCATTER,
-            ),
+            "{file}: {name} has no standard deviation ({column}), and {count} places are too few for their scatter "
+            "to say it; give it, or {fewest} places",
             code="no_deviation",
+            file=file,
+            name=name,
+            column=name.replace("_mm", "_sd_mm").replace("s_m", "s_sd_m"),
+            count=len(values),
+            fewest=FEWEST_FOR_SCATTER,
         )
     return max(float(np.std(values, ddof=1)), 1e-6)

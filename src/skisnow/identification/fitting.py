@@ -132,7 +132,7 @@ def identify(
     keys = free_keys(free) or tuple(dict.fromkeys(key.partition("@")[0] for key in tables))
     if not keys:
         raise ParameterError(
-            Message('No parameter is free. Name keys with --free, or write [identify."KEY"] in the scenario'),
+            'No parameter is free. Name keys with --free, or write [identify."KEY"] in the scenario',
             code="nothing_free",
         )
     measurements = collect_data(
@@ -223,12 +223,10 @@ def _require_used(keys: Sequence[str], observations: Sequence[Observations]) -> 
         if not any(observation.depends_on(key) for observation in observations):
             kinds = [_KINDS[kind] for kind in dict.fromkeys(observation.kind for observation in observations)]
             raise ParameterError(
-                Message(
-                    "--free: {key} has no effect on {kinds}. Remove it, or add data that depend on it",
-                    key=key,
-                    kinds=kinds,
-                ),
+                "--free: {key} has no effect on {kinds}. Remove it, or add data that depend on it",
                 code="unused_key",
+                key=key,
+                kinds=kinds,
             )
 
 

@@ -16,7 +16,6 @@ import numpy as np
 import numpy.typing as npt
 
 from .._support.errors import ParameterError
-from .._support.messages import Message
 from ..scenario import Plane, Slope, Terrain
 
 FloatArray = npt.NDArray[np.float64]
@@ -86,10 +85,8 @@ def slope_line(slope: Slope, start: float) -> SlopeLine:
         return planes(np.array([slope.angle]))
     if isinstance(slope, Terrain):
         raise ParameterError(
-            Message(
-                'Photo-cell times are computed along one line, and slope.kind = "grid" does not define '
-                'one. Give the heights along the line: slope.kind = "profile"'
-            ),
+            'Photo-cell times are computed along one line, and slope.kind = "grid" does not define one. Give the '
+            'heights along the line: slope.kind = "profile"',
             code="no_line",
         )
     middle = 0.5 * (slope.x[1:] + slope.x[:-1])

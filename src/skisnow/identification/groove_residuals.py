@@ -19,7 +19,6 @@ import numpy as np
 import numpy.typing as npt
 
 from .._support.errors import ParameterError, SkisnowError
-from .._support.messages import Message
 from .._support.units import DEGREE, MM, N_PER_MM2, N_PER_MM3
 from ..carving.equilibrium import carve
 from ..carving.result import Equilibrium
@@ -210,15 +209,12 @@ def require_groove_stays(scenario: ScenarioFile) -> None:
     """Reject scenarios whose ski leaves no groove, or whose edge angle is 0."""
     if scenario.scenario.contact.unloading_ratio <= 1.0:
         raise ParameterError(
-            Message(
-                "snow.unloading_ratio is 1: elastic snow keeps no groove. Give the measured unloading ratio of the snow"
-            ),
+            "snow.unloading_ratio is 1: elastic snow keeps no groove. Give the measured unloading ratio of the snow",
             code="elastic_snow",
         )
     if scenario.scenario.sledge.edge_angle == 0.0:
         raise ParameterError(
-            Message("sledge.edge_angle_deg is 0: a flat ski leaves no groove of an edge. Give the edge angle"),
-            code="flat_ski",
+            "sledge.edge_angle_deg is 0: a flat ski leaves no groove of an edge. Give the edge angle", code="flat_ski"
         )
 
 

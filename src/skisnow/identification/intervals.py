@@ -259,17 +259,15 @@ def require_bootstrap(resamples: int, by: str) -> None:
     """
     if by not in ("refit", "linear"):
         raise ParameterError(
-            Message("Unknown bootstrap method {value!r}. Allowed: refit, linear", value=by), code="unknown_bootstrap"
+            "Unknown bootstrap method {value!r}. Allowed: refit, linear", code="unknown_bootstrap", value=by
         )
     if resamples != 0 and resamples < FEWEST:
         raise ParameterError(
-            Message(
-                "{resamples} resamples are too few for 95 % intervals: at least {fewest} are needed, "
-                "some hundred are recommended",
-                resamples=resamples,
-                fewest=FEWEST,
-            ),
+            "{resamples} resamples are too few for 95 % intervals: at least {fewest} are needed, some hundred are "
+            "recommended",
             code="too_few_resamples",
+            resamples=resamples,
+            fewest=FEWEST,
         )
 
 

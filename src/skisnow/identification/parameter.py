@@ -11,7 +11,6 @@ import numpy as np
 import numpy.typing as npt
 
 from .._support.errors import ParameterError
-from .._support.messages import Message
 from ..parameters import Search
 from ..scenario.keys import SCENARIO_KEYS, short_name
 
@@ -70,47 +69,39 @@ class Parameter:
         for name in ("start", "lower", "upper", "size"):
             if not math.isfinite(getattr(self, name)):
                 raise ParameterError(
-                    Message(
-                        "{key}: {name} is {value}; it must be a finite number",
-                        key=self.key,
-                        name=name,
-                        value=getattr(self, name),
-                    ),
+                    "{key}: {name} is {value}; it must be a finite number",
                     code="not_a_number",
+                    key=self.key,
+                    name=name,
+                    value=getattr(self, name),
                 )
         if not self.lower < self.upper:
             raise ParameterError(
-                Message(
-                    "{key}: lower is {lower:g} and upper {upper:g}{unit}; lower must be below upper",
-                    key=self.key,
-                    lower=self.lower,
-                    upper=self.upper,
-                    unit=self._unit,
-                ),
+                "{key}: lower is {lower:g} and upper {upper:g}{unit}; lower must be below upper",
                 code="swapped_bounds",
+                key=self.key,
+                lower=self.lower,
+                upper=self.upper,
+                unit=self._unit,
             )
         if not self.lower <= self.start <= self.upper:
             raise ParameterError(
-                Message(
-                    "{key}: the bounds, {lower:g} to {upper:g}{unit}, exclude the start, {start:g}. Widen "
-                    "them, or start inside",
-                    key=self.key,
-                    lower=self.lower,
-                    upper=self.upper,
-                    unit=self._unit,
-                    start=self.start,
-                ),
+                "{key}: the bounds, {lower:g} to {upper:g}{unit}, exclude the start, {start:g}. Widen them, or start "
+                "inside",
                 code="start_outside_bounds",
+                key=self.key,
+                lower=self.lower,
+                upper=self.upper,
+                unit=self._unit,
+                start=self.start,
             )
         if self.logarithmic and self.lower <= 0.0:
             raise ParameterError(
-                Message(
-                    "{key}: lower is {lower:g}{unit}; it must be above 0",
-                    key=self.key,
-                    lower=self.lower,
-                    unit=self._unit,
-                ),
+                "{key}: lower is {lower:g}{unit}; it must be above 0",
                 code="out_of_range",
+                key=self.key,
+                lower=self.lower,
+                unit=self._unit,
             )
         self._require_prior()
 
@@ -118,31 +109,25 @@ class Parameter:
         if (self.prior_mean is None) != (self.prior_sd is None):
             missing = "prior_sd" if self.prior_sd is None else "prior_mean"
             raise ParameterError(
-                Message(
-                    "{key}: {missing} is missing; a prior has a mean and a standard deviation",
-                    key=self.key,
-                    missing=missing,
-                ),
+                "{key}: {missing} is missing; a prior has a mean and a standard deviation",
                 code="half_prior",
+                key=self.key,
+                missing=missing,
             )
         if self.prior_sd is not None and not (math.isfinite(self.prior_sd) and self.prior_sd > 0.0):
             raise ParameterError(
-                Message(
-                    "{key}: prior_sd is {prior_sd:g}{unit}; it must be above 0",
-                    key=self.key,
-                    prior_sd=self.prior_sd,
-                    unit=self._unit,
-                ),
+                "{key}: prior_sd is {prior_sd:g}{unit}; it must be above 0",
                 code="out_of_range",
+                key=self.key,
+                prior_sd=self.prior_sd,
+                unit=self._unit,
             )
         if self.prior_mean is not None and not math.isfinite(self.prior_mean):
             raise ParameterError(
-                Message(
-                    "{key}: prior_mean is {prior_mean}; it must be a finite number",
-                    key=self.key,
-                    prior_mean=self.prior_mean,
-                ),
+                "{key}: prior_mean is {prior_mean}; it must be a finite number",
                 code="not_a_number",
+                key=self.key,
+                prior_mean=self.prior_mean,
             )
 
     @property
@@ -229,8 +214,7 @@ def _parameter(key: str, values: Mapping[str, Any], tables: Mapping[str, Mapping
     start = entries.get("start", values.get(key, values.get(own)))
     if start is None:
         raise ParameterError(
-            Message('{key} has no value in the scenario; give it one, or [identify."{key}"] start = …', key=own),
-            code="no_start",
+            '{key} has no value in the scenario; give it one, or [identify."{key}"] start = …', code="no_start", key=own
         )
     start = float(start)
     defaults = default_search(own, start)

@@ -10,7 +10,6 @@ import numpy as np
 import numpy.typing as npt
 
 from .._support.errors import ParameterError
-from .._support.messages import Message
 from .._support.units import DEGREE
 from ..scenario import Plane, ScenarioFile
 from .data_tables import PhotoCellRun, PhotoCells
@@ -64,24 +63,20 @@ class PhotoCellTimes:
         stated = {run.time_sd is not None for run in self.cells.runs}
         if len(stated) > 1:
             raise ParameterError(
-                Message(
-                    "{name}: some runs state time_sd_s and some do not; write it for all of them, or for none",
-                    name=self.cells.name,
-                ),
+                "{name}: some runs state time_sd_s and some do not; write it for all of them, or for none",
                 code="partial_accuracy",
+                name=self.cells.name,
             )
         for run in self.cells.runs:
             if run.station[-1] > self._line.length:
                 raise ParameterError(
-                    Message(
-                        "{name}, run {run}: station {station:g} m lies beyond the end of the profile, which "
-                        "goes on for {length:.4g} m from the start. Is it the right slope?",
-                        name=self.cells.name,
-                        run=run.name,
-                        station=run.station[-1],
-                        length=self._line.length,
-                    ),
+                    "{name}, run {run}: station {station:g} m lies beyond the end of the profile, which goes on for "
+                    "{length:.4g} m from the start. Is it the right slope?",
                     code="out_of_range",
+                    name=self.cells.name,
+                    run=run.name,
+                    station=run.station[-1],
+                    length=self._line.length,
                 )
 
     @property

@@ -11,7 +11,6 @@ import numpy.typing as npt
 
 from .._support.display import ShownFields
 from .._support.errors import ParameterError
-from .._support.messages import Message
 from ..parameters import nearest
 from ..scenario.keys import EACH
 from .parameter import Parameter, values_of
@@ -216,10 +215,11 @@ def expand_keys(keys: Sequence[str], runs: Sequence[str]) -> tuple[str, ...]:
         own, at, run = key.partition("@")
         if at and run != EACH and run not in runs:
             raise ParameterError(
-                Message(
-                    "--free: {key}: there is no run {run!r}. {allowed}", key=key, run=run, allowed=nearest(run, runs)
-                ),
+                "--free: {key}: there is no run {run!r}. {allowed}",
                 code="unknown_run",
+                key=key,
+                run=run,
+                allowed=nearest(run, runs),
             )
         if len(runs) < 2:
             expanded.append(own)
@@ -229,9 +229,7 @@ def expand_keys(keys: Sequence[str], runs: Sequence[str]) -> tuple[str, ...]:
             expanded.append(key)
     for key in expanded:
         if expanded.count(key) > 1:
-            raise ParameterError(
-                Message("--free: {key} is given twice. Remove one of them", key=key), code="repeated_key"
-            )
+            raise ParameterError("--free: {key} is given twice. Remove one of them", code="repeated_key", key=key)
     return tuple(expanded)
 
 

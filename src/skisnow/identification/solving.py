@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .._support.errors import FitError, ParameterError
-from .._support.messages import Message, template
+from .._support.messages import template
 from .intervals import BootstrapBy, add_bootstrap_intervals, add_posterior_intervals, add_profile_intervals
 from .parameter import bounds_of
 from .problem import Problem
@@ -80,9 +80,7 @@ def solve(problem: Problem, plan: SearchRequest) -> Identification:
         Nothing can be computed at any start.
     """
     if plan.starts < 1:
-        raise ParameterError(
-            Message("starts is {starts}; at least 1 is needed", starts=plan.starts), code="out_of_range"
-        )
+        raise ParameterError("starts is {starts}; at least 1 is needed", code="out_of_range", starts=plan.starts)
     solution = solution_of(problem, plan)
     return add_requested_intervals(
         build_identification(solution, plan.title, plan.warnings, plan.methods), solution, plan
@@ -169,7 +167,7 @@ class _Solver:
             warnings = [text for observation in self.problem.observations for text in observation.warnings(values)]
             sentence = template("nothing can be computed at the start: {warnings}")
             without = template("nothing can be computed at the start: no residuals")
-            raise FitError(Message(sentence if warnings else without, warnings=warnings), code="no_residuals")
+            raise FitError(sentence if warnings else without, code="no_residuals", warnings=warnings)
         return best
 
     def _run_starts(self) -> list[FloatArray]:

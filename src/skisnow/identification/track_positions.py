@@ -89,7 +89,7 @@ def track_points(track: Track) -> TrackPoints:
     use = track.usable
     if not use.any():
         raise ParameterError(
-            Message(_NO_POINT[bool(track.flagged)], name=track.name, flags=str(dict(track.flagged))), code="no_data"
+            _NO_POINT[bool(track.flagged)], code="no_data", name=track.name, flags=str(dict(track.flagged))
         )
     time, place = track.time[use], track.place[use, :2]
     stated_sd = None if track.place_sd is None else track.place_sd[use, :2]
@@ -321,18 +321,15 @@ def require_near(track: TrackPoints, start: tuple[float, float], *, start_is_fre
     away = math.hypot(track.place[0, 0] - start[0], track.place[0, 1] - start[1])
     if away > max(FARTHEST_START, track.length):
         raise ParameterError(
-            Message(
-                "{name} begins {distance} from the scenario's start (x = {start_x:g} m, y = {start_y:g} m) "
-                "and is {length} long: it is of another place, or in another frame. Give x down the "
-                "fall line and y to the left in m, from the slope's own origin, or set start.x_m and "
-                "start.y_m",
-                name=track.name,
-                distance=_distance(away),
-                start_x=start[0],
-                start_y=start[1],
-                length=_distance(track.length),
-            ),
+            "{name} begins {distance} from the scenario's start (x = {start_x:g} m, y = {start_y:g} m) and is "
+            "{length} long: it is of another place, or in another frame. Give x down the fall line and y to the left "
+            "in m, from the slope's own origin, or set start.x_m and start.y_m",
             code="other_place",
+            name=track.name,
+            distance=_distance(away),
+            start_x=start[0],
+            start_y=start[1],
+            length=_distance(track.length),
         )
     if away > NEAR_START and not start_is_free:
         return (

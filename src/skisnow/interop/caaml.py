@@ -142,11 +142,9 @@ def _density(sample: LayerDensity) -> str:
 def _temperature(observed: DepthTemperature) -> str:
     if observed.temperature_C > 0.0:
         raise ParameterError(
-            Message(
-                "snow at {temperature_c:g} °C cannot be written: CAAML allows up to 0 °C",
-                temperature_c=observed.temperature_C,
-            ),
+            "snow at {temperature_c:g} °C cannot be written: CAAML allows up to 0 °C",
             code="cannot_write",
+            temperature_c=observed.temperature_C,
         )
     temperature = _text("snowTemp", _number(observed.temperature_C), uom="degC")
     return _nested("Obs", _cm("depth", observed.depth) + temperature)
@@ -217,13 +215,11 @@ def _number(value: float) -> str:
 def _require(what: str, value: str, allowed: frozenset[str] | tuple[str, ...]) -> None:
     if value not in allowed:
         raise ParameterError(
-            Message(
-                "{field}: {value!r} cannot be written: CAAML knows {allowed}",
-                field=what,
-                value=value,
-                allowed=sorted(allowed),
-            ),
+            "{field}: {value!r} cannot be written: CAAML knows {allowed}",
             code="cannot_write",
+            field=what,
+            value=value,
+            allowed=sorted(allowed),
         )
 
 

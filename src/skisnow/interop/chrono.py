@@ -10,7 +10,6 @@ from pathlib import Path
 from typing import Any, Final
 
 from .._support.errors import ParameterError
-from .._support.messages import Message
 from .._support.staging import require_writable, write_file
 from ..scenario import Plane, Scenario
 
@@ -40,16 +39,13 @@ def chrono_soil(scenario: Scenario) -> dict[str, Any]:
     hardness, stress = contact.snow.snow_hardness, contact.snow.failure_shear_stress
     if contact.snow_map is not None or stress is None:
         raise ParameterError(
-            Message("Chrono's file holds one H_V and one S_f; the scenario's snow varies, or has no S_f"),
-            code="no_data",
+            "Chrono's file holds one H_V and one S_f; the scenario's snow varies, or has no S_f", code="no_data"
         )
     if contact.unloading_ratio <= 1.0:
         raise ParameterError(
-            Message(
-                "Chrono asks for unloading stiffer than loading; unloading_ratio is {unloading_ratio:g}",
-                unloading_ratio=contact.unloading_ratio,
-            ),
+            "Chrono asks for unloading stiffer than loading; unloading_ratio is {unloading_ratio:g}",
             code="out_of_range",
+            unloading_ratio=contact.unloading_ratio,
         )
     return {
         "Name": "snow",
@@ -106,13 +102,11 @@ def write_chrono_terrain(
     """
     if not isinstance(scenario.slope, Plane):
         raise ParameterError(
-            Message("Chrono's patch is level; take a scenario on a plane, and tilt gravity there"),
-            code="not_level",
+            "Chrono's patch is level; take a scenario on a plane, and tilt gravity there", code="not_level"
         )
     if not all(length > 0.0 for length in (*size, spacing)):
         raise ParameterError(
-            Message("size {size} m and spacing {spacing:g} m must be above 0", size=size, spacing=spacing),
-            code="out_of_range",
+            "size {size} m and spacing {spacing:g} m must be above 0", code="out_of_range", size=size, spacing=spacing
         )
     soil = chrono_soil(scenario)
     terrain = {

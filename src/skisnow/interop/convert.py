@@ -92,26 +92,22 @@ def convert(source: str | Path, target: str | Path, options: ConvertOptions | No
     made = CONVERSIONS.get(kinds)
     if made is None:
         raise ParameterError(
-            Message(
-                "{source} to {target} is not known. Known are {known}",
-                source=kinds[0],
-                target=kinds[1],
-                known=known_conversions(),
-            ),
+            "{source} to {target} is not known. Known are {known}",
             code="unknown_name",
+            source=kinds[0],
+            target=kinds[1],
+            known=known_conversions(),
         )
     if source.resolve() == target.resolve():
         raise OutputError(
-            Message("{target} is the file that is read; give the new one another name", target=target), code="same_file"
+            "{target} is the file that is read; give the new one another name", code="same_file", target=target
         )
     options = options or ConvertOptions()
     if options.forces is not None and kinds[1] != ENDINGS[".c3d"]:
         raise ParameterError(
-            Message(
-                "forces go into a .c3d file with its markers; {target} is not one. Leave --forces out",
-                target=target,
-            ),
+            "forces go into a .c3d file with its markers; {target} is not one. Leave --forces out",
             code="wrong_ending",
+            target=target,
         )
     return made(source, target, options)
 
@@ -138,13 +134,11 @@ def _pit_of_campaign(source: Path, options: ConvertOptions) -> SnowPit:
     sites = sites_of(campaign)
     if options.site is None and len(sites) != 1:
         raise ParameterError(
-            Message(
-                "{source} has {n_sites} sites; name one with --site: {sites}",
-                source=source,
-                n_sites=len(sites),
-                sites=list(sites),
-            ),
+            "{source} has {n_sites} sites; name one with --site: {sites}",
             code="missing",
+            source=source,
+            n_sites=len(sites),
+            sites=list(sites),
         )
     site = sites[0] if options.site is None else options.site
     return site_pit(analyse(campaign, n_resamples=FEWEST_RESAMPLES), site)  # no bootstrap is in a mean's interval

@@ -12,7 +12,6 @@ import numpy as np
 import numpy.typing as npt
 
 from .._support.errors import ParameterError
-from .._support.messages import Message
 from .._support.staging import write_file
 from ..contact import SnowContact
 from ..ski import Ski
@@ -64,21 +63,19 @@ def ski_mjcf(
     """
     if segments < 4:
         raise ParameterError(
-            Message("ski_mjcf: segments is {segments!r}; it must be 4 or more", segments=segments), code="out_of_range"
+            "ski_mjcf: segments is {segments!r}; it must be 4 or more", code="out_of_range", segments=segments
         )
     length = float(ski.station[0] - ski.station[-1])
     if not 0.0 < clamp_length < length:
         raise ParameterError(
-            Message(
-                "ski_mjcf: clamp_length is {clamp_length!r} m; it must be above 0 and below {length:g}",
-                clamp_length=clamp_length,
-                length=length,
-            ),
+            "ski_mjcf: clamp_length is {clamp_length!r} m; it must be above 0 and below {length:g}",
             code="out_of_range",
+            clamp_length=clamp_length,
+            length=length,
         )
     if not (np.isfinite(damping) and damping >= 0.0):
         raise ParameterError(
-            Message("ski_mjcf: damping is {damping!r} s; it must be 0 or more", damping=damping), code="out_of_range"
+            "ski_mjcf: damping is {damping!r} s; it must be 0 or more", code="out_of_range", damping=damping
         )
     half, (tip, tail) = clamp_length / 2.0, (float(ski.station[0]), float(ski.station[-1]))
     front = round(segments * (tip - half) / (length - clamp_length))
@@ -114,9 +111,7 @@ def write_ski_mjcf(ski: Ski, path: str | Path, *, segments: int = SEGMENTS) -> P
         The place cannot be written.
     """
     if Path(path).suffix.lower() != ".xml":
-        raise ParameterError(
-            Message("{path} does not end in .xml, as MJCF does; name it so", path=path), code="wrong_ending"
-        )
+        raise ParameterError("{path} does not end in .xml, as MJCF does; name it so", code="wrong_ending", path=path)
     write_file(path, ski_mjcf(ski, segments=segments))
     return Path(path)
 
@@ -217,23 +212,20 @@ class SnowForces:
         try:
             import mujoco
         except ImportError:
-            raise ParameterError(Message("MuJoCo is not installed: pip install mujoco"), code="wrong_kind") from None
+            raise ParameterError("MuJoCo is not installed: pip install mujoco", code="wrong_kind") from None
         self._engine: Any = mujoco
         if len(sites) != len(contact.runners):
             raise ParameterError(
-                Message(
-                    "SnowForces: {n_sites} sites for {n_runners} runners; each needs one",
-                    n_sites=len(sites),
-                    n_runners=len(contact.runners),
-                ),
+                "SnowForces: {n_sites} sites for {n_runners} runners; each needs one",
                 code="wrong_shape",
+                n_sites=len(sites),
+                n_runners=len(contact.runners),
             )
         if any(runner.nodes is not None for runner in contact.runners):
-            raise ParameterError(Message("SnowForces: a site has no beam; its runner has to be rigid"), code="no_data")
+            raise ParameterError("SnowForces: a site has no beam; its runner has to be rigid", code="no_data")
         if model.opt.integrator == mujoco.mjtIntegrator.mjINT_RK4:
             raise ParameterError(
-                Message("SnowForces: RK4 asks for forces at times that are not accepted; take Euler"),
-                code="not_supported",
+                "SnowForces: RK4 asks for forces at times that are not accepted; take Euler", code="not_supported"
             )
         self._sites = [self._site(model, name) for name in sites]
         self.model, self.contact = model, contact
@@ -248,8 +240,10 @@ class SnowForces:
         if index < 0:
             names = ", ".join(model.site(i).name for i in range(model.nsite))
             raise ParameterError(
-                Message("SnowForces: there is no site {name}; there are {known}", name=name, known=names or "-"),
+                "SnowForces: there is no site {name}; there are {known}",
                 code="unknown_name",
+                name=name,
+                known=names or "-",
             )
         return index
 

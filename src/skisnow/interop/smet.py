@@ -9,7 +9,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from .._support.errors import ParameterError
-from .._support.messages import Message
 from .._support.staging import write_file
 from ..estimation.weather import QUANTITIES
 
@@ -49,8 +48,7 @@ def write_weather_csv(series: StationSeries, path: str | Path) -> Path:
     if not available:
         wanted = ", ".join(name for name, *_ in QUANTITIES.values())
         raise ParameterError(
-            Message("{file} has no field of {wanted}; nothing was written", file=series.file, wanted=wanted),
-            code="no_data",
+            "{file} has no field of {wanted}; nothing was written", code="no_data", file=series.file, wanted=wanted
         )
     columns = [(series.fields[name] * factor + offset).tolist() for name, factor, offset in available.values()]
     rows = (
@@ -86,13 +84,11 @@ def _smet(series: StationSeries) -> Iterator[str]:
     for when, *values in zip(_times(series, zone=False), *columns, strict=True):
         if NO_DATA in values:
             raise ParameterError(
-                Message(
-                    "{file} has a value of {no_data:g} at {when}, which means a missing value in SMET",
-                    file=series.file,
-                    no_data=NO_DATA,
-                    when=when,
-                ),
+                "{file} has a value of {no_data:g} at {when}, which means a missing value in SMET",
                 code="out_of_range",
+                file=series.file,
+                no_data=NO_DATA,
+                when=when,
             )
         yield " ".join((when, *(f"{NO_DATA if math.isnan(value) else value:.10g}" for value in values)))
 

@@ -12,7 +12,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from .._support.errors import ParameterError
-from .._support.messages import Message
 from .._support.staging import write_file
 from .._support.units import CM, MM
 from ..campaign.snow_pit import DepthTemperature, ForceProfile, LayerDensity, PlateValue, SnowPit
@@ -61,18 +60,15 @@ def write_snowex_pit(pit: SnowPit, path: str | Path) -> tuple[Path, ...]:
     height = pit.snow_height
     if height is None:
         raise ParameterError(
-            Message(
-                "SnowEx counts heights from the ground, and the snow height of {name!r} is not known: "
-                "give it with --snow-height-cm",
-                name=pit.name,
-            ),
+            "SnowEx counts heights from the ground, and the snow height of {name!r} is not known: give it with "
+            "--snow-height-cm",
             code="unknown_name",
+            name=pit.name,
         )
     tables = {name: (columns, rows) for name, columns, rows in _tables(pit, height) if rows}
     if not tables:
         raise ParameterError(
-            Message("{name!r} has no layers, densities or temperatures; nothing was written", name=pit.name),
-            code="no_data",
+            "{name!r} has no layers, densities or temperatures; nothing was written", code="no_data", name=pit.name
         )
     written = []
     for name, (columns, rows) in tables.items():
@@ -177,8 +173,11 @@ def site_pit(analysis: Analysis, site: str) -> SnowPit:
     sites = {name for table in _density_tables(campaign) for name in table[0]}
     if site not in sites:
         raise ParameterError(
-            Message("{name} has no site {site!r}; it has {sites}", name=campaign.name, site=site, sites=sorted(sites)),
+            "{name} has no site {site!r}; it has {sites}",
             code="no_data",
+            name=campaign.name,
+            site=site,
+            sites=sorted(sites),
         )
     temperatures, air = _notes(campaign, site, "snow_temperature_C"), _notes(campaign, site, "air_temperature_C")
     densities = tuple(_densities(campaign, site))

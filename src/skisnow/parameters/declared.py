@@ -29,7 +29,6 @@ from types import NoneType, UnionType
 from typing import Annotated, Any, Final, Literal, NamedTuple, TypeVar, Union, get_args, get_origin
 
 from .._support.errors import ParameterError, nearest
-from .._support.messages import Message
 from .quantity import Kind, Quantity
 
 T = TypeVar("T")
@@ -124,13 +123,11 @@ def require_effect(thing: Any) -> None:
             continue
         if not condition.holds(values[condition.key]):
             raise ParameterError(
-                Message(
-                    "{name} is {value}; it goes with {condition}. Change one of them",
-                    name=quantity.name,
-                    value=_in_short(value),
-                    condition=condition.in_words,
-                ),
+                "{name} is {value}; it goes with {condition}. Change one of them",
                 code="contradiction",
+                name=quantity.name,
+                value=_in_short(value),
+                condition=condition.in_words,
             )
 
 
@@ -358,16 +355,16 @@ def checked_table(owner: type, table: Mapping[str, Any], place: str) -> dict[str
     for name in table:
         if name not in keys:
             raise ParameterError(
-                Message(
-                    "{place}: there is no {name!r}. {allowed}", place=place, name=name, allowed=nearest(name, keys)
-                ),
+                "{place}: there is no {name!r}. {allowed}",
                 code="unknown_name",
+                place=place,
+                name=name,
+                allowed=nearest(name, keys),
             )
     for name, key in keys.items():
         if key.needed and name not in table:
             raise ParameterError(
-                Message("{place}: {name} is missing: {meaning}", place=place, name=name, meaning=key.meaning),
-                code="missing",
+                "{place}: {name} is missing: {meaning}", code="missing", place=place, name=name, meaning=key.meaning
             )
     try:
         return {name: keys[name].in_range(value) for name, value in table.items()}

@@ -224,9 +224,7 @@ class Quantity:
             return math.inf
         if self.kind in ("number", "whole number") and isinstance(value, int | float) and not isinstance(value, bool):
             return self._number(value)
-        raise ParameterError(
-            Message(_OF_ANOTHER_KIND[self.kind], name=self.name, value=_shown(value)), code="wrong_kind"
-        )
+        raise ParameterError(_OF_ANOTHER_KIND[self.kind], code="wrong_kind", name=self.name, value=_shown(value))
 
     def _number(self, value: float) -> float | int:
         try:
@@ -235,21 +233,18 @@ class Quantity:
             number = math.inf
         if number and math.isfinite(number) and not SMALLEST <= abs(number) <= LARGEST:
             raise ParameterError(
-                Message(
-                    "{name} is {value}, not a quantity; allowed are 0 and sizes from {smallest:g} to {largest:g}",
-                    name=self.name,
-                    value=_shown(value),
-                    smallest=SMALLEST,
-                    largest=LARGEST,
-                ),
+                "{name} is {value}, not a quantity; allowed are 0 and sizes from {smallest:g} to {largest:g}",
                 code="wrong_kind",
+                name=self.name,
+                value=_shown(value),
+                smallest=SMALLEST,
+                largest=LARGEST,
             )
         if self.kind == "number":
             return number
         if not number.is_integer():
             raise ParameterError(
-                Message("{name} is {value}; it must be a whole number", name=self.name, value=_shown(value)),
-                code="wrong_kind",
+                "{name} is {value}; it must be a whole number", code="wrong_kind", name=self.name, value=_shown(value)
             )
         return int(value)
 
@@ -272,14 +267,12 @@ class Quantity:
                 one.in_range(element)
         if not self._allows(checked):
             raise ParameterError(
-                Message(
-                    _NOT_ALLOWED_IN_UNIT if self.unit else _NOT_ALLOWED,
-                    name=self.name,
-                    value=_shown(value),
-                    allowed=self.allowed,
-                    unit=self.unit,
-                ),
+                _NOT_ALLOWED_IN_UNIT if self.unit else _NOT_ALLOWED,
                 code="out_of_range",
+                name=self.name,
+                value=_shown(value),
+                allowed=self.allowed,
+                unit=self.unit,
             )
         return checked
 
@@ -322,8 +315,7 @@ class Quantity:
             self.in_range(_plain(value, self._held))
         elif self.in_range(value) != value:  # a file's text may have blanks around it
             raise ParameterError(
-                Message(_NOT_ALLOWED, name=self.name, value=_shown(value), allowed=self.allowed),
-                code="out_of_range",
+                _NOT_ALLOWED, code="out_of_range", name=self.name, value=_shown(value), allowed=self.allowed
             )
 
     def _allows(self, value: InputValue) -> bool:

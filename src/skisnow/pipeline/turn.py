@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from .._support.errors import ParameterError
-from .._support.messages import Message
 from .._support.processes.batch import run_batch, workers_in_force
 from ..campaign import Campaign, read_campaign
 from ..estimation import Analysis, analyse
@@ -171,23 +170,19 @@ def _run(contact: str, turn: Scenario, say: Callable[[str], None]) -> Run:
 def _require(unloading_ratio: float | None, shear_displacement: float | None, runs: int) -> None:
     if unloading_ratio is not None and not unloading_ratio > ELASTIC:
         raise ParameterError(
-            Message(
-                "unloading_ratio is {unloading_ratio}; k_u/H_V must be above 1 here: elastic snow is the other contact",
-                unloading_ratio=unloading_ratio,
-            ),
+            "unloading_ratio is {unloading_ratio}; k_u/H_V must be above 1 here: elastic snow is the other contact",
             code="out_of_range",
+            unloading_ratio=unloading_ratio,
         )
     if shear_displacement is not None and not shear_displacement > 0.0:
         raise ParameterError(
-            Message(
-                "shear_displacement is {shear_displacement} m; u_y must be above 0",
-                shear_displacement=shear_displacement,
-            ),
+            "shear_displacement is {shear_displacement} m; u_y must be above 0",
             code="out_of_range",
+            shear_displacement=shear_displacement,
         )
     if runs < FEWEST:
         raise ParameterError(
-            Message("runs is {runs}; a band needs {fewest} or more", runs=runs, fewest=FEWEST), code="out_of_range"
+            "runs is {runs}; a band needs {fewest} or more", code="out_of_range", runs=runs, fewest=FEWEST
         )
 
 
@@ -255,7 +250,7 @@ def inputs_with(priors: Iterable[Prior], turn: Scenario) -> tuple[Measured | Pri
     for prior in priors:
         if prior.key in MEASURED:
             raise ParameterError(
-                Message("{key} has no prior here: its interval comes from the campaign", key=prior.key), code="no_data"
+                "{key} has no prior here: its interval comes from the campaign", code="no_data", key=prior.key
             )
         inputs[prior.key] = prior
     return tuple(inputs.values())

@@ -12,7 +12,6 @@ import numpy as np
 import numpy.typing as npt
 
 from .._support.errors import ParameterError
-from .._support.messages import Message
 from ..scenario import Plane, Scenario
 from ..skier.plan import Line
 from ..track.course import CourseResult, MovingPoint, passages
@@ -79,8 +78,7 @@ class PointRacer:
         """
         if not isinstance(scenario.slope, Plane):
             raise ParameterError(
-                Message("a point races on a plane; the scenario has a profile or a grid. Take the skier"),
-                code="not_supported",
+                "a point races on a plane; the scenario has a profile or a grid. Take the skier", code="not_supported"
             )
         ski, air, contact = scenario.ski, scenario.air, scenario.contact
         return cls(

@@ -203,32 +203,30 @@ def _begun(scenario: Scenario, gates: int | None, start: RacingLine | None) -> R
     line = follower_line(scenario) if start is None else start
     if start is not None and len(start.turns) != len(course.gates) and gates is None:
         raise ParameterError(
-            Message(
-                "the line to begin from has {n_turns} turns and the course {n_gates} gates; say gates=",
-                n_turns=len(start.turns),
-                n_gates=len(course.gates),
-            ),
+            "the line to begin from has {n_turns} turns and the course {n_gates} gates; say gates=",
             code="wrong_shape",
+            n_turns=len(start.turns),
+            n_gates=len(course.gates),
         )
     for gate, turn in zip(course.gates, line.turns, strict=False):
         for name, (low, high) in RANGES.items():
             if not low <= getattr(turn, name) <= high:
                 raise ParameterError(
-                    Message(
-                        "gate {gate}: {name} is {value:g}; a search begins within {low:g} to {high:g}",
-                        gate=gate.name,
-                        name=name,
-                        value=getattr(turn, name),
-                        low=low,
-                        high=high,
-                    ),
+                    "gate {gate}: {name} is {value:g}; a search begins within {low:g} to {high:g}",
                     code="out_of_range",
+                    gate=gate.name,
+                    name=name,
+                    value=getattr(turn, name),
+                    low=low,
+                    high=high,
                 )
     count = len(course.gates) if gates is None else gates
     if not 2 <= count <= len(line.turns):
         raise ParameterError(
-            Message("gates is {count}; it must be from 2 to {n_turns}", count=count, n_turns=len(line.turns)),
+            "gates is {count}; it must be from 2 to {n_turns}",
             code="out_of_range",
+            count=count,
+            n_turns=len(line.turns),
         )
     return first_gates(line, count)
 
@@ -237,18 +235,20 @@ def _window(gates: int, window: int | None, step: int, ahead: int) -> tuple[int,
     window = gates if window is None else window
     if not 2 <= window <= gates:
         raise ParameterError(
-            Message(
-                "window is {window}; it must be from 2 to the {gates} gates of the course", window=window, gates=gates
-            ),
+            "window is {window}; it must be from 2 to the {gates} gates of the course",
             code="out_of_range",
+            window=window,
+            gates=gates,
         )
     if not 1 <= step <= window:
         raise ParameterError(
-            Message("step is {step}; it must be from 1 to the window's {window} gates", step=step, window=window),
+            "step is {step}; it must be from 1 to the window's {window} gates",
             code="out_of_range",
+            step=step,
+            window=window,
         )
     if ahead < 0:
-        raise ParameterError(Message("ahead is {ahead}; it must be 0 or more", ahead=ahead), code="out_of_range")
+        raise ParameterError("ahead is {ahead}; it must be 0 or more", code="out_of_range", ahead=ahead)
     return window, step
 
 
@@ -262,26 +262,24 @@ def _search(search: Search | None, model: RacerModel) -> Search:
 def _require(*, evaluations: int, population: int | None, spread: float, settled: float, room: float) -> None:
     if evaluations < 1:
         raise ParameterError(
-            Message("evaluations is {evaluations}; at least 1 is needed", evaluations=evaluations), code="out_of_range"
+            "evaluations is {evaluations}; at least 1 is needed", code="out_of_range", evaluations=evaluations
         )
     if population is not None and population < 4:
         raise ParameterError(
-            Message("population is {population}; at least 4 is needed", population=population), code="out_of_range"
+            "population is {population}; at least 4 is needed", code="out_of_range", population=population
         )
     if not 0.0 < spread <= 1.0:
         raise ParameterError(
-            Message("spread is {spread:g}; it must be above 0 and at most 1", spread=spread), code="out_of_range"
+            "spread is {spread:g}; it must be above 0 and at most 1", code="out_of_range", spread=spread
         )
     if not 0.0 <= room <= 1.0:
-        raise ParameterError(Message("room is {room:g}; it must be from 0 to 1", room=room), code="out_of_range")
+        raise ParameterError("room is {room:g}; it must be from 0 to 1", code="out_of_range", room=room)
     if not 0.0 <= settled < NOT_PASSED:
         raise ParameterError(
-            Message(
-                "settled is {settled:g}; it must be from 0 to below {not_passed:g}",
-                settled=settled,
-                not_passed=NOT_PASSED,
-            ),
+            "settled is {settled:g}; it must be from 0 to below {not_passed:g}",
             code="out_of_range",
+            settled=settled,
+            not_passed=NOT_PASSED,
         )
 
 

@@ -16,7 +16,6 @@ from scipy.stats import qmc
 from .._support.content import content_bytes
 from .._support.display import Facts, Shown, amount
 from .._support.errors import ParameterError, require_choice
-from .._support.messages import Message
 from .._support.processes.batch import run_batch
 from .._support.processes.executors import ExecutorLike
 from .._support.processes.kept_rows import KeptRows
@@ -134,14 +133,12 @@ def compare_variants(
     require_choice("model", model, get_args(RacerModel))
     if AS_IT_IS in others:
         raise ParameterError(
-            Message(
-                "others has the name {as_it_is!r}, which the scenario itself has. Rename the variant.",
-                as_it_is=AS_IT_IS,
-            ),
+            "others has the name {as_it_is!r}, which the scenario itself has. Rename the variant.",
             code="repeated",
+            as_it_is=AS_IT_IS,
         )
     if not snows or not others:
-        raise ParameterError(Message("a comparison needs one snow or more, and one variant or more"), code="missing")
+        raise ParameterError("a comparison needs one snow or more, and one variant or more", code="missing")
     named = {AS_IT_IS: scenario, **others}
     points = [_on(variant, scenario, snow) for variant in named.values() for snow in snows]
     finished_rows = None
@@ -200,7 +197,7 @@ def drawn_for_race(snow: SnowProperties, count: int, *, spread: float | None, se
     if spread is not None:
         if not 0.0 < spread <= 10.0:
             raise ParameterError(
-                Message("spread is {spread:g}; it must be above 0 and at most 10", spread=spread), code="out_of_range"
+                "spread is {spread:g}; it must be above 0 and at most 10", code="out_of_range", spread=spread
             )
         snow = replace(
             snow,

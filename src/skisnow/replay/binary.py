@@ -20,7 +20,6 @@ import numpy as np
 import numpy.typing as npt
 
 from .._support.errors import ParameterError
-from .._support.messages import Message
 from .._support.user_files import GivenError, json_value
 from .meshes import COLOURS, drawn_thickness
 from .replay import SKI_NAMES, Replay, ReplayBoots, ReplayGroove, ReplaySkier, ReplaySkis, ReplayTerrain, ReplayTrack
@@ -125,28 +124,26 @@ def replay_of_bytes(content: bytes) -> Replay:
         The bytes are not a replay, are incomplete, or have a later format.
     """
     if content[: len(MAGIC)] != MAGIC or len(content) < 8:
-        raise ParameterError(Message("these bytes are not a replay: they do not begin with SKRP"), code="not_a_replay")
+        raise ParameterError("these bytes are not a replay: they do not begin with SKRP", code="not_a_replay")
     (length,) = struct.unpack("<I", content[4:8])
     try:
         header = json_value(content[8 : 8 + length].decode("utf-8"))
         if header["format"] != FORMAT:
             raise ParameterError(
-                Message(
-                    "the replay has format {format}; this program reads format {readable}",
-                    format=header["format"],
-                    readable=FORMAT,
-                ),
+                "the replay has format {format}; this program reads format {readable}",
                 code="unknown_format",
+                format=header["format"],
+                readable=FORMAT,
             )
         arrays = {name: _unpack(content, 8 + length, description) for name, description in header["arrays"].items()}
         if not np.isin(np.rint(arrays["groove_ski"]), range(len(SKI_NAMES))).all():
-            raise ParameterError(Message("a piece of the groove belongs to no ski"), code="damaged")
+            raise ParameterError("a piece of the groove belongs to no ski", code="damaged")
         return _build(header, arrays)
     except (ValueError, LookupError, TypeError, AttributeError, OverflowError, MemoryError) as error:
         if isinstance(error, ParameterError) and not isinstance(error, GivenError):
             raise
         raise ParameterError(
-            Message("the replay is damaged or cut off ({error}). Write it again", error=error), code="damaged"
+            "the replay is damaged or cut off ({error}). Write it again", code="damaged", error=error
         ) from error
 
 

@@ -10,7 +10,6 @@ import numpy.typing as npt
 from scipy.spatial.transform import Rotation
 
 from .._support.errors import ParameterError
-from .._support.messages import Message
 from .._support.units import DEGREE, N_PER_MM2, N_PER_MM3
 from ..scenario import Plane, Profile, Terrain
 from ..simulation.run_gates import feet_and_tips
@@ -177,9 +176,7 @@ def assemble_replay(
 ) -> Replay:
     """A replay from a run's arrays, named as in run.nc with vectors in one, and its setting."""
     if not len(arrays["time"]):
-        raise ParameterError(
-            Message("{run} has no moment to show: it ended before it began", run=title), code="no_data"
-        )
+        raise ParameterError("{run} has no moment to show: it ended before it began", code="no_data", run=title)
     with np.errstate(divide="ignore"):
         curvature = 1.0 / arrays["turn_radius"]
     slope, course = setting.slope, setting.course
@@ -266,8 +263,9 @@ def _gates(places: npt.ArrayLike, slope: Slope) -> FloatArray:
     points = np.asarray(places, dtype=float)
     if points.ndim != 2 or points.shape[1] != 2 or not np.isfinite(points).all():
         raise ParameterError(
-            Message("gates are pairs of x and y in m; given is an array of shape {shape}", shape=points.shape),
+            "gates are pairs of x and y in m; given is an array of shape {shape}",
             code="wrong_shape",
+            shape=points.shape,
         )
     return np.column_stack([points, _heights(slope, points)])
 

@@ -15,7 +15,6 @@ from markupsafe import Markup
 
 from .._support.errors import ParameterError
 from .._support.language import ENGLISH, catalogue, require_language
-from .._support.messages import Message
 from .._support.staging import write_file
 from ..simulation.run import Run
 from .binary import replay_bytes
@@ -92,7 +91,7 @@ def _replay(run: Run | Replay | str | Path, title: str | None, track: ReplayTrac
     if isinstance(run, Replay):
         if track is not None or title is not None:
             raise ParameterError(
-                Message("a replay has its own title and track: give them to replay_of_run or replay_of_file"),
+                "a replay has its own title and track: give them to replay_of_run or replay_of_file",
                 code="not_together",
             )
         return run

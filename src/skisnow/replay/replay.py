@@ -11,7 +11,6 @@ from scipy.spatial import cKDTree
 from scipy.spatial.transform import Rotation
 
 from .._support.errors import ParameterError
-from .._support.messages import Message
 from ..simulation.sledge_body import base_lateral, base_normal, rotation
 
 if TYPE_CHECKING:
@@ -176,22 +175,18 @@ def measured_track(track: Track, *, starts_at: float = 0.0) -> ReplayTrack:
     """
     if track.axes == "east_north_up":
         raise ParameterError(
-            Message(
-                "{track} is in east, north and up; a run is in the axes of the slope. Turn it with slope_frame first",
-                track=track.name,
-            ),
+            "{track} is in east, north and up; a run is in the axes of the slope. Turn it with slope_frame first",
             code="wrong_axes",
+            track=track.name,
         )
     placed = np.isfinite(track.place[:, :2]).all(axis=1)
     if placed.sum() < FEWEST_POINTS:
         raise ParameterError(
-            Message(
-                "{track} has {points} points with a place; a line needs {fewest}",
-                track=track.name,
-                points=placed.sum(),
-                fewest=FEWEST_POINTS,
-            ),
+            "{track} has {points} points with a place; a line needs {fewest}",
             code="too_few_points",
+            track=track.name,
+            points=placed.sum(),
+            fewest=FEWEST_POINTS,
         )
     return ReplayTrack(name=track.name, place=track.place[placed], time=track.time[placed] + starts_at)
 

@@ -79,8 +79,9 @@ def replay_of_file(
         require_drawable(arrays)
         if not 0.0 < spacing <= 1.0:
             raise ParameterError(
-                Message("solver_line_spacing_m is {spacing:g}; it must be above 0 and at most 1", spacing=spacing),
+                "solver_line_spacing_m is {spacing:g}; it must be above 0 and at most 1",
                 code="out_of_range",
+                spacing=spacing,
             )
         setting = _setting(path, values, outcome, spacing, ski)
         return assemble_replay(arrays, setting, title=title or path.resolve().parent.name, track=track, boots=boots)
@@ -90,8 +91,10 @@ def replay_of_file(
         raise _not_a_run(path, error) from error
     except OSError as error:
         raise ParameterError(
-            Message("{path} cannot be read: {error}. Check the path", path=path, error=error.strerror or error),
+            "{path} cannot be read: {error}. Check the path",
             code="cannot_read",
+            path=path,
+            error=error.strerror or error,
         ) from error
     except _DAMAGE as error:
         raise _not_a_run(path, error) from error
@@ -238,13 +241,13 @@ def require_drawable(arrays: Mapping[str, FloatArray]) -> None:
     """
     require_finite(arrays)
     if np.any(np.diff(arrays["time"]) <= 0.0):
-        raise ParameterError(Message("time does not rise"), code="not_rising")
+        raise ParameterError("time does not rise", code="not_rising")
     if np.any(np.diff(arrays["station"]) >= 0.0):
-        raise ParameterError(Message("station does not fall from tip to tail"), code="not_falling")
+        raise ParameterError("station does not fall from tip to tail", code="not_falling")
     attitude = arrays["attitude"]
     product = attitude @ attitude.swapaxes(-1, -2)
     if attitude.shape[-2:] != (3, 3) or not np.allclose(product, np.eye(3), atol=_ORTHOGONAL):
-        raise ParameterError(Message("attitude is not a rotation"), code="not_a_rotation")
+        raise ParameterError("attitude is not a rotation", code="not_a_rotation")
 
 
 def require_finite(arrays: Mapping[str, FloatArray]) -> None:
@@ -255,13 +258,11 @@ def require_finite(arrays: Mapping[str, FloatArray]) -> None:
         if not sound.all():
             place = np.unravel_index(int(np.argmin(sound)), values.shape)
             raise ParameterError(
-                Message(
-                    "{name} is {value:g} at place {place}",
-                    name=name,
-                    value=values[place],
-                    place=[str(index + 1) for index in place],
-                ),
+                "{name} is {value:g} at place {place}",
                 code="not_finite",
+                name=name,
+                value=values[place],
+                place=[str(index + 1) for index in place],
             )
 
 
@@ -283,5 +284,5 @@ def needed_value(values: Mapping[str, Any], name: str) -> Any:
     """A required value of the run's scenario by its full name; errors as in `scenario_value`, or it is missing."""
     value = scenario_value(values, name)
     if value is None:
-        raise ParameterError(Message("{name} is missing", name=name), code="missing")
+        raise ParameterError("{name} is missing", code="missing", name=name)
     return value

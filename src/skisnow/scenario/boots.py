@@ -16,7 +16,6 @@ import numpy.typing as npt
 
 from .._support.display import Facts, Shown, ends
 from .._support.errors import ParameterError, require_choice
-from .._support.messages import Message
 from .._support.spreadsheet_text import column_names, decimal_mark, most_frequent_separator, with_decimal_point
 from .._support.units import DEGREE
 from .._support.user_files import plain_text
@@ -114,10 +113,8 @@ class Boots(Shown):
             furthest, cause = math.inf, error
         if furthest > FURTHEST_TURN:
             raise ParameterError(
-                Message(
-                    "boots: no spline joins these axes: they turn too far within too short a step. Correct "
-                    "the rows, or space them more evenly."
-                ),
+                "boots: no spline joins these axes: they turn too far within too short a step. Correct the rows, or "
+                "space them more evenly.",
                 code="not_joined",
             ) from cause
         return splines
@@ -131,35 +128,32 @@ class Boots(Shown):
         require_choice("boots: over", self.over, get_args(Over))
         if self.frame == "slope" and self.over == "distance":
             raise ParameterError(
-                Message("boots in the slope's frame go over time: the distance run is what they make it"),
-                code="contradiction",
+                "boots in the slope's frame go over time: the distance run is what they make it", code="contradiction"
             )
 
     def _require_shapes(self) -> None:
         n = len(self.at) if self.at.ndim == 1 else 0
         if n < FEWEST_POSES or self.place.shape != (n, 2, 3) or self.axes.shape != (n, 2, 3, 3):
             raise ParameterError(
-                Message(
-                    "boots need {fewest_poses} rows or more, each with a place (2, 3) and axes (2, 3, 3); "
-                    "there are {shape}, {shape_2} and {shape_3}",
-                    fewest_poses=FEWEST_POSES,
-                    shape=str(self.at.shape),
-                    shape_2=str(self.place.shape),
-                    shape_3=str(self.axes.shape),
-                ),
+                "boots need {fewest_poses} rows or more, each with a place (2, 3) and axes (2, 3, 3); there are "
+                "{shape}, {shape_2} and {shape_3}",
                 code="wrong_shape",
+                fewest_poses=FEWEST_POSES,
+                shape=str(self.at.shape),
+                shape_2=str(self.place.shape),
+                shape_3=str(self.axes.shape),
             )
 
     def _require_numbers(self) -> None:
         for name in ("at", "place", "axes"):
             if not np.isfinite(getattr(self, name)).all():
-                raise ParameterError(
-                    Message("boots: {name} holds a number that is not finite", name=name), code="not_a_number"
-                )
+                raise ParameterError("boots: {name} holds a number that is not finite", code="not_a_number", name=name)
             if np.abs(getattr(self, name)).max() > LARGEST:
                 raise ParameterError(
-                    Message("boots: {name} has a number beyond ±{largest:g}. Correct it.", name=name, largest=LARGEST),
+                    "boots: {name} has a number beyond ±{largest:g}. Correct it.",
                     code="out_of_range",
+                    name=name,
+                    largest=LARGEST,
                 )
 
     def _require_steps(self) -> None:
@@ -168,26 +162,22 @@ class Boots(Shown):
         step = {"over": self.over, "row": row + 2, "at": self.at[row + 1], "before": self.at[row]}
         if steps[row] <= 0.0:
             raise ParameterError(
-                Message("boots: {over} of row {row} is {at:g} after {before:g}; it must rise", **step),
-                code="not_rising",
+                "boots: {over} of row {row} is {at:g} after {before:g}; it must rise", code="not_rising", **step
             )
         if steps[row] < SHORTEST_STEP:
             raise ParameterError(
-                Message(
-                    "boots: {over} of row {row} is {at:g} after {before:g}. Allowed: steps of "
-                    "{shortest_step:g} or more. Correct the number, or omit one of the rows.",
-                    shortest_step=SHORTEST_STEP,
-                    **step,
-                ),
+                "boots: {over} of row {row} is {at:g} after {before:g}. Allowed: steps of {shortest_step:g} or more. "
+                "Correct the number, or omit one of the rows.",
                 code="out_of_range",
+                shortest_step=SHORTEST_STEP,
+                **step,
             )
 
     def _require_rotations(self) -> None:
         off = np.abs(self.axes @ np.swapaxes(self.axes, -1, -2) - np.eye(3)).max()
         if off > 1e-9 or np.any(np.linalg.det(self.axes) < 0.0):
             raise ParameterError(
-                Message("boots: axes are off by {off:.1e} from right-handed orthonormal ones", off=off),
-                code="not_a_rotation",
+                "boots: axes are off by {off:.1e} from right-handed orthonormal ones", code="not_a_rotation", off=off
             )
 
     def _facts(self) -> Facts:
@@ -247,13 +237,11 @@ def read_boots(path: str | Path, *, edge_angle: float = 0.0, stance_width: float
     clock = next(name for name in CLOCKS if name in table)
     if len(rows) < FEWEST_POSES:
         raise ParameterError(
-            Message(
-                "{path}: {n_rows} rows with poses; boots need {fewest_poses} rows or more",
-                path=path,
-                n_rows=len(rows),
-                fewest_poses=FEWEST_POSES,
-            ),
+            "{path}: {n_rows} rows with poses; boots need {fewest_poses} rows or more",
             code="out_of_range",
+            path=path,
+            n_rows=len(rows),
+            fewest_poses=FEWEST_POSES,
         )
     _require_rising(path, clock, rows, table[clock])
     try:
@@ -279,25 +267,20 @@ def _rows(path: Path, text: str) -> list[Row]:
         rows, said = _of_csv(path, text), {}
     else:
         raise ParameterError(
-            Message(
-                "{path}: boots are read from .csv, .mot and .sto; give the file the ending of its format", path=path
-            ),
+            "{path}: boots are read from .csv, .mot and .sto; give the file the ending of its format",
             code="wrong_ending",
+            path=path,
         )
     if not rows:
-        raise ParameterError(
-            Message("{path}: there is no row with the names of columns", path=path), code="unknown_name"
-        )
+        raise ParameterError("{path}: there is no row with the names of columns", code="unknown_name", path=path)
     names = rows[0][1]
     require_whole(path, said, rows=len(rows) - 1, columns=len(names))
     if degrees_stated(path, said) is False and any(name.endswith(ANGLES) for name in names):
         raise ParameterError(
-            Message(
-                "{path}: the head says inDegrees=no, and angles of boots are in degrees; multiply them "
-                "by 57.29578 and write inDegrees=yes",
-                path=path,
-            ),
+            "{path}: the head says inDegrees=no, and angles of boots are in degrees; multiply them by 57.29578 and "
+            "write inDegrees=yes",
             code="in_degrees",
+            path=path,
         )
     return rows
 
@@ -309,9 +292,7 @@ def _of_csv(path: Path, text: str) -> list[Row]:
     try:
         rows = [(table.line_num, row) for row in table if any(cell.strip() for cell in row)]
     except csv.Error as error:
-        raise ParameterError(
-            Message("{path} is not CSV text ({error})", path=path, error=error), code="wrong_kind"
-        ) from error
+        raise ParameterError("{path} is not CSV text ({error})", code="wrong_kind", path=path, error=error) from error
     cells = (cell for _, row in rows[1:] for cell in row)
     if separator == "," or decimal_mark([cells], separator=separator) == ".":
         return rows
@@ -323,12 +304,10 @@ def _behind_head(path: Path, lines: list[str]) -> tuple[list[Row], dict[str, str
     ends = [i for i, line in enumerate(lines) if line.strip().lower() == HEAD_END]
     if not ends:
         raise ParameterError(
-            Message(
-                "{path} has no line {head_end}, which ends the head of a .mot or .sto file; add it",
-                path=path,
-                head_end=HEAD_END,
-            ),
+            "{path} has no line {head_end}, which ends the head of a .mot or .sto file; add it",
             code="no_data",
+            path=path,
+            head_end=HEAD_END,
         )
     begin = ends[0] + 1
     rows = [(number, line.split()) for number, line in enumerate(lines[begin:], begin + 1) if line.strip()]
@@ -349,40 +328,36 @@ def _require_columns(path: Path, head: list[str]) -> None:
     for name in head:
         if _is_read(name) and name not in motion_columns:
             raise ParameterError(
-                Message(
-                    "{path}: there is no column {name}. {allowed}",
-                    path=path,
-                    name=name,
-                    allowed=nearest(name, motion_columns),
-                ),
+                "{path}: there is no column {name}. {allowed}",
                 code="missing",
+                path=path,
+                name=name,
+                allowed=nearest(name, motion_columns),
             )
         if counts[name] > 1:
             raise ParameterError(
-                Message("{path}: the column {name} is there twice; leave one out", path=path, name=name),
-                code="repeated",
+                "{path}: the column {name} is there twice; leave one out", code="repeated", path=path, name=name
             )
     clocks = [name for name in CLOCKS if name in head]
     if len(clocks) != 1:
         raise ParameterError(
-            Message("{path}: it needs one of the columns time_s (time in .mot) and distance_m", path=path),
-            code="missing",
+            "{path}: it needs one of the columns time_s (time in .mot) and distance_m", code="missing", path=path
         )
     if not any(_is_read(name) and name not in clocks for name in head):
         raise ParameterError(
-            Message("{path}: no column is one of a boot. There are {known}", path=path, known=list(motion_columns[3:])),
+            "{path}: no column is one of a boot. There are {known}",
             code="missing",
+            path=path,
+            known=list(motion_columns[3:]),
         )
     needed = [f"{side}_{name}" for side in SIDES for name in (*OF_SLOPE, *ANGLES)] if "left_x_m" in head else []
     for name in needed:
         if name not in head:
             raise ParameterError(
-                Message(
-                    "{path}: the column {name} is missing; boots in the slope's frame need every one",
-                    path=path,
-                    name=name,
-                ),
+                "{path}: the column {name} is missing; boots in the slope's frame need every one",
                 code="missing",
+                path=path,
+                name=name,
             )
 
 
@@ -390,30 +365,26 @@ def _require_rising(path: Path, clock: str, rows: list[Row], at: npt.NDArray[np.
     for (line, _), before, after in zip(rows[1:], at[:-1], at[1:], strict=True):
         if not after > before:
             raise ParameterError(
-                Message(
-                    "{path}, row {line}, column {clock}: {after:g} after {before:g}; it must rise. Put the "
-                    "rows in order, or leave one of two with the same pose out",
-                    path=path,
-                    line=line,
-                    clock=clock,
-                    after=after,
-                    before=before,
-                ),
+                "{path}, row {line}, column {clock}: {after:g} after {before:g}; it must rise. Put the rows in "
+                "order, or leave one of two with the same pose out",
                 code="not_rising",
+                path=path,
+                line=line,
+                clock=clock,
+                after=after,
+                before=before,
             )
         if after - before < SHORTEST_STEP:
             raise ParameterError(
-                Message(
-                    "{path}, row {line}, column {clock}: {after:g} after {before:g}. Allowed: steps of "
-                    "{shortest_step:g} or more. Correct the number, or omit one of the rows.",
-                    path=path,
-                    line=line,
-                    clock=clock,
-                    after=after,
-                    before=before,
-                    shortest_step=SHORTEST_STEP,
-                ),
+                "{path}, row {line}, column {clock}: {after:g} after {before:g}. Allowed: steps of {shortest_step:g} "
+                "or more. Correct the number, or omit one of the rows.",
                 code="out_of_range",
+                path=path,
+                line=line,
+                clock=clock,
+                after=after,
+                before=before,
+                shortest_step=SHORTEST_STEP,
             )
 
 
@@ -422,14 +393,12 @@ def _column(path: Path, rows: list[Row], head: list[str], place: int) -> npt.NDA
     for i, (line, row) in enumerate(rows):
         if len(row) != len(head):
             raise ParameterError(
-                Message(
-                    "{path}, row {line}: {n_row} cells for {n_head} names of columns",
-                    path=path,
-                    line=line,
-                    n_row=len(row),
-                    n_head=len(head),
-                ),
+                "{path}, row {line}: {n_row} cells for {n_head} names of columns",
                 code="wrong_number_of_cells",
+                path=path,
+                line=line,
+                n_row=len(row),
+                n_head=len(head),
             )
         values[i] = _cell(path, line, head[place], row[place])
     return values
@@ -444,33 +413,27 @@ def _cell(path: Path, line: int, column: str, text: str) -> float:
     cell = {"path": path, "line": line, "head": column}
     if not math.isfinite(value):
         raise ParameterError(
-            Message(
-                "{path}, row {line}, column {head}: {value!r} is not a finite number; write one",
-                value=text.strip(),
-                **cell,
-            ),
+            "{path}, row {line}, column {head}: {value!r} is not a finite number; write one",
             code="not_a_number",
+            value=text.strip(),
+            **cell,
         )
     if abs(value) > LARGEST:
         raise ParameterError(
-            Message(
-                "{path}, row {line}, column {head}: {value:g} is beyond ±{largest:g}. Correct the number.",
-                value=value,
-                largest=LARGEST,
-                **cell,
-            ),
+            "{path}, row {line}, column {head}: {value:g} is beyond ±{largest:g}. Correct the number.",
             code="out_of_range",
+            value=value,
+            largest=LARGEST,
+            **cell,
         )
     if column.endswith(_EDGE) and abs(value) > _ON_ITS_SIDE:
         raise ParameterError(
-            Message(
-                "{path}, row {line}, column {head}: {value:g} is beyond ±{on_its_side:g}, a ski on its "
-                "side; put the row right or leave it out",
-                value=value,
-                on_its_side=_ON_ITS_SIDE,
-                **cell,
-            ),
+            "{path}, row {line}, column {head}: {value:g} is beyond ±{on_its_side:g}, a ski on its side; put the row "
+            "right or leave it out",
             code="out_of_range",
+            value=value,
+            on_its_side=_ON_ITS_SIDE,
+            **cell,
         )
     return value
 

@@ -45,7 +45,7 @@ def build(resolution: Resolution, sources: Sources) -> tuple[Scenario, tuple[str
     slope = _slope(resolution)
     contact = _contact(resolution)
     if "run.duration_s" not in values and "run.length_m" not in values:
-        raise ParameterError(Message("the run has no end: give run.duration_s or run.length_m"), code="no_data")
+        raise ParameterError("the run has no end: give run.duration_s or run.length_m", code="no_data")
     values.setdefault("drag.centre_of_pressure_height_m", values["sledge.centre_of_mass_height_m"])
     course = _course(resolution, slope)
     parts: dict[str, Any] = {
@@ -63,10 +63,11 @@ def build(resolution: Resolution, sources: Sources) -> tuple[Scenario, tuple[str
 def _require(values: Mapping[str, Any], name: str, remedy: Message) -> None:
     if name not in values:
         raise ParameterError(
-            Message(
-                "{name} is missing: {meaning}. {remedy}", name=name, meaning=SCENARIO_KEYS[name].meaning, remedy=remedy
-            ),
+            "{name} is missing: {meaning}. {remedy}",
             code="missing",
+            name=name,
+            meaning=SCENARIO_KEYS[name].meaning,
+            remedy=remedy,
         )
 
 
@@ -106,21 +107,17 @@ def _course(resolution: Resolution, slope: Slope) -> Course | None:
     if name is None and file is None:
         if options:
             raise ParameterError(
-                Message(
-                    "course.{key} is there without a course; give course.file, or leave it out",
-                    key=next(iter(options)),
-                ),
+                "course.{key} is there without a course; give course.file, or leave it out",
                 code="contradiction",
+                key=next(iter(options)),
             )
         return None
     if name is not None and name not in course_names():
         raise ParameterError(
-            Message(
-                "course.name is {name!r}, no course of the catalogue. {allowed} A path is course.file",
-                name=name,
-                allowed=nearest(str(name), course_names()),
-            ),
+            "course.name is {name!r}, no course of the catalogue. {allowed} A path is course.file",
             code="unknown_name",
+            name=name,
+            allowed=nearest(str(name), course_names()),
         )
     course = read_course(name or resolution.files["course.file"], **options)
     return course_on_slope(course, slope)
@@ -132,17 +129,14 @@ def _ski(resolution: Resolution, sources: Sources) -> tuple[Ski, tuple[str, ...]
     name = resolution.values.get("ski.name")
     if name is None:
         raise ParameterError(
-            Message("a ski has either ski.name, of the catalogue, or ski.file; neither is there"),
-            code="missing",
+            "a ski has either ski.name, of the catalogue, or ski.file; neither is there", code="missing"
         )
     if name not in ski_names():
         raise ParameterError(
-            Message(
-                "ski.name is {name!r}, not a ski of the catalogue. {allowed} Put a path under ski.file",
-                name=name,
-                allowed=nearest(str(name), ski_names()),
-            ),
+            "ski.name is {name!r}, not a ski of the catalogue. {allowed} Put a path under ski.file",
             code="unknown_name",
+            name=name,
+            allowed=nearest(str(name), ski_names()),
         )
     return sources.ski(str(name))
 
@@ -174,8 +168,7 @@ def _snow(resolution: Resolution) -> SnowProperties:
     values, snow, snow_map = dict(resolution.values), resolution.snow, resolution.snow_map
     if "snow.site" in values and "snow.results" not in values:
         raise ParameterError(
-            Message("snow.site goes with snow.results: it names one site of a campaign. Leave it out"),
-            code="contradiction",
+            "snow.site goes with snow.results: it names one site of a campaign. Leave it out", code="contradiction"
         )
     if snow is None:
         if snow_map is not None:
@@ -183,12 +176,11 @@ def _snow(resolution: Resolution) -> SnowProperties:
             values.setdefault(S_F, (snow_map.mean_stress or math.nan) / N_PER_MM2)
         if H_V not in values:
             raise ParameterError(
-                Message("no snow is given: H_V has no default. {choices}", choices=SNOW_CHOICES),
-                code="missing",
+                "no snow is given: H_V has no default. {choices}", code="missing", choices=SNOW_CHOICES
             )
         if S_F not in values:
             raise ParameterError(
-                Message("{name} is missing: the failure shear stress S_f. It has no default", name=S_F), code="missing"
+                "{name} is missing: the failure shear stress S_f. It has no default", code="missing", name=S_F
             )
         snow = made(SnowProperties, values, section="snow", source="given as numbers")
     else:
@@ -218,12 +210,10 @@ def changed_scenario(scenario: Scenario, changes: Mapping[str, object]) -> Scena
     for name in numbers:
         if isinstance(SCENARIO_KEYS[name], Word):
             raise ParameterError(
-                Message(
-                    "{name} is a word of a scenario's file; in Python give the part itself, such as snow=, "
-                    "ski= or slope=, or read the scenario with it: skisnow.load_scenario(…, changes={{…}})",
-                    name=name,
-                ),
+                "{name} is a word of a scenario's file; in Python give the part itself, such as snow=, ski= or "
+                "slope=, or read the scenario with it: skisnow.load_scenario(…, changes={{…}})",
                 code="wrong_kind",
+                name=name,
             )
     if isinstance(parts.get("ski"), str | Path):
         parts["ski"] = read_ski(parts["ski"])
@@ -249,7 +239,7 @@ def _full_name(name: str, part_names: Collection[str]) -> str:
         if part is None:
             raise
         raise ParameterError(
-            Message("{problem} Did you mean the part {part}?", problem=error, part=part), code="unknown_name"
+            "{problem} Did you mean the part {part}?", code="unknown_name", problem=error, part=part
         ) from error
 
 
@@ -273,12 +263,10 @@ def _on_snow(contact: Contact, snow: SnowProperties | str) -> Contact:
     new = published_snow(snow) if isinstance(snow, str) else snow
     if not isinstance(new, SnowProperties):
         raise ParameterError(
-            Message(
-                "snow is a {kind}; it must be SnowProperties, as Analysis.snow and snow_from_results "
-                "give it, or the name of a published snow",
-                kind=type(new).__name__,
-            ),
+            "snow is a {kind}; it must be SnowProperties, as Analysis.snow and snow_from_results give it, or the "
+            "name of a published snow",
             code="wrong_kind",
+            kind=type(new).__name__,
         )
     ratio = contact.unloading_ratio if new.unloading_ratio is None else new.unloading_ratio
     displacement = contact.shear_displacement if new.shear_displacement is None else new.shear_displacement
@@ -297,21 +285,17 @@ def _require_changeable(scenario: Scenario, numbers: Mapping[str, object]) -> No
     for name in numbers:
         if snow_map is not None and mapped.get(name) is not None:
             raise ParameterError(
-                Message(
-                    "{name} is given over the place by snow.map_file, {source}. snow_map=None takes the map away",
-                    name=name,
-                    source=snow_map.source,
-                ),
+                "{name} is given over the place by snow.map_file, {source}. snow_map=None takes the map away",
                 code="contradiction",
+                name=name,
+                source=snow_map.source,
             )
     for name in numbers.keys() - values_of(scenario).keys():
         part = name.partition(".")[0]
         raise ParameterError(
-            Message(
-                "{name} plays no part in this scenario, whose {part} is of another kind. Leave it out, "
-                "or give the part itself: {part}=",
-                name=name,
-                part=part,
-            ),
+            "{name} plays no part in this scenario, whose {part} is of another kind. Leave it out, or give the part "
+            "itself: {part}=",
             code="wrong_kind",
+            name=name,
+            part=part,
         )

@@ -53,30 +53,23 @@ def require_skier(skier: Skier | None, sledge: RigidSledge, *, has_boots: bool, 
         return
     if sledge.edge_angle != 0.0:
         raise ParameterError(
-            Message(
-                "sledge.edge_angle_deg is {degrees:g}; the skier sets the edges itself: write 0",
-                degrees=math.degrees(sledge.edge_angle),
-            ),
+            "sledge.edge_angle_deg is {degrees:g}; the skier sets the edges itself: write 0",
             code="contradiction",
+            degrees=math.degrees(sledge.edge_angle),
         )
     if has_boots:
-        raise ParameterError(
-            Message("boots.file and [skier] both move the boots; leave one of them out"), code="contradiction"
-        )
+        raise ParameterError("boots.file and [skier] both move the boots; leave one of them out", code="contradiction")
     if skier.steers == "gates" and not has_course:
         raise ParameterError(
-            Message('skier.steers is "gates" without a course; give course.name or course.file'),
-            code="contradiction",
+            'skier.steers is "gates" without a course; give course.name or course.file', code="contradiction"
         )
     if skier.longest_leg <= sledge.centre_of_mass[1]:
         raise ParameterError(
-            Message(
-                "skier.longest_leg_m is {longest_leg:g}, and sledge.centre_of_mass_height_m "
-                "{centre_of_mass:g}; the leg must be longer than that",
-                longest_leg=skier.longest_leg,
-                centre_of_mass=sledge.centre_of_mass[1],
-            ),
+            "skier.longest_leg_m is {longest_leg:g}, and sledge.centre_of_mass_height_m {centre_of_mass:g}; the leg "
+            "must be longer than that",
             code="out_of_range",
+            longest_leg=skier.longest_leg,
+            centre_of_mass=sledge.centre_of_mass[1],
         )
 
 

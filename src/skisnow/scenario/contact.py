@@ -6,7 +6,6 @@ from dataclasses import dataclass
 from typing import Annotated, Final, Literal, TypeAlias, get_args
 
 from .._support.errors import ParameterError
-from .._support.messages import Message
 from ..forces.friction.load import ActsOn, Direction
 from ..forces.penetration import LayeredPoint, PointLaw
 from ..forces.penetration.rate import DAMPING, DELAYED_SHARE, RETARDATION_TIME
@@ -253,22 +252,19 @@ class Contact:
         require_declared(self)
         if (self.layer_depth is None) != (self.lower_hardness is None):
             raise ParameterError(
-                Message("snow.layer_depth_mm and snow.lower_H_V_N_per_mm3 go together: give both, or none"),
-                code="contradiction",
+                "snow.layer_depth_mm and snow.lower_H_V_N_per_mm3 go together: give both, or none", code="contradiction"
             )
         if not self.is_layered:
             return
         if self.snow_map is not None and self.snow_map.hardness is not None:
             raise ParameterError(
-                Message(
-                    "snow.map_file gives H_V over the place, and the snow has layers: H_V then has one value. Leave "
-                    "the layers out, or the map's column H_V_N_per_mm3"
-                ),
+                "snow.map_file gives H_V over the place, and the snow has layers: H_V then has one value. Leave the "
+                "layers out, or the map's column H_V_N_per_mm3",
                 code="contradiction",
             )
         if self.damping > 0.0 or self.delayed_share > 0.0:
             raise ParameterError(
-                Message("layers of snow do not go with snow.damping_N_s_per_mm3 or snow.delayed_share. Leave one out"),
+                "layers of snow do not go with snow.damping_N_s_per_mm3 or snow.delayed_share. Leave one out",
                 code="contradiction",
             )
 

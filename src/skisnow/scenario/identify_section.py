@@ -61,19 +61,23 @@ def require_known(section: Mapping[str, Any]) -> None:
     clock = section.get("clock", "start")
     if clock not in CLOCKS:
         raise ParameterError(
-            Message('[identify] clock is {clock!r}; it must be "start" or "free"', clock=clock), code="out_of_range"
+            '[identify] clock is {clock!r}; it must be "start" or "free"', code="out_of_range", clock=clock
         )
     for name in _table(section, "site"):
         if name not in SITE:
             raise ParameterError(
-                Message("[identify.site]: there is no {name!r}. {allowed}", name=name, allowed=nearest(name, SITE)),
+                "[identify.site]: there is no {name!r}. {allowed}",
                 code="unknown_name",
+                name=name,
+                allowed=nearest(name, SITE),
             )
     for run, entries in _table(section, "runs").items():
         if not isinstance(entries, dict):
             raise ParameterError(
-                Message('identify.runs."{run}" is {entries!r}; it must be a table of keys', run=run, entries=entries),
+                'identify.runs."{run}" is {entries!r}; it must be a table of keys',
                 code="wrong_kind",
+                run=run,
+                entries=entries,
             )
         for word in entries:
             _key(word, f'[identify.runs."{run}"]')
@@ -95,16 +99,14 @@ def given_parameters(section: Mapping[str, Any]) -> dict[str, dict[str, float]]:
         key = _key(own, f'[identify."{word}"]', _no_key_meant(word)) + at + run
         if not isinstance(table, dict):
             raise ParameterError(
-                Message(
-                    'identify."{word}" is {table!r}; it must be a table with {given}, begun by the line '
-                    '[identify."{key}"]. A value of the scenario belongs to its own section, [{section}]',
-                    word=word,
-                    table=table,
-                    given=list(GIVEN),
-                    key=key,
-                    section=key.partition(".")[0],
-                ),
+                'identify."{word}" is {table!r}; it must be a table with {given}, begun by the line '
+                '[identify."{key}"]. A value of the scenario belongs to its own section, [{section}]',
                 code="wrong_kind",
+                word=word,
+                table=table,
+                given=list(GIVEN),
+                key=key,
+                section=key.partition(".")[0],
             )
         parameters[key] = checked_table(Sought, table, f'[identify."{key}"]')
     return parameters
@@ -115,7 +117,7 @@ def _key(word: str, place: str, meant: Message | None = None) -> str:
         return free_key(word)
     except ParameterError as error:
         problem = joined([error.message, meant]) if meant else error.message
-        raise ParameterError(Message("{place}: {problem}", place=place, problem=problem), code=error.code) from None
+        raise ParameterError("{place}: {problem}", code=error.code, place=place, problem=problem) from None
 
 
 def _no_key_meant(word: str) -> Message | None:
@@ -128,13 +130,11 @@ def _table(section: Mapping[str, Any], name: str) -> Mapping[str, Any]:
     if not isinstance(table, dict):
         what = f"[identify.{name}]" if name == "site" else f'[identify.{name}."NAME"]'
         raise ParameterError(
-            Message(
-                "identify.{name} is {table!r}; it must be a table, begun by the line {line}",
-                name=name,
-                table=table,
-                line=what,
-            ),
+            "identify.{name} is {table!r}; it must be a table, begun by the line {line}",
             code="wrong_kind",
+            name=name,
+            table=table,
+            line=what,
         )
     return table
 
@@ -164,14 +164,12 @@ class Prior:
     def __post_init__(self) -> None:
         if not 0.0 < self.low <= self.high:
             raise ParameterError(
-                Message(
-                    "the prior of {key} is {low:g} to {high:g}; its ends must be above 0, the first one not "
-                    "above the other",
-                    key=self.key,
-                    low=self.low,
-                    high=self.high,
-                ),
+                "the prior of {key} is {low:g} to {high:g}; its ends must be above 0, the first one not above the "
+                "other",
                 code="out_of_range",
+                key=self.key,
+                low=self.low,
+                high=self.high,
             )
         if not self.about:
             for end in (self.low, self.high):
@@ -206,12 +204,10 @@ def prior_of(word: str) -> Prior:
         low, high = (float(end) for end in ends.split(":"))
     except ValueError:
         raise ParameterError(
-            Message(
-                "{word!r} is not a prior; write KEY=LOW:HIGH, such as snow.unloading_ratio=5:20, with equal "
-                "ends where it is known",
-                word=word,
-            ),
+            "{word!r} is not a prior; write KEY=LOW:HIGH, such as snow.unloading_ratio=5:20, with equal ends where "
+            "it is known",
             code="wrong_kind",
+            word=word,
         ) from None
     return Prior(key=free_key(name), low=low, high=high, origin="given")
 

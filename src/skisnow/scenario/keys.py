@@ -45,8 +45,10 @@ def full_name(name: str) -> str:
         return _FULL_NAMES[key]
     if key in _FULL_NAMES:
         raise ParameterError(
-            Message("{name} is not a key of a scenario. Did you mean {similar}?", name=name, similar=_FULL_NAMES[key]),
+            "{name} is not a key of a scenario. Did you mean {similar}?",
             code="unknown_name",
+            name=name,
+            similar=_FULL_NAMES[key],
         )
     keys = [full for full in SCENARIO_KEYS if full.startswith(f"{section}.")] if section in SECTIONS else []
     short = most_like(key, _FULL_NAMES)
@@ -69,21 +71,17 @@ def flatten_sections(sections: Mapping[str, Any]) -> dict[str, object]:
     for section, table in sections.items():
         if section not in SECTIONS:
             raise ParameterError(
-                Message(
-                    "there is no section [{section}]. {allowed}",
-                    section=section,
-                    allowed=nearest(section, SECTIONS),
-                ),
+                "there is no section [{section}]. {allowed}",
                 code="missing",
+                section=section,
+                allowed=nearest(section, SECTIONS),
             )
         if not isinstance(table, dict):
             raise ParameterError(
-                Message(
-                    "{section} is {table!r}; it must be a table, begun by the line [{section}]",
-                    section=section,
-                    table=table,
-                ),
+                "{section} is {table!r}; it must be a table, begun by the line [{section}]",
                 code="wrong_kind",
+                section=section,
+                table=table,
             )
         values.update({full_name(f"{section}.{key}"): value for key, value in table.items()})
     return values
@@ -117,8 +115,9 @@ def parse_change(text: str) -> tuple[str, object]:
     name, equals, value_text = (part.strip() for part in text.partition("="))
     if not equals:
         raise ParameterError(
-            Message("{text!r} changes nothing; write section.key=value, such as sledge.edge_angle_deg=35", text=text),
+            "{text!r} changes nothing; write section.key=value, such as sledge.edge_angle_deg=35",
             code="changes_nothing",
+            text=text,
         )
     name = full_name(name)
     is_text = SCENARIO_KEYS[name].kind == "text"
@@ -128,12 +127,10 @@ def parse_change(text: str) -> tuple[str, object]:
         if not is_text and "," in value_text and is_number(value_text, ","):
             corrected = text.replace(value_text, value_text.replace(",", "."))
             raise ParameterError(
-                Message(
-                    "{text!r}: numbers are written with a decimal point here. Write {corrected}",
-                    text=text,
-                    corrected=corrected,
-                ),
+                "{text!r}: numbers are written with a decimal point here. Write {corrected}",
                 code="not_a_number",
+                text=text,
+                corrected=corrected,
             ) from None
         return name, value_text
     value = values["value"] if values.keys() == {"value"} else value_text  # a second line is not part of the value
@@ -217,24 +214,20 @@ def free_key(word: str) -> str:
     usable = tuple(key for key in meant if key in FREE_KEYS)
     if len(usable) > 1:
         raise ParameterError(
-            Message("{word} may mean one of {keys}. Write one of them in full", word=word, keys=list(usable)),
-            code="ambiguous",
+            "{word} may mean one of {keys}. Write one of them in full", code="ambiguous", word=word, keys=list(usable)
         )
     if usable:
         return usable[0]
     if meant:
         raise ParameterError(
-            Message(
-                "{key} cannot be looked for: {reason}. There are {keys}",
-                key=meant[0],
-                reason=_why_not(meant[0]),
-                keys=list(FREE_KEYS),
-            ),
+            "{key} cannot be looked for: {reason}. There are {keys}",
             code="not_free",
+            key=meant[0],
+            reason=_why_not(meant[0]),
+            keys=list(FREE_KEYS),
         )
     raise ParameterError(
-        Message("{word!r} is not a key of a scenario. {allowed}", word=word, allowed=_near(word)),
-        code="unknown_name",
+        "{word!r} is not a key of a scenario. {allowed}", code="unknown_name", word=word, allowed=_near(word)
     )
 
 
@@ -253,7 +246,7 @@ def free_keys(words: str | Iterable[str]) -> tuple[str, ...]:
         raise error.at("--free") from None
     for key in keys:
         if keys.count(key) > 1:
-            raise ParameterError(Message("--free: {key} is named twice. Remove one of them", key=key), code="repeated")
+            raise ParameterError("--free: {key} is named twice. Remove one of them", code="repeated", key=key)
     return tuple(keys)
 
 
@@ -261,13 +254,11 @@ def _key_of_run(word: str) -> str:
     own, at, run = word.partition("@")
     if at and not run.strip():
         raise ParameterError(
-            Message(
-                "behind the @ of {word!r} a run is missing. Name one, or write {own}@{each}",
-                word=word,
-                own=own.strip(),
-                each=EACH,
-            ),
+            "behind the @ of {word!r} a run is missing. Name one, or write {own}@{each}",
             code="missing",
+            word=word,
+            own=own.strip(),
+            each=EACH,
         )
     return free_key(own) + at + run.strip()
 

@@ -91,10 +91,9 @@ def _factor(text: str) -> float:
         value = math.nan
     if not 0.0 < value < math.inf:
         raise ParameterError(
-            Message(
-                "the description of the map system states a unit of {text!r}. Allowed: above 0, in m", text=text[:40]
-            ),
+            "the description of the map system states a unit of {text!r}. Allowed: above 0, in m",
             code="out_of_range",
+            text=text[:40],
         )
     return value
 

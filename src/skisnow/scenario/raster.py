@@ -107,18 +107,16 @@ def number_within(row: CsvRow, column: str, limits: Limits | None = None) -> flo
     allowed = limits or LIMITS[column]
     if not allowed.lowest <= value <= allowed.highest:
         raise ParameterError(
-            Message(
-                "{path}, row {row}, column {column}: {cell!r} is out of range. Allowed: from {lowest:g} "
-                "to {highest:g}. {note}",
-                path=row.path,
-                row=row.row,
-                column=column,
-                cell=row.cells[column],
-                lowest=allowed.lowest,
-                highest=allowed.highest,
-                note=allowed.note,
-            ),
+            "{path}, row {row}, column {column}: {cell!r} is out of range. Allowed: from {lowest:g} to {highest:g}. "
+            "{note}",
             code="out_of_range",
+            path=row.path,
+            row=row.row,
+            column=column,
+            cell=row.cells[column],
+            lowest=allowed.lowest,
+            highest=allowed.highest,
+            note=allowed.note,
         )
     return value
 
@@ -139,26 +137,21 @@ def require_size(path: str | Path, n_columns: float, n_rows: float) -> None:
     for name, count in (("ncols", n_columns), ("nrows", n_rows)):
         if not 2 <= count <= MOST_CELLS or count != int(count):
             raise ParameterError(
-                Message(
-                    "{path}: {name} is {count:g}. Allowed: whole numbers from 2 to {most_cells}.",
-                    path=path,
-                    name=name,
-                    count=count,
-                    most_cells=MOST_CELLS,
-                ),
+                "{path}: {name} is {count:g}. Allowed: whole numbers from 2 to {most_cells}.",
                 code="out_of_range",
+                path=path,
+                name=name,
+                count=count,
+                most_cells=MOST_CELLS,
             )
     if n_columns * n_rows > MOST_CELLS:
         raise ParameterError(
-            Message(
-                "{path}: The grid has {n_columns:g} × {n_rows:g} cells. Allowed: at most {most_cells}. "
-                "Cut out the slope.",
-                path=path,
-                n_columns=n_columns,
-                n_rows=n_rows,
-                most_cells=MOST_CELLS,
-            ),
+            "{path}: The grid has {n_columns:g} × {n_rows:g} cells. Allowed: at most {most_cells}. Cut out the slope.",
             code="out_of_range",
+            path=path,
+            n_columns=n_columns,
+            n_rows=n_rows,
+            most_cells=MOST_CELLS,
         )
 
 
@@ -174,30 +167,26 @@ def require_places(path: str | Path, first: tuple[float, float], step: tuple[flo
     for axis, start, size, count in zip("xy", first, step, n, strict=True):
         if not 0.0 < abs(size) <= COARSEST:
             raise ParameterError(
-                Message(
-                    "{path}: The cells are {size:g} m wide in {axis}. Allowed: from {finest:g} to {coarsest:g} m.",
-                    path=path,
-                    size=size,
-                    axis=axis,
-                    finest=FINEST,
-                    coarsest=COARSEST,
-                ),
+                "{path}: The cells are {size:g} m wide in {axis}. Allowed: from {finest:g} to {coarsest:g} m.",
                 code="out_of_range",
+                path=path,
+                size=size,
+                axis=axis,
+                finest=FINEST,
+                coarsest=COARSEST,
             )
         ends += [start, start + size * (count - 1)]
         if not max(abs(ends[-2]), abs(ends[-1])) <= _PLACE.highest:
             raise ParameterError(
-                Message(
-                    "{path}: The grid reaches from {axis} = {first:g} to {last:g} m. Allowed: from {lowest:g} "
-                    "to {highest:g} m.",
-                    path=path,
-                    axis=axis,
-                    first=ends[-2],
-                    last=ends[-1],
-                    lowest=_PLACE.lowest,
-                    highest=_PLACE.highest,
-                ),
+                "{path}: The grid reaches from {axis} = {first:g} to {last:g} m. Allowed: from {lowest:g} to "
+                "{highest:g} m.",
                 code="out_of_range",
+                path=path,
+                axis=axis,
+                first=ends[-2],
+                last=ends[-1],
+                lowest=_PLACE.lowest,
+                highest=_PLACE.highest,
             )
     fine = max(abs(size) for size in step) < FINEST
     if fine and max(map(abs, ends[:2])) <= 360.0 and max(map(abs, ends[2:])) <= 90.0:
@@ -207,13 +196,11 @@ def require_places(path: str | Path, first: tuple[float, float], step: tuple[flo
         )
     if min(abs(size) for size in step) < FINEST:
         raise ParameterError(
-            Message(
-                "{path}: A cell is {step:g} m wide. Allowed: {finest:g} m or more.",
-                path=path,
-                step=min(map(abs, step)),
-                finest=FINEST,
-            ),
+            "{path}: A cell is {step:g} m wide. Allowed: {finest:g} m or more.",
             code="out_of_range",
+            path=path,
+            step=min(map(abs, step)),
+            finest=FINEST,
         )
 
 
@@ -265,13 +252,11 @@ def _require_usable(raster: Raster, system: MapSystem) -> None:
         )
     if system.downwards:
         raise ParameterError(
-            Message(
-                "{path}: The vertical system of {name} counts downwards. Allowed: heights. Fix: change "
-                "the sign and state heights.",
-                path=raster.path,
-                name=system.name,
-            ),
+            "{path}: The vertical system of {name} counts downwards. Allowed: heights. Fix: change the sign and "
+            "state heights.",
             code="out_of_range",
+            path=raster.path,
+            name=system.name,
         )
     require_true_lengths(raster.path, system, x, y)
 
@@ -300,17 +285,15 @@ def _require_heights(raster: Raster, heights: FloatArray) -> None:
     value = heights[row, column]
     problem = Message("no height (NODATA)") if np.isnan(value) else Message("{value:g} m is not a height", value=value)
     raise ParameterError(
-        Message(
-            "{path}, {where}: {problem}; {count} of {size} cells are like it. Allowed: from {lowest:g} to "
-            "{highest:g} m. {note}",
-            path=raster.path,
-            where=raster.where(row, column),
-            problem=problem,
-            count=int(bad.sum()),
-            size=bad.size,
-            lowest=_HEIGHT.lowest,
-            highest=_HEIGHT.highest,
-            note=_HEIGHT.note,
-        ),
+        "{path}, {where}: {problem}; {count} of {size} cells are like it. Allowed: from {lowest:g} to {highest:g} m. "
+        "{note}",
         code="out_of_range",
+        path=raster.path,
+        where=raster.where(row, column),
+        problem=problem,
+        count=int(bad.sum()),
+        size=bad.size,
+        lowest=_HEIGHT.lowest,
+        highest=_HEIGHT.highest,
+        note=_HEIGHT.note,
     )

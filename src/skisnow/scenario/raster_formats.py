@@ -35,7 +35,7 @@ def read_geotiff(path: str | Path, *, column: str) -> PlacedValues:
     """
     if not is_file(path):
         raise ParameterError(
-            Message("{path} cannot be read: there is no such file. Check the path.", path=path), code="cannot_read"
+            "{path} cannot be read: there is no such file. Check the path.", code="cannot_read", path=path
         )
     rasterio = _rasterio(path)
     try:
@@ -47,8 +47,7 @@ def read_geotiff(path: str | Path, *, column: str) -> PlacedValues:
             unit = _height_unit(path, source.units[0], system)
     except (rasterio.errors.RasterioError, UnicodeDecodeError, MemoryError) as error:  # the second from a damaged text
         raise ParameterError(
-            Message("{path} cannot be read as a GeoTIFF: {error}. Export it again.", path=path, error=error),
-            code="cannot_read",
+            "{path} cannot be read as a GeoTIFF: {error}. Export it again.", code="cannot_read", path=path, error=error
         ) from error
     _require_north_up(path, transform, system)
     raster = Raster(
@@ -74,14 +73,12 @@ def _require_one_band(path: str | Path, source: Any) -> None:
     bands = [colour for colour in colours if colour != "alpha"]
     if len(bands) != 1 or bands[0] == "palette" or colours[0] == "alpha":
         raise ParameterError(
-            Message(
-                "{path} has {n_colours} bands ({colours}). Allowed: one band of heights. Fix: write the "
-                "band with only the heights, such as by gdal_translate -b 1.",
-                path=path,
-                n_colours=len(colours),
-                colours=list(colours),
-            ),
+            "{path} has {n_colours} bands ({colours}). Allowed: one band of heights. Fix: write the band with only "
+            "the heights, such as by gdal_translate -b 1.",
             code="out_of_range",
+            path=path,
+            n_colours=len(colours),
+            colours=list(colours),
         )
 
 
@@ -90,19 +87,18 @@ def _heights(path: str | Path, source: Any) -> FloatArray:
     band = source.read(1, masked=True)
     if np.iscomplexobj(band):
         raise ParameterError(
-            Message("{path}: The first band has complex numbers. Allowed: heights. Export them again.", path=path),
+            "{path}: The first band has complex numbers. Allowed: heights. Export them again.",
             code="out_of_range",
+            path=path,
         )
     scale, offset = float(source.scales[0]), float(source.offsets[0])
     if not (np.isfinite([scale, offset]).all() and scale != 0.0):
         raise ParameterError(
-            Message(
-                "{path}: The first band has scale {scale:g} and offset {offset:g}. Allowed: finite numbers.",
-                path=path,
-                scale=scale,
-                offset=offset,
-            ),
+            "{path}: The first band has scale {scale:g} and offset {offset:g}. Allowed: finite numbers.",
             code="not_a_number",
+            path=path,
+            scale=scale,
+            offset=offset,
         )
     with np.errstate(over="ignore", invalid="ignore"):  # huge values are rejected as heights
         return np.asarray(np.ma.filled(band.astype(float), np.nan) * scale + offset)
@@ -120,24 +116,20 @@ def _height_unit(path: str | Path, name: str | None, system: MapSystem | None) -
     unit = length_unit(str(name))
     if unit is None:
         raise ParameterError(
-            Message(
-                "{path}: The unit of the first band is {name!r}. Allowed: {lengths}. Fix: gdal_edit -units m.",
-                path=path,
-                name=name,
-                lengths=list(LENGTHS),
-            ),
+            "{path}: The unit of the first band is {name!r}. Allowed: {lengths}. Fix: gdal_edit -units m.",
             code="out_of_range",
+            path=path,
+            name=name,
+            lengths=list(LENGTHS),
         )
     if vertical is not None and abs(unit - vertical) > 1e-4 * vertical:
         raise ParameterError(
-            Message(
-                "{path}: The first band is in {name}, but one unit of its vertical system is "
-                "{vertical:g} m. Fix: state one unit, such as by gdal_edit -units or -a_srs.",
-                path=path,
-                name=name,
-                vertical=vertical,
-            ),
+            "{path}: The first band is in {name}, but one unit of its vertical system is {vertical:g} m. Fix: state "
+            "one unit, such as by gdal_edit -units or -a_srs.",
             code="contradiction",
+            path=path,
+            name=name,
+            vertical=vertical,
         )
     return unit
 
@@ -145,18 +137,15 @@ def _height_unit(path: str | Path, name: str | None, system: MapSystem | None) -
 def _require_north_up(path: str | Path, transform: Any, system: MapSystem | None) -> None:
     if transform.b != 0.0 or transform.d != 0.0:
         raise ParameterError(
-            Message(
-                "{path}: its rows do not run east; warp it, such as by gdalwarp, to a grid that is not turned",
-                path=path,
-            ),
+            "{path}: its rows do not run east; warp it, such as by gdalwarp, to a grid that is not turned",
             code="wrong_kind",
+            path=path,
         )
     if system is None and (transform.a, transform.c, transform.e, transform.f) == (1.0, 0.0, 1.0, 0.0):
         raise ParameterError(
-            Message(
-                "{path}: The file does not say where it lies and how large its cells are. Export it again.", path=path
-            ),
+            "{path}: The file does not say where it lies and how large its cells are. Export it again.",
             code="missing",
+            path=path,
         )
 
 
@@ -203,7 +192,7 @@ def read_esri_ascii(path: str | Path, *, column: str) -> PlacedValues:
 
 
 def _refuse(path: str | Path, what: str) -> NoReturn:
-    raise ParameterError(Message("{path}: {what}", path=path, what=what), code="invalid")
+    raise ParameterError("{path}: {what}", code="invalid", path=path, what=what)
 
 
 def _header(path: str | Path, text: str) -> tuple[dict[str, float], int]:
@@ -216,14 +205,12 @@ def _header(path: str | Path, text: str) -> tuple[dict[str, float], int]:
         except ValueError:
             line = text.count("\n", 0, entry.start(2)) + 1
             raise ParameterError(
-                Message(
-                    "{path}, line {line}: {key} is {value!r}. Allowed: a number.",
-                    path=path,
-                    line=line,
-                    key=entry[1],
-                    value=entry[2],
-                ),
+                "{path}, line {line}: {key} is {value!r}. Allowed: a number.",
                 code="out_of_range",
+                path=path,
+                line=line,
+                key=entry[1],
+                value=entry[2],
             ) from None
         at = entry.end()
     return header, at
@@ -289,14 +276,12 @@ def _refuse_word(path: str | Path, line: int, words: list[str]) -> NoReturn:
             float(word)
         except ValueError:
             raise ParameterError(
-                Message(
-                    "{path}, line {line}, column {column}: {word!r} is not a number. Use digits and a decimal point.",
-                    path=path,
-                    line=line,
-                    column=column,
-                    word=word,
-                ),
+                "{path}, line {line}, column {column}: {word!r} is not a number. Use digits and a decimal point.",
                 code="not_a_number",
+                path=path,
+                line=line,
+                column=column,
+                word=word,
             ) from None
     raise AssertionError(words)
 
@@ -357,13 +342,11 @@ def _even(
     different = np.unique(places)
     if len(different) < 2:
         raise ParameterError(
-            Message(
-                "{path}, column {column}: there is only {places}; a grid needs two or more",
-                path=path,
-                column=column,
-                places=_listed(different),
-            ),
+            "{path}, column {column}: there is only {places}; a grid needs two or more",
             code="out_of_range",
+            path=path,
+            column=column,
+            places=_listed(different),
         )
     step = float(np.min(np.diff(different)))
     close = np.diff(different) > ROUNDED * (different[-1] - different[0]) / len(different)
@@ -401,16 +384,14 @@ def _require_each_once(
     (x, i), (y, j) = of_x, of_y
     if len(x) * len(y) > SPARSE * len(rows):
         raise ParameterError(
-            Message(
-                "{path}: {n_rows} rows have {n_x} different x_m and {n_y} different y_m, so that they "
-                "lie on no grid; interpolate onto one. {action}",
-                path=path,
-                n_rows=len(rows),
-                n_x=len(x),
-                n_y=len(y),
-                action=action,
-            ),
+            "{path}: {n_rows} rows have {n_x} different x_m and {n_y} different y_m, so that they lie on no grid; "
+            "interpolate onto one. {action}",
             code="not_a_grid",
+            path=path,
+            n_rows=len(rows),
+            n_x=len(x),
+            n_y=len(y),
+            action=action,
         )
     place = i * len(y) + j
     count = np.bincount(place, minlength=len(x) * len(y))
@@ -418,27 +399,23 @@ def _require_each_once(
         twice = np.flatnonzero(place == int(np.argmax(count > 1)))[:2]
         first, again = (rows[int(index)] for index in twice)
         raise ParameterError(
-            Message(
-                "{path}, row {row}: x_m = {x_m}, y_m = {y_m} are in row {first}, too; keep one of them",
-                path=path,
-                row=again.row,
-                x_m=again.cells["x_m"],
-                y_m=again.cells["y_m"],
-                first=first.row,
-            ),
+            "{path}, row {row}: x_m = {x_m}, y_m = {y_m} are in row {first}, too; keep one of them",
             code="repeated",
+            path=path,
+            row=again.row,
+            x_m=again.cells["x_m"],
+            y_m=again.cells["y_m"],
+            first=first.row,
         )
     if np.any(count == 0):
         gap = int(np.argmin(count))
         raise ParameterError(
-            Message(
-                "{path}: no row has x_m = {x:g} and y_m = {y:g}, of {n_x} places in x and {n_y} in y. {action}",
-                path=path,
-                x=x[gap // len(y)],
-                y=y[gap % len(y)],
-                n_x=len(x),
-                n_y=len(y),
-                action=action,
-            ),
+            "{path}: no row has x_m = {x:g} and y_m = {y:g}, of {n_x} places in x and {n_y} in y. {action}",
             code="missing",
+            path=path,
+            x=x[gap // len(y)],
+            y=y[gap % len(y)],
+            n_x=len(x),
+            n_y=len(y),
+            action=action,
         )

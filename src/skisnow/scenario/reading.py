@@ -131,12 +131,10 @@ def load_input(name_or_path: str | Path | Scenario) -> ScenarioInput:
     path = Path(name_or_path)
     if not (isinstance(name_or_path, Path) or path.suffix.lower() == ".toml" or path.name != word or is_file(path)):
         raise ParameterError(
-            Message(
-                "there is no scenario named {word!r}. {allowed} Any other scenario is read from a file ending in .toml",
-                word=word,
-                allowed=nearest(word, scenario_names()),
-            ),
+            "there is no scenario named {word!r}. {allowed} Any other scenario is read from a file ending in .toml",
             code="unknown_name",
+            word=word,
+            allowed=nearest(word, scenario_names()),
         )
     return _parse(str(path), path, plain_text(path, most_bytes=MOST_TOML_BYTES))
 
@@ -146,13 +144,11 @@ def _parse(title: str, file: Path | None, text: str) -> ScenarioInput:
     identify = sections.pop(IDENTIFY, {})
     if not isinstance(identify, dict):
         raise ParameterError(
-            Message(
-                "{title}: {key} is {value!r}; it must be a table, begun by the line [{key}]",
-                title=title,
-                key=IDENTIFY,
-                value=identify,
-            ),
+            "{title}: {key} is {value!r}; it must be a table, begun by the line [{key}]",
             code="wrong_kind",
+            title=title,
+            key=IDENTIFY,
+            value=identify,
         )
     try:
         require_known(identify)
@@ -279,10 +275,10 @@ def scenario_text(name: str) -> str:
     """
     if name not in scenario_names():
         raise ParameterError(
-            Message(
-                "there is no built-in scenario {name!r}. {allowed}", name=name, allowed=nearest(name, scenario_names())
-            ),
+            "there is no built-in scenario {name!r}. {allowed}",
             code="unknown_name",
+            name=name,
+            allowed=nearest(name, scenario_names()),
         )
     text = (_FOLDER / f"{name}.toml").read_text(encoding="utf-8")
     head, *parts = _SECTION.split(text)

@@ -10,7 +10,6 @@ from typing import Annotated, Any
 
 from .._support.display import Facts, Shown, amount
 from .._support.errors import ParameterError
-from .._support.messages import Message
 from .._support.units import DEGREE, STANDARD_GRAVITY
 from ..parameters import Quantity, Search, Word, require_declared
 from ..ski import Ski, ski_names
@@ -202,14 +201,12 @@ class Scenario(Shown):
     def __post_init__(self) -> None:
         if self.contact.snow.failure_shear_stress is None:
             raise ParameterError(
-                Message(
-                    "the snow ({source}) has no failure shear stress S_f; a turn needs it: give one",
-                    source=self.contact.snow.source,
-                ),
+                "the snow ({source}) has no failure shear stress S_f; a turn needs it: give one",
                 code="no_data",
+                source=self.contact.snow.source,
             )
         if self.stop.duration is None and self.stop.length is None:
-            raise ParameterError(Message("the run has no end: give a duration or a length"), code="no_data")
+            raise ParameterError("the run has no end: give a duration or a length", code="no_data")
         require_declared(self)
         if self.camber_rounding is not None:
             object.__setattr__(self, "ski", self.ski.camber_rounded(self.camber_rounding))

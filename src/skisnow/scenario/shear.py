@@ -8,7 +8,6 @@ from dataclasses import dataclass
 from typing import Annotated, Final, Literal, TypeAlias
 
 from .._support.errors import ParameterError, RangeWarning
-from .._support.messages import Message
 from .._support.units import DEGREE
 from ..forces.shear import AngleShear, DensityShear, MachiningShear, ShearLaw
 from ..forces.shear.slip import RESIDUAL_RATIO, SLIP_WEAKENING, Bearing
@@ -147,7 +146,7 @@ class Shear:
         require_declared(self)
         if self.law == "by-density" and self.snow_density is None:
             raise ParameterError(
-                Message('shear.law = "by-density" needs the density: give shear.snow_density_kg_per_m3'), code="missing"
+                'shear.law = "by-density" needs the density: give shear.snow_density_kg_per_m3', code="missing"
             )
 
     def of(self, failure_shear_stress: float) -> ShearLaw | None:

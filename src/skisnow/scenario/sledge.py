@@ -6,7 +6,6 @@ from dataclasses import dataclass
 from typing import Annotated
 
 from .._support.errors import ParameterError
-from .._support.messages import Message
 from ..parameters import Quantity, Search, declared_text, require_declared
 
 
@@ -113,11 +112,9 @@ class RigidSledge:
         roll, pitch, yaw = self.inertia
         if 2.0 * max(self.inertia) > roll + pitch + yaw:
             raise ParameterError(
-                Message(
-                    "inertia is {inertia} kg m²; each moment must be above 0 and none more than the sum of the others",
-                    inertia=self.inertia,
-                ),
+                "inertia is {inertia} kg m²; each moment must be above 0 and none more than the sum of the others",
                 code="out_of_range",
+                inertia=self.inertia,
             )
 
 

@@ -165,41 +165,34 @@ class Profile(Shown):
 def _require_points(x: FloatArray, height: FloatArray) -> None:
     if x.ndim != 1 or x.shape != height.shape or len(x) < FEWEST_POINTS:
         raise ParameterError(
-            Message(
-                "a profile needs {fewest_points} points or more, each with x and height; there are x of "
-                "shape {shape} and heights of shape {shape_2}",
-                fewest_points=FEWEST_POINTS,
-                shape=str(x.shape),
-                shape_2=str(height.shape),
-            ),
+            "a profile needs {fewest_points} points or more, each with x and height; there are x of shape {shape} "
+            "and heights of shape {shape_2}",
             code="wrong_shape",
+            fewest_points=FEWEST_POINTS,
+            shape=str(x.shape),
+            shape_2=str(height.shape),
         )
     for name, table in (("x", x), ("the height", height)):
         if not np.isfinite(table).all():
             place = int(np.argmin(np.isfinite(table)))
             raise ParameterError(
-                Message(
-                    "{name} of point {place} of the profile is {value}; correct it",
-                    name=name,
-                    place=place + 1,
-                    value=table[place],
-                ),
+                "{name} of point {place} of the profile is {value}; correct it",
                 code="not_a_number",
+                name=name,
+                place=place + 1,
+                value=table[place],
             )
     rises = np.diff(x) >= SHORTEST_STEP
     if not rises.all():
         place = int(np.argmin(rises))
         raise ParameterError(
-            Message(
-                "x of the profile's point {place} is {x:g} m after {before:g} m; x must rise by "
-                "{shortest_step:g} m or more from point to point. Sort the points, and keep one of those "
-                "at the same place",
-                place=place + 2,
-                x=x[place + 1],
-                before=x[place],
-                shortest_step=SHORTEST_STEP,
-            ),
+            "x of the profile's point {place} is {x:g} m after {before:g} m; x must rise by {shortest_step:g} m or "
+            "more from point to point. Sort the points, and keep one of those at the same place",
             code="out_of_range",
+            place=place + 2,
+            x=x[place + 1],
+            before=x[place],
+            shortest_step=SHORTEST_STEP,
         )
 
 
@@ -208,16 +201,13 @@ def _require_no_gap(x: FloatArray) -> None:
     place = int(np.argmax(widths))
     if widths[place] > LONGEST_GAP:
         raise ParameterError(
-            Message(
-                "the profile has no point between x = {x:g} m and {end:g} m, a gap of {width:.3g} m; at "
-                "most {longest_gap:g} m are joined unasked. Add points, or write slope.profile_gap = "
-                '"interpolate"',
-                x=x[place],
-                end=x[place + 1],
-                width=widths[place],
-                longest_gap=LONGEST_GAP,
-            ),
+            "the profile has no point between x = {x:g} m and {end:g} m, a gap of {width:.3g} m; at most "
+            '{longest_gap:g} m are joined unasked. Add points, or write slope.profile_gap = "interpolate"',
             code="out_of_range",
+            x=x[place],
+            end=x[place + 1],
+            width=widths[place],
+            longest_gap=LONGEST_GAP,
         )
 
 
@@ -233,16 +223,13 @@ def _require_no_cliff(x: FloatArray, coefficients: FloatArray) -> None:
     if steepness[worst, piece] > math.tan(math.radians(STEEPEST_DEG)):
         degrees = math.degrees(math.atan(steepness[worst, piece]))
         raise ParameterError(
-            Message(
-                "the profile has a cliff of {degrees:.3g} degrees between x = {x:g} m and {end:g} m; at "
-                "most {steepest_deg:g} degrees are allowed, a ski cannot follow more. Correct its "
-                "heights or end it there",
-                degrees=degrees,
-                x=x[piece],
-                end=x[piece + 1],
-                steepest_deg=STEEPEST_DEG,
-            ),
+            "the profile has a cliff of {degrees:.3g} degrees between x = {x:g} m and {end:g} m; at most "
+            "{steepest_deg:g} degrees are allowed, a ski cannot follow more. Correct its heights or end it there",
             code="out_of_range",
+            degrees=degrees,
+            x=x[piece],
+            end=x[piece + 1],
+            steepest_deg=STEEPEST_DEG,
         )
 
 

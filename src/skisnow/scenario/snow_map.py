@@ -68,7 +68,7 @@ class SnowMap(Shown):
         grids = (("H_V", self.hardness), ("S_f", self.failure_shear_stress), ("mu_share", self.friction_share))
         if all(grid is None for _, grid in grids):
             raise ParameterError(
-                Message("a snow map holds neither H_V nor S_f nor friction; give one of them, or more"), code="missing"
+                "a snow map holds neither H_V nor S_f nor friction; give one of them, or more", code="missing"
             )
         for name, grid in grids:
             if grid is not None:
@@ -114,14 +114,12 @@ def _require_positive(name: str, grid: Grid) -> None:
     i, j = np.unravel_index(int(np.argmin(grid.values)), grid.values.shape)
     if grid.values[i, j] <= 0.0:
         raise ParameterError(
-            Message(
-                "{name} of the snow map is {value:g} at x = {x:g} m, y = {y:g} m; it must be above 0",
-                name=name,
-                value=grid.values[i, j],
-                x=grid.x[i],
-                y=grid.y[j],
-            ),
+            "{name} of the snow map is {value:g} at x = {x:g} m, y = {y:g} m; it must be above 0",
             code="out_of_range",
+            name=name,
+            value=grid.values[i, j],
+            x=grid.x[i],
+            y=grid.y[j],
         )
     x, y = _corners_that_may_swing(grid)
     parts = np.linspace(0.0, 1.0, FINER + 1)
@@ -134,15 +132,12 @@ def _require_positive(name: str, grid: Grid) -> None:
         lowest = int(np.argmin(values))
         if values.flat[lowest] <= 0.0:
             raise ParameterError(
-                Message(
-                    "{name} of the snow map falls from one place to the next so steeply that the curve "
-                    "through its values goes below 0 at x = {x:g} m, y = {y:g} m; give more places "
-                    "there",
-                    name=name,
-                    x=finer_x.flat[lowest],
-                    y=finer_y.flat[lowest],
-                ),
+                "{name} of the snow map falls from one place to the next so steeply that the curve through its "
+                "values goes below 0 at x = {x:g} m, y = {y:g} m; give more places there",
                 code="out_of_range",
+                name=name,
+                x=finer_x.flat[lowest],
+                y=finer_y.flat[lowest],
             )
 
 
@@ -191,13 +186,11 @@ def read_snow_map(path: str | Path) -> SnowMap:
     names = [name for name in SIZES if rows and name in rows[0].cells]
     if not names:
         raise ParameterError(
-            Message(
-                "{path}: no column of {columns}, or no row. {action}",
-                path=path,
-                columns=list(SIZES),
-                action=_ACTION,
-            ),
+            "{path}: no column of {columns}, or no row. {action}",
             code="missing",
+            path=path,
+            columns=list(SIZES),
+            action=_ACTION,
         )
     grids = _grids(path, names) if "y_m" in rows[0].cells else _along(path, rows, names)
     try:
@@ -229,8 +222,10 @@ def _along(path: str | Path, rows: Sequence[CsvRow], names: Sequence[str]) -> di
     x = np.array([number_within(row, "x_m") for row in rows])
     if len(x) < 2:
         raise ParameterError(
-            Message("{path}: there are {n_x} rows; snow that varies needs two or more", path=path, n_x=len(x)),
+            "{path}: there are {n_x} rows; snow that varies needs two or more",
             code="out_of_range",
+            path=path,
+            n_x=len(x),
         )
     for row, step in zip(rows[1:], np.diff(x), strict=True):
         if not step > CLOSEST:

@@ -123,13 +123,11 @@ class Terrain(Shown):
             object.__setattr__(self, name, values)
         if min(measured.values.shape) < FEWEST_PLACES:
             raise ParameterError(
-                Message(
-                    "a grid needs {fewest_places} places or more in x and in y; it has {n_x} and {n_y}",
-                    fewest_places=FEWEST_PLACES,
-                    n_x=len(self.x),
-                    n_y=len(self.y),
-                ),
+                "a grid needs {fewest_places} places or more in x and in y; it has {n_x} and {n_y}",
                 code="out_of_range",
+                fewest_places=FEWEST_PLACES,
+                n_x=len(self.x),
+                n_y=len(self.y),
             )
         height = smoothed(measured.values, measured.steps, cutoff=self.smoothing)
         object.__setattr__(self, "surface", Grid(self.x - self.origin_x, self.y - self.origin_y, height))
@@ -155,16 +153,14 @@ def _require_no_cliff(surface: Grid) -> None:
         if steepest[i] > math.tan(math.radians(STEEPEST_DEG)):
             j, degrees = int(np.argmax(rows[i])), math.degrees(math.atan(steepest[i]))
             raise ParameterError(
-                Message(
-                    "the grid has a cliff of {degrees:.3g} degrees at x = {x:g} m, y = {y:g} m; at most "
-                    "{steepest_deg:g} degrees are allowed, a ski cannot follow more. Correct its heights, "
-                    "smooth it over more metres, or cut out a part without it",
-                    degrees=degrees,
-                    x=x[i],
-                    y=y[j],
-                    steepest_deg=STEEPEST_DEG,
-                ),
+                "the grid has a cliff of {degrees:.3g} degrees at x = {x:g} m, y = {y:g} m; at most {steepest_deg:g} "
+                "degrees are allowed, a ski cannot follow more. Correct its heights, smooth it over more metres, or "
+                "cut out a part without it",
                 code="out_of_range",
+                degrees=degrees,
+                x=x[i],
+                y=y[j],
+                steepest_deg=STEEPEST_DEG,
             )
 
 

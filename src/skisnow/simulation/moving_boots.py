@@ -11,7 +11,6 @@ import numpy.typing as npt
 
 from .._support.display import Facts, Shown, amount, field_facts, name_with_values
 from .._support.errors import ParameterError
-from .._support.messages import Message
 from ..contact import SnowField
 from ..dynamics import BootMotion, BootPose, Dynamics
 from ..geometry.boot_axes import angles_of
@@ -131,8 +130,10 @@ class BootDrive:
         count = len(dynamics.body.skis)
         if len(poses) != count or not all(isinstance(pose, BootPose) for pose in poses):
             raise ParameterError(
-                Message("boots: the control gave {poses!r}; it must give {count} BootPose", poses=poses, count=count),
+                "boots: the control gave {poses!r}; it must give {count} BootPose",
                 code="wrong_kind",
+                poses=poses,
+                count=count,
             )
         return poses
 

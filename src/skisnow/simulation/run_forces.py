@@ -10,7 +10,6 @@ import numpy.typing as npt
 
 from .._support.display import Facts, Shown, field_facts
 from .._support.errors import ParameterError
-from .._support.messages import Message
 from ..forces.shear import ShearLaw
 from ..scenario import Plane
 from ..scenario.terrain import down_and_left, normals_of
@@ -41,10 +40,7 @@ def balance_of(run: Run) -> BalanceHistory:
     """
     boots = run.boots
     if boots is None:
-        raise ParameterError(
-            Message("this run has no data of its boots: it was not made by skisnow.simulate"),
-            code="no_data",
-        )
+        raise ParameterError("this run has no data of its boots: it was not made by skisnow.simulate", code="no_data")
     normal = normals_of(run.scenario.slope, run.place[:, 0], run.place[:, 1])
     ahead = boots.axes[:, :, 0].mean(axis=1)
     ahead = ahead - np.einsum("na,na->n", ahead, normal)[:, None] * normal

@@ -11,7 +11,6 @@ import numpy as np
 import numpy.typing as npt
 
 from .._support.errors import ParameterError
-from .._support.messages import Message
 from ..contact import Laws, Runner, SnowContact, SnowField
 from ..contact.snow_field import PART_ALONG
 from ..dynamics import Dynamics, Ended, StepControl
@@ -224,15 +223,12 @@ def _drive(scenario: Scenario, boots: BootControl | None) -> BootDrive | None:
     if boots is not None:
         if scenario.boots is not None:
             raise ParameterError(
-                Message("the boots move by boots.file and by a function; give one of them"),
-                code="contradiction",
+                "the boots move by boots.file and by a function; give one of them", code="contradiction"
             )
         if scenario.skier is not None and not _balances(boots):
             raise ParameterError(
-                Message(
-                    "boots: the scenario has a skier, whose control moves the boots. Give the scenario "
-                    "without it, scenario.with_(skier=None), or a BalancedSkier."
-                ),
+                "boots: the scenario has a skier, whose control moves the boots. Give the scenario without it, "
+                "scenario.with_(skier=None), or a BalancedSkier.",
                 code="contradiction",
             )
         return BootDrive(boots)

@@ -12,7 +12,6 @@ import numpy as np
 import numpy.typing as npt
 
 from .._support.errors import ParameterError
-from .._support.messages import Message
 from .._support.staging import write_file
 from .._support.units import DEGREE, MM
 from ..scenario.boots import ANGLES, OF_SLOPE, SIDES
@@ -131,12 +130,10 @@ def require_ending(path: Path) -> None:
     """ParameterError where a file's name ends in none of `ENDINGS`."""
     if path.suffix.lower() not in ENDINGS:
         raise ParameterError(
-            Message(
-                "{path} ends in none of {endings}, as which boots are written; name it so",
-                path=path,
-                endings=list(ENDINGS),
-            ),
+            "{path} ends in none of {endings}, as which boots are written; name it so",
             code="wrong_ending",
+            path=path,
+            endings=list(ENDINGS),
         )
 
 
@@ -183,8 +180,5 @@ def write_boots(run: Run, path: str | Path) -> None:
 
 def _boots(run: Run) -> BootHistory:
     if run.boots is None:
-        raise ParameterError(
-            Message("this run has no data of its boots: it was not made by skisnow.simulate"),
-            code="no_data",
-        )
+        raise ParameterError("this run has no data of its boots: it was not made by skisnow.simulate", code="no_data")
     return run.boots

@@ -171,9 +171,7 @@ def _warn_of_unseen_tracks(setup: Setup) -> None:
 def _led(scenario: Scenario, controller: Controller, boots: BootControl | None) -> BalancedSkier:
     """The scenario's skier with a controller."""
     if boots is not None:
-        raise ParameterError(
-            Message("boots and controller both move the boots; give one of them"), code="contradiction"
-        )
+        raise ParameterError("boots and controller both move the boots; give one of them", code="contradiction")
     return BalancedSkier(scenario, controller)
 
 

@@ -9,7 +9,6 @@ import numpy as np
 import numpy.typing as npt
 
 from .._support.errors import ParameterError
-from .._support.messages import Message
 from ..parameters import require_declared
 from .ski_quantity import ski_quantity
 
@@ -137,16 +136,13 @@ class BaseShape:
         foremost, hindmost = front - self.tip_rocker_length, rear + self.tail_rocker_length
         if foremost - hindmost < LEAST_CONTACT:
             raise ParameterError(
-                Message(
-                    "the rockers, {tip_rocker_length:.1f} and {tail_rocker_length:.1f} mm long, leave less "
-                    "than {least_contact:g} mm of the running length of {running_length:.1f} mm. Shorten "
-                    "them.",
-                    tip_rocker_length=self.tip_rocker_length * 1e3,
-                    tail_rocker_length=self.tail_rocker_length * 1e3,
-                    least_contact=LEAST_CONTACT * 1e3,
-                    running_length=layout.running_length * 1e3,
-                ),
+                "the rockers, {tip_rocker_length:.1f} and {tail_rocker_length:.1f} mm long, leave less than "
+                "{least_contact:g} mm of the running length of {running_length:.1f} mm. Shorten them.",
                 code="contradiction",
+                tip_rocker_length=self.tip_rocker_length * 1e3,
+                tail_rocker_length=self.tail_rocker_length * 1e3,
+                least_contact=LEAST_CONTACT * 1e3,
+                running_length=layout.running_length * 1e3,
             )
         shovel = _End("shovel", self.tip_rocker_length, self.tip_rocker_height, layout.tip - front, self.shovel_height)
         tail = _End("tail", self.tail_rocker_length, self.tail_rocker_height, rear - layout.tail, self.tail_height)
@@ -180,13 +176,11 @@ class _End:
     def rise(self, distance: FloatArray) -> FloatArray:
         if self.rocker_height > 0 and not self.rocker_length > 0:
             raise ParameterError(
-                Message(
-                    "the rocker before the {name} has a height of {rocker_height:.1f} mm but no length. Give "
-                    "its length or leave the height out.",
-                    name=self.name,
-                    rocker_height=self.rocker_height * 1e3,
-                ),
+                "the rocker before the {name} has a height of {rocker_height:.1f} mm but no length. Give its length "
+                "or leave the height out.",
                 code="contradiction",
+                name=self.name,
+                rocker_height=self.rocker_height * 1e3,
             )
         share = np.minimum(distance, self.rocker_length) / self.rocker_length if self.rocker_length > 0 else 0.0
         beyond = np.maximum(distance - self.rocker_length, 0.0)
@@ -200,13 +194,11 @@ class _End:
         if self.length <= 1e-9:
             if self.given_height and abs(self.given_height - self.rocker_height) > 1e-9:
                 raise ParameterError(
-                    Message(
-                        "the {name} height is {given_height:.1f} mm, but the running length ends where the ski "
-                        "does. Give the {name} a length or leave its height out.",
-                        name=self.name,
-                        given_height=self.given_height * 1e3,
-                    ),
+                    "the {name} height is {given_height:.1f} mm, but the running length ends where the ski does. "
+                    "Give the {name} a length or leave its height out.",
                     code="contradiction",
+                    name=self.name,
+                    given_height=self.given_height * 1e3,
                 )
             return 0.0
         straight = self.rocker_height + self._slope * self.length
@@ -214,13 +206,11 @@ class _End:
         height = max(default, straight) if self.given_height is None else self.given_height
         if height < straight - 1e-9:
             raise ParameterError(
-                Message(
-                    "the {name} height is {height:.1f} mm, but straight on from its rocker the base is "
-                    "already {straight:.1f} mm high. Raise the {name} or flatten the rocker.",
-                    name=self.name,
-                    height=height * 1e3,
-                    straight=straight * 1e3,
-                ),
+                "the {name} height is {height:.1f} mm, but straight on from its rocker the base is already "
+                "{straight:.1f} mm high. Raise the {name} or flatten the rocker.",
                 code="contradiction",
+                name=self.name,
+                height=height * 1e3,
+                straight=straight * 1e3,
             )
         return (height - straight) / self.length**2

@@ -15,7 +15,6 @@ import numpy as np
 import numpy.typing as npt
 
 from .._support.errors import ParameterError
-from .._support.messages import Message
 from .ski import Ski
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
@@ -248,26 +247,20 @@ def clamped(ski: Ski, clamp_length: float, elements: int, footprint_stiffness: f
     front, rear = float(ski.station[0]), float(ski.station[-1])
     if not 0.0 <= clamp_length / 2.0 < min(front, -rear):
         raise ParameterError(
-            Message(
-                "clamp_length is {clamp_length} m; it must be 0 or more and its half less than the "
-                "distance from boot to tip and to tail ({front:.3f} and {value:.3f} m)",
-                clamp_length=clamp_length,
-                front=front,
-                value=-rear,
-            ),
+            "clamp_length is {clamp_length} m; it must be 0 or more and its half less than the distance from boot to "
+            "tip and to tail ({front:.3f} and {value:.3f} m)",
             code="out_of_range",
+            clamp_length=clamp_length,
+            front=front,
+            value=-rear,
         )
     if elements < 4:
-        raise ParameterError(
-            Message("elements is {elements}; a ski needs 4 or more", elements=elements), code="out_of_range"
-        )
+        raise ParameterError("elements is {elements}; a ski needs 4 or more", code="out_of_range", elements=elements)
     if footprint_stiffness is not None and not footprint_stiffness > 0.0:
         raise ParameterError(
-            Message(
-                "footprint_stiffness is {footprint_stiffness} N/m²; it must be above 0, or left out: rigid",
-                footprint_stiffness=footprint_stiffness,
-            ),
+            "footprint_stiffness is {footprint_stiffness} N/m²; it must be above 0, or left out: rigid",
             code="out_of_range",
+            footprint_stiffness=footprint_stiffness,
         )
     bedded = footprint_stiffness is not None
     node = _nodes(front, rear, clamp_length, elements, bedded=bedded)

@@ -87,7 +87,7 @@ def require_tables(name: str, tables: SkiSections) -> None:
 
 def _refuse(name: str, problem: Message, action: Message) -> None:
     raise ParameterError(
-        Message("ski {name!r}: {problem}. {action}.", name=name, problem=problem, action=action), code="invalid_ski"
+        "ski {name!r}: {problem}. {action}.", code="invalid_ski", name=name, problem=problem, action=action
     )
 
 

@@ -9,7 +9,6 @@ import numpy as np
 import numpy.typing as npt
 
 from .._support.errors import ParameterError
-from .._support.messages import Message
 from ..parameters import nearest
 from .file_keys import COLUMNS
 from .table_file import StationTable
@@ -60,13 +59,11 @@ class SkiEdit:
             for column in edits:
                 if column not in columns:
                     raise ParameterError(
-                        Message(
-                            "SkiEdit: {field} has no {column!r}. {allowed}",
-                            field=what,
-                            column=column,
-                            allowed=nearest(column, columns),
-                        ),
+                        "SkiEdit: {field} has no {column!r}. {allowed}",
                         code="unknown_name",
+                        field=what,
+                        column=column,
+                        allowed=nearest(column, columns),
                     )
 
 
@@ -171,14 +168,12 @@ def _require(edit: SkiEdit) -> None:
     for column, factor in edit.factors.items():
         if not 1.0 / _LARGEST_FACTOR <= factor <= _LARGEST_FACTOR:
             raise ParameterError(
-                Message(
-                    "the factor of {column} is {factor:g}; allowed is {lowest:g} to {highest:g}. Correct it",
-                    column=column,
-                    factor=factor,
-                    lowest=1.0 / _LARGEST_FACTOR,
-                    highest=_LARGEST_FACTOR,
-                ),
+                "the factor of {column} is {factor:g}; allowed is {lowest:g} to {highest:g}. Correct it",
                 code="out_of_range",
+                column=column,
+                factor=factor,
+                lowest=1.0 / _LARGEST_FACTOR,
+                highest=_LARGEST_FACTOR,
             )
     for column, values in edit.values.items():
         for station, value in zip(edit.station, values, strict=True):

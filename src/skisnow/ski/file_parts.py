@@ -143,7 +143,7 @@ class FileParts:
         length, reach = values.said.length, float(station[0] - station[-1])
         if length is not None and abs(length - reach) > _SAME_LENGTH:
             problem = _TABLE_TOO_SHORT if reach < length else _TABLE_TOO_LONG
-            raise ParameterError(Message(problem, reach=reach * 1e3, length=length * 1e3), code="contradiction")
+            raise ParameterError(problem, code="contradiction", reach=reach * 1e3, length=length * 1e3)
         return Layout(
             tip=float(station[0]),
             tail=float(station[-1]),
@@ -167,8 +167,9 @@ class FileParts:
             values.refuse_together(LISTS, "rigid", Message("Leave one of them out."))
             if key in self.table:
                 raise ParameterError(
-                    Message("the column {key} cannot stand beside rigid = true. Leave one of them out.", key=key),
+                    "the column {key} cannot stand beside rigid = true. Leave one of them out.",
                     code="contradiction",
+                    key=key,
                 )
             return lambda station: np.full(np.shape(station), RIGID)
         if key in self.table:
@@ -180,7 +181,7 @@ class FileParts:
             return stiffness_table(stiffness, station, layout).at
         except ParameterError as error:
             raise ParameterError(
-                Message("{key} and stiffness_station_mm: {problem}", key=key, problem=error), code=error.code
+                "{key} and stiffness_station_mm: {problem}", code=error.code, key=key, problem=error
             ) from error
 
     def _require_mass(self, ski: Ski) -> None:
@@ -194,16 +195,13 @@ class FileParts:
             if length < _LEAST_SHARE_OF_LENGTH * ski.length:
                 warnings.warn(
                     RangeWarning(
-                        Message(
-                            "{file}: {key} is {value:g}, the ski {length:g} mm long; usual are 0.7 to 0.95 of "
-                            "it. Is it "
-                            "in mm?",
-                            file=self.values.file,
-                            key=key,
-                            value=length * 1e3,
-                            length=ski.length * 1e3,
-                        ),
+                        "{file}: {key} is {value:g}, the ski {length:g} mm long; usual are 0.7 to 0.95 of it. Is it "
+                        "in mm?",
                         code="unusual",
+                        file=self.values.file,
+                        key=key,
+                        value=length * 1e3,
+                        length=ski.length * 1e3,
                     ),
                     stacklevel=2,
                 )

@@ -65,10 +65,10 @@ class FileValues:
         number: float | None = getattr(self.said, SKI_KEYS[key].field)
         if number is None:
             raise ParameterError(
-                Message(
-                    "{file}: the key {key} is missing. Add it, in the unit that it names.", file=self.file, key=key
-                ),
+                "{file}: the key {key} is missing. Add it, in the unit that it names.",
                 code="missing",
+                file=self.file,
+                key=key,
             )
         return number
 
@@ -77,12 +77,10 @@ class FileValues:
         numbers = getattr(self.said, SKI_KEYS[key].field)
         if numbers is None:
             raise ParameterError(
-                Message(
-                    "{file}: the key {key} is missing. Add a list such as {key} = [100, 440, 100].",
-                    file=self.file,
-                    key=key,
-                ),
+                "{file}: the key {key} is missing. Add a list such as {key} = [100, 440, 100].",
                 code="missing",
+                file=self.file,
+                key=key,
             )
         return np.array(numbers)
 
@@ -95,30 +93,26 @@ class FileValues:
         for key in keys:
             if key in self.values:
                 raise ParameterError(
-                    Message(
-                        "{file}: {key} = {value} cannot stand beside {other}, which says the same. {action}",
-                        file=self.file,
-                        key=key,
-                        value=shown(self.values[key]),
-                        other=other,
-                        action=action,
-                    ),
+                    "{file}: {key} = {value} cannot stand beside {other}, which says the same. {action}",
                     code="contradiction",
+                    file=self.file,
+                    key=key,
+                    value=shown(self.values[key]),
+                    other=other,
+                    action=action,
                 )
 
 
 def refuse(file: Path, place: str, value: object, allowed: str, action: Message) -> NoReturn:
     """Raise the error for a value at a place of a file."""
     raise ParameterError(
-        Message(
-            "{file}: {place} is {value}; allowed is {allowed}. {action}",
-            file=file,
-            place=place,
-            value=shown(value),
-            allowed=allowed,
-            action=action,
-        ),
+        "{file}: {place} is {value}; allowed is {allowed}. {action}",
         code="out_of_range",
+        file=file,
+        place=place,
+        value=shown(value),
+        allowed=allowed,
+        action=action,
     )
 
 
@@ -134,8 +128,11 @@ def checked(file: Path, value: object, quantity: Quantity) -> InputValue:
         return quantity.in_range(value)
     except ParameterError as error:
         raise ParameterError(
-            Message("{file}: {problem}. {action}", file=file, problem=error, action=_remedy(value, quantity)),
+            "{file}: {problem}. {action}",
             code=error.code or "out_of_range",
+            file=file,
+            problem=error,
+            action=_remedy(value, quantity),
         ) from None
 
 
@@ -200,10 +197,11 @@ def values_of_keys(values: dict[str, Any], path: Path) -> FileValues:
     for key in values:
         if key not in SKI_KEYS:
             raise ParameterError(
-                Message(
-                    "{path}: the key {key} is not known. {allowed}", path=path, key=key, allowed=nearest(key, SKI_KEYS)
-                ),
+                "{path}: the key {key} is not known. {allowed}",
                 code="unknown_name",
+                path=path,
+                key=key,
+                allowed=nearest(key, SKI_KEYS),
             )
     checked_values = {key: checked(path, value, SKI_KEYS[key]) for key, value in values.items()}
     for key, value in checked_values.items():

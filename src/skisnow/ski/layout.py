@@ -11,7 +11,6 @@ import numpy.typing as npt
 
 from .._support.display import ShownFields
 from .._support.errors import ParameterError
-from .._support.messages import Message
 
 LONGEST: Final = 6.0
 """Length (m) from tip to tail beyond which no ski is tabulated: the reach of the stations that a ski file may name."""
@@ -36,35 +35,33 @@ class Layout:
     def __post_init__(self) -> None:
         if self.tip - self.tail > LONGEST:
             raise ParameterError(
-                Message(
-                    "the ski is {tip:.6g} m long. Allowed: at most {longest:g} m. Correct the lengths or their units.",
-                    tip=self.tip - self.tail,
-                    longest=LONGEST,
-                ),
+                "the ski is {tip:.6g} m long. Allowed: at most {longest:g} m. Correct the lengths or their units.",
                 code="out_of_range",
+                tip=self.tip - self.tail,
+                longest=LONGEST,
             )
         for name in ("running_length", "sidecut_length"):
             length = getattr(self, name)
             if not length > 0:
                 raise ParameterError(
-                    Message("{name} is {length!r} m; it must be above 0. Correct it.", name=name, length=length),
+                    "{name} is {length!r} m; it must be above 0. Correct it.",
                     code="out_of_range",
+                    name=name,
+                    length=length,
                 )
             front, rear = self.middle + length / 2.0, self.middle - length / 2.0
             if front > self.tip + 1e-9 or rear < self.tail - 1e-9:
                 raise ParameterError(
-                    Message(
-                        "the {name} of {length:.1f} mm reaches from {front:.1f} to {rear:.1f} mm from the boot, "
-                        "but the ski only from {tip:.1f} to {tail:.1f} mm. Correct the lengths, the boot "
-                        "position or the tail overhang.",
-                        name=name,
-                        length=length * 1e3,
-                        front=front * 1e3,
-                        rear=rear * 1e3,
-                        tip=self.tip * 1e3,
-                        tail=self.tail * 1e3,
-                    ),
+                    "the {name} of {length:.1f} mm reaches from {front:.1f} to {rear:.1f} mm from the boot, but the "
+                    "ski only from {tip:.1f} to {tail:.1f} mm. Correct the lengths, the boot position or the tail "
+                    "overhang.",
                     code="contradiction",
+                    name=name,
+                    length=length * 1e3,
+                    front=front * 1e3,
+                    rear=rear * 1e3,
+                    tip=self.tip * 1e3,
+                    tail=self.tail * 1e3,
                 )
 
     @property

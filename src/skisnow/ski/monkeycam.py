@@ -124,13 +124,15 @@ def _board(path: Path) -> dict[str, Any]:
     board = design.get("board") if isinstance(design, dict) else None
     if not isinstance(board, dict):
         raise ParameterError(
-            Message("{path} has no section 'board'. Give a design file of MonkeyCAM, such as ski-def.json.", path=path),
+            "{path} has no section 'board'. Give a design file of MonkeyCAM, such as ski-def.json.",
             code="missing",
+            path=path,
         )
     if board.get("splitboard"):
         raise ParameterError(
-            Message("{path}: board: splitboard is true. Its outline is of two halves together; give a ski.", path=path),
+            "{path}: board: splitboard is true. Its outline is of two halves together; give a ski.",
             code="wrong_kind",
+            path=path,
         )
     form = board.get("edge shape")
     kind = form.get("type") if isinstance(form, dict) else None

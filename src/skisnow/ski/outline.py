@@ -9,7 +9,6 @@ import numpy as np
 import numpy.typing as npt
 
 from .._support.errors import ParameterError
-from .._support.messages import Message
 from .checks import GREATEST_SPACING, STRAIGHT
 from .table_file import StationTable
 
@@ -129,17 +128,15 @@ def _parabola(table: StationTable, layout: Layout) -> _Parabola:
     span = float(station[0] - station[-1]) if station.size else 0.0
     if station.size < FEWEST_ROWS or span < LEAST_SHARE * layout.sidecut_length:
         raise ParameterError(
-            Message(
-                "the column width_mm has {size} rows, {span:.0f} mm apart, within the sidecut length, "
-                "from {front:.4g} to {rear:.4g} m. Allowed are {fewest_rows} rows or more over at least "
-                "half of it: give rows at both ends and at the waist, and better every 10 cm",
-                size=station.size,
-                span=span * 1e3,
-                front=front,
-                rear=rear,
-                fewest_rows=FEWEST_ROWS,
-            ),
+            "the column width_mm has {size} rows, {span:.0f} mm apart, within the sidecut length, from {front:.4g} "
+            "to {rear:.4g} m. Allowed are {fewest_rows} rows or more over at least half of it: give rows at both "
+            "ends and at the waist, and better every 10 cm",
             code="table_too_short",
+            size=station.size,
+            span=span * 1e3,
+            front=front,
+            rear=rear,
+            fewest_rows=FEWEST_ROWS,
         )
     within = np.clip(station, rear, front)
     coefficients = np.asarray(np.polynomial.polynomial.polyfit(within, table.value[inside], 2), dtype=np.float64)

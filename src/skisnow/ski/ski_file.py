@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from .._support.errors import OutputError, ParameterError
-from .._support.messages import Message
 from .._support.staging import write_file
 from .._support.units import DEGREE, MM
 from .._support.user_files import is_file
@@ -67,13 +66,11 @@ def read_ski(name_or_path: str | Path) -> Ski:
         return ski_named(str(name_or_path))
     if path.suffix.lower() == ".json":
         raise ParameterError(
-            Message(
-                "{path} has a shape but no stiffness and no mass. Write a TOML file with shape = "
-                "{file!r}, EI_N_m2, GJ_N_m2 and mass_kg, and read that.",
-                path=path,
-                file=path.name,
-            ),
+            "{path} has a shape but no stiffness and no mass. Write a TOML file with shape = {file!r}, EI_N_m2, "
+            "GJ_N_m2 and mass_kg, and read that.",
             code="no_stiffness",
+            path=path,
+            file=path.name,
         )
     if isinstance(name_or_path, Path) or path.suffix.lower() == ".toml" or path.name != str(path) or is_file(path):
         return _ski_in(path)
@@ -127,12 +124,10 @@ def ski_names() -> tuple[str, ...]:
 
 def _no_such_ski(name: str) -> ParameterError:
     return ParameterError(
-        Message(
-            "there is no ski named {name!r}. {allowed} Any other ski is read from a file ending in .toml.",
-            name=name,
-            allowed=nearest(name, ski_names()),
-        ),
+        "there is no ski named {name!r}. {allowed} Any other ski is read from a file ending in .toml.",
         code="unknown_name",
+        name=name,
+        allowed=nearest(name, ski_names()),
     )
 
 
@@ -202,8 +197,7 @@ def write_ski(ski: Ski, path: str | Path) -> None:
     path = Path(path)
     if path.suffix.lower() != ".toml":
         raise OutputError(
-            Message("{path} cannot be written: a ski file ends in .toml. Choose such a name.", path=path),
-            code="cannot_write",
+            "{path} cannot be written: a ski file ends in .toml. Choose such a name.", code="cannot_write", path=path
         )
     table = path.with_suffix(".csv")
     write_file(table, _table_text(ski))

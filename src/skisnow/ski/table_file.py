@@ -53,33 +53,27 @@ def read_table(path: Path) -> dict[str, StationTable]:
     for place, name in enumerate(header):
         if name not in COLUMNS:
             raise ParameterError(
-                Message(
-                    "{path}, line {line}: the column {name!r} is not known. {allowed}",
-                    path=path,
-                    line=first,
-                    name=name,
-                    allowed=nearest(name, COLUMNS),
-                ),
+                "{path}, line {line}: the column {name!r} is not known. {allowed}",
                 code="unknown_name",
+                path=path,
+                line=first,
+                name=name,
+                allowed=nearest(name, COLUMNS),
             )
         if name in header[:place]:
             raise ParameterError(
-                Message(
-                    "{path}, line {line}: the column {name} stands there twice. Remove one.",
-                    path=path,
-                    line=first,
-                    name=name,
-                ),
+                "{path}, line {line}: the column {name} stands there twice. Remove one.",
                 code="repeated",
+                path=path,
+                line=first,
+                name=name,
             )
     if "station_m" not in header or len(header) < 2:
         raise ParameterError(
-            Message(
-                "{path}, line {line}: needed are the column station_m and one or more others. Add it.",
-                path=path,
-                line=first,
-            ),
+            "{path}, line {line}: needed are the column station_m and one or more others. Add it.",
             code="missing",
+            path=path,
+            line=first,
         )
     mark = decimal_mark([(cell for _, cells in lines[1:] for cell in cells)], separator=separator)
     rows = [_row(path, line, header, cells, mark) for line, cells in lines[1:]]
@@ -99,13 +93,11 @@ def _lines(path: Path) -> tuple[str, list[tuple[int, list[str]]]]:
         text = decoded(plain_bytes(path, most_bytes=MOST_BYTES)).text
     except NoTextError as error:
         raise ParameterError(
-            Message(
-                "{path} is no text ({place} is no {encoding}). Save it as UTF-8.",
-                path=path,
-                place=error.place,
-                encoding=error.encoding,
-            ),
+            "{path} is no text ({place} is no {encoding}). Save it as UTF-8.",
             code="not_text",
+            path=path,
+            place=error.place,
+            encoding=error.encoding,
         ) from error
     named = named_separator(text)
     first = 2 if named in SEPARATOR_NAMES else 1
@@ -115,14 +107,12 @@ def _lines(path: Path) -> tuple[str, list[tuple[int, list[str]]]]:
         lines = [(line, [cell.strip() for cell in row]) for line, row in rows if any(map(str.strip, row))]
     except csv.Error as error:
         raise ParameterError(
-            Message("{path} is no table of cells ({error}). Is a quote never closed?", path=path, error=error),
-            code="not_csv",
+            "{path} is no table of cells ({error}). Is a quote never closed?", code="not_csv", path=path, error=error
         ) from error
     lines = [(line, cells) for line, cells in lines if not cells[0].startswith("#")]
     if len(lines) < 3:
         raise ParameterError(
-            Message("{path}: a table needs a line of column names and two rows or more. Complete it.", path=path),
-            code="missing",
+            "{path}: a table needs a line of column names and two rows or more. Complete it.", code="missing", path=path
         )
     return separator, lines
 
@@ -130,14 +120,12 @@ def _lines(path: Path) -> tuple[str, list[tuple[int, list[str]]]]:
 def _row(path: Path, line: int, header: list[str], cells: list[str], mark: str) -> list[float]:
     if len(cells) != len(header):
         raise ParameterError(
-            Message(
-                "{path}, line {line}: {n_cells} cells stand under {n_header} columns. Correct it.",
-                path=path,
-                line=line,
-                n_cells=len(cells),
-                n_header=len(header),
-            ),
+            "{path}, line {line}: {n_cells} cells stand under {n_header} columns. Correct it.",
             code="wrong_number_of_cells",
+            path=path,
+            line=line,
+            n_cells=len(cells),
+            n_header=len(header),
         )
     return [_cell(path, line, name, cell, mark) for name, cell in zip(header, cells, strict=True)]
 
@@ -184,16 +172,14 @@ class StationTable:
     def __post_init__(self) -> None:
         if self.station.shape != self.value.shape or self.station.ndim != 1 or not self.station.size:
             raise ParameterError(
-                Message(
-                    "{size} values stand at {size_2} stations. Give as many values as stations.",
-                    size=self.value.size,
-                    size_2=self.station.size,
-                ),
+                "{size} values stand at {size_2} stations. Give as many values as stations.",
                 code="wrong_shape",
+                size=self.value.size,
+                size_2=self.station.size,
             )
         if np.any(np.diff(self.station) >= 0):
             raise ParameterError(
-                Message("the stations do not fall. List them from tip to tail, positive in front of the boot."),
+                "the stations do not fall. List them from tip to tail, positive in front of the boot.",
                 code="not_falling",
             )
 

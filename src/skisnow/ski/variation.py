@@ -10,7 +10,6 @@ import numpy as np
 import numpy.typing as npt
 
 from .._support.errors import ParameterError
-from .._support.messages import Message
 from .._support.units import MM
 from ..parameters import nearest
 from .assembling import stiffness_table
@@ -59,18 +58,15 @@ def shape_value(ski: Ski, name: str) -> float:
     if name not in known:
         if ski.keys is None and name.startswith("ski."):
             raise ParameterError(
-                Message(
-                    "{name}: the ski {ski} was not read from a file of keys alone, or was changed since. Take one "
-                    "of {allowed}.",
-                    name=name,
-                    ski=ski.name,
-                    allowed=list(FACTORS),
-                ),
+                "{name}: the ski {ski} was not read from a file of keys alone, or was changed since. Take one of "
+                "{allowed}.",
                 code="no_keys",
+                name=name,
+                ski=ski.name,
+                allowed=list(FACTORS),
             )
         raise ParameterError(
-            Message("the ski has no parameter {name}. {allowed}", name=name, allowed=nearest(name, known)),
-            code="unknown_name",
+            "the ski has no parameter {name}. {allowed}", code="unknown_name", name=name, allowed=nearest(name, known)
         )
     return 1.0 if name in FACTORS else _key_value(ski.keys or {}, name.removeprefix("ski."))
 
@@ -147,6 +143,4 @@ def require_own_tables(ski: Ski) -> None:
     own = ski_of_keys(ski.keys or {}, like=ski)
     for table in ("width", "base_height", "bending_stiffness", "torsional_stiffness"):
         if not np.allclose(getattr(own, table), getattr(ski, table), rtol=1e-9, atol=1e-12):
-            raise ParameterError(
-                Message("the tables of the ski {ski} are not those of its keys.", ski=ski.name), code="no_keys"
-            )
+            raise ParameterError("the tables of the ski {ski} are not those of its keys.", code="no_keys", ski=ski.name)

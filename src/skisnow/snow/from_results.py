@@ -98,15 +98,12 @@ def _of_site(
         return None if value is None else float(value), ends
     except (AttributeError, KeyError, TypeError, ValueError, IndexError) as error:
         raise ParameterError(
-            Message(
-                "{path}: {place} is not a list with {keys} ({error!r}); give the results.json that "
-                "`skisnow analyse` wrote",
-                path=path,
-                place=".".join(place),
-                keys=["site", *keys],
-                error=error,
-            ),
+            "{path}: {place} is not a list with {keys} ({error!r}); give the results.json that `skisnow analyse` wrote",
             code="wrong_kind",
+            path=path,
+            place=".".join(place),
+            keys=["site", *keys],
+            error=error,
         ) from error
 
 
@@ -115,16 +112,13 @@ def _results(path: Path) -> dict[str, Any]:
         results = read_json(path)
     except GivenError as error:
         raise ParameterError(
-            Message("{problem} Needed is the results.json that `skisnow analyse` wrote", problem=error),
-            code="wrong_kind",
+            "{problem} Needed is the results.json that `skisnow analyse` wrote", code="wrong_kind", problem=error
         ) from error
     if not isinstance(results, dict) or not {"penetration", "shear"} <= results.keys():
         raise ParameterError(
-            Message(
-                "{path} has no entries 'penetration' and 'shear'; give the results.json that `skisnow analyse` wrote",
-                path=path,
-            ),
+            "{path} has no entries 'penetration' and 'shear'; give the results.json that `skisnow analyse` wrote",
             code="missing",
+            path=path,
         )
     return results
 
@@ -145,15 +139,13 @@ def _used(results: dict[str, Any], part: str, key: str, site: str | None, path: 
         return np.array([float(row[key]) for row in rows if row[key] is not None])
     except (KeyError, TypeError, ValueError) as error:
         raise ParameterError(
-            Message(
-                "{path}: {part}.experiments is not a list of experiments with used, site and {key} "
-                "({error!r}); give the results.json that `skisnow analyse` wrote",
-                path=path,
-                part=part,
-                key=key,
-                error=error,
-            ),
+            "{path}: {part}.experiments is not a list of experiments with used, site and {key} ({error!r}); give the "
+            "results.json that `skisnow analyse` wrote",
             code="wrong_kind",
+            path=path,
+            part=part,
+            key=key,
+            error=error,
         ) from error
 
 
@@ -246,9 +238,7 @@ def published_snow(name: str) -> SnowProperties:
             if near
             else Message("no published snow is named {name!r}.", name=name)
         )
-        raise ParameterError(
-            Message("{problem} There are {names}", problem=problem, names=list(snows)), code="unknown_name"
-        )
+        raise ParameterError("{problem} There are {names}", code="unknown_name", problem=problem, names=list(snows))
     return snows[name]
 
 

@@ -7,7 +7,6 @@ from typing import Annotated, Final, TypeAlias
 
 from .._support.display import Facts, Shown, amount, span
 from .._support.errors import ParameterError
-from .._support.messages import Message
 from .._support.units import MM, N_PER_MM2, N_PER_MM3
 from ..parameters import Quantity, Search, Word, require_declared
 
@@ -101,11 +100,9 @@ class SnowProperties(Shown):
         require_declared(self)
         if self.unloading_ratio is not None and not self.unloading_ratio >= 1.0:
             raise ParameterError(
-                Message(
-                    "unloading_ratio is {unloading_ratio}; k_u/H_V must be 1 (elastic) or more",
-                    unloading_ratio=self.unloading_ratio,
-                ),
+                "unloading_ratio is {unloading_ratio}; k_u/H_V must be 1 (elastic) or more",
                 code="out_of_range",
+                unloading_ratio=self.unloading_ratio,
             )
 
     @property
@@ -147,21 +144,17 @@ def require_stress(snow: SnowProperties, S_f_N_per_mm2: float | None, *, carves:
     """
     if S_f_N_per_mm2 is not None and snow.failure_shear_stress is not None:
         raise ParameterError(
-            Message(
-                "S_f_N_per_mm2 cannot stand beside this snow ({source}), which has its own S_f. Leave "
-                "one out, or give H_V_N_per_mm3 and S_f_N_per_mm2 as numbers",
-                source=snow.source,
-            ),
+            "S_f_N_per_mm2 cannot stand beside this snow ({source}), which has its own S_f. Leave one out, or give "
+            "H_V_N_per_mm3 and S_f_N_per_mm2 as numbers",
             code="contradiction",
+            source=snow.source,
         )
     if carves and S_f_N_per_mm2 is None and snow.failure_shear_stress is None:
         raise ParameterError(
-            Message(
-                "this snow ({source}) has no failure shear stress S_f, which a carved turn needs. Give "
-                "one beside it, S_f_N_per_mm2 (--S-f-N-per-mm2), or ask for the ski at rest (--at-rest)",
-                source=snow.source,
-            ),
+            "this snow ({source}) has no failure shear stress S_f, which a carved turn needs. Give one beside it, "
+            "S_f_N_per_mm2 (--S-f-N-per-mm2), or ask for the ski at rest (--at-rest)",
             code="no_data",
+            source=snow.source,
         )
 
 

@@ -55,13 +55,11 @@ def row_of(place: str, columns: Sequence[str], cells: Sequence[str], readers: Se
     """
     if len(cells) != len(columns):
         raise ParameterError(
-            Message(
-                "{place}: a row of this table has {n_columns} cells, this line has {n_cells}. Remove the line",
-                place=place,
-                n_columns=len(columns),
-                n_cells=len(cells),
-            ),
+            "{place}: a row of this table has {n_columns} cells, this line has {n_cells}. Remove the line",
             code="wrong_number_of_cells",
+            place=place,
+            n_columns=len(columns),
+            n_cells=len(cells),
         )
     try:
         return {name: read(text) for name, text, read in zip(columns, cells, readers, strict=True)}
@@ -70,13 +68,11 @@ def row_of(place: str, columns: Sequence[str], cells: Sequence[str], readers: Se
             (name, text) for name, text, read in zip(columns, cells, readers, strict=True) if _fails(read, text)
         )
         raise ParameterError(
-            Message(
-                "{place}: {name} is {text!r}; it must be a number. Correct or remove it",
-                place=place,
-                name=name,
-                text=text,
-            ),
+            "{place}: {name} is {text!r}; it must be a number. Correct or remove it",
             code="wrong_kind",
+            place=place,
+            name=name,
+            text=text,
         ) from None
 
 
@@ -108,14 +104,12 @@ def require_kinds(place: str, row: Row, texts: Sequence[bool]) -> None:
             continue
         kind = Message("a text") if text else Message("a number, a switch or a list of numbers")
         raise ParameterError(
-            Message(
-                "{place}: {name} is {value!r}. Allowed: {allowed}. Correct or remove it",
-                place=place,
-                name=name,
-                value=str(value)[:80],
-                allowed=kind,
-            ),
+            "{place}: {name} is {value!r}. Allowed: {allowed}. Correct or remove it",
             code="out_of_range",
+            place=place,
+            name=name,
+            value=str(value)[:80],
+            allowed=kind,
         )
 
 

@@ -14,7 +14,6 @@ import numpy as np
 import numpy.typing as npt
 
 from .._support.errors import ParameterError
-from .._support.messages import Message
 from ..parameters import Quantity, checked_table, made
 
 Point: TypeAlias = dict[str, Any]
@@ -262,14 +261,16 @@ class Axis:
         values = value if isinstance(value, list) and not _is_one(key, value) else [value]
         if not values:
             raise ParameterError(
-                Message("{name} is an empty list; write at least one value", name=key.name), code="out_of_range"
+                "{name} is an empty list; write at least one value", code="out_of_range", name=key.name
             )
         checked = tuple(key.of_kind(value) for value in values)
         repeated = next((value for place, value in enumerate(checked) if value in checked[:place]), None)
         if repeated is not None:
             raise ParameterError(
-                Message("{name} holds {repeated!r} twice; write each value once", name=key.name, repeated=repeated),
+                "{name} holds {repeated!r} twice; write each value once",
                 code="repeated",
+                name=key.name,
+                repeated=repeated,
             )
         return cls(key, checked)
 
@@ -277,34 +278,32 @@ class Axis:
     def _of_range(cls, key: Quantity, table: Mapping[str, Any]) -> Self:
         if key.kind not in ("number", "whole number"):
             raise ParameterError(
-                Message("{name} has no range; write a list such as {name} = [...]", name=key.name), code="no_data"
+                "{name} has no range; write a list such as {name} = [...]", code="no_data", name=key.name
             )
         limits = made(Range, checked_table(Range, table, key.name))
         low, high, log = limits.first, limits.last, limits.log
         if log and not (low > 0 and high > 0):
             raise ParameterError(
-                Message(
-                    "{name}: a logarithmic range needs both ends above 0; they are {low:g}, {high:g}",
-                    name=key.name,
-                    low=low,
-                    high=high,
-                ),
+                "{name}: a logarithmic range needs both ends above 0; they are {low:g}, {high:g}",
                 code="out_of_range",
+                name=key.name,
+                low=low,
+                high=high,
             )
         if low > high:
             raise ParameterError(
-                Message(
-                    "{name}: from is {low:g} and to is {high:g}; from must be the smaller one",
-                    name=key.name,
-                    low=low,
-                    high=high,
-                ),
+                "{name}: from is {low:g} and to is {high:g}; from must be the smaller one",
                 code="wrong_kind",
+                name=key.name,
+                low=low,
+                high=high,
             )
         if low == high:
             raise ParameterError(
-                Message("{name}: from and to are both {low:g}; write the value under [fixed]", name=key.name, low=low),
+                "{name}: from and to are both {low:g}; write the value under [fixed]",
                 code="out_of_range",
+                name=key.name,
+                low=low,
             )
         return cls(key, ends=(low, high), n=limits.n, log=log)
 
@@ -313,9 +312,7 @@ class Axis:
         if self.values:
             return list(self.values)
         if self.n is None:
-            raise ParameterError(
-                Message("{name}: n, the number of values, is missing", name=self.key.name), code="missing"
-            )
+            raise ParameterError("{name}: n, the number of values, is missing", code="missing", name=self.key.name)
         low, high = self.ends
         share = np.linspace(0.0, 1.0, self.n)
         middle = self._at(share)
@@ -328,8 +325,7 @@ class Axis:
             return Column(index, self.values)
         if self.n is not None:
             raise ParameterError(
-                Message("{name}: n stands once in [latin_hypercube], not in a range", name=self.key.name),
-                code="contradiction",
+                "{name}: n stands once in [latin_hypercube], not in a range", code="contradiction", name=self.key.name
             )
         numbers = self._at(share)
         whole = self.key.kind == "whole number"
@@ -362,12 +358,10 @@ def require_count(n: int) -> None:
     """Reject a study with more points than can be computed."""
     if n > MOST_POINTS:
         raise ParameterError(
-            Message(
-                "the study has {n} points; at most {most_points} are allowed. Take fewer values",
-                n=n,
-                most_points=MOST_POINTS,
-            ),
+            "the study has {n} points; at most {most_points} are allowed. Take fewer values",
             code="out_of_range",
+            n=n,
+            most_points=MOST_POINTS,
         )
 
 

@@ -121,13 +121,11 @@ def csv_block(path: Path, data: bytes, columns: Sequence[str], readers: Sequence
         lines = list(csv.reader(io.StringIO(data.decode("utf-8"), newline="")))
     except (UnicodeDecodeError, csv.Error) as error:
         raise ParameterError(
-            Message(
-                "{path} is not a table of a study, from about line {first} on: {error}",
-                path=path,
-                first=first,
-                error=error,
-            ),
+            "{path} is not a table of a study, from about line {first} on: {error}",
             code="unknown_name",
+            path=path,
+            first=first,
+            error=error,
         ) from error
     return [row_of(f"{path}, line {number}", columns, line, readers) for number, line in enumerate(lines, start=first)]
 
@@ -184,12 +182,10 @@ class DatabaseRows(StoredRows):
 
 def _no_table(path: Path, why: object) -> ParameterError:
     return ParameterError(
-        Message(
-            "{path} cannot be read as a study's table: {reason}. Put back a copy, or remove it and run the study again",
-            path=path,
-            reason=why,
-        ),
+        "{path} cannot be read as a study's table: {reason}. Put back a copy, or remove it and run the study again",
         code="cannot_read",
+        path=path,
+        reason=why,
     )
 
 

@@ -13,7 +13,6 @@ from pathlib import Path
 from typing import Any, Protocol, Self
 
 from .._support.errors import OutputError, ParameterError, SkisnowError
-from .._support.messages import Message
 from .._support.processes.batch import Progress, compute_missing, workers_in_force
 from .._support.processes.executors import ExecutorLike, require_executor
 from .._support.processes.kept_rows import KeptRows, Row, json_text
@@ -63,8 +62,9 @@ def table_state(
         table = read_table(out, keys)
     except ParameterError as error:
         raise ParameterError(
-            Message("{problem}. It is not replaced: name another place in out, or move it away", problem=error),
+            "{problem}. It is not replaced: name another place in out, or move it away",
             code="wrong_kind",
+            problem=error,
         ) from error
     tally = table.tally()
     same = tally.rows == points and tally.studies == {fingerprint}
@@ -131,8 +131,7 @@ def run_study(
     try:
         if _stamp(study.out) != before:
             raise OutputError(
-                Message("{out} was just written by another run. Start again to see its table", out=study.out),
-                code="in_use",
+                "{out} was just written by another run. Start again to see its table", code="in_use", out=study.out
             )
         rows = StudyRows.of(study)
         compute_missing(study.points, rows, finished_rows, workers=workers, executor=executor, progress=progress)
@@ -289,13 +288,11 @@ class StudyRows:
         for path, wanted in self.files:
             if _hash(path) != wanted:
                 raise SkisnowError(
-                    Message(
-                        "the worker on {node} has not the {path} of this study. Put the study into a folder that "
-                        "all computers share",
-                        node=platform.node(),
-                        path=path,
-                    ),
+                    "the worker on {node} has not the {path} of this study. Put the study into a folder that all "
+                    "computers share",
                     code="different_files",
+                    node=platform.node(),
+                    path=path,
                 )
 
 

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any, Final, Self
 
 from .._support.errors import ParameterError
-from .._support.messages import Message, template
+from .._support.messages import template
 from .._support.processes.batch import Progress, compute_missing, workers_in_force
 from .._support.processes.chunk import own_identity
 from .._support.processes.executors import ExecutorLike, require_executor
@@ -56,13 +56,11 @@ class Shard:
         shard = cls(int(match[1]), int(match[2])) if match else None
         if shard is None or not 1 <= shard.number <= shard.count <= MOST_SHARDS:
             raise ParameterError(
-                Message(
-                    "shard is {text!r}; it is written i/n, from 1/n to n/n, such as 2/8 for the second of "
-                    "eight; n is {most_shards} at most",
-                    text=text,
-                    most_shards=MOST_SHARDS,
-                ),
+                "shard is {text!r}; it is written i/n, from 1/n to n/n, such as 2/8 for the second of eight; n is "
+                "{most_shards} at most",
                 code="out_of_range",
+                text=text,
+                most_shards=MOST_SHARDS,
             )
         return shard
 
@@ -157,7 +155,7 @@ def merge_shards(out: str | Path, parts: Sequence[str | Path]) -> StudyTable:
     writer_of(out)
     places = [Path(part) for part in parts]
     if not places:
-        raise ParameterError(Message("no part is named; name the files of all parts of the study"), code="unknown_name")
+        raise ParameterError("no part is named; name the files of all parts of the study", code="unknown_name")
     with ExitStack() as opened:
         shard_rows = []
         for place in dict.fromkeys(places):
@@ -193,14 +191,12 @@ class _Parts:
                 None,
             )
             if odd is not None:
-                raise ParameterError(
-                    Message(text, path=odd.path, other=parts[0].path),
-                    code="another_study",
-                )
+                raise ParameterError(text, code="another_study", path=odd.path, other=parts[0].path)
         if "points" not in about[0] or parts[0].columns is None:
             raise ParameterError(
-                Message("{path} is not a part of a study. Name the files that --shard left", path=parts[0].path),
+                "{path} is not a part of a study. Name the files that --shard left",
                 code="unknown_name",
+                path=parts[0].path,
             )
         self.columns: tuple[str, ...] | None = parts[0].columns
         self.fingerprint = about[0]["fingerprint"]
@@ -224,10 +220,9 @@ class _Parts:
                 yield text
             elif text[1] != last[1]:
                 raise ParameterError(
-                    Message(
-                        "two parts have different rows for point {each}. Compute one of them again", each=text[0] + 1
-                    ),
+                    "two parts have different rows for point {each}. Compute one of them again",
                     code="contradiction",
+                    each=text[0] + 1,
                 )
             last = text
 
@@ -246,12 +241,10 @@ class _Parts:
         if missing:
             first = numbers_seen.index(0)
             raise ParameterError(
-                Message(
-                    "{missing} of {count} points are in none of the parts, the first is point {first}. "
-                    "Compute or name the missing parts",
-                    missing=missing,
-                    count=self.count,
-                    first=first + 1,
-                ),
+                "{missing} of {count} points are in none of the parts, the first is point {first}. Compute or name "
+                "the missing parts",
                 code="missing",
+                missing=missing,
+                count=self.count,
+                first=first + 1,
             )

@@ -187,8 +187,7 @@ def _study(path: Path, values: Mapping[str, Any], subject: ModelReader) -> Study
     for key in values:
         if key not in TOP_KEYS:
             raise ParameterError(
-                Message("{key} is not a key of a study. {allowed}", key=key, allowed=nearest(key, TOP_KEYS)),
-                code="unknown_name",
+                "{key} is not a key of a study. {allowed}", code="unknown_name", key=key, allowed=nearest(key, TOP_KEYS)
             )
     subject_ = _subject(path, values, subject)
     form = _form(values)
@@ -198,8 +197,9 @@ def _study(path: Path, values: Mapping[str, Any], subject: ModelReader) -> Study
     axes = [_axis(form, name, value, subject_.keys, fixed) for name, value in inputs.items()]
     if not axes:
         raise ParameterError(
-            Message("[{form}] holds no input that varies; write one, such as edge_angle_deg = [30, 45, 60]", form=form),
+            "[{form}] holds no input that varies; write one, such as edge_angle_deg = [30, 45, 60]",
             code="missing",
+            form=form,
         )
     points = grid_points(axes, fixed) if form == "grid" else hypercube_points(axes, fixed, *_sample(varying))
     subject_.require_sound(points, fixed)
@@ -212,8 +212,9 @@ def _subject(path: Path, values: Mapping[str, Any], subject: ModelReader) -> Stu
     word = values["scenario"]
     if not isinstance(word, str) or not word.strip():
         raise ParameterError(
-            Message('scenario is {word!r}; it is a name or a file, such as scenario = "carved-46m"', word=word),
+            'scenario is {word!r}; it is a name or a file, such as scenario = "carved-46m"',
             code="wrong_kind",
+            word=word,
         )
     return ScenarioModel(path.parent, word)
 
@@ -237,8 +238,10 @@ def _table(values: Mapping[str, Any], name: str) -> Mapping[str, Any]:
     table = values.get(name, {})
     if not isinstance(table, dict):
         raise ParameterError(
-            Message("{name} is {table!r}; it must be a table, begun by the line [{name}]", name=name, table=table),
+            "{name} is {table!r}; it must be a table, begun by the line [{name}]",
             code="wrong_kind",
+            name=name,
+            table=table,
         )
     return table
 
@@ -249,12 +252,10 @@ def _fixed(table: Mapping[str, Any], keys: Mapping[str, Quantity]) -> Point:
         _require_key("fixed", name, keys)
         if isinstance(value, dict) or (isinstance(value, list) and keys[name].kind != "three numbers"):
             raise ParameterError(
-                Message(
-                    "fixed.{name} is {value!r}; it takes one value. Put varying values into [grid]",
-                    name=name,
-                    value=value,
-                ),
+                "fixed.{name} is {value!r}; it takes one value. Put varying values into [grid]",
                 code="wrong_kind",
+                name=name,
+                value=value,
             )
         fixed[name] = _in_range(keys[name], value)
     return fixed
@@ -264,15 +265,14 @@ def _in_range(key: Quantity, value: object) -> InputValue:
     try:
         return key.in_range(value)
     except ParameterError as error:
-        raise ParameterError(Message("fixed.{problem}", problem=error), code=error.code) from error
+        raise ParameterError("fixed.{problem}", code=error.code, problem=error) from error
 
 
 def _axis(form: str, name: str, value: object, keys: Mapping[str, Quantity], fixed: Point) -> Axis:
     _require_key(form, name, (*OWN_KEYS[form], *keys))
     if name in fixed:
         raise ParameterError(
-            Message("{name} is in [{form}] and in [fixed]. Remove one of them", name=name, form=form),
-            code="contradiction",
+            "{name} is in [{form}] and in [fixed]. Remove one of them", code="contradiction", name=name, form=form
         )
     return Axis.of(keys[name], value)
 
@@ -280,8 +280,11 @@ def _axis(form: str, name: str, value: object, keys: Mapping[str, Quantity], fix
 def _require_key(table: str, name: str, keys: Collection[str]) -> None:
     if name not in keys:
         raise ParameterError(
-            Message("{table}.{name} is not an input. {allowed}", table=table, name=name, allowed=nearest(name, keys)),
+            "{table}.{name} is not an input. {allowed}",
             code="unknown_name",
+            table=table,
+            name=name,
+            allowed=nearest(name, keys),
         )
 
 
@@ -305,7 +308,9 @@ def _out(path: Path, values: Mapping[str, Any]) -> Path:
         )
     if Path(out).suffix.lower() not in WRITERS:
         raise ParameterError(
-            Message("out is {out!r}; the name of the table must end in {writers}", out=out, writers=list(WRITERS)),
+            "out is {out!r}; the name of the table must end in {writers}",
             code="wrong_ending",
+            out=out,
+            writers=list(WRITERS),
         )
     return path.parent / out

@@ -11,7 +11,6 @@ import numpy as np
 
 from .._support.display import ShownFields
 from .._support.errors import ParameterError, SkisnowError
-from .._support.messages import Message
 from .._support.processes.kept_rows import Row
 from .._support.units import MM
 from .._support.user_files.json_text import json_number
@@ -207,9 +206,7 @@ class ScenarioModel(ShownFields):
             for part, part_value in parts.items():
                 full = full_name(part)
                 if full in values:
-                    raise ParameterError(
-                        Message("{full} is given twice. Remove one of them", full=full), code="repeated"
-                    )
+                    raise ParameterError("{full} is given twice. Remove one of them", code="repeated", full=full)
                 values[full] = part_value
         return values
 

@@ -14,7 +14,6 @@ from typing import IO, Any, Final
 
 from .._support.display import Facts, Shown
 from .._support.errors import ParameterError
-from .._support.messages import Message
 from .._support.processes.kept_rows import Row
 from .._support.spreadsheet_text import (
     SEPARATOR_NAMES,
@@ -210,7 +209,7 @@ def _read_at_once(path: Path, keys: Mapping[str, Quantity]) -> tuple[tuple[str, 
         raise _unreadable(path, error) from error
     except (NoTextError, csv.Error) as error:
         raise ParameterError(
-            Message("{path} is not a table of a study: {error}", path=path, error=error), code="unknown_name"
+            "{path} is not a table of a study: {error}", code="unknown_name", path=path, error=error
         ) from error
     mark = "." if separator == "," else decimal_mark([chain.from_iterable(row for _, row in lines)], separator=";")
     cell_readers = readers(columns, keys, mark)
@@ -219,15 +218,16 @@ def _read_at_once(path: Path, keys: Mapping[str, Quantity]) -> tuple[tuple[str, 
 
 def _unreadable(path: Path, error: OSError) -> ParameterError:
     return ParameterError(
-        Message("{path} cannot be read: {reason}", path=path, reason=error.strerror or error), code="cannot_read"
+        "{path} cannot be read: {reason}", code="cannot_read", path=path, reason=error.strerror or error
     )
 
 
 def _require_columns(path: str | Path, columns: Sequence[str]) -> None:
     if not {"outcome", "study"} <= set(columns):
         raise ParameterError(
-            Message("{path} is not a table of a study: its first line names no columns outcome and study", path=path),
+            "{path} is not a table of a study: its first line names no columns outcome and study",
             code="unknown_name",
+            path=path,
         )
 
 

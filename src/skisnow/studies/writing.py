@@ -13,7 +13,6 @@ from pathlib import Path
 from typing import IO, Any, Final, TypeAlias
 
 from .._support.errors import ParameterError
-from .._support.messages import Message
 from .._support.sqlite_file import connect
 from .._support.staging import cannot_write, place_to_write
 from .cells import cell, cells
@@ -72,8 +71,7 @@ def writer_of(path: Path) -> Writer:
     ending = path.suffix.lower()
     if ending not in WRITERS:
         raise ParameterError(
-            Message("{path}: the name of a table ends in {writers}", path=path, writers=list(WRITERS)),
-            code="wrong_ending",
+            "{path}: the name of a table ends in {writers}", code="wrong_ending", path=path, writers=list(WRITERS)
         )
     if ending == ".parquet":
         require_pyarrow()

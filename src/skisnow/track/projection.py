@@ -19,7 +19,6 @@ import numpy as np
 
 from .._support.display import Facts, Shown
 from .._support.errors import ParameterError
-from .._support.messages import Message
 from .._support.units import DEGREE
 
 if TYPE_CHECKING:
@@ -68,14 +67,12 @@ class GeodeticPoint(Shown):
             value = getattr(self, name)
             if not abs(value) <= limit:
                 raise ParameterError(
-                    Message(
-                        "{name} of an origin is {value:g}; it must be from {lowest:g} to {limit:g}",
-                        name=name,
-                        value=value,
-                        lowest=-limit,
-                        limit=limit,
-                    ),
+                    "{name} of an origin is {value:g}; it must be from {lowest:g} to {limit:g}",
                     code="out_of_range",
+                    name=name,
+                    value=value,
+                    lowest=-limit,
+                    limit=limit,
                 )
 
     def __str__(self) -> str:

@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final, Literal, TypeAlias, get_args
 
 from .._support.errors import ParameterError
-from .._support.messages import Message
 from .flags import FASTEST, GAP_FACTOR
 from .readers.conversion import build_track
 from .readers.fit import read_fit
@@ -89,17 +88,13 @@ def read_track(
     """
     for name, value in (("fastest", fastest), ("gap_factor", gap_factor)):
         if not value > 0.0:
-            raise ParameterError(
-                Message("{name} is {value:g}; it must be above 0", name=name, value=value), code="out_of_range"
-            )
+            raise ParameterError("{name} is {value:g}; it must be above 0", code="out_of_range", name=name, value=value)
     if kind is not None and kind not in get_args(TrackFormat):
         raise ParameterError(
-            Message(
-                "there is no track format {kind!r}; there are {allowed}",
-                kind=kind,
-                allowed=list(get_args(TrackFormat)),
-            ),
+            "there is no track format {kind!r}; there are {allowed}",
             code="unknown_name",
+            kind=kind,
+            allowed=list(get_args(TrackFormat)),
         )
     path = Path(path)
     data = _bytes(path)

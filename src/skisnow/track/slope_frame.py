@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Final, Literal, NamedTuple
 import numpy as np
 
 from .._support.errors import ParameterError
-from .._support.messages import Message
 from .._support.units import DEGREE
 from .track import Track
 
@@ -124,31 +123,30 @@ def _rotate_sd(sd: FloatArray, axes: FloatArray) -> FloatArray:
 def _require(track: Track, azimuth: float, slope_angle: float | None, origin: Sequence[float] | FloatArray) -> None:
     if track.axes == "slope":
         raise ParameterError(
-            Message("the track {name} is in a slope's frame already: {frame}", name=track.name, frame=track.frame),
+            "the track {name} is in a slope's frame already: {frame}",
             code="already_on_slope",
+            name=track.name,
+            frame=track.frame,
         )
     if not abs(azimuth) <= 2.0 * math.pi:
         raise ParameterError(
-            Message(
-                "the fall line's azimuth is {azimuth:g} rad; it must be from -2π to 2π. Is it in degrees?",
-                azimuth=azimuth,
-            ),
+            "the fall line's azimuth is {azimuth:g} rad; it must be from -2π to 2π. Is it in degrees?",
             code="out_of_range",
+            azimuth=azimuth,
         )
     if slope_angle is not None and not 0.0 <= slope_angle <= STEEPEST:
         raise ParameterError(
-            Message(
-                "the slope angle is {slope_angle:g} rad; it must be from 0 to 75° = {steepest:.4g} rad",
-                slope_angle=slope_angle,
-                steepest=STEEPEST,
-            ),
+            "the slope angle is {slope_angle:g} rad; it must be from 0 to 75° = {steepest:.4g} rad",
             code="out_of_range",
+            slope_angle=slope_angle,
+            steepest=STEEPEST,
         )
     place = np.asarray(origin, float)
     if place.shape != (3,) or not np.isfinite(place).all():
         raise ParameterError(
-            Message("the origin of a slope is {value!r}; it must be three finite numbers in m", value=origin),
+            "the origin of a slope is {value!r}; it must be three finite numbers in m",
             code="not_a_number",
+            value=origin,
         )
 
 

@@ -12,7 +12,6 @@ from scipy.stats import chi2
 
 from .._support.display import ShownFields
 from .._support.errors import ParameterError
-from .._support.messages import Message
 from .flags import GAP_FACTOR
 from .local_cubic import FEWEST_POINTS, TERMS, LocalCubic, WeightedValues, local_cubic
 from .track import Track
@@ -95,13 +94,11 @@ def smooth_track(track: Track, *, window: float | None = None, place_noise: floa
     usable = usable_points(track)
     if np.count_nonzero(usable) < FEWEST_POINTS:
         raise ParameterError(
-            Message(
-                "{name}: {count} usable points; a smoothed track needs {fewest}. Give a longer track",
-                name=track.name,
-                count=np.count_nonzero(usable),
-                fewest=FEWEST_POINTS,
-            ),
+            "{name}: {count} usable points; a smoothed track needs {fewest}. Give a longer track",
             code="too_few_points",
+            name=track.name,
+            count=np.count_nonzero(usable),
+            fewest=FEWEST_POINTS,
         )
     step = _interval(track.time[usable])
     length = max(SHORTEST_WINDOW, POINTS_IN_WINDOW * step) if window is None else window
@@ -170,24 +167,21 @@ def _require_sparse(track: Track, windows: tuple[IntArray, IntArray], length: fl
     if count.max() > MOST_IN_WINDOW:
         at = int(np.argmax(count))
         raise ParameterError(
-            Message(
-                "{name}: {count} points are within {length:.3g} s of {time:.6g} s. Allowed: at most "
-                "{most}. Check the column of times, or give fewer points",
-                name=track.name,
-                count=count[at],
-                length=length,
-                time=track.time[at],
-                most=MOST_IN_WINDOW,
-            ),
+            "{name}: {count} points are within {length:.3g} s of {time:.6g} s. Allowed: at most {most}. Check the "
+            "column of times, or give fewer points",
             code="too_many_points",
+            name=track.name,
+            count=count[at],
+            length=length,
+            time=track.time[at],
+            most=MOST_IN_WINDOW,
         )
 
 
 def _require_positive(name: str, unit: str, value: float | None) -> None:
     if value is not None and not (np.isfinite(value) and value > 0.0):
         raise ParameterError(
-            Message("{name} is {value:g} {unit}. Allowed: above 0", name=name, value=value, unit=unit),
-            code="out_of_range",
+            "{name} is {value:g} {unit}. Allowed: above 0", code="out_of_range", name=name, value=value, unit=unit
         )
 
 

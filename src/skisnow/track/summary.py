@@ -10,7 +10,6 @@ import numpy as np
 
 from .._support.display import Facts, Shown, amount
 from .._support.errors import ParameterError
-from .._support.messages import Message
 from .._support.units import DEGREE
 from .._support.user_files.json_text import json_number
 from .curvature import TrackMotion, integrated_arc_length, places_arc_length, segments, track_motion
@@ -116,12 +115,10 @@ def track_summary(track: Track, *, window: float | None = None, place_noise: flo
     motion = track_motion(track, window=window, place_noise=place_noise)
     if not np.isfinite(motion.smoothed.velocity[:, 0]).any():
         raise ParameterError(
-            Message(
-                "{name}: no window of {window:g} s holds six usable points. Give a longer window",
-                name=track.name,
-                window=motion.smoothed.resolution.window,
-            ),
+            "{name}: no window of {window:g} s holds six usable points. Give a longer window",
             code="too_few_points",
+            name=track.name,
+            window=motion.smoothed.resolution.window,
         )
     day = split_day(track, motion)
     turns = tuple(turn for run in day.runs for turn in find_turns(motion, first=run.first, last=run.last))

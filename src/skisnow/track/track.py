@@ -12,7 +12,6 @@ import numpy.typing as npt
 
 from .._support.display import Facts, Shown, amount, ends
 from .._support.errors import ParameterError
-from .._support.messages import Message
 from .flags import FLAGS, SolutionArray
 from .projection import GeodeticPoint, place_from_origin
 
@@ -130,13 +129,11 @@ class Track(Shown):
         """
         if self.axes != "east_north_up" or self.origin is None:
             raise ParameterError(
-                Message(
-                    "the track {name} is in local metres ({frame}), not in east, north and up from an "
-                    "origin. Read it from a file with latitude and longitude.",
-                    name=self.name,
-                    frame=self.frame,
-                ),
+                "the track {name} is in local metres ({frame}), not in east, north and up from an origin. Read it "
+                "from a file with latitude and longitude.",
                 code="no_origin",
+                name=self.name,
+                frame=self.frame,
             )
         frame = self.frame.replace(str(self.origin), str(origin))
         return replace(self, place=place_from_origin(self.place, self.origin, origin), origin=origin, frame=frame)

@@ -11,7 +11,6 @@ import numpy.typing as npt
 from scipy.spatial.transform import Rotation
 
 from ..._support.errors import ParameterError
-from ..._support.messages import Message
 from ...compiled import core
 from ...contact import Runner, SnowContact, SnowField
 from ...geometry.surfaces import Grid
@@ -82,12 +81,11 @@ def sledge_model(scenario: Scenario, *, step: float) -> Model:
     """The sledge of a scenario on its flexible skis."""
     if scenario.boots is not None:
         raise ParameterError(
-            Message("boots.file: an FMU's boots stay where the sledge has them; leave boots.file out"),
-            code="not_supported",
+            "boots.file: an FMU's boots stay where the sledge has them; leave boots.file out", code="not_supported"
         )
     if scenario.skier is not None:
         raise ParameterError(
-            Message("skier: an FMU holds a sledge, whose boots stay where they are; take a scenario without one"),
+            "skier: an FMU holds a sledge, whose boots stay where they are; take a scenario without one",
             code="not_supported",
         )
     setup = laid_out(scenario)
@@ -125,8 +123,7 @@ def _starts(variables: tuple[Variable, ...]) -> FloatArray:
 def _require_own_laws(snow: SnowField) -> None:
     if snow.penetration is not None or snow.friction_in_python is not None or snow.shear_in_python is not None:
         raise ParameterError(
-            Message("an FMU has no Python in it: it takes the laws that the core knows, not a user-defined one"),
-            code="no_data",
+            "an FMU has no Python in it: it takes the laws that the core knows, not a user-defined one", code="no_data"
         )
 
 

@@ -13,7 +13,6 @@ from pathlib import Path
 from typing import Final, Literal, TypeAlias
 
 from ..._support.errors import ParameterError
-from ..._support.messages import Message
 from ..._support.staging import write_file
 from ...contact import c_library
 from ...scenario import Scenario
@@ -61,9 +60,7 @@ def write_contact_fmu(scenario: Scenario, path: str | Path, *, fmi: Version = 2,
     """
     _require(path, fmi)
     if skis not in (1, 2):
-        raise ParameterError(
-            Message("skis is {skis!r}; an FMU of the contact has 1 or 2", skis=skis), code="out_of_range"
-        )
+        raise ParameterError("skis is {skis!r}; an FMU of the contact has 1 or 2", code="out_of_range", skis=skis)
     return _write(contact_model(scenario, skis=skis, step=STEP["contact"]), Path(path), fmi)
 
 
@@ -103,20 +100,18 @@ def _require(path: str | Path, fmi: int) -> None:
     """Refuse before the work what cannot be."""
     if Path(path).suffix.lower() != ENDING:
         raise ParameterError(
-            Message(
-                "{path} does not end in {ending}, by which programs know an FMU; name it so", path=path, ending=ENDING
-            ),
+            "{path} does not end in {ending}, by which programs know an FMU; name it so",
             code="wrong_ending",
+            path=path,
+            ending=ENDING,
         )
     if fmi not in FOLDERS:
         raise ParameterError(
-            Message("fmi is {fmi!r}; FMUs are written for version 2 or 3 of the standard", fmi=fmi),
-            code="unknown_name",
+            "fmi is {fmi!r}; FMUs are written for version 2 or 3 of the standard", code="unknown_name", fmi=fmi
         )
     if not sys.platform.startswith("linux") or platform.machine() != "x86_64":
         raise ParameterError(
-            Message("FMUs are written on Linux on x86-64, for which alone their library is built"),
-            code="not_supported",
+            "FMUs are written on Linux on x86-64, for which alone their library is built", code="not_supported"
         )
 
 

@@ -12,7 +12,6 @@ import numpy as np
 import numpy.typing as npt
 
 from ..._support.errors import ParameterError, require_choice
-from ..._support.messages import Message
 from ..._support.units import DEGREE
 from ...geometry.boot_axes import angles_of
 from ...scenario.boots import ANGLES, LARGEST, OF_SLOPE, SIDES, Boots
@@ -94,27 +93,23 @@ def _seen(markers: Markers, name: str) -> FloatArray:
     if unseen.any():
         first = float(markers.time[int(np.argmax(unseen))])
         raise ParameterError(
-            Message(
-                "marker {name} was not seen in {count} frames, first at {first:g} s; fill the gaps before",
-                name=name,
-                count=int(unseen.sum()),
-                first=first,
-            ),
+            "marker {name} was not seen in {count} frames, first at {first:g} s; fill the gaps before",
             code="gap",
+            name=name,
+            count=int(unseen.sum()),
+            first=first,
         )
     far = ~(np.abs(place) <= LARGEST).all(axis=1)
     if far.any():
         first = float(markers.time[int(np.argmax(far))])
         raise ParameterError(
-            Message(
-                "marker {name} is beyond ±{largest:g} m in {count} frames, first at {first:g} s. Correct "
-                "the numbers, or the unit of the file.",
-                name=name,
-                largest=LARGEST,
-                count=int(far.sum()),
-                first=first,
-            ),
+            "marker {name} is beyond ±{largest:g} m in {count} frames, first at {first:g} s. Correct the numbers, or "
+            "the unit of the file.",
             code="out_of_range",
+            name=name,
+            largest=LARGEST,
+            count=int(far.sum()),
+            first=first,
         )
     return place
 
@@ -123,13 +118,11 @@ def _unit(vectors: FloatArray, of: BootMarkers) -> FloatArray:
     length = np.linalg.norm(vectors, axis=1, keepdims=True)
     if not np.all(length > 1e-9):
         raise ParameterError(
-            Message(
-                "markers {heel}, {toe} and {left} lie on one line; three that span a plane are needed",
-                heel=of.heel,
-                toe=of.toe,
-                left=of.left,
-            ),
+            "markers {heel}, {toe} and {left} lie on one line; three that span a plane are needed",
             code="out_of_range",
+            heel=of.heel,
+            toe=of.toe,
+            left=of.left,
         )
     return np.asarray(vectors / length)
 

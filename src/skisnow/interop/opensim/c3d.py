@@ -58,8 +58,7 @@ def read_c3d(path: str | Path) -> Markers:
         raise
     except ParameterError as error:
         raise ParameterError(
-            Message("{path} cannot be read as .c3d: {error}. Export it again", path=path, error=error),
-            code="cannot_read",
+            "{path} cannot be read as .c3d: {error}. Export it again", code="cannot_read", path=path, error=error
         ) from error
     about = {name: values for (group, name), values in content.parameters.items() if group == "POINT"}
     rate, first, points = content.rate, content.first_frame, content.points
@@ -69,25 +68,26 @@ def read_c3d(path: str | Path) -> Markers:
     columns = [i for i, name in enumerate(names) if not _is_quantity(name, quantities)]
     if not columns:
         raise ParameterError(
-            Message("{path}: it has no markers. Allowed: at least one name in POINT:LABELS with a place.", path=path),
+            "{path}: it has no markers. Allowed: at least one name in POINT:LABELS with a place.",
             code="out_of_range",
+            path=path,
         )
     unknown = next((i for i in columns if units[i] not in METRES), None)
     if unknown is not None:
         raise ParameterError(
-            Message(
-                "{path}: marker {name} is in {unit!r}. Allowed: {metres}. Export the markers in one of these units.",
-                path=path,
-                name=names[unknown],
-                unit=units[unknown],
-                metres=list(METRES),
-            ),
+            "{path}: marker {name} is in {unit!r}. Allowed: {metres}. Export the markers in one of these units.",
             code="out_of_range",
+            path=path,
+            name=names[unknown],
+            unit=units[unknown],
+            metres=list(METRES),
         )
     if not (np.isfinite(rate) and rate > 0.0):
         raise ParameterError(
-            Message("{path}: its rate is {rate:g} Hz. Allowed: above 0. Export the file again.", path=path, rate=rate),
+            "{path}: its rate is {rate:g} Hz. Allowed: above 0. Export the file again.",
             code="out_of_range",
+            path=path,
+            rate=rate,
         )
     sizes = np.array([METRES[units[i]] for i in columns])
     place = points[:, columns] * sizes[:, None]
@@ -96,7 +96,7 @@ def read_c3d(path: str | Path) -> Markers:
     try:
         return Markers(time, tuple(names[i] for i in columns), np.ascontiguousarray(place), rate, omitted)
     except ParameterError as error:
-        raise ParameterError(Message("{path}: {problem}", path=path, problem=error), code="damaged") from error
+        raise ParameterError("{path}: {problem}", code="damaged", path=path, problem=error) from error
 
 
 def _labels_and_units(about: Mapping[str, Values]) -> tuple[list[str], list[str]]:
@@ -149,7 +149,7 @@ def write_c3d(markers: Markers, path: str | Path, *, forces: MotionTable | None 
     path = Path(path)
     if path.suffix.lower() != ENDING:
         raise ParameterError(
-            Message("{path} does not end in {ending}; name it so", path=path, ending=ENDING), code="wrong_ending"
+            "{path} does not end in {ending}; name it so", code="wrong_ending", path=path, ending=ENDING
         )
     ezc3d = _ezc3d(path)
     rate, n = markers.rate, len(markers.time)
@@ -158,15 +158,13 @@ def write_c3d(markers: Markers, path: str | Path, *, forces: MotionTable | None 
     _require_names(path, "markers", markers.names)
     if first < 0 or first + n > MOST_FRAMES:
         raise ParameterError(
-            Message(
-                "{path}: the markers' frames are {first} to {last}; .c3d counts frames from 0 to "
-                "{most_frames}: shift the times, or write a shorter stretch",
-                path=path,
-                first=first,
-                last=first + n - 1,
-                most_frames=MOST_FRAMES - 1,
-            ),
+            "{path}: the markers' frames are {first} to {last}; .c3d counts frames from 0 to {most_frames}: shift "
+            "the times, or write a shorter stretch",
             code="out_of_range",
+            path=path,
+            first=first,
+            last=first + n - 1,
+            most_frames=MOST_FRAMES - 1,
         )
     made: Any = ezc3d.c3d()
     point = made["parameters"]["POINT"]
@@ -186,7 +184,7 @@ def write_c3d(markers: Markers, path: str | Path, *, forces: MotionTable | None 
             content = place.read_bytes()
     except (OSError, RuntimeError, ValueError) as error:
         raise OutputError(
-            Message("{path} cannot be written as .c3d: {error}", path=path, error=error), code="cannot_write"
+            "{path} cannot be written as .c3d: {error}", code="cannot_write", path=path, error=error
         ) from error
     write_file(path, content)
 
@@ -197,13 +195,11 @@ def _put_forces(made: Any, path: Path, markers: Markers, forces: MotionTable, st
     often, rest = divmod(len(forces.time), n)
     if rest or not often:
         raise ParameterError(
-            Message(
-                "{path}: forces have {n_time} rows for {n} frames; there must be a whole number for each frame",
-                path=path,
-                n_time=len(forces.time),
-                n=n,
-            ),
+            "{path}: forces have {n_time} rows for {n} frames; there must be a whole number for each frame",
             code="wrong_kind",
+            path=path,
+            n_time=len(forces.time),
+            n=n,
         )
     rate = often * markers.rate
     _require_frames(path, "forces", forces.time, start, rate)
@@ -221,30 +217,26 @@ def _require_frames(path: Path, what: str, time: FloatArray, start: float, rate:
     if not np.all(off <= OFF_FRAME):
         worst = int(np.argmax(off > OFF_FRAME))
         raise ParameterError(
-            Message(
-                "{path}: {field} at {time!r} s are not at a frame of {rate:g} Hz from {start:g} s on; "
-                ".c3d has one rate: bring them to it first",
-                path=path,
-                field=what,
-                time=float(time[worst]),
-                rate=rate,
-                start=start,
-            ),
+            "{path}: {field} at {time!r} s are not at a frame of {rate:g} Hz from {start:g} s on; .c3d has one rate: "
+            "bring them to it first",
             code="wrong_rate",
+            path=path,
+            field=what,
+            time=float(time[worst]),
+            rate=rate,
+            start=start,
         )
 
 
 def _require_names(path: Path, what: str, names: tuple[str, ...]) -> None:
     if not 0 < len(names) <= MOST_NAMES:
         raise ParameterError(
-            Message(
-                "{path}: {field} has {count} names; .c3d allows 1 to {limit}",
-                path=path,
-                count=len(names),
-                field=what,
-                limit=MOST_NAMES,
-            ),
+            "{path}: {field} has {count} names; .c3d allows 1 to {limit}",
             code="too_many",
+            path=path,
+            count=len(names),
+            field=what,
+            limit=MOST_NAMES,
         )
 
 
@@ -300,18 +292,19 @@ def c3d_content(data: bytes) -> C3dContent:
     try:
         return _content(data)
     except (struct.error, IndexError) as error:
-        raise ParameterError(Message("the file is cut off within its head"), code="damaged") from error
+        raise ParameterError("the file is cut off within its head", code="damaged") from error
 
 
 def _content(data: bytes) -> C3dContent:
     start = BLOCK * (data[0] - 1)
     if data[1] != _KEY or start < BLOCK:
-        raise ParameterError(Message("the file does not begin as a .c3d file does"), code="wrong_kind")
+        raise ParameterError("the file does not begin as a .c3d file does", code="wrong_kind")
     processor = data[start + 3]
     if processor not in _ORDERS:
         raise ParameterError(
-            Message("the processor has the number {processor}; it must be 84, 85 or 86", processor=processor),
+            "the processor has the number {processor}; it must be 84, 85 or 86",
             code="out_of_range",
+            processor=processor,
         )
     parameters = dict(_parameters(data, start + 4, processor))
     order = _ORDERS[processor]
@@ -341,9 +334,7 @@ def _parameters(data: bytes, at: int, processor: int) -> Iterator[tuple[tuple[st
         name = data[at + 2 : ends].decode("latin-1").upper()
         (distance,) = struct.unpack_from(f"{_ORDERS[processor]}h", data, ends)
         if group == 0 or distance < 0 or ends + distance > len(data):
-            raise ParameterError(
-                Message("the entry {name!r} of the parameters is damaged", name=name[:20]), code="damaged"
-            )
+            raise ParameterError("the entry {name!r} of the parameters is damaged", code="damaged", name=name[:20])
         if group < 0:
             groups[-group] = name
         else:
@@ -359,13 +350,11 @@ def _values(data: bytes, name: str, at: int, processor: int) -> Values:
     kind, count = struct.unpack_from("bB", data, at)
     if kind not in _CODES or count > _MOST_DIMENSIONS:
         raise ParameterError(
-            Message(
-                "the parameter {name!r} is damaged (type {kind}, {count} dimensions)",
-                name=name[:20],
-                kind=kind,
-                count=count,
-            ),
+            "the parameter {name!r} is damaged (type {kind}, {count} dimensions)",
             code="damaged",
+            name=name[:20],
+            kind=kind,
+            count=count,
         )
     dimensions = struct.unpack_from(f"{count}B", data, at + 2)
     begin, code = at + 2 + count, _ORDERS[processor] + _CODES[kind]
@@ -373,8 +362,7 @@ def _values(data: bytes, name: str, at: int, processor: int) -> Values:
     content = data[begin : begin + size]
     if len(content) < size:
         raise ParameterError(
-            Message("the parameter {name!r} has {size} bytes, more than there are", name=name[:20], size=size),
-            code="damaged",
+            "the parameter {name!r} has {size} bytes, more than there are", code="damaged", name=name[:20], size=size
         )
     if kind == -1:
         width = dimensions[0] if dimensions else 1
@@ -401,13 +389,11 @@ def _points(data: bytes, begin: int, counts: tuple[int, int, int], scale: float,
     size = bytes_each * width * frames
     if frames < 1 or begin < BLOCK or begin + size > len(data):
         raise ParameterError(
-            Message(
-                "{frames} frames of {width} numbers need {size} bytes, more than there are",
-                frames=frames,
-                width=width,
-                size=size,
-            ),
+            "{frames} frames of {width} numbers need {size} bytes, more than there are",
             code="damaged",
+            frames=frames,
+            width=width,
+            size=size,
         )
     content = data[begin : begin + size]
     with np.errstate(invalid="ignore"):  # a damaged number may be a signalling NaN

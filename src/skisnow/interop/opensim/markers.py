@@ -11,7 +11,6 @@ import numpy.typing as npt
 
 from ..._support.display import Facts, Shown, amount
 from ..._support.errors import ParameterError
-from ..._support.messages import Message
 from ..._support.staging import write_file
 from ..._support.user_files import plain_text
 from .table import MOST_BYTES, number_of, require_rising
@@ -56,20 +55,16 @@ class Markers(Shown):
         require_rising("markers", self.time)
         if np.shape(self.place) != (len(self.time), len(self.names), 3):
             raise ParameterError(
-                Message(
-                    "markers: place has shape {shape}; it must be {needed}",
-                    shape=str(np.shape(self.place)),
-                    needed=str((len(self.time), len(self.names), 3)),
-                ),
+                "markers: place has shape {shape}; it must be {needed}",
                 code="wrong_shape",
+                shape=str(np.shape(self.place)),
+                needed=str((len(self.time), len(self.names), 3)),
             )
         if len(set(self.names)) < len(self.names):
-            raise ParameterError(
-                Message("markers: a name is there twice; each marker needs a separate name"), code="repeated"
-            )
+            raise ParameterError("markers: a name is there twice; each marker needs a separate name", code="repeated")
         if not (np.isfinite(self.rate) and self.rate > 0.0):
             raise ParameterError(
-                Message("markers: rate is {rate!r} Hz; it must be above 0", rate=self.rate), code="out_of_range"
+                "markers: rate is {rate!r} Hz; it must be above 0", code="out_of_range", rate=self.rate
             )
 
     def _facts(self) -> Facts:
@@ -86,8 +81,7 @@ class Markers(Shown):
         """
         if name not in self.names:
             raise ParameterError(
-                Message("there is no marker {name}; there are {names}", name=name, names=list(self.names)),
-                code="unknown_name",
+                "there is no marker {name}; there are {names}", code="unknown_name", name=name, names=list(self.names)
             )
         return self.place[:, self.names.index(name)]
 
@@ -104,20 +98,19 @@ def read_trc(path: str | Path) -> Markers:
     lines = plain_text(path, most_bytes=MOST_BYTES).splitlines()
     if len(lines) < _HEAD or not lines[0].startswith("PathFileType"):
         raise ParameterError(
-            Message("{path} does not begin with PathFileType and a head of five lines, as a .trc file does", path=path),
+            "{path} does not begin with PathFileType and a head of five lines, as a .trc file does",
             code="wrong_kind",
+            path=path,
         )
     head = dict(zip(lines[1].split(), lines[2].split(), strict=False))
     unit = head.get("Units", "")
     if unit not in METRES:
         raise ParameterError(
-            Message(
-                "{path}, line 3: Units is {unit!r}; it must be one of {metres}",
-                path=path,
-                unit=unit,
-                metres=list(METRES),
-            ),
+            "{path}, line 3: Units is {unit!r}; it must be one of {metres}",
             code="wrong_kind",
+            path=path,
+            unit=unit,
+            metres=list(METRES),
         )
     names = tuple(word.strip() for word in lines[3].split("\t")[2:] if word.strip())
     rows = [(i + 1, line) for i, line in enumerate(lines[_HEAD:], start=_HEAD) if line.strip()]
@@ -129,7 +122,7 @@ def read_trc(path: str | Path) -> Markers:
     except ParameterError as error:
         raise error.at(path) from error
     except ValueError as error:
-        raise ParameterError(Message("{path}: {reason}", path=path, reason=error), code="not_a_number") from error
+        raise ParameterError("{path}: {reason}", code="not_a_number", path=path, reason=error) from error
 
 
 def _row(path: str | Path, number: int, line: str, names: tuple[str, ...]) -> list[float]:
@@ -139,13 +132,11 @@ def _row(path: str | Path, number: int, line: str, names: tuple[str, ...]) -> li
     cells += [""] * (wanted - len(cells))
     if any(cells[wanted:]):
         raise ParameterError(
-            Message(
-                "{path}, line {number}: more cells than {n_names} markers have",
-                path=path,
-                number=number,
-                n_names=len(names),
-            ),
+            "{path}, line {number}: more cells than {n_names} markers have",
             code="wrong_number_of_cells",
+            path=path,
+            number=number,
+            n_names=len(names),
         )
     values = []
     for place, cell in enumerate(cells[1:wanted]):
@@ -166,7 +157,7 @@ def write_trc(markers: Markers, path: str | Path) -> None:
     """
     path = Path(path)
     if path.suffix.lower() != ".trc":
-        raise ParameterError(Message("{path} does not end in .trc; name it so", path=path), code="wrong_ending")
+        raise ParameterError("{path} does not end in .trc; name it so", code="wrong_ending", path=path)
     n, k = len(markers.time), len(markers.names)
     rate = repr(float(markers.rate))
     lines = [

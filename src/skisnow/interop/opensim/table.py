@@ -12,7 +12,6 @@ import numpy.typing as npt
 
 from ..._support.display import Facts, Shown, amount
 from ..._support.errors import ParameterError
-from ..._support.messages import Message
 from ..._support.staging import write_file
 from ..._support.user_files import plain_text
 from ..._support.user_files.motion_head import HEAD_END, head_of_motion, is_in_degrees, require_whole
@@ -59,13 +58,11 @@ class MotionTable(Shown):
         for name, values in self.columns.items():
             if np.shape(values) != np.shape(self.time):
                 raise ParameterError(
-                    Message(
-                        "column {name} has shape {shape}, time {shape_2}",
-                        name=name,
-                        shape=str(np.shape(values)),
-                        shape_2=str(np.shape(self.time)),
-                    ),
+                    "column {name} has shape {shape}, time {shape_2}",
                     code="wrong_shape",
+                    name=name,
+                    shape=str(np.shape(values)),
+                    shape_2=str(np.shape(self.time)),
                 )
 
     def _facts(self) -> Facts:
@@ -76,21 +73,19 @@ def require_rising(what: str, time: FloatArray) -> None:
     """ParameterError if there is no time, or one that does not rise."""
     if np.ndim(time) != 1 or not len(time):
         raise ParameterError(
-            Message(
-                "{field}: time has shape {shape}; there must be one row or more", field=what, shape=str(np.shape(time))
-            ),
+            "{field}: time has shape {shape}; there must be one row or more",
             code="wrong_shape",
+            field=what,
+            shape=str(np.shape(time)),
         )
     if not np.all(np.isfinite(time)) or np.any(np.diff(time) <= 0.0):
         row = int(np.argmin(np.append(True, np.diff(time) > 0.0)))
         raise ParameterError(
-            Message(
-                "{field}: time of row {row} is {time:g} s; it must be finite and rise",
-                field=what,
-                row=row + 1,
-                time=time[row],
-            ),
+            "{field}: time of row {row} is {time:g} s; it must be finite and rise",
             code="not_a_number",
+            field=what,
+            row=row + 1,
+            time=time[row],
         )
 
 
@@ -107,25 +102,21 @@ def read_motion(path: str | Path) -> MotionTable:
     ends = next((i for i, line in enumerate(lines) if line.strip().lower() == HEAD_END), None)
     if ends is None or ends + 1 >= len(lines):
         raise ParameterError(
-            Message(
-                "{path} has no line {head_end} with a table behind it; a .mot or .sto file has one",
-                path=path,
-                head_end=HEAD_END,
-            ),
+            "{path} has no line {head_end} with a table behind it; a .mot or .sto file has one",
             code="no_data",
+            path=path,
+            head_end=HEAD_END,
         )
     head = head_of_motion(lines[:ends])
     name = "" if "=" in lines[0] else lines[0].strip()
     names = lines[ends + 1].split()
     if not names or names[0].lower() != _CLOCK or len(set(names)) < len(names):
         raise ParameterError(
-            Message(
-                "{path}, line {line}: the columns must begin with {clock}, each name once",
-                path=path,
-                line=ends + 2,
-                clock=_CLOCK,
-            ),
+            "{path}, line {line}: the columns must begin with {clock}, each name once",
             code="out_of_range",
+            path=path,
+            line=ends + 2,
+            clock=_CLOCK,
         )
     first = ends + 2
     rows = [(i + 1, line.split()) for i, line in enumerate(lines[first:], start=first) if line.strip()]
@@ -143,14 +134,12 @@ def read_motion(path: str | Path) -> MotionTable:
 def _numbers(path: str | Path, number: int, cells: list[str], names: list[str]) -> list[float]:
     if len(cells) != len(names):
         raise ParameterError(
-            Message(
-                "{path}, line {number}: {n_cells} cells for {n_names} names of columns",
-                path=path,
-                number=number,
-                n_cells=len(cells),
-                n_names=len(names),
-            ),
+            "{path}, line {number}: {n_cells} cells for {n_names} names of columns",
             code="wrong_number_of_cells",
+            path=path,
+            number=number,
+            n_cells=len(cells),
+            n_names=len(names),
         )
     return [number_of(cell, f"{path}, line {number}, column {name}") for name, cell in zip(names, cells, strict=True)]
 
@@ -161,7 +150,7 @@ def number_of(cell: str, where: str) -> float:
         return float(cell)
     except ValueError:
         raise ParameterError(
-            Message("{where}: {cell!r} is not a number; write one", where=where, cell=cell), code="not_a_number"
+            "{where}: {cell!r} is not a number; write one", code="not_a_number", where=where, cell=cell
         ) from None
 
 
@@ -177,8 +166,7 @@ def write_motion(table: MotionTable, path: str | Path) -> None:
     """
     if Path(path).suffix.lower() not in ENDINGS:
         raise ParameterError(
-            Message("{path} ends in none of {endings}; name it so", path=path, endings=list(ENDINGS)),
-            code="wrong_ending",
+            "{path} ends in none of {endings}; name it so", code="wrong_ending", path=path, endings=list(ENDINGS)
         )
     names = [_CLOCK, *table.columns]
     rows = np.column_stack([table.time, *table.columns.values()]).tolist()

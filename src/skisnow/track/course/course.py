@@ -14,7 +14,7 @@ import numpy.typing as npt
 
 from ..._support.display import Facts, Shown, ShownFields, amount
 from ..._support.errors import ParameterError, require_choice
-from ..._support.messages import Message, template
+from ..._support.messages import template
 from ...parameters import Quantity, Word, require_declared
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
@@ -140,44 +140,37 @@ class Course(Shown):
         require_choice("axes", self.axes, get_args(CourseAxes))
         if len(self.gates) < FEWEST_GATES:
             raise ParameterError(
-                Message(
-                    "a course needs {fewest} gates or more, it has {count}: its direction comes from them",
-                    fewest=FEWEST_GATES,
-                    count=len(self.gates),
-                ),
+                "a course needs {fewest} gates or more, it has {count}: its direction comes from them",
                 code="too_few_gates",
+                fewest=FEWEST_GATES,
+                count=len(self.gates),
             )
         for before, gate in zip(self.gates, self.gates[1:], strict=False):
             if before.turning == gate.turning:
                 raise ParameterError(
-                    Message(
-                        "the gates {first} and {second} are at one place; move one, or drop it",
-                        first=before.name,
-                        second=gate.name,
-                    ),
+                    "the gates {first} and {second} are at one place; move one, or drop it",
                     code="same_place",
+                    first=before.name,
+                    second=gate.name,
                 )
         name, count = Counter(gate.name for gate in self.gates).most_common(1)[0]
         if count > 1:
             raise ParameterError(
-                Message("two gates are called {name!r}; give each a different name or number", name=name),
-                code="repeated_name",
+                "two gates are called {name!r}; give each a different name or number", code="repeated_name", name=name
             )
         for gate in self.gates:
             if not max(map(abs, (*gate.turning, *(gate.outer or ())))) <= FARTHEST:
                 raise ParameterError(
-                    Message(
-                        "gate {name} is at {place}. Allowed: coordinates of finite numbers, at most "
-                        "{farthest:g} m. Correct them, or their unit",
-                        name=gate.name,
-                        place=gate.turning,
-                        farthest=FARTHEST,
-                    ),
+                    "gate {name} is at {place}. Allowed: coordinates of finite numbers, at most {farthest:g} m. "
+                    "Correct them, or their unit",
                     code="not_a_number",
+                    name=gate.name,
+                    place=gate.turning,
+                    farthest=FARTHEST,
                 )
         for gate, line, along in zip(self.gates, self.lines, self._chords(), strict=True):
             if float(line.along @ along) < AGAINST:
-                raise ParameterError(Message(_WRONG_SIDE[gate.side], name=gate.name), code="wrong_side")
+                raise ParameterError(_WRONG_SIDE[gate.side], code="wrong_side", name=gate.name)
 
     @property
     def lines(self) -> tuple[GateLine, ...]:
@@ -192,8 +185,9 @@ class Course(Shown):
         if not size.min() > 0.0:
             at = int(np.argmin(size))
             raise ParameterError(
-                Message("the gates before and behind {name} are at one place; move one", name=self.gates[at].name),
+                "the gates before and behind {name} are at one place; move one",
                 code="same_place",
+                name=self.gates[at].name,
             )
         return np.asarray(chord / size[:, None])
 
@@ -297,18 +291,13 @@ class Gate(ShownFields):
         require_choice(f"gate {self.name}: side", self.side, get_args(Side))
         for pole, place in (("turning", self.turning), ("outer", self.outer)):
             if place is not None and not all(math.isfinite(coordinate) for coordinate in place):
-                raise ParameterError(
-                    Message(_NOT_FINITE[pole], name=self.name, place=place),
-                    code="not_a_number",
-                )
+                raise ParameterError(_NOT_FINITE[pole], code="not_a_number", name=self.name, place=place)
         if self.outer is not None and not self.width > 0.0:
             raise ParameterError(
-                Message(
-                    "gate {name}: both poles are at {turning}; move one, or leave the outer out",
-                    name=self.name,
-                    turning=self.turning,
-                ),
+                "gate {name}: both poles are at {turning}; move one, or leave the outer out",
                 code="same_place",
+                name=self.name,
+                turning=self.turning,
             )
 
     @property

@@ -82,8 +82,9 @@ def read_course(
     }  # fmt: skip
     if (latitude_deg is None) != (longitude_deg is None):
         raise ParameterError(
-            Message("{path}: latitude and longitude of the origin go together; give both, or neither", path=path),
+            "{path}: latitude and longitude of the origin go together; give both, or neither",
             code="half_place",
+            path=path,
         )
     try:
         if path.suffix.lower() != ".gpx":
@@ -130,9 +131,7 @@ def _geodetic_course(
     waypoints: list[Waypoint], latitude_deg: float | None, longitude_deg: float | None, options: dict[str, Any]
 ) -> Course:
     if not waypoints:
-        raise ParameterError(
-            Message("there is no waypoint; write one for each gate, in their order"), code="no_waypoint"
-        )
+        raise ParameterError("there is no waypoint; write one for each gate, in their order", code="no_waypoint")
     first = waypoints[0]
     latitude = first.latitude_deg if latitude_deg is None else latitude_deg
     longitude = first.longitude_deg if longitude_deg is None else longitude_deg
@@ -145,13 +144,11 @@ def _geodetic_course(
         side = waypoint.side or bend
         if side is None:
             raise ParameterError(
-                Message(
-                    "waypoint {row}, {name!r}, does not say on which side it is passed, and the gates lie so "
-                    "straight there that their line does not tell either. Write left or right into its type",
-                    row=waypoint.row,
-                    name=waypoint.name,
-                ),
+                "waypoint {row}, {name!r}, does not say on which side it is passed, and the gates lie so straight "
+                "there that their line does not tell either. Write left or right into its type",
                 code="no_side",
+                row=waypoint.row,
+                name=waypoint.name,
             )
         sides.append(side)
         if waypoint.side is None:
@@ -201,13 +198,10 @@ def on_slope(course: Course, *, slope_angle: float | None) -> Course:
         return course
     if course.fall_line_azimuth_deg is None:
         raise ParameterError(
-            Message(
-                "{source}: its gates are in degrees; give course.fall_line_azimuth_deg, the compass "
-                "direction in which x points, and course.latitude_deg and course.longitude_deg of x = y "
-                "= 0",
-                source=course.source,
-            ),
+            "{source}: its gates are in degrees; give course.fall_line_azimuth_deg, the compass direction in which x "
+            "points, and course.latitude_deg and course.longitude_deg of x = y = 0",
             code="no_azimuth",
+            source=course.source,
         )
     angle = slope_angle or 0.0
     axes = slope_axes(course.fall_line_azimuth_deg * DEGREE, angle)
@@ -301,8 +295,7 @@ def read_waypoints(path: str | Path) -> list[Waypoint]:
         parser.Parse(plain_text(path, most_bytes=MOST_BYTES).lstrip(), True)
     except (_RefusedError, expat.ExpatError) as error:
         raise ParameterError(
-            Message("{path} is not a readable GPX file ({error}); export it again", path=path, error=error),
-            code="not_gpx",
+            "{path} is not a readable GPX file ({error}); export it again", code="not_gpx", path=path, error=error
         ) from error
     return [_waypoint(path, row, point) for row, point in enumerate(reader.points, start=1)]
 
@@ -325,14 +318,12 @@ def _number(path: str | Path, row: int, what: str, text: str | None, limit: floa
     if (math.isnan(value) and what == "ele") or abs(value) <= limit:
         return value
     raise ParameterError(
-        Message(
-            "{path}, waypoint {row}, {what}: {text!r} is not a number from {lowest:g} to {limit:g}; correct it",
-            path=path,
-            row=row,
-            what=what,
-            text=text,
-            lowest=-limit,
-            limit=limit,
-        ),
+        "{path}, waypoint {row}, {what}: {text!r} is not a number from {lowest:g} to {limit:g}; correct it",
         code="not_a_number",
+        path=path,
+        row=row,
+        what=what,
+        text=text,
+        lowest=-limit,
+        limit=limit,
     )
