@@ -9,16 +9,19 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 import pytest
 
 import skisnow
 from skisnow.campaign import ReferenceNoise, reference_campaign, write_reference
 from skisnow.estimation import results_dict
-from skisnow.estimation.readings import readings_of
+from skisnow.estimation.campaign_model import DEFAULT_PRIORS, fit_campaign
+from skisnow.estimation.hardness import DEFINITIONS, hardness, hardness_at_largest_load
+from skisnow.estimation.readings import ReadingUncertainty, readings_of
 from skisnow.estimation.result_rows import experiment_results
 from skisnow.estimation.screening import quality_flags
 from skisnow.estimation.series_estimates import series_estimates
-from skisnow.estimation.unloading import site_unloading
+from skisnow.estimation.unloading import Unloading, site_unloading, unloading
 from skisnow.forces.penetration import HypoplasticPoint
 
 from .conftest import MakeCampaign
@@ -217,3 +220,34 @@ def test_truth_is_covered_without_bias(seating_sd: float) -> None:
     assert 0.93 < np.mean(held) < 0.99
     harmonic = 10.0 * math.exp(-(0.15**2) / 2.0)
     assert np.mean(means) == pytest.approx(harmonic, rel=0.01)  # 60 sites of 0.15/√30 each: 0.4 %
+
+
+def test_an_error_of_the_deepest_reading_counts_once(make_campaign: MakeCampaign) -> None:
+    """It moves the line and the depth that the rebound is compared with: the standard error against differences.
+
+    Only the gauge errs, by u, and the depth zero is known: the variance is u² Σ (ds/de_j)².
+    """
+    campaign = make_campaign([*flat("P1", ratio=2.0), *edged("P2", ratio=2.0)], columns=BRANCH)
+    tests, u, step = campaign.penetration, 1e-5, 1e-7
+    assert tests is not None
+    assert tests.unloading is not None
+    readings = readings_of(tests, campaign.tools, geometry="extended")
+    H_V = hardness_at_largest_load(readings, DEFINITIONS["H_V"])
+    priors = replace(DEFAULT_PRIORS, rebound=1e-9)
+    model = fit_campaign(readings, H_V, ReadingUncertainty(depth=u, load=0.0), priors=priors)
+    model = replace(model, offset=np.zeros(2), covariance=np.zeros((2, 3, 3)))
+    value = hardness(readings, DEFINITIONS["H_V"], model)
+
+    def fitted(top: float = 0.0, returning: npt.NDArray[np.float64] | float = 0.0) -> Unloading:
+        depth = readings.penetration_depth.copy()
+        depth[readings.largest] += top
+        back = replace(tests.unloading, penetration_depth=tests.unloading.penetration_depth + returning)
+        moved = replace(readings, penetration_depth=depth)
+        return unloading(replace(tests, unloading=back), moved, value, model, np.zeros(2, dtype=bool))
+
+    by_top = (fitted(top=step).rebound_ratio - fitted(top=-step).rebound_ratio) / (2 * step)
+    squares = by_top**2
+    for j in range(3):
+        shift = np.where(np.arange(6) % 3 == j, step, 0.0)
+        squares += ((fitted(returning=shift).rebound_ratio - fitted(returning=-shift).rebound_ratio) / (2 * step)) ** 2
+    np.testing.assert_allclose(fitted().rebound_ratio_error, u * np.sqrt(squares), rtol=2e-3)

@@ -14,9 +14,10 @@ of a depth is
     u_e² + (s dê/dF u_F)² + r² d²
 
 with gauge and load as in `hardness` and the relative scatter r of the rebound, which all series of a group share (Paule
-and Mandel 1982, with a weak prior). The variance of s is that of the line plus (ds/dδ)² (variance of δ + u_e²): an
-offset δ changes g in proportion to δ/e_m. Intervals of k_u/H_V are the reciprocals of those of s. The whole module is
-our modelling assumption: the paper names the steepness and prints neither method nor value.
+and Mandel 1982, with a weak prior). The variance of s is that of the line plus (ds/dδ)² times the variance of δ: an
+offset δ changes g in proportion to δ/e_m. The gauge error of e_m moves the line and, as -δ does, g; both parts are
+added before they are squared. Intervals of k_u/H_V are the reciprocals of those of s. The whole module is our modelling
+assumption: the paper names the steepness and prints neither method nor value.
 """
 
 from __future__ import annotations
@@ -214,9 +215,12 @@ def _fit(branch: Readings, model: CampaignModel, chosen: BoolArray) -> tuple[Flo
     with np.errstate(invalid="ignore", divide="ignore"):
         own = branch.sums((weight * dg) ** 2 * of_rebound) / spread**2
         changed = weight * _centred(branch, law.g_by_offset, weight)
-        by_offset2 = (branch.sums(changed * (residual + s[series] * dg)) / spread) ** 2
-        offset = model.parts(2).of(chosen).times(by_offset2)
-        gauge = by_offset2 * model.uncertainty.depth**2
+        by_offset = -branch.sums(changed * (residual + s[series] * dg)) / spread
+        offset = model.parts(2).of(chosen).times(by_offset**2)
+        # the gauge error of the deepest reading acts on the line and, as -δ, on g
+        top = branch.largest
+        by_top = -weight[top] * dg[top] / spread
+        gauge = ((by_top - by_offset) ** 2 - by_top**2) * model.uncertainty.depth**2
         parts = offset._replace(variance=1.0 / spread + offset.variance + gauge)
         error = np.where(branch.sums(np.ones(branch.n)) > _FITTED, np.sqrt(parts.variance), np.nan)
         half = model.factor(parts, group, (own, freedom[group])) * error
