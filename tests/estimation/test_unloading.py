@@ -230,7 +230,8 @@ def test_an_error_of_the_deepest_reading_counts_once(make_campaign: MakeCampaign
     campaign = make_campaign([*flat("P1", ratio=2.0), *edged("P2", ratio=2.0)], columns=BRANCH)
     tests, u, step = campaign.penetration, 1e-5, 1e-7
     assert tests is not None
-    assert tests.unloading is not None
+    branch = tests.unloading
+    assert branch is not None
     readings = readings_of(tests, campaign.tools, geometry="extended")
     H_V = hardness_at_largest_load(readings, DEFINITIONS["H_V"])
     priors = replace(DEFAULT_PRIORS, rebound=1e-9)
@@ -241,7 +242,7 @@ def test_an_error_of_the_deepest_reading_counts_once(make_campaign: MakeCampaign
     def fitted(top: float = 0.0, returning: npt.NDArray[np.float64] | float = 0.0) -> Unloading:
         depth = readings.penetration_depth.copy()
         depth[readings.largest] += top
-        back = replace(tests.unloading, penetration_depth=tests.unloading.penetration_depth + returning)
+        back = replace(branch, penetration_depth=branch.penetration_depth + returning)
         moved = replace(readings, penetration_depth=depth)
         return unloading(replace(tests, unloading=back), moved, value, model, np.zeros(2, dtype=bool))
 
