@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import asyncio
+import csv
+import io
 import json
 import threading
 from typing import TYPE_CHECKING, Any, Final
@@ -12,7 +14,7 @@ from nicegui import background_tasks, run, ui
 from ..._support.errors import ParameterError, SkisnowError
 from ...report.campaign.page import RESULTS
 from ...report.formatting import significant
-from ..elements import Words, choice, link, named
+from ..elements import Words, button, choice, link, named
 from ..lab_skis import NOTHING, LabSkis
 from ..language import said
 from ..layout import framed
@@ -77,7 +79,7 @@ FACTS: Final = {
     "grip_utilisation": ("Grip utilisation (1: side-slip)", ""),
     "total_force_N": ("Total force of the snow", "N"),
     "boot_pitch_moment_Nm": ("Moment at the boot about the cross axis", "N\u00a0m"),
-    "turn_radius_boot_other_spread_m": ("Radius, were the side force spread the other way", "m"),
+    "turn_radius_boot_other_spread_m": ("Radius if the side force follows the pressure on the base", "m"),
     "turn_radius_chord_m": ("Radius through the ends of the contact", "m"),
 }
 
@@ -136,26 +138,31 @@ class _Carve:
             for name, otherwise in zip(names_in_address, (names[0], NOTHING), strict=True)
         )
         self._headline = named(ui.element("section").classes("headline above"), "Carved radius")
-        with ui.element("div").classes("fields large"):
-            self._ski = choice("Ski", names, first)
-            self._other = choice("Compared with", [NOTHING, *names], other)
-            self._ratio = choice("Unloading ratio k_u/H_V", RATIOS, "10")
-            self._snow = SnowChoice(lab, NUMBERS, self._update_snow)
-        link("Add or change a ski", SKIS)
         self._of_snow: dict[str, ui.element] = {}
-        with ui.element("div").classes("sliders"):
-            for key in SLIDERS:
-                self._slider(key)
-        self._status = Words(COMPUTING).classes("status")
-        self._status.props("role=status")
-        self._facts = ui.element("div").classes("table")
+        with ui.element("div").classes("carving"):
+            with ui.element("section"):
+                with ui.element("div").classes("fields large"):
+                    self._ski = choice("Ski", names, first)
+                    self._other = choice("Compared with", [NOTHING, *names], other)
+                    self._ratio = choice("Unloading ratio k_u/H_V", RATIOS, "10")
+                    self._snow = SnowChoice(lab, NUMBERS, self._update_snow)
+                link("Add or change a ski", SKIS)
+                with ui.element("div").classes("sliders"):
+                    for key in SLIDERS:
+                        self._slider(key)
+            with ui.element("section"):
+                self._status = Words(COMPUTING).classes("status")
+                self._status.props("role=status")
+                self._facts = ui.element("div").classes("table")
+                button("Curves as CSV", self._download)
+            with ui.element("section").classes("curves"):
+                self._charts = {
+                    key: LineChart(ALONG, title, f"{title} along the ski", ends=ENDS) for key, title in PANELS.items()
+                }
+        self._answers: list[dict[str, Any]] = []
         self._named: list[str] = []
         self._radii: list[Words] = []
         self._cells: dict[str, list[ui.label]] = {}
-        with ui.element("div").classes("two"):
-            self._charts = {
-                key: LineChart(ALONG, title, f"{title} along the ski", ends=ENDS) for key, title in PANELS.items()
-            }
         for menu in (self._ski, self._other, self._ratio):
             menu.on_value_change(self.ask)
 
@@ -223,7 +230,18 @@ class _Carve:
             {"ski": self._skis.word(name), **numbers, "unloading_ratio": float(str(self._ratio.value))} for name in skis
         ]
 
+    def _download(self) -> None:
+        """Hand the browser the curves of the answer that is shown, one row for each station of each ski."""
+        table = io.StringIO()
+        rows = csv.writer(table, lineterminator="\n")
+        rows.writerow(["ski", "station_m", *PANELS])
+        for answer in self._answers:
+            columns = [answer[key] or [None] * len(answer["station_m"]) for key in PANELS]
+            rows.writerows([answer["ski"]["name"], *row] for row in zip(answer["station_m"], *columns, strict=True))
+        ui.download(table.getvalue().encode(), "carve.csv")
+
     def _show(self, answers: list[dict[str, Any]]) -> None:
+        self._answers = answers
         self._status.set_text(" ".join(_in_words(answer) for answer in answers))
         names = [answer["ski"]["name"] for answer in answers]
         if names != self._named:
