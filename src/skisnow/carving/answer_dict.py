@@ -8,8 +8,8 @@ from importlib.metadata import version
 from typing import Any, Final
 
 import numpy as np
-import numpy.typing as npt
 
+from .._support.arrays import FloatArray
 from .._support.units import DEGREE, MM, N_PER_MM2, N_PER_MM3
 from .._support.user_files.json_text import json_number
 from ..snow.from_results import snow_dict
@@ -130,7 +130,7 @@ def _in_unit(given: float | None, value: float | None, unit: float) -> float | N
     return given if given is not None or value is None else value / unit
 
 
-def _numbers(values: npt.NDArray[np.float64] | None, unit: float) -> list[float | None] | None:
+def _numbers(values: FloatArray | None, unit: float) -> list[float | None] | None:
     if values is None:
         return None
     numbers: list[float | None] = (values / unit).tolist()

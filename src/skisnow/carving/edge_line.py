@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 import math
-from typing import Final, TypeAlias
+from typing import Final
 
 import numpy as np
 import numpy.typing as npt
 
+from .._support.arrays import FloatArray
 from ..ski.beam import ClampedSki, beam_at, beam_at_stations
 from .solve import Solution
-
-FloatArray: TypeAlias = npt.NDArray[np.float64]
 
 BOOT_REACH: Final = 0.40
 """Distance (m) before and behind the boot at which the circle of the boot's turn radius meets the edge line."""

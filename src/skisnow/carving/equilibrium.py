@@ -12,7 +12,6 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Final, Literal, TypeAlias
 
 import numpy as np
-import numpy.typing as npt
 
 from .._support.errors import ParameterError
 from ..ski.beam import CLAMP_LENGTH, ClampedSki, clamped
@@ -36,7 +35,6 @@ if TYPE_CHECKING:
     from ..forces.penetration import PointLaw
     from ..forces.shear import ShearLaw
 
-FloatArray: TypeAlias = npt.NDArray[np.float64]
 GrooveForm: TypeAlias = Literal["edge", "path"]
 MomentBalance: TypeAlias = Literal["boot", "free"]
 SideForceSpread: TypeAlias = Literal["depth", "base-reaction"]

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Final, TypeAlias
+from typing import Final
 
 import numpy as np
-import numpy.typing as npt
 
+from .._support.arrays import FloatArray
 from .._support.errors import ParameterError
 from .._support.messages import Message
 from ..compiled import core
@@ -16,8 +16,6 @@ from ..contact.asked_laws import AskedPressure, AskedStrength
 from ..forces.penetration import PenetrationLaw, PointLaw
 from ..forces.shear import ShearLaw
 from ..ski.ski import Ski
-
-FloatArray: TypeAlias = npt.NDArray[np.float64]
 
 STEEPEST_RATIO: Final = 1000.0
 """Unloading ratio of the linear snow from which the search for another law's equilibrium begins, at most."""

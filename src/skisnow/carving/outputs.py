@@ -5,11 +5,12 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, Final, NamedTuple, TypeAlias
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
+from .._support.arrays import FloatArray
 from .._support.units import MM
 from ..ski.beam import deflection_shape, twist_shape
 from .edge_line import BOOT_REACH, EdgeLine, circle_radius
@@ -18,7 +19,6 @@ if TYPE_CHECKING:
     from ..ski.beam import ClampedSki
     from .solve import Conditions, Solution
 
-FloatArray: TypeAlias = npt.NDArray[np.float64]
 
 AT_BOOT: Final = np.array([BOOT_REACH, 0.0, -BOOT_REACH])
 """Places (m) of the circle of the boot's turn radius."""

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from typing import Final, Literal, TypeAlias
 
 import numpy as np
-import numpy.typing as npt
 
+from .._support.arrays import BoolArray, FloatArray
 from .._support.display import Facts, Shown, amount
 from .._support.errors import ParameterError
 from .._support.units import MM
@@ -19,7 +19,6 @@ from .edge_line import EdgeLine
 from .sensitivity import CarveDerivatives, CarveRequest, Sensitivity
 from .solve import Conditions, Solution
 
-FloatArray: TypeAlias = npt.NDArray[np.float64]
 Outcome: TypeAlias = Literal["equilibrium", "slips", "sinks", "bridges", "not_converged"]
 
 SINKING_DEPTH: Final = 0.30
@@ -302,7 +301,7 @@ def radius_at_boot(model: ClampedSki, conditions: Conditions, solution: Solution
     return EdgeLine(model, conditions.edge_angle, solution).radius_at_boot()
 
 
-def _bridges(station: FloatArray, below: npt.NDArray[np.bool_]) -> bool:
+def _bridges(station: FloatArray, below: BoolArray) -> bool:
     pieces = int(below[0]) + int(np.count_nonzero(np.diff(below.astype(int)) == 1))
     contact = station[below]
     return pieces != 1 or not contact[-1] <= 0.0 <= contact[0]

@@ -8,11 +8,11 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Final, TypeAlias
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
-import numpy.typing as npt
 
+from .._support.arrays import FloatArray
 from .._support.errors import ParameterError
 from .._support.units import DEGREE, N_PER_MM2, N_PER_MM3
 from ..parameters import nearest
@@ -27,7 +27,6 @@ if TYPE_CHECKING:
     from ..snow.properties import SnowProperties
     from .solve import Conditions
 
-FloatArray: TypeAlias = npt.NDArray[np.float64]
 
 CONDITIONS: Final = (
     "edge_angle_deg",

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import functools
 from dataclasses import dataclass, fields, replace
-from typing import TYPE_CHECKING, Final, TypeAlias
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
-import numpy.typing as npt
 
+from .._support.arrays import FloatArray
 from ..ski.beam import (
     GAUSS_POINTS,
     GAUSS_WEIGHTS,
@@ -23,7 +23,6 @@ from ..ski.variation import LINEAR, is_linear, require_own_tables, shape_value, 
 if TYPE_CHECKING:
     from ..ski.ski import Ski
 
-FloatArray: TypeAlias = npt.NDArray[np.float64]
 
 _GAUSS_PLACES: Final = np.array([(1.0 - 1.0 / np.sqrt(3.0)) / 2.0, (1.0 + 1.0 / np.sqrt(3.0)) / 2.0])
 _FREE: Final = ("name", "source", "mass_kg", "EI_N_m2", "GJ_N_m2", *LINEAR)  # keys without effect on linear growths

@@ -4,17 +4,15 @@ from __future__ import annotations
 
 import functools
 from dataclasses import dataclass
-from typing import Any, Final, NamedTuple, TypeAlias
+from typing import Any, Final, NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
+from .._support.arrays import FloatArray, IntArray
 from ..compiled import core
 from ..ski.beam import ClampedSki
 from ..ski.ski import Ski
 from .laws import STEEPEST_RATIO, SnowLaws
-
-FloatArray: TypeAlias = npt.NDArray[np.float64]
 
 RIGID_PLASTIC: Final = STEEPEST_RATIO
 """Unloading ratio that represents rigid-plastic snow: the groove springs back by a thousandth of its depth."""
@@ -143,7 +141,7 @@ def _core_ski(model: ClampedSki) -> core.CarvedSki:
     return core.carved_ski(rows, front, model.stiffness, waist, model.ski.running_length, *_bent_onto_snow(model))
 
 
-def _first_unknown(dof: npt.NDArray[np.int64], front: int) -> FloatArray:
+def _first_unknown(dof: IntArray, front: int) -> FloatArray:
     """First unknown of each station's element; six held unknowns are between those before and behind the clamp."""
     before, behind = dof[:, 0], dof[:, 3]
     first = np.where(before >= front, before + 6, np.where(behind >= front, behind + 3, front))

@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import math
-from typing import TypeAlias
 
 import numpy as np
-import numpy.typing as npt
 
-FloatArray: TypeAlias = npt.NDArray[np.float64]
+from .._support.arrays import FloatArray
 
 
 def axes_of(edge_angle: float, pitch: float, heading: float) -> FloatArray:

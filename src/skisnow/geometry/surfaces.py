@@ -9,10 +9,9 @@ from typing import Final, NamedTuple, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
+from .._support.arrays import FloatArray
 from .._support.display import ShownFields
 from .._support.errors import ParameterError
-
-FloatArray: TypeAlias = npt.NDArray[np.float64]
 
 EVEN = 1e-9
 """Share of the spacing by which places of a grid may lie unevenly: rounding."""

@@ -16,10 +16,10 @@ from typing import Annotated, Final, Literal, TypeAlias, get_args
 import numpy as np
 import numpy.typing as npt
 
+from .._support.arrays import FloatArray
 from .._support.errors import require_choice
 from ..parameters import Quantity, require_declared
 
-FloatArray: TypeAlias = npt.NDArray[np.float64]
 GeometryForm: TypeAlias = Literal["extended", "paper"]
 
 LIKELY_LENGTH_MM: Final = (2.0, 5000.0)

@@ -12,8 +12,8 @@ from pathlib import Path
 from typing import Any, Final, TypeAlias
 
 import numpy as np
-import numpy.typing as npt
 
+from .._support.arrays import FloatArray
 from .._support.content import content_bytes
 from .._support.errors import ParameterError
 from .._support.spreadsheet_text import encoding_of, most_frequent_separator, named_separator
@@ -319,7 +319,6 @@ def _require_not_free(own: Mapping[str, Mapping[str, float]], keys: Sequence[str
                 )
 
 
-FloatArray = npt.NDArray[np.float64]
 FARTHEST: Final = 50_000.0
 """Largest distance (m) of a track from the site; beyond it the track is from another place and the earth not flat."""
 

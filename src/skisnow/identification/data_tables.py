@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import Annotated, Final
 
 import numpy as np
-import numpy.typing as npt
 
+from .._support.arrays import BoolArray, FloatArray
 from .._support.display import ShownFields
 from .._support.errors import ParameterError
 from .._support.messages import Message, template
@@ -19,7 +19,6 @@ from .._support.user_files import plain_bytes
 from ..parameters import Quantity, own_quantities
 from ..track.readers.text import decimal_mark_of, decode_text, require_width, split_cells
 
-FloatArray = npt.NDArray[np.float64]
 FEWEST_FOR_SCATTER: Final = 3
 
 
@@ -262,7 +261,7 @@ def parse_photo_cells(table: TableFile) -> PhotoCells:
     return PhotoCells(table.name, tuple(runs))
 
 
-def _sd_of_run(name: str, sd: FloatArray | None, rows: npt.NDArray[np.bool_]) -> FloatArray | None:
+def _sd_of_run(name: str, sd: FloatArray | None, rows: BoolArray) -> FloatArray | None:
     if sd is None or np.isnan(sd[rows]).all():
         return None
     if np.isnan(sd[rows]).any():

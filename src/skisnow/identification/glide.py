@@ -13,13 +13,10 @@ from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
-import numpy.typing as npt
 
+from .._support.arrays import FloatArray, IntArray
 from .._support.errors import ParameterError
 from ..scenario import Plane, Slope, Terrain
-
-FloatArray = npt.NDArray[np.float64]
-IntArray = npt.NDArray[np.int64]
 
 LEAST_STEPS: Final = 200
 """Minimum number of time steps of a run; the forces change over tens of seconds."""

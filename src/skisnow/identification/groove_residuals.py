@@ -16,8 +16,8 @@ from dataclasses import dataclass, field
 from typing import Any, Final
 
 import numpy as np
-import numpy.typing as npt
 
+from .._support.arrays import BoolArray, FloatArray
 from .._support.errors import ParameterError, SkisnowError
 from .._support.units import DEGREE, MM, N_PER_MM2, N_PER_MM3
 from ..carving.equilibrium import carve
@@ -28,8 +28,6 @@ from ..ski import Ski
 from ..snow import SnowProperties
 from .data_tables import MeasuredGrooves
 from .problem import Fit, Kind, Values
-
-FloatArray = npt.NDArray[np.float64]
 
 HARDNESS_KEY, STRENGTH_KEY = "snow.H_V_N_per_mm3", "snow.S_f_N_per_mm2"
 USED_KEYS: Final = (
@@ -177,7 +175,7 @@ class GrooveResiduals:
         use = np.isfinite(self.measured.turn_radius)
         return float(np.sum(self.measured.turn_radius_sd[use] ** -2.0) ** -0.5) if use.any() else math.nan
 
-    def _columns(self) -> list[tuple[FloatArray, FloatArray, npt.NDArray[np.bool_]]]:
+    def _columns(self) -> list[tuple[FloatArray, FloatArray, BoolArray]]:
         grooves = self.measured
         return [
             (grooves.depth, grooves.depth_sd, np.isfinite(grooves.depth)),

@@ -8,17 +8,15 @@ from dataclasses import replace
 from typing import Final
 
 import numpy as np
-import numpy.typing as npt
 from scipy.stats import chi2, norm
 
+from .._support.arrays import FloatArray
 from .groove_residuals import STRENGTH_KEY, GrooveResiduals
 from .parameter import Parameter
 from .problem import unweighted_problem
 from .result import REASONS, Identification, Identified, Outcome
 from .solution import build_identification, too_few_points
 from .solving import SearchRequest, add_requested_intervals, solution_of, solve
-
-FloatArray = npt.NDArray[np.float64]
 
 SLIDING_PROBABILITY: Final = 0.01
 """Probability of the grooves, given an edge that holds, below which the edge is assumed to have slid."""

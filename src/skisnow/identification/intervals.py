@@ -7,9 +7,9 @@ from dataclasses import dataclass, replace
 from typing import Any, Final, Literal, TypeAlias
 
 import numpy as np
-import numpy.typing as npt
 from scipy.interpolate import PchipInterpolator
 
+from .._support.arrays import FloatArray
 from .._support.environment import needed
 from .._support.errors import ParameterError
 from .._support.messages import Message
@@ -19,7 +19,6 @@ from .result import Identification, Identified, Interval, Profile
 from .search import step_inside
 from .solution import Solution, best_fit_residuals, values_at
 
-FloatArray = npt.NDArray[np.float64]
 Progress = Callable[[str], None]
 
 PLACES: Final = (-3.0, -2.0, -1.0, 1.0, 2.0, 3.0)

@@ -8,13 +8,12 @@ from dataclasses import dataclass
 from typing import Any, Final
 
 import numpy as np
-import numpy.typing as npt
 
+from .._support.arrays import FloatArray
 from .._support.errors import ParameterError
 from ..parameters import Search
 from ..scenario.keys import SCENARIO_KEYS, short_name
 
-FloatArray = npt.NDArray[np.float64]
 _TIMES_START: Final = 5.0
 
 

@@ -7,16 +7,14 @@ from dataclasses import dataclass, field
 from typing import Any, Final
 
 import numpy as np
-import numpy.typing as npt
 
+from .._support.arrays import FloatArray
 from .._support.errors import ParameterError
 from .._support.units import DEGREE
 from ..scenario import Plane, ScenarioFile
 from .data_tables import PhotoCellRun, PhotoCells
 from .glide import Glide, SlopeLine, passage_times, planes, slope_line
 from .problem import Fit, Kind, Values, run_values
-
-FloatArray = npt.NDArray[np.float64]
 
 USED_KEYS: Final = (
     "friction.mu_0",

@@ -7,15 +7,14 @@ from dataclasses import dataclass, replace
 from typing import Final, Literal, Protocol, TypeAlias
 
 import numpy as np
-import numpy.typing as npt
 
+from .._support.arrays import FloatArray
 from .._support.display import ShownFields
 from .._support.errors import ParameterError
 from ..parameters import nearest
 from ..scenario.keys import EACH
 from .parameter import Parameter, values_of
 
-FloatArray = npt.NDArray[np.float64]
 Values: TypeAlias = Mapping[str, float]
 """Parameters by key, in the units that the keys name."""
 Kind: TypeAlias = Literal["track", "photo_cells", "marks"]

@@ -11,14 +11,13 @@ from pathlib import Path
 from typing import Any, Literal, TypeAlias
 
 import numpy as np
-import numpy.typing as npt
 
+from .._support.arrays import FloatArray
 from .._support.display import Facts, Shown, amount, ends, span
 from .._support.user_files.json_text import json_number
 from .parameter import Parameter
 from .problem import Fit
 
-FloatArray = npt.NDArray[np.float64]
 Interval: TypeAlias = tuple[float | None, float | None]
 Outcome: TypeAlias = Literal["converged", "not_converged", "not_identifiable", "too_few_points", "interrupted"]
 

@@ -11,10 +11,10 @@ from dataclasses import dataclass, field, replace
 from typing import Final, Literal, TypeAlias
 
 import numpy as np
-import numpy.typing as npt
 from scipy.optimize import lsq_linear
 
-FloatArray = npt.NDArray[np.float64]
+from .._support.arrays import FloatArray
+
 Residuals: TypeAlias = Callable[[Sequence[FloatArray]], list[FloatArray | None]]
 """Function from places of the search to their residuals, all in one batch; None for a place without residuals."""
 State: TypeAlias = Literal["converged", "not_converged", "interrupted"]

@@ -10,9 +10,9 @@ from types import TracebackType
 from typing import Final, Self
 
 import numpy as np
-import numpy.typing as npt
 from scipy.interpolate import CubicHermiteSpline
 
+from .._support.arrays import FloatArray
 from .._support.errors import SkisnowError
 from .._support.messages import Message
 from .._support.processes.batch import Pool, workers_in_force
@@ -25,7 +25,6 @@ from ..simulation.run import Run
 from ..simulation.verification import NUDGE, NUDGED, limit_sentences
 from ..ski.sources import Sources
 
-FloatArray = npt.NDArray[np.float64]
 SEARCH_STEP: Final = 4e-3
 """Fixed step (s) of the fast mode in a search: error of 1 to 3 cm after 46 m; too long on very hard snow."""
 OUTPUT_INTERVAL: Final = 0.02

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
-import numpy.typing as npt
 from scipy.stats import chi2
 
+from .._support.arrays import FloatArray
 from .parameter import Parameter, bounds_of
 from .problem import Problem
 from .result import REASONS, Effort, Identification, Identified, Interval, Outcome
@@ -24,8 +24,6 @@ from .uncertainty import (
     noise_warning,
     unknown_warnings,
 )
-
-FloatArray = npt.NDArray[np.float64]
 
 BOUND_DISTANCE: Final = 1e-6
 """Distance (sizes) from a bound that counts as on it."""

@@ -7,8 +7,8 @@ from dataclasses import dataclass, field, replace
 from typing import Final
 
 import numpy as np
-import numpy.typing as npt
 
+from .._support.arrays import FloatArray
 from .._support.errors import FitError, ParameterError
 from .._support.messages import template
 from .intervals import BootstrapBy, add_bootstrap_intervals, add_posterior_intervals, add_profile_intervals
@@ -18,7 +18,6 @@ from .result import Identification
 from .search import CLOSED_FORM_SEARCH, Search, SearchOptions, SearchState
 from .solution import Solution, build_identification
 
-FloatArray = npt.NDArray[np.float64]
 Progress = Callable[[str], None]
 
 GROOVE_SEARCH: Final = replace(

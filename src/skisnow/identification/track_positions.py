@@ -8,8 +8,8 @@ from dataclasses import dataclass, field
 from typing import Final
 
 import numpy as np
-import numpy.typing as npt
 
+from .._support.arrays import FloatArray
 from .._support.errors import ParameterError
 from .._support.messages import Message, template
 from .._support.processes.kept_rows import Row
@@ -17,8 +17,6 @@ from ..track.flags import inexact_sentence
 from ..track.track import Track
 from .problem import Fit, Kind, Values, run_values
 from .simulations import RunTask, grip_limit_sentences, perturbed_tasks
-
-FloatArray = npt.NDArray[np.float64]
 
 NOMINAL_SD: Final = 0.1
 """Standard deviation (m) if it is not stated and cannot be estimated; it cancels, or gives tracks equal weights."""

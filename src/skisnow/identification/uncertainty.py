@@ -7,13 +7,11 @@ from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
-import numpy.typing as npt
 from scipy.stats import norm, t
 
+from .._support.arrays import BoolArray, FloatArray
 from .._support.units import CONFIDENCE
 from .parameter import Parameter
-
-FloatArray = npt.NDArray[np.float64]
 
 SINGULAR: Final = 1e-6
 """A singular value of the scaled Jacobian below this share of the largest counts as 0."""
@@ -85,7 +83,7 @@ class Uncertainty:
     covariance: FloatArray
     correlation: FloatArray
     factor: float
-    unknown: npt.NDArray[np.bool_]
+    unknown: BoolArray
     groups: tuple[tuple[int, ...], ...]
     alone: FloatArray
 

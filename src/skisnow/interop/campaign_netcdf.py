@@ -16,6 +16,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy.io import netcdf_file
 
+from .._support.arrays import IntArray
 from .._support.staging import write_file
 
 if TYPE_CHECKING:
@@ -179,7 +180,7 @@ def _snow_of(dimension: str, density: npt.NDArray[Any], cone_depth: npt.NDArray[
     yield _Variable(f"{dimension}_drop_cone_depth", dimension, cone_depth, "m", "drop-cone depth at the experiment")
 
 
-def _row_size(dimension: str, reading: str, first: npt.NDArray[np.int64]) -> _Variable:
+def _row_size(dimension: str, reading: str, first: IntArray) -> _Variable:
     name = f"{reading}_row_size"
     return _Variable(name, dimension, np.diff(first), "1", "number of readings of the experiment", sample_of=reading)
 

@@ -6,18 +6,16 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from itertools import pairwise
 from pathlib import Path
-from typing import Any, Final, TypeAlias
+from typing import Any, Final
 
 import numpy as np
-import numpy.typing as npt
 
+from .._support.arrays import FloatArray
 from .._support.errors import ParameterError
 from .._support.staging import write_file
 from ..contact import SnowContact
 from ..ski import Ski
 from ..ski.beam import CLAMP_LENGTH
-
-FloatArray: TypeAlias = npt.NDArray[np.float64]
 
 SEGMENTS: Final = 20
 """Number of segments of a ski, without the part that the binding holds."""

@@ -13,11 +13,8 @@ from .._support.messages import Message, template
 from .._support.units import unit_of_name
 
 if TYPE_CHECKING:
-    import numpy as np
-    import numpy.typing as npt
+    from .._support.arrays import BoolArray, FloatArray
 
-    FloatArray: TypeAlias = npt.NDArray[np.float64]
-    BoolArray: TypeAlias = npt.NDArray[np.bool_]
 
 Kind: TypeAlias = Literal["number", "whole number", "text", "switch", "numbers", "three numbers"]
 SMALLEST, LARGEST = 1e-100, 1e100

@@ -6,19 +6,17 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
-from typing import Final, TypeAlias
+from typing import Final
 
 import numpy as np
-import numpy.typing as npt
 
+from .._support.arrays import FloatArray
 from .._support.errors import ParameterError
 from ..scenario import Plane, Scenario
 from ..skier.plan import Line
 from ..track.course import CourseResult, MovingPoint, passages
 from .line import RacingLine, skier_of
 from .score import NOT_PASSED, Score, score_of
-
-FloatArray: TypeAlias = npt.NDArray[np.float64]
 
 STEP: Final = 0.5
 """Largest step down the slope (m): see the tests of convergence."""

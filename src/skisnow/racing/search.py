@@ -7,15 +7,14 @@ from dataclasses import dataclass
 from typing import Any, Final, TypeAlias
 
 import numpy as np
-import numpy.typing as npt
 
+from .._support.arrays import FloatArray
 from .._support.environment import needed
 from .._support.errors import ParameterError
 from .._support.messages import Message
 from .._support.processes.batch import Pool
 from .._support.processes.kept_rows import KeptRows, Row
 
-FloatArray: TypeAlias = npt.NDArray[np.float64]
 Told: TypeAlias = Callable[[int, float], None]
 """Takes the number of evaluations so far and the least value among them."""
 

@@ -5,18 +5,16 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Final, TypeAlias
+from typing import Final
 
 import numpy as np
-import numpy.typing as npt
 from scipy.linalg import cho_factor, cho_solve
 from scipy.optimize import minimize
 from scipy.special import log_ndtr, ndtr
 
+from .._support.arrays import BoolArray, FloatArray
 from .score import NOT_PASSED
 from .search import Evaluated
-
-FloatArray: TypeAlias = npt.NDArray[np.float64]
 
 LENGTHS: Final = (0.05, 5.0)
 """Bounds of the process's correlation lengths, in shares of each range."""
@@ -200,7 +198,7 @@ class Prospects:
         return Prospects(self.time.with_mean_at(place), margins, least)
 
 
-def passed_of(evaluations: Sequence[Evaluated]) -> npt.NDArray[np.bool_]:
+def passed_of(evaluations: Sequence[Evaluated]) -> BoolArray:
     """Which came through (n,)."""
     return np.array([evaluation.value < NOT_PASSED for evaluation in evaluations])
 

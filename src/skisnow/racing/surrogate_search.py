@@ -5,16 +5,14 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Final, TypeAlias
+from typing import Final
 
 import numpy as np
-import numpy.typing as npt
 from scipy.stats import qmc
 
+from .._support.arrays import FloatArray
 from .search import Batches, Evaluated, optimiser_within
 from .surrogate import Prospects, passed_of
-
-FloatArray: TypeAlias = npt.NDArray[np.float64]
 
 PATIENCE: Final = 3
 """Batches without a better value that end a search with `settled`."""

@@ -7,15 +7,14 @@ from dataclasses import dataclass
 from typing import Final, Literal, TypeAlias
 
 import numpy as np
-import numpy.typing as npt
 
+from .._support.arrays import FloatArray
 from .line import RacingLine, first_gates, with_numbers
 from .racers import LinePoint, turns_in
 from .score import NOT_PASSED
 from .search import Batches, Evaluated, Evaluations, least_of
 from .surrogate_search import SurrogateSearch
 
-FloatArray: TypeAlias = npt.NDArray[np.float64]
 Progress: TypeAlias = Callable[[str], None]
 Search: TypeAlias = Literal["surrogate", "cma"]
 

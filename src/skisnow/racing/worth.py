@@ -10,9 +10,9 @@ from pathlib import Path
 from typing import Any, Final, get_args
 
 import numpy as np
-import numpy.typing as npt
 from scipy.stats import qmc
 
+from .._support.arrays import FloatArray
 from .._support.content import content_bytes
 from .._support.display import Facts, Shown, amount
 from .._support.errors import ParameterError, require_choice
@@ -51,7 +51,7 @@ class Worth(Shown):
     base: tuple[Score, ...]
 
     @property
-    def differences(self) -> npt.NDArray[np.float64]:
+    def differences(self) -> FloatArray:
         """Its time less that of the scenario as it is (s), of each snow on which both came through; below 0: faster."""
         pairs = zip(self.scores, self.base, strict=True)
         return np.array([a.time - b.time for a, b in pairs if a.time is not None and b.time is not None])

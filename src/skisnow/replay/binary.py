@@ -14,11 +14,12 @@ from __future__ import annotations
 import json
 import struct
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, Final, TypeAlias
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 import numpy.typing as npt
 
+from .._support.arrays import FloatArray, IntArray
 from .._support.errors import ParameterError
 from .._support.user_files import GivenError, json_value
 from .meshes import COLOURS, drawn_thickness
@@ -30,7 +31,6 @@ if TYPE_CHECKING:
 
     from .skier import Part
 
-FloatArray: TypeAlias = npt.NDArray[np.float64]
 
 MAGIC: Final = b"SKRP"
 FORMAT: Final = 2
@@ -157,7 +157,7 @@ def thin_replay(replay: Replay) -> Replay:
     return select_moments(replay, np.unique(np.append(np.arange(0, number, step), number - 1)))
 
 
-def select_moments(replay: Replay, moments: npt.NDArray[np.int64]) -> Replay:
+def select_moments(replay: Replay, moments: IntArray) -> Replay:
     """Replay with only the moments of these indices, and the whole groove."""
     skis = replay.skis
     along: dict[str, Any] = {name: getattr(skis, name)[moments] for name in _OVER_TIME}

@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy.spatial.transform import Rotation
 
+from .._support.arrays import FloatArray
 from .._support.errors import ParameterError
 from .._support.units import DEGREE, N_PER_MM2, N_PER_MM3
 from ..scenario import Plane, Profile, Terrain
@@ -35,7 +36,6 @@ if TYPE_CHECKING:
     from ..ski import Ski
     from ..track.course import Course
 
-FloatArray: TypeAlias = npt.NDArray[np.float64]
 Slope: TypeAlias = Plane | Profile | Terrain
 
 _AROUND: Final = 30.0

@@ -9,18 +9,17 @@ import json
 import math
 import struct
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, Final, TypeAlias
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 import numpy.typing as npt
 
+from .._support.arrays import BoolArray, FloatArray, IntArray
 from .replay import ski_edges
 
 if TYPE_CHECKING:
     from .replay import Replay
 
-FloatArray: TypeAlias = npt.NDArray[np.float64]
-IntArray: TypeAlias = npt.NDArray[np.int64]
 
 _MARGIN: Final = 3.0
 LIFTED: Final = 0.0005
@@ -85,7 +84,7 @@ def _strips(sections: int, corners: int, pairs: list[tuple[int, int]]) -> IntArr
     return np.concatenate([below.reshape(-1, 3), above.reshape(-1, 3)])
 
 
-def groove_mesh(replay: Replay, pieces_mask: npt.NDArray[np.bool_]) -> Mesh:
+def groove_mesh(replay: Replay, pieces_mask: BoolArray) -> Mesh:
     """Mesh of the masked pieces of groove, as rectangles of their width slightly above the snow."""
     groove = replay.groove
     half = 0.5 * groove.width[pieces_mask, None] * groove.left[pieces_mask]

@@ -5,12 +5,12 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final, TypeAlias
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
-import numpy.typing as npt
 from scipy.spatial.transform import Rotation
 
+from .._support.arrays import FloatArray
 from .._support.staging import write_file
 from .binary import select_moments, thin_replay
 from .meshes import (
@@ -65,8 +65,6 @@ def write_replay_model(replay: Replay, path: str | Path, time: float, *, exagger
     """
     write_file(path, replay_model(replay, time, exaggeration=exaggeration))
 
-
-FloatArray: TypeAlias = npt.NDArray[np.float64]
 
 GROOVE_STEP: Final = 0.05
 """Time (s) of the parts of the groove, each of which appears when it is complete."""

@@ -3,20 +3,20 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final, TypeAlias
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 import numpy.typing as npt
 from scipy.spatial import cKDTree
 from scipy.spatial.transform import Rotation
 
+from .._support.arrays import FloatArray, IntArray
 from .._support.errors import ParameterError
 from ..simulation.sledge_body import base_lateral, base_normal, rotation
 
 if TYPE_CHECKING:
     from ..track.track import Track
 
-FloatArray: TypeAlias = npt.NDArray[np.float64]
 
 FEWEST_POINTS: Final = 2
 SKI_NAMES: Final = ("left", "right")
@@ -73,7 +73,7 @@ class ReplayTerrain:
         return np.asarray(near + self.grade[0] * beyond_x + self.grade[1] * beyond_y)
 
 
-def _cell(places: FloatArray, at: npt.ArrayLike) -> tuple[FloatArray, npt.NDArray[np.int64], FloatArray]:
+def _cell(places: FloatArray, at: npt.ArrayLike) -> tuple[FloatArray, IntArray, FloatArray]:
     """Fraction of the distance to the next place, index of the place, and the position limited to the ends."""
     within = np.clip(np.asarray(at, dtype=float), places[0], places[-1])
     number = np.clip(np.searchsorted(places, within, side="right") - 1, 0, len(places) - 2)
@@ -145,7 +145,7 @@ class ReplayGroove:
     depth: FloatArray
     residual_depth: FloatArray
     time: FloatArray
-    ski: npt.NDArray[np.int64]
+    ski: IntArray
     spacing: float
 
 
@@ -296,7 +296,7 @@ def nearest_frame(replay: Replay, time: float) -> int:
 _NEIGHBOURS: Final = 2
 
 
-def groove_times(middle: FloatArray, time: FloatArray, track: FloatArray) -> tuple[FloatArray, npt.NDArray[np.int64]]:
+def groove_times(middle: FloatArray, time: FloatArray, track: FloatArray) -> tuple[FloatArray, IntArray]:
     """Time (k,) at which a boot passed each piece of groove, and index (k,) of the ski with the nearest boot.
 
     Parameters

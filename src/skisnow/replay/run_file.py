@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final, TypeAlias
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
-import numpy.typing as npt
 from scipy.io import netcdf_file
 
+from .._support.arrays import FloatArray
 from .._support.errors import ParameterError, SkisnowError
 from .._support.messages import Message, template
 from .._support.units import DEGREE
@@ -29,7 +29,6 @@ if TYPE_CHECKING:
     from .from_run import Slope
     from .replay import Replay, ReplayBoots, ReplayTrack
 
-FloatArray: TypeAlias = npt.NDArray[np.float64]
 
 _DAMAGE: Final = (TypeError, ValueError, LookupError, AttributeError, ArithmeticError, AssertionError, MemoryError)
 RUN_FILE: Final = "run.nc"

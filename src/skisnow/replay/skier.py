@@ -12,9 +12,9 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final, TypeAlias
 
 import numpy as np
-import numpy.typing as npt
 from scipy.spatial.transform import Rotation
 
+from .._support.arrays import FloatArray
 from .._support.units import DEGREE
 from ..skier.segments import FOOT, FOREARM, HIP_WIDTH, SHANK, SHOULDER_WIDTH, THIGH, TRUNK, UPPER_ARM
 from .meshes import Mesh, linear
@@ -26,7 +26,6 @@ if TYPE_CHECKING:
     from ..skier.segments import Segment
     from .replay import Replay, ReplaySkier
 
-FloatArray: TypeAlias = npt.NDArray[np.float64]
 
 SIDED: Final = ("ankle", "knee", "hip", "shoulder", "elbow", "hand", "pole tip")
 JOINTS: Final = ("pelvis", "neck", "head", *(f"{side} {name}" for side in ("left", "right") for name in SIDED))

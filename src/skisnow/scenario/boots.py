@@ -12,8 +12,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, Literal, TypeAlias, get_args
 
 import numpy as np
-import numpy.typing as npt
 
+from .._support.arrays import FloatArray
 from .._support.display import Facts, Shown, ends
 from .._support.errors import ParameterError, require_choice
 from .._support.spreadsheet_text import column_names, decimal_mark, most_frequent_separator, with_decimal_point
@@ -27,7 +27,6 @@ if TYPE_CHECKING:
     from scipy.interpolate import CubicSpline
     from scipy.spatial.transform import RotationSpline
 
-FloatArray: TypeAlias = npt.NDArray[np.float64]
 Frame: TypeAlias = Literal["sledge", "slope"]
 Over: TypeAlias = Literal["time", "distance"]
 
@@ -361,7 +360,7 @@ def _require_columns(path: Path, head: list[str]) -> None:
             )
 
 
-def _require_rising(path: Path, clock: str, rows: list[Row], at: npt.NDArray[np.float64]) -> None:
+def _require_rising(path: Path, clock: str, rows: list[Row], at: FloatArray) -> None:
     for (line, _), before, after in zip(rows[1:], at[:-1], at[1:], strict=True):
         if not after > before:
             raise ParameterError(
@@ -388,7 +387,7 @@ def _require_rising(path: Path, clock: str, rows: list[Row], at: npt.NDArray[np.
             )
 
 
-def _column(path: Path, rows: list[Row], head: list[str], place: int) -> npt.NDArray[np.float64]:
+def _column(path: Path, rows: list[Row], head: list[str], place: int) -> FloatArray:
     values = np.empty(len(rows))
     for i, (line, row) in enumerate(rows):
         if len(row) != len(head):
@@ -438,20 +437,18 @@ def _cell(path: Path, line: int, column: str, text: str) -> float:
     return value
 
 
-def _axes(table: Mapping[str, Any], missing: Mapping[str, float]) -> npt.NDArray[np.float64]:
+def _axes(table: Mapping[str, Any], missing: Mapping[str, float]) -> FloatArray:
     n = len(next(iter(table.values())))
     angles = [[table.get(f"{side}_{name}", np.full(n, missing[name])) * DEGREE for name in ANGLES] for side in SIDES]
     return np.array([[axes_of(*(float(row[i]) for row in of_ski)) for of_ski in angles] for i in range(n)])
 
 
-def _of_slope(table: Mapping[str, Any]) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
+def _of_slope(table: Mapping[str, Any]) -> tuple[FloatArray, FloatArray]:
     place = np.stack([np.stack([table[f"{side}_{name}"] for name in OF_SLOPE], axis=-1) for side in SIDES], axis=1)
     return place, _axes(table, dict.fromkeys(ANGLES, 0.0))
 
 
-def _of_sledge(
-    table: Mapping[str, Any], edge_angle: float, stance_width: float
-) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
+def _of_sledge(table: Mapping[str, Any], edge_angle: float, stance_width: float) -> tuple[FloatArray, FloatArray]:
     n = len(next(iter(table.values())))
     place = np.zeros((n, 2, 3))
     for ski, (side, sense) in enumerate(zip(SIDES, (1.0, -1.0), strict=True)):

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from typing import Annotated, Any, Final
 
 import numpy as np
-import numpy.typing as npt
 
+from .._support.arrays import FloatArray
 from .._support.errors import ParameterError
 from .._support.messages import Message, joined
 from .._support.units import MM, N_PER_MM2, N_PER_MM3
@@ -179,7 +179,7 @@ class Prior:
         """Both ends for a scenario with this value."""
         return (self.low * own, self.high * own) if self.about else (self.low, self.high)
 
-    def at(self, shares: npt.NDArray[np.float64], own: float) -> npt.NDArray[np.float64]:
+    def at(self, shares: FloatArray, own: float) -> FloatArray:
         """Values at shares (n,) between 0 and 1, kept inside what the key allows."""
         low, high = self.ends(own)
         key = SCENARIO_KEYS[self.key]
@@ -231,7 +231,7 @@ class Measured:
     low: float
     high: float
 
-    def at(self, shares: npt.NDArray[np.float64], own: float) -> npt.NDArray[np.float64]:  # noqa: ARG002
+    def at(self, shares: FloatArray, own: float) -> FloatArray:  # noqa: ARG002
         """Values at shares (n,) between 0 and 1, kept inside what the key allows; the scenario's own plays no part."""
         key = SCENARIO_KEYS[self.key]
         return np.clip(log_normal(self.value, (self.low, self.high), shares), key.lowest, key.highest)

@@ -5,17 +5,15 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Final, NamedTuple, TypeAlias
+from typing import Final, NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
+from .._support.arrays import FloatArray
 from .._support.errors import ParameterError
 from .._support.messages import Message
 from .._support.spreadsheet_text import CsvRow
 from .map_system import MapSystem, require_true_lengths, utm_zone
-
-FloatArray: TypeAlias = npt.NDArray[np.float64]
 
 MOST_CELLS: Final = 50_000_000
 FINEST, COARSEST = 0.01, 1e5

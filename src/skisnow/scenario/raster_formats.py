@@ -12,13 +12,14 @@ from typing import Any, Final, NoReturn
 import numpy as np
 import numpy.typing as npt
 
+from .._support.arrays import FloatArray
 from .._support.environment import needed
 from .._support.errors import ParameterError
 from .._support.messages import Message
 from .._support.spreadsheet_text import CsvRow, csv_rows
 from .._support.user_files import is_file, plain_text
 from .map_system import LENGTHS, MapSystem, length_unit, map_system
-from .raster import FloatArray, PlacedValues, Raster, number_within, placed_heights, require_places, require_size
+from .raster import PlacedValues, Raster, number_within, placed_heights, require_places, require_size
 
 
 def read_geotiff(path: str | Path, *, column: str) -> PlacedValues:

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Annotated, Final, Literal, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
+from .._support.arrays import FloatArray
 from .._support.display import Facts, Shown, ends
 from .._support.errors import ParameterError
 from .._support.messages import Message
@@ -23,7 +24,6 @@ from .raster import number_within, profile_limits
 if TYPE_CHECKING:
     from scipy.interpolate import PchipInterpolator
 
-FloatArray: TypeAlias = npt.NDArray[np.float64]
 Gap: TypeAlias = Literal["error", "interpolate"]
 
 FEWEST_POINTS: Final = 4

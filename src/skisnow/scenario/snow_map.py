@@ -6,11 +6,11 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Final, TypeAlias
+from typing import Final
 
 import numpy as np
-import numpy.typing as npt
 
+from .._support.arrays import FloatArray
 from .._support.display import Facts, Shown, span
 from .._support.errors import ParameterError
 from .._support.messages import Message
@@ -20,8 +20,6 @@ from ..geometry.surfaces import Grid
 from ..snow import SnowProperties
 from .raster import number_within
 from .raster_formats import read_grid_table
-
-FloatArray: TypeAlias = npt.NDArray[np.float64]
 
 FINER: Final = 4
 """Parts into which a patch is divided by the search for values below 0."""

@@ -10,6 +10,7 @@ from typing import Annotated, Final, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
+from .._support.arrays import FloatArray
 from .._support.display import Facts, Shown, amount, ends
 from .._support.errors import ParameterError
 from .._support.messages import Message
@@ -19,8 +20,6 @@ from ..parameters import Condition, Quantity, Word, require_declared
 from .raster import PlacedValues
 from .raster_formats import read_esri_ascii, read_geotiff, read_grid_table
 from .slope import STEEPEST_DEG, Plane, Profile
-
-FloatArray: TypeAlias = npt.NDArray[np.float64]
 
 FEWEST_PLACES: Final = 2
 """In x and in y."""

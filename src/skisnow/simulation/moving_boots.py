@@ -7,16 +7,14 @@ from dataclasses import dataclass
 from typing import Final, TypeAlias
 
 import numpy as np
-import numpy.typing as npt
 
+from .._support.arrays import FloatArray
 from .._support.display import Facts, Shown, amount, field_facts, name_with_values
 from .._support.errors import ParameterError
 from ..contact import SnowField
 from ..dynamics import BootMotion, BootPose, Dynamics
 from ..geometry.boot_axes import angles_of
 from ..scenario.boots import Boots
-
-FloatArray: TypeAlias = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)

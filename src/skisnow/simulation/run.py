@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final, Literal, TypeAlias
 
 import numpy as np
-import numpy.typing as npt
 
+from .._support.arrays import FloatArray
 from .._support.display import Facts, Shown, amount, field_facts, name_with_values, span
 from .._support.units import DEGREE, MM
 from ..scenario import Plane, Scenario, Terrain
@@ -22,7 +22,6 @@ if TYPE_CHECKING:
     from .moving_boots import BootHistory
     from .run_forces import BalanceHistory
 
-FloatArray: TypeAlias = npt.NDArray[np.float64]
 Outcome: TypeAlias = Literal[
     "finished",
     "distance_reached",

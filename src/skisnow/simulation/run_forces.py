@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final, TypeAlias
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
-import numpy.typing as npt
 
+from .._support.arrays import FloatArray
 from .._support.display import Facts, Shown, field_facts
 from .._support.errors import ParameterError
 from ..forces.shear import ShearLaw
@@ -19,7 +19,6 @@ if TYPE_CHECKING:
     from .moving_boots import BootHistory
     from .run import Run
 
-FloatArray: TypeAlias = npt.NDArray[np.float64]
 
 LEAST_LOAD: Final = 50.0
 """Load (N) of both skis above which there is a centre of pressure (modelling assumption)."""

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING
 
 import numpy as np
-import numpy.typing as npt
 
+from .._support.arrays import FloatArray
 from ..scenario.scenario import course_on_slope
 from ..track.course import Course, CourseResult, MovingPoint, passages
 from ..track.course.passages import track_point
@@ -14,8 +14,6 @@ from ..track.track import Track
 
 if TYPE_CHECKING:
     from .run import Run
-
-FloatArray: TypeAlias = npt.NDArray[np.float64]
 
 
 def time_gates(course: Course, moving: Run | Track) -> CourseResult:

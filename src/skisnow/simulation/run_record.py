@@ -5,19 +5,17 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
-from typing import Any, Final, TypeAlias
+from typing import Any, Final
 
 import numpy as np
-import numpy.typing as npt
 
+from .._support.arrays import FloatArray
 from ..dynamics import Ended
 from ..scenario.terrain import down_and_left, heights_of, normals_of
 from .moving_boots import BootHistory
 from .run import GIVEN, LOST, STORED, Outcome, SkiHistory
 from .run_forces import AlongEdge, snow_forces, thrust_per_length
 from .run_setup import Setup
-
-FloatArray: TypeAlias = npt.NDArray[np.float64]
 
 GAINED_SHARE, GAINED = 0.05, 10.0
 """Share of the energy exchanged, and energy (J), that may seem to be gained before numbers have diverged (modelling

@@ -5,11 +5,11 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Final, TypeAlias
+from typing import Final
 
 import numpy as np
-import numpy.typing as npt
 
+from .._support.arrays import FloatArray
 from .._support.errors import ParameterError
 from ..contact import Laws, Runner, SnowContact, SnowField
 from ..contact.snow_field import PART_ALONG
@@ -25,8 +25,6 @@ from ..snow.measured_range import without_range_warnings
 from .moving_boots import SAME_TIME, BootControl, BootDrive, StrengthDrive, TableControl
 from .run import Strength
 from .sledge_body import sledge_body
-
-FloatArray: TypeAlias = npt.NDArray[np.float64]
 
 ELEMENTS: Final = 40
 """Finite elements over a ski at least: 4.5 cm each, by the convergence tests of the docs."""

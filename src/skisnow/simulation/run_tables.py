@@ -6,11 +6,11 @@ import csv
 import io
 import math
 from pathlib import Path
-from typing import Final, TypeAlias
+from typing import Final
 
 import numpy as np
-import numpy.typing as npt
 
+from .._support.arrays import FloatArray
 from .._support.errors import ParameterError
 from .._support.staging import write_file
 from .._support.units import DEGREE, MM
@@ -46,7 +46,7 @@ def track_columns(run: Run) -> tuple[str, ...]:
     return COLUMNS if run.scenario.skier is None else (*COLUMNS, *SKIER_COLUMNS)
 
 
-def track_table(run: Run) -> npt.NDArray[np.float64]:
+def track_table(run: Run) -> FloatArray:
     """The rows of track.csv under `track_columns`, (n, 17) or more; the turn radius of a straight path is infinite."""
     skis = [
         column
@@ -79,8 +79,6 @@ def write_track(run: Run, path: str | Path) -> None:
     """
     write_file(path, track_csv(run))
 
-
-FloatArray: TypeAlias = npt.NDArray[np.float64]
 
 ENDINGS: Final = (".csv", ".mot", ".sto")
 _OWN: Final = ("ahead", "left", "up")

@@ -9,16 +9,14 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 
+from .._support.arrays import FloatArray
 from ..dynamics import Body, FlexibleSki
 from ..scenario.sledge import RigidSledge
 from ..ski.beam import GAUSS_POINTS, GAUSS_WEIGHTS, ClampedSki, deflection_shape, lowest_eigenvalue, twist_shape
-
-FloatArray: TypeAlias = npt.NDArray[np.float64]
 
 
 def base_normal(edge_angle: float) -> FloatArray:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
+from .._support.arrays import FloatArray
 from .base_profile import BaseShape
 from .checks import GREATEST_SPACING
 from .outline import ArcOutline
@@ -18,7 +19,6 @@ from .table_file import StationTable, evenly_spread
 if TYPE_CHECKING:
     from .layout import Layout, StationFunction
 
-FloatArray = npt.NDArray[np.float64]
 
 _SAME_PLACE = 1e-9  # m
 

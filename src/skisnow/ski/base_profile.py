@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated, Final
 
 import numpy as np
-import numpy.typing as npt
 
+from .._support.arrays import FloatArray
 from .._support.errors import ParameterError
 from ..parameters import require_declared
 from .ski_quantity import ski_quantity
@@ -15,7 +15,6 @@ from .ski_quantity import ski_quantity
 if TYPE_CHECKING:
     from .layout import Layout
 
-FloatArray = npt.NDArray[np.float64]
 
 SHOVEL_HEIGHT: Final = 0.050
 """Height of the tip over the contact points (m). Modelling assumption: 50 mm, a usual alpine ski."""

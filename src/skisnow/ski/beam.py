@@ -9,15 +9,14 @@ from __future__ import annotations
 
 import functools
 from dataclasses import dataclass
-from typing import Final, TypeAlias
+from typing import Final
 
 import numpy as np
 import numpy.typing as npt
 
+from .._support.arrays import FloatArray, IntArray
 from .._support.errors import ParameterError
 from .ski import Ski
-
-FloatArray: TypeAlias = npt.NDArray[np.float64]
 
 DOFS_PER_NODE: Final = 3
 _BENDING: Final = (0, 1, 3, 4)
@@ -114,7 +113,7 @@ _CLOSE: Final = 1e-14  # by which share an eigenvalue still falls that is found
 _MOST_ITERATIONS: Final = 200
 
 
-def assembled(element_matrices: FloatArray, dof: npt.NDArray[np.int64], size: int) -> FloatArray:
+def assembled(element_matrices: FloatArray, dof: IntArray, size: int) -> FloatArray:
     """Banded matrix (size, 11) of element matrices (n, 6, 6); `dof` (n, 6) numbers the unknowns, -1 where held."""
     matrix = np.zeros((size, 2 * HALF_BANDWIDTH + 1))
     rows = np.broadcast_to(dof[:, :, None], element_matrices.shape)
@@ -169,8 +168,6 @@ def _product(matrix: FloatArray, vectors: FloatArray) -> FloatArray:
     rows = np.lib.stride_tricks.sliding_window_view(around, 2 * HALF_BANDWIDTH + 1, axis=0)
     return np.einsum("ij,ikj->ik", matrix, rows)
 
-
-IntArray: TypeAlias = npt.NDArray[np.int64]
 
 CLAMP_LENGTH: Final = 0.30
 """Length of ski that boot and binding keep straight (m). Modelling assumption: about a boot's sole; limits are tested

@@ -11,7 +11,8 @@ from .._support.errors import ParameterError
 from .._support.messages import Message
 
 if TYPE_CHECKING:
-    from .layout import FloatArray, SkiSections
+    from .._support.arrays import FloatArray
+    from .layout import SkiSections
 
 GREATEST_SPACING: Final = 2.5e-3
 """Greatest distance of neighbouring stations (m): linear interpolation of a sidecut is then good to 0.1 micrometre."""

@@ -6,8 +6,8 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
-import numpy.typing as npt
 
+from .._support.arrays import FloatArray
 from .._support.errors import ParameterError
 from ..parameters import nearest
 from .file_keys import COLUMNS
@@ -18,7 +18,6 @@ if TYPE_CHECKING:
 
     from .ski import Ski
 
-FloatArray = npt.NDArray[np.float64]
 
 EDITED_COLUMNS: Final = {
     "width_mm": "width",

@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, NoReturn
 
 import numpy as np
-import numpy.typing as npt
 
+from .._support.arrays import FloatArray
 from .._support.errors import ParameterError, RangeWarning
 from .._support.messages import Message, joined
 from .._support.units import DEGREE
@@ -19,8 +19,6 @@ from .file_keys import SKI_KEYS, SkiFile
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
-
-FloatArray = npt.NDArray[np.float64]
 
 
 _OTHER_UNITS: Final = {

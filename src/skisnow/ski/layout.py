@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from typing import Final, TypeAlias
 
 import numpy as np
-import numpy.typing as npt
 
+from .._support.arrays import FloatArray
 from .._support.display import ShownFields
 from .._support.errors import ParameterError
 
@@ -118,7 +118,6 @@ def layout_of_lengths(
     )
 
 
-FloatArray: TypeAlias = npt.NDArray[np.float64]
 StationFunction: TypeAlias = Callable[[FloatArray], FloatArray]
 """Function from stations (m) to a quantity of the ski."""
 

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
-import numpy.typing as npt
 
+from .._support.arrays import FloatArray
 from .._support.errors import ParameterError
 from .checks import GREATEST_SPACING, STRAIGHT
 from .table_file import StationTable
@@ -15,7 +15,6 @@ from .table_file import StationTable
 if TYPE_CHECKING:
     from .layout import Layout, StationFunction
 
-FloatArray = npt.NDArray[np.float64]
 
 TIP_END_SHARE: Final = 0.2
 """Width at the very tip as a share of the tip width, where it is not given. Modelling assumption: a blunt end, so that

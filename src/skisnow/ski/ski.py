@@ -5,11 +5,12 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, fields, replace
-from typing import Annotated, Any, TypeAlias
+from typing import Annotated, Any
 
 import numpy as np
 import numpy.typing as npt
 
+from .._support.arrays import FloatArray
 from .._support.display import Facts, Shown
 from .._support.errors import ParameterError
 from .._support.messages import Message
@@ -27,8 +28,6 @@ from .checks import (
 )
 from .layout import Layout, SkiSections
 from .outline import radius_of_least_squares_circle
-
-FloatArray: TypeAlias = npt.NDArray[np.float64]
 
 _EDGE_POINTS = 401  # of the circle through the edge line, evenly spaced whatever the spacing of the tables
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 import numpy.typing as npt
 
+from .._support.arrays import FloatArray
 from .._support.errors import ParameterError
 from .._support.messages import Message
 from .._support.spreadsheet_text import (
@@ -28,7 +29,6 @@ from .file_values import checked, refuse, warn_of_unusual
 if TYPE_CHECKING:
     from pathlib import Path
 
-FloatArray = npt.NDArray[np.float64]
 
 MOST_BYTES: Final = 1 << 20
 """Most rows of a table: a row for each 2.5 mm of a ski takes 200 kB at most."""

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import functools
 import re
-from typing import TYPE_CHECKING, Any, Final, TypeAlias
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
-import numpy.typing as npt
 
+from .._support.arrays import FloatArray
 from .._support.errors import ParameterError
 from .._support.units import MM
 from ..parameters import nearest
@@ -23,7 +23,6 @@ if TYPE_CHECKING:
 
     from .ski import Ski
 
-FloatArray: TypeAlias = npt.NDArray[np.float64]
 
 FACTORS: Final = tuple(f"edit.{column}" for column in (SIDECUT, *EDITED_COLUMNS))
 """Factors of whole curves, as in `SkiEdit`; the rest of the ski is held."""

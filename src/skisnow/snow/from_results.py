@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
+from .._support.arrays import FloatArray
 from .._support.errors import ParameterError
 from .._support.messages import Message
 from .._support.units import MM, N_PER_MM2, N_PER_MM3
@@ -132,7 +132,7 @@ def _sites(results: dict[str, Any]) -> set[str]:
         return set()
 
 
-def _used(results: dict[str, Any], part: str, key: str, site: str | None, path: str | Path) -> npt.NDArray[np.float64]:
+def _used(results: dict[str, Any], part: str, key: str, site: str | None, path: str | Path) -> FloatArray:
     """The values of the used experiments; 0 N/mm² of a test without moment is a value, null is not."""
     try:
         rows = [row for row in results[part]["experiments"] if row["used"] and site in (None, row["site"])]

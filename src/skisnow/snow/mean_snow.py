@@ -7,15 +7,14 @@ from collections.abc import Iterable, Sequence
 from dataclasses import replace
 
 import numpy as np
-import numpy.typing as npt
 from scipy.special import ndtri
 
+from .._support.arrays import FloatArray
 from .._support.errors import ParameterError
 from .._support.messages import Message
 from .._support.units import CONFIDENCE, MM, N_PER_MM2, N_PER_MM3
 from .properties import Interval, SnowProperties
 
-FloatArray = npt.NDArray[np.float64]
 _LARGEST = 1e9
 
 
@@ -142,7 +141,7 @@ def _mean(values: FloatArray) -> tuple[float, Interval | None]:
     return mean, (mean - half, mean + half)
 
 
-def drawn_snows(snow: SnowProperties, shares: npt.NDArray[np.float64]) -> list[SnowProperties]:
+def drawn_snows(snow: SnowProperties, shares: FloatArray) -> list[SnowProperties]:
     """Snows whose H_V and S_f are log-normal, each with the 95 % interval of a measured snow.
 
     Parameters
@@ -195,7 +194,7 @@ def measured_intervals(snow: SnowProperties) -> tuple[Interval, Interval]:
     return hardness, stress
 
 
-def log_normal(value: float, interval: Interval, shares: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+def log_normal(value: float, interval: Interval, shares: FloatArray) -> FloatArray:
     """Quantiles at shares (n,) of a value that is known with a 95 % interval above 0: the median is the value.
 
     On logarithms each side of the value is half of a separate normal distribution: the interval of a ratio that was
@@ -206,11 +205,11 @@ def log_normal(value: float, interval: Interval, shares: npt.NDArray[np.float64]
     """
     low, high = (math.log(end / value) for end in interval)
     place = ndtri(shares) / float(ndtri(0.5 + CONFIDENCE / 2.0))
-    drawn: npt.NDArray[np.float64] = value * np.exp(place * np.where(place < 0.0, -low, high))
+    drawn: FloatArray = value * np.exp(place * np.where(place < 0.0, -low, high))
     return drawn
 
 
-def _drawn(interval: Interval, shares: npt.NDArray[np.float64]) -> list[float]:
+def _drawn(interval: Interval, shares: FloatArray) -> list[float]:
     """Quantiles of the log-normal distribution with this 95 % interval."""
     low, high = map(math.log, interval)
     half = float(ndtri(0.5 + CONFIDENCE / 2.0))

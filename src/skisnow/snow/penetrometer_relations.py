@@ -6,15 +6,11 @@ from dataclasses import dataclass
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Final
 
-import numpy as np
-import numpy.typing as npt
-
+from .._support.arrays import FloatArray
 from .published import calonne_2020, king_2020, proksch_2015
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
-
-FloatArray = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)

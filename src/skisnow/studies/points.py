@@ -13,6 +13,7 @@ from typing import Annotated, Any, Final, Self, TypeAlias, overload
 import numpy as np
 import numpy.typing as npt
 
+from .._support.arrays import FloatArray
 from .._support.errors import ParameterError
 from ..parameters import Quantity, checked_table, made
 
@@ -20,7 +21,6 @@ Point: TypeAlias = dict[str, Any]
 
 AT_ONCE: Final = 1000
 """Points whose text is made in one piece: some hundred kilobytes."""
-FloatArray = npt.NDArray[np.float64]
 MOST_POINTS: Final = 1_000_000
 """Of one study: a table of about half a gigabyte on disk; memory does not grow with it."""
 

@@ -9,11 +9,10 @@ import numpy as np
 import numpy.typing as npt
 from scipy.linalg import LinAlgError, cho_solve_banded, cholesky_banded, lapack
 
+from .._support.arrays import FloatArray, IntArray
 from .path_model import Chain, speed_chain
 
-FloatArray = npt.NDArray[np.float64]
 FloatSamples = npt.NDArray[np.float32]
-IntArray = npt.NDArray[np.int64]
 
 CORRELATION_TIME: Final = 4.0
 """Correlation time (s) of the vertical speed (modelling assumption)."""

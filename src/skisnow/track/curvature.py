@@ -6,17 +6,14 @@ from dataclasses import dataclass
 from typing import Final, Literal, TypeAlias
 
 import numpy as np
-import numpy.typing as npt
 from scipy.stats import norm
 
+from .._support.arrays import BoolArray, FloatArray, IntArray
 from .._support.display import ShownFields
 from .._support.units import CONFIDENCE
 from .path_estimate import PathEstimate, estimate_path
 from .smoothing import SmoothedTrack, fill_rows, smooth_track
 from .track import Track
-
-FloatArray = npt.NDArray[np.float64]
-IntArray = npt.NDArray[np.int64]
 
 SpeedSource: TypeAlias = Literal["recorded", "fitted"]
 ArcLengthSource: TypeAlias = Literal["odometer", "recorded speed", "places"]
@@ -235,7 +232,7 @@ def running_mean(time: FloatArray, values: FloatArray, window: float, segment: I
     return np.where(finite & (count > 0), mean, np.nan)
 
 
-def _moving(smoothed: SmoothedTrack, fitted: FloatArray) -> npt.NDArray[np.bool_]:
+def _moving(smoothed: SmoothedTrack, fitted: FloatArray) -> BoolArray:
     """True (n,) for points that move fast enough to have a heading."""
     error = np.sqrt(smoothed.covariance[:, 1, 1])
     with np.errstate(invalid="ignore"):

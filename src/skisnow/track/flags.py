@@ -18,9 +18,8 @@ if TYPE_CHECKING:
 
     import numpy.typing as npt
 
-    BoolArray = npt.NDArray[np.bool_]
-    FloatArray = npt.NDArray[np.float64]
-    IntArray = npt.NDArray[np.int64]
+    from .._support.arrays import BoolArray, FloatArray, IntArray
+
 
 FASTEST: Final = 75.0
 """Speed (m/s) above which a step is impossible: the fastest run ever skied had 71 m/s (modelling assumption)."""
@@ -203,7 +202,7 @@ def solution_counts(solution: SolutionArray | None) -> dict[str, int] | None:
     return {name: count for name, count in counts.items() if count}
 
 
-def solution_flags(solution: SolutionArray | None, count: int) -> dict[str, npt.NDArray[np.bool_]]:
+def solution_flags(solution: SolutionArray | None, count: int) -> dict[str, BoolArray]:
     """The flags ``float_solution`` and ``code_solution``, each (count,) bool.
 
     Code solutions are flagged only if other points of the track are phase solutions.

@@ -13,8 +13,7 @@ from typing import Final
 import numpy as np
 import numpy.typing as npt
 
-FloatArray = npt.NDArray[np.float64]
-IntArray = npt.NDArray[np.int64]
+from .._support.arrays import FloatArray, IntArray
 
 TERMS: Final = 4
 """Coefficients of a cubic."""

@@ -12,14 +12,13 @@ import numpy as np
 import numpy.typing as npt
 from scipy.linalg import lapack
 
+from .._support.arrays import FloatArray, IntArray
 from .._support.units import CONFIDENCE
 from .climb import climb_samples
 from .path_model import STATES, PathFit, PathModel, TimeScales
 from .path_search import WeightedParameters, likely_parameters
 
-FloatArray = npt.NDArray[np.float64]
 FloatSamples = npt.NDArray[np.float32]
-IntArray = npt.NDArray[np.int64]
 
 LONGEST_STEP: Final = 0.25
 """Maximum time (s) between nodes, or a quarter of the interval between points if that is longer."""

@@ -23,12 +23,10 @@ from dataclasses import dataclass
 from typing import Final, NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 from scipy.interpolate import make_interp_spline, make_smoothing_spline
 from scipy.linalg import LinAlgError, cho_solve_banded, cholesky_banded, expm
 
-FloatArray = npt.NDArray[np.float64]
-IntArray = npt.NDArray[np.int64]
+from .._support.arrays import FloatArray, IntArray
 
 DAMPING: Final = 0.07
 """Damping ratio ζ of the turn rate (modelling assumption: four or five linked turns resemble each other)."""

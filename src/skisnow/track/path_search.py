@@ -12,11 +12,9 @@ from dataclasses import dataclass
 from typing import Final, NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
+from .._support.arrays import FloatArray
 from .path_model import MotionParameters, PathModel
-
-FloatArray = npt.NDArray[np.float64]
 
 PRIOR_MEAN: Final = np.log(np.array([0.5, 0.8, 0.15]))
 PRIOR_SD: Final = np.array([1.5, 0.8, 1.3])

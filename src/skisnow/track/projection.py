@@ -22,9 +22,8 @@ from .._support.errors import ParameterError
 from .._support.units import DEGREE
 
 if TYPE_CHECKING:
-    import numpy.typing as npt
+    from .._support.arrays import FloatArray
 
-    FloatArray = npt.NDArray[np.float64]
 
 SEMI_MAJOR_AXIS: Final = 6378137.0
 """a in m, WGS84."""

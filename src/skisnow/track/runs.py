@@ -8,14 +8,12 @@ from itertools import pairwise
 from typing import Final, Literal
 
 import numpy as np
-import numpy.typing as npt
 
+from .._support.arrays import FloatArray
 from .._support.display import ShownFields
 from .._support.units import STANDARD_GRAVITY
 from .curvature import TrackMotion, running_mean, segments
 from .track import Track
-
-FloatArray = npt.NDArray[np.float64]
 
 LEAST_HEIGHT: Final = 15.0
 """Height (m) that makes a descent a run and an ascent a lift. Modelling assumption: above the wander of a receiver's

@@ -14,9 +14,8 @@ from .._support.units import DEGREE
 from .track import Track
 
 if TYPE_CHECKING:
-    import numpy.typing as npt
+    from .._support.arrays import FloatArray
 
-    FloatArray = npt.NDArray[np.float64]
 
 STEEPEST: Final = 75.0 * DEGREE
 """Steepest slope (rad), as for scenarios."""

@@ -6,19 +6,15 @@ from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
-import numpy.typing as npt
 from scipy.optimize import brentq
 from scipy.stats import chi2
 
+from .._support.arrays import BoolArray, FloatArray, IntArray
 from .._support.display import ShownFields
 from .._support.errors import ParameterError
 from .flags import GAP_FACTOR
 from .local_cubic import FEWEST_POINTS, TERMS, LocalCubic, WeightedValues, local_cubic
 from .track import Track
-
-FloatArray = npt.NDArray[np.float64]
-BoolArray = npt.NDArray[np.bool_]
-IntArray = npt.NDArray[np.int64]
 
 SHORTEST_WINDOW: Final = 0.8
 """Default length (s) of the window where points are dense. Modelling assumption: a slalom turn takes 0.8 to 1 s."""

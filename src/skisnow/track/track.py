@@ -8,14 +8,13 @@ from datetime import datetime
 from typing import Literal, TypeAlias
 
 import numpy as np
-import numpy.typing as npt
 
+from .._support.arrays import BoolArray, FloatArray
 from .._support.display import Facts, Shown, amount, ends
 from .._support.errors import ParameterError
 from .flags import FLAGS, SolutionArray
 from .projection import GeodeticPoint, place_from_origin
 
-FloatArray = npt.NDArray[np.float64]
 Axes: TypeAlias = Literal["file", "east_north_up", "slope"]
 
 
@@ -87,7 +86,7 @@ class Track(Shown):
     solution: SolutionArray | None = None
     odometer: FloatArray | None = None
     start: datetime | None = None
-    flags: Mapping[str, npt.NDArray[np.bool_]] = field(default_factory=dict)
+    flags: Mapping[str, BoolArray] = field(default_factory=dict)
     axes: Axes = "file"
     slope_angle: float | None = None
     origin: GeodeticPoint | None = None
@@ -139,7 +138,7 @@ class Track(Shown):
         return replace(self, place=place_from_origin(self.place, self.origin, origin), origin=origin, frame=frame)
 
     @property
-    def usable(self) -> npt.NDArray[np.bool_]:
+    def usable(self) -> BoolArray:
         """(n,) bool: points with a horizontal place and without a flag that excludes."""
         usable = np.asarray(np.isfinite(self.place[:, :2]).all(axis=1))
         for code, where in self.flags.items():

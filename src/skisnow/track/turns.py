@@ -10,11 +10,9 @@ from typing import Final, Literal
 import numpy as np
 import numpy.typing as npt
 
+from .._support.arrays import FloatArray
 from .._support.units import DEGREE
 from .curvature import INTERVAL_FACTOR, TrackMotion
-
-FloatArray = npt.NDArray[np.float64]
-IntArray = npt.NDArray[np.int64]
 
 SIGNIFICANCE: Final = 3.0
 """Smallest curvature of a turn, in its standard errors (modelling assumption)."""

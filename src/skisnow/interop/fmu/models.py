@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from typing import Final, Literal, TypeAlias
 
 import numpy as np
-import numpy.typing as npt
 from scipy.spatial.transform import Rotation
 
+from ..._support.arrays import FloatArray
 from ..._support.errors import ParameterError
 from ...compiled import core
 from ...contact import Runner, SnowContact, SnowField
@@ -17,7 +17,6 @@ from ...geometry.surfaces import Grid
 from ...scenario import Plane, Scenario
 from ...simulation.run_setup import AT_REST, Setup, laid_out
 
-FloatArray: TypeAlias = npt.NDArray[np.float64]
 SIDES: Final = ("left", "right")
 
 

@@ -6,18 +6,16 @@ import csv
 import io
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Final, Literal, TypeAlias
+from typing import Final, Literal
 
 import numpy as np
-import numpy.typing as npt
 
+from ..._support.arrays import FloatArray
 from ..._support.errors import ParameterError, require_choice
 from ..._support.units import DEGREE
 from ...geometry.boot_axes import angles_of
 from ...scenario.boots import ANGLES, LARGEST, OF_SLOPE, SIDES, Boots
 from .markers import Markers
-
-FloatArray: TypeAlias = npt.NDArray[np.float64]
 
 FROM_OPENSIM: Final = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
 """From axes with y up and z to the right to those with y to the left and z up."""

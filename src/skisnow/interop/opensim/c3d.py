@@ -14,12 +14,13 @@ from typing import Any, Final, TypeAlias
 
 import numpy as np
 
+from ..._support.arrays import FloatArray
 from ..._support.environment import needed
 from ..._support.errors import OutputError, ParameterError
 from ..._support.messages import Message
 from ..._support.staging import write_file
 from ..._support.user_files import GivenError, plain_bytes
-from .markers import METRES, FloatArray, Markers
+from .markers import METRES, Markers
 from .table import MOST_BYTES, MotionTable
 
 ENDING: Final = ".c3d"

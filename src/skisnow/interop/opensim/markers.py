@@ -4,18 +4,16 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Final, TypeAlias
+from typing import Final
 
 import numpy as np
-import numpy.typing as npt
 
+from ..._support.arrays import FloatArray
 from ..._support.display import Facts, Shown, amount
 from ..._support.errors import ParameterError
 from ..._support.staging import write_file
 from ..._support.user_files import plain_text
 from .table import MOST_BYTES, number_of, require_rising
-
-FloatArray: TypeAlias = npt.NDArray[np.float64]
 
 METRES: Final = {"m": 1.0, "cm": 1e-2, "mm": 1e-3}
 """Size of a unit of length that a file may name."""

@@ -5,18 +5,16 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Final, TypeAlias
+from typing import Final
 
 import numpy as np
-import numpy.typing as npt
 
+from ..._support.arrays import FloatArray
 from ..._support.display import Facts, Shown, amount
 from ..._support.errors import ParameterError
 from ..._support.staging import write_file
 from ..._support.user_files import plain_text
 from ..._support.user_files.motion_head import HEAD_END, head_of_motion, is_in_degrees, require_whole
-
-FloatArray: TypeAlias = npt.NDArray[np.float64]
 
 ENDINGS: Final = (".mot", ".sto")
 MOST_BYTES: Final = 1 << 28

@@ -13,7 +13,7 @@ from typing import Final
 import numpy as np
 import numpy.typing as npt
 
-FloatArray = npt.NDArray[np.float64]
+from ..._support.arrays import FloatArray
 
 SOURCE: Final = "Domine and others 2011"
 LEAST_DENSITY: Final = 11.5323 / 0.1027

@@ -15,13 +15,9 @@ from __future__ import annotations
 
 from typing import Final
 
-import numpy as np
-import numpy.typing as npt
-
+from ..._support.arrays import FloatArray
 from ..._support.units import MM
 from .proksch_2015 import density_of_form
-
-FloatArray = npt.NDArray[np.float64]
 
 SOURCE: Final = "King and others 2020"
 WINDOW: Final = 5.0 * MM

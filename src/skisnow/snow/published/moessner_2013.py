@@ -12,10 +12,9 @@ from typing import Final
 import numpy as np
 import numpy.typing as npt
 
+from ..._support.arrays import FloatArray
 from ..._support.units import DEGREE, N_PER_MM2, N_PER_MM3
 from ..properties import SnowProperties
-
-FloatArray = npt.NDArray[np.float64]
 
 SOURCE: Final = "Mössner and others 2013"
 

@@ -16,11 +16,9 @@ from __future__ import annotations
 from typing import Final
 
 import numpy as np
-import numpy.typing as npt
 
+from ..._support.arrays import FloatArray
 from ..._support.units import ICE_DENSITY, MM
-
-FloatArray = npt.NDArray[np.float64]
 
 SOURCE: Final = "Proksch and others 2015"
 WINDOW: Final = 2.5 * MM

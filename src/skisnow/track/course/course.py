@@ -10,14 +10,13 @@ from pathlib import Path
 from typing import Annotated, Final, Literal, NamedTuple, TypeAlias, get_args
 
 import numpy as np
-import numpy.typing as npt
 
+from ..._support.arrays import FloatArray
 from ..._support.display import Facts, Shown, ShownFields, amount
 from ..._support.errors import ParameterError, require_choice
 from ..._support.messages import template
 from ...parameters import Quantity, Word, require_declared
 
-FloatArray: TypeAlias = npt.NDArray[np.float64]
 Discipline: TypeAlias = Literal["slalom", "giant-slalom"]
 CourseAxes: TypeAlias = Literal["metres", "east_north_up"]
 

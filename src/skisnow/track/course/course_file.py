@@ -11,8 +11,8 @@ from typing import Any, Final, cast
 from xml.parsers import expat
 
 import numpy as np
-import numpy.typing as npt
 
+from ..._support.arrays import FloatArray
 from ..._support.errors import ParameterError
 from ..._support.messages import Message
 from ..._support.spreadsheet_text import CsvRow, csv_rows
@@ -21,8 +21,6 @@ from ..._support.user_files import plain_text
 from ..projection import GeodeticPoint, east_north_up
 from ..slope_frame import slope_axes
 from .course import Course, Discipline, Gate, Side, course_names, course_place
-
-FloatArray = npt.NDArray[np.float64]
 
 SHARPEST: Final = 0.05
 """Smallest bend (rad) of the line from pole to pole that determines a gate's side."""

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from typing import Final, Literal, TypeAlias
 
 import numpy as np
-import numpy.typing as npt
 
+from ..._support.arrays import FloatArray
 from ..._support.display import Facts, Shown, ShownFields, amount
 from ..._support.errors import ParameterError
 from ..._support.messages import template
@@ -186,8 +186,6 @@ def _verdict(gate: Gate, line: GateLine, low: float, high: float) -> tuple[GateO
         return "missed", f"gate {gate.name} was missed: {abs(high):.2f} m to the {other} of its turning pole"
     return "missed", f"gate {gate.name} was missed: {low - line.width:.2f} m beyond its outer pole"
 
-
-FloatArray: TypeAlias = npt.NDArray[np.float64]
 
 HALVINGS: Final = 60
 """Number of bisections of the interval between two points, for a time of a crossing accurate to rounding."""

@@ -15,13 +15,8 @@ from .recording import GEODETIC, LOCAL, MOTION, Recording, track_error
 from .text import spread_times
 
 if TYPE_CHECKING:
-    import numpy.typing as npt
-
+    from ..._support.arrays import BoolArray, FloatArray
     from ...parameters import Quantity
-
-    BoolArray = npt.NDArray[np.bool_]
-    FloatArray = npt.NDArray[np.float64]
-
     from .recording import Recording
 
 

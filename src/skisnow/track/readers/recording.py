@@ -8,21 +8,14 @@ from dataclasses import dataclass, field
 from datetime import datetime
 from typing import TYPE_CHECKING, Annotated, Final
 
-import numpy as np
-
 from ..._support.errors import FieldDataError
 from ...parameters import Quantity, own_quantities
 from ..projection import HIGHEST, GeodeticPoint
 from ..track import Axes
 
 if TYPE_CHECKING:
-    import numpy.typing as npt
-
+    from ..._support.arrays import BoolArray, FloatArray, IntArray
     from ..flags import SolutionArray
-
-    BoolArray = npt.NDArray[np.bool_]
-    FloatArray = npt.NDArray[np.float64]
-    IntArray = npt.NDArray[np.int64]
 
 
 @dataclass(eq=False)

@@ -13,8 +13,8 @@ from datetime import UTC, datetime, timedelta, timezone
 from typing import Final
 
 import numpy as np
-import numpy.typing as npt
 
+from ..._support.arrays import FloatArray
 from ..._support.spreadsheet_text import number
 from ..flags import Solution, solution_array
 from ..projection import GeodeticPoint, earth_centred, east_north_up_axes, geodetic
@@ -83,8 +83,6 @@ def parse_header(text: str, name: str) -> Header:
     sexagesimal = kind == "geodetic" and unit is not None and "'" in unit[1]
     return Header(SCALES.get((match[1] or "").upper(), "local"), kind, sexagesimal, separator, columns)
 
-
-FloatArray = npt.NDArray[np.float64]
 
 LARGEST: Final = 1e12
 """Largest number in any column; squares of larger ones could overflow."""

@@ -18,13 +18,10 @@ from .recording import FARTHEST, Recording, is_not_finite, track_error
 from .text import Cells, convert_serial_dates, decimal_mark_of, moment, require_width, split_cells
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
     from datetime import datetime
 
-    import numpy.typing as npt
-
-    BoolArray = npt.NDArray[np.bool_]
-    FloatArray = npt.NDArray[np.float64]
-    from collections.abc import Sequence
+    from ..._support.arrays import BoolArray, FloatArray
 
 TIMES: Final = ("time_s", "time")
 LOCAL: Final = ("x_m", "y_m", "z_m")

@@ -25,11 +25,8 @@ from .recording import track_error
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    import numpy.typing as npt
+    from ..._support.arrays import BoolArray, FloatArray, IntArray
 
-    BoolArray = npt.NDArray[np.bool_]
-    FloatArray = npt.NDArray[np.float64]
-    IntArray = npt.NDArray[np.int64]
 
 _HEAD: Final = 1 << 16
 
