@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import itertools
 import math
+from concurrent.futures import ThreadPoolExecutor
 from typing import get_args
 
 import numpy as np
@@ -141,3 +143,21 @@ def test_a_path_that_is_overshot_is_found_in_smaller_steps(name: str) -> None:
     assert path.turn_radius_boot == pytest.approx(edge.turn_radius_boot, rel=0.1)
     assert path.turn_radius_boot != pytest.approx(edge.turn_radius_boot, rel=1e-3)
     assert weights(ski, CLAMP_LENGTH) @ np.asarray(path.force_per_length) == pytest.approx(800.0, rel=1e-8)
+
+
+POINTS = list(itertools.product((0.04, 0.2, 5.0), (10.0, 45.0), (1.0, 20.0)))
+
+
+def found(point: tuple[float, float, float]) -> Equilibrium:
+    hardness, angle, ratio = point
+    return carve(read_ski("slalom"), snow(hardness), edge_angle=math.radians(angle), load=800.0, unloading_ratio=ratio)
+
+
+def test_bits_are_the_same_in_threads() -> None:
+    alone = [found(point) for point in POINTS]
+    with ThreadPoolExecutor(4) as pool:
+        together = list(pool.map(found, POINTS * 2))
+    for one, other in zip(alone * 2, together, strict=True):
+        assert one.iterations == other.iterations
+        assert np.array_equal(np.asarray(one.edge_depth), np.asarray(other.edge_depth))
+        assert np.array_equal(np.asarray(one.force_per_length), np.asarray(other.force_per_length))

@@ -5,15 +5,19 @@ With 320 elements: what the default 160 add is in `test_mesh.py`.
 
 from __future__ import annotations
 
+import json
 import math
 from dataclasses import replace
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 from openbench.entries.numpy_reference import slow_carve as reference
 from openbench.entries.numpy_reference.slow_carve import Case
 
-from skisnow.carving.equilibrium import carve
+from skisnow.carving.equilibrium import carve, rest
+from skisnow.carving.result import Equilibrium
 from skisnow.forces.penetration import MeanPressurePoint, PointLaw, VolumeWithAnglePoint
 from skisnow.forces.shear import AngleShear, ShearLaw
 from skisnow.ski import Ski, read_ski
@@ -155,3 +159,32 @@ def test_a_hardness_that_grows_with_the_edge_angle() -> None:
 def test_a_strength_that_is_not_the_same_along_the_edge(law: AngleShear | Deepening) -> None:
     """Where the ski twists, and where it is deeper, it draws as much more or less of the side force."""
     compare(replace(base(), unloading_ratio=10.0, shear=law, clamp_length=0.3))
+
+
+FORMER: list[dict[str, Any]] = json.loads((Path(__file__).parent / "former_solver.json").read_text("utf-8"))
+ROUNDING = 1e-7
+"""Of the greatest: equations of 160 elements lose six digits, and Newton's method ends at 10⁻¹¹ m."""
+NONE = {"edge_depth": 1e-3, "force_per_length": 1e3, "twist": 1e-3, "boot_pitch_moment": 1.0}
+"""Sizes (m, N/m, rad, N m) below which the rounding of others shows."""
+
+
+def found(*, ski: str, H: float, S: float, angle: float, ratio: Any, bevel: float = 0.0, **asked: Any) -> Equilibrium:
+    shape, given = replace(read_ski(ski), base_bevel=bevel), snow(H, S)
+    if asked.pop("at_rest", False):
+        return rest(shape, given, edge_angle=math.radians(angle), **asked)
+    return carve(shape, given, edge_angle=math.radians(angle), unloading_ratio=float(ratio), **asked)
+
+
+@pytest.mark.parametrize("former", FORMER, ids=lambda former: "-".join(str(v) for v in former["asked"].values()))
+def test_the_same_is_found(former: dict[str, Any]) -> None:
+    now = found(**former["asked"])
+    for name, value in former["found"].items():
+        computed = getattr(now, name)
+        if value is None or isinstance(value, str):
+            assert computed == value
+        elif isinstance(value, list):
+            places = len(now.station)
+            room = ROUNDING * max(NONE[name], *(abs(each) for each in value))
+            assert computed[places // 16 :: places // 8] == pytest.approx(value, rel=0.0, abs=room), name
+        else:
+            assert computed == pytest.approx(value, rel=ROUNDING, abs=ROUNDING * NONE.get(name, 0.0)), name

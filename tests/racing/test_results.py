@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import csv
 import math
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
-from skisnow import load_scenario
+from skisnow import load_scenario, read_ski
 from skisnow._support.errors import ParameterError
 from skisnow.racing import (
     LineTurn,
@@ -18,18 +19,20 @@ from skisnow.racing import (
     RacingLine,
     Score,
     Worth,
+    compare_variants,
     drawn_for_race,
     follower_line,
     quickest,
+    worth_changes,
     write_line,
 )
 from skisnow.racing.line import first_gates
 from skisnow.racing.quickest import _fingerprint
 from skisnow.racing.racers import Racer
-from skisnow.racing.worth import AS_IT_IS, compare_variants
+from skisnow.racing.worth import AS_IT_IS, wider
 from skisnow.track.course.gates_table import GateGap
 
-from .test_point import straight_course
+from .test_point import WAY, glide, straight_course
 from .test_search import EASY, SLALOM, raced
 
 FOLLOWED = follower_line(SLALOM)
@@ -227,3 +230,82 @@ def test_a_spread_of_ten_is_the_greatest() -> None:
     assert np.quantile(shares, [0.025, 0.975]) == pytest.approx([-math.log(11.0), math.log(11.0)], rel=0.05)
     with pytest.raises(ParameterError, match=r"10\.1"):
         drawn_for_race(snow, 4, spread=10.1, seed=1)
+
+
+STRAIGHT = load_scenario("slalom-20-gates").with_(course=straight_course())
+LINE = RacingLine(straight_course(), (0.0, 0.0), (LineTurn(aside=1.0),) * 3)
+
+
+def test_less_friction_on_a_straight_line_is_worth_what_the_glide_says() -> None:
+    snows = drawn_for_race(STRAIGHT.contact.snow, 3, spread=0.2, seed=1)
+    slower = STRAIGHT.with_(mu_0=0.06)
+    found = {
+        each.name: each
+        for each in compare_variants(
+            STRAIGHT, {"same": STRAIGHT, "more friction": slower}, LINE, snows, model="point", workers=1
+        )
+    }
+    assert found["same"].differences.tolist() == [0.0, 0.0, 0.0, 0.0]
+    exact = glide(PointRacer.of(slower), WAY)[1] - glide(PointRacer.of(STRAIGHT), WAY)[1]
+    more = found["more friction"]
+    assert more.on_own_snow == pytest.approx(exact, rel=1e-6)
+    assert more.mean == pytest.approx(exact, rel=1e-6)
+    assert more.faster == 0
+    assert more.deviation == pytest.approx(0.0, abs=1e-12)
+
+
+def test_a_race_that_fails_is_left_out_of_the_differences() -> None:
+    stuck = STRAIGHT.with_(mu_0=0.9)
+    (found,) = compare_variants(STRAIGHT, {"stuck": stuck}, LINE, [STRAIGHT.contact.snow], model="point", workers=1)
+    assert found.on_own_snow is None
+    assert (found.mean, found.deviation, len(found.differences)) == (None, None, 0)
+    assert "not reached" in found.scores[0].words
+    with pytest.raises(ParameterError, match="one variant"):
+        compare_variants(STRAIGHT, {}, LINE, [STRAIGHT.contact.snow])
+
+
+def test_drawn_snows_lie_about_the_scenarios_own() -> None:
+    snow = STRAIGHT.contact.snow
+    assert drawn_for_race(snow, 0, spread=None, seed=0) == [snow]
+    own, *drawn = drawn_for_race(snow, 400, spread=0.2, seed=0)
+    assert own.snow_hardness == snow.snow_hardness
+    shares = np.log([each.snow_hardness / snow.snow_hardness for each in drawn])
+    assert np.quantile(shares, [0.025, 0.5, 0.975]) == pytest.approx([-math.log(1.2), 0.0, math.log(1.2)], abs=0.01)
+    again = drawn_for_race(snow, 400, spread=0.2, seed=0)
+    assert [each.snow_hardness for each in again[1:]] == [each.snow_hardness for each in drawn]
+    with pytest.raises(ParameterError, match="no interval"):
+        drawn_for_race(snow, 4, spread=None, seed=0)
+    with pytest.raises(ParameterError, match="above 0"):
+        drawn_for_race(snow, 4, spread=0.0, seed=0)
+
+
+def test_what_a_variant_changes_of_the_snow_it_changes_of_each_snow() -> None:
+    from skisnow.racing.worth import _on
+
+    snow = replace(STRAIGHT.contact.snow, snow_hardness=2e8, failure_shear_stress=4e5)
+    changes = worth_changes(STRAIGHT)
+    harder, stronger = (_on(changes[name], STRAIGHT, snow).contact.snow for name in ("H_V 10 % more", "S_f 10 % more"))
+    assert (harder.snow_hardness, harder.failure_shear_stress) == pytest.approx((2.2e8, 4e5))
+    assert (stronger.snow_hardness, stronger.failure_shear_stress) == pytest.approx((2e8, 4.4e5))
+    assert changes["stiffness 5 % more"].stiffness_factor == pytest.approx(1.05)
+    assert changes["friction 10 % less"].contact.friction == pytest.approx(0.045)
+    stiffer = worth_changes(replace(STRAIGHT, stiffness_factor=1.2, contact=replace(STRAIGHT.contact, friction=0.1)))
+    assert stiffer["stiffness 5 % more"].stiffness_factor == pytest.approx(1.26)
+    assert stiffer["friction 10 % less"].contact.friction == pytest.approx(0.09)
+    assert stiffer["friction 10 % less"].stiffness_factor == 1.2
+
+
+def test_a_snow_whose_strength_is_not_known_is_raced_on_by_nobody() -> None:
+    snow = replace(STRAIGHT.contact.snow, failure_shear_stress=None, failure_shear_stress_interval=None)
+    with pytest.raises(ParameterError, match="S_f"):
+        compare_variants(STRAIGHT, {"same": STRAIGHT}, LINE, [snow], model="point", workers=1)
+
+
+def test_a_millimetre_more_waist_makes_the_sidecut_radius_larger() -> None:
+    slalom = read_ski("slalom")
+    other = wider(slalom, 1e-3)
+    assert other.waist_width - slalom.waist_width == pytest.approx(1e-3, abs=2e-5)
+    tip, waist, tail = slalom.sidecut_widths
+    depth = (tip + tail - 2.0 * waist) / 4.0
+    growth = other.sidecut_radius_of_three_widths / slalom.sidecut_radius_of_three_widths
+    assert growth == pytest.approx(depth / (depth - 0.5e-3), rel=0.01)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -11,7 +12,11 @@ from scipy.spatial.transform import Rotation
 
 from skisnow._support.units import DEGREE
 from skisnow.replay import Replay, replay_model, replay_of_run, ski_edges, write_replay_model
-from skisnow.replay.meshes import linear, round_above
+from skisnow.replay.binary import ARRAY_TYPES
+from skisnow.replay.meshes import _strips, linear, round_above
+from skisnow.replay.replay import groove_times, nearest_frame, quaternions
+from skisnow.scenario import load_scenario
+from skisnow.simulation.simulated_run import simulate
 
 from ..report.runs import circle_run
 from .glb_files import GlbFile
@@ -104,3 +109,121 @@ def test_it_is_written_in_one_piece(replay: Replay, tmp_path: Path) -> None:
     write_replay_model(replay, tmp_path / "turn.glb", TIME)
     assert (tmp_path / "turn.glb").read_bytes() == replay_model(replay, TIME)
     assert [place.name for place in tmp_path.iterdir()] == ["turn.glb"]
+
+
+HALF = 0.04
+HEADING = 30.0 * DEGREE
+PLACE = np.array([3.0, -2.0, 0.5])
+
+
+def rigid(*, edge_angle: float, bending: float = 0.0, twist: float = 0.0) -> Replay:
+    """Two straight skis of 8 cm width, three stations, heading 30° to the left at a known place."""
+    replay = replay_of_run(circle_run(count=3))
+    station = np.array([1.0, 0.0, -1.0])
+    shape = np.array([1.0, 0.0, 1.0])
+    skis = replace(
+        replay.skis,
+        station=station,
+        half_width=np.full(3, HALF),
+        base_height=np.zeros(3),
+        middle=np.array([[0.0, 0.25, 0.0], [0.0, -0.25, 0.0]]),
+        edge_angle=edge_angle,
+        bending=np.broadcast_to(bending * shape, (3, 2, 3)),
+        twist=np.broadcast_to(twist * shape, (3, 2, 3)),
+    )
+    attitude = np.tile([math.cos(HEADING / 2.0), 0.0, 0.0, math.sin(HEADING / 2.0)], (3, 1))
+    return replace(replay, place=np.tile(PLACE, (3, 1)), attitude=attitude, skis=skis)
+
+
+def in_space(forward: float, left: float, up: float) -> np.ndarray:
+    """By hand: turned 30° to the left about z, then moved."""
+    c, s = math.cos(HEADING), math.sin(HEADING)
+    return PLACE + np.array([c * forward - s * left, s * forward + c * left, up])
+
+
+def test_flat_rigid_ski_has_its_corners_where_they_are_by_hand() -> None:
+    edges = ski_edges(rigid(edge_angle=0.0), 0)
+    assert edges.shape == (2, 3, 2, 3)
+    for ski, side in ((0, 0.25), (1, -0.25)):
+        for at, station in ((0, 1.0), (1, 0.0), (2, -1.0)):
+            assert edges[ski, at, 0] == pytest.approx(in_space(station, side + HALF, 0.0), abs=1e-12)
+            assert edges[ski, at, 1] == pytest.approx(in_space(station, side - HALF, 0.0), abs=1e-12)
+
+
+def test_positive_edge_angle_puts_the_left_edge_down() -> None:
+    edges = ski_edges(rigid(edge_angle=40.0 * DEGREE), 0)
+    c, s = math.cos(40.0 * DEGREE), math.sin(40.0 * DEGREE)
+    assert edges[0, 1, 0] == pytest.approx(in_space(0.0, 0.25 + HALF * c, -HALF * s), abs=1e-12)
+    assert edges[0, 1, 1] == pytest.approx(in_space(0.0, 0.25 - HALF * c, HALF * s), abs=1e-12)
+
+
+def test_bending_lifts_both_edges_along_the_normal_of_the_base() -> None:
+    straight = ski_edges(rigid(edge_angle=40.0 * DEGREE), 0)
+    bent = ski_edges(rigid(edge_angle=40.0 * DEGREE, bending=0.03), 0, exaggeration=2.0)
+    moved = bent - straight
+    # 2 × 30 mm away from the snow: to the left by the sine of the edge angle and up by its cosine
+    sideways, up = 0.06 * math.sin(40.0 * DEGREE), 0.06 * math.cos(40.0 * DEGREE)
+    expected = in_space(0.0, sideways, up) - PLACE
+    assert moved[:, [0, 2]] == pytest.approx(np.broadcast_to(expected, (2, 2, 2, 3)), abs=1e-12)
+    assert moved[:, 1] == pytest.approx(np.zeros((2, 2, 3)), abs=1e-12)  # the boot stays
+
+
+def test_twist_adds_to_the_edge_angle() -> None:
+    twisted = ski_edges(rigid(edge_angle=30.0 * DEGREE, twist=5.0 * DEGREE), 0)
+    edged = ski_edges(rigid(edge_angle=35.0 * DEGREE), 0)
+    assert twisted[:, [0, 2]] == pytest.approx(edged[:, [0, 2]], abs=1e-12)
+    assert abs(twisted[:, 1] - edged[:, 1]).max() > 1e-3
+
+
+def test_the_edges_lie_as_deep_as_the_simulator_says() -> None:
+    """On the plane z = 0 the depth of the left edge, down in a left turn, is minus its z."""
+    run = simulate(load_scenario("carved-46m", changes={"run.duration_s": 0.2}))
+    replay = replay_of_run(run)
+    frame = len(run.time) - 1
+    depth = -ski_edges(replay, frame)[:, :, 0, 2]
+    inside = slice(2, -2)  # the outermost sections of the simulator lie up to a line's spacing inwards of tip and tail
+    # depths of sections are interpolated to the stations, over at most 2 cm where the shovel bends up
+    assert depth[:, inside] == pytest.approx(run.skis.edge_depth[frame, :, inside], abs=4e-4)
+    at_boot = np.abs(run.skis.station) < 0.3
+    assert depth[:, at_boot] == pytest.approx(run.skis.edge_depth[frame][:, at_boot], abs=2e-5)
+    assert depth.max() > 1e-3
+
+
+def test_nearest_frame() -> None:
+    replay = replay_of_run(circle_run(count=5, duration=4.0))  # each second
+    assert [nearest_frame(replay, time) for time in (-1.0, 0.4, 0.6, 9.0)] == [0, 0, 1, 4]
+
+
+def test_a_strip_between_two_sections_is_two_triangles_that_face_the_same_way() -> None:
+    """Corners 0 and 1 of the first section, 2 and 3 of the second: each triangle goes round in the same sense."""
+    triangles = _strips(2, 2, [(0, 1)])
+    assert triangles.tolist() == [[0, 2, 1], [1, 2, 3]]
+    place = np.array([[0.0, 0.0], [0.0, 1.0], [1.0, 0.0], [1.0, 1.0]])
+    a, b, c = (place[triangles[:, i]] for i in range(3))
+    along, aside = b - a, c - a
+    twice_area = along[:, 0] * aside[:, 1] - along[:, 1] * aside[:, 0]
+    assert twice_area.tolist() == [1.0, 1.0]
+
+
+def test_pieces_of_groove_of_a_single_moment_have_its_time() -> None:
+    track = np.array([[[0.0, 1.0, 0.0], [0.0, -1.0, 0.0]]])
+    when, ski = groove_times(np.array([[0.5, -0.9, 0.0], [0.0, 3.0, 0.0]]), np.array([7.0]), track)
+    assert (when.tolist(), ski.tolist()) == ([7.0, 7.0], [1, 0])
+
+
+def test_every_array_has_a_kind_and_a_unit_that_readers_know() -> None:
+    assert {each.type for each in ARRAY_TYPES.values()} == {"float32", "uint16"}
+    assert {each.unit for each in ARRAY_TYPES.values()} == {"1", "m", "m/s", "1/m", "rad", "s", "N/m", "N"}
+
+
+def test_quaternions_go_on_over_more_than_a_turn() -> None:
+    """About z by 0 to 900 degrees in steps of 30: each is (cos, 0, 0, sin) of half the angle, and 30 from the last."""
+    angle = np.radians(np.arange(0.0, 901.0, 30.0))
+    sine, cosine, none = np.sin(angle), np.cos(angle), np.zeros_like(angle)
+    matrices = np.stack([cosine, -sine, none, sine, cosine, none, none, none, none + 1.0], axis=1).reshape(-1, 3, 3)
+    found = quaternions(matrices)
+    assert found == pytest.approx(np.stack([np.cos(angle / 2.0), none, none, np.sin(angle / 2.0)], axis=1), abs=1e-12)
+
+
+def test_no_matrices_are_no_quaternions() -> None:
+    assert quaternions(np.zeros((0, 3, 3))).shape == (0, 4)

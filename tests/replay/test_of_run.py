@@ -4,14 +4,18 @@ from __future__ import annotations
 
 import random
 import warnings
+from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
+from scipy.io import netcdf_file
 from scipy.spatial.transform import Rotation
 
+from skisnow import load_scenario, simulate
 from skisnow._support.errors import ParameterError, SkisnowError
 from skisnow._support.units import DEGREE
 from skisnow.replay import measured_track, replay_bytes, replay_of_file, replay_of_run
@@ -21,6 +25,7 @@ from skisnow.scenario import Profile, scenario_values
 from skisnow.scenario.keys import in_sections
 from skisnow.simulation.run import Run
 from skisnow.simulation.run_gates import run_gates
+from skisnow.simulation.run_summary import summary_dict
 from skisnow.ski import ski_named, write_ski
 from skisnow.track.course import Course, Gate, read_course
 from skisnow.track.track import Track
@@ -196,3 +201,75 @@ def test_gates_stand_on_the_snow() -> None:
     for wrong in ([1.0, 2.0], [[1.0, 2.0, 3.0]], [[np.nan, 1.0]]):
         with raises(ParameterError, "wrong_shape"):
             replay_of_run(run, gates=wrong)
+
+
+@pytest.fixture(scope="module")
+def sound(tmp_path_factory: pytest.TempPathFactory) -> bytes:
+    run = simulate(load_scenario("slalom-20-gates", changes={"run.duration_s": 0.1, "solver.method": "fast"}))
+    place = tmp_path_factory.mktemp("run") / "run.nc"
+    write_run_file(run, summary_dict(run)["scenario"], place)
+    return place.read_bytes()
+
+
+def changed(folder: Path, sound: bytes, change: Callable[[Any], None]) -> Path:
+    place = folder / "run.nc"
+    place.write_bytes(sound)
+    with netcdf_file(place, "a", mmap=False) as file:
+        change(file)
+    return place
+
+
+def put(name: str, value: float, at: tuple[int, ...] = (2,)) -> Callable[[Any], None]:
+    def change(file: Any) -> None:
+        file.variables[name][at] = value
+
+    return change
+
+
+def test_a_sound_run_is_drawn(tmp_path: Path, sound: bytes) -> None:
+    place = changed(tmp_path, sound, lambda _: None)
+    assert len(replay_bytes(replay_of_file(place))) > 1000
+
+
+@pytest.mark.parametrize("value", [np.nan, np.inf, -np.inf, 1e300, 1e38, 9.969209968386869e36])
+@pytest.mark.parametrize(
+    ("name", "at"),
+    [
+        ("x", (2,)),
+        ("speed", (0,)),
+        ("bending", (1, 0, 3)),
+        ("force_per_length", (1, 1, 5)),
+        ("station", (4,)),
+        ("groove_x", (0,)),
+    ],
+)
+def test_a_number_that_is_none(tmp_path: Path, sound: bytes, name: str, at: tuple[int, ...], value: float) -> None:
+    place = changed(tmp_path, sound, put(name, value, at))
+    with pytest.raises(ParameterError) as caught:
+        replay_of_file(place)
+    assert "run.nc" in str(caught.value)
+
+
+@pytest.mark.parametrize("value", [0.0, 5e-324, np.nan])
+def test_a_radius_that_no_turn_has(tmp_path: Path, sound: bytes, value: float) -> None:
+    with raises(ParameterError, "not_a_run", name="turn_radius"):
+        replay_of_file(changed(tmp_path, sound, put("turn_radius", value)))
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        put("time", 0.0),
+        put("attitude", 3.0, (1, 0, 0)),
+        lambda file: setattr(file, "solver_line_spacing_m", np.nan),
+        lambda file: setattr(
+            file, "scenario", file.scenario.replace(b'"edge_angle_deg": 0.0', b'"edge_angle_deg": 1e99')
+        ),
+        lambda file: setattr(file, "scenario", file.scenario.replace(b'"mass_kg": 75.0', b'"mass_kg": -1')),
+        lambda file: setattr(file, "scenario", b"[1]"),
+        lambda file: setattr(file, "outcome", np.float64(3.0)),
+    ],
+)
+def test_what_does_not_go_together(tmp_path: Path, sound: bytes, change: Callable[[Any], None]) -> None:
+    with raises(ParameterError, "not_a_run"):
+        replay_of_file(changed(tmp_path, sound, change))

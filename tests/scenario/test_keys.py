@@ -1,5 +1,7 @@
 """Declarations of a scenario's dataclasses hold in files: defaults, ranges, schema."""
 
+from __future__ import annotations
+
 import json
 import math
 import tomllib
@@ -7,13 +9,15 @@ from importlib.resources import files
 from typing import Any
 
 import jsonschema
+import numpy as np
 import pytest
 
 from skisnow._support.errors import ParameterError
 from skisnow.scenario import Solver, keys, load_scenario, scenario_names, scenario_text
-from skisnow.scenario.keys import SCENARIO_KEYS
+from skisnow.scenario.identify_section import Prior, prior_of
+from skisnow.scenario.keys import FREE_KEYS, SCENARIO_KEYS, free_key, free_keys, short_name
 from skisnow.scenario.schema import scenario_schema
-from tests.coded import raises
+from tests.coded import Coded, coded, raises
 
 SCHEMAS = files("skisnow.scenario") / "schemas"
 SCHEMA = json.loads((SCHEMAS / "scenario.schema.json").read_text(encoding="utf-8"))
@@ -145,3 +149,101 @@ def test_schema_refuses_what_the_reader_refuses(changes: dict[str, dict[str, Any
 def test_values_outside_their_range_are_refused_by_the_key(key: str, value: object) -> None:
     with pytest.raises(ParameterError, match=rf"\.{key} is "):
         load_scenario("carved-46m", changes={key: value})
+
+
+@pytest.mark.parametrize(
+    ("word", "key"),
+    [
+        ("start.x_m", "start.x_m"),
+        ("x_m", "start.x_m"),
+        ("start.x", "start.x_m"),
+        (" x ", "start.x_m"),
+        ("mu_1", "friction.mu_1_s_per_m"),
+    ],
+)
+def test_with_and_without_section_and_unit(word: str, key: str) -> None:
+    assert free_key(word) == key
+
+
+@pytest.mark.parametrize(
+    ("word", "told"),
+    [
+        ("x_ms", coded("unknown_name", word="x_ms")),
+        ("MASS", "unknown_name"),
+        ("speeds", "unknown_name"),
+        ("step", coded("not_free", key="solver.step_ms")),
+        ("inertia", coded("not_free", key="sledge.inertia_kg_m2")),
+        ("ski.name", coded("not_free", key="ski.name")),
+        ("mu_0@ ", coded("missing", word="mu_0@ ", own="mu_0", each="each")),
+        ("mu_0, mass, friction.mu_0", coded("repeated", key="friction.mu_0")),
+    ],
+)
+def test_what_is_no_key_to_look_for(word: str, told: str | Coded) -> None:
+    with raises(ParameterError, told):
+        free_keys(word)
+
+
+def test_where_nothing_is_near_all_are_told() -> None:
+    with pytest.raises(ParameterError) as refused:
+        free_key("quark")
+    told = str(refused.value).partition("There are ")[2].split(", ")
+    assert [free_key(word) for word in told] == list(FREE_KEYS)
+    assert told == [short_name(key) for key in FREE_KEYS]
+
+
+def test_a_key_of_one_run_may_stand_beside_that_of_another() -> None:
+    listed = ["mu_0@first", "mu_0 @ second", "", "speed@each"]
+    keys = ("friction.mu_0@first", "friction.mu_0@second", "start.speed_m_per_s@each")
+    assert free_keys(listed) == free_keys(",".join(listed)) == keys
+
+
+SHARES = np.array([0.0, 0.5, 1.0])
+
+
+def test_the_logarithm_is_even() -> None:
+    prior = prior_of("unloading_ratio=2:50")
+    assert prior.at(SHARES, 7.0) == pytest.approx([2.0, 10.0, 50.0])
+
+
+def test_about_the_scenarios_own_value() -> None:
+    prior = Prior(key="friction.mu_0", low=0.4, high=2.5, origin="", about=True)
+    assert prior.at(SHARES, 0.03) == pytest.approx([0.012, 0.03, 0.075])
+    assert prior.at(SHARES, 0.0) == pytest.approx([0.0, 0.0, 0.0])
+    assert prior.at(SHARES, 0.8)[2] == 1.0  # what the key allows
+
+
+@pytest.mark.parametrize(
+    ("word", "told"),
+    [
+        ("unknown_name", "wrong_kind"),
+        ("mu_0=1", "wrong_kind"),
+        ("mu_0=a:b", "wrong_kind"),
+        ("mu_0=0.2:0.1", "out_of_range"),
+        ("mu_0=0:0.1", "out_of_range"),
+        ("mu_0=nan:0.1", "out_of_range"),
+        ("mu_0=0.1:7", coded("out_of_range", name="friction.mu_0")),
+        ("mew_0=0.1:0.2", "unknown_name"),
+    ],
+)
+def test_what_is_no_prior_is_refused_in_words(word: str, told: str | Coded) -> None:
+    with raises(ParameterError, told):
+        prior_of(word)
+
+
+SEARCHED = {name: key for name, key in SCENARIO_KEYS.items() if key.search is not None and not key.search.about}
+
+
+@pytest.mark.parametrize("name", SEARCHED)
+def test_usual_bounds_hold_the_default_and_lie_in_the_range(name: str) -> None:
+    key = SEARCHED[name]
+    assert key.search is not None
+    assert key.lowest <= key.search.lower < key.search.upper <= key.highest
+    if isinstance(key.default, float | int):
+        assert key.search.lower <= key.default <= key.search.upper
+
+
+def test_a_logarithm_has_a_size_of_its_own_order() -> None:
+    """A factor of e^0.5 to e^3: with a size in another unit a step would be no step."""
+    for key in SEARCHED.values():
+        if key.search is not None and key.search.logarithmic:
+            assert 0.5 <= key.search.size <= 3.0

@@ -1,5 +1,7 @@
 """Planes and measured profiles: the points, between them, beyond them, and everything that is refused."""
 
+from __future__ import annotations
+
 import math
 from pathlib import Path
 
@@ -7,7 +9,9 @@ import numpy as np
 import pytest
 
 from skisnow._support.errors import ParameterError
-from skisnow.scenario import Plane, Profile, read_profile
+from skisnow.geometry.surfaces import Grid
+from skisnow.scenario import Plane, Profile, Terrain, load_scenario, read_profile, read_terrain
+from skisnow.scenario.terrain import down_and_left, normals_of, surface_of
 from tests.coded import Coded, coded, raises
 
 MEASURED = Path(__file__).resolve().parents[3] / "shared" / "data" / "slope-profiles"
@@ -154,3 +158,168 @@ def test_points_of_a_profile_that_nearly_coincide_are_rejected() -> None:
     x = np.array([0.0, 1e-300, 4.0, 6.0])
     with raises(ParameterError, "out_of_range", place=2):
         Profile(x, -0.15 * x)
+
+
+ASC = """ncols 3
+nrows 2
+xllcorner 100.0
+yllcorner 50.0
+cellsize 2.0
+NODATA_value -9999
+5 6 7
+1 2 3
+"""
+CSV = "x_m,y_m,z_m\n0,0,1\n1,0,2\n0,2,3\n1,2,4\n"
+
+
+def written(folder: Path, text: str, name: str = "heights.csv") -> Path:
+    path = folder / name
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+def test_table_is_a_grid_whatever_the_order_of_its_rows(tmp_path: Path) -> None:
+    head, *rows = CSV.splitlines()
+    for each in (rows, rows[::-1], [rows[2], rows[0], rows[3], rows[1]]):
+        terrain = read_terrain(written(tmp_path, "\n".join([head, *each])))
+        assert (terrain.x.tolist(), terrain.y.tolist()) == ([0.0, 1.0], [0.0, 2.0])
+        assert terrain.height.tolist() == [[1.0, 3.0], [2.0, 4.0]]
+
+
+def test_a_table_is_smoothed_and_shifted_only_where_that_is_asked(tmp_path: Path) -> None:
+    path = written(tmp_path, CSV)
+    terrain = read_terrain(path)
+    assert (terrain.smoothing, terrain.origin_x, terrain.origin_y) == (0.0, 0.0, 0.0)
+    asked = read_terrain(path, smoothing=3.0, origin_x=1.0, origin_y=2.0)
+    assert (asked.smoothing, asked.origin_x, asked.origin_y) == (3.0, 1.0, 2.0)
+
+
+def test_places_that_were_rounded_are_even(tmp_path: Path) -> None:
+    rows = [f"{x},{y},{float(x) + float(y)}" for x in ("0", "0.333", "0.667", "1") for y in ("0", "1")]
+    terrain = read_terrain(written(tmp_path, "\n".join(["x_m,y_m,z_m", *rows])))
+    np.testing.assert_allclose(terrain.x, np.arange(4.0) / 3.0, atol=1e-15)
+
+
+def test_places_that_differ_by_rounding_are_one(tmp_path: Path) -> None:
+    """0.1 + 0.2 and 0.3 are the same row of places, 10^-17 m apart."""
+    rows = [f"{x!r},{y},0" for x, y in ((0.1 + 0.2, 0), (0.3, 1), (0.6, 0), (0.6, 1), (0.0, 0), (0.0, 1))]
+    terrain = read_terrain(written(tmp_path, "\n".join(["x_m,y_m,z_m", *rows])))
+    assert terrain.x == pytest.approx([0.0, 0.3, 0.6], abs=1e-12)
+
+
+def test_origin_is_where_the_scenario_begins(tmp_path: Path) -> None:
+    terrain = read_terrain(written(tmp_path, ASC, "heights.asc"), origin_x=102.0, origin_y=51.0)
+    assert terrain.surface.x.tolist() == [-1.0, 1.0, 3.0]
+    assert float(terrain.surface.heights(0.0, 0.0)) == pytest.approx(1.5, abs=1e-14)
+    assert terrain.x.tolist() == [101.0, 103.0, 105.0]
+
+
+def test_smoothing_halves_a_wave_of_its_length_and_leaves_a_plane_alone() -> None:
+    """ISO 16610-21: of a wave λ long 2^-(λ_c/λ)² is left: 1/2 at the cut-off, 0.84 at twice, 1/16 at half of it."""
+    x, y, length = np.arange(0.0, 60.0, 0.25), np.arange(0.0, 8.0, 0.25), 6.0
+    inside = (x > 12.0) & (x < 48.0)
+    for wave in (3.0, 6.0, 12.0):
+        bumps = np.repeat(np.sin(2.0 * np.pi * x / wave)[:, None], len(y), axis=1)
+        kept = Terrain(x, y, 0.01 * bumps, smoothing=length).surface.values / 0.01
+        share = 2.0 ** -((length / wave) ** 2)
+        np.testing.assert_allclose(kept[inside], share * bumps[inside], atol=2e-3)  # the weights end at one length
+    plane = np.add.outer(-0.3 * x, 0.1 * y)
+    np.testing.assert_allclose(Terrain(x, y, plane, smoothing=length).surface.values, plane, atol=1e-11)
+
+
+def test_surface_has_the_slope_of_its_plane_in_every_direction() -> None:
+    terrain = Terrain(
+        np.array([-1.0, 1.0]), np.array([0.0, 3.0]), np.add.outer([0.6, -0.6], [0.0, 2.4])
+    )  # z = -0.6 x + 0.8 y
+    normal = normals_of(terrain, np.zeros(2), np.array([0.0, 9.0]))
+    np.testing.assert_allclose(normal, np.array([[0.6, -0.8, 1.0]] * 2) / math.sqrt(2.0), atol=1e-15)
+    down, left = down_and_left(normal[0])
+    np.testing.assert_allclose(down, np.array([1.0, 0.0, -0.6]) / math.hypot(1.0, 0.6), atol=1e-15)
+    assert left[1] > 0.0
+    np.testing.assert_allclose([left @ down, left @ normal[0], left @ left], [0.0, 0.0, 1.0], atol=1e-15)
+
+
+def test_scenario_reads_its_grid_from_its_folder_and_shows_its_keys(tmp_path: Path) -> None:
+    written(tmp_path, ASC, "heights.asc")
+    text = '[slope]\nkind = "grid"\ngrid = "heights.asc"\norigin_x_m = 103\norigin_y_m = 52\nsmooth_m = 4\n'
+    rest = load_scenario("carved-46m")
+    file = written(tmp_path, text + _without_slope(), "turn.toml")
+    terrain = load_scenario(file).slope
+    assert isinstance(terrain, Terrain)
+    assert (terrain.smoothing, terrain.origin_x, terrain.origin_y) == (4.0, 103.0, 52.0)
+    smoother = load_scenario(file, changes={"slope.smooth_m": 0}).slope
+    assert isinstance(smoother, Terrain)
+    assert smoother.surface.values.tolist() == smoother.height.tolist()
+    assert load_scenario(file).with_(smooth_m=0.0).slope.surface.values.tolist() == smoother.height.tolist()  # type: ignore[union-attr]
+    assert isinstance(load_scenario(file, changes={"slope.kind": "plane", "slope.angle_deg": 9}).slope, Plane)
+    changed = {"slope.kind": "grid", "slope.grid": str(tmp_path / "heights.asc"), "start.x_m": 102, "start.y_m": 52}
+    assert isinstance(load_scenario("carved-46m", changes=changed).slope, Terrain)
+    assert isinstance(rest.slope, Plane)
+    with raises(ParameterError, "contradiction"):
+        load_scenario("carved-46m", changes={"slope.smooth_m": 3})
+    with raises(ParameterError, "missing", name="slope.grid"):
+        load_scenario("carved-46m", changes={"slope.kind": "grid"})
+    with raises(ParameterError, "contradiction"):
+        load_scenario(file, changes={"start.y_m": 9})
+
+
+def _without_slope() -> str:
+    from skisnow.scenario import scenario_text
+
+    _, _, rest = scenario_text("carved-46m").partition("[slope]")
+    return "[" + rest.partition("\n[")[2]
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("x_m,y_m\n0,0\n", coded("missing_column", column="z_m")),
+        (CSV.replace("2,3\n", "2,low\n"), coded("not_a_number", row=4, column="z_m", value="low")),
+        (CSV.replace("0,2,3\n", "0,2,inf\n"), coded("not_a_number", row=4, column="z_m", value="inf")),
+        (CSV + "1,2,4\n", coded("repeated", row=6, x_m="1", y_m="2", first=5)),
+        (CSV.replace("0,2,3\n", ""), coded("missing", x=0.0, y=2.0, n_x=2, n_y=2)),
+        ("x_m,y_m,z_m\n0,0,1\n0,1,1\n", coded("out_of_range", column="x_m", places="0 m")),
+        ("x_m,y_m,z_m\n", coded("out_of_range", column="x_m", places="nothing")),
+        (
+            CSV + "1.5,0,4\n1.5,2,5\n",
+            coded("uneven_places", first=0.0, last=1.5, step=0.75, row=3, column="x_m", value="1"),
+        ),
+        (CSV.replace("0,2,3\n", "0,2,30\n"), "out_of_range"),
+        (CSV.replace("0,2,3", '0,2,"3,5"'), coded("not_a_number", value="3,5")),
+        (CSV.replace("0,2,3", "0,2,3,5"), coded("too_many_cells", row=4, count=4, columns=3)),
+        (
+            "".join(["x_m,y_m,z_m\n", *(f"{0.1 * i * i},{0.3 * i * i},0\n" for i in range(30))]),
+            coded("uneven_places", column="x_m"),
+        ),
+    ],
+)
+def test_what_is_wrong_in_a_table_is_told_with_its_place(tmp_path: Path, text: str, said: str | Coded) -> None:
+    path = written(tmp_path, text)
+    with raises(ParameterError, said) as error:
+        read_terrain(path)
+    assert str(error.value).startswith(str(path))
+
+
+@pytest.mark.parametrize(("rows", "refused"), [(10, False), (11, True)])
+def test_rows_that_lie_on_no_grid_are_told(tmp_path: Path, rows: int, refused: bool) -> None:
+    """Ten and more different places along both axes for each row: a line across the grid."""
+    text = "x_m,y_m,z_m\n" + "".join(f"{i},{i},0\n" for i in range(rows))
+    with pytest.raises(ParameterError) as error:
+        read_terrain(written(tmp_path, text))
+    assert (f"{rows} rows have {rows} different x_m and {rows} different y_m" in str(error.value)) is refused
+
+
+def test_a_profile_is_a_table_of_places_two_centimetres_apart_or_nearer() -> None:
+    """0.05 m of it in three steps."""
+    profile = Profile(np.array([0.0, 0.01, 0.03, 0.05]), np.array([0.0, -0.001, -0.004, -0.01]))
+    grid = surface_of(profile)
+    assert isinstance(grid, Grid)
+    places = np.linspace(0.0, 0.05, 4)
+    assert grid.steps[0] == pytest.approx(0.05 / 3.0)
+    assert grid.heights(places, 0.0 * places) == pytest.approx(profile.heights(places), abs=1e-12)
+
+
+def test_file_that_is_not_there_is_told(tmp_path: Path) -> None:
+    for name in ("none.csv", "none.asc", "none.tif"):
+        with raises(ParameterError, "cannot_read"):
+            read_terrain(tmp_path / name)

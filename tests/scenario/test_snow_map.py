@@ -4,14 +4,20 @@ from __future__ import annotations
 
 import math
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
+from skisnow import simulate
 from skisnow._support.errors import ParameterError
 from skisnow._support.units import N_PER_MM2, N_PER_MM3
+from skisnow.forces.penetration import LayeredPoint
+from skisnow.forces.shear import AngleShear, DensityShear, MachiningShear
 from skisnow.geometry.surfaces import Grid
 from skisnow.scenario import SnowMap, load_scenario, read_snow_map, scenario_file
+from skisnow.scenario.run_settings import Start
+from skisnow.scenario.shear import Shear
 from skisnow.simulation.run_setup import laid_out
 from skisnow.snow import published_snow
 from tests.coded import raises
@@ -166,3 +172,63 @@ def test_given_twice_is_refused(tmp_path: Path) -> None:
     with pytest.raises(ParameterError, match=r"snow\.map_file"):
         turn.with_(S_f_N_per_mm2=0.3)
     assert turn.with_(snow_map=None, S_f_N_per_mm2=0.3).contact.snow.failure_shear_stress == 0.3 * N_PER_MM2
+
+
+LAYERS = {"snow.layer_depth_mm": 5, "snow.lower_H_V_N_per_mm3": 2}
+
+
+def test_the_law_of_the_keys() -> None:
+    law = load_scenario("carved-46m", changes=LAYERS | {"snow.hardness_growth_per_mm": 0.02}).contact.penetration
+    assert isinstance(law, LayeredPoint)
+    assert (law.layer_depth, law.lower_hardness, law.hardness_growth) == pytest.approx((5e-3, 2e9, 20.0))
+    assert law.snow_hardness == load_scenario("carved-46m").contact.snow.snow_hardness
+    assert load_scenario("carved-46m").contact.penetration is None
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"snow.layer_depth_mm": 5},
+        {"snow.lower_H_V_N_per_mm3": 2},
+        LAYERS | {"snow.damping_N_s_per_mm3": 0.01},
+        LAYERS | {"snow.delayed_share": 0.1},
+    ],
+)
+def test_contradictions(changes: dict[str, Any]) -> None:
+    with raises(ParameterError, "contradiction"):
+        load_scenario("carved-46m", changes=changes)
+
+
+def test_a_run_on_equal_layers_is_that_on_one() -> None:
+    short = {"run.duration_s": 0.3, "solver.method": "fast"}
+    one = load_scenario("carved-46m", changes=short)
+    hardness = one.contact.snow.snow_hardness / 1e9
+    layers = {"snow.layer_depth_mm": 2, "snow.lower_H_V_N_per_mm3": hardness}
+    two = load_scenario("carved-46m", changes=short | layers)
+    found, expected = simulate(two), simulate(one)
+    np.testing.assert_allclose(found.place, expected.place, atol=1e-6)
+
+
+S_F = 0.4e6
+
+
+@pytest.mark.filterwarnings("ignore::skisnow._support.errors.RangeWarning")
+def test_each_word_is_its_law_with_the_numbers_given() -> None:
+    assert Shear().of(S_F) is None
+    assert Shear(law="by-angle", relative_decrease=0.3).of(S_F) == AngleShear(
+        flat_shear_stress=S_F, relative_decrease=0.3
+    )
+    assert Shear(law="by-density", snow_density=400.0).of(S_F) == DensityShear(snow_density=400.0)
+    with raises(ParameterError, "missing"):
+        Shear(law="by-density")
+
+
+def test_machining_takes_half_of_the_snows_stress_or_its_own() -> None:
+    given = Shear(law="machining", transverse_friction=0.1, least_shear_plane=0.2)
+    assert given.of(S_F) == MachiningShear(0.5 * S_F, 0.1, least_shear_plane=0.2)
+    own = Shear(law="machining", dynamic_shear_strength=0.1e6, transverse_friction=0.1, least_shear_plane=0.2)
+    assert own.of(S_F) == MachiningShear(0.1e6, 0.1, least_shear_plane=0.2)
+
+
+def test_a_run_starts_where_x_and_y_begin() -> None:
+    assert (Start(speed=5.0).x, Start(speed=5.0).y) == (0.0, 0.0)

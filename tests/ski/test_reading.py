@@ -11,12 +11,16 @@ from tests.coded import Coded, coded, raises, warns
 
 from skisnow._support.errors import ParameterError, RangeWarning
 from skisnow.ski import read_ski, ski_named, ski_names
-from skisnow.ski.file_keys import RIGID
+from skisnow.ski.base_profile import BaseShape
+from skisnow.ski.file_keys import BASE, COLUMNS, RIGID, SKI_KEYS, SkiFile
+from skisnow.ski.sources import Sources
+from skisnow.snow import published_snow
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     Written = Callable[..., Path]
+
 
 # sidecut radius printed on the ski (m), δ by hand from the widths (mm), mass (kg), camber (mm), EI in the middle (N m²)
 SHEET = {
@@ -214,3 +218,66 @@ def test_files_that_cannot_be_read(tmp_path: Path) -> None:
         read_ski(tmp_path / "latin.toml")
     with raises(ParameterError, "no_stiffness", file="ski-def.json"):
         read_ski(tmp_path / "ski-def.json")
+
+
+def test_what_is_usual_is_allowed() -> None:
+    for key in (*SKI_KEYS.values(), *COLUMNS.values()):
+        if key.kind in ("number", "numbers"):
+            assert key.usual is not None
+            assert key.lowest <= key.usual[0] < key.usual[1] <= key.highest, key.name
+
+
+def test_a_file_says_shape_stiffness_mass_and_where_the_rest_stands() -> None:
+    assert len(SKI_KEYS) == 30
+    assert {key.kind for key in SKI_KEYS.values()} == {"text", "number", "numbers", "switch"}
+    assert all(SKI_KEYS[name].factor == 1e-3 for name in BASE)
+
+
+def test_a_base_in_python_is_held_to_the_ranges_of_files() -> None:
+    with pytest.raises(ParameterError, match=r"camber_mm is 60\.0; allowed is from -50 to 50 mm"):
+        BaseShape(camber=0.06)
+
+
+def test_defaults_in_si() -> None:
+    empty = SkiFile()
+    assert (empty.tail_overhang, empty.boot_position, empty.base_bevel, empty.edge_width) == (0.02, 0.0, 0.0, 0.002)
+
+
+SKI = """name = "mine"
+length_mm = 1650
+"""
+
+
+def test_a_word_of_the_catalogue_is_no_file() -> None:
+    sources = Sources()
+    assert sources.ski_file("slalom") is None
+    ski, told = sources.ski("slalom")
+    assert ski.name == ski_named("slalom").name
+    assert isinstance(told, tuple)
+    assert sources.ski("slalom")[0] is ski  # read once
+
+
+def test_what_looks_like_a_file_is_one_beside_who_names_it(tmp_path: Path) -> None:
+    sources = Sources(tmp_path)
+    assert sources.path("a.csv") == tmp_path / "a.csv"
+    assert Sources().path("a.csv") == Path("a.csv")
+    assert sources.ski_file("mine.toml") == tmp_path / "mine.toml"
+    assert sources.ski_file("mine.JSON") == tmp_path / "mine.JSON"
+    assert sources.ski_file("there/mine") == tmp_path / "there" / "mine"
+    assert sources.ski_file("mine") is None
+    (tmp_path / "mine").write_text(SKI, encoding="utf-8")
+    assert sources.ski_file("mine") == tmp_path / "mine"
+    with pytest.raises(ParameterError):
+        sources.ski("no-such-ski")
+
+
+def test_a_snow_is_read_once_and_one_at_hand_is_taken(tmp_path: Path) -> None:
+    sources = Sources(tmp_path)
+    word = {"published": "race-piste"}
+    snow = sources.named_snow(word)
+    assert snow.snow_hardness == published_snow("race-piste").snow_hardness
+    assert sources.named_snow(word) is snow
+    sources.take_snow(snow, results="results", site="A")
+    assert sources.named_snow({"results": "results", "site": "A"}) is snow
+    with pytest.raises(ParameterError):
+        sources.named_snow({"published": None})

@@ -2,14 +2,20 @@ from __future__ import annotations
 
 import dataclasses
 import math
+import tracemalloc
+from pathlib import Path
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 import pytest
 from tests.coded import Coded, coded, raises
 
+from skisnow import read_ski
 from skisnow._support.errors import ParameterError
 from skisnow.ski import Ski
+from skisnow.ski.layout import LONGEST, layout_of_lengths
+from skisnow.ski.outline import radius_of_least_squares_circle
 
 N = 801
 STATION = np.linspace(0.8, -0.8, N)
@@ -152,3 +158,80 @@ def test_two_rows_make_a_table_and_one_does_not() -> None:
     assert ski.at(0.0).width == pytest.approx(0.06)
     with raises(ParameterError, "invalid_ski", table="station", shape="(1,)", needed="(1,)"):
         Ski(**two_rows(1), running_length=0.002, sidecut_length=0.002)
+
+
+FloatArray = npt.NDArray[np.float64]
+
+
+@pytest.mark.parametrize("radius", [8.0, 13.0, 100.0, 1000.0])
+def test_points_of_a_circle_return_its_radius(radius: float) -> None:
+    x = np.linspace(-0.7, 0.9, 301)  # not symmetric about the arc's lowest point
+    y = radius - np.sqrt(radius**2 - (x - 0.1) ** 2)
+    # a sagitta of 0.3 mm is known to 1e-16 m: 11 digits are left at the largest radius
+    assert radius_of_least_squares_circle(x, y) == pytest.approx(radius, rel=1e-9)
+
+
+def test_radius_does_not_change_when_the_edge_is_turned_moved_or_mirrored() -> None:
+    turn = np.linspace(-0.06, 0.05, 101)
+    x, y = 13.0 * np.sin(turn), 13.0 * (1.0 - np.cos(turn))
+    c, s = math.cos(0.3), math.sin(0.3)
+    assert radius_of_least_squares_circle(c * x - s * y + 2.0, -(s * x + c * y) - 1.0) == pytest.approx(13.0, rel=1e-9)
+
+
+def test_a_straight_edge_has_no_radius() -> None:
+    x = np.linspace(-0.7, 0.7, 101)
+    assert radius_of_least_squares_circle(x, 0.03 + 0.01 * x) == math.inf
+
+
+def test_least_squares_where_points_scatter() -> None:
+    """Against the minimum of the summed squared distances, searched for directly."""
+    from scipy.optimize import least_squares
+
+    x = np.linspace(-0.7, 0.7, 201)
+    y = x**2 / 26.0 + 1e-4 * np.sin(40.0 * x + 0.4)
+
+    def distances(circle: FloatArray) -> FloatArray:
+        return np.hypot(x - circle[0], y - circle[1]) - circle[2]
+
+    direct = least_squares(distances, [0.0, 13.0, 13.0], xtol=1e-15, ftol=1e-15, gtol=1e-15)
+    # scatter over radius is 1e-5, which is what the two definitions may differ by
+    assert radius_of_least_squares_circle(x, y) == pytest.approx(direct.x[2], rel=1e-5)
+
+
+DESIGN = """{"board": {"name": "flat", "nose length": 20, "effective edge length": "%s", "tail length": 18.5,
+"sidecut radius": "%s", "taper": "2mm", "waist width": "7.2cm", "edge shape": {"type": "Basic Arc"}}}"""
+TOML = "mass_kg = 2.2\nEI_N_m2 = [100, 440, 100]\nGJ_N_m2 = [60, 175, 60]\n"
+
+
+def most_bytes(path: Path) -> int:
+    tracemalloc.start()
+    try:
+        with pytest.raises(ParameterError, match=path.parent.name):
+            read_ski(path)
+        return tracemalloc.get_traced_memory()[1]
+    finally:
+        tracemalloc.stop()
+
+
+@pytest.mark.parametrize(("edge", "radius"), [("900m", "900m"), ("120cm", "14m")])
+def test_the_shape_of_another_program(tmp_path: Path, edge: str, radius: str) -> None:
+    (tmp_path / "ski-def.json").write_text(
+        (DESIGN % (edge, radius)).replace('"nose length": 20', '"nose length": "1e6m"')
+    )
+    path = tmp_path / "ski.toml"
+    path.write_text('shape = "ski-def.json"\n' + TOML)
+    assert most_bytes(path) < 10_000_000
+
+
+def test_a_table_that_is_no_plain_file(tmp_path: Path) -> None:
+    """/dev/zero has no end."""
+    path = tmp_path / "ski.toml"
+    path.write_text('table = "/dev/zero"\nrunning_length_mm = 1396\nsidecut_length_mm = 1458\n' + TOML)
+    with raises(ParameterError, "cannot_read"):
+        read_ski(path)
+
+
+def test_the_longest_ski() -> None:
+    assert layout_of_lengths(length=LONGEST, running_length=1.4, sidecut_length=1.46).running_length == 1.4
+    with pytest.raises(ParameterError):
+        layout_of_lengths(length=LONGEST + 0.01, running_length=1.4, sidecut_length=1.46)

@@ -1,13 +1,18 @@
 """Published relations against the numbers that their papers print."""
 
+from __future__ import annotations
+
 import math
+import warnings
 from pathlib import Path
 
 import numpy as np
 import pytest
+from tests.coded import Coded, coded, raises
 
-from skisnow._support.errors import ParameterError
-from skisnow.snow import SnowProperties
+from skisnow._support.errors import ParameterError, RangeWarning
+from skisnow._support.units import N_PER_MM2, N_PER_MM3
+from skisnow.snow import MeasuredRange, SnowProperties, published_names, published_snow
 from skisnow.snow.published import domine_2011, federolf_2006, moessner_2013
 
 LITERATURE = Path(__file__).resolve().parents[3] / "shared" / "data" / "literature"
@@ -64,3 +69,76 @@ def test_printed_rmse_and_p() -> None:
     rmse = [140.0, 58.4, 53.6, 207.0, 75.2, 54.8, 53.8, 54.9, 56.1]
     assert list(moessner_2013.PRINTED_RMSE_N.values()) == rmse
     assert list(moessner_2013.PRINTED_P.values()) == [0.99, 0.83, 0.50, 0.52]
+
+
+@pytest.mark.parametrize(
+    ("name", "hardness", "stress", "source"),
+    [
+        ("race-piste", "0.21", "0.52", "Federolf"),
+        ("recreational-piste", "0.16", "0.086", "Federolf"),
+        ("spring-snow", "0.022", "0.094", "Federolf"),
+        ("fresh-snow", "0.04", "0.04", "paired by us"),
+        ("glacier", "90", "0.3", "paired by us"),
+    ],
+)
+def test_values_are_the_printed_ones(name: str, hardness: str, stress: str, source: str) -> None:
+    snow = published_snow(name)
+    assert snow.failure_shear_stress is not None
+    assert f"{snow.snow_hardness / N_PER_MM3:.2g}" == hardness
+    assert f"{snow.failure_shear_stress / N_PER_MM2:.2g}" == stress
+    assert source in snow.source and "2013" in snow.source
+    assert snow.snow_hardness_interval is None and snow.failure_shear_stress_interval is None
+
+
+def test_all_names() -> None:
+    assert published_names() == ("race-piste", "recreational-piste", "spring-snow", "fresh-snow", "glacier")
+
+
+@pytest.mark.parametrize(
+    ("misspelt", "nearest"),
+    [
+        ("race-pist", coded("unknown_name", similar="race-piste")),
+        ("Glacier", coded("unknown_name", similar="glacier")),
+        ("spring snow", coded("unknown_name", similar="spring-snow")),
+        ("fresh", coded("unknown_name", name="fresh", similar="fresh-snow")),
+    ],
+)
+def test_a_misspelt_name_is_told_the_nearest_and_all(misspelt: str, nearest: str | Coded) -> None:
+    with raises(ParameterError, nearest) as caught:
+        published_snow(misspelt)
+    assert all(name in str(caught.value) for name in published_names())
+
+
+def test_a_name_like_none_is_told_all() -> None:
+    with raises(ParameterError, "unknown_name", name="xyz", problem="no published snow is named 'xyz'."):
+        published_snow("xyz")
+
+
+RANGE = MeasuredRange("edge angle", 0.0, 2.0, "°", 0.5, "Somebody 1999")
+
+
+def test_the_message_gives_relation_value_range_and_source() -> None:
+    with pytest.warns(RangeWarning) as caught:
+        RANGE.warn_outside(3.0, "A law")
+    assert str(caught[0].message) == (
+        "A law: edge angle 6 ° is outside the 0 to 4 ° that were measured (Somebody 1999); computed all the same"
+    )
+
+
+@pytest.mark.parametrize("inside", [0.0, 2.0, [0.5, 1.0], [], np.nan, [[np.nan, 1.0]]])
+def test_inside_and_at_the_ends_it_is_silent(inside: object) -> None:
+    with warnings.catch_warnings(record=True) as warned:
+        warnings.simplefilter("always")
+        RANGE.warn_outside(np.asarray(inside), "A law")
+    assert warned == []
+
+
+@pytest.mark.parametrize(("values", "farthest"), [([2.5, 4.0, 3.0], "8"), ([-3.0, 4.5], "-6"), ([-2.0, 5.0], "10")])
+def test_one_warning_for_an_array_names_the_farthest(values: list[float], farthest: str) -> None:
+    with pytest.warns(RangeWarning, match=f"edge angle {farthest} °") as caught:
+        RANGE.warn_outside(values, "A law")
+    assert len(caught) == 1
+
+
+def test_it_is_a_user_warning() -> None:
+    assert issubclass(RangeWarning, UserWarning)

@@ -14,7 +14,7 @@ from fastapi import FastAPI
 
 from skisnow.web.replay_addresses import RunFolders, add_addresses
 
-from ..track.course.test_gate_gaps import folder_of
+from ..track.course.test_gates_table import folder_of
 from .replay.test_addresses import Client
 
 if TYPE_CHECKING:

@@ -1,4 +1,4 @@
-"""Tables whose rows stay in their file, and tables in other formats: the rows that are read are those computed."""
+"""A study's table that a spreadsheet program saved again."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import json
 import sqlite3
 import sys
 from collections.abc import Callable
+from contextlib import closing
 from pathlib import Path
 from typing import Any
 
@@ -13,10 +14,114 @@ import pytest
 
 from skisnow._support.errors import OutputError, ParameterError, SkisnowError
 from skisnow._support.processes.kept_rows import KeptRows
+from skisnow.carving.keys import CARVE_KEYS
+from skisnow.parameters import Quantity
 from skisnow.studies import Study, StudyState, StudyTable, read_study, read_table, run_study, study_state
-from skisnow.studies.rows import CsvRows, DatabaseRows, StoredRows
+from skisnow.studies.rows import ROWS_OF_A_BLOCK, CsvRows, DatabaseRows, StoredRows
 from skisnow.studies.run import StudyRows, kept_rows
+from skisnow.studies.writing import write_table
 from tests.coded import Coded, coded, raises
+
+PLAIN = """\
+edge_angle_deg,at_rest,outcome,radius_m,tags,study
+30.5,false,carves,12.25,"[1.0, 2.5]",a
+45,true,sinks,,,b
+"""
+EXCEL = """\
+edge_angle_deg;at_rest;outcome;radius_m;tags;study
+30,5;FALSCH;carves;12,25;[1.0, 2.5];a
+45;WAHR;sinks;;;b
+""".replace("FALSCH", "FALSE").replace("WAHR", "TRUE")
+
+
+@pytest.mark.parametrize(
+    "data",
+    [
+        EXCEL.encode("utf-8-sig"),
+        EXCEL.encode("cp1252"),
+        f"sep=;\n{EXCEL}".encode(),
+        EXCEL.replace(";", "\t").encode("utf-16"),
+    ],
+)
+def test_decimal_commas_are_read_as_points(tmp_path: Path, data: bytes) -> None:
+    plain, saved = tmp_path / "plain.csv", tmp_path / "saved.csv"
+    plain.write_text(PLAIN, encoding="utf-8")
+    saved.write_bytes(data)
+    ours, theirs = (read_table(path, CARVE_KEYS) for path in (saved, plain))
+    assert ours.rows == theirs.rows
+    first = {"edge_angle_deg": 30.5, "at_rest": False, "outcome": "carves", "radius_m": 12.25}
+    assert ours.rows[0] == {**first, "tags": [1.0, 2.5], "study": "a"}
+
+
+def test_a_cell_that_is_no_number_is_named_with_its_line(tmp_path: Path) -> None:
+    path = tmp_path / "saved.csv"
+    path.write_text(f"sep=;\n{EXCEL.replace('12,25', 'zwölf')}", encoding="utf-8")
+    with raises(ParameterError, "wrong_kind", name="radius_m", text="zwölf"):
+        read_table(path, CARVE_KEYS)
+
+
+COLUMNS = ("ski", "load_N", "at_rest", "outcome", "warnings", "study")
+KEYS = {
+    "ski": Quantity("ski", "", kind="text"),
+    "load_N": Quantity("load_N", ""),
+    "at_rest": Quantity("at_rest", "", kind="switch"),
+}
+COUNT = 2 * ROWS_OF_A_BLOCK + 5
+
+
+def values() -> list[list[Any]]:
+    return [["slalom", 700.0 + n, n % 2 == 0, "equilibrium", "", "f"] for n in range(COUNT)]
+
+
+@pytest.fixture
+def place(tmp_path: Path) -> Path:
+    path = tmp_path / "table.sqlite"
+    write_table(path, COLUMNS, values)
+    return path
+
+
+def change(place: Path, statement: str) -> None:
+    with closing(sqlite3.connect(place, isolation_level=None)) as database:
+        database.executescript(statement)
+
+
+def loads(place: Path) -> list[Any]:
+    return [row["load_N"] for row in read_table(place, KEYS).rows]
+
+
+def test_rows_that_another_program_removed_leave_the_others(place: Path) -> None:
+    """Blocks are counted by rows, not by their numbers."""
+    change(place, "delete from study where rowid <= 3 or rowid = 1500")
+    wanted = [row[1] for number, row in enumerate(values(), start=1) if number > 3 and number != 1500]
+    assert loads(place) == wanted
+
+
+@pytest.mark.parametrize(
+    ("statement", "named"),
+    [
+        ("update study set outcome = x'00' where rowid = 1203", ("row 1203", "outcome")),
+        ("update study set load_N = 'heavy' where rowid = 1203", ("row 1203", "load_N", "heavy")),
+        ("update study set at_rest = x'00' where rowid = 1203", ("row 1203", "at_rest")),
+        ("update study set warnings = cast(x'ff' as text) where rowid = 1203", ()),
+        ("alter table study drop column outcome", ("outcome",)),
+        ("alter table study rename to other", ("study",)),
+        ("alter table study rename to other; create view study as select * from other", ("study",)),
+    ],
+)
+def test_what_is_no_table_of_a_study_names_the_place(place: Path, statement: str, named: tuple[str, ...]) -> None:
+    change(place, statement)
+    with pytest.raises(ParameterError) as caught:
+        loads(place)
+    assert all(word in str(caught.value) for word in (place.name, *named))
+
+
+def test_damaged_pages_are_an_error(place: Path) -> None:
+    sound = place.read_bytes()
+    for begin in range(4096, len(sound), 4096):
+        place.write_bytes(sound[:begin] + b"\xa5" * 64 + sound[begin + 64 :])
+        with raises(ParameterError, "cannot_read"):
+            loads(place)
+
 
 TEXT = """
 out = "table.csv"
