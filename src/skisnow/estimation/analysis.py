@@ -9,7 +9,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
-import numpy.typing as npt
 
 from .._support.display import Facts, Shown, amount, span
 from .._support.errors import ParameterError
@@ -51,7 +50,6 @@ if TYPE_CHECKING:
 
     from ..geometry import GeometryForm
 
-FloatArray = npt.NDArray[np.float64]
 
 DEFAULT_RESAMPLES: Final = 2000
 """Bootstrap resamples; the ends of a 95 % interval then move by a few percent of its width between seeds."""

@@ -18,7 +18,8 @@ from ..statistics.combined_uncertainty import expanded_factor
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-FloatArray = npt.NDArray[np.float64]
+    from .._support.arrays import FloatArray
+
 
 FEWEST_SITES: Final = 4
 """Fewer sites do not show how sites scatter (two leave one degree of freedom): no interval over them (assumption)."""

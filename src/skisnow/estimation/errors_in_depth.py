@@ -21,7 +21,6 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
-import numpy.typing as npt
 
 from .._support.display import ShownFields
 from ..statistics.bounded import condensed, non_negative_fits
@@ -29,11 +28,9 @@ from .hardness import DEFINITIONS, hardness_of_all_readings
 from .models import MODELS, EndBasis, Model, ModelFit, end_basis, end_columns, fit_model
 
 if TYPE_CHECKING:
+    from .._support.arrays import BoolArray, FloatArray
     from .campaign_model import CampaignModel
     from .readings import Readings, ReadingUncertainty
-
-FloatArray = npt.NDArray[np.float64]
-BoolArray = npt.NDArray[np.bool_]
 
 
 _EXACT_SHARE: Final = 1e-6

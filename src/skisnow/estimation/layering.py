@@ -21,7 +21,6 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
-import numpy.typing as npt
 
 from .._support.display import ShownFields
 from .._support.units import CONFIDENCE, MM
@@ -31,11 +30,9 @@ from .comparisons import own_mean
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from .._support.arrays import BoolArray, FloatArray
     from .readings import Readings, ReadingUncertainty
 
-
-FloatArray = npt.NDArray[np.float64]
-BoolArray = npt.NDArray[np.bool_]
 
 SEATING_SD: Final = 0.1 * MM
 """Offsets of the depth zero that are put down to seating when layering is looked for; more bends the curve too far."""

@@ -11,7 +11,6 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
-import numpy.typing as npt
 
 from ..statistics.bounded import non_negative_fits
 from ..statistics.f_tests import nested_f_test
@@ -22,10 +21,9 @@ from .models import MODELS, NESTED_PAIRS, EndBasis, Model, ModelFit, end_basis
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from .._support.arrays import BoolArray, FloatArray
     from .readings import Readings
 
-FloatArray = npt.NDArray[np.float64]
-BoolArray = npt.NDArray[np.bool_]
 MINIMUM_DETERMINANT: Final = 1e-12
 """Of a normal matrix of columns of length one: below it, some combination of coefficients is free but for rounding."""
 EQUAL_PERCENT: Final = 1e-9

@@ -9,7 +9,6 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-import numpy.typing as npt
 
 from .._support.display import ShownFields
 from .._support.units import MM, N_PER_MM2, N_PER_MM3
@@ -17,11 +16,10 @@ from .._support.units import MM, N_PER_MM2, N_PER_MM3
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
+    from .._support.arrays import BoolArray, FloatArray
     from ..campaign.records import Campaign, PenetrationTests, ShearTests
     from .snow_micro_pen import SnowMicroPenAnalysis
 
-FloatArray = npt.NDArray[np.float64]
-BoolArray = npt.NDArray[np.bool_]
 
 HARDNESS_KEY = "H_V_N_per_mm3"
 STRESS_KEY = "S_f_N_per_mm2"

@@ -4,9 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import numpy as np
-import numpy.typing as npt
-
+from .._support.arrays import FloatArray
 from .._support.display import Facts, Shown, amount, field_facts
 from .campaign_model import CampaignModel
 from .errors_in_depth import FittedHardness
@@ -20,8 +18,6 @@ from .seating import Seating
 from .shear import ShearDisplacement, ShearStress, SiteDisplacement
 from .unloading import SiteUnloading, Unloading
 from .volume_factor import VolumeFactor
-
-FloatArray = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True, repr=False)

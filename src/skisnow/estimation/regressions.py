@@ -30,10 +30,10 @@ from .observations import (
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
+    from .._support.arrays import FloatArray
     from .models import ModelFit
     from .observations import Observations
 
-FloatArray = npt.NDArray[np.float64]
 Source: TypeAlias = Literal["penetration", "shear", "spots"]
 
 FEWEST_TESTS: Final = 5

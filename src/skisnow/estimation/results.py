@@ -11,8 +11,6 @@ from dataclasses import asdict
 from importlib.metadata import version
 from typing import TYPE_CHECKING, Any, TypeAlias
 
-import numpy as np
-import numpy.typing as npt
 import orjson
 
 from .._support.units import DEGREE, MM, N_PER_MM3
@@ -41,7 +39,6 @@ if TYPE_CHECKING:
     from .unloading import SiteUnloading
     from .volume_factor import VolumeFactor
 
-FloatArray = npt.NDArray[np.float64]
 Json: TypeAlias = dict[str, Any]
 
 SCHEMA_VERSION = 1

@@ -7,7 +7,6 @@ from itertools import pairwise
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
-import numpy.typing as npt
 
 from .._support.content import index_names
 from .._support.display import ShownFields
@@ -23,12 +22,11 @@ from .unloading import NOT_FALLING
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
+    from .._support.arrays import BoolArray, FloatArray
     from ..campaign.problems import Problem
     from ..campaign.records import Campaign
     from ..geometry import GeometryForm
 
-FloatArray = npt.NDArray[np.float64]
-BoolArray = npt.NDArray[np.bool_]
 
 FEWEST_FOR_OUTLIERS: Final = 5
 OUTLIER_DISTANCE: Final = 3.5

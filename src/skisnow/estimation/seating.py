@@ -11,15 +11,13 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-import numpy.typing as npt
 
 from .._support.display import ShownFields
 
 if TYPE_CHECKING:
+    from .._support.arrays import FloatArray
     from .campaign_model import CampaignModel
     from .readings import Readings
-
-FloatArray = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True, repr=False)

@@ -6,7 +6,6 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
-import numpy.typing as npt
 
 from .._support.display import ShownFields
 from .campaign_model import DEFAULT_PRIORS, CampaignModel
@@ -16,10 +15,9 @@ from .spread_groups import fit_in_groups
 from .unloading import Unloading, unloading
 
 if TYPE_CHECKING:
+    from .._support.arrays import BoolArray
     from ..campaign.records import Campaign, PenetrationTests
     from .readings import Readings
-
-BoolArray = npt.NDArray[np.bool_]
 
 
 @dataclass(frozen=True, repr=False)

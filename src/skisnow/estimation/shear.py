@@ -24,11 +24,9 @@ from .comparisons import own_mean
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from .._support.arrays import BoolArray, FloatArray, IntArray
     from ..campaign.records import Campaign, ShearTests, TurningReadings
 
-FloatArray = npt.NDArray[np.float64]
-BoolArray = npt.NDArray[np.bool_]
-IntArray = npt.NDArray[np.int64]
 RISING: Final = (0.1, 0.9)
 """Shares of the largest moment between which a reading is of the rising part (modelling assumption): below, the plate
 still comes to lie on the snow; above, parts of the snow have failed."""

@@ -17,7 +17,6 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
-import numpy.typing as npt
 
 from .._support.display import ShownFields
 from .._support.units import CONFIDENCE
@@ -25,10 +24,10 @@ from ..statistics.combined_uncertainty import expanded_factor
 from .campaign_model import CONTACT_STEPS
 
 if TYPE_CHECKING:
+    from .._support.arrays import FloatArray
     from .campaign_model import CampaignModel
     from .readings import Readings
 
-FloatArray = npt.NDArray[np.float64]
 
 _LARGEST_VARIANCE: Final = 0.2
 """Of ln x, above which the correction is no longer small and a reading is omitted."""

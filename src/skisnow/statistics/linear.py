@@ -19,7 +19,6 @@ from .combined_uncertainty import require_confidence
 from .f_tests import f_ratio, f_tail
 from .least_squares import (
     Columns,
-    FloatArray,
     as_predictors,
     as_response,
     centre,
@@ -31,6 +30,8 @@ from .least_squares import (
 
 if TYPE_CHECKING:
     import numpy.typing as npt
+
+    from .._support.arrays import FloatArray
 _CHEBYSHEV_LIMIT: Final = 1e5
 """Of the condition number of Chebyshev polynomials: at 3·10⁴ the coefficients of the powers keep 9 digits."""
 Polynomial = list[Fraction]

@@ -13,7 +13,7 @@ from .linear import linear_fit
 if TYPE_CHECKING:
     import numpy.typing as npt
 
-    from .least_squares import FloatArray
+    from .._support.arrays import FloatArray
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)

@@ -17,9 +17,9 @@ from .table_forms import UNLOADING, allowed_words
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
+    from ..._support.arrays import BoolArray, FloatArray, IntArray
     from ...parameters import Quantity
     from ..problems import Problem
-    from ..records import BoolArray, FloatArray, IntArray
     from .headings import UnitConversion
     from .table_forms import TableForm
 

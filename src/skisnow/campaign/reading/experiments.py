@@ -18,8 +18,8 @@ from .table_forms import BRANCH
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
+    from ..._support.arrays import BoolArray, FloatArray, IntArray
     from ..problems import Problem
-    from ..records import BoolArray, FloatArray, IntArray
     from .columns import NameColumn, Table
 
 

@@ -22,8 +22,8 @@ from .table_forms import BRANCH, PENETRATION, SHEAR
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
+    from ..._support.arrays import FloatArray
     from ..problems import Problem
-    from ..records import FloatArray
     from .campaign_file import CampaignFile
     from .columns import Table
 

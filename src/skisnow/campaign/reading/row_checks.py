@@ -17,8 +17,8 @@ from .table_forms import BRANCH, BRANCHES, DENSITY, DROP_CONE, LOADING, PENETRAT
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    from ..._support.arrays import BoolArray
     from ..problems import Problem
-    from ..records import BoolArray
     from .campaign_file import CampaignFile
     from .columns import Table
     from .experiments import Blocks

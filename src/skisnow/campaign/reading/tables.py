@@ -19,8 +19,8 @@ from .text import SEPARATOR_NAMES, CsvText, UnreadableTextError
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
 
+    from ..._support.arrays import IntArray
     from ..problems import Problem
-    from ..records import IntArray
     from .campaign_files import RawFiles
     from .columns import Collector
     from .corrections import RowCorrections

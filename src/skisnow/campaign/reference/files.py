@@ -20,7 +20,7 @@ from .campaign import DEFAULT_NOISE, reference_campaign
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
-    from ..records import FloatArray
+    from ..._support.arrays import FloatArray
     from .campaign import ReferenceCampaign
     from .design import ReferenceNoise
 
