@@ -16,7 +16,7 @@ from .._support.messages import Message
 from ..campaign import read_campaign
 from ..campaign.records import Campaign
 from ..snow import SnowProperties
-from .comparisons import Comparison, OwnValue, compare_with_published, own_mean
+from .comparisons import Comparison, OwnValue, compare_with_published, own_mean, site_values
 from .errors_in_depth import fit_models_with_depth_errors, fitted_hardness
 from .group_comparisons import DIFFERENCE, GroupComparison, compare_campaign
 from .layering import growing_hardness, site_growth
@@ -37,7 +37,7 @@ from .regressions import Regression, Source, fit_warnings, regressions
 from .screening import screened_penetration, screened_shear
 from .seating import seating
 from .series_estimates import reading_uncertainty
-from .shear import shear_displacement, shear_stress, site_displacement
+from .shear import shear_displacement, shear_stress
 from .sites import SiteMean, site_means, site_snow
 from .snow_micro_pen import SnowMicroPenAnalysis, evaluate_recordings
 from .spread_groups import scatter_warning
@@ -377,7 +377,7 @@ def _penetration(
     by_last = {symbol: H.value[screened.used] for symbol, H in found.items()}
     fits = fit_models(used, by_last)
     intervals = bootstrap_intervals(used, by_last, rng, n_resamples=n_resamples, progress=progress)
-    depth_fits, _ = fit_models_with_depth_errors(fitted.of(screened.used), uncertainty)
+    depth_fits = fit_models_with_depth_errors(fitted.of(screened.used), uncertainty)
     no_choice = why_no_choice(used)
     selected = None if no_choice else select_model(fits)
     return replace(
@@ -395,7 +395,7 @@ def _shear(campaign: Campaign) -> ShearAnalysis | None:
     if campaign.shear is None:
         return None
     screened, displacement = screened_shear(campaign), shear_displacement(campaign, campaign.shear)
-    by_site = site_displacement(displacement, screened.used, campaign.shear.site)
+    by_site = site_values(displacement.value, screened.used, campaign.shear.site)
     return ShearAnalysis(screened, shear_stress(campaign, campaign.shear), displacement, by_site)
 
 

@@ -91,15 +91,13 @@ def pooled_scatter(scatter: FloatArray) -> float:
 
 def fit_models_with_depth_errors(
     fitted: FittedHardness, uncertainty: ReadingUncertainty, *, n_iterations: int = 12
-) -> tuple[tuple[ModelFit, ...], dict[Model, FloatArray]]:
+) -> tuple[ModelFit, ...]:
     """Fit the nine candidate models by effective variance.
 
-    Returns the rows and the final weights of the readings (1/N²) of each, for the bootstrap. The rmse are in force and
-    unweighted, to stand beside those of `models.fit_models`.
+    The rmse are in force and unweighted, for comparison with those of `models.fit_models`.
     """
     readings, hardnesses, scatter = fitted.readings, fitted.value, pooled_scatter(fitted.scatter)
     fits: list[ModelFit] = []
-    weights: dict[Model, FloatArray] = {}
     bases = {symbol: end_basis(readings, H) for symbol, H in hardnesses.items()}
     slopes_of = {symbol: _depth_slopes(readings, H) for symbol, H in hardnesses.items()}
     for model in MODELS:
@@ -115,8 +113,7 @@ def fit_models_with_depth_errors(
             previous = ends
         of_load = condensed(basis.columns, readings.load, weights=weight)
         fits.append(fit_model(readings, basis, model, of_load))
-        weights[model] = weight
-    return tuple(fits), weights
+    return tuple(fits)
 
 
 def _weighted_ends(basis: EndBasis, model: Model, load: FloatArray, weight: FloatArray) -> FloatArray:

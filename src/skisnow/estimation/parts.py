@@ -7,15 +7,16 @@ from dataclasses import dataclass
 from .._support.arrays import FloatArray
 from .._support.display import Facts, Shown, amount, field_facts
 from .campaign_model import CampaignModel
+from .comparisons import SiteValue
 from .errors_in_depth import FittedHardness
 from .hardness import Hardness
-from .layering import GrowingHardness, SiteGrowth
+from .layering import GrowingHardness
 from .model_choice import NestedRows
 from .models import Model, ModelFit
 from .readings import Readings
 from .screening import Screened
 from .seating import Seating
-from .shear import ShearDisplacement, ShearStress, SiteDisplacement
+from .shear import ShearDisplacement, ShearStress
 from .unloading import SiteUnloading, Unloading
 from .volume_factor import VolumeFactor
 
@@ -50,7 +51,7 @@ class PenetrationAnalysis(Shown):
     seating: Seating
     fitted: FittedHardness
     growing: GrowingHardness
-    site_growth: tuple[SiteGrowth, ...]
+    site_growth: tuple[SiteValue, ...]
     unloading: Unloading
     site_unloading: tuple[SiteUnloading, ...]
     table: ModelTable | None = None
@@ -71,7 +72,7 @@ class ShearAnalysis(Shown):
     screened: Screened
     stress: ShearStress
     displacement: ShearDisplacement
-    site_displacement: tuple[SiteDisplacement, ...]
+    site_displacement: tuple[SiteValue, ...]
 
     def _facts(self) -> Facts:
         return Facts(used_of(self.screened))

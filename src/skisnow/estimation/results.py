@@ -148,7 +148,7 @@ def _penetration(analysis: Analysis) -> Json:
                 {
                     "site": row.site,
                     "n": row.n,
-                    "growth_percent": 100.0 * row.growth,
+                    "growth_percent": 100.0 * row.value,
                     "growth_interval_percent": [100.0 * row.low, 100.0 * row.high],
                 }
                 for row in found.site_growth
