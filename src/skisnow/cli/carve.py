@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import argparse
-import json
 import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from .ending import list_fonts
 from .options import add_language, number, whole_number
+from .output import list_fonts, print_json
 from .progress import announced
 
 if TYPE_CHECKING:
@@ -112,7 +111,7 @@ def run(options: argparse.Namespace) -> int:
         write_figure(options.figure, lambda: carved_skis(result), language=options.language, names=names)
         print(f"Figure: {options.figure}", file=sys.stderr)
     if options.json:
-        print(json.dumps(result, ensure_ascii=False, allow_nan=False, indent=1))
+        print_json(result)
     else:
         from ..report.summaries import carve_summary
 
