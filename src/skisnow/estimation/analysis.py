@@ -17,32 +17,32 @@ from ..campaign import read_campaign
 from ..campaign.records import Campaign
 from ..snow import SnowProperties
 from .comparisons import Comparison, OwnValue, compare_with_published, own_mean, site_values
-from .errors_in_depth import fit_models_with_depth_errors, fitted_hardness
+from .errors_in_depth import fit_models_with_depth_errors, fitted_hardness, volume_factor
 from .group_comparisons import DIFFERENCE, GroupComparison, compare_campaign
 from .layering import growing_hardness, site_growth
 from .model_choice import bootstrap_intervals, compare_nested_rows
 from .models import Model, fit_models, select_model, why_no_choice
-from .observations import (
+from .parts import ModelTable, PenetrationAnalysis, ShearAnalysis, seating, used_of
+from .readings import readings_of
+from .regressions import (
     DENSITY_KEY,
     HARDNESS_KEY,
     STRESS_KEY,
     Observations,
+    Regression,
+    Source,
+    fit_warnings,
     penetration_observations,
+    regressions,
     shear_observations,
     spot_observations,
 )
-from .parts import ModelTable, PenetrationAnalysis, ShearAnalysis, used_of
-from .readings import readings_of
-from .regressions import Regression, Source, fit_warnings, regressions
-from .screening import screened_penetration, screened_shear
-from .seating import seating
-from .series_estimates import reading_uncertainty
+from .screening import reading_uncertainty, screened_penetration, screened_shear
 from .shear import shear_displacement, shear_stress
 from .sites import SiteMean, site_means, site_snow
 from .snow_micro_pen import SnowMicroPenAnalysis, evaluate_recordings
 from .spread_groups import scatter_warning
 from .unloading import site_unloading
-from .volume_factor import volume_factor
 from .weather import WeatherAtTests, weather_at_tests
 
 if TYPE_CHECKING:

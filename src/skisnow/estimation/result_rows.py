@@ -22,8 +22,7 @@ if TYPE_CHECKING:
     from .model_choice import NestedRows
     from .models import Model, ModelFit
     from .parts import ModelTable, PenetrationAnalysis
-    from .screening import Screened
-    from .series_estimates import SeriesEstimates
+    from .screening import Screened, SeriesEstimates
     from .shear import ShearDisplacement, ShearStress
     from .unloading import Unloading
 

@@ -33,11 +33,11 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from .analysis import Analysis
+    from .errors_in_depth import VolumeFactor
     from .parts import PenetrationAnalysis, ShearAnalysis
     from .regressions import Regression
     from .sites import SiteMean
     from .unloading import SiteUnloading
-    from .volume_factor import VolumeFactor
 
 Json: TypeAlias = dict[str, Any]
 

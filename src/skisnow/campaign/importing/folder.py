@@ -18,9 +18,8 @@ from ..._support.staging import prepare_folder, staged, write_file
 from ..._support.user_files import own_json
 from ..problems import error
 from ..reading.campaign_file import CAMPAIGN_FILE
-from .answers import SECTION, toml_text
-from .notes import PLATE, TOOL, Note, length_mm, stated_plates, stated_tools
-from .questions import Question, ask, is_asked
+from .answers import SECTION, Question, ask, is_asked, toml_text
+from .columns import PLATE, TOOL, Note, length_mm, stated_plates, stated_tools
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -238,7 +237,7 @@ def _described(
                 open_.append(_bad_answer(kind, table.section.key, answers[name], form))
             elif not is_asked(open_, kind, name):
                 value = ", ".join(sorted(filter(None, texts))) or name or None
-                open_.append(ask(kind, name, table.section, value=value, proposed=form))
+                open_.append(ask(kind, name, table.section.key, value=value, proposed=form))
     return described
 
 
