@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from importlib.resources import as_file, files
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -12,7 +11,7 @@ import numpy as np
 from .._support.errors import OutputError, ParameterError
 from .._support.staging import write_file
 from .._support.units import DEGREE, MM
-from .._support.user_files import is_file
+from .._support.user_files import is_file, toml_text
 from ..parameters import SMALLEST, nearest
 from .file_keys import COLUMNS, RIGID
 from .file_parts import FileParts
@@ -173,7 +172,7 @@ def write_keys(keys: Mapping[str, Any], path: Path, *, digits: int = 9) -> None:
     def text(value: Any) -> str:
         if isinstance(value, list | tuple):
             return f"[{', '.join(text(each) for each in value)}]"
-        return _toml(float(f"{value:.{digits}g}") if isinstance(value, float) else value)
+        return toml_text(float(f"{value:.{digits}g}") if isinstance(value, float) else value)
 
     write_file(path, "".join(f"{key} = {text(value)}\n" for key, value in keys.items()))
 
@@ -220,7 +219,7 @@ def _keys_text(ski: Ski, table: str) -> str:
     if not ski.source.strip():
         del values["source"]
     rigid = "rigid = true\n" if _is_rigid(ski) else ""
-    return "".join(f"{key} = {_toml(value)}\n" for key, value in values.items()) + rigid
+    return "".join(f"{key} = {toml_text(value)}\n" for key, value in values.items()) + rigid
 
 
 def _table_text(ski: Ski) -> str:
@@ -246,10 +245,3 @@ def _is_rigid(ski: Ski) -> bool:
 def _plain(value: float) -> float:
     """The number without the last digits, which the change of unit made up, and none that is not a quantity."""
     return 0.0 if abs(value) < SMALLEST else float(f"{value:.15g}")
-
-
-def _toml(value: str | float) -> str:
-    if isinstance(value, bool):
-        return str(value).lower()
-    # a JSON text is a TOML text but for the character that JSON leaves as it is
-    return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f") if isinstance(value, str) else repr(value)

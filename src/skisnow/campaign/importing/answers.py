@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields, replace
 from pathlib import Path
@@ -10,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Final, Self
 
 from ..._support.errors import ParameterError
 from ..._support.messages import Message
-from ..._support.user_files import read_toml, toml_values
+from ..._support.user_files import read_toml, toml_text, toml_values
 from ..problems import error
 from ..reading.campaign_file import CAMPAIGN_FILE, IMPORT_ANSWERS
 from ..reading.headings import plain_heading
@@ -94,11 +93,6 @@ def _pair(kind: str, text: str) -> tuple[str, str]:
             code="no_pair",
         )
     return key.strip(), value.strip()
-
-
-def toml_text(text: str) -> str:
-    """A text in quotes as TOML writes it."""
-    return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")
 
 
 def read_template(place: str | Path) -> Answers:

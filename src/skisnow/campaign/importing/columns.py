@@ -85,14 +85,9 @@ def _bad_answers(section: Section, form: TableForm, answers: Answers) -> Iterato
     for heading in section.headings:
         answer = answers.of_heading("column", table, heading)
         if answer and answer != NONE and answer not in form.known:
-            yield error(
-                "bad_answer",
-                section.key,
-                column=heading,
-                value=answer,
-                allowed=Message("the columns {columns}, or - for none", columns=list(form.known)),
-                action=Message("Correct --{option}.", option="column"),
-            )
+            allowed = Message("the columns {columns}, or - for none", columns=list(form.known))
+            action = Message("Correct --{option}.", option="column")
+            yield error("bad_answer", section.key, column=heading, value=answer, allowed=allowed, action=action)
 
 
 def _column_questions(section: Section, form: TableForm, stated: Sequence[str]) -> Iterator[Question | Problem]:
@@ -111,15 +106,11 @@ def _column_questions(section: Section, form: TableForm, stated: Sequence[str]) 
         choices = (*missing, *(name for name in form.known if name not in missing), NONE)
         yield ask("column", f"{table}.{heading}", section.key, value=heading, choices=choices, proposed=proposed)
     if missing and not free:
-        yield error(
-            "missing_column",
-            section.key,
-            value=None,
-            allowed=Message("the columns {required}", required=list(form.required)),
-            action=Message(
-                "Add {columns} to the sheet, or name the column with --{option}.", columns=missing, option="column"
-            ),
+        allowed = Message("the columns {required}", required=list(form.required))
+        action = Message(
+            "Add {columns} to the sheet, or name the column with --{option}.", columns=missing, option="column"
         )
+        yield error("missing_column", section.key, value=None, allowed=allowed, action=action)
 
 
 def _statements(
@@ -167,9 +158,7 @@ def _unit(
         )
     else:
         choices = tuple(units_for(column).split(", "))
-        open_.append(
-            ask("unit", f"{table}.{heading}", section.key, value=below or heading, choices=choices)
-        )
+        open_.append(ask("unit", f"{table}.{heading}", section.key, value=below or heading, choices=choices))
     return None
 
 

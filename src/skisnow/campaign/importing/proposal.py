@@ -15,7 +15,7 @@ from ..problems import Problem, error
 from ..reading.campaign import campaign_of_files
 from .answers import NONE, Answers, Question, ask, is_asked
 from .columns import Note, choose_columns, gauge_steps_mm, is_about_numbers, stated_days, stated_observers, stated_sites
-from .folder import PlateText, ToolText, campaign_files, csv_text, description, plates_of, tools_of
+from .folder import PlateText, ToolText, campaign_files, description, plates_of, table_text, tools_of
 from .rows import ImportedTable, stored_rows
 from .sheets import KINDS, Ignored, Section, Sheet, find_sections, likely_table, read_sheets, table_of
 
@@ -252,7 +252,7 @@ def _merged(tables: Sequence[ImportedTable]) -> dict[str, str]:
     by_form: dict[str, list[dict[str, str]]] = {}
     for table in tables:
         by_form.setdefault(table.form.file, []).extend(row.cells for row in table.rows)
-    return {file: csv_text(KINDS[file.removesuffix(".csv")], rows) for file, rows in by_form.items()}
+    return {file: table_text(KINDS[file.removesuffix(".csv")], rows) for file, rows in by_form.items()}
 
 
 def _description(
