@@ -89,7 +89,7 @@ def _add_choices(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Answer for each ski, print, draw; 1 where an equilibrium was not found, 0 with every other outcome."""
-    from ..carving.answer_dict import answers_dict
+    from ..carving.answer import answers_dict
 
     if options.figure is not None:
         from ..report.figures.figure_files import require_drawable
@@ -122,7 +122,7 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _sensitivities(answers: list[CarveAnswer], names: list[str]) -> list[list[dict[str, Any]]]:
-    from ..carving.answer_dict import sensitivities_dict
+    from ..carving.answer import sensitivities_dict
 
     return [sensitivities_dict(answer.equilibrium, [name for name in names if name]) for answer in answers]
 
@@ -149,8 +149,7 @@ def _status(answers: list[CarveAnswer]) -> int:
 def _answers(options: argparse.Namespace) -> list[CarveAnswer]:
     with announced("loading"):
         from ..carving.answer import answered
-        from ..carving.keys import CARVE_KEYS
-        from ..carving.question import carve_question
+        from ..carving.question import CARVE_KEYS, carve_question
 
         question = {name: value for name, value in vars(options).items() if name in CARVE_KEYS and value is not None}
         return [answered(carve_question(question | {"ski": ski})) for ski in options.ski]

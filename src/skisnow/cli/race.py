@@ -181,7 +181,7 @@ def _checked(
     fastest: QuickestLine, scenario: Scenario, progress: Progress
 ) -> tuple[list[tuple[str, Score]], Run | None]:
     """Both lines raced as the scenario says it, where the search raced by a quicker method; the run on the quickest."""
-    from ..racing.racers import run_score, ski_line
+    from ..racing.point import run_score, ski_line
 
     if fastest.model == "point":
         return [], None

@@ -114,7 +114,7 @@ def _origin(course: Course) -> GeodeticPoint | None:
 
 
 def _timed(course: Course, track: Track) -> CourseResult:
-    from ..simulation.run_gates import time_gates
+    from ..simulation.run_summary import time_gates
 
     return time_gates(course, track)
 

@@ -16,7 +16,7 @@ from ..ski.ski_file import ski_of_keys
 from .variables import COMBINED, combined_names, designed_keys, start_value
 
 if TYPE_CHECKING:
-    from ..carving.keys import CarveQuestion
+    from ..carving.question import CarveQuestion
     from ..carving.sensitivity import CarveDerivatives
     from ..carving.solve import Solution
     from ..ski import Ski

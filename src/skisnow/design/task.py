@@ -12,14 +12,13 @@ from typing import Annotated, Any, Final, Literal
 from .._support.errors import ParameterError
 from .._support.messages import Message
 from .._support.user_files import read_toml
-from ..carving.keys import CARVE_KEYS, CarveQuestion
 from ..carving.outputs import OUTPUTS
-from ..carving.question import carve_question
+from ..carving.question import CARVE_KEYS, CarveQuestion, carve_question
 from ..parameters import Quantity, checked_table, made, nearest
 from ..ski import Ski
+from ..ski.editing import shape_parameters
 from ..ski.file_keys import LISTS
-from ..ski.sources import Sources
-from ..ski.variation import shape_parameters
+from ..ski.ski_file import Sources
 from .variables import COMBINED, Variable, combined_names
 
 FEWEST_STARTS: Final = 8

@@ -12,7 +12,7 @@ from .._support.display import Facts, Shown
 from .._support.units import MM
 from ..campaign.snow_micro_pen_records import SnowSurface, snow_surface
 from ..parameters import values_of
-from ..snow.penetrometer_relations import PENETROMETER_RELATIONS
+from ..snow.measured_range import PENETROMETER_RELATIONS
 from ..statistics.shot_noise import ShotNoise, shot_noise, windows_of
 
 if TYPE_CHECKING:
